@@ -3,8 +3,9 @@
 
     python3 scripts/check_page.py runs/impact/report.html [more pages] [--screenshots DIR]
 
-Opens each page, plays its animation and drags its slider. Fails on any console message, missing
-part or external request. Needs only `chromium` (apt-get install chromium). With --screenshots, it
+Opens each page, plays its animation and drags its slider; a scene in space is also turned, moved,
+zoomed, cut and coloured, by mouse, touch and keys. Fails on any console message, missing part or
+external request. Needs only `chromium` (apt-get install chromium). With --screenshots, it
 writes for every page NAME.png (as opened), NAME-playing.png (after the animation was played) and
 NAME.pdf (printed), where NAME is the name of its folder.
 """
@@ -37,7 +38,9 @@ class Browser:
         theirs, self.to = os.pipe()
         self.of, ours = os.pipe()
         command = [
-            program, "--headless", "--disable-gpu", "--hide-scrollbars", f"--user-data-dir={profile}", "--no-first-run",
+            program, "--headless", "--hide-scrollbars", f"--user-data-dir={profile}", "--no-first-run",
+            # WebGL without a graphics card.
+            "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
             "--remote-debugging-pipe", "--host-resolver-rules=MAP * ~NOTFOUND", "--window-size=1000,1400",
         ]
         if hasattr(os, "geteuid") and os.geteuid() == 0:
@@ -178,6 +181,107 @@ def animation(browser):
     return wrong
 
 
+# The picture of a scene: the percentage of it that differs from the background, and mean colours of
+# squares of 25 pixels. Lines of one and the same scene are not drawn with the same pixels twice.
+SCENE = """JSON.stringify((c => {
+    const copy = new OffscreenCanvas(c.width, c.height).getContext("2d", { willReadFrequently: true });
+    copy.drawImage(c, 0, 0);
+    const data = copy.getImageData(0, 0, c.width, c.height).data, across = Math.ceil(c.width / 25);
+    const squares = new Array(3 * across * Math.ceil(c.height / 25)).fill(0);
+    let drawn = 0;
+    for (let y = 0, i = 0; y < c.height; y++) for (let x = 0; x < c.width; x++, i += 4) {
+        drawn += data[i] < 250 || data[i + 1] < 250 || data[i + 2] < 250;
+        const at = 3 * (Math.floor(y / 25) * across + Math.floor(x / 25));
+        for (let k = 0; k < 3; k++) squares[at + k] += data[i + k] / 625;
+    }
+    return [400 * drawn / data.length, squares];
+})(document.querySelector("#animation canvas")))"""
+# Levels of 256 by which the mean colour of a square differs between pictures.
+SAME = 20
+
+
+def apart(before, after):
+    """Largest difference of two pictures of a scene."""
+    return max(abs(a - b) for a, b in zip(before[1], after[1]))
+
+
+def scene(browser):
+    """Turns, moves, zooms, cuts and colours a scene; returns the errors found."""
+    wrong = []
+    picture = "#animation canvas"
+
+    def shown():
+        # The picture is drawn in the next frame of the browser.
+        drawn = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))"
+        browser("Runtime.evaluate", expression=drawn, awaitPromise=True)
+        return json.loads(browser.value(SCENE))
+
+    x, y, width, height = browser.place(picture)
+    middle = (x + width / 2, y + height / 2)
+
+    def drag(by, button="left"):
+        buttons = {"left": 1, "right": 2}[button]
+        for kind, part in [("mousePressed", 0), ("mouseMoved", 0.5), ("mouseMoved", 1), ("mouseReleased", 1)]:
+            browser("Input.dispatchMouseEvent", type=kind, x=middle[0] + part * by[0], y=middle[1] + part * by[1],
+                    button=button, buttons=0 if kind == "mouseReleased" else buttons, clickCount=1)
+
+    def touch(kind, *points):
+        browser("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
+
+    def key(name):
+        browser.value(f"document.querySelector('{picture}').focus()")
+        for kind in ("keyDown", "keyUp"):
+            browser("Input.dispatchKeyEvent", type=kind, key=name)
+
+    def pick(selector, value):
+        browser.value(f"""(e => {{ e.value = {json.dumps(value)}; e.dispatchEvent(new Event("change")); }})(
+            document.querySelector("#animation {selector}"))""")
+
+    def swipe():
+        touch("touchStart", middle)
+        touch("touchMove", (middle[0] + 40, middle[1] + 25))
+        touch("touchEnd")
+
+    def spread():
+        near, far = [[(middle[0] + s * d, middle[1]) for s in (-1, 1)] for d in (30, 90)]
+        touch("touchStart", *near)
+        touch("touchMove", *far)
+        touch("touchEnd")
+
+    def wheel():
+        browser("Input.dispatchMouseEvent", type="mouseWheel", x=middle[0], y=middle[1], deltaX=0, deltaY=-400)
+
+    first = shown()
+    if not 3 < first[0] < 97:
+        wrong.append(f"the scene draws {first[0]:.1f} % of its picture")
+    steps = [
+        ("dragging", lambda: drag((60, 30))),
+        ("dragging with the right button", lambda: drag((50, 20), "right")),
+        ("the wheel", wheel),
+        ("a finger", swipe),
+        ("two fingers", spread),
+        *[(f"the key {name}", lambda name=name: key(name)) for name in ("ArrowLeft", "ArrowUp", "+", "-", ".")],
+        *[(f"the colours of {k}", lambda k=k: pick(".quantity", k)) for k in "120"],
+        *[(f"a cut at {axis}", lambda axis=axis: pick(".cut", axis)) for axis in ("x", "−y", "")],
+    ]
+    before = first
+    for name, step in steps:
+        step()
+        after = shown()
+        if apart(before, after) < SAME and name == "the wheel":
+            # Its events come late.
+            time.sleep(0.5)
+            after = shown()
+        if apart(before, after) < SAME:
+            wrong.append(f"{name} does not change the scene")
+        before = after
+    key(",")
+    browser.click("#animation .home")
+    if (by := apart(first, shown())) >= SAME:
+        wrong.append(f"after a reset the scene is not that of the beginning: a square differs by {by:.0f} levels")
+    return wrong
+
+
 def check(browser, page, screenshots):
     """The errors of a page, as sentences."""
     browser.open(page)
@@ -195,11 +299,16 @@ def check(browser, page, screenshots):
         print_data = browser("Page.printToPDF", printBackground=True)["data"]
         Path(f"{to}.pdf").write_bytes(base64.b64decode(print_data))
     if 'id="animation"' in text:
+        solid = browser.value("!!document.querySelector('#animation .scene')")
+        # A scene is unpacked after the page was loaded.
+        if solid and browser.until("!document.getElementById('animation').hidden"):
+            wrong += scene(browser)
         wrong += animation(browser)
         if to:
             picture(browser, f"{to}-playing.png")
-    if page.stat().st_size > 5_000_000:
-        wrong.append(f"{page.stat().st_size} bytes are more than 5 MB")
+    most = 8_000_000 if 'class="scene"' in text else 5_000_000
+    if page.stat().st_size > most:
+        wrong.append(f"{page.stat().st_size} bytes are more than {most / 1e6:.0f} MB")
     return wrong + browser.said
 
 

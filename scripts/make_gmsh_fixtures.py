@@ -7,10 +7,11 @@
 The gmsh wheel needs libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1.
 
 The geometry is the half model of the impact: a half-disc `cylinder` (radius 0.5, centre (0, 1))
-above a prism (1 x 0.5) whose top is y = 0. The curve `axis` belongs to both bodies. Cells of order
+above a prism (1 x 0.5) whose top is y = 0; in space an eighth of a ball. The curve `axis` belongs to both bodies. Cells of order
 3 are optimised with Gmsh's high-order optimisation.
 """
 
+import math
 from pathlib import Path
 
 import gmsh
@@ -60,6 +61,27 @@ def mesh(order, dimension=2):
         gmsh.model.mesh.optimize("HighOrder")
 
 
+def eighth(order):
+    """An eighth of the unit ball, its volume `eighth` and its sides `sphere`, `plane_x`, …"""
+    start("eighth")
+    occ = gmsh.model.occ
+    occ.addSphere(0, 0, 0, 1, -1, 0, math.pi / 2, math.pi / 2)
+    occ.synchronize()
+    ((_, volume),) = gmsh.model.getEntities(3)
+    for _, surface in gmsh.model.getBoundary([(3, volume)], oriented=False):
+        center = occ.getCenterOfMass(2, surface)
+        flat = gmsh.model.getType(2, surface) == "Plane"
+        axis = min(range(3), key=lambda i: abs(center[i]))
+        gmsh.model.addPhysicalGroup(2, [surface], name=f"plane_{'xyz'[axis]}" if flat else "sphere")
+    gmsh.model.addPhysicalGroup(3, [volume], name="eighth")
+    gmsh.option.setNumber("Mesh.MeshSizeMin", 0.6)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.6)
+    gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.setOrder(order)
+    if order > 1:
+        gmsh.model.mesh.optimize("HighOrderElastic")
+
+
 def write(path, version=4.1, binary=False):
     gmsh.option.setNumber("Mesh.MshFileVersion", version)
     gmsh.option.setNumber("Mesh.Binary", binary)
@@ -90,6 +112,11 @@ def main():
     impact(0.3, 0.4, square=True)
     mesh(1)
     write(TESTS / "quadrangles.msh")
+
+    for order, version, label in ((1, 4.1, "41_ascii"), (2, 4.1, "41_ascii"), (2, 2.2, "22_binary"), (3, 4.1, "41_binary")):
+        eighth(order)
+        write(TESTS / f"eighth_order{order}_{label}.msh", version, "binary" in label)
+    gmsh.option.restoreDefaults()
 
     start("bar")
     ends = [gmsh.model.geo.addPoint(x, 0, 0, 0.5) for x in (0, 2)]

@@ -1,12 +1,15 @@
 //! Complementarity of normal and tangential forces with Coulomb's law in the plane:
 //!
 //! ```text
-//! u = A z + b,   z = (P, Q),   0 ≤ P_i ⊥ u_i ≥ 0,   |Q_j| ≤ r_j,   Q_j = −r_j sign u_j where u_j ≠ 0,   r_j = min(μ_j P_j, limit_j)
+//! u = A z + b,   z = (P, Q),   0 ≤ P_i ⊥ u_i ≥ 0
+//! |Q_j| ≤ r_j,   Q_j = −r_j sign u_j where u_j ≠ 0,   r_j = min(μ_j P_j, limit_j)
 //! ```
 //!
-//! A symmetric and positive definite; each tangential force belongs to one normal one. Sweeps of the
-//! nonlinear Gauss–Seidel method find which contacts are open, stick, or slip; with that the problem is linear and is solved exactly. Where its solution contradicts it,
-//! the sweeps go on.
+//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero. Rows that
+//! depend on each other come as a proximal step (`complementarity.rs`). Each tangential force belongs to
+//! one normal one. Sweeps of the nonlinear Gauss–Seidel method find which contacts are open, stick, or
+//! slip; with that the problem is linear and is solved exactly. Where its solution contradicts it, the
+//! sweeps go on.
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Where forces act along other directions F than G (friction), U = L⁻¹Fᵀ replaces the second T of
-//! each product, and TᵀU is factored by LU with partial pivoting.
+//! each product, and TᵀU is factored by LU with partial pivoting. Seen relative to the matrix without
+//! friction, TᵀT = K Kᵀ, it is R = K⁻¹TᵀU K⁻ᵀ, the identity for F = G.
 //!
 //! Both factors exist if S is positive definite and G has full rank; the matrix then has one
 //! negative eigenvalue per row of G (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). If S is
@@ -26,6 +27,8 @@ use crate::pivots::{Room, diagonal_size};
 
 /// Fraction of a row's square below which it depends on the others.
 const DEPENDENT: f64 = 1e-14;
+/// Inverse iterations for the smallest singular value.
+const INVERSE_ITERATIONS: usize = 8;
 
 /// The factor of a square matrix that need not be positive definite.
 enum Whole {
@@ -179,6 +182,45 @@ impl Saddle {
         (0..m).find(repeats).map_or(Ok(true), |i| Err(dependent(i)))
     }
 
+    /// The smallest singular value of R with the sign of its determinant, by inverse iteration; none if
+    /// F = G. Where it is not positive, a solution for other states of the contacts exists for some
+    /// forces, or none does.
+    pub fn regularity(&self) -> Option<f64> {
+        let (skew, m) = (self.skew.as_ref()?, self.count);
+        let turns = |places: &[usize]| {
+            let mut seen = vec![false; places.len()];
+            let mut count = 0;
+            for first in 0..places.len() {
+                let (mut next, mut length) = (first, 0);
+                while !std::mem::replace(&mut seen[next], true) {
+                    (next, length) = (places[next], length + 1);
+                }
+                count += usize::from(length > 0 && length % 2 == 0);
+            }
+            count
+        };
+        let pivots = skew.U().diagonal().column_vector();
+        let negative = (0..m).filter(|&i| pivots[i] < 0.0).count() + turns(skew.P().arrays().0);
+        let sign = if negative % 2 == 0 { 1.0 } else { -1.0 };
+        let lower = MatRef::from_column_major_slice(&self.small, m, m);
+        // Entries of many signs, so that no singular vector is orthogonal to them.
+        let mut x = Mat::from_fn(m, 1, |i, _| 1.0 + 0.5 * (1.7 * i as f64).sin());
+        let mut smallest = f64::INFINITY;
+        for _ in 0..INVERSE_ITERATIONS {
+            let size = x.norm_l2();
+            x *= faer::Scale(size.recip());
+            // R⁻ᵀ x, of a size of at most 1/σ, and R⁻¹ of it.
+            multiply(lower, BlockStructure::TriangularLower, &mut x);
+            skew.solve_transpose_in_place(x.as_mut());
+            multiply(lower.transpose(), BlockStructure::TriangularUpper, &mut x);
+            smallest = x.norm_l2().recip();
+            multiply(lower, BlockStructure::TriangularLower, &mut x);
+            skew.solve_in_place(x.as_mut());
+            multiply(lower.transpose(), BlockStructure::TriangularUpper, &mut x);
+        }
+        Some(if smallest.is_finite() { sign * smallest } else { 0.0 })
+    }
+
     /// Overwrites `b` with x and `c` with λ.
     pub fn solve(&self, b: &mut [f64], c: &mut [f64]) {
         let (n, m) = (self.size, self.count);
@@ -220,6 +262,24 @@ impl Saddle {
         matmul(x.rb_mut(), Accum::Add, directions, multipliers.rb(), -1.0, Par::Seq);
         solve_upper_triangular_in_place(lower.transpose(), x.rb_mut(), Par::Seq);
     }
+}
+
+/// x := A x for a triangle A.
+fn multiply(triangle: MatRef<f64>, structure: BlockStructure, x: &mut Mat<f64>) {
+    let mut product = Mat::zeros(x.nrows(), 1);
+    let whole = BlockStructure::Rectangular;
+    triangular::matmul(
+        product.as_mut(),
+        whole,
+        Accum::Replace,
+        triangle,
+        structure,
+        x.as_ref(),
+        whole,
+        1.0,
+        Par::Seq,
+    );
+    *x = product;
 }
 
 /// Overwrites a lower triangle with its factor.

@@ -37,16 +37,29 @@ pub(super) fn quantity(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Ux => "ux",
         Quantity::Uy => "uy",
+        Quantity::Uz => "uz",
         Quantity::Vx => "vx",
         Quantity::Vy => "vy",
+        Quantity::Vz => "vz",
         Quantity::Ax => "ax",
         Quantity::Ay => "ay",
+        Quantity::Az => "az",
         Quantity::SigmaXx => "sigma_xx",
         Quantity::SigmaYy => "sigma_yy",
+        Quantity::SigmaZz => "sigma_zz",
         Quantity::SigmaXy => "sigma_xy",
+        Quantity::SigmaYz => "sigma_yz",
+        Quantity::SigmaXz => "sigma_xz",
         Quantity::VonMises => "von_mises",
         Quantity::DetF => "det_f",
     }
+}
+
+/// Whether a quantity exists in a space of this dimension: its name has no axis beyond it.
+pub(super) fn exists(of: Quantity, dimension: usize) -> bool {
+    let axes = quantity(of).trim_start_matches("sigma_");
+    let lacks = |axis: &str| axes.len() == 2 && axes.contains(axis);
+    !(dimension < 2 && lacks("y") || dimension < 3 && lacks("z"))
 }
 
 /// Names of the columns of history.csv of a case, in their order.
@@ -70,14 +83,16 @@ pub(super) fn of(
     probes: &[Option<ProbeSpec>],
     manufactured: bool,
 ) -> Vec<String> {
-    let axes = &["x", "y"][..dimension.clamp(1, 2)];
+    let axes = &["x", "y", "z"][..dimension.clamp(1, 3)];
     let mut columns: Vec<String> = SCALARS.iter().map(ToString::to_string).collect();
     let vector = |columns: &mut Vec<String>, name: &str| {
         columns.extend(axes.iter().map(|axis| format!("{name}_{axis}")));
     };
     vector(&mut columns, "momentum");
-    if dimension == 2 {
-        columns.push("angular_momentum".to_owned());
+    match dimension {
+        2 => columns.push("angular_momentum".to_owned()),
+        3 => vector(&mut columns, "angular_momentum"),
+        _ => {}
     }
     vector(&mut columns, "contact_force");
     vector(&mut columns, "contact_impulse");

@@ -12,7 +12,7 @@ mod value;
 
 /// All problems of single keys and values.
 pub(super) fn problems(document: &Document) -> Vec<Problem> {
-    let dimension = document.root().get("dimension").and_then(Node::count).filter(|d| (1..=2).contains(d));
+    let dimension = document.root().get("dimension").and_then(Node::count).filter(|d| (1..=3).contains(d));
     let mut check = Check { dimension, names: Names::of(document.root()), problems: Vec::new() };
     check.keys(
         document.root(),
@@ -231,7 +231,9 @@ fn homes(word: &str) -> Vec<&'static str> {
         }
         for key in table.keys {
             match key.kind {
-                Kind::Table(table) | Kind::Tables(table) | Kind::SideOr(table) => visit(table, word, found),
+                Kind::Table(table) | Kind::Tables(table) | Kind::SideOr(table) | Kind::Rotation(table) => {
+                    visit(table, word, found);
+                }
                 Kind::Variant(variants) if variants().tag == word => found.push(variants().name),
                 Kind::Variant(variants) => {
                     let variants = variants();

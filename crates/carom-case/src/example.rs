@@ -64,6 +64,10 @@ fn sides_of(shape: &str) -> &'static [&'static str] {
         "half-disc" => &["arc", "axis"],
         "ring" => &["outer", "inner"],
         "polygon" => &["side1"],
+        "box" => &["top", "bottom", "left", "right", "front", "back"],
+        "ball" => &["sphere"],
+        "cylinder" => &["side", "bottom", "top"],
+        "tube" => &["outer", "inner", "bottom", "top"],
         _ => &[],
     }
 }

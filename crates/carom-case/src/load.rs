@@ -62,7 +62,7 @@ pub(super) fn motion(v: &View) -> Option<Vec<(usize, FormulaSpec)>> {
 /// Reads displacements by direction.
 pub(super) fn displacements(table: &Table) -> Option<Vec<(usize, FormulaSpec)>> {
     let axis = |(i, name)| table.get(name).map(|node| Some((i, formula(node)?)));
-    ["x", "y"].into_iter().enumerate().filter_map(axis).collect()
+    ["x", "y", "z"].into_iter().enumerate().filter_map(axis).collect()
 }
 
 /// Reads a body's initial velocity; a rigid-body motion is converted to formulas.
@@ -79,8 +79,14 @@ pub(super) fn velocity(
         None => Some(vec![0.0; dimension]),
     };
     let linear = numbers("linear")?;
-    let angular = table.get("angular").map_or(Some(0.0), Node::number)?;
-    if angular == 0.0 {
+    let angular = match table.get("angular") {
+        Some(node) => match node.list() {
+            Some(list) => list.iter().map(Node::number).collect::<Option<Vec<f64>>>()?,
+            None => vec![0.0, 0.0, node.number()?],
+        },
+        None => vec![0.0; 3],
+    };
+    if angular.iter().all(|component| *component == 0.0) {
         return Some(linear.into_iter().map(FormulaSpec::Number).collect());
     }
     let misspelt = table.0.iter().any(|e| !["linear", "angular", "about"].contains(&e.key.as_str()));
@@ -91,18 +97,24 @@ pub(super) fn velocity(
         let (key, what, why, help) = if dimension == 1 {
             ("angular", "a bar cannot rotate", "the case has dimension = 1", "leave `angular` out")
         } else {
-            ("angular", "the rotation has no centre", "a body rotates about a point", "add `about = [x, y]`")
+            let help = if dimension == 2 { "add `about = [x, y]`" } else { "add `about = [x, y, z]`" };
+            ("angular", "the rotation has no centre", "a body rotates about a point", help)
         };
         problems.push(Problem::new(format!("{path}.velocity.{key}"), what, why, help));
         return None;
     }
     let about = numbers("about")?;
-    let [u, w, a, b] = [linear[0], linear[1], about[0], about[1]];
-    let text = |text: String| FormulaSpec::Text(text);
-    Some(vec![
-        text(format!("{u:?} - {angular:?}*(Y - {b:?})")),
-        text(format!("{w:?} + {angular:?}*(X - {a:?})")),
-    ])
+    // Component i of linear + ω × (X − about), without the terms that vanish.
+    let component = |i: usize| {
+        let [j, k] = [(i + 1) % 3, (i + 2) % 3];
+        let term = |sign: &str, omega: f64, axis: usize| {
+            let exists = axis < dimension && omega != 0.0;
+            let arm = || format!(" {sign} {omega:?}*({} - {:?})", ["X", "Y", "Z"][axis], about[axis]);
+            exists.then(arm).unwrap_or_default()
+        };
+        format!("{:?}{}{}", linear[i], term("+", angular[j], k), term("-", angular[k], j))
+    };
+    Some((0..dimension).map(|i| FormulaSpec::Text(component(i))).collect())
 }
 
 /// Variables of a load's formulas in a space of this dimension.

@@ -24,6 +24,32 @@ impl BodySpec {
             MeshSpec::Interval { min, max, cells } => {
                 message(generate::interval(self.element, min, max, cells))?
             }
+            MeshSpec::Box { min, max, cells, symmetry } if dimension == 3 => {
+                let mut mesh = message(generate::cuboid(self.element, min, max, cells))?;
+                let cuts = ["left", "front", "bottom"].into_iter().zip(["plane_x", "plane_y", "plane_z"]);
+                for ((side, plane), _) in cuts.zip(symmetry).filter(|(_, cut)| *cut) {
+                    let facets = mesh.sides.remove(side).unwrap_or_default();
+                    mesh.sides.insert(plane.to_owned(), facets);
+                }
+                mesh
+            }
+            MeshSpec::Ball { radius, center, size, symmetry } if dimension == 3 => {
+                message(generate::ball(self.element, radius, center, size, symmetry))?
+            }
+            MeshSpec::Cylinder { radius, height, center, axis, size, symmetry } if dimension == 3 => {
+                let cylinder =
+                    |frame| generate::cylinder(self.element, radius, height, &frame, size, symmetry);
+                message(generate::Frame::along(axis, center).and_then(cylinder))?
+            }
+            MeshSpec::Tube { inner, outer, height, center, axis, size, symmetry } if dimension == 3 => {
+                let tube =
+                    |frame| generate::tube(self.element, [inner, outer], height, &frame, size, symmetry);
+                message(generate::Frame::along(axis, center).and_then(tube))?
+            }
+            MeshSpec::Box { .. }
+            | MeshSpec::Ball { .. }
+            | MeshSpec::Cylinder { .. }
+            | MeshSpec::Tube { .. } => return Err("this shape needs dimension = 3".into()),
             _ if dimension != 2 => return Err("this shape needs dimension = 2".into()),
             MeshSpec::Rectangle { min, max, cells } => {
                 message(generate::rectangle(self.element, min, max, cells))?

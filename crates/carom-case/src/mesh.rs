@@ -5,8 +5,9 @@ use std::path::Path;
 use carom_solid::{Element, generate};
 
 use super::keys::{self, Kind};
+use super::mesh_cells::{divided, fitting, ordered};
 use super::mesh_file;
-use super::problem::{Problem, rounded};
+use super::problem::Problem;
 use super::tree::{Node, Table};
 use super::view::View;
 use super::{MeshSpec, Preset, RefineSpec};
@@ -27,14 +28,24 @@ pub(super) fn read(
     }
     let shape = table.get("shape")?.text()?;
     let v = View { table, keys: keys::shapes().table(shape)?.keys, preset };
-    let wanted = if shape == "interval" { 1 } else { 2 };
+    let wanted = match shape {
+        "interval" => 1,
+        "box" | "ball" | "cylinder" | "tube" => 3,
+        _ => 2,
+    };
     if wanted != dimension {
         let what = format!("the shape \"{shape}\" has dimension {wanted}");
         let why = format!("the case has dimension = {dimension}");
-        let help =
-            if dimension == 1 { "use shape = \"interval\"" } else { "use for example shape = \"rectangle\"" };
+        let help = match dimension {
+            1 => "use shape = \"interval\"",
+            2 => "use for example shape = \"rectangle\"",
+            _ => "use for example shape = \"box\"",
+        };
         problems.push(Problem::new(format!("{path}.shape"), what, why, help));
         return None;
+    }
+    if dimension == 3 {
+        return super::solids::read(v, shape, path, problems);
     }
     let point = |name| v.numbers(name)?.try_into().ok();
     match shape {
@@ -45,9 +56,7 @@ pub(super) fn read(
         }
         "rectangle" => {
             let (min, max): ([f64; 2], [f64; 2]) = (point("min")?, point("max")?);
-            ordered(min[0], max[0], "[0]", path, problems)?;
-            ordered(min[1], max[1], "[1]", path, problems)?;
-            Some(MeshSpec::Rectangle { min, max, cells: rectangle_cells(v, min, max, path, problems)? })
+            Some(MeshSpec::Rectangle { min, max, cells: divided(v, min, max, path, problems)? })
         }
         "ring" => {
             let (inner, outer) = (v.number("inner")?, v.number("outer")?);
@@ -97,70 +106,4 @@ fn polygon(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<MeshSpec>
         return None;
     }
     Some(MeshSpec::Polygon { points, size: v.number("size")?, refine })
-}
-
-fn rectangle_cells(
-    v: View,
-    min: [f64; 2],
-    max: [f64; 2],
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<[usize; 2]> {
-    match (v.has("cells"), v.has("size")) {
-        (true, false) => {
-            v.value("cells")?.list()?.iter().map(Node::count).collect::<Option<Vec<_>>>()?.try_into().ok()
-        }
-        (false, true) => {
-            let size = v.number("size").filter(|size| *size > 0.0)?;
-            fitting(size, ("longer side", (max[0] - min[0]).max(max[1] - min[1])), path, problems)?;
-            Some([0, 1].map(|i| ((max[i] - min[i]) / size - 1e-9).ceil().max(1.0) as usize))
-        }
-        (both, _) => {
-            let misspelt =
-                v.table.0.iter().any(|e| e.key != "shape" && !v.keys.iter().any(|k| k.name == e.key));
-            if both || !misspelt {
-                let what = if both {
-                    "a rectangle has `cells` or `size`, not both"
-                } else {
-                    "the rectangle has neither `cells` nor `size`"
-                };
-                problems.push(Problem::new(
-                    path,
-                    what,
-                    "each of them sets the size of the cells",
-                    "write for example `cells = [8, 4]`",
-                ));
-            }
-            None
-        }
-    }
-}
-
-/// Reports cells that are larger than their body.
-fn fitting(size: f64, (extent, length): (&str, f64), path: &str, problems: &mut Vec<Problem>) -> Option<()> {
-    // A value that is not positive is reported elsewhere.
-    if size > length && length > 0.0 {
-        let what = format!("`size` = {size} is larger than the {extent}, {}", rounded(length));
-        let why = "it is the edge length of the cells, and none would fit";
-        let help = format!("give size ≤ {}, for example size = {}", rounded(length), rounded(length / 5.0));
-        problems.push(Problem::new(format!("{path}.size"), what, why, help));
-        return None;
-    }
-    Some(())
-}
-
-fn ordered(min: f64, max: f64, index: &str, path: &str, problems: &mut Vec<Problem>) -> Option<()> {
-    if min < max {
-        return Some(());
-    }
-    if min.is_finite() && max.is_finite() {
-        let what = format!("`max` = {max} is not greater than `min` = {min}");
-        problems.push(Problem::new(
-            format!("{path}.max{index}"),
-            what,
-            "the shape would have no extent",
-            "give max > min",
-        ));
-    }
-    None
 }

@@ -11,11 +11,13 @@ use super::machine::available_memory;
 use super::problem::Problem;
 use super::view::View;
 
-/// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2.
+/// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2, a volume in
+/// space.
 fn group(file: gmsh::MshFile, dimension: usize, name: &str, slits: bool) -> Result<Mesh, gmsh::MshError> {
     let file = file.with_slits(slits);
     match dimension {
         1 => file.bar(name),
+        3 => file.volume(name),
         _ => file.body(name),
     }
 }
@@ -51,7 +53,16 @@ pub(super) fn read(
     path: &str,
     problems: &mut Vec<Problem>,
 ) -> Option<MeshSpec> {
-    let (name, surface, slits) = (v.text("file")?, v.text("surface")?, v.value("slits")?.flag()?);
+    let (name, slits) = (v.text("file")?, v.value("slits")?.flag()?);
+    let (named, other) = if dimension == 3 { ("volume", "surface") } else { ("surface", "volume") };
+    if v.has(other) {
+        let what = format!("the body of a file is its `{named}`, not its `{other}`");
+        let why = format!("the case has dimension = {dimension}");
+        problems
+            .push(Problem::new(format!("{path}.{other}"), what, why, format!("write `{named}`")).at_key());
+        return None;
+    }
+    let surface = v.text(named)?;
     let joined = folder.join(&name);
     let file = std::path::absolute(&joined).unwrap_or(joined);
     let mut wrong = |key: &str, what: String, why: String, help: &str| {
@@ -74,12 +85,13 @@ pub(super) fn read(
         Ok(facts) => facts,
         Err(error) => {
             // `slits` may be misspelt, which `conform` reports.
-            let unknown =
-                || v.table.0.iter().any(|e| !["file", "surface", "slits"].contains(&e.key.as_str()));
+            let unknown = || {
+                v.table.0.iter().any(|e| !["file", "surface", "volume", "slits"].contains(&e.key.as_str()))
+            };
             if matches!(error.fault, gmsh::Fault::Coincident { .. }) && unknown() {
                 return None;
             }
-            let key = if matches!(error.fault, gmsh::Fault::NoName { .. }) { "surface" } else { "file" };
+            let key = if matches!(error.fault, gmsh::Fault::NoName { .. }) { named } else { "file" };
             return wrong(key, format!("{name}: {error}"), error.why(), error.help());
         }
     };
@@ -90,7 +102,7 @@ pub(super) fn read(
             facts.element,
             element.degree()
         );
-        return wrong("surface", what, "the element of a body must be that of its mesh".into(), &help);
+        return wrong(named, what, "the element of a body must be that of its mesh".into(), &help);
     }
     let hash = blake3::hash(&bytes).to_hex().to_string();
     let Facts { nodes, cells, sides, repairs, .. } = facts;

@@ -5,11 +5,18 @@ use carom_solid::Mesh;
 
 use super::PlaceSpec;
 use super::problem::Problem;
+use super::tree::{Node, Table};
 use super::view::View;
 
 /// Reads the table `place` of a body.
 pub(super) fn read(v: View, dimension: usize, path: &str, problems: &mut Vec<Problem>) -> Option<PlaceSpec> {
-    let rotate = v.number("rotate")?;
+    let (rotate, axis) = match v.table.get("rotate") {
+        Some(node) => match node.table() {
+            Some(table) => about_axis(table, path, problems)?,
+            None => (node.number()?, Vec::new()),
+        },
+        None => (0.0, Vec::new()),
+    };
     if dimension == 1 && rotate != 0.0 {
         let (what, why) = ("a bar cannot be rotated", "the case has dimension = 1");
         problems.push(Problem::new(
@@ -21,7 +28,21 @@ pub(super) fn read(v: View, dimension: usize, path: &str, problems: &mut Vec<Pro
         return None;
     }
     let vector = |name| if v.has(name) { v.numbers(name) } else { Some(vec![0.0; dimension]) };
-    Some(PlaceSpec { rotate, about: vector("about")?, shift: vector("shift")? })
+    Some(PlaceSpec { rotate, axis, about: vector("about")?, shift: vector("shift")? })
+}
+
+/// The angle and the unit axis of a rotation in space.
+fn about_axis(table: &Table, path: &str, problems: &mut Vec<Problem>) -> Option<(f64, Vec<f64>)> {
+    let axis = table.get("axis")?.list()?.iter().map(Node::number).collect::<Option<Vec<f64>>>()?;
+    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if !(length > 0.0 && length.is_finite()) {
+        let what = "the axis of the rotation has no direction";
+        let why = "its components are all zero, or too large";
+        let help = "give a direction, for example axis = [0.0, 0.0, 1.0]";
+        problems.push(Problem::new(format!("{path}.rotate.axis"), what, why, help));
+        return None;
+    }
+    Some((table.get("angle")?.number()?, axis.iter().map(|x| x / length).collect()))
 }
 
 impl PlaceSpec {
@@ -30,8 +51,18 @@ impl PlaceSpec {
         let (sin, cos) = sine_and_cosine(self.rotate);
         for x in &mut mesh.nodes {
             let mut rotated: Vec<f64> = x.iter().zip(&self.about).map(|(x, about)| x - about).collect();
-            if let [a, b] = rotated[..] {
-                rotated = vec![cos * a - sin * b, sin * a + cos * b];
+            match (&rotated[..], &self.axis[..]) {
+                (&[a, b], _) => rotated = vec![cos * a - sin * b, sin * a + cos * b],
+                // Rodrigues' formula: a cos + n × a sin + n (n·a)(1 − cos).
+                (&[a, b, c], &[l, m, n]) => {
+                    let along = (l * a + m * b + n * c) * (1.0 - cos);
+                    rotated = vec![
+                        a * cos + (m * c - n * b) * sin + l * along,
+                        b * cos + (n * a - l * c) * sin + m * along,
+                        c * cos + (l * b - m * a) * sin + n * along,
+                    ];
+                }
+                _ => {}
             }
             for i in 0..x.len() {
                 // Without a rotation, (x − about) + about would add round-off.
@@ -64,7 +95,8 @@ mod tests {
     fn a_placed_disc_is_the_disc_elsewhere() {
         let made = generate::disc(Element::T10, 0.5, [1.0, 2.0], 0.2).unwrap();
         let mut mesh = made.clone();
-        PlaceSpec { rotate: 30.0, about: vec![1.0, 0.0], shift: vec![-3.0, 0.25] }.apply(&mut mesh);
+        PlaceSpec { rotate: 30.0, axis: Vec::new(), about: vec![1.0, 0.0], shift: vec![-3.0, 0.25] }
+            .apply(&mut mesh);
         let (s, c) = (0.5, 0.75_f64.sqrt());
         let center = [1.0 - 2.0 * s - 3.0, 2.0 * c + 0.25];
         for n in mesh.side_nodes("arc").unwrap() {
@@ -83,7 +115,7 @@ mod tests {
             [(90.0, [-0.1, 0.3]), (-180.0, [-0.3, -0.1]), (630.0, [0.1, -0.3]), (720.0, [0.3, 0.1])]
         {
             let mut mesh = made.clone();
-            PlaceSpec { rotate, about: vec![0.0; 2], shift: vec![0.0; 2] }.apply(&mut mesh);
+            PlaceSpec { rotate, axis: Vec::new(), about: vec![0.0; 2], shift: vec![0.0; 2] }.apply(&mut mesh);
             assert!(mesh.nodes.iter().any(|x| x == ends), "{rotate}");
         }
     }

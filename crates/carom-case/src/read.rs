@@ -108,7 +108,7 @@ impl<'a> Reader<'a> {
         let preset = root.choice("preset").unwrap_or(Preset::Default);
         Self {
             root: View { preset, ..root },
-            dimension: root.count("dimension").filter(|d| (1..=2).contains(d)),
+            dimension: root.count("dimension").filter(|d| (1..=3).contains(d)),
         }
     }
 

@@ -34,7 +34,9 @@ fn paths(spec: &Table, before: &str, found: &mut Vec<(String, Value)>) {
         let name = format!("{before}{}", key.name);
         found.push((format!("{name}$"), property(key)));
         match key.kind {
-            Kind::Table(spec) | Kind::SideOr(spec) => paths(spec, &format!("{name}\\."), found),
+            Kind::Table(spec) | Kind::SideOr(spec) | Kind::Rotation(spec) => {
+                paths(spec, &format!("{name}\\."), found);
+            }
             Kind::Tables(spec) => paths(spec, &format!("{name}\\.[^.]+\\."), found),
             Kind::Variant(variants) => {
                 let variants = variants();
@@ -111,11 +113,20 @@ fn values(kind: &Kind) -> Map<String, Value> {
         Kind::Truth => json!({ "type": "boolean" }),
         Kind::Count(least) => json!({ "type": "integer", "minimum": least }),
         Kind::Counts(least) => {
-            json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "integer", "minimum": least } })
+            json!({ "type": "array", "minItems": 2, "maxItems": 3, "items": { "type": "integer", "minimum": least } })
         }
         Kind::Vector => {
-            json!({ "type": "array", "minItems": 1, "maxItems": 2, "items": { "type": "number" } })
+            json!({ "type": "array", "minItems": 1, "maxItems": 3, "items": { "type": "number" } })
         }
+        Kind::Direction => json!({ "oneOf": [
+            { "enum": ["x", "y", "z"] },
+            { "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 }
+        ] }),
+        Kind::Angular => json!({ "oneOf": [
+            { "type": "number" },
+            { "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 }
+        ] }),
+        Kind::Rotation(spec) => json!({ "oneOf": [{ "type": "number" }, table(spec, None)] }),
         Kind::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
         Kind::Points(least) => {
             let point =

@@ -91,7 +91,7 @@ pub(super) fn body(
 
 pub(super) fn support(v: View) -> Option<SupportSpec> {
     let fix = if v.has("fix") { v.texts("fix")? } else { Vec::new() };
-    let fix = fix.iter().map(|d| ["x", "y"].iter().position(|x| x == d)).collect::<Option<_>>()?;
+    let fix = fix.iter().map(|d| ["x", "y", "z"].iter().position(|x| x == d)).collect::<Option<_>>()?;
     Some(SupportSpec { name: v.text("name"), on: v.texts("on")?, fix, moves: load::motion(&v)? })
 }
 
@@ -137,7 +137,7 @@ pub(super) fn contact(
 
 /// What depends on a misspelt key is not judged.
 fn friction(v: &View) -> FrictionSpec {
-    let mu = v.formula("mu").filter(|mu| !mu.is_zero());
+    let mu = v.formula("mu");
     if v.table.0.iter().any(|entry| !v.keys.iter().any(|key| key.name == entry.key)) {
         return FrictionSpec { mu, ..FrictionSpec::default() };
     }

@@ -18,6 +18,8 @@ pub struct Pair {
     pub xi: f64,
     /// Whether it is active: for a constraint, whether its gap is constrained to zero.
     pub active: bool,
+    /// Whether it has been active since the start of the run.
+    pub rests: bool,
     /// Multiplier λ ≤ 0; zero unless active.
     pub lambda: f64,
     /// Gap at the step's start for an energy-conserving penalty. It is stored, since Δg = ∇g·Δy at
@@ -30,7 +32,16 @@ pub struct Pair {
 impl Pair {
     /// An inactive pair at a point of a facet.
     pub fn open(node: usize, facet: usize, xi: f64) -> Self {
-        Self { node, facet, xi, active: false, lambda: 0.0, start: None, tangential: Tangential::default() }
+        Self {
+            node,
+            facet,
+            xi,
+            active: false,
+            rests: false,
+            lambda: 0.0,
+            start: None,
+            tangential: Tangential::default(),
+        }
     }
 }
 

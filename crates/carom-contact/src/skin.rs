@@ -3,7 +3,7 @@
 //! The nearest point of the boundary decides (`depth.rs`). Independent of pairs, sides and history, so that it can judge them.
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, FacetShape, Hull, Tree};
+use carom_solid::{Bounds, Hull, Tree};
 
 use crate::depth::Depth;
 use crate::kinematics::{Folds, Side, Surface, Turns};
@@ -45,10 +45,10 @@ impl Skin {
 
     /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵅ|.
     pub fn amplification(&self) -> f64 {
-        match self.surface.shape() {
-            FacetShape::Point | FacetShape::L2 => 1.0,
-            FacetShape::L3 => 1.25,
-            FacetShape::L4 => 1.6312,
+        match self.surface.shape().degree() {
+            0 | 1 => 1.0,
+            2 => 1.25,
+            _ => 1.6312,
         }
     }
 
@@ -146,6 +146,8 @@ fn cross(a: [Vector<2>; 2], b: [Vector<2>; 2]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use carom_solid::FacetShape;
+
     use super::*;
 
     /// An L-shaped polygon: a convex corner at (2, 1), a concave one at (1, 1).

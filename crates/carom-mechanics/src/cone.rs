@@ -22,7 +22,7 @@ use crate::system::System;
 /// Most changes of stick and slip in one solve.
 const CHANGES: usize = 200;
 /// Slip rate, as a fraction of the largest velocity, that is none.
-const AT_REST: f64 = 1e-10;
+pub(crate) const AT_REST: f64 = 1e-10;
 /// Rate, as a fraction of the largest one in a solve, that is round-off.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -87,6 +87,11 @@ impl Closed {
             contact.kinematics.slip(&state.pairs[k][p], &state.y, &mut slips).map_err(failed)?;
         }
         Ok(Self { places, normals, slips, laws })
+    }
+
+    /// Whether any has friction.
+    pub(crate) fn rubs(&self) -> bool {
+        self.laws.iter().any(Option::is_some)
     }
 
     /// H x of each pair; 0 without friction.

@@ -11,7 +11,8 @@ use std::collections::BTreeMap;
 use carom_contact::{Direction, DiscreteGradient, Hold, Pair, Row, Rows};
 
 use crate::balance::contact_weights;
-use crate::equations::{Equations, Evaluation};
+use crate::equations::Equations;
+use crate::evaluation::Evaluation;
 use crate::model::Model;
 
 /// Remainder after elimination (gradients are of order one) below which a row depends on the
@@ -280,6 +281,13 @@ impl Evaluation {
         let sticks = |pair: &Pair| pair.tangential.hold == Hold::Stick;
         self.pressing()
             .filter(move |&(k, p)| !self.slips[k].is_empty() && sticks(&self.at.pairings[k].pairs[p]))
+    }
+
+    /// The rows H of those that slip.
+    pub(crate) fn slipping(&self) -> impl Iterator<Item = Row<'_>> {
+        let slips = |pair: &Pair| pair.tangential.hold != Hold::Stick;
+        let places = self.pressing().filter(move |&(k, p)| slips(&self.at.pairings[k].pairs[p]));
+        places.filter(|&(k, _)| !self.slips[k].is_empty()).map(|(k, p)| self.slips[k].row(p))
     }
 }
 

@@ -4,7 +4,8 @@
 use carom_contact::{ActiveSet, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip, Tangential};
 
 use crate::constraints::Constraints;
-use crate::equations::{Equations, Evaluation, Iterate};
+use crate::equations::Equations;
+use crate::evaluation::{Evaluation, Iterate};
 use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
 use crate::system::System;
@@ -75,6 +76,8 @@ pub(crate) struct ContactUpdate {
     holds: Vec<StickSlip>,
     /// Remaining early facet updates.
     facet_updates: u32,
+    /// The smallest relative singular value of the interface so far, with the sign of its determinant.
+    pub(crate) regularity: f64,
 }
 
 impl ContactUpdate {
@@ -86,6 +89,7 @@ impl ContactUpdate {
             sets: model.contacts.iter().map(set).collect(),
             holds: model.contacts.iter().map(hold).collect(),
             facet_updates: FACET_UPDATES,
+            regularity: f64::INFINITY,
         }
     }
 
@@ -207,6 +211,7 @@ impl ContactUpdate {
                         .iter()
                         .map(|&p| contact.kinematics.secondary()[pairs[p].node])
                         .collect(),
+                    regularity: self.regularity,
                 })?;
             for (p, hold) in changes {
                 (pairs[p].tangential.hold, changed) = (hold, true);

@@ -7,119 +7,16 @@
 
 use std::sync::Arc;
 
-use carom_contact::{Answer, ContactError, Direction, DiscreteGradient, Law, Pair, Pairing, Point, Rows};
+use carom_contact::Law;
 use carom_time::{Internal, Stage};
 
-use crate::balance::{Forces, contact_weights, known_into, mean_acceleration, residual_into};
+use crate::balance::{known_into, mean_acceleration, residual_into};
+use crate::evaluation::{Evaluation, Iterate, Spare};
 use crate::model::{LoadsAt, Model, Prescribed};
 use crate::rejected::Rejected;
 use crate::renewal::Point as FactorPoint;
 use crate::state::State;
 use crate::timings::{Timings, timed};
-
-/// The unknowns of a stage.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Iterate {
-    /// d = y − y_s.
-    pub increment: Vec<f64>,
-    /// Pairs of each contact, multipliers included.
-    pub pairings: Vec<Pairing>,
-}
-
-impl Iterate {
-    /// The start of a step: no increment, the pairs of the state.
-    pub(crate) fn at_start(state: &State) -> Self {
-        let pairings = state.pairs.iter().cloned().map(Pairing::new).collect();
-        Self { increment: vec![0.0; state.y.len()], pairings }
-    }
-}
-
-/// Results at an iterate.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Evaluation {
-    /// The iterate, with contact points updated to its positions and the activity of springs set.
-    pub at: Iterate,
-    /// y = y_s + d.
-    pub y: Vec<f64>,
-    /// Positions at which internal forces and loads are evaluated; for a discrete gradient, the
-    /// midpoint of the step.
-    pub place: Vec<f64>,
-    /// Forces over all dofs.
-    pub forces: Forces,
-    /// a(d).
-    pub acceleration: Vec<f64>,
-    /// r over all dofs: the reaction force at constrained ones.
-    pub residual: Vec<f64>,
-    /// A row per pair of each contact.
-    pub rows: Vec<Rows>,
-    /// Directions of the contact forces where they are not the gradients of these rows: discrete
-    /// gradients, or those of slipping pairs, for active pairs; empty for other contacts.
-    pub discrete_gradients: Vec<Rows>,
-    /// H at the middle of the step, with the slip S as gap, for active pairs with friction; empty for other
-    /// contacts.
-    pub slips: Vec<Rows>,
-    /// y_½ = y_s + d/2; empty without friction.
-    pub middle: Vec<f64>,
-    /// Traction of each active pair of a contact beyond what acts along its direction.
-    pub rests: Vec<Vec<f64>>,
-    /// Energy of tangential springs, a part of `springs`.
-    pub stick_springs: f64,
-    /// The interface's response to each row.
-    pub answers: Vec<Vec<Answer>>,
-    /// Strain energy of the bodies at `y`, or at the averaged positions.
-    pub strain: f64,
-    /// Energy of penalty springs.
-    pub springs: f64,
-    /// Size of the residual and its reference.
-    pub measure: Measure,
-    /// Buffers.
-    gradient: DiscreteGradient,
-}
-
-impl Evaluation {
-    /// Directions of the forces of a contact, a row per pair.
-    pub(crate) fn directions(&self, contact: usize) -> &Rows {
-        let discrete = &self.discrete_gradients[contact];
-        if discrete.is_empty() { &self.rows[contact] } else { discrete }
-    }
-}
-
-/// Size of a residual and its reference.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Measure {
-    /// ‖r‖ over the free dofs.
-    pub residual: f64,
-    /// Sum of the norms of its terms.
-    pub forces: f64,
-    /// Largest |g| of the active constraints, and |S| of those that stick.
-    pub gap: f64,
-    /// Whether any sticks.
-    pub friction: bool,
-}
-
-/// Unused evaluations, whose memory is reused.
-#[derive(Debug, Default)]
-pub(crate) struct Spare(Vec<Evaluation>);
-
-impl Spare {
-    fn take(&mut self) -> Evaluation {
-        self.0.pop().unwrap_or_default()
-    }
-
-    /// Returns the memory of an evaluation.
-    pub(crate) fn put(&mut self, evaluation: Evaluation) {
-        self.0.push(evaluation);
-    }
-
-    /// A copy of an iterate in reused memory.
-    pub(crate) fn copy(&mut self, of: &Iterate) -> Iterate {
-        let mut iterate = self.0.last_mut().map(|spare| std::mem::take(&mut spare.at)).unwrap_or_default();
-        iterate.increment.clone_from(&of.increment);
-        iterate.pairings.resize_with(of.pairings.len(), Pairing::default);
-        iterate.pairings.iter_mut().zip(&of.pairings).for_each(|(to, from)| to.copy_from(from));
-        iterate
-    }
-}
 
 /// The equations of a stage.
 #[derive(Debug)]
@@ -293,146 +190,6 @@ impl<'a> Equations<'a> {
         Ok(())
     }
 
-    /// Rows of all pairs, the responses of their interfaces, and the contact forces.
-    fn evaluate_contacts(&self, evaluation: &mut Evaluation) -> Result<(), Rejected> {
-        let Evaluation {
-            at,
-            y,
-            place,
-            forces,
-            rows,
-            discrete_gradients,
-            slips,
-            middle,
-            rests,
-            stick_springs,
-            answers,
-            springs,
-            measure,
-            gradient,
-            ..
-        } = evaluation;
-        let contacts = self.model.contacts.len();
-        forces.contact.clear();
-        forces.contact.resize(self.model.dofs(), 0.0);
-        rows.resize_with(contacts, || Rows::new(self.model.dimension));
-        discrete_gradients.resize_with(contacts, || Rows::new(self.model.dimension));
-        slips.resize_with(contacts, || Rows::new(self.model.dimension));
-        rests.resize_with(contacts, Vec::new);
-        forces.friction.clear();
-        middle.clear();
-        if self.model.has_friction() {
-            forces.friction.resize(self.model.dofs(), 0.0);
-            middle.extend(self.state.y.iter().zip(&at.increment).map(|(y, d)| y + 0.5 * d));
-        }
-        answers.resize_with(contacts, Vec::new);
-        (*springs, *stick_springs, measure.gap, measure.friction) = (0.0, 0.0, 0.0, false);
-        for (k, (contact, pairing)) in self.model.contacts.iter().zip(&mut at.pairings).enumerate() {
-            let weight = contact_weights(&self.stage, contact.at_the_end).0;
-            let (rows, discrete_gradients, answers) =
-                (&mut rows[k], &mut discrete_gradients[k], &mut answers[k]);
-            let (slips, rests) = (&mut slips[k], &mut rests[k]);
-            slips.clear();
-            rests.clear();
-            let direction = contact.interface.direction();
-            rows.clear();
-            discrete_gradients.clear();
-            answers.clear();
-            for (p, pair) in pairing.pairs.iter_mut().enumerate() {
-                let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
-                let at_middle = direction == Direction::Midpoint;
-                if at_middle && pair.start.is_none() {
-                    // The initial gap of a new pair; later it is updated.
-                    pair.start = match contact.kinematics.measure(&mut pair.clone(), &self.state.y, rows) {
-                        Ok(()) => Some(rows.pop()),
-                        Err(error) if pair.active => return Err(failed(error)),
-                        Err(_) => None,
-                    };
-                }
-                match contact.kinematics.measure(pair, if at_middle { place } else { y }, rows) {
-                    Ok(()) => {}
-                    Err(error) if pair.active => return Err(failed(error)),
-                    // An inactive pair without a unique closest point is remote.
-                    Err(_) => rows.push_open(),
-                }
-                let start = pair.start.unwrap_or(f64::INFINITY);
-                if at_middle {
-                    *rows.gap_mut(p) = start + rows.row(p).along(&at.increment);
-                }
-                let row = rows.row(p);
-                let point =
-                    Point { node: pair.node, gap: row.gap, start, lambda: pair.lambda, active: pair.active };
-                let answer = contact.interface.respond(&point);
-                (pair.active, pair.lambda) = (answer.active, answer.lambda);
-                if direction == Direction::DiscreteGradient {
-                    if answer.active {
-                        let start = self.gap_at_start(k, pair, discrete_gradients).map_err(failed)?;
-                        let middle = &mut pair.clone();
-                        contact.kinematics.measure(middle, place, discrete_gradients).map_err(failed)?;
-                        gradient.evaluate(discrete_gradients.row(p), row.gap - start, place, &at.increment);
-                        discrete_gradients.gradient_mut(p).copy_from_slice(gradient.gradient());
-                    } else {
-                        discrete_gradients.push_open();
-                    }
-                }
-                if contact.friction.is_some() {
-                    if direction == Direction::End {
-                        if answer.active {
-                            discrete_gradients.push_row(row);
-                        } else {
-                            discrete_gradients.push_open();
-                        }
-                    }
-                    if answer.active {
-                        self.slip_into(k, pair, row.gap, middle, &at.increment, slips).map_err(failed)?;
-                        let slip = slips.row(p);
-                        let rubbing = self.rub(k, pair, slip.gap);
-                        let (sign, radius) = (rubbing.sign, rubbing.radius);
-                        let turn = sign * radius.by_pressure;
-                        let along = discrete_gradients.gradient_mut(p).iter_mut().zip(slip.gradient);
-                        along.for_each(|(along, h)| *along -= turn * h);
-                        let rest = pair.tangential.traction + turn * pair.lambda;
-                        rests.push(rest);
-                        slip.add_to(weight * rest, &mut forces.contact);
-                        slip.add_to(weight * pair.tangential.traction, &mut forces.friction);
-                        match self.stick_spring(k, pair) {
-                            Some(stiffness) => {
-                                *stick_springs += 0.5 * pair.tangential.traction.powi(2) / stiffness;
-                            }
-                            None if sign == 0.0 => {
-                                (measure.gap, measure.friction) = (measure.gap.max(slip.gap.abs()), true);
-                            }
-                            None => {}
-                        }
-                    } else {
-                        slips.push_open();
-                    }
-                }
-                if answer.active {
-                    let along = if discrete_gradients.is_empty() { row } else { discrete_gradients.row(p) };
-                    along.add_to(weight * answer.lambda, &mut forces.contact);
-                    measure.gap = measure.gap.max(answer.open.abs());
-                }
-                *springs += answer.energy;
-                answers.push(answer);
-            }
-        }
-        *springs += *stick_springs;
-        Ok(())
-    }
-
-    /// Gap of a pair to its present facet at the step's start. That of a closed pair which is
-    /// handed over is not zero there: the gap to the extension of its new facet.
-    pub(crate) fn gap_at_start(
-        &self,
-        contact: usize,
-        pair: &Pair,
-        rows: &mut Rows,
-    ) -> Result<f64, ContactError> {
-        self.model.contacts[contact].kinematics.measure(&mut pair.clone(), &self.state.y, rows)?;
-        Ok(rows.pop())
-    }
-
     /// ∂r/∂y · `change` of bodies and loads at an iterate, without contact; exact and not
     /// symmetrised.
     ///
@@ -453,7 +210,7 @@ impl<'a> Equations<'a> {
         model.mass.add_product(change, mass, stiffness, product);
         if model.loads.follow_sides() {
             let factor = self.follower_factor();
-            model.loads.each_facet_tangent(d, Some(&self.loads), |nodes, tangent| {
+            model.loads.each_facet_tangent(d, Some((&self.loads, &now.place)), |nodes, tangent| {
                 let dofs: Vec<usize> = nodes.iter().flat_map(|n| (0..d).map(move |i| n * d + i)).collect();
                 for (dof, row) in dofs.iter().zip(tangent.chunks_exact(dofs.len())) {
                     product[*dof] -=

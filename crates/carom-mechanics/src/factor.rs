@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use crate::constraints::Constraints;
-use crate::equations::{Equations, Evaluation};
+use crate::equations::Equations;
+use crate::evaluation::Evaluation;
 use crate::rejected::Rejected;
 use crate::renewal::{Point, Renewal};
 use crate::tangent_factor::boundary;

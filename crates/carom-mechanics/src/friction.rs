@@ -7,16 +7,23 @@
 //!
 //! Δy_free = 0, except for a pair that was open at the step's start: what slips before it touches
 //! does not count. Its S is the velocity at the end of the stage, v(Δy) = v'·(Δy − Δy_free), divided
-//! by v'; on a spring, the share of Δy in which the gap is negative. A pair that slips has q = s r(λ, Ṡ)
-//! and is the normal row with the direction ∇g − s ∂r/∂|λ| H; one that sticks is a row of its own with
-//! the multiplier q, S = 0 or, on a spring, S = (q − q_s)/k.
+//! by v'; on a spring, the share of Δy in which the gap is negative. The force of a contact that
+//! conserves acts over the whole step, and so does its S: its work −qS is never positive. Ṡ is this
+//! velocity, or S over the time in which it slips; in load steps, the time of their formulas.
+//!
+//! A pair that slips has q = s r(λ, Ṡ) and is the normal row with the direction ∇g − s ∂r/∂|λ| H; one
+//! that sticks is a row of its own with the multiplier q, S = 0 or, on a spring, S = (q − q_s)/k. A
+//! spring that slipped in the last step goes on to do so while its stick would exceed r, whatever a
+//! stick could hold.
 //!
 //! Between steps q acts along H(y_s): in the averaged forces of the next step and in what is
 //! recorded.
 
 use carom_contact::{ContactError, Hold, Law, Pair, Radius, Row, Rows, Tangential};
 
-use crate::equations::{Equations, Evaluation};
+use crate::balance::contact_weights;
+use crate::equations::Equations;
+use crate::evaluation::Evaluation;
 use crate::model::{Contact, Model, NoValue};
 use crate::state::State;
 
@@ -48,7 +55,7 @@ impl Model {
 
 /// Part of the motion of a pair that counts as slip.
 #[derive(Clone, Copy)]
-enum Counted {
+pub(crate) enum Counted {
     /// This share of the step's increment.
     Share(f64),
     /// What gives the velocity at the end of the stage.
@@ -72,7 +79,8 @@ impl Equations<'_> {
         self.model.contacts[contact].friction.as_ref()?.springs.get(pair.node).copied()
     }
 
-    /// Adds the row H of a closed pair at y_½, with S as its gap. `gap`: that of the pair.
+    /// Adds the row H of a closed pair at y_½, with S as its gap, and returns what counts in it.
+    /// `gap`: that of the pair.
     pub(crate) fn slip_into(
         &self,
         contact: usize,
@@ -81,7 +89,7 @@ impl Equations<'_> {
         middle: &[f64],
         increment: &[f64],
         slips: &mut Rows,
-    ) -> Result<(), ContactError> {
+    ) -> Result<Counted, ContactError> {
         let kinematics = &self.model.contacts[contact].kinematics;
         let mut at_middle = *pair;
         kinematics.measure(&mut at_middle, middle, slips)?;
@@ -92,47 +100,82 @@ impl Equations<'_> {
         let counted = |(dof, slope): (usize, f64)| slope * self.counted(dof, part, increment);
         let slip = row.entries().map(counted).sum();
         *slips.gap_mut(slips.len() - 1) = slip;
-        Ok(())
+        Ok(part)
     }
 
     /// S of a pair that closes in an iterate; 0 if it has none.
     pub(crate) fn slip(&self, contact: usize, pair: &Pair, middle: &[f64], increment: &[f64]) -> f64 {
         let mut rows = Rows::new(self.model.dimension);
-        self.slip_into(contact, pair, 0.0, middle, increment, &mut rows).map_or(0.0, |()| rows.row(0).gap)
+        self.slip_into(contact, pair, 0.0, middle, increment, &mut rows).map_or(0.0, |_| rows.row(0).gap)
     }
 
     /// Sets the traction of a closed pair from its slip.
-    pub(crate) fn rub(&self, contact: usize, pair: &mut Pair, slip: f64) -> Rubbing {
+    fn rub(&self, contact: usize, pair: &mut Pair, slip: f64, part: Counted) -> Rubbing {
         let (law, pressure) = (self.laws[contact][pair.node], (-pair.lambda).max(0.0));
-        let per_step = self.duration.recip();
-        let closes = self.closes(contact, pair);
-        let spring = self.stick_spring(contact, pair);
-        let rate = match (self.stage.is_static(), closes && spring.is_none()) {
-            (true, _) => 0.0,
-            (_, true) => self.stage.velocity.slope,
-            _ => per_step,
-        };
-        let Tangential { before, .. } = pair.tangential;
-        if let Some(stiffness) = spring {
-            let trial = if closes { 0.0 } else { before } + stiffness * slip;
-            let grips = trial.abs() <= law.grip(pressure);
-            pair.tangential.hold = if grips { Hold::Stick } else { Hold::of(trial, 0.0) };
+        let rate = self.rate(part);
+        let radius = law.slip(pressure, slip.abs() * rate);
+        if let Some(stiffness) = self.stick_spring(contact, pair) {
+            let start = self.state.closed(contact, pair.node).map(|old| old.tangential);
+            let trial = start.map_or(0.0, |_| pair.tangential.before) + stiffness * slip;
+            let slipped = start.map_or(0.0, |start| start.hold.sign()) * trial > 0.0;
+            let edge = if slipped { radius.value } else { law.grip(pressure) };
+            pair.tangential.hold = if trial.abs() <= edge { Hold::Stick } else { Hold::of(trial, 0.0) };
             pair.tangential.traction = trial;
         }
         let sign = pair.tangential.hold.sign();
-        let mut radius = law.slip(pressure, slip.abs() * rate);
-        if spring.is_some() {
-            // The rate of a slip that stretches a spring contains that of the spring.
-            radius = Radius { by_rate: 0.0, ..law.slip(pressure, 0.0) };
-        }
         if sign != 0.0 {
             pair.tangential.traction = sign * radius.value;
         }
         Rubbing { sign, radius, rate }
     }
 
+    /// Adds the friction of a pair with this gap: the row of its slip, the direction of its force, and
+    /// what acts beyond that.
+    pub(crate) fn add_friction(
+        &self,
+        contact: usize,
+        pair: &mut Pair,
+        gap: f64,
+        evaluation: &mut Evaluation,
+    ) -> Result<(), ContactError> {
+        let weight = contact_weights(&self.stage, self.model.contacts[contact].at_the_end).0;
+        let Evaluation { at, middle, rows, turned, slips, rests, forces, measure, .. } = evaluation;
+        let (rows, turned, slips) = (&rows[contact], &mut turned[contact], &mut slips[contact]);
+        if !pair.active {
+            slips.push_open();
+            if turned.len() < rows.len() {
+                turned.push_open();
+            }
+            return Ok(());
+        }
+        // Not there yet unless it is a discrete gradient.
+        if turned.len() < rows.len() {
+            turned.push_row(rows.row(rows.len() - 1));
+        }
+        let part = self.slip_into(contact, pair, gap, middle, &at.increment, slips)?;
+        let slip = slips.row(slips.len() - 1);
+        let Rubbing { sign, radius, .. } = self.rub(contact, pair, slip.gap, part);
+        let turn = sign * radius.by_pressure;
+        let direction = turned.gradient_mut(rows.len() - 1).iter_mut().zip(slip.gradient);
+        direction.for_each(|(along, h)| *along -= turn * h);
+        let rest = pair.tangential.traction + turn * pair.lambda;
+        rests[contact].push(rest);
+        slip.add_to(weight * rest, &mut forces.contact);
+        slip.add_to(weight * pair.tangential.traction, &mut forces.friction);
+        match self.stick_spring(contact, pair) {
+            Some(stiffness) => {
+                evaluation.stick_springs += 0.5 * pair.tangential.traction.powi(2) / stiffness;
+            }
+            None if sign == 0.0 => {
+                (measure.gap, measure.sticks) = (measure.gap.max(slip.gap.abs()), true);
+            }
+            None => {}
+        }
+        Ok(())
+    }
+
     fn part(&self, contact: usize, pair: &Pair, gap: f64, rows: &mut Rows) -> Counted {
-        if !self.closes(contact, pair) {
+        if !self.closes(contact, pair) || self.model.contacts[contact].conserves() {
             return Counted::Share(1.0);
         }
         if self.stick_spring(contact, pair).is_none() {
@@ -140,6 +183,15 @@ impl Equations<'_> {
         }
         let start = self.gap_at_start(contact, pair, rows).unwrap_or(0.0);
         Counted::Share(if start > 0.0 { (gap / (gap - start)).clamp(0.0, 1.0) } else { 1.0 })
+    }
+
+    /// Factor between S and the rate of slip.
+    fn rate(&self, part: Counted) -> f64 {
+        match part {
+            Counted::Velocity => self.stage.velocity.slope,
+            Counted::Share(share) if share > 0.0 => (share * self.duration).recip(),
+            Counted::Share(_) => 0.0,
+        }
     }
 
     /// A component of Δy − Δy_free.
@@ -151,12 +203,17 @@ impl Equations<'_> {
         }
     }
 
+    /// Share of the step after the touch of a pair that closes, which approaches with its velocity at
+    /// the start, or at the mean one if that is larger.
+    fn since_touch(&self, contact: usize, pair: &Pair, gap: Row, rows: &mut Rows) -> f64 {
+        let start = self.gap_at_start(contact, pair, rows).unwrap_or(0.0);
+        let approach = (-gap.along(&self.state.v)).max(start / self.duration);
+        if start > 0.0 { 1.0 - start / (self.duration * approach) } else { 1.0 }
+    }
+
     /// Whether a pair was open at the step's start.
     fn closes(&self, contact: usize, pair: &Pair) -> bool {
-        let old = &self.state.pairs[contact];
-        let first = old.partition_point(|other| other.node < pair.node);
-        let mut of_node = old[first..].iter().take_while(|other| other.node == pair.node);
-        !self.stage.is_static() && !of_node.any(|other| other.active)
+        !self.stage.is_static() && self.state.closed(contact, pair.node).is_none()
     }
 
     /// ∂H/∂y of a pair at y_½ halved, the derivative of its row by the end of the step, row-major; and
@@ -199,7 +256,8 @@ impl Equations<'_> {
     ) {
         let slip = evaluation.slips[contact].row(p);
         let mut pair = evaluation.at.pairings[contact].pairs[p];
-        let Rubbing { sign, radius, rate } = self.rub(contact, &mut pair, slip.gap);
+        let part = self.part(contact, &pair, evaluation.rows[contact].row(p).gap, rows);
+        let Rubbing { sign, radius, rate } = self.rub(contact, &mut pair, slip.gap, part);
         if sign == 0.0 {
             return;
         }
@@ -246,14 +304,22 @@ pub(crate) fn secondary_friction(evaluation: &Evaluation, contact: usize) -> [f6
 }
 
 /// Adds the slips of a solved step to those of the closed pairs; open pairs have none.
-pub(crate) fn take_slips(model: &Model, state: &mut State, slips: &[Rows]) {
-    for (k, contact) in model.contacts.iter().enumerate() {
+pub(crate) fn take_slips(equations: &Equations, solved: &Evaluation, state: &mut State) {
+    let mut rows = Rows::new(equations.model.dimension);
+    for (k, contact) in equations.model.contacts.iter().enumerate() {
         if contact.friction.is_none() {
             continue;
         }
-        for (pair, row) in state.pairs[k].iter_mut().zip(slips[k].iter()) {
+        let of_contact = solved.slips[k].iter().zip(solved.rows[k].iter());
+        for (pair, (slip, gap)) in state.pairs[k].iter_mut().zip(of_contact) {
             if pair.active {
-                pair.tangential.slip += row.gap;
+                // On a spring, S is no more than what follows the touch.
+                let touches = equations.closes(k, pair) && equations.stick_spring(k, pair).is_none();
+                pair.tangential.slip += if touches {
+                    equations.since_touch(k, pair, gap, &mut rows) * slip.along(&solved.at.increment)
+                } else {
+                    slip.gap
+                };
                 pair.tangential.before = pair.tangential.traction;
             } else {
                 pair.tangential = Tangential::default();

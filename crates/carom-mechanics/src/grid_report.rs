@@ -45,6 +45,13 @@ pub enum LogEvent {
         /// Indices of the bodies.
         bodies: (usize, usize),
     },
+    /// Stick and slip of the contacts are not unique.
+    Ambiguous {
+        /// Time at the end of the (sub)step.
+        time: f64,
+        /// The smallest relative singular value of the interface, with the sign of its determinant.
+        regularity: f64,
+    },
     /// Velocities were projected at activation.
     Projection {
         /// Time.
@@ -91,6 +98,9 @@ impl GridReport {
         }
         let pairs = step.events.into_iter();
         self.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time, contact, event }));
+        if let Some(regularity) = step.ambiguity {
+            self.events.push(LogEvent::Ambiguous { time, regularity });
+        }
         if step.projection != 0.0 {
             self.events.push(LogEvent::Projection { time, jump: step.projection });
         }

@@ -20,7 +20,8 @@ use carom_contact::{Pair, Row, Rows};
 use carom_time::{Stage, Weights};
 
 use crate::balance::mean_acceleration;
-use crate::equations::{Equations, Evaluation};
+use crate::equations::Equations;
+use crate::evaluation::Evaluation;
 use crate::friction::{each_slip, secondary_friction};
 use crate::model::Model;
 use crate::state::{Means, Previous, State};

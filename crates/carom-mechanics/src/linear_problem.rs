@@ -15,7 +15,8 @@
 use carom_algebra::LinearError;
 
 use crate::constraints::Constraints;
-use crate::equations::{Equations, Evaluation};
+use crate::equations::Equations;
+use crate::evaluation::Evaluation;
 use crate::mixing::Mixing;
 use crate::rejected::Rejected;
 use crate::renewal::Renewal;

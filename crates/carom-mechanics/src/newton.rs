@@ -3,18 +3,21 @@
 //! H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16–32), with an inner primal–dual active set.
 //!
 //! Convergence requires all of: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus round-off according to the
-//! system's diagonal); |g| ≤ 1e-12·L on every active constraint; no pair penetrates, pulls, or has
-//! slid off its facet. Nothing less is accepted.
+//! system's diagonal), and with friction and inertia its resultants vanish (`resultants.rs`); |g| ≤ 1e-12·L on
+//! every active constraint; no pair penetrates, pulls, or has slid off its facet. Nothing less is
+//! accepted.
 
 use crate::constraints::Constraints;
 use crate::contact_update::{
     ContactUpdate, Events, GAP_TOLERANCE, activate_initial, check_satisfiable, search,
 };
-use crate::equations::{Equations, Evaluation, Iterate, Measure};
+use crate::equations::Equations;
+use crate::evaluation::{Evaluation, Iterate, Measure};
 use crate::linear_problem::{Correction, Goal};
 use crate::model::check_rigid_modes;
 use crate::rejected::Rejected;
 use crate::renewal::{FrozenTangent, Renewal};
+use crate::resultants::are_balanced;
 use crate::settings::{Settings, Tangent};
 use crate::sums::max_abs;
 use crate::timings::timed;
@@ -43,6 +46,9 @@ pub(crate) struct Effort {
     pub iterations: u32,
     /// Events of the pairs.
     pub events: Events,
+    /// The smallest relative singular value of the interface with friction, negative where its
+    /// determinant is; infinite without friction.
+    pub regularity: f64,
     /// The point of the reused factor.
     pub frozen: FrozenTangent,
 }
@@ -95,11 +101,12 @@ pub(crate) fn solve_stage(
         let settled = step * if is_static { 1.0 } else { ratio.min(1.0) } <= tolerance * model.scale
             && now.measure.residual <= enough
             && (now.measure.gap <= GAP_TOLERANCE * model.scale
-                || now.measure.friction && Constraints::gap(equations, &now) <= GAP_TOLERANCE * model.scale);
+                || now.measure.sticks && Constraints::gap(equations, &now) <= GAP_TOLERANCE * model.scale)
+            && (is_static || are_balanced(equations, &now));
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
         work.trace.push(iterate(equations, &now, iteration, step, changed), &now.y);
         if settled && !changed {
-            effort.frozen = renewal.finish();
+            (effort.frozen, effort.regularity) = (renewal.finish(), contact.regularity);
             return Ok((now, effort));
         }
         if changed {
@@ -118,11 +125,16 @@ pub(crate) fn solve_stage(
         }
         let rows = Constraints::of(equations, &now);
         if is_static {
-            check_rigid_modes(&model.parts, &model.unconstrained, &now.place, rows.rows.iter())?;
+            let (rows, slips) = (rows.rows.iter(), now.slipping());
+            check_rigid_modes(&model.parts, &model.unconstrained, &now.place, rows, slips)?;
         }
         let made = renewal.made;
         renewal.due |= full;
         work.factor_for(equations, &now, &rows, &mut renewal)?;
+        if rows.is_skew {
+            let regularity = work.system.factor.regularity().unwrap_or(f64::INFINITY);
+            contact.regularity = contact.regularity.min(regularity);
+        }
         let trust = if fallback.is_some() && predicted > 0.0 { TRUST * predicted } else { f64::INFINITY };
         // Limited by the progress of the outer iteration, and by its convergence criterion.
         let pace = if changed { 1.0 } else { ratio };

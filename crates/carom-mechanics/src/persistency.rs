@@ -56,14 +56,11 @@ pub(crate) fn project(
     }
     let after = closed.slip_rates(&state.v);
     let rates = slips.iter().zip(&after).map(|(before, after)| 0.5 * (before + after));
-    let rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| rate * q).sum::<f64>();
+    let mut rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| rate * q).sum::<f64>();
 
     let before = state.ledger.kinetic;
-    take(model, state, before - model.kinetic(&state.v));
-    if model.has_friction() {
-        system.factor_mass(model, rows)?;
-    }
-    impact.restitute(model, state, rows, system)?;
+    take(model, state, before - model.kinetic(&state.v) + rubbed);
+    rubbed += impact.restitute(model, state, &closed, system)?;
     accelerate(model, state, &gaps, &closed, system)?;
 
     averaged_contact_into(model, state, &gaps);

@@ -35,7 +35,7 @@ impl Rejected {
                 };
                 Place { contact: Some(contact), node: Some(node), facet, ..Place::default() }
             }
-            Self::Cycle { contact, nodes } | Self::StickSlipCycle { contact, nodes } => {
+            Self::Cycle { contact, nodes } | Self::StickSlipCycle { contact, nodes, .. } => {
                 Place { contact: Some(contact), node: nodes.first().copied(), ..Place::default() }
             }
             Self::Overconstrained { contact, node, .. } | Self::Passed { contact, node, .. } => {

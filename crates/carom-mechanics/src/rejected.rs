@@ -6,6 +6,9 @@ use carom_solid::Inverted;
 
 use crate::model::{NoValue, Unconstrained};
 
+/// Relative singular value of the interface below which stick and slip count as not unique.
+pub(crate) const SINGULAR: f64 = 1e-6;
+
 /// A rejected step; it is bisected, or ends the run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Rejected {
@@ -46,12 +49,23 @@ pub enum Rejected {
         nodes: Vec<usize>,
     },
     /// The states of friction return to those visited before.
-    #[error("contact \"{contact}\": friction does not settle: nodes {nodes:?} stick and slip in turn")]
+    #[error(
+        "contact \"{contact}\": friction does not settle: nodes {nodes:?} stick and slip in turn{}",
+        if *regularity < SINGULAR {
+            format!(
+                "; μ is so large that stick and slip are not unique (relative singular value {regularity:.3}, negative where the determinant is)"
+            )
+        } else {
+            String::new()
+        }
+    )]
     StickSlipCycle {
         /// Contact.
         contact: String,
         /// Global numbers of the nodes.
         nodes: Vec<usize>,
+        /// The smallest relative singular value of the interface, with the sign of its determinant.
+        regularity: f64,
     },
     /// Tractions of friction and multipliers at a start or a projection do not converge.
     #[error(
@@ -163,6 +177,12 @@ pub enum Rejected {
 }
 
 impl Rejected {
+    /// Whether no step to this time can be accepted, however short: a formula has no value there, or one
+    /// that is not allowed.
+    pub(crate) fn is_final(&self, end: f64) -> bool {
+        matches!(self, Self::NoValue(NoValue { time, value, .. }) if value.is_finite() || *time == end)
+    }
+
     /// Keyword for the log.
     pub fn kind(&self) -> &'static str {
         match self {

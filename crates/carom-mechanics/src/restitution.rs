@@ -3,24 +3,30 @@
 //!
 //! ```text
 //! owed = Σ e² D − Σ returned,      D = −Δ contact_work of a step, and what its projection takes
-//! v⁺ = v + μ w,   M w + Gᵀq = 0,   G w = s,      ½ a μ² + b μ = owed,   a = −s·q,   b = v·M w = −q·G v
+//! v⁺ = v + w,   M w + Gᵀp = 0,   G w = f s,      ½ a f² + b f = owed,   a = −s·p/f,   b = −p/f·G v
 //! ```
 //!
 //! and returns it where pairs close or open. s are their approach speeds, after the projection,
 //! with which b = 0, or their separation speeds; zero for pairs that remain closed. Owed energy makes
 //! nodes separate faster. Energy that contact has created, owed < 0, makes them separate slower, at
-//! most until b + a μ = 0; the rest is carried. Gradients are those at y_{n+1}, so momentum and
-//! moment of momentum do not change.
+//! most until b + a f = 0; the rest is carried. Gradients are those at y_{n+1}, so momentum and
+//! moment of momentum do not change. With friction, M w + Gᵀp + Hᵀq = 0 with Coulomb's law for the
+//! impulse (`cone.rs`): what it takes is not owed. Which nodes stick depends on f, which is iterated.
 
-use carom_contact::Row;
+use carom_contact::{Hold, Row, Tangential};
 
 use crate::active_rows::{measure, pressing};
-use crate::constraints::{Constraints, independent_rows};
+use crate::cone::{Closed, Right};
+use crate::constraints::independent_rows;
 use crate::ledger::book_kinetic;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
 use crate::system::System;
+
+/// Solutions for the factor of speeds with friction, and its change that is round-off.
+const ROUNDS: usize = 50;
+const ROUND_OFF: f64 = 1e-12;
 
 /// The step in which pairs closed.
 pub(crate) struct Impact<'a> {
@@ -33,18 +39,17 @@ pub(crate) struct Impact<'a> {
 }
 
 impl Impact<'_> {
-    /// Returns energy to projected velocities. `rows`: the constraints of the projection, with
-    /// which `system` has factored the mass.
+    /// Returns energy to projected velocities of closed pairs. The work of friction is returned.
     pub(crate) fn restitute(
         &self,
         model: &Model,
         state: &mut State,
-        rows: &Constraints,
+        closed: &Closed,
         system: &mut System,
-    ) -> Result<(), Rejected> {
-        let places = rows.places.iter().zip(rows.rows.iter());
+    ) -> Result<f64, Rejected> {
+        let places = closed.places.iter().zip(closed.normals.rows.iter());
         let speeds: Vec<f64> = places.map(|(place, row)| self.approach(*place, row)).collect();
-        settle(model, state, rows, &speeds, system)
+        settle(model, state, closed, &speeds, system)
     }
 
     /// Approach speed of a pair: at the step's start, or the mean over the step if that is larger,
@@ -84,55 +89,83 @@ pub(crate) fn separate(
     let mut places: Vec<(usize, usize)> = pressing(state).chain(opened.iter().copied()).collect();
     places.sort_unstable();
     let places = independent_rows(model, places.into_iter(), &gaps);
-    let rows = Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), gaps[k].row(p))));
+    let closed = Closed::new(model, state, places, &gaps)?;
     let separation = |(place, row): (&(usize, usize), Row)| {
         if opened.contains(place) { row.along(&state.v).max(0.0) } else { 0.0 }
     };
-    let speeds: Vec<f64> = rows.places.iter().zip(rows.rows.iter()).map(separation).collect();
+    let speeds: Vec<f64> = closed.places.iter().zip(closed.normals.rows.iter()).map(separation).collect();
     if speeds.iter().all(|s| *s == 0.0) {
         return Ok(0.0);
     }
-    system.factor_mass(model, &rows)?;
     let before = state.ledger.kinetic;
-    settle(model, state, &rows, &speeds, system)?;
+    let rubbed = settle(model, state, &closed, &speeds, system)?;
     book_kinetic(model, state);
     let jump = state.ledger.kinetic - before;
-    state.ledger.contact_work += jump;
+    state.ledger.contact_work += jump - rubbed;
+    state.ledger.friction_work += rubbed;
     Ok(jump)
 }
 
-/// Changes velocities along the response of the mass, factored with these rows, to `speeds`.
+/// Changes velocities by the response of the mass to a factor times `speeds` of closed pairs. The work of
+/// friction is returned.
 fn settle(
     model: &Model,
     state: &mut State,
-    rows: &Constraints,
+    closed: &Closed,
     speeds: &[f64],
     system: &mut System,
-) -> Result<(), Rejected> {
+) -> Result<f64, Rejected> {
     if state.ledger.owed == 0.0 {
-        return Ok(());
+        return Ok(0.0);
     }
-    let dofs = model.dofs();
-    let (mut response, mut impulses) = (vec![0.0; dofs], Vec::new());
-    system.factor.solve(model, &vec![0.0; dofs], speeds, &mut response, &mut impulses)?;
-    let size: f64 = -speeds.iter().zip(&impulses).map(|(s, q)| s * q).sum::<f64>();
-    let slope: f64 = -rows.rows.iter().zip(&impulses).map(|(row, q)| q * row.along(&state.v)).sum::<f64>();
-    if size <= 0.0 {
-        return Ok(());
+    let forces = vec![0.0; model.dofs()];
+    let gaps: Vec<f64> = closed.normals.rows.iter().map(|row| row.along(&state.v)).collect();
+    let slips = closed.slip_rates(&state.v);
+    // A node that sticks keeps its slip rate, which oscillates from step to step.
+    let sticks = |&(k, p): &(usize, usize)| {
+        state.pairs[k][p].active && state.pairs[k][p].tangential.hold == Hold::Stick
+    };
+    let stop = |(place, rate): (&(usize, usize), &f64)| if sticks(place) { 0.0 } else { -rate };
+    let stopping: Vec<f64> = closed.places.iter().zip(&slips).map(stop).collect();
+    // Stick, slip and tractions of the state are not those of these impulses.
+    let of_state = |&(k, p): &(usize, usize)| state.pairs[k][p].tangential;
+    let tangentials: Vec<Tangential> = closed.places.iter().map(of_state).collect();
+    let mut reach = 1.0;
+    for _ in 0..ROUNDS {
+        let parting: Vec<f64> = speeds.iter().map(|speed| reach * speed).collect();
+        let right = Right { forces: &forces, gaps: &parting, slips: &stopping };
+        let motion = closed.impulse(model, state, &right, system)?;
+        for (&(k, p), tangential) in closed.places.iter().zip(&tangentials) {
+            state.pairs[k][p].tangential = *tangential;
+        }
+        let along =
+            |rates: &[f64]| -rates.iter().zip(&motion.normal).map(|(s, p)| s * p).sum::<f64>() / reach;
+        let (size, slope) = (along(speeds), along(&gaps));
+        if size <= 0.0 {
+            return Ok(0.0);
+        }
+        let factor = root(size, slope, state.ledger.owed);
+        if closed.rubs() && factor != 0.0 && (factor - reach).abs() > ROUND_OFF * factor.abs() {
+            reach = factor;
+            continue;
+        }
+        let share = factor / reach;
+        let rates = closed.slip_rates(&motion.x);
+        let works = motion.tangential.iter().zip(slips.iter().zip(&rates));
+        let rubbed = -works.map(|(q, (rate, change))| share * q * (rate + 0.5 * share * change)).sum::<f64>();
+        for i in (0..forces.len()).filter(|&i| !model.massless[i]) {
+            state.v[i] += share * motion.x[i];
+        }
+        for (k, impulse) in closed.impulses(&motion) {
+            (0..3).for_each(|i| state.impulses[k][i] += share * impulse[i]);
+        }
+        state.ledger.owed -= factor * (0.5 * size * factor + slope);
+        return Ok(rubbed);
     }
-    let factor = root(size, slope, state.ledger.owed);
-    for i in (0..dofs).filter(|&i| !model.massless[i]) {
-        state.v[i] += factor * response[i];
-    }
-    for (&(k, _), (row, impulse)) in rows.places.iter().zip(rows.rows.iter().zip(&impulses)) {
-        let normal = row.normal();
-        (0..3).for_each(|i| state.impulses[k][i] -= factor * impulse * normal[i]);
-    }
-    state.ledger.owed -= factor * (0.5 * size * factor + slope);
-    Ok(())
+    Err(Rejected::NoFrictionBalance)
 }
 
-/// μ of ½ a μ² + b μ = owed, a > 0: the larger root, with which nodes separate; the vertex if there
+/// f of ½ a f² + b f = owed, a > 0: the larger root, with which nodes separate; the vertex if there
 /// is none; 0 if nothing can be taken from nodes that do not separate.
 fn root(a: f64, b: f64, owed: f64) -> f64 {
     let discriminant = (b * b + 2.0 * a * owed).max(0.0).sqrt();

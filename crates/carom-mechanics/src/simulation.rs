@@ -8,7 +8,7 @@ use crate::grid::Grid;
 use crate::grid_report::{Attempt, GridReport, LogEvent};
 use crate::model::Model;
 use crate::rejected::Rejected;
-use crate::start::{Before, start};
+use crate::start::{Before, Inertia, start};
 use crate::state::{OtherModel, State};
 use crate::stepper::Stepper;
 use crate::substeps::{Limits, MOST, Next, Progress, decide};
@@ -21,7 +21,7 @@ use crate::workspace::Workspace;
 pub enum Stopped {
     /// No step from here is accepted, however small.
     #[error(
-        "the step at t = {time:.6} was bisected {halvings} times, to Δt = {dt:.3e}, and is still rejected: {rejected}"
+        "the step at t = {time:.6} {} rejected: {rejected}", tried(*halvings, *dt)
     )]
     NoStep {
         /// Time of the last accepted state.
@@ -55,6 +55,13 @@ pub enum Stopped {
         /// Largest kinetic + strain energy so far, or Σ |ΔW| of the external work.
         scale: f64,
     },
+}
+
+fn tried(halvings: u32, dt: f64) -> String {
+    match halvings {
+        0 => format!("of Δt = {dt:.3e} is"),
+        _ => format!("was bisected {halvings} times, to Δt = {dt:.3e}, and is still"),
+    }
 }
 
 /// A fraction in per cent, to three significant digits.
@@ -91,7 +98,12 @@ impl Simulation {
         threads: usize,
     ) -> Result<Self, Rejected> {
         let mut simulation = Self::at(model, stepper, grid, State::default(), threads);
-        let Self { model, work, .. } = &mut simulation;
+        let Self { model, work, stepper, .. } = &mut simulation;
+        let inertia = match (inertia, stepper.accelerates_freely()) {
+            (false, _) => Inertia::None,
+            (true, false) => Inertia::Constrained,
+            (true, true) => Inertia::Free,
+        };
         simulation.state = start(model, inertia, before, &mut work.system)?;
         Ok(simulation)
     }
@@ -243,7 +255,8 @@ impl Simulation {
         let mut reached: Option<State> = None;
         let mut progress = Progress { level: self.state.bisection.level(), done: 0 };
         let (mut kept, mut bisected, before) = (None, false, report.rejected);
-        let limits = Limits { guard: self.grid.guard, bisections: self.bisections };
+        let end = start + length;
+        let limits = Limits { guard: self.grid.guard, bisections: self.bisections, end };
         while progress.done() < 1.0 {
             let dt = length / f64::from(1_u32 << progress.level);
             let time = start + progress.done as f64 * dt;

@@ -1,7 +1,6 @@
 //! Boundaries of the bodies of a model, in global node numbers.
 
 use carom_contact::{Skin, Surface};
-use carom_solid::FacetShape;
 
 use crate::model::{BodyInstance, Model};
 
@@ -22,7 +21,7 @@ pub(crate) fn skin_facets(part: &BodyInstance) -> Vec<Vec<usize>> {
 
 /// The boundary of a body in the plane.
 pub(crate) fn skin(part: &BodyInstance) -> Option<Skin> {
-    let shape = part.body.mesh().element.facet_shape().filter(|shape| *shape != FacetShape::Point)?;
+    let shape = Some(part.body.mesh().element.facet_shape()).filter(|shape| shape.dimension() == 2)?;
     let facets = skin_facets(part);
     Some(Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()])))
 }

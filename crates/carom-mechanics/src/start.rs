@@ -6,7 +6,8 @@
 //!
 //! Contacts active at the end of the other run remain active; in the reference configuration there
 //! are none (λ₀ = 0). A moving support has its own v₀, a₀ and must start at the position of its
-//! body. Without inertia v₀ and a₀ are zero, and the first load step finds the equilibrium.
+//! body. Schemes whose contact forces are impulses carry the acceleration of all other forces, M a₀ =
+//! f_ext − f_int. Without inertia v₀ and a₀ are zero, and the first load step finds the equilibrium.
 
 use carom_contact::{Pair, Point, Rows};
 
@@ -31,6 +32,17 @@ pub struct Before {
     pub pairs: Vec<Vec<Pair>>,
 }
 
+/// What accelerates the bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Inertia {
+    /// Nothing: they have no inertia.
+    None,
+    /// All forces.
+    Constrained,
+    /// All but those of contact, which are impulses.
+    Free,
+}
+
 /// Tolerance, relative to L, between a moving support and its formula at t = 0.
 const NEAR: f64 = 1e-9;
 
@@ -41,20 +53,21 @@ const NEAR: f64 = 1e-9;
 /// the mass matrix is singular.
 pub(crate) fn start(
     model: &Model,
-    inertia: bool,
+    inertia: Inertia,
     before: Option<Before>,
     system: &mut System,
 ) -> Result<State, Rejected> {
-    let dofs = model.dofs();
+    let (dofs, has_inertia) = (model.dofs(), inertia != Inertia::None);
     let contacts = model.contacts.len();
-    let Before { y, v, pairs } = before.unwrap_or_else(|| Before {
+    let Before { y, v, mut pairs } = before.unwrap_or_else(|| Before {
         y: model.initial_position.clone(),
         v: model.initial_velocity.clone(),
         pairs: vec![Vec::new(); contacts],
     });
+    pairs.iter_mut().flatten().for_each(|pair| pair.rests = pair.active);
     let mut state = State {
         y,
-        v: if inertia { v } else { vec![0.0; dofs] },
+        v: if has_inertia { v } else { vec![0.0; dofs] },
         a: vec![0.0; dofs],
         f_internal: vec![0.0; dofs],
         f_external: vec![0.0; dofs],
@@ -75,7 +88,7 @@ pub(crate) fn start(
         if distance > NEAR * model.scale {
             return Err(Rejected::Jump { node: moved.dof / model.dimension, distance });
         }
-        if inertia {
+        if has_inertia {
             [state.v[moved.dof], state.a[moved.dof]] = [moved.motion[1], moved.motion[2]];
         }
     }
@@ -84,8 +97,14 @@ pub(crate) fn start(
     state.ledger.stick_springs = model.stick_energy(state.pairs.iter().map(Vec::as_slice));
     state.ledger.springs += state.ledger.stick_springs;
     state.ledger.strain += state.ledger.springs;
-    if inertia {
-        accelerate(model, &mut state, &gaps, system)?;
+    match inertia {
+        Inertia::None => {}
+        Inertia::Constrained => accelerate(model, &mut state, &gaps, system)?,
+        Inertia::Free => {
+            let pairs = std::mem::replace(&mut state.pairs, vec![Vec::new(); contacts]);
+            accelerate(model, &mut state, &gaps, system)?;
+            state.pairs = pairs;
+        }
     }
     averaged_contact_into(model, &mut state, &gaps);
     book_contact_forces(model, &mut state);

@@ -25,7 +25,8 @@ pub struct Ledger {
     pub external_work: f64,
     /// Σ Δy·ΔF of the loads: their work with the forces at the ends of steps minus that with the
     /// forces at the starts, the scale of the scheme-dependent uncertainty. While a load is being
-    /// applied it can be as large as the work itself.
+    /// applied it can be as large as the work itself. Contact of explicit schemes adds the work of its
+    /// forces over the tolerance of gaps.
     pub open: f64,
     /// Work of the contact forces on the bodies, and the jumps of kinetic energy at activation.
     pub contact_work: f64,
@@ -292,6 +293,13 @@ impl State {
             }
         }
         Ok(())
+    }
+
+    /// The first closed pair of a secondary node.
+    pub(crate) fn closed(&self, contact: usize, node: usize) -> Option<&Pair> {
+        let pairs = &self.pairs[contact];
+        let first = pairs.partition_point(|other| other.node < node);
+        pairs[first..].iter().take_while(|other| other.node == node).find(|pair| pair.active)
     }
 
     /// Impulse of all contacts on their secondary sides since the start.

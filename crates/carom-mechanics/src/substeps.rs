@@ -1,7 +1,8 @@
-//! Substeps of a grid step. A rejected step is bisected. So is a step that creates more than a tenth
-//! of the energy that the guard still allows; it is kept, and taken after all if the shortest step is
-//! rejected, or a shorter one creates more than four times as much: energy that the error of a smooth
-//! motion creates falls with the cube of the step, that of an impact or a change of facet does not.
+//! Substeps of a grid step. A rejected step is bisected, unless a formula has no value that is allowed.
+//! So is a step that creates more than a tenth of the energy that the guard still allows; it is kept, and
+//! taken after all if the shortest step is rejected, or a shorter one creates more than four times as
+//! much: energy that the error of a smooth motion creates falls with the cube of the step, that of an
+//! impact or a change of facet does not.
 
 use crate::grid_report::GridReport;
 use crate::rejected::Rejected;
@@ -78,6 +79,8 @@ pub(crate) struct Limits {
     pub guard: Option<f64>,
     /// Bisections before the run stops.
     pub bisections: u32,
+    /// Time at the end of the grid step.
+    pub end: f64,
 }
 
 /// Decides about a step from `from`.
@@ -92,7 +95,8 @@ pub(crate) fn decide(
     if kept.as_ref().is_some_and(|kept| progress.done() >= kept.at.next()) {
         *kept = None;
     }
-    let last = progress.level >= limits.bisections;
+    let is_final = |rejected: &Rejected| rejected.is_final(limits.end);
+    let last = progress.level >= limits.bisections || stepped.as_ref().is_err_and(is_final);
     let (rejected, returns) = match stepped {
         Ok(mut step) => {
             step.observe();

@@ -123,13 +123,14 @@ impl System {
         Ok(())
     }
 
-    /// Assembles the symmetric part of the loads' tangent at a time; independent of positions.
-    fn assemble_loads(&mut self, model: &Model, time: f64) -> Result<(), Rejected> {
+    /// Assembles the symmetric part of the loads' tangent at a time and positions `y`, which matter in
+    /// space only.
+    fn assemble_loads(&mut self, model: &Model, time: f64, y: &[f64]) -> Result<(), Rejected> {
         let (mut at, mut slots) = (LoadsAt::default(), self.facet_slots.iter());
         model.loads.at(&model.parts, model.dofs(), time, &mut at)?;
         self.follower.fill(0.0);
         let follower = &mut self.follower;
-        model.loads.each_facet_tangent(model.dimension, Some(&at), |nodes, k| {
+        model.loads.each_facet_tangent(model.dimension, Some((&at, y)), |nodes, k| {
             let n = nodes.len() * model.dimension;
             for entry in 0..n * n {
                 if let Some(&slot) = slots.next().filter(|slot| **slot != SKIP) {
@@ -183,7 +184,7 @@ impl System {
         }
         self.assemble(model, &point.at)?;
         if point.follower != 0.0 {
-            self.assemble_loads(model, point.time)?;
+            self.assemble_loads(model, point.time, &point.at)?;
         }
         Ok(self.factor(model, point, double)?)
     }

@@ -193,6 +193,11 @@ impl TangentFactor {
         Ok(saddle.factor()? && (self.of_mass || self.positive))
     }
 
+    /// See [`Saddle::regularity`].
+    pub(crate) fn regularity(&self) -> Option<f64> {
+        self.saddle.regularity()
+    }
+
     /// Overwrites a right-hand side over unknowns and rows with the factor's solution.
     fn solve_all(&mut self, unknowns: usize, x: &mut [f64]) {
         let Some(condensed) = (if self.of_mass { &mut self.mass } else { &mut self.tangent }) else { return };

@@ -7,7 +7,8 @@ use carom_time::schemes::energy_momentum::EnergyMomentum;
 use carom_time::{ForceRule, Kernel, Memory, Scheme, Stage};
 
 use crate::constraints::Constraints;
-use crate::equations::{Equations, Iterate};
+use crate::equations::Equations;
+use crate::evaluation::Iterate;
 use crate::grid_report::GridReport;
 use crate::linear_problem::LinearProblem;
 use crate::model::{Friction, Load, Loads, Model, Motions};

@@ -30,7 +30,7 @@ pub(crate) fn nodes(part: &BodyInstance, side: &str) -> Vec<usize> {
 /// A side under loads.
 pub(crate) fn loaded(part: &BodyInstance, side: &str) -> LoadedSide {
     let mesh = part.body.mesh();
-    LoadedSide::new(mesh, &mesh.sides[side], part.first_node, 1.0).unwrap()
+    LoadedSide::new(mesh, &mesh.sides[side], part.first_node, 1.0)
 }
 
 /// Contact of a side of one body with a side of another, by multipliers.
@@ -40,7 +40,7 @@ pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary:
             |facet: &carom_solid::Facet| facet.nodes.iter().map(|node| parts[k].first_node + node).collect();
         parts[k].body.mesh().sides[side].iter().map(of).collect()
     };
-    let shape = |k: usize| parts[k].body.mesh().element.facet_shape().unwrap();
+    let shape = |k: usize| parts[k].body.mesh().element.facet_shape();
     let (secondary_nodes, target) = (nodes(&parts[secondary.0], secondary.1), facets(primary));
     let mut surface = [&secondary_nodes[..], &nodes(&parts[primary.0], primary.1)].concat();
     surface.sort_unstable();

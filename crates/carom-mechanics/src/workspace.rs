@@ -1,6 +1,6 @@
 //! The workspace of a step: buffers that outlive it.
 
-use crate::equations::Spare;
+use crate::evaluation::Spare;
 use crate::linear_problem::LinearProblem;
 use crate::model::Model;
 use crate::penetration::Penetration;

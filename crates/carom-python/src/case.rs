@@ -56,6 +56,11 @@ impl Case {
         Self::parse(name, text, sets)
     }
 
+    /// Its text with other overrides applied; the case is not checked.
+    fn text_with(&self, sets: Vec<String>) -> PyResult<String> {
+        merged(self.document.text(), &sets).map_err(|error| of_case(&error))
+    }
+
     #[getter]
     fn name(&self) -> &str {
         self.document.name()

@@ -52,6 +52,10 @@ pub(crate) fn of_study(error: &StudyError) -> PyErr {
             let source = of_run(source, None).to_string();
             RecordError::new_err(format!("arm \"{arm}\": {source}"))
         }
+        StudyError::Damaged { place, .. } => {
+            let cure = format!("remove {} and compute the arm again", place.display());
+            RecordError::new_err(format!("{error}\ntry: {cure}"))
+        }
         error => RecordError::new_err(error.to_string()),
     }
 }

@@ -17,6 +17,12 @@ mod watched;
 
 use pyo3::prelude::*;
 
+/// The largest number of threads, or of concurrent runs, that is accepted.
+#[pyfunction]
+fn most_concurrent() -> usize {
+    carom::record::Machine::current().most_concurrent()
+}
+
 #[pymodule]
 mod _carom {
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
@@ -24,6 +30,8 @@ mod _carom {
     use crate::case::{Case, toml, toml_document};
     #[pymodule_export]
     use crate::explain::{explain, schemes};
+    #[pymodule_export]
+    use crate::most_concurrent;
     #[pymodule_export]
     use crate::record::{Record, open, resume};
     #[pymodule_export]

@@ -1,5 +1,6 @@
 //! Records of runs: the history as arrays that are not copied, everything else as plain data.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use carom::record::{Column, FieldSet, History, MemoryRecord, Run, contact_axes, metrics};
@@ -86,8 +87,8 @@ impl Record {
     }
 
     /// Units of these columns.
-    fn contact_units(&self) -> std::collections::HashMap<&'static str, String> {
-        tables::contact_units(&self.run.history, contact_axes(&self.run.manifest.case)).into_iter().collect()
+    fn contact_units(&self) -> PyResult<HashMap<&'static str, String>> {
+        tables::contact_units(&self.run.history, contact_axes(&self.run.manifest.case))
     }
 
     /// The events.
@@ -162,6 +163,12 @@ impl Record {
         Ok(dict)
     }
 
+    /// The history as text, `csv` or `json`.
+    fn text(&self, py: Python<'_>, format: &str) -> PyResult<String> {
+        let run = self.whole(py)?;
+        Ok(if format == "json" { run.to_json() + "\n" } else { run.to_csv()? })
+    }
+
     /// Writes figures and page of a run directory; returns the page.
     fn page(&self, py: Python<'_>) -> PyResult<PathBuf> {
         let made = py.detach(|| carom::report::report(&self.run.directory));
@@ -186,7 +193,7 @@ pub(crate) fn resume<'py>(
     report: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(Record, Option<PyErr>)> {
     let (functions, failure) = functions(given)?;
-    let options = Options { threads, trials: false, audit: false };
+    let options = Options { threads, ..Options::default() };
     let (done, interrupted) = watched(py, report, |show, stop| {
         let mut observe = |p: &Progress| show((p.step, p.steps, p.time));
         recording::resume_with(&path, functions, options, &mut observe, stop)

@@ -1,14 +1,16 @@
 //! A simulation that is advanced step by step.
 
+use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-use carom::record::contact_axes;
+use carom::record::History;
 use carom::recording::Rows;
 use carom::{GridReport, Setup, Simulation as Library, State};
 use numpy::PyArray2;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use serde_json::Value as Json;
 
 use crate::case::Case;
 use crate::error::{CaseError, of_problems};
@@ -20,6 +22,13 @@ pyo3::import_exception!(carom.errors, StoppedError);
 struct Inner {
     library: Library,
     rows: Rows,
+}
+
+impl Inner {
+    /// Number of axes of the contact rows, as in `contact.csv`.
+    fn axes(&self) -> usize {
+        self.library.model().dimension.max(2)
+    }
 }
 
 /// A simulation with the rows that a run would record.
@@ -162,23 +171,32 @@ impl Simulation {
     /// The active contact nodes, by column.
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let inner = self.inner()?;
-        let axes = contact_axes(&serde_json::Value::Null);
-        tables::contact(py, &inner.rows.contact(&self.case, &inner.library), axes)
+        tables::contact(py, &inner.rows.contact(&self.case, &inner.library), inner.axes())
     }
 
-    /// The state as bytes, with the names of the functions.
+    /// Units of these columns.
+    fn contact_units(&self) -> PyResult<HashMap<&'static str, String>> {
+        let inner = self.inner()?;
+        let history = History::new(inner.rows.columns().to_vec(), Vec::new());
+        tables::contact_units(&history, inner.axes())
+    }
+
+    /// The state as bytes, with the names of the functions and the case.
     fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let inner = self.inner()?;
-        let bytes = postcard::to_stdvec(&(&self.given, inner.library.state()));
+        let bytes = postcard::to_stdvec(&(&self.given, self.resolved().to_string(), inner.library.state()));
         let bytes = bytes.map_err(|error| PyValueError::new_err(error.to_string()))?;
         Ok(PyBytes::new(py, &bytes))
     }
 
     /// Continues from a checkpoint of the same case with the same functions.
     fn restore(&self, checkpoint: &[u8]) -> PyResult<()> {
-        let read: Result<(Vec<String>, State), _> = postcard::from_bytes(checkpoint);
-        let (given, state) =
-            read.map_err(|error| PyValueError::new_err(format!("this is no checkpoint: {error}")))?;
+        let wrong = |why: &str| PyValueError::new_err(format!("this is no checkpoint: {why}"));
+        let read: Result<((Vec<String>, String, State), _), _> = postcard::take_from_bytes(checkpoint);
+        let ((given, case, state), rest) = read.map_err(|error| wrong(&error.to_string()))?;
+        if !rest.is_empty() {
+            return Err(wrong(&format!("{} bytes follow its end", rest.len())));
+        }
         if given != self.given {
             let (was, is) = (given.join(", "), self.given.join(", "));
             return Err(CaseError::new_err(format!(
@@ -186,6 +204,36 @@ impl Simulation {
                  try: give the same functions again, or start from the beginning"
             )));
         }
+        let case: Json = serde_json::from_str(&case).map_err(|error| wrong(&error.to_string()))?;
+        if let Some((key, was, is)) = difference("", &case, &self.resolved()) {
+            return Err(PyValueError::new_err(format!(
+                "the checkpoint is of another case: its {key} is {was}, and that of this simulation is {is}\n\
+                 try: restore it in a simulation of its own case; another case starts from the directory of a \
+                 run, [initial] from"
+            )));
+        }
         self.inner()?.library.restore(state).map_err(|other| PyValueError::new_err(other.to_string()))
+    }
+}
+
+impl Simulation {
+    /// The case with all defaults.
+    fn resolved(&self) -> Json {
+        serde_json::to_value(&self.case).unwrap_or_default()
+    }
+}
+
+/// The first key in which two cases differ, with both values.
+fn difference(key: &str, was: &Json, is: &Json) -> Option<(String, String, String)> {
+    let below = |part: &str| if key.is_empty() { part.to_owned() } else { format!("{key}.{part}") };
+    match (was, is) {
+        (Json::Object(a), Json::Object(b)) => a.keys().chain(b.keys()).find_map(|part| {
+            let of = |map: &serde_json::Map<String, Json>| map.get(part).cloned().unwrap_or_default();
+            difference(&below(part), &of(a), &of(b))
+        }),
+        (Json::Array(a), Json::Array(b)) if a.len() == b.len() => {
+            a.iter().zip(b).enumerate().find_map(|(i, (a, b))| difference(&below(&i.to_string()), a, b))
+        }
+        _ => (was != is).then(|| (key.to_owned(), was.to_string(), is.to_string())),
     }
 }

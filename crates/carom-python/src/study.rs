@@ -9,15 +9,18 @@ use carom::study::{Event, Plan, StudyError};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 
+use crate::case::Case;
 use crate::error::{of_case, of_record, of_study};
 use crate::watched::watched;
 
 /// A row of the table: arm, status, reason, directory, metrics with values and units.
 type Row = (String, Option<String>, Option<String>, String, Vec<(String, Option<f64>, String)>);
 
-fn planned(text: &str, folder: &Path) -> PyResult<Plan> {
-    let document = Document::parse("study", text, &[]).map_err(|error| of_case(&error))?;
-    Plan::of(&document, folder).map_err(|error| of_case(&error))
+/// The plan of a study of a case that has been read, which the study names by `name`.
+fn planned(text: &str, name: &str, case: &Case) -> PyResult<Plan> {
+    let parsed = |name: &str, text: &str| Document::parse(name, text, &[]).map_err(|error| of_case(&error));
+    let (study, case) = (parsed("study", text)?, parsed(name, case.document.text())?);
+    Plan::with_case(&study, Path::new(""), Some(&case)).map_err(|error| of_case(&error))
 }
 
 /// Computes a study; returns the exception of a signal handler, if there was one.
@@ -25,12 +28,13 @@ fn planned(text: &str, folder: &Path) -> PyResult<Plan> {
 pub(crate) fn study<'py>(
     py: Python<'py>,
     text: &str,
-    folder: PathBuf,
+    name: &str,
+    case: &Case,
     out: PathBuf,
     jobs: usize,
     report: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Option<PyErr>> {
-    let plan = py.detach(|| planned(text, &folder))?;
+    let plan = py.detach(|| planned(text, name, case))?;
     let steps: Vec<u64> = plan.manifest.runs().map(|run| run.steps).collect();
     let (done, interrupted) = watched(py, report, |show, stop| {
         let (all, mut done) = (steps.iter().sum::<u64>(), vec![0; steps.len()]);
@@ -50,8 +54,14 @@ pub(crate) fn study<'py>(
 
 /// Writes the directory of a study; returns the number of its runs.
 #[pyfunction]
-pub(crate) fn study_plan(py: Python<'_>, text: &str, folder: PathBuf, out: PathBuf) -> PyResult<usize> {
-    let plan = py.detach(|| planned(text, &folder))?;
+pub(crate) fn study_plan(
+    py: Python<'_>,
+    text: &str,
+    name: &str,
+    case: &Case,
+    out: PathBuf,
+) -> PyResult<usize> {
+    let plan = py.detach(|| planned(text, name, case))?;
     py.detach(|| carom::study::plan(&plan, &out)).map_err(|error| of_study(&error))?;
     Ok(plan.manifest.runs().count())
 }
@@ -80,8 +90,11 @@ fn busy(error: &StudyError) -> bool {
 /// Writes the tables of a study from what has been computed; `page`: also figures and page.
 #[pyfunction]
 pub(crate) fn study_collect(py: Python<'_>, directory: PathBuf, page: bool) -> PyResult<()> {
-    let stop = std::sync::atomic::AtomicBool::new(false);
-    py.detach(|| carom::study::collect(&directory, &stop).map(drop)).map_err(|error| of_study(&error))?;
+    let (done, interrupted) = watched(py, None, |_, stop| carom::study::collect(&directory, stop))?;
+    done.map_err(|error| of_study(&error))?;
+    if let Some(error) = interrupted {
+        return Err(error);
+    }
     if page {
         let made = py.detach(|| carom::report::study(&directory));
         made.map_err(|error| PyOSError::new_err(error.to_string()))?;

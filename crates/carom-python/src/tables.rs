@@ -1,8 +1,11 @@
 //! Columns as NumPy arrays.
 
+use std::collections::HashMap;
+
 use carom::record::metrics::Unit;
 use carom::record::{ContactRow, History, contact_columns};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -28,16 +31,42 @@ pub(crate) fn integers(py: Python<'_>, values: Vec<i64>) -> PyResult<Bound<'_, P
     Ok(array)
 }
 
+/// The values of a column of `contact.csv`.
+enum Values {
+    Integer(fn(&ContactRow) -> u64),
+    Real(fn(&ContactRow) -> f64),
+    Text(for<'a> fn(&'a ContactRow<'_>) -> &'a str),
+}
+
+/// Unit and values of a column of `contact.csv`.
+fn column(name: &str) -> PyResult<(Unit, Values)> {
+    use Values::{Integer, Real, Text};
+    Ok(match name {
+        "step" => (Unit::None, Integer(|row| row.step)),
+        "time" => (Unit::Time, Real(|row| row.time)),
+        "contact" => (Unit::None, Text(|row| &row.contact)),
+        "node" => (Unit::None, Integer(|row| row.node)),
+        "x" => (Unit::Length, Real(|row| row.point[0])),
+        "y" => (Unit::Length, Real(|row| row.point[1])),
+        "z" => (Unit::Length, Real(|row| row.point[2])),
+        "facet" => (Unit::None, Integer(|row| row.facet)),
+        "xi" => (Unit::None, Real(|row| row.xi)),
+        "gap" => (Unit::Length, Real(|row| row.gap)),
+        "multiplier" => (Unit::Force, Real(|row| row.multiplier)),
+        "pressure" => (Unit::Stress, Real(|row| row.pressure)),
+        "normal_x" => (Unit::None, Real(|row| row.normal[0])),
+        "normal_y" => (Unit::None, Real(|row| row.normal[1])),
+        "normal_z" => (Unit::None, Real(|row| row.normal[2])),
+        "friction" => (Unit::None, Text(|row| &row.friction)),
+        "traction" => (Unit::Force, Real(|row| row.traction)),
+        "slip" => (Unit::Length, Real(|row| row.slip)),
+        other => return Err(PyRuntimeError::new_err(format!("the column {other} has no type"))),
+    })
+}
+
 /// Unit labels of the columns of `contact.csv`, in the units of the history.
-pub(crate) fn contact_units(history: &History, axes: usize) -> Vec<(&'static str, String)> {
-    let unit = |name: &str| match name {
-        "time" => Unit::Time,
-        "x" | "y" | "z" | "gap" => Unit::Length,
-        "multiplier" => Unit::Force,
-        "pressure" => Unit::Stress,
-        _ => Unit::None,
-    };
-    contact_columns(axes).into_iter().map(|name| (name, unit(name).label(history))).collect()
+pub(crate) fn contact_units(history: &History, axes: usize) -> PyResult<HashMap<&'static str, String>> {
+    contact_columns(axes).into_iter().map(|name| Ok((name, column(name)?.0.label(history)))).collect()
 }
 
 /// Rows of `contact.csv` by column.
@@ -47,23 +76,13 @@ pub(crate) fn contact<'py>(
     axes: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    let names = contact_columns(axes);
-    let count = |of: fn(&ContactRow) -> u64| integers(py, rows.iter().map(|row| of(row) as i64).collect());
-    let reals = |of: &dyn Fn(&ContactRow) -> f64| array(py, rows.iter().map(of).collect());
-    for (i, name) in names.iter().enumerate() {
-        match *name {
-            "step" => dict.set_item(name, count(|row| row.step)?)?,
-            "node" => dict.set_item(name, count(|row| row.node)?)?,
-            "facet" => dict.set_item(name, count(|row| row.facet)?)?,
-            "contact" => dict.set_item(name, PyList::new(py, rows.iter().map(|row| &*row.contact))?)?,
-            "time" => dict.set_item(name, reals(&|row| row.time)?)?,
-            "xi" => dict.set_item(name, reals(&|row| row.xi)?)?,
-            "gap" => dict.set_item(name, reals(&|row| row.gap)?)?,
-            "multiplier" => dict.set_item(name, reals(&|row| row.multiplier)?)?,
-            "pressure" => dict.set_item(name, reals(&|row| row.pressure)?)?,
-            // The positions follow the first four columns, and the normals are last.
-            _ if i < 4 + axes => dict.set_item(name, reals(&|row| row.point[i - 4])?)?,
-            _ => dict.set_item(name, reals(&|row| row.normal[i + axes - names.len()])?)?,
+    for name in contact_columns(axes) {
+        match column(name)?.1 {
+            Values::Integer(of) => {
+                dict.set_item(name, integers(py, rows.iter().map(|row| of(row) as i64).collect())?)?;
+            }
+            Values::Real(of) => dict.set_item(name, array(py, rows.iter().map(of).collect())?)?,
+            Values::Text(of) => dict.set_item(name, PyList::new(py, rows.iter().map(of))?)?,
         }
     }
     Ok(dict)

@@ -7,6 +7,8 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use serde_json::Value as Json;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
+use crate::error::CaseError;
+
 /// A JSON value as Python object.
 pub(crate) fn from_json<'py>(py: Python<'py>, value: &Json) -> PyResult<Bound<'py, PyAny>> {
     match value {
@@ -35,7 +37,10 @@ pub(crate) fn to_toml(object: &Bound<'_, PyAny>) -> PyResult<Value> {
     if object.is_instance_of::<PyBool>() {
         Ok(object.extract::<bool>()?.into())
     } else if object.is_instance_of::<PyInt>() {
-        Ok(object.extract::<i64>()?.into())
+        let number: i64 = object.extract().map_err(|_| {
+            CaseError::new_err(format!("{object} is too large: an integer of a case has at most 64 bits"))
+        })?;
+        Ok(number.into())
     } else if object.is_instance_of::<PyFloat>() {
         Ok(object.extract::<f64>()?.into())
     } else if object.is_instance_of::<PyString>() {

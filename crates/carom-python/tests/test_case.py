@@ -52,6 +52,18 @@ def test_a_case_is_unchanged_after_an_error(bar: carom.Case) -> None:
         bar.set("time.step", 1j)
 
 
+def test_numbers_of_threads_and_integers_have_limits(bar: carom.Case) -> None:
+    """As on the command line, and before anything is computed."""
+    for threads in (0, -1, 20000, 2**70):
+        for use in (lambda: bar.run(threads=threads), lambda: carom.Simulation(bar, threads)):
+            with pytest.raises(ValueError, match=f"threads must be from 1 to .*, not {threads};"):
+                use()
+        with pytest.raises(ValueError, match="jobs must be"):
+            carom.study(bar, {"a": {}}, jobs=threads)
+    with pytest.raises(carom.CaseError, match="64 bits"):
+        bar.set("output.history_every", 2**70)
+
+
 def test_values_are_set_by_path_and_by_name(bar: carom.Case) -> None:
     bar.set("time.scheme.rho_inf", np.float64(0.25)).set("body.bar.velocity", np.array([-3.0]))
     assert bar.to_dict()["body"][0]["velocity"] == [-3.0]

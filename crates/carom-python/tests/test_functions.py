@@ -5,6 +5,8 @@ from __future__ import annotations
 import subprocess
 import sys
 import time
+import types
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -177,11 +179,171 @@ def test_checkpoints_keep_to_their_functions() -> None:
         simulation(other).restore(checkpoint)
 
 
-def test_the_same_code_has_the_same_name() -> None:
+class Constant:
+    def __init__(self, value: float) -> None:
+        self.value = value
+
+    def __call__(self, t: float, x: np.ndarray) -> float:
+        return self.value
+
+
+def scaled(t: float, x: np.ndarray, *, factor: float) -> float:
+    return factor
+
+
+def enclosing(value: object) -> Any:
+    return lambda t, x: value.value if isinstance(value, Constant) else value  # type: ignore[return-value]
+
+
+class Counter:
+    """A value that changes with every call."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def __call__(self, t: float, x: np.ndarray) -> float:
+        self.count += 1
+        return 0.0
+
+
+def with_keyword(value: float) -> Any:
+    def function(t: float, x: np.ndarray, *, factor: float = value) -> float:
+        return factor
+
+    return function
+
+
+#: Functions of one code with another value with them.
+MADE: dict[str, Any] = {
+    "attribute": Constant,
+    "partial": lambda value: partial(scaled, factor=value),
+    "vectorize": lambda value: (lambda f: lambda t, x: f(x[:, 0]))(np.vectorize(lambda x: value)),
+    "closure": lambda value: enclosing(Constant(value)),
+    "keyword": with_keyword,
+    "method": lambda value: Constant(value).__call__,
+}
+
+
+@pytest.mark.parametrize("made", MADE.values(), ids=MADE.keys())
+def test_functions_of_one_code_are_told_apart(made: Any) -> None:
+    """Against the same loads as numbers: momentum is the integral of the force, of both components."""
+
+    def momentum(traction: list[Any]) -> list[float]:
+        run = block(load=[{"on": ["block.top"], "traction": traction}], support=[]).run(progress=False)
+        return [float(run.history[name][-1]) for name in ("momentum_x", "momentum_y")]
+
+    found = momentum([made(1.0), made(-1.0)])
+    # Top of length 1, for 0.05.
+    assert found == pytest.approx([0.05, -0.05], rel=1e-9)
+    assert found == pytest.approx(momentum([1.0, -1.0]), rel=1e-12)
+
+
+def test_names_depend_on_all_that_a_function_has_with_it() -> None:
     from carom.functions import name_of
 
-    def made(factor: float) -> Any:
+    def two(first: object, second: object) -> Any:
+        return lambda t, x: (first, second)
+
+    pairs = [
+        (enclosing({1}), enclosing({2})),
+        (two(12, 3), two(1, 23)),
+        (two((1,), 2), two((1, 2), ())),
+        (lru_cache(lambda t, x: 1.0), lru_cache(lambda t, x: 2.0)),
+        (np.sin, np.cos),
+        (two(np.array([1, 2]), 0), two(np.array([1, 3]), 0)),
+        (two({"a": 1}, 0), two({"a": 2}, 0)),
+    ]
+    for first, second in pairs:
+        assert name_of(first).split(":")[1] != name_of(second).split(":")[1], (first, second)
+
+
+def test_a_function_may_call_itself() -> None:
+    from carom.functions import name_of
+
+    def made(last: int) -> Any:
+        def steps(t: float, x: np.ndarray) -> float:
+            return 0.0 if t < last else steps(t - 1.0, x)
+
+        return steps
+
+    def unset() -> Any:
+        def function(t: float, x: np.ndarray) -> float:
+            return later
+
+        name = name_of(function)
+        later = 1.0
+        return name
+
+    assert name_of(made(1)) == name_of(made(1)) != name_of(made(2))
+    assert unset().startswith("function:")
+
+
+def test_two_functions_that_begin_alike_are_two() -> None:
+    first, second = Counter(), Counter()
+    block(load=[{"on": ["block.top"], "traction": [first, second]}]).run(progress=False)
+    assert first.count == second.count > 50
+    # One function in two places is one.
+    both = Counter()
+    text = block(load=[{"on": ["block.top"], "traction": [both, both]}]).to_toml()
+    assert "#2" not in text
+
+
+def test_replaced_functions_are_forgotten() -> None:
+    """The names of a case are those of its text, however it came to it."""
+    load = [{"name": "press", "on": ["block.top"], "traction": [0.0, push]}]
+    fresh = block(load=load)
+    changed = block(load=[load[0] | {"traction": [0.0, lambda t, x: 1.0]}]).set("load.press.traction", [0.0, push])
+    # As when a cell of a notebook is run again.
+    again = types.FunctionType(push.__code__, push.__globals__, "push")
+    changed.set("load.press.traction", [0.0, again])
+    assert list(changed._functions) == list(fresh._functions)
+    simulation = carom.Simulation(changed)
+    simulation.advance()
+    carom.Simulation(fresh).restore(simulation.checkpoint())
+
+
+class Gain:
+    def __init__(self, gain: float) -> None:
+        self.gain = gain
+
+    def __call__(self, t: float, x: np.ndarray) -> float:
+        return self.gain * t
+
+    def force(self, t: float, x: np.ndarray) -> float:
+        return self.gain * t
+
+
+def test_the_same_code_has_the_same_name() -> None:
+    """What a function encloses, its defaults and attributes count; other objects of them do not."""
+    from functools import partial
+
+    from carom.functions import name_of
+
+    def enclosing(factor: float) -> Any:
         return lambda t, x: factor * t
 
-    assert name_of(made(1.0)) == name_of(made(1.0)) != name_of(made(2.0))
+    def defaults(factor: float) -> Any:
+        def push(t: float, x: np.ndarray, *, scale: float = factor) -> float:
+            return scale * t
+
+        return push
+
+    def scaled(scale: float, t: float, x: np.ndarray) -> float:
+        return scale * t
+
+    def recursive(factor: float) -> Any:
+        def push(t: float, x: np.ndarray) -> float:
+            return factor if t < 1 else push(t - 1, x)
+
+        return push
+
+    makers = [
+        enclosing, defaults, recursive, Gain,
+        lambda factor: Gain(factor).force,
+        lambda factor: partial(scaled, factor),
+    ]  # fmt: skip
+    for made in makers:
+        assert name_of(made(1.0)) == name_of(made(1.0)) != name_of(made(2.0))
+    assert len({name_of(made(1.0)) for made in makers}) == len(makers)
+    assert name_of(np.sin) != name_of(np.cos)
     assert name_of(push).startswith("push:")

@@ -6,7 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import disc_dict
 from matplotlib.axes import Axes
+
+from conftest import ROOT
 
 import carom
 
@@ -21,6 +24,19 @@ def test_history_shows_the_columns_and_the_contact(disc_run: carom.Run) -> None:
     with pytest.raises(ValueError, match="different units"):
         carom.plot.history(disc_run, "top.uy", "kinetic")
     assert carom.plot.history(disc_run).get_ylabel() == "contact_force_y (N)"
+
+
+def test_the_energy_ledger_closes_with_friction() -> None:
+    """The lines of the figure: the change of the total energy is that of the works and the dissipation."""
+    case = disc_dict()
+    case["contact"][0]["mu"] = 0.5
+    case["body"][0]["velocity"] = [2.0, -2.0]
+    run = carom.Case.from_dict(case).run(progress=False)
+    lines = {line.get_label(): line.get_ydata() for line in carom.plot.energy(run).lines}
+    assert abs(lines["friction work"][-1]) > 1e-3 * lines["total"][0]
+    works = sum(lines.get(name, 0.0) for name in ("external work", "contact work", "friction work"))
+    lost = lines["total"][0] - lines["total"] + works - lines["dissipation"]
+    assert abs(lost).max() < 1e-12 * lines["total"][0]
 
 
 def test_energy_and_comparison(disc_run: carom.Run) -> None:
@@ -62,9 +78,23 @@ def test_the_lattice_of_cubic_triangles_is_complete() -> None:
             (third, third),
         ]
     )  # fmt: skip
-    a, b, c = (nodes[[t[k] for t in _LATTICE[3]]] for k in range(3))
-    areas = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
-    assert np.allclose(areas, 0.5 / 9)
+    assert np.allclose(_areas(nodes, _LATTICE[10]), 0.5 / 9)
+
+
+def test_the_lattices_of_quadrilaterals_are_complete() -> None:
+    """Q4 and Q9 on the unit square: corners, middles of the edges, centre."""
+    from carom.plot._space import _LATTICE
+
+    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float)
+    nodes = np.vstack([corners, (corners + np.roll(corners, -1, axis=0)) / 2, [(0.5, 0.5)]])
+    assert np.allclose(_areas(nodes, _LATTICE[4]), 1 / 2)
+    assert np.allclose(_areas(nodes, _LATTICE[9]), 1 / 8)
+
+
+def _areas(nodes: np.ndarray, lattice: list[tuple[int, int, int]]) -> np.ndarray:
+    a, b, c = (nodes[[triangle[k] for triangle in lattice]] for k in range(3))
+    areas: np.ndarray = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    return areas
 
 
 def test_the_pressure_map_shows_every_contact_node(disc_run: carom.Run) -> None:
@@ -81,6 +111,15 @@ def test_the_pressure_map_shows_every_contact_node(disc_run: carom.Run) -> None:
     assert abs((touched.min() + touched.max()) / 2 - len(values) / 2) < 2
     with pytest.raises(ValueError, match="strike"):
         carom.plot.pressure_map(disc_run, "nothing")
+
+
+def test_corners_of_the_primary_are_on_the_pressure_map() -> None:
+    """On the axis of the impact, the corner of the prism is the contact node."""
+    case = carom.Case.from_file(ROOT / "cases/impact/impact.toml").set("time.end", 0.375)
+    run = case.run(progress=False)
+    values = np.asarray(carom.plot.pressure_map(run).collections[0].get_array())
+    late = values[:, -1]
+    assert np.isfinite(late).all() and 0.5 < late[0] / late[1] < 2
 
 
 def test_measured_data(disc_run: carom.Run, tmp_path: Path) -> None:

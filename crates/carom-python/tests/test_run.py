@@ -41,6 +41,8 @@ def test_memory_directory_and_command_give_the_same_bits(
     theirs = carom.open(tmp_path / "cli")
     for name in ("history.csv", "contact.csv", "log.jsonl"):
         assert (tmp_path / "cli" / name).read_bytes() == (tmp_path / "python" / name).read_bytes()
+    header = (tmp_path / "cli/contact.csv").read_text().splitlines()[0].split(",")
+    assert list(mine.contact) == header and set(mine.contact["friction"]) == {"none"}
     for other in (mine, theirs):
         for table, same in ((other.history, disc_run.history), (other.contact, disc_run.contact)):
             assert list(table) == list(same)
@@ -48,7 +50,10 @@ def test_memory_directory_and_command_give_the_same_bits(
                 assert np.array_equal(table[column], same[column], equal_nan=table[column].dtype.kind == "f")
         assert other.log == disc_run.log
         assert other.fields.times.tolist() == disc_run.fields.times.tolist()
-        last = other.fields.number(len(other.fields) - 1)
+        last = other.fields.number(-1)
+        for number in (len(other.fields), -len(other.fields) - 1, 2**70):
+            with pytest.raises(IndexError, match="instants are recorded"):
+                other.fields.number(number)
         same_fields = disc_run.fields.number(len(other.fields) - 1)
         for name, values in last.arrays.items():
             assert np.array_equal(values, same_fields.arrays[name])

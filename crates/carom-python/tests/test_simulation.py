@@ -51,6 +51,7 @@ def test_energies_and_contacts(disc: carom.Case) -> None:
     kept = energies["total"] + energies["dissipation"] - energies["contact_work"]
     assert kept == pytest.approx(start, rel=1e-12)
     contacts = simulation.contacts
+    assert contacts.units["gap"] == "m" and contacts.units["traction"] == "N"
     force = -(contacts["multiplier"] * contacts["normal_y"]).sum()
     assert force == pytest.approx(simulation.row["contact_force_y"], rel=1e-9)
 
@@ -71,7 +72,26 @@ def test_restored_states_continue_bitwise(disc: carom.Case) -> None:
         assert np.array_equal(first, second) and np.array_equal(first, third)
     finer = disc_dict()
     finer["body"][0]["mesh"]["size"] = 0.2
-    with pytest.raises(ValueError, match="another model"):
+    with pytest.raises(ValueError, match="another case: its bodies"):
         carom.Simulation(carom.Case.from_dict(finer)).restore(checkpoint)
     with pytest.raises(ValueError, match="no checkpoint"):
         simulation.restore(b"nothing")
+    with pytest.raises(ValueError, match="no checkpoint: 4 bytes follow"):
+        simulation.restore(checkpoint + b"junk")
+
+
+@pytest.mark.parametrize(
+    "key, value, told",
+    [
+        ("time.step", 1e-2, r"time\.step is 0\.005, and that of this simulation is 0\.01"),
+        ("time.scheme.rho_inf", 0.4, "rho_inf is 0.5"),
+        ("material.rubber.mu", 16.0, "mu is 15.0"),
+    ],
+)
+def test_a_checkpoint_of_another_case_is_refused(disc: carom.Case, key: str, value: float, told: str) -> None:
+    simulation = carom.Simulation(disc)
+    simulation.advance()
+    other = carom.Simulation(disc.copy().set(key, value))
+    with pytest.raises(ValueError, match=told):
+        other.restore(simulation.checkpoint())
+    assert other.step == 0

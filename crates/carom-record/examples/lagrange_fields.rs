@@ -61,13 +61,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let place = Path::new(&place);
     std::fs::write(place.join("cells.vtu"), sampled(0.0).to_vtu(0.25)?)?;
-    let manifest = Manifest::new("0", serde_json::json!({}), Source::default(), vec![], 1);
+    let mut manifest = Manifest::new("0", serde_json::json!({}), Source::default(), vec![], 1);
     let mut writer = RunWriter::create(&place.join("run"), &manifest, b"")?;
     writer.field_format(FieldFormat::VtkHdf);
     for i in 0..20_u32 {
         let time = f64::from(i) * 0.1;
         writer.fields(5 * u64::from(i), time, &sampled(time))?;
     }
-    writer.finish(&manifest)?;
+    writer.finish(&mut manifest)?;
     Ok(())
 }

@@ -36,7 +36,7 @@ pub enum RecordError {
         path: PathBuf,
     },
     /// A file of the record is damaged.
-    #[error("{}{} is damaged: {what}; {hint}", path.display(), line.map(|l| format!(":{l}")).unwrap_or_default())]
+    #[error("{}; {hint}", damage(path, *line, what))]
     Corrupt {
         /// The file.
         path: PathBuf,
@@ -55,6 +55,16 @@ pub enum RecordError {
         /// Columns of the manifest.
         expected: usize,
     },
+    /// No study where the directory of one was expected.
+    #[error("{}", if path.exists() {
+        format!("{} is not the directory of a study: it has no study.json", path.display())
+    } else {
+        format!("there is no directory {}", path.display())
+    })]
+    NotAStudy {
+        /// The directory.
+        path: PathBuf,
+    },
     /// Lengths inside a field set contradict each other.
     #[error("field set: {what}")]
     Field {
@@ -66,7 +76,21 @@ pub enum RecordError {
 impl RecordError {
     /// Exit code of the command line: 4 for input/output or system errors, 2 otherwise.
     pub fn exit_code(&self) -> u8 {
-        if matches!(self, Self::Io { .. }) { 4 } else { 2 }
+        if self.is_system() { 4 } else { 2 }
+    }
+
+    /// Whether it is an error of the system, and not of the record.
+    pub fn is_system(&self) -> bool {
+        matches!(self, Self::Io { .. })
+    }
+
+    /// What is wrong, without what to try, which may not be possible where the record is a part of
+    /// something else.
+    pub fn what(&self) -> String {
+        match self {
+            Self::Corrupt { path, line, what, .. } => damage(path, *line, what),
+            other => other.to_string(),
+        }
     }
 
     pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
@@ -82,4 +106,9 @@ impl RecordError {
     ) -> Self {
         Self::Corrupt { path: path.to_path_buf(), line, what: what.into(), hint }
     }
+}
+
+fn damage(path: &Path, line: Option<u64>, what: &str) -> String {
+    let line = line.map(|line| format!(":{line}")).unwrap_or_default();
+    format!("{}{line} is damaged: {what}", path.display())
 }

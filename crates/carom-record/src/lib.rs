@@ -15,6 +15,7 @@
 mod checkpoint;
 mod error;
 mod expectation;
+mod export;
 mod expression;
 mod files;
 mod manifest;

@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RecordError, Warning, files};
+use crate::{RecordError, Warning, files, stream};
 
 /// Status of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,6 +80,12 @@ impl Machine {
             arch: std::env::consts::ARCH.into(),
         }
     }
+
+    /// The largest number of threads, or of concurrent runs, that is accepted. More than one per core
+    /// can only cost time and memory.
+    pub fn most_concurrent(&self) -> usize {
+        (4 * self.cpus).max(64)
+    }
 }
 
 /// Outcome of one `[[expect]]`.
@@ -141,7 +147,8 @@ pub struct Manifest {
     pub timings: BTreeMap<String, f64>,
     /// Counts: steps, newton, factorisations, rejected, …
     pub counters: BTreeMap<String, u64>,
-    /// BLAKE3 hashes of the files that a stop wrote, by name.
+    /// BLAKE3 hashes by the name of the file: of the tables and the log once the run has ended, and of
+    /// the files that a stop wrote.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub hashes: BTreeMap<String, String>,
     /// Outcomes of the expectations, once the run has finished.
@@ -221,6 +228,18 @@ impl Manifest {
                 "run the case again, or use the version of Carom that wrote it",
             )
         })
+    }
+
+    /// Reads a file of the run directory; it must be the one that the manifest describes, if it does.
+    pub(crate) fn file(&self, directory: &Path, name: &str) -> Result<Vec<u8>, RecordError> {
+        let path = directory.join(name);
+        let bytes = std::fs::read(&path).map_err(|error| stream::unreadable(&path, error))?;
+        match self.hashes.get(name) {
+            Some(hash) if blake3::hash(&bytes).to_hex().as_str() != hash => {
+                Err(stream::altered(&path, "it has changed since it was written"))
+            }
+            _ => Ok(bytes),
+        }
     }
 
     /// Replaces `manifest.json` of a run directory that no writer has open.

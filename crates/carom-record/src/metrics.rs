@@ -20,6 +20,7 @@ mod force;
 mod ledger;
 mod oscillation;
 mod pressure;
+mod run_table;
 mod samples;
 mod striker;
 mod table;
@@ -36,10 +37,11 @@ pub use facts::{Facts, contact_force};
 pub use force::high_frequency;
 pub use ledger::{MUCH_CREATED, energy_lost_at};
 pub use pressure::hertz;
+pub use run_table::{PRESSURE, WORK};
 pub(crate) use samples::extreme;
 pub use samples::{at, peak_mean, roughness, total_variation};
 pub use striker::striker;
-pub use table::{COLUMNS, FREE, HISTORY, PRESSURE, WORK};
+pub use table::{COLUMNS, FREE, HISTORY};
 
 #[cfg(test)]
 mod tests;

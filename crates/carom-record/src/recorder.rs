@@ -30,8 +30,9 @@ pub trait Recorder: Send {
     fn stop(&mut self, stop: &Stop, fields: &FieldSet, manifest: &mut Manifest) -> Result<(), RecordError>;
     /// The record so far.
     fn read(&self) -> Result<Run, RecordError>;
-    /// Makes the record durable; last the manifest, which says how the run ended.
-    fn finish(&mut self, manifest: &Manifest) -> Result<(), RecordError>;
+    /// Makes the record durable; last the manifest, which says how the run ended and may take hashes of
+    /// what was written.
+    fn finish(&mut self, manifest: &mut Manifest) -> Result<(), RecordError>;
     /// The directory; empty for a record in memory.
     fn directory(&self) -> &Path;
 }
@@ -73,7 +74,7 @@ impl Recorder for RunWriter {
         Run::open(self.directory())
     }
 
-    fn finish(&mut self, manifest: &Manifest) -> Result<(), RecordError> {
+    fn finish(&mut self, manifest: &mut Manifest) -> Result<(), RecordError> {
         self.finish(manifest)
     }
 
@@ -159,7 +160,7 @@ impl Recorder for MemoryRecord {
         Ok(self.run.clone())
     }
 
-    fn finish(&mut self, manifest: &Manifest) -> Result<(), RecordError> {
+    fn finish(&mut self, manifest: &mut Manifest) -> Result<(), RecordError> {
         self.manifest(manifest)
     }
 

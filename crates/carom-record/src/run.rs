@@ -69,7 +69,8 @@ impl Run {
     /// Reads everything but the field files.
     pub fn open(directory: &Path) -> Result<Self, RecordError> {
         let manifest = Manifest::read(directory)?;
-        let history = history(&directory.join("history.csv"), &manifest.columns)?;
+        let lines = |name: &str| Lines::read(directory, name, &manifest);
+        let history = history(&lines("history.csv")?, &manifest.columns)?;
         let (fields, field_format) = match vtkhdf::entries(directory)? {
             Some(entries) => (entries, FieldFormat::VtkHdf),
             None => (pvd::read(directory)?, FieldFormat::Vtu),
@@ -77,8 +78,8 @@ impl Run {
         Ok(Self {
             directory: directory.to_path_buf(),
             history,
-            contact: contact(&directory.join("contact.csv"), contact_axes(&manifest.case))?,
-            log: log(&directory.join("log.jsonl"))?,
+            contact: contact(&lines("contact.csv")?, contact_axes(&manifest.case))?,
+            log: log(&lines("log.jsonl")?)?,
             stop: Stop::read(directory, &manifest)?,
             fields,
             field_format,
@@ -122,20 +123,26 @@ impl Run {
 }
 
 /// The complete lines of a file.
-fn lines(path: &Path) -> Result<Vec<u8>, RecordError> {
-    let mut bytes = std::fs::read(path).map_err(RecordError::io("read", path))?;
-    let complete = bytes.iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
-    bytes.truncate(complete);
-    Ok(bytes)
+struct Lines {
+    path: PathBuf,
+    bytes: Vec<u8>,
+}
+
+impl Lines {
+    fn read(directory: &Path, name: &str, manifest: &Manifest) -> Result<Self, RecordError> {
+        let mut bytes = manifest.file(directory, name)?;
+        let complete = bytes.iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
+        bytes.truncate(complete);
+        Ok(Self { path: directory.join(name), bytes })
+    }
 }
 
 /// Reads a CSV file whose header must be `names`, and calls `each` for every row.
 fn rows(
-    path: &Path,
+    Lines { path, bytes }: &Lines,
     names: &[&str],
     mut each: impl FnMut(&csv::StringRecord) -> Result<(), String>,
 ) -> Result<(), RecordError> {
-    let bytes = lines(path)?;
     let mut reader = csv::Reader::from_reader(bytes.as_slice());
     let damaged = |line, what| Err(RecordError::corrupt(path, line, what, HINT));
     match reader.headers() {
@@ -162,10 +169,10 @@ fn number<T: std::str::FromStr>(record: &csv::StringRecord, i: usize, name: &str
     text.parse().map_err(|_| format!("`{text}` in column {name} is not a number"))
 }
 
-fn history(path: &Path, columns: &[Column]) -> Result<History, RecordError> {
+fn history(lines: &Lines, columns: &[Column]) -> Result<History, RecordError> {
     let names: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
     let mut values = vec![Vec::new(); columns.len()];
-    rows(path, &names, |record| {
+    rows(lines, &names, |record| {
         for (i, column) in values.iter_mut().enumerate() {
             column.push(number(record, i, names[i])?);
         }
@@ -174,10 +181,10 @@ fn history(path: &Path, columns: &[Column]) -> Result<History, RecordError> {
     Ok(History::new(columns.to_vec(), values))
 }
 
-fn contact(path: &Path, axes: usize) -> Result<Vec<ContactRow<'static>>, RecordError> {
+fn contact(lines: &Lines, axes: usize) -> Result<Vec<ContactRow<'static>>, RecordError> {
     let mut list = Vec::new();
     let columns = contact_columns(axes);
-    rows(path, &columns, |record| {
+    rows(lines, &columns, |record| {
         let real = |i| number::<f64>(record, i, columns[i]);
         let count = |i| number::<u64>(record, i, columns[i]);
         let vector = |first: usize| {
@@ -206,8 +213,7 @@ fn contact(path: &Path, axes: usize) -> Result<Vec<ContactRow<'static>>, RecordE
     Ok(list)
 }
 
-fn log(path: &Path) -> Result<Vec<Event>, RecordError> {
-    let bytes = lines(path)?;
+fn log(Lines { path, bytes }: &Lines) -> Result<Vec<Event>, RecordError> {
     let event = |(i, line)| {
         serde_json::from_slice(line)
             .map_err(|error| RecordError::corrupt(path, Some(i as u64 + 1), error.to_string(), HINT))

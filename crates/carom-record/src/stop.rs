@@ -183,12 +183,5 @@ const HINT: &str = "run the case again, or resume the run with `carom resume`";
 
 /// A file whose hash the manifest has.
 fn bytes(directory: &Path, name: &str, manifest: &Manifest) -> Result<Option<Vec<u8>>, RecordError> {
-    let Some(hash) = manifest.hashes.get(name) else { return Ok(None) };
-    let path = directory.join(name);
-    let bytes = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
-    if blake3::hash(&bytes).to_hex().as_str() == hash {
-        Ok(Some(bytes))
-    } else {
-        Err(RecordError::corrupt(&path, None, "it has changed since it was written".to_owned(), HINT))
-    }
+    manifest.hashes.contains_key(name).then(|| manifest.file(directory, name)).transpose()
 }

@@ -261,10 +261,14 @@ impl RunWriter {
         manifest.write(&self.directory)
     }
 
-    /// Flushes everything to the disk; last the manifest, which says how the run ended.
-    pub fn finish(&mut self, manifest: &Manifest) -> Result<(), RecordError> {
+    /// Flushes everything to the disk; last the manifest, which says how the run ended, and takes the
+    /// hashes of the tables and the log.
+    pub fn finish(&mut self, manifest: &mut Manifest) -> Result<(), RecordError> {
         self.sync()?;
         vtkhdf::finish(&self.directory)?;
+        for (name, extent) in ROW_FILES.into_iter().zip(&self.header.streams) {
+            manifest.hashes.insert(name.into(), blake3::Hash::from(extent.hash).to_hex().to_string());
+        }
         manifest.write(&self.directory)
     }
 
@@ -377,7 +381,10 @@ fn missing(error: &RecordError) -> bool {
 /// process ends, even if it is killed.
 fn lock(directory: &Path) -> Result<File, RecordError> {
     let path = directory.join("checkpoint").join("lock");
-    let file = File::create(&path).map_err(RecordError::io("open", &path))?;
+    let file = File::create(&path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => no_checkpoint(directory),
+        _ => RecordError::io("open", &path)(error),
+    })?;
     match file.try_lock() {
         Err(fs::TryLockError::WouldBlock) => Err(RecordError::Busy { path: directory.to_path_buf() }),
         // File systems without locks are allowed.

@@ -112,7 +112,7 @@ fn started(directory: &Path, format: FieldFormat) -> RunWriter {
 }
 
 fn whole(directory: &Path, format: FieldFormat) -> BTreeMap<PathBuf, Vec<u8>> {
-    advance(started(directory, format), 0, 0, STEPS).finish(&manifest()).unwrap();
+    advance(started(directory, format), 0, 0, STEPS).finish(&mut manifest()).unwrap();
     all_bytes(directory)
 }
 
@@ -154,7 +154,7 @@ fn killed_anywhere(format: FieldFormat) {
             assert!(reopened.step <= kill && (generation.is_some() || reopened.step + 6 > kill));
             reopened.writer.field_format(format);
             let mut writer = advance(reopened.writer, reopened.step, reopened.rows, STEPS);
-            writer.finish(&manifest()).unwrap();
+            writer.finish(&mut manifest()).unwrap();
             let mut got = all_bytes(&directory);
             let mut expected = expected.clone();
             if generation.is_some() {
@@ -191,7 +191,7 @@ fn a_damaged_checkpoint_falls_back_to_the_one_before() {
         assert_eq!((reopened.step, reopened.rows), (30, 31));
         assert!(reopened.fallback.unwrap().to_string().contains("is damaged"));
         if at == 0 {
-            advance(reopened.writer, 30, 31, STEPS).finish(&manifest()).unwrap();
+            advance(reopened.writer, 30, 31, STEPS).finish(&mut manifest()).unwrap();
             let got = all_bytes(&directory);
             let differing: Vec<_> =
                 expected.keys().chain(got.keys()).filter(|&k| expected.get(k) != got.get(k)).collect();
@@ -339,7 +339,7 @@ fn what_is_written_is_read_back() {
     writer.fields(2, 0.2, &fields(2)).unwrap();
     let mut done = manifest();
     done.status = Status::Finished;
-    writer.finish(&done).unwrap();
+    writer.finish(&mut done).unwrap();
 
     let run = Run::open(&directory).unwrap();
     assert_eq!(run.manifest, done);
@@ -352,6 +352,40 @@ fn what_is_written_is_read_back() {
     assert_eq!(run.log, [event]);
     assert_eq!((run.fields[0].step, run.fields[0].time), (2, 0.2));
     assert_eq!(run.field(&run.fields[0]).unwrap(), fields(2));
+}
+
+/// A row or a byte that is lost or changed after the end of a run is noticed; while a run is being
+/// written, what there is is read.
+#[test]
+fn a_record_that_has_changed_since_its_run_ended_is_named() {
+    let scratch = scratch();
+    let directory = scratch.path().join("run");
+    let mut done = Manifest { status: Status::Finished, ..manifest() };
+    let mut writer = advance(started(&directory, FieldFormat::Vtu), 0, 0, STEPS);
+    writer.manifest(&manifest()).unwrap();
+    assert!(Run::open(&directory).is_ok());
+    writer.finish(&mut done).unwrap();
+    drop(writer);
+    assert_eq!(Run::open(&directory).unwrap().manifest, done);
+    for name in ["history.csv", "contact.csv", "log.jsonl"] {
+        let path = directory.join(name);
+        let whole = fs::read(&path).unwrap();
+        let last_row = whole[..whole.len() - 1].iter().rposition(|&b| b == b'\n').unwrap() + 1;
+        let other_digit = whole.iter().map(|&b| if b == b'1' { b'2' } else { b }).collect();
+        assert_ne!(other_digit, whole);
+        for changed in [whole[..last_row].to_vec(), other_digit, Vec::new()] {
+            fs::write(&path, changed).unwrap();
+            let error = Run::open(&directory).unwrap_err();
+            assert_eq!(error.exit_code(), 2);
+            let told = format!("{name} is damaged: it has changed since it was written");
+            assert!(error.to_string().contains(&told), "{error}");
+        }
+        fs::remove_file(&path).unwrap();
+        let error = Run::open(&directory).unwrap_err();
+        assert!(error.exit_code() == 2 && error.to_string().contains("it is missing"), "{error}");
+        fs::write(&path, whole).unwrap();
+        assert!(Run::open(&directory).is_ok());
+    }
 }
 
 #[test]
@@ -382,4 +416,33 @@ fn errors_say_why() {
     fs::write(directory.join("history.csv"), "step").unwrap();
     let text = shown(RunWriter::reopen(&directory).err().unwrap()).1;
     assert!(text.contains("history.csv") && text.contains("4 bytes"), "{text}");
+}
+
+/// Every value comes back with its bits, and names and units with commas and quotes as they are.
+#[test]
+fn exported_text_is_read_back() {
+    let scratch = scratch();
+    let directory = scratch.path().join("run");
+    let mut manifest = manifest();
+    manifest.columns[1].unit = "kg, net".into();
+    let mut writer = RunWriter::create(&directory, &manifest, b"0").unwrap();
+    let values = [[0.0, 0.1 + 0.2, 5e-324], [1.0, -0.0, f64::NAN]];
+    values.iter().for_each(|row| writer.history(row).unwrap());
+    writer.finish(&mut manifest).unwrap();
+    let run = Run::open(&directory).unwrap();
+    let text = run.to_csv().unwrap();
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
+    let rows: Vec<Vec<String>> =
+        reader.records().map(|row| row.unwrap().iter().map(str::to_owned).collect()).collect();
+    assert_eq!(rows[0], ["step", "time", "A.uy, \"odd\""]);
+    assert_eq!(rows[1], ["s", "kg, net", "s"]);
+    let json: serde_json::Value = serde_json::from_str(&run.to_json()).unwrap();
+    for (i, row) in values.iter().enumerate() {
+        for (k, value) in row.iter().enumerate() {
+            assert_eq!(rows[2 + i][k].parse::<f64>().unwrap().to_bits(), value.to_bits());
+            let found = &json["columns"][k]["values"][i];
+            assert_eq!(found.as_f64().map(f64::to_bits), value.is_finite().then(|| value.to_bits()));
+        }
+    }
+    assert_eq!(rows[2][0], "0");
 }

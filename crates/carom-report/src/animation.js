@@ -1,8 +1,7 @@
-"use strict";
 (() => {
   const data = JSON.parse(document.getElementById("animation-data").textContent);
   const root = document.getElementById("animation");
-  const [canvas, button, slider, shown, speed] = ["canvas", "button", "input", "output", "select"].map(s => root.querySelector(s));
+  const canvas = root.querySelector("canvas");
   const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
   const [left, right, low, high] = data.box;
   const unpack = (text, from, to) => Float32Array.from(new Int16Array(bytes(text)),
@@ -158,63 +157,8 @@
     for (let i = 0; i < f.length; i += 4) arrow(px(f[i]), py(f[i + 1]), f[i + 2], f[i + 3]);
   };
 
-  // A cursor in every time history of the page.
-  const axes = [...document.querySelectorAll("svg g.time")].map(axis => {
-    const [x0, x1, t0, t1, top, bottom] = axis.dataset.axis.split(" ").map(Number);
-    const line = document.createElementNS("http://www.w3.org/2000/svg", "path");
-    for (const [key, value] of [["stroke", "#c0267e"], ["stroke-width", "1.2"], ["class", "cursor"]]) line.setAttribute(key, value);
-    axis.append(line);
-    const svg = axis.ownerSVGElement;
-    svg.addEventListener("click", event => {
-      const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
-      if (p.x >= x0 && p.x <= x1) { pause(); show(t0 + (t1 - t0) * (p.x - x0) / (x1 - x0)); }
-    });
-    svg.style.cursor = "crosshair";
-    return t => {
-      const x = (x0 + (x1 - x0) * (t - t0) / (t1 - t0)).toFixed(2);
-      line.setAttribute("d", `M${x} ${top}V${bottom}`);
-    };
-  });
-
-  const start = frames[0].time, end = frames[frames.length - 1].time;
-  let frame = -1, now = start, playing = null;
-  const show = t => {
-    now = Math.min(end, Math.max(start, t));
-    let k = 0;
-    frames.forEach((f, i) => { if (Math.abs(f.time - now) <= Math.abs(frames[k].time - now)) k = i; });
-    if (playing === null) now = frames[k].time;
-    slider.value = (now - start) / (end - start);
-    if (k === frame) return;
-    frame = k;
-    draw(k);
-    axes.forEach(move => move(frames[k].time));
-    shown.textContent = `t = ${frames[k].time.toPrecision(4)} ${data.unit} · step ${frames[k].step} · ${frames[k].file}`;
-  };
-  const pause = () => { cancelAnimationFrame(playing); playing = null; button.textContent = "▶"; };
-  const play = () => {
-    if (now >= end) now = start;
-    button.textContent = "❚❚";
-    let last = performance.now();
-    // At speed 1 the whole run takes eight seconds.
-    const tick = at => {
-      playing = requestAnimationFrame(tick);
-      show(now + (at - last) / 8000 * (end - start) * speed.value);
-      last = at;
-      if (now >= end) pause();
-    };
-    playing = requestAnimationFrame(tick);
-  };
-  button.addEventListener("click", () => playing === null ? play() : pause());
-  slider.addEventListener("input", () => { pause(); show(start + slider.value * (end - start)); });
-  root.tabIndex = 0;
-  root.addEventListener("keydown", event => {
-    if (event.target === speed) return;
-    const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (by) { pause(); show((frames[frame + by] || frames[frame]).time); event.preventDefault(); }
-    if (event.key === " " && event.target !== button) { playing === null ? play() : pause(); event.preventDefault(); }
-  });
-  root.hidden = false;
   // Start at the frame with the largest contact force.
   const force = f => f.forces.reduce((s, v, i) => i % 4 > 1 ? s + Math.abs(v) : s, 0);
-  show(frames.reduce((a, b) => force(b) > force(a) ? b : a).time);
+  const first = frames.reduce((a, b) => force(b) > force(a) ? b : a);
+  player(root, frames, data.unit, draw, first.time);
 })();

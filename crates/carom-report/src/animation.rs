@@ -14,18 +14,21 @@ use maud::{Markup, PreEscaped, html};
 use serde_json::json;
 
 use crate::bands::{Bands, color_bands};
-use crate::bodies::{Instant, color_bar, frame};
+use crate::bodies::{Instant, frame, triangles};
 use crate::chart::{Chart, Options, Panel, Series, Track, open};
 use crate::labels::{number, symbol, with_unit};
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::Point;
+use crate::sheet::{Legend, color_bar};
 use crate::text::{Label, Prose};
 
 /// Largest number of bytes of positions and stresses in the page; field files are skipped evenly to
 /// stay below.
 const BUDGET: usize = 2_400_000;
 const FRAMES: usize = 300;
+/// Play, pause, slider and cursors, for all animations.
+pub(crate) const PLAYER: &str = include_str!("player.js");
 /// Largest number of kinds of events drawn; the rarest come first.
 const KINDS: usize = 6;
 
@@ -103,7 +106,7 @@ pub(crate) fn tracks(run: &Run) -> Vec<Track> {
 
 /// Time histories beside the picture: contact force (its label is short, for a low panel), then the
 /// probes.
-fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
+pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let h = &run.history;
     let series = |name: &str, label: String, k: usize| {
         let y = h.column(name)?.to_vec();
@@ -177,6 +180,23 @@ fn chosen(run: &Run, points: usize) -> Vec<&FieldEntry> {
     run.fields.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, e)| e).collect()
 }
 
+/// Play, time, what is shown, and speed; the first controls of an animation.
+pub(crate) fn controls() -> Markup {
+    html! {
+        button type="button" aria-label="play or pause" { "▶" }
+        input type="range" min="0" max="1" step="any" aria-label="time";
+        output {}
+        label {
+            "speed "
+            select {
+                @for speed in ["0.1", "0.25", "0.5", "1", "2", "4"] {
+                    option value=(speed) selected[speed == "1"] { (speed) }
+                }
+            }
+        }
+    }
+}
+
 /// The section of the page, hidden until its script runs; nothing for fewer than two field files.
 pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<Markup> {
     let first = run.field(run.fields.first()?).ok()?;
@@ -184,7 +204,11 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let entries = chosen(run, if flat { 2 * first.points.len() } else { first.points.len() });
     let read = |entry: &FieldEntry| Some((entry.clone(), instant(&run.field(entry).ok()?, String::new())?));
     let frames: Vec<(FieldEntry, Instant)> = entries.iter().filter_map(|e| read(e)).collect();
-    let cells = &frames.first()?.1.cells;
+    let of_cell = |(degree, nodes): &(usize, Vec<usize>)| {
+        let degree = *degree;
+        triangles(nodes).into_iter().map(move |half| (degree, half))
+    };
+    let cells: Vec<_> = frames.first()?.1.cells.iter().flat_map(of_cell).collect();
     if frames.len() < 2 || frames.iter().any(|(_, i)| i.points.len() != frames[0].1.points.len()) {
         return None;
     }
@@ -234,7 +258,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let unit = first.array("stress").map_or("", |a| a.unit.as_str());
     let label = if flat { "σ_{xx}" } else { "σ_{yy}" };
     let mut bar = open("Colour bar of the animation", 92.0, 330.0);
-    color_bar(&mut bar, bands, cut, 8.0, (8.0, 312.0), (label, unit));
+    color_bar(&mut bar, &Legend { bands, cut, label, unit }, 8.0, (8.0, 312.0));
     bar.push_str("</svg>\n");
     let every = if entries.len() < run.fields.len() {
         format!("{} of the {} recorded instants", entries.len(), run.fields.len())
@@ -250,19 +274,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                 div { (PreEscaped(bar)) }
                 div { (PreEscaped(histories(run, shades))) }
             }
-            div.controls {
-                button type="button" aria-label="play or pause" { "▶" }
-                input type="range" min="0" max="1" step="any" aria-label="time";
-                output {}
-                label {
-                    "speed "
-                    select {
-                        @for speed in ["0.1", "0.25", "0.5", "1", "2", "4"] {
-                            option value=(speed) selected[speed == "1"] { (speed) }
-                        }
-                    }
-                }
-            }
+            div.controls { (controls()) }
             figcaption {
                 b { "Animation." } " " (Label(label))
                 @if flat { " in colour" } @else { " in the colours of figure " (figure) }
@@ -276,7 +288,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
             }
         }
         script #animation-data type="application/json" { (PreEscaped(data)) }
-        script { (PreEscaped(include_str!("animation.js"))) }
+        script { (PreEscaped(PLAYER)) (PreEscaped(include_str!("animation.js"))) }
     })
 }
 

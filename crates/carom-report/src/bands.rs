@@ -4,8 +4,8 @@
 //! bands into convex polygons, one per band, which together cover the triangle.
 
 use crate::axis::round_step;
-use crate::palette::diverging;
-use crate::pen::{Pen, Point};
+use crate::palette::{diverging, sequential};
+use crate::pen::Point;
 
 /// Shape functions of a Lagrange triangle in VTK's node order at barycentric (a, b, c) of its
 /// corners.
@@ -44,8 +44,9 @@ fn clip(polygon: &[(Point, f64)], level: f64, sign: f64) -> Vec<(Point, f64)> {
     out
 }
 
-/// Colour bands: `count` of equal width between `low` and `high`, with zero in the middle of one;
-/// values outside take the colour of the nearest band.
+/// Colour bands: `count` of equal width between `low` and `high`; values outside take the colour of
+/// the nearest band. Where values have either sign, zero is in the middle of a band; where they
+/// have not, `low` is zero.
 pub(crate) struct Bands {
     pub(crate) low: f64,
     pub(crate) high: f64,
@@ -59,7 +60,11 @@ impl Bands {
 
     pub(crate) fn color(&self, band: usize) -> String {
         let middle = 0.5 * (self.level(band) + self.level(band + 1));
-        diverging(middle / self.low.abs().max(self.high.abs()))
+        if self.low < 0.0 {
+            diverging(middle / self.low.abs().max(self.high.abs()))
+        } else {
+            sequential(middle / self.high)
+        }
     }
 
     pub(crate) fn of(&self, value: f64) -> usize {
@@ -84,14 +89,27 @@ pub(crate) fn color_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2
     (Bands { low, high, count: (below + above) as usize + 1 }, [value(0) < low, value(last) > high])
 }
 
-/// Adds the parts of a triangle to the paths of the bands.
-pub(crate) fn band_polygons(triangle: &[(Point, f64); 3], bands: &Bands, paths: &mut [Pen]) {
+/// Colour bands from zero for values that are not negative: all but the largest 0.5 %, and whether
+/// values lie above them.
+pub(crate) fn positive_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2]) {
+    let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
+    values.sort_unstable_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1);
+    let value = |k: usize| values.get(k).copied().unwrap_or(0.0);
+    let high = Some(value(last - last / 200)).filter(|high| *high > 0.0).unwrap_or(1.0);
+    let step = round_step(high, 16.0);
+    let count = (high / step * (1.0 - 1e-12)).ceil();
+    (Bands { low: 0.0, high: count * step, count: count as usize }, [false, value(last) > count * step])
+}
+
+/// The parts of a triangle by band: convex polygons.
+pub(crate) fn parts(triangle: &[(Point, f64); 3], bands: &Bands) -> Vec<(usize, Vec<Point>)> {
     if triangle.iter().any(|(_, f)| !f.is_finite()) {
-        return;
+        return Vec::new();
     }
     let [first, last] =
         [f64::min, f64::max].map(|pick| bands.of(triangle.iter().map(|t| t.1).reduce(pick).unwrap_or(0.0)));
-    for band in first..=last {
+    let part = |band| {
         let mut polygon = triangle.to_vec();
         if band > first {
             polygon = clip(&polygon, bands.level(band), 1.0);
@@ -99,18 +117,15 @@ pub(crate) fn band_polygons(triangle: &[(Point, f64); 3], bands: &Bands, paths: 
         if band < last {
             polygon = clip(&polygon, bands.level(band + 1), -1.0);
         }
-        if polygon.len() > 2 {
-            paths[band].go(polygon[0].0);
-            polygon[1..].iter().for_each(|(p, _)| paths[band].draw(&[*p]));
-            paths[band].close();
-        }
-    }
+        (polygon.len() > 2).then(|| (band, polygon.iter().map(|c| c.0).collect()))
+    };
+    (first..=last).filter_map(part).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pen::GRID;
+    use crate::pen::{GRID, Pen};
 
     /// Nodes of the reference triangle in VTK's order.
     fn nodes(degree: usize) -> Vec<[f64; 3]> {
@@ -143,7 +158,8 @@ mod tests {
     fn bands_cover_a_triangle_exactly_once() {
         let bands = Bands { low: -1.0, high: 2.0, count: 6 };
         let mut paths = vec![Pen::default(); 6];
-        band_polygons(&[([0.0, 0.0], -3.0), ([100.0, 0.0], 0.25), ([0.0, 100.0], 9.0)], &bands, &mut paths);
+        let triangle = [([0.0, 0.0], -3.0), ([100.0, 0.0], 0.25), ([0.0, 100.0], 9.0)];
+        parts(&triangle, &bands).iter().for_each(|(band, polygon)| paths[*band].polygon(polygon));
         let area = |pen: &Pen| -> f64 {
             let polygon = |p: &str| {
                 let steps: Vec<f64> = p
@@ -176,5 +192,7 @@ mod tests {
         assert_eq!((bands.low, bands.high, bands.count, cut), (-31.0, 1.0, 16, [true, false]));
         assert_eq!(bands.color(bands.of(0.0)), diverging(0.0));
         assert!(color_bands(std::iter::empty()).0.count > 1);
+        let (bands, cut) = positive_bands((0..1000).map(f64::from).chain([5000.0]));
+        assert_eq!((bands.low, bands.high, bands.count, cut), (0.0, 1000.0, 10, [false, true]));
     }
 }

@@ -9,7 +9,8 @@ use crate::chart::{Chart, Options, Panel, Series};
 use crate::labels::{symbol, with_unit, words};
 use crate::obstacles;
 use crate::palette::{LINES, sequence};
-use crate::{animation, setup, stick_slip, stopped};
+use crate::sheet::Legend;
+use crate::{animation, setup, space, stick_slip, stopped};
 
 /// A figure of a report.
 #[derive(Clone, Debug)]
@@ -45,7 +46,10 @@ pub(crate) fn all(run: &Run) -> Shown {
     let place = shown.figures.len() + 1;
     if let Some((bodies, bands)) = instants(run, &mut shown.notes) {
         shown.figures.push(bodies);
-        shown.animation = animation::section(run, &bands, shades(run), place);
+        shown.animation = match bands {
+            Some(bands) => animation::section(run, &bands, shades(run), place),
+            None => space::section(run, shades(run), place),
+        };
     }
     let map = stick_slip::figure(run).map(|(svg, caption)| Figure { name: "stick-slip", caption, svg });
     shown.figures.extend([probes(run), force(run), map, energy(run), solver(run)].into_iter().flatten());
@@ -54,10 +58,18 @@ pub(crate) fn all(run: &Run) -> Shown {
 
 /// The initial configuration.
 fn setup(run: &Run) -> Option<Figure> {
-    let svg = setup::figure(run, &run.field(run.fields.first()?).ok()?)?;
-    let caption = "Initial configuration: bodies with their mesh, supports, loads, contact sides and probes. \
-                   Data: first field file; case and sides in `manifest.json`.";
-    Some(Figure { name: "setup", caption: caption.into(), svg })
+    let fields = run.field(run.fields.first()?).ok()?;
+    let svg = setup::figure(run, &fields)?;
+    let view = if bodies::fill_space(&fields) {
+        format!(" View: {}. Dashed: outlines of sides that are turned away.", space::View::words())
+    } else {
+        String::new()
+    };
+    let caption = format!(
+        "Initial configuration: bodies with their mesh, supports, loads, contact sides and probes.{view} \
+         Data: first field file; case and sides in `manifest.json`."
+    );
+    Some(Figure { name: "setup", caption, svg })
 }
 
 /// Contact intervals to shade.
@@ -123,6 +135,13 @@ fn probes(run: &Run) -> Option<Figure> {
         let label = format!("{} at {probe}", symbol(quantity));
         panels[at].1.series.push(Series { label, color, x: run.times(), y: values.to_vec() });
     }
+    // No axis of the plane is horizontal or vertical in space.
+    let solid = run.manifest.case.get("dimension").and_then(serde_json::Value::as_u64) == Some(3);
+    let words = |q: &str| {
+        let words = words(q);
+        let plain = words.strip_prefix("horizontal ").or(words.strip_prefix("vertical ")).filter(|_| solid);
+        plain.map_or(words.clone(), str::to_owned)
+    };
     let mut list: Vec<String> = panels.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
     let svg = chart(run, "Time histories at the probes", panels.into_iter().map(|(_, p)| p).collect())?;
@@ -224,8 +243,8 @@ fn five(run: &Run) -> (Vec<&FieldEntry>, bool) {
     }
 }
 
-/// The deformed bodies at several instants, coloured by stress.
-fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
+/// The deformed bodies at several instants, coloured by stress, and its bands in the plane.
+fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>)> {
     let (entries, contact) = five(run);
     if entries.is_empty() {
         notes.push("No field files were written (output.fields_every = 0); the bodies are not drawn.".into());
@@ -243,7 +262,12 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
         let strips: Vec<Instant> =
             sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
-        return Some((bars(run, &sets, during), bodies::colors(&strips).0));
+        return Some((bars(run, &sets, during), Some(bodies::colors(&strips).0)));
+    }
+    if bodies::fill_space(first) {
+        let length = first.array("displacement").map_or("", |a| a.unit.as_str());
+        let (svg, caption) = space::instants(&sets, (unit, length), during)?;
+        return Some((Figure { name: "bodies", caption, svg }, None));
     }
     let stress = first.array("stress")?.unit.clone();
     let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
@@ -267,7 +291,8 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
         .iter()
         .map(|walks| walks.iter().flat_map(|walk| obstacles::clipped(walk, wide)).collect())
         .collect();
-    let svg = bodies::figure(&list, (&walks, wide), (&bands, cut), title, ("σ_{yy}", &stress), &length);
+    let legend = Legend { bands: &bands, cut, label: "σ_{yy}", unit: &stress };
+    let svg = bodies::figure(&list, (&walks, wide), title, &legend, &length);
     let arrow = if cut[0] || cut[1] {
         " Arrows at the colour bar: up to 0.5 % of the values at either end are out of its range."
     } else {
@@ -278,7 +303,7 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
          the same scale; displacements are not magnified. Blue: compression. Red: tension.{arrow} Data: \
          stress and displacement in the field files."
     );
-    Some((Figure { name: "bodies", caption, svg }, bands))
+    Some((Figure { name: "bodies", caption, svg }, Some(bands)))
 }
 
 /// In 1D: displacement and stress along the bars at several instants.

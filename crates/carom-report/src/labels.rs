@@ -3,7 +3,9 @@
 /// Symbol of a probe quantity: `σ_{yy}`.
 pub(crate) fn symbol(quantity: &str) -> String {
     match quantity {
-        "ux" | "uy" | "vx" | "vy" | "ax" | "ay" => format!("{}_{{{}}}", &quantity[..1], &quantity[1..]),
+        "ux" | "uy" | "uz" | "vx" | "vy" | "vz" | "ax" | "ay" | "az" => {
+            format!("{}_{{{}}}", &quantity[..1], &quantity[1..])
+        }
         "von_mises" => "σ_{vM}".into(),
         "det_f" => "det F".into(),
         _ => match quantity.strip_prefix("sigma_") {
@@ -18,8 +20,11 @@ pub(crate) fn words(quantity: &str) -> String {
     let axis = |c: &str| if c == "x" { "horizontal" } else { "vertical" }.to_string();
     match quantity {
         "ux" | "uy" => axis(&quantity[1..]) + " displacement",
+        "uz" => "displacement".into(),
         "vx" | "vy" => axis(&quantity[1..]) + " velocity",
+        "vz" => "velocity".into(),
         "ax" | "ay" => axis(&quantity[1..]) + " acceleration",
+        "az" => "acceleration".into(),
         "von_mises" => "von Mises stress".into(),
         "det_f" => "volume ratio".into(),
         _ if quantity.starts_with("sigma_") => "Cauchy stress".into(),

@@ -32,6 +32,8 @@ mod publish;
 mod ranked;
 mod redraw;
 mod setup;
+mod sheet;
+mod space;
 mod stick_slip;
 mod stopped;
 mod study;

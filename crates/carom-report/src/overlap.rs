@@ -3,11 +3,11 @@
 
 use std::fmt::Write as _;
 
-use carom_record::{Cell, FieldSet};
+use carom_record::FieldSet;
 use serde_json::Value;
 
 use crate::axis::round_step;
-use crate::bodies::{Instant, places};
+use crate::bodies::{Instant, is_plane, places};
 use crate::chart::{open, write_text};
 use crate::labels::number;
 use crate::obstacles;
@@ -28,7 +28,7 @@ pub fn overlap(case: &Value, fields: &FieldSet, nodes: &[(usize, f64)]) -> Optio
     let points = places(fields);
     let nodes: Vec<(usize, f64)> = nodes.iter().copied().filter(|(node, _)| *node < points.len()).collect();
     let &(deepest, depth) = nodes.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    if fields.blocks.iter().any(|block| block.cell != Cell::Triangle) {
+    if fields.blocks.iter().any(|block| !is_plane(block)) {
         return None;
     }
     let extent = |points: &mut dyn Iterator<Item = Point>| {

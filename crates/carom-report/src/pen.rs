@@ -42,6 +42,14 @@ impl Pen {
         self.at = self.start;
     }
 
+    /// Draws a polygon.
+    pub(crate) fn polygon(&mut self, corners: &[Point]) {
+        for (k, corner) in corners.iter().enumerate() {
+            if k == 0 { self.go(*corner) } else { self.draw(&[*corner]) }
+        }
+        self.close();
+    }
+
     fn put(&mut self, command: char, points: &[Point]) {
         // A repeated command may be omitted, and so may an `l` after an `m`.
         let implied = command != 'm' && (self.command == command || (self.command == 'm' && command == 'l'));

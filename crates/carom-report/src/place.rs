@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 
-use crate::bodies::{Instant, bezier, edge_nodes};
+use crate::bodies::{Instant, bezier, corners, edge_nodes};
 use crate::pen::{Pen, Point, open_grid};
 
 /// Cells with their nodes.
 pub(crate) fn mesh(out: &mut String, instant: &Instant, fill: &str, to: &dyn Fn(Point) -> Point) {
     let mut cells = Pen::default();
     for (degree, nodes) in &instant.cells {
-        for e in 0..3 {
+        for e in 0..corners(nodes) {
             let edge: Vec<Point> = edge_nodes(*degree, nodes, e).map(|n| to(instant.points[n])).collect();
             bezier(&mut cells, &edge, e == 0);
         }
@@ -21,15 +21,15 @@ pub(crate) fn mesh(out: &mut String, instant: &Instant, fill: &str, to: &dyn Fn(
         &cells,
         &format!("fill=\"{fill}\" fill-opacity=\"0.8\" stroke=\"#98a2ad\" stroke-width=\"16\""),
     );
-    let mut corners = Pen::default();
+    let mut marks = Pen::default();
     for (_, nodes) in &instant.cells {
         for &k in nodes {
             let [x, y] = to(instant.points[k]);
-            corners.go([x - 1.2, y]);
-            corners.draw(&[[x + 1.2, y]]);
+            marks.go([x - 1.2, y]);
+            marks.draw(&[[x + 1.2, y]]);
         }
     }
-    path(out, &corners, "fill=\"none\" stroke=\"#667\" stroke-width=\"48\"");
+    path(out, &marks, "fill=\"none\" stroke=\"#667\" stroke-width=\"48\"");
 }
 
 /// A path of a pen.

@@ -8,6 +8,7 @@ mod drawing;
 mod forces;
 mod key;
 mod planes;
+mod solid;
 mod values;
 
 use std::collections::HashMap;
@@ -17,21 +18,20 @@ use carom_record::{Cell, FieldSet, Run};
 use serde_json::Value;
 
 use crate::axis::Axis;
-use crate::bodies::{Instant, bezier, edges, places};
+use crate::bodies::{Instant, bezier, corners, edges, fill_space, places};
 use crate::chart::{open, write_text};
 use crate::labels::with_unit;
 use crate::obstacles;
 use crate::pen::{Pen, Point, open_grid};
 use crate::symbols::{arrow, direction, guides, plus, rollers, wall};
-use drawing::{BAR, PRIMARY, SECONDARY, Setup};
+use drawing::{BAR, KEY, PRIMARY, ROOM, SECONDARY, Setup};
 use values::{list, text, vector};
-
-/// Largest width of the picture, and width of the key.
-const ROOM: f64 = 470.0;
-const KEY: f64 = 320.0;
 
 /// The figure, from the initial fields; nothing without cells.
 pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
+    if fill_space(fields) {
+        return solid::figure(run, fields);
+    }
     let flat = fields.blocks.iter().all(|b| b.cell == Cell::Curve);
     let points = places(fields);
     let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
@@ -146,17 +146,17 @@ impl Setup<'_> {
                 continue;
             }
             for cell in block.cells() {
-                let corners = [0, 1, 2].map(|e| self.node(cell[e]));
-                for e in 0..3 {
-                    let (a, b) = (cell[e], cell[(e + 1) % 3]);
-                    self.inside.insert([a.min(b), a.max(b)], corners[(e + 2) % 3]);
+                let count = corners(cell);
+                for e in 0..count {
+                    let (a, b) = (cell[e], cell[(e + 1) % count]);
+                    self.inside.insert([a.min(b), a.max(b)], self.node(cell[(e + 2) % count]));
                 }
             }
             let instant = Instant::of_block(self.fields, block);
             let [inside, outline] = edges(&instant, &|p| self.to(p));
             let mut cells = Pen::default();
             for (degree, nodes) in &instant.cells {
-                for e in 0..3 {
+                for e in 0..corners(nodes) {
                     let edge: Vec<Point> =
                         crate::bodies::edge_nodes(*degree, nodes, e).map(|n| self.node(n)).collect();
                     bezier(&mut cells, &edge, e == 0);

@@ -149,6 +149,7 @@ fn ended(study: &Study, arm: usize, row: &Row) -> Markup {
         Some(Status::Finished) => ("pass", "finished"),
         Some(Status::Failed) => ("miss", "failed"),
         Some(Status::Running | Status::Stopped) => ("undecided", "not finished"),
+        None if row.is_damaged() => ("miss", "damaged"),
         None => ("undecided", "not started"),
     };
     html! {
@@ -340,7 +341,8 @@ fn metrics(study: &Study) -> Markup {
         }))
         p.small {
             "Column headings are the numbers of the arms. Every value is computed from the directory of its \
-             arm alone. Data in full precision: " (file("study.csv")) ", " (file("study_tidy.csv")) "."
+             arm alone. Data in full precision: " (file("study.csv")) ", and with measured times \
+             " (file("study_tidy.csv")) "."
         }
         details {
             summary { "Definitions" }

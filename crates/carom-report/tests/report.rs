@@ -94,7 +94,7 @@ fn bar(directory: &Path, rows: usize, with_fields: bool) {
         description: String::new(),
         integer: false,
     });
-    let manifest =
+    let mut manifest =
         Manifest::new("0.1.0", serde_json::json!({"dimension": 1}), Source::default(), columns.to_vec(), 1);
     let mut writer = RunWriter::create(directory, &manifest, b"").unwrap();
     for i in 0..rows {
@@ -118,7 +118,7 @@ fn bar(directory: &Path, rows: usize, with_fields: bool) {
             writer.fields(i as u64, t, &fields).unwrap();
         }
     }
-    writer.finish(&manifest).unwrap();
+    writer.finish(&mut manifest).unwrap();
 }
 
 #[test]
@@ -142,4 +142,78 @@ fn missing_data_are_noted_without_an_error() {
         assert!(check_page(&directory).contains(expected));
     }
     assert_eq!(report(scratch.path()).unwrap_err().exit_code(), 2);
+}
+
+/// A cube of six tetrahedra around a diagonal that is stretched upwards.
+fn cube(directory: &Path) {
+    let columns = ["step", "time", "active", "total"].map(|name| Column {
+        name: name.into(),
+        unit: String::new(),
+        description: String::new(),
+        integer: false,
+    });
+    let case = serde_json::json!({
+        "dimension": 3, "title": "Cube", "units": {"length": "m", "time": "s", "mass": "kg"},
+        "materials": [{"name": "steel", "law": "neo-hookean", "density": 1.0, "lambda": 1.0, "mu": 1.0}],
+        "bodies": [{"name": "cube", "material": "steel", "element": "Tet4", "gravity": [0.0, 0.0, -9.81]}],
+        "supports": [{"on": ["cube.bottom"], "fix": [0, 1, 2]}],
+        "loads": [{"kind": {"pressure": {"on": ["cube.top"], "value": "X + Z*t"}}}],
+        "probes": [{"name": "A", "body": "cube", "at": [1.0, 1.0, 1.0]}],
+        "time": {"end": 1.0},
+    });
+    let mut manifest = Manifest::new("0.1.0", case, Source::default(), columns.to_vec(), 1);
+    // Corner k is at the bits of k.
+    manifest.sides.insert("cube.bottom".into(), vec![vec![0, 3, 1], vec![0, 2, 3]]);
+    manifest.sides.insert("cube.top".into(), vec![vec![4, 5, 7], vec![4, 7, 6]]);
+    let mut writer = RunWriter::create(directory, &manifest, b"").unwrap();
+    for i in 0..6_u32 {
+        let t = f64::from(i) * 0.2;
+        writer.history(&[f64::from(i), t, 0.0, t]).unwrap();
+        let points: Vec<[f64; 3]> = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2].map(f64::from)).collect();
+        let displacement = points.iter().flat_map(|p| [0.0, 0.0, t * p[2]]).collect();
+        let stress = points.iter().flat_map(|_| [0.0, 0.0, 3.0 * t, 0.0, 0.0, 0.0]).collect();
+        let array = |name: &str, unit: &str, components, values| PointArray {
+            name: name.into(),
+            unit: unit.into(),
+            components,
+            values,
+        };
+        let cells = [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
+        let block =
+            Block { body: "cube".into(), cell: Cell::Tetrahedron, degree: 1, connectivity: cells.concat() };
+        let arrays = vec![array("displacement", "m", 3, displacement), array("stress", "Pa", 6, stress)];
+        writer.fields(u64::from(i), t, &FieldSet { points, blocks: vec![block], arrays }).unwrap();
+    }
+    writer.finish(&mut manifest).unwrap();
+}
+
+#[test]
+fn solids_are_drawn_and_have_a_scene() {
+    let scratch = tempfile::tempdir().unwrap();
+    let directory = scratch.path().join("run");
+    cube(&directory);
+    let summary = report(&directory).unwrap();
+    let [setup, bodies] = [0, 1].map(|k| fs::read_to_string(&summary.figures[k]).unwrap());
+    for text in [&setup, &bodies] {
+        assert!(elements(text) > 20 && !text.contains("NaN") && !text.contains("inf"));
+    }
+    // Pressure on the top, which is seen; the support below, which is turned away.
+    for part in [
+        "cube: steel, 6 Tet4 cells, 8 nodes",
+        "cube.bottom: u<tspan",
+        "X + Z*t",
+        "stroke-dasharray",
+        "#7a2f8f",
+    ] {
+        assert!(setup.contains(part), "{part}");
+    }
+    for part in ["(F)", "t = 1.0000", ">vM</tspan>"] {
+        assert!(bodies.contains(part), "{part}");
+    }
+    let page = check_page(&directory);
+    for part in ["id=\"animation\" hidden", "class=\"scene\"", "\"packed\":\"", "all 6 recorded instants"] {
+        assert!(page.contains(part), "{part}");
+    }
+    report(&directory).unwrap();
+    assert_eq!(fs::read_to_string(directory.join("report.html")).unwrap(), page);
 }

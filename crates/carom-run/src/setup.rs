@@ -203,8 +203,9 @@ fn inverted(case: &Case, model: &Model) -> Option<Rejected> {
 /// Why a case has no initial state, with its key and a suggestion.
 fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
     let (path, what, help) = match rejected {
-        Rejected::NoValue(_) => {
-            ("load".into(), "a formula has no finite value at t = 0", "change it so that it has one")
+        Rejected::NoValue(value) => {
+            let table = if value.what.starts_with("mu ") { "contact" } else { "load" };
+            (table.into(), "a formula has no value at t = 0", "change it so that it has one")
         }
         Rejected::Jump { .. } => {
             ("support".into(), "a support would jump at the start", "let its `move` begin where the body is")

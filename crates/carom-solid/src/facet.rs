@@ -1,12 +1,14 @@
 //! Shapes of facets, the cells of a body's boundary: a point at the end of a bar, a curve in the
-//! plane.
+//! plane, a surface in space.
 //!
 //! A facet of dimension D has D − 1 coordinates ξ, and D − 1 tangents. Its normal, as long as its
-//! measure, is ±1 for a point, and for a curve traversed with the body on its left the tangent
-//! rotated to the right.
+//! measure, is ±1 for a point, for a curve traversed with the body on its left the tangent rotated
+//! to the right, and for a surface y,₁ × y,₂, its nodes counter-clockwise seen from outside.
+
+use carom_algebra::Vector;
 
 use crate::quadrature;
-use crate::shape::{LineShape, line_shape};
+use crate::shape::{LineShape, Quad4, Quad9, Shape, Tri3, Tri6, Tri10, line_shape};
 
 /// Shape of a facet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +18,23 @@ pub enum FacetShape {
     L2,
     L3,
     L4,
+    T3,
+    T6,
+    T10,
+    Q4,
+    Q9,
+}
+
+/// Most nodes of a facet.
+pub(crate) const NODES: usize = 10;
+
+/// Shape functions of a facet at a point; entries beyond its nodes and its coordinates are zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FacetFunctions {
+    /// φᵃ.
+    pub values: [f64; NODES],
+    /// ∂φᵃ/∂ξ by coordinate.
+    pub slopes: [[f64; NODES]; 2],
 }
 
 impl FacetShape {
@@ -24,8 +43,11 @@ impl FacetShape {
         match self {
             Self::Point => 1,
             Self::L2 => 2,
-            Self::L3 => 3,
-            Self::L4 => 4,
+            Self::L3 | Self::T3 => 3,
+            Self::L4 | Self::Q4 => 4,
+            Self::T6 => 6,
+            Self::Q9 => 9,
+            Self::T10 => 10,
         }
     }
 
@@ -34,38 +56,110 @@ impl FacetShape {
         match self {
             Self::Point => 1,
             Self::L2 | Self::L3 | Self::L4 => 2,
+            Self::T3 | Self::T6 | Self::T10 | Self::Q4 | Self::Q9 => 3,
+        }
+    }
+
+    /// Number of corners, which are its first nodes.
+    pub fn corners(self) -> usize {
+        match self {
+            Self::Point => 1,
+            Self::L2 | Self::L3 | Self::L4 => 2,
+            Self::T3 | Self::T6 | Self::T10 => 3,
+            Self::Q4 | Self::Q9 => 4,
         }
     }
 
     /// Polynomial degree; 0 for a point.
     pub fn degree(self) -> usize {
-        self.nodes() - 1
-    }
-
-    /// Shape functions and their derivatives; for a point all derivatives are zero.
-    #[inline]
-    pub fn at(self, xi: f64) -> LineShape {
-        line_shape(self.nodes(), xi)
-    }
-
-    /// Quadrature points and weights exact for polynomials of a degree; a point has weight one.
-    pub fn rule(self, degree: usize) -> Vec<(f64, f64)> {
         match self {
-            Self::Point => vec![(0.0, 1.0)],
-            Self::L2 | Self::L3 | Self::L4 => {
-                quadrature::line(degree).iter().map(|(xi, w)| (xi[0], w)).collect()
-            }
+            Self::Point => 0,
+            Self::L2 | Self::T3 | Self::Q4 => 1,
+            Self::L3 | Self::T6 | Self::Q9 => 2,
+            Self::L4 | Self::T10 => 3,
         }
     }
 
-    /// Outward normal with the length of the facet's measure per ξ, from the derivative y′ of its
-    /// positions. `orientation`: see [`Mesh::orientation`](crate::Mesh::orientation). Components
-    /// beyond the dimension are zero.
+    /// Shape functions of a point or a curve and their derivatives; for a point all derivatives are
+    /// zero.
+    ///
+    /// # Panics
+    /// For a surface.
+    #[inline]
+    pub fn at(self, xi: f64) -> LineShape {
+        assert!(self.dimension() < 3, "a surface has two coordinates");
+        line_shape(self.nodes(), xi)
+    }
+
+    /// Shape functions and their first derivatives at a point of any facet; unused coordinates are
+    /// ignored.
+    pub fn functions(self, xi: [f64; 2]) -> FacetFunctions {
+        match self {
+            Self::Point | Self::L2 | Self::L3 | Self::L4 => {
+                let line = self.at(xi[0]);
+                let wide = |narrow: [f64; 4]| std::array::from_fn(|a| narrow.get(a).copied().unwrap_or(0.0));
+                FacetFunctions { values: wide(line.values), slopes: [wide(line.first), [0.0; NODES]] }
+            }
+            Self::T3 => surface::<3, Tri3>(xi),
+            Self::T6 => surface::<6, Tri6>(xi),
+            Self::T10 => surface::<10, Tri10>(xi),
+            Self::Q4 => surface::<4, Quad4>(xi),
+            Self::Q9 => surface::<9, Quad9>(xi),
+        }
+    }
+
+    /// Quadrature points and weights exact for polynomials of a degree; a point has weight one.
+    ///
+    /// # Panics
+    /// For a degree above 10 on a triangle.
+    pub fn rule(self, degree: usize) -> Vec<([f64; 2], f64)> {
+        match self {
+            Self::Point => vec![([0.0; 2], 1.0)],
+            Self::L2 | Self::L3 | Self::L4 => {
+                quadrature::line(degree).iter().map(|(xi, w)| ([xi[0], 0.0], w)).collect()
+            }
+            Self::T3 | Self::T6 | Self::T10 => {
+                quadrature::triangle(degree).iter().map(|(xi, w)| (xi.0, w)).collect()
+            }
+            Self::Q4 | Self::Q9 => quadrature::tensor(degree).iter().map(|(xi, w)| (xi.0, w)).collect(),
+        }
+    }
+
+    /// Outward normal of a point or a curve with the length of the facet's measure per ξ, from the
+    /// derivative y′ of its positions. `orientation`: see
+    /// [`Mesh::orientation`](crate::Mesh::orientation). Components beyond the dimension are zero.
+    ///
+    /// # Panics
+    /// For a surface.
     #[inline]
     pub fn normal(self, tangent: [f64; 2], orientation: f64) -> [f64; 2] {
         match self {
             Self::Point => [orientation, 0.0],
             Self::L2 | Self::L3 | Self::L4 => [orientation * tangent[1], -orientation * tangent[0]],
+            _ => panic!("a surface has two tangents"),
         }
     }
+
+    /// The same for every facet, from the derivatives of its positions by both coordinates.
+    #[inline]
+    pub fn area_vector(self, tangents: [[f64; 3]; 2], orientation: f64) -> [f64; 3] {
+        let [t, s] = tangents;
+        if self.dimension() < 3 {
+            let [x, y] = self.normal([t[0], t[1]], orientation);
+            return [x, y, 0.0];
+        }
+        [t[1] * s[2] - t[2] * s[1], t[2] * s[0] - t[0] * s[2], t[0] * s[1] - t[1] * s[0]]
+            .map(|component| orientation * component)
+    }
+}
+
+fn surface<const N: usize, S: Shape<2, N>>(xi: [f64; 2]) -> FacetFunctions {
+    let (own, gradients) = (S::values(&Vector(xi)), S::gradients(&Vector(xi)));
+    let mut functions = FacetFunctions { values: [0.0; NODES], slopes: [[0.0; NODES]; 2] };
+    for a in 0..N {
+        functions.values[a] = own[a];
+        functions.slopes[0][a] = gradients[a][0];
+        functions.slopes[1][a] = gradients[a][1];
+    }
+    functions
 }

@@ -6,14 +6,16 @@ use crate::material::{
     Law, LinearElastic, Material, NeoHookean, PlaneStress, SaintVenantKirchhoff, Thickness,
 };
 use crate::mesh::{Element, Mesh};
-use crate::shape::{Line2, Line3, Line4, Shape, Tri3, Tri6, Tri10};
+use crate::shape::{
+    Hex8, Hex27, Line2, Line3, Line4, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10,
+};
 use crate::solid::{Solid, SolidError};
 
 /// A law that bodies of every shape can be made of: each [`Material`] that is known in every
 /// dimension, your own included.
 pub trait Constitutive: Send + Sync {
     /// Body of a mesh of any dimension; plane strain in the plane. `thickness` is the area of the
-    /// cross-section in dimension 1.
+    /// cross-section in dimension 1; it is not used in space.
     ///
     /// # Errors
     /// If a number is out of range, a cell is degenerate, or the element has another dimension than
@@ -38,9 +40,15 @@ impl<L: Material<1> + Material<2> + Thickness + Clone> Constitutive for L {
             Element::L2 => solid::<1, 2, Line2, L>(mesh, self.clone(), density, thickness),
             Element::L3 => solid::<1, 3, Line3, L>(mesh, self.clone(), density, thickness),
             Element::L4 => solid::<1, 4, Line4, L>(mesh, self.clone(), density, thickness),
-            Element::T3 | Element::T6 | Element::T10 => plane(mesh, self.clone(), density, thickness),
-            #[cfg(test)]
-            Element::Tet4 => solid::<3, 4, crate::shape::Tet4, L>(mesh, self.clone(), density, thickness),
+            Element::T3 | Element::T6 | Element::T10 | Element::Q4 | Element::Q9 => {
+                plane(mesh, self.clone(), density, thickness)
+            }
+            // Solids in space have no thickness.
+            Element::Tet4 => solid::<3, 4, Tet4, L>(mesh, self.clone(), density, 1.0),
+            Element::Tet10 => solid::<3, 10, Tet10, L>(mesh, self.clone(), density, 1.0),
+            Element::Tet20 => solid::<3, 20, Tet20, L>(mesh, self.clone(), density, 1.0),
+            Element::Hex8 => solid::<3, 8, Hex8, L>(mesh, self.clone(), density, 1.0),
+            Element::Hex27 => solid::<3, 27, Hex27, L>(mesh, self.clone(), density, 1.0),
         }
     }
 
@@ -105,6 +113,8 @@ fn plane<L: Material<2>>(
         Element::T3 => solid::<2, 3, Tri3, L>(mesh, law, density, thickness),
         Element::T6 => solid::<2, 6, Tri6, L>(mesh, law, density, thickness),
         Element::T10 => solid::<2, 10, Tri10, L>(mesh, law, density, thickness),
+        Element::Q4 => solid::<2, 4, Quad4, L>(mesh, law, density, thickness),
+        Element::Q9 => solid::<2, 9, Quad9, L>(mesh, law, density, thickness),
         element => Err(SolidError::Dimension { element, dimension: 2 }),
     }
 }

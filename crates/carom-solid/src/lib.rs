@@ -1,6 +1,7 @@
 //! Bodies: meshes, shapes, quadrature, materials and cell forces of the positional finite element
 //! method.
 
+mod bernstein;
 mod body;
 mod bounds;
 mod discrete_gradient;
@@ -17,6 +18,7 @@ mod point_locator;
 mod points;
 mod positions;
 pub mod quadrature;
+mod quality;
 mod reference;
 pub mod shape;
 mod solid;
@@ -27,7 +29,7 @@ mod validity;
 pub use body::{Body, Inverted, PointState};
 pub use bounds::Bounds;
 pub use earliest::{Earliest, Piece};
-pub use facet::FacetShape;
+pub use facet::{FacetFunctions, FacetShape};
 pub use factory::{Constitutive, body, plane_stress_body};
 pub use loaded_side::LoadedSide;
 pub use lumping::cell_lumped_mass;

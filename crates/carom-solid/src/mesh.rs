@@ -1,7 +1,7 @@
 //! A mesh of one element type with named sides.
 //!
-//! Node order inside a cell and a facet is Gmsh's (and VTK's): corners, then the nodes of each edge
-//! in the direction of the edge, then the interior. In the plane a boundary is traversed with the
+//! Node order inside a cell and a facet is VTK's (in the plane also Gmsh's): corners, then the nodes
+//! of each edge in the direction of the edge, then those of faces and of the interior. In the plane a boundary is traversed with the
 //! body on its left, so a facet's outward normal is its tangent rotated to the right.
 
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::facet::FacetShape;
 use crate::positions::Positions;
 
-/// Cell type: a simplex of degree 1, 2 or 3.
+/// Cell type: a simplex of degree 1, 2 or 3, a quadrilateral or a hexahedron of degree 1 or 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum Element {
@@ -21,20 +21,22 @@ pub enum Element {
     T3,
     T6,
     T10,
-    /// Tests that the code does not assume the plane.
-    #[cfg(test)]
+    Q4,
+    Q9,
     Tet4,
+    Tet10,
+    Tet20,
+    Hex8,
+    Hex27,
 }
 
 impl Element {
     /// Polynomial degree of the shape functions.
     pub fn degree(self) -> usize {
         match self {
-            Self::L2 | Self::T3 => 1,
-            #[cfg(test)]
-            Self::Tet4 => 1,
-            Self::L3 | Self::T6 => 2,
-            Self::L4 | Self::T10 => 3,
+            Self::L2 | Self::T3 | Self::Q4 | Self::Tet4 | Self::Hex8 => 1,
+            Self::L3 | Self::T6 | Self::Q9 | Self::Tet10 | Self::Hex27 => 2,
+            Self::L4 | Self::T10 | Self::Tet20 => 3,
         }
     }
 
@@ -42,64 +44,99 @@ impl Element {
     pub fn dimension(self) -> usize {
         match self {
             Self::L2 | Self::L3 | Self::L4 => 1,
-            Self::T3 | Self::T6 | Self::T10 => 2,
-            #[cfg(test)]
-            Self::Tet4 => 3,
+            Self::T3 | Self::T6 | Self::T10 | Self::Q4 | Self::Q9 => 2,
+            Self::Tet4 | Self::Tet10 | Self::Tet20 | Self::Hex8 | Self::Hex27 => 3,
         }
     }
 
     /// Number of nodes of a cell.
     pub fn nodes(self) -> usize {
-        self.dofs() / self.dimension()
+        match self {
+            Self::L2 => 2,
+            Self::L3 | Self::T3 => 3,
+            Self::L4 | Self::Q4 | Self::Tet4 => 4,
+            Self::T6 => 6,
+            Self::Hex8 => 8,
+            Self::Q9 => 9,
+            Self::T10 | Self::Tet10 => 10,
+            Self::Tet20 => 20,
+            Self::Hex27 => 27,
+        }
     }
 
     /// Degrees of freedom of a cell: nodes times dimension.
     pub fn dofs(self) -> usize {
-        match self {
-            Self::L2 => 2,
-            Self::L3 => 3,
-            Self::L4 => 4,
-            Self::T3 => 6,
-            Self::T6 => 12,
-            Self::T10 => 20,
-            #[cfg(test)]
-            Self::Tet4 => 12,
-        }
+        self.nodes() * self.dimension()
     }
 
     /// Facets of a cell: local numbers of their nodes, corners first, each traversed with the body
-    /// on its left.
+    /// on its left, or in space counter-clockwise seen from outside.
     pub fn facets(self) -> &'static [&'static [usize]] {
         match self {
             Self::L2 | Self::L3 | Self::L4 => &[&[0], &[1]],
             Self::T3 => &[&[0, 1], &[1, 2], &[2, 0]],
             Self::T6 => &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
             Self::T10 => &[&[0, 1, 3, 4], &[1, 2, 5, 6], &[2, 0, 7, 8]],
-            #[cfg(test)]
-            Self::Tet4 => &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]],
+            Self::Q4 => &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+            Self::Q9 => &[&[0, 1, 4], &[1, 2, 5], &[2, 3, 6], &[3, 0, 7]],
+            Self::Hex8 => {
+                &[&[0, 4, 7, 3], &[1, 2, 6, 5], &[0, 1, 5, 4], &[3, 7, 6, 2], &[0, 3, 2, 1], &[4, 5, 6, 7]]
+            }
+            Self::Hex27 => &[
+                &[0, 4, 7, 3, 16, 15, 19, 11, 20],
+                &[1, 2, 6, 5, 9, 18, 13, 17, 21],
+                &[0, 1, 5, 4, 8, 17, 12, 16, 22],
+                &[3, 7, 6, 2, 19, 14, 18, 10, 23],
+                &[0, 3, 2, 1, 11, 10, 9, 8, 24],
+                &[4, 5, 6, 7, 12, 13, 14, 15, 25],
+            ],
+            Self::Tet4 => &[&[0, 1, 3], &[1, 2, 3], &[2, 0, 3], &[0, 2, 1]],
+            Self::Tet10 => {
+                &[&[0, 1, 3, 4, 8, 7], &[1, 2, 3, 5, 9, 8], &[2, 0, 3, 6, 7, 9], &[0, 2, 1, 6, 5, 4]]
+            }
+            Self::Tet20 => &[
+                &[0, 1, 3, 4, 5, 12, 13, 11, 10, 16],
+                &[1, 2, 3, 6, 7, 14, 15, 13, 12, 17],
+                &[2, 0, 3, 8, 9, 10, 11, 15, 14, 18],
+                &[0, 2, 1, 9, 8, 7, 6, 5, 4, 19],
+            ],
         }
     }
 
-    /// Shape of those facets; not yet available in three dimensions.
-    pub fn facet_shape(self) -> Option<FacetShape> {
+    /// Shape of those facets.
+    pub fn facet_shape(self) -> FacetShape {
         match self {
-            Self::L2 | Self::L3 | Self::L4 => Some(FacetShape::Point),
-            Self::T3 => Some(FacetShape::L2),
-            Self::T6 => Some(FacetShape::L3),
-            Self::T10 => Some(FacetShape::L4),
-            #[cfg(test)]
-            Self::Tet4 => None,
+            Self::L2 | Self::L3 | Self::L4 => FacetShape::Point,
+            Self::T3 | Self::Q4 => FacetShape::L2,
+            Self::T6 | Self::Q9 => FacetShape::L3,
+            Self::T10 => FacetShape::L4,
+            Self::Tet4 => FacetShape::T3,
+            Self::Tet10 => FacetShape::T6,
+            Self::Tet20 => FacetShape::T10,
+            Self::Hex8 => FacetShape::Q4,
+            Self::Hex27 => FacetShape::Q9,
         }
     }
 }
 
-/// A cell of a body's boundary: a node in dimension 1, an edge in the plane.
+/// A cell of a body's boundary: a node in dimension 1, an edge in the plane, a face in space.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Facet {
     /// The cell that it bounds.
     pub cell: usize,
-    /// Its nodes: start, end, then the interior ones from start to end.
+    /// Its nodes: an edge's start, end, then the interior ones from start to end; a face's in the
+    /// order of a plane cell.
     pub nodes: Vec<usize>,
+}
+
+impl Facet {
+    /// Its nodes in the order of traversal: those of an edge from start to end.
+    pub fn walk(&self, dimension: usize) -> impl Iterator<Item = usize> {
+        let ends = if dimension == 2 { 2 } else { self.nodes.len() };
+        let (ends, interior) = self.nodes.split_at(ends.min(self.nodes.len()));
+        let (first, last) = ends.split_at(ends.len().min(1));
+        first.iter().chain(interior).chain(last).copied()
+    }
 }
 
 /// Nodes, cells and named sides of one body.
@@ -134,15 +171,13 @@ impl Mesh {
         &self.cells[cell * n..(cell + 1) * n]
     }
 
-    /// The nodes of a side, each once, in the order of traversal.
+    /// The nodes of a side, each once, in the order of traversal; in space facet by facet.
     pub fn side_nodes(&self, side: &str) -> Option<Vec<usize>> {
         let facets = self.sides.get(side)?;
         let mut seen = std::collections::HashSet::new();
         let mut nodes = Vec::new();
         for facet in facets {
-            let (ends, interior) = facet.nodes.split_at(facet.nodes.len().min(2));
-            let ordered = ends.iter().take(1).chain(interior).chain(ends.iter().skip(1));
-            nodes.extend(ordered.filter(|n| seen.insert(**n)));
+            nodes.extend(facet.walk(self.dimension()).filter(|n| seen.insert(*n)));
         }
         Some(nodes)
     }
@@ -150,7 +185,7 @@ impl Mesh {
     /// Sign of a facet's outward normal: ±1 if the facet is a point; 1 if the direction of
     /// traversal gives the normal.
     pub fn orientation(&self, facet: &Facet) -> f64 {
-        if self.element.facet_shape() != Some(FacetShape::Point) {
+        if self.element.facet_shape() != FacetShape::Point {
             return 1.0;
         }
         // The outward direction points away from the other nodes of the end's cell.
@@ -159,7 +194,7 @@ impl Mesh {
     }
 
     /// The whole boundary: the facets of only one cell, by ascending nodes, each traversed with the
-    /// body on its left.
+    /// body on its left, or counter-clockwise seen from outside.
     pub fn skin(&self) -> Vec<Facet> {
         // Nodes of a facet in ascending order, as a key common to both its cells.
         let mut alone: BTreeMap<Vec<usize>, Option<Facet>> = BTreeMap::new();
@@ -174,9 +209,12 @@ impl Mesh {
         alone.into_values().flatten().collect()
     }
 
-    /// The whole boundary in the plane in the order of traversal, loop by loop.
+    /// The whole boundary; in the plane in the order of traversal, loop by loop.
     pub fn ordered_skin(&self) -> Vec<Facet> {
         let skin = self.skin();
+        if self.dimension() != 2 {
+            return skin;
+        }
         let starts: BTreeMap<usize, usize> = skin.iter().enumerate().map(|(k, f)| (f.nodes[0], k)).collect();
         let (mut order, mut taken) = (Vec::with_capacity(skin.len()), vec![false; skin.len()]);
         for first in 0..skin.len() {
@@ -212,11 +250,13 @@ impl Mesh {
         (0..of.len()).map(|node| root(&of, node)).collect()
     }
 
-    /// Area in the plane, of triangles with straight sides between their corners.
+    /// Area in the plane, of cells with straight sides between their corners.
     pub fn area(&self) -> f64 {
+        let corners = self.element.facets().len();
         let of_cell = |cell: usize| {
-            let [a, b, c] = [0, 1, 2].map(|k| &self.nodes[self.cell(cell)[k]]);
-            0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
+            let at = |k: usize| &self.nodes[self.cell(cell)[k % corners]];
+            let turn = |k: usize| at(k)[0] * at(k + 1)[1] - at(k)[1] * at(k + 1)[0];
+            0.5 * (0..corners).map(turn).sum::<f64>().abs()
         };
         (0..self.cell_count()).map(of_cell).sum()
     }

@@ -6,8 +6,9 @@
 //!   the triangle", IJNME 21 (1985) 1129–1148, degrees 1, 2, 4, 6, 8 and 10 (1, 3, 6, 12, 16 and 25
 //!   points), the printed digits continued by Newton's method on the moments. Odd degrees use the
 //!   next even rule: Dunavant's of degrees 3 and 7 have negative weights.
-//! - Tetrahedra: degree 2, 4 points (P. C. Hammer, A. H. Stroud, MTAC 10 (1956) 137–139); above,
-//!   products of Gauss–Legendre rules on the collapsed cube (A. H. Stroud, Approximate Calculation
+//! - Tetrahedra: degree 2, 4 points (P. C. Hammer, A. H. Stroud, MTAC 10 (1956) 137–139); degrees 5
+//!   and 6, 14 and 24 points (the latter by P. Keast, CMAME 55 (1986) 339–348), both computed by
+//!   Newton's method on the moments; above, products of Gauss–Legendre rules on the collapsed cube (A. H. Stroud, Approximate Calculation
 //!   of Multiple Integrals, 1971, §2.5).
 
 use carom_algebra::Vector;
@@ -127,6 +128,19 @@ pub fn triangle(degree: usize) -> Rule<2> {
     rule
 }
 
+/// Gauss–Legendre rule of a degree along every axis on the square or cube −1..1.
+pub fn tensor<const R: usize>(degree: usize) -> Rule<R> {
+    let along = line(degree);
+    let n = along.points.len();
+    let mut rule = Rule { points: Vec::new(), weights: Vec::new() };
+    for code in 0..n.pow(R as u32) {
+        let place = |axis: usize| code / n.pow(axis as u32) % n;
+        rule.points.push(Vector(std::array::from_fn(|axis| along.points[place(axis)][0])));
+        rule.weights.push((0..R).map(|axis| along.weights[place(axis)]).product());
+    }
+    rule
+}
+
 /// Rule of a degree on the tetrahedron (0,0,0) (1,0,0) (0,1,0) (0,0,1).
 ///
 /// ```
@@ -135,15 +149,42 @@ pub fn triangle(degree: usize) -> Rule<2> {
 /// assert!((moment - 24.0 / 362_880.0).abs() < 1e-18); // 4! 1! 1! / 9!
 /// ```
 pub fn tetrahedron(degree: usize) -> Rule<3> {
-    if degree > 2 {
-        return collapsed(degree);
+    let mut rule = Rule { points: Vec::new(), weights: Vec::new() };
+    let mut add = |weight: f64, points: &[[f64; 3]]| {
+        rule.points.extend(points.iter().map(|p| Vector(*p)));
+        rule.weights.extend(points.iter().map(|_| weight / 6.0));
+    };
+    // The points with barycentric coordinates (a, a, a, ·), (a, a, b, b) and (a, a, b, c).
+    let corner = |a: f64| {
+        let b = 1.0 - 3.0 * a;
+        [[a, a, a], [b, a, a], [a, b, a], [a, a, b]]
+    };
+    let edge = |a: f64| {
+        let b = 0.5 - a;
+        [[a, a, b], [a, b, a], [b, a, a], [a, b, b], [b, a, b], [b, b, a]]
+    };
+    let general = |a: f64, b: f64| {
+        let c = 1.0 - 2.0 * a - b;
+        let ends = [[a, b, c], [a, c, b], [b, a, c], [b, c, a], [c, a, b], [c, b, a]];
+        let pairs = [[a, a, b], [a, a, c], [a, b, a], [a, c, a], [b, a, a], [c, a, a]];
+        [ends, pairs].concat()
+    };
+    match degree {
+        0..=2 => add(0.25, &corner((5.0 - 5.0_f64.sqrt()) / 20.0)),
+        3..=5 => {
+            add(0.112_687_925_718_015_85, &corner(0.310_885_919_263_300_6));
+            add(0.073_493_043_116_361_95, &corner(0.092_735_250_310_891_23));
+            add(0.042_546_020_777_081_47, &edge(0.045_503_704_125_649_65));
+        }
+        6 => {
+            add(0.039_922_750_258_167_49, &corner(0.214_602_871_259_152_03));
+            add(0.010_077_211_055_320_643, &corner(0.040_673_958_534_611_35));
+            add(0.055_357_181_543_654_72, &corner(0.322_337_890_142_275_5));
+            add(27.0 / 560.0, &general(0.063_661_001_875_017_53, 0.269_672_331_458_315_8));
+        }
+        _ => return collapsed(degree),
     }
-    let a = (5.0 - 5.0_f64.sqrt()) / 20.0;
-    let b = 1.0 - 3.0 * a;
-    Rule {
-        points: [[a, a, a], [b, a, a], [a, b, a], [a, a, b]].map(Vector).to_vec(),
-        weights: vec![1.0 / 24.0; 4],
-    }
+    rule
 }
 
 /// The cube of Gauss–Legendre points collapsed to the tetrahedron, ξ = (u(1−v)(1−w), v(1−w), w).

@@ -26,7 +26,7 @@ use crate::quadrature::Rule;
 use crate::reference::{self, Degenerate, gradient};
 use crate::shape::{Domain, Hull, Shape};
 use crate::tree::Tree;
-use crate::validity::{Loss, Validity};
+use crate::validity::Validity;
 
 /// Why a body cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -93,7 +93,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         let k = S::DEGREE;
         let rule = |degree: usize| S::Domain::rule(degree.max(L::ENERGY_DEGREE * (k - 1)));
         let force_rules = [rule(2 * k), rule((2 * k).max(4 * (k - 1)))];
-        let mass_rules = [S::Domain::rule(2 * k), S::Domain::rule(4 * k - 2)];
+        // The Jacobian of a curved quadrilateral or hexahedron has the degree Dk − 1 along each axis.
+        let curved_mass = if S::Domain::TENSOR { (D + 2) * k - 1 } else { 4 * k - 2 };
+        let mass_rules = [S::Domain::rule(2 * k), S::Domain::rule(curved_mass)];
         let cells = mesh.cell_count();
         let mut mirrored = Mat::ZERO;
         mirrored.0[0][0] = -2.0;
@@ -127,7 +129,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             }
             // Between these points, the determinant of a curved cell may still change its sign.
             solid.validity.margin(&x).map_err(|loss| {
-                let xi = place::<D, N, S>(&loss);
+                let xi = loss.place;
                 let place = reference::interpolate(&S::values(&xi), &x).0;
                 at(Degenerate { place, jacobian: gradient(&x, &S::gradients(&xi)).det() })
             })?;
@@ -186,11 +188,6 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             visit(&S::values(xi), weight * jacobian * self.thickness);
         }
     }
-}
-
-/// Reference coordinates of a place where a cell lost its validity.
-fn place<const D: usize, const N: usize, S: Shape<D, N>>(loss: &Loss) -> Vector<D> {
-    (0..=D).fold(Vector::ZERO, |sum, corner| sum + S::NODES[corner] * loss.place[corner])
 }
 
 /// Packs points into lanes, from their gradients and weights.

@@ -1,6 +1,6 @@
 //! Uniform subdivision of a mesh: every edge of a cell becomes `parts` edges, every triangle
-//! `parts`² triangles. New nodes lie on the curved cell that they divide, so the geometry stays that
-//! of the given mesh.
+//! `parts`² triangles, every tetrahedron `parts`³ tetrahedra. New nodes lie on the curved cell that they
+//! divide, so the geometry stays that of the given mesh.
 //!
 //! ```text
 //!  |\            nodes at (i, j)/(degree · parts) in reference coordinates;
@@ -10,17 +10,21 @@
 //!  |_\|_\
 //! ```
 
+mod nodes;
+mod tetrahedra;
+
 use std::collections::HashMap;
 
 use carom_algebra::Vector;
 
 use crate::mesh::{Element, Facet, Mesh};
-use crate::positions::Positions;
-use crate::shape::{Line2, Line3, Line4, Shape, Tri3, Tri6, Tri10, line_shape};
+use crate::shape::{Line2, Line3, Line4, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10, line_shape};
+use nodes::{Nodes, Place};
+use tetrahedra::tetrahedra;
 
 impl Mesh {
-    /// The mesh with every edge divided into `parts` edges; a copy for 0 or 1. None for cells in
-    /// space, which cannot be divided yet.
+    /// The mesh with every edge divided into `parts` edges; a copy for 0 or 1. None for cells that
+    /// cannot be divided yet: quadrilaterals and hexahedra.
     pub fn subdivided(&self, parts: usize) -> Option<Self> {
         if parts < 2 {
             return Some(self.clone());
@@ -32,55 +36,10 @@ impl Mesh {
             Element::T3 => Some(triangles::<3, Tri3>(self, parts)),
             Element::T6 => Some(triangles::<6, Tri6>(self, parts)),
             Element::T10 => Some(triangles::<10, Tri10>(self, parts)),
-            #[cfg(test)]
-            Element::Tet4 => None,
-        }
-    }
-}
-
-/// What identifies a node of the new mesh.
-#[derive(PartialEq, Eq, Hash)]
-enum Place {
-    Corner(usize),
-    /// Between two corners, counted from the smaller one.
-    Edge([usize; 2], usize),
-    Inside(usize, [usize; 2]),
-}
-
-/// The nodes of the new mesh, each made where it is met first.
-struct Nodes<'a> {
-    mesh: &'a Mesh,
-    numbers: HashMap<Place, usize>,
-    coordinates: Vec<f64>,
-}
-
-impl<'a> Nodes<'a> {
-    fn new(mesh: &'a Mesh) -> Self {
-        Self { mesh, numbers: HashMap::new(), coordinates: Vec::new() }
-    }
-
-    /// The node at a place of a cell, there at Σ φᵃ Xᵃ.
-    fn at(&mut self, place: Place, cell: usize, values: &[f64]) -> usize {
-        let (mesh, coordinates) = (self.mesh, &mut self.coordinates);
-        *self.numbers.entry(place).or_insert_with(|| {
-            let nodes = mesh.cell(cell);
-            let sum = |i: usize| nodes.iter().zip(values).map(|(&n, v)| mesh.nodes[n][i] * v).sum::<f64>();
-            let number = coordinates.len() / mesh.dimension();
-            coordinates.extend((0..mesh.dimension()).map(sum));
-            number
-        })
-    }
-
-    fn into_mesh(self, cells: Vec<usize>, facet: impl Fn(&Facet) -> Vec<Facet>) -> Mesh {
-        let Self { mesh, coordinates, .. } = self;
-        let sides =
-            mesh.sides.iter().map(|(name, facets)| (name.clone(), facets.iter().flat_map(&facet).collect()));
-        Mesh {
-            element: mesh.element,
-            nodes: Positions::new(mesh.dimension(), coordinates),
-            cells,
-            sides: sides.collect(),
-            repairs: mesh.repairs.clone(),
+            Element::Tet4 => Some(tetrahedra::<4, Tet4>(self, parts)),
+            Element::Tet10 => Some(tetrahedra::<10, Tet10>(self, parts)),
+            Element::Tet20 => Some(tetrahedra::<20, Tet20>(self, parts)),
+            Element::Q4 | Element::Q9 | Element::Hex8 | Element::Hex27 => None,
         }
     }
 }

@@ -1,17 +1,10 @@
 //! Certified validity of a cell: det(∂y/∂ξ) > 0 everywhere in it, at given positions or while its
 //! nodes move on straight lines in 0 ≤ θ ≤ 1.
 //!
-//! With control points c of degree k (`shape/hull.rs`) and corners e₀ … e_D,
-//!
-//! ```text
-//! ∂y/∂ξᵢ ∝ Σ (c_{β+eᵢ} − c_{β+e₀}) B_β,    |β| = k − 1
-//! det(∂y/∂ξ) ∝ Σ d_γ B_γ,    d_γ = Σ_{β₁+…+β_D=γ} ∏ᵢ C(β₁)…C(β_D)/C(γ) det(… c_{βᵢ+eᵢ} − c_{βᵢ+e₀} …)
-//! ```
-//!
-//! C the multinomial coefficients: a polynomial of degree D(k − 1) in ξ, and D in θ. Where all its
-//! Bernstein coefficients are positive, so is the determinant; otherwise the cell is divided
-//! (Johnen, Remacle, Geuzaine, J. Comput. Phys. 233 (2013) 359–372). J = det(∂y/∂ξ)/det(∂X/∂ξ) has
-//! the sign of the numerator, because the reference cell is valid.
+//! The determinant is a polynomial in ξ, and of degree D in θ. Where all its Bernstein coefficients
+//! (`bernstein.rs`) are positive, so is the determinant; otherwise the cell is divided (Johnen,
+//! Remacle, Geuzaine, J. Comput. Phys. 233 (2013) 359–372). J = det(∂y/∂ξ)/det(∂X/∂ξ) has the sign of
+//! the numerator, because the reference cell is valid.
 //!
 //! Round-off, with u = 2⁻⁵³, positions relative to the first node of magnitude ≤ m, weights of
 //! control points Σ|w| ≤ Λ: a control point is wrong by (N + 2) u Λ m, a difference of size ≤ 2Λm by
@@ -20,12 +13,11 @@
 
 use carom_algebra::{Mat, Vector};
 
+use crate::bernstein::{Bernstein, Direction, factorial, halves};
 use crate::earliest::{Earliest, Piece};
-use crate::shape::{Hull, Shape};
+use crate::shape::Shape;
 
-/// Exponents of a Bernstein polynomial, one per corner.
-type Exponents = [usize; 4];
-/// Differences of control points: one list over β per direction.
+/// Differences of control points: one list per direction.
 type Differences<const D: usize, const N: usize> = [[Vector<D>; N]; D];
 
 /// Pieces examined before a cell counts as not certified.
@@ -38,75 +30,33 @@ const TOLERANCE: f64 = 1e-6;
 /// The validity test of cells of one shape with `D` reference coordinates and `N` nodes.
 #[derive(Clone, Debug)]
 pub struct Validity<const D: usize, const N: usize> {
-    degree: usize,
-    /// Weights of nodes in control points: a row per node.
-    control: [[f64; N]; N],
+    tables: Bernstein<D, N>,
     /// Λ.
     amplification: f64,
     /// Largest change of a difference if every node moves by at most 1.
     sensitivity: f64,
-    /// Control points β + e₀ and β + eᵢ of every β.
-    differences: Vec<(usize, [usize; D])>,
-    /// Ascending in γ.
-    terms: Vec<Term<D>>,
-    /// Exponents of every degree up to that of the determinant.
-    exponents: Vec<Vec<Exponents>>,
-}
-
-/// A product of D derivatives in a coefficient of the determinant.
-#[derive(Clone, Copy, Debug)]
-struct Term<const D: usize> {
-    coefficient: usize,
-    weight: f64,
-    factors: [usize; D],
 }
 
 /// A place where the determinant is not certified positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Loss {
+pub struct Loss<const D: usize> {
     /// Lower bound of the first θ, within 1e-6; 1 for given positions.
     pub theta: f64,
-    /// Barycentric coordinates of the place; the last ones are zero.
-    pub place: [f64; 4],
+    /// Reference coordinates of the place.
+    pub place: Vector<D>,
 }
 
 impl<const D: usize, const N: usize> Validity<D, N> {
     /// For cells of shape `S`.
     #[must_use]
     pub fn of<S: Shape<D, N>>() -> Self {
-        let k = S::DEGREE;
-        let exponents: Vec<_> = (0..=(D * (k - 1)).max(k)).map(exponents::<D>).collect();
-        let control: [[f64; N]; N] = {
-            let hull = Hull::of::<D, N, S>();
-            std::array::from_fn(|a| std::array::from_fn(|c| hull.weights(c)[a]))
-        };
+        let tables = Bernstein::of::<S>();
+        let control = &tables.control;
         let sum = |of: &dyn Fn(usize) -> f64| (0..N).map(|a| of(a).abs()).sum::<f64>();
         let amplification = (0..N).map(|c| sum(&|a| control[a][c])).fold(0.0, f64::max);
-        let place = |e: &Exponents, corner: usize| {
-            let mut e = *e;
-            e[corner] += 1;
-            index(&exponents[k], &e)
-        };
-        let differences: Vec<(usize, [usize; D])> = exponents[k - 1]
-            .iter()
-            .map(|e| (place(e, 0), std::array::from_fn(|i| place(e, i + 1))))
-            .collect();
-        let changes = |(base, ends): &(usize, [usize; D])| {
-            ends.map(|end| sum(&|a| control[a][end] - control[a][*base])).into_iter().fold(0.0, f64::max)
-        };
-        let sensitivity = differences.iter().map(changes).fold(0.0, f64::max);
-        let (parts, whole) = (&exponents[k - 1], &exponents[D * (k - 1)]);
-        let mut terms = Vec::new();
-        for code in 0..parts.len().pow(D as u32) {
-            let factors: [usize; D] = std::array::from_fn(|i| code / parts.len().pow(i as u32) % parts.len());
-            let sum = factors.iter().fold([0; 4], |sum: Exponents, &f| {
-                std::array::from_fn(|corner| sum[corner] + parts[f][corner])
-            });
-            let weight = factors.iter().map(|&f| multinomial(&parts[f])).product::<f64>() / multinomial(&sum);
-            terms.push(Term { coefficient: index(whole, &sum), weight, factors });
-        }
-        terms.sort_by_key(|term| term.coefficient);
-        Self { degree: D * (k - 1), control, amplification, sensitivity, differences, terms, exponents }
+        let change = |&(start, end): &(usize, usize)| sum(&|a| control[a][end] - control[a][start]);
+        let sensitivity = tables.differences.iter().flatten().map(change).fold(0.0, f64::max);
+        Self { tables, amplification, sensitivity }
     }
 
     /// Distance by which every component of every node's position may change, relative to a common
@@ -119,12 +69,12 @@ impl<const D: usize, const N: usize> Validity<D, N> {
     /// # Errors
     /// A place where the determinant is not certified positive.
     #[inline(always)]
-    pub fn margin(&self, nodes: &[Vector<D>; N]) -> Result<f64, Loss> {
+    pub fn margin(&self, nodes: &[Vector<D>; N]) -> Result<f64, Loss<D>> {
         let (differences, error) = self.differences_of(nodes, nodes);
         // A comparison with a NaN certifies nothing.
         let (mut least, mut certified) = (f64::INFINITY, true);
         let (mut sum, mut current) = (0.0, 0);
-        for term in &self.terms {
+        for term in &self.tables.terms {
             if term.coefficient != current {
                 certified &= sum > error;
                 least = least.min(sum);
@@ -137,8 +87,8 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         least = least.min(sum);
         if certified {
             let mut sums = [0.0_f64; D];
-            for (sum, list) in sums.iter_mut().zip(&differences) {
-                for d in &list[..self.differences.len()] {
+            for (i, sum) in sums.iter_mut().enumerate() {
+                for d in &differences[i][..self.tables.differences[i].len()] {
                     *sum = sum.max(d.0.iter().map(|x| x.abs()).sum());
                 }
             }
@@ -163,7 +113,7 @@ impl<const D: usize, const N: usize> Validity<D, N> {
     /// The first loss of validity while the nodes move on straight lines; `None` certifies that
     /// there is none.
     #[must_use]
-    pub fn lost_between(&self, before: &[Vector<D>; N], now: &[Vector<D>; N]) -> Option<Loss> {
+    pub fn lost_between(&self, before: &[Vector<D>; N], now: &[Vector<D>; N]) -> Option<Loss<D>> {
         let (start, error) = self.differences_of(before, now);
         let (end, other) = self.differences_of(now, before);
         let rows = (0..=D).map(|t| self.coefficients([&start, &end], t)).collect();
@@ -187,20 +137,20 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         for i in 0..D {
             for a in 0..N {
                 for c in 0..N {
-                    control[i][c] += local[a][i] * self.control[a][c];
+                    control[i][c] += local[a][i] * self.tables.control[a][c];
                 }
             }
         }
         let mut differences = [[Vector::ZERO; N]; D];
-        for (b, (base, ends)) in self.differences.iter().enumerate() {
-            for i in 0..D {
+        for i in 0..D {
+            for (b, &(start, end)) in self.tables.differences[i].iter().enumerate() {
                 for j in 0..D {
-                    differences[i][b][j] = control[j][ends[i]] - control[j][*base];
+                    differences[i][b][j] = control[j][end] - control[j][start];
                 }
             }
         }
         let unit = 0.5 * f64::EPSILON * factorial(D) * (2.0 * self.amplification * largest).powi(D as i32);
-        (differences, unit * (D * (N + 4) + self.terms.len()) as f64 + f64::MIN_POSITIVE)
+        (differences, unit * (D * (N + 4) + self.tables.terms.len()) as f64 + f64::MIN_POSITIVE)
     }
 
     /// Bernstein coefficients in ξ of the coefficient `t` in θ: a mean over the choices of `t`
@@ -208,8 +158,8 @@ impl<const D: usize, const N: usize> Validity<D, N> {
     fn coefficients(&self, ends: [&Differences<D, N>; 2], t: usize) -> Vec<f64> {
         let choices: Vec<usize> =
             (0..1_usize << D).filter(|choice| choice.count_ones() as usize == t).collect();
-        let mut out = vec![0.0; self.exponents[self.degree].len()];
-        for term in &self.terms {
+        let mut out = vec![0.0; self.tables.count];
+        for term in &self.tables.terms {
             for choice in &choices {
                 let columns = std::array::from_fn(|i| ends[choice >> i & 1][i][term.factors[i]].0);
                 out[term.coefficient] += term.weight * Mat(columns).det() / choices.len() as f64;
@@ -219,31 +169,24 @@ impl<const D: usize, const N: usize> Validity<D, N> {
     }
 
     /// The earliest place that division does not certify, of coefficients in ξ per coefficient in θ.
-    fn first_loss(&self, rows: Vec<Vec<f64>>, error: f64) -> Option<Loss> {
-        let mut corners = [[0.0; 4]; 4];
-        (0..=D).for_each(|i| corners[i][i] = 1.0);
+    fn first_loss(&self, rows: Vec<Vec<f64>>, error: f64) -> Option<Loss<D>> {
+        let corners = self.tables.corners.iter().map(|corner| corner.place).collect();
         let whole = Part { rows, corners, theta: [0.0, 1.0], level: 0, error };
         if whole.is_clear() {
             return None;
         }
         let part = Earliest::new(BUDGET).first(whole, |_| false, |part| self.halves(part))?;
-        let worst = (0..=D)
-            .min_by(|&i, &j| self.at_corner(&part.rows[0], i).total_cmp(&self.at_corner(&part.rows[0], j)));
+        let value = |&corner: &usize| part.rows[0][self.tables.corners[corner].coefficient];
+        let worst = (0..part.corners.len()).min_by(|i, j| value(i).total_cmp(&value(j)));
         Some(Loss { theta: part.theta[0], place: part.corners[worst.unwrap_or(0)] })
     }
 
-    /// The value at a corner.
-    fn at_corner(&self, row: &[f64], corner: usize) -> f64 {
-        let mut exponents = [0; 4];
-        exponents[corner] = self.degree;
-        row[index(&self.exponents[self.degree], &exponents)]
-    }
-
-    /// Halves in θ or along the edge with the larger changes; `None` where the loss is located.
-    fn halves(&self, part: &Part) -> Option<[Part; 2]> {
+    /// Halves in θ or in the direction with the larger changes; `None` where the loss is located.
+    fn halves(&self, part: &Part<D>) -> Option<[Part<D>; 2]> {
         let (first, last) = (&part.rows[0], &part.rows[part.rows.len() - 1]);
         // A NaN is a loss.
-        let lost = |row: &[f64]| !(0..=D).all(|i| self.at_corner(row, i) > part.error);
+        let positive = |row: &[f64]| self.tables.corners.iter().all(|c| row[c.coefficient] > part.error);
+        let lost = |row: &[f64]| !positive(row);
         if lost(first) || part.level >= DEEPEST {
             return None;
         }
@@ -252,84 +195,54 @@ impl<const D: usize, const N: usize> Validity<D, N> {
             .windows(2)
             .map(|rows| rows[0].iter().zip(&rows[1]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max));
         let in_time = in_time.fold(0.0, f64::max);
-        let mut longest = (-1.0, 0, 1);
-        for i in 0..=D {
-            for j in 0..i {
-                let size = part.rows.iter().map(|row| self.change(row, i, j)).fold(0.0, f64::max);
-                longest = if size > longest.0 { (size, i, j) } else { longest };
-            }
+        let mut largest = (-1.0, 0);
+        for (i, direction) in self.tables.directions.iter().enumerate() {
+            let size = part.rows.iter().map(|row| change(row, direction)).fold(0.0, f64::max);
+            largest = if size > largest.0 { (size, i) } else { largest };
         }
         let wide = part.theta[1] - part.theta[0] > TOLERANCE;
-        if wide && (in_time >= longest.0 || lost(last)) {
+        if wide && (in_time >= largest.0 || lost(last)) {
             return Some(part.halves_in_time());
         }
         if lost(last) {
             return None;
         }
-        let (_, i, j) = longest;
+        let direction = &self.tables.directions[largest.1];
         let mut parts = [(); 2].map(|()| Part { rows: Vec::new(), level: part.level + 1, ..part.clone() });
         for row in &part.rows {
-            let [near, far] = self.halves_of(row, i, j);
+            let [near, far] = halves(row, direction);
             parts[0].rows.push(near);
             parts[1].rows.push(far);
         }
-        let middle = std::array::from_fn(|c| 0.5 * (part.corners[i][c] + part.corners[j][c]));
-        (parts[0].corners[j], parts[1].corners[i]) = (middle, middle);
-        let added = part.error * self.degree as f64 / 100.0;
+        for &(start, end) in &direction.edges {
+            let middle = (part.corners[start] + part.corners[end]) * 0.5;
+            (parts[0].corners[end], parts[1].corners[start]) = (middle, middle);
+        }
+        let added = part.error * self.tables.degree as f64 / 100.0;
         parts.iter_mut().for_each(|half| half.error += added);
         Some(parts)
     }
-
-    /// Largest difference of coefficients along an edge.
-    fn change(&self, row: &[f64], i: usize, j: usize) -> f64 {
-        if self.degree == 0 {
-            return 0.0;
-        }
-        let of = |e: &Exponents, corner: usize| {
-            let mut e = *e;
-            e[corner] += 1;
-            row[index(&self.exponents[self.degree], &e)]
-        };
-        let edges = self.exponents[self.degree - 1].iter();
-        edges.map(|e| (of(e, i) - of(e, j)).abs()).fold(0.0, f64::max)
-    }
-
-    /// De Casteljau's algorithm at the middle of an edge: the half with corner i, then that with j.
-    fn halves_of(&self, row: &[f64], i: usize, j: usize) -> [Vec<f64>; 2] {
-        let mut levels = vec![row.to_vec()];
-        for n in (0..self.degree).rev() {
-            let finer = &levels[levels.len() - 1];
-            let of = |e: &Exponents, corner: usize| {
-                let mut e = *e;
-                e[corner] += 1;
-                finer[index(&self.exponents[n + 1], &e)]
-            };
-            levels.push(self.exponents[n].iter().map(|e| 0.5 * (of(e, i) + of(e, j))).collect());
-        }
-        [j, i].map(|gone| {
-            let of = |e: &Exponents| {
-                let (mut rest, times) = (*e, e[gone]);
-                rest[gone] = 0;
-                levels[times][index(&self.exponents[self.degree - times], &rest)]
-            };
-            self.exponents[self.degree].iter().map(of).collect()
-        })
-    }
 }
 
-/// The determinant over a simplex in ξ and an interval of θ.
+/// Largest difference of neighbouring coefficients in a direction.
+fn change(row: &[f64], direction: &Direction) -> f64 {
+    let steps = direction.lines.iter().flat_map(|line| line.windows(2));
+    steps.map(|step| (row[step[0]] - row[step[1]]).abs()).fold(0.0, f64::max)
+}
+
+/// The determinant over a part of the cell and an interval of θ.
 #[derive(Clone, Debug)]
-struct Part {
+struct Part<const D: usize> {
     /// Coefficients in ξ per coefficient in θ; one row without motion.
     rows: Vec<Vec<f64>>,
-    /// Barycentric coordinates of the corners.
-    corners: [[f64; 4]; 4],
+    /// Reference coordinates of the corners.
+    corners: Vec<Vector<D>>,
     theta: [f64; 2],
     level: u32,
     error: f64,
 }
 
-impl Part {
+impl<const D: usize> Part<D> {
     fn halves_in_time(&self) -> [Self; 2] {
         let mut parts = [self.clone(), self.clone()];
         let count = self.rows.len();
@@ -354,7 +267,7 @@ impl Part {
     }
 }
 
-impl Piece for Part {
+impl<const D: usize> Piece for Part<D> {
     fn theta(&self) -> f64 {
         self.theta[0]
     }
@@ -364,41 +277,13 @@ impl Piece for Part {
     }
 
     fn place(&self) -> f64 {
-        self.corners.iter().enumerate().map(|(i, c)| c[1] + 3.0 * c[2] + i as f64 * c[3]).sum()
+        let weight = |i: usize| 3.0_f64.powi(i as i32);
+        self.corners.iter().map(|c| (0..D).map(|i| weight(i) * c[i]).sum::<f64>()).sum()
     }
 
     fn is_clear(&self) -> bool {
         self.rows.iter().flatten().all(|&c| c > self.error)
     }
-}
-
-/// All exponents of a degree over D + 1 corners, in the order of [`Hull`].
-fn exponents<const D: usize>(degree: usize) -> Vec<Exponents> {
-    let corners = D + 1;
-    let mut all = Vec::new();
-    for code in 0..corners.pow(degree as u32) {
-        let chosen: Vec<_> = (0..degree).map(|k| code / corners.pow(k as u32) % corners).collect();
-        if chosen.is_sorted() {
-            let mut e = [0; 4];
-            chosen.iter().for_each(|&corner| e[corner] += 1);
-            all.push(e);
-        }
-    }
-    all
-}
-
-/// The place of exponents in a list that contains them.
-fn index(all: &[Exponents], exponents: &Exponents) -> usize {
-    all.iter().position(|e| e == exponents).unwrap_or_default()
-}
-
-fn factorial(n: usize) -> f64 {
-    (1..=n).map(|i| i as f64).product()
-}
-
-/// |e|!/∏ eᵢ!.
-fn multinomial(exponents: &Exponents) -> f64 {
-    factorial(exponents.iter().sum()) / exponents.iter().map(|&e| factorial(e)).product::<f64>()
 }
 
 #[cfg(test)]

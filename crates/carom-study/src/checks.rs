@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_record::study::checks::{Checks, fingerprint};
 use carom_record::study::{Arm, StudyManifest};
-use carom_record::{Manifest, RecordError, Status};
+use carom_record::{RecordError, Status};
 use carom_run::recording::{self, End, Options, Progress};
 
 use crate::compute::case_of;
@@ -44,7 +44,7 @@ fn repeated(
     stop: &AtomicBool,
 ) -> Result<Option<Checks>, StudyError> {
     let work = |arm: &Arm| {
-        let run = Manifest::read(&directory.join(&arm.directory)).ok()?;
+        let run = manifest.record(directory, arm).ok()??.manifest;
         let count = |name: &str| run.counters.get(name).copied().unwrap_or_default();
         (run.status == Status::Finished).then(|| count("newton") + count("steps"))
     };
@@ -63,7 +63,7 @@ fn repeated(
         &case,
         source(),
         &threads,
-        Options { threads: THREADS, trials: false, audit: false },
+        Options { threads: THREADS, ..Options::default() },
         &mut |_| (),
         stop,
     );
@@ -78,18 +78,8 @@ fn repeated(
             (at, active_pairs) = (p.step, p.active);
         }
     };
-    recording::run(
-        &case,
-        source(),
-        &resumed,
-        Options { threads: 1, trials: false, audit: false },
-        &mut watch,
-        &halt,
-    )
-    .map_err(failed)?;
-    let done =
-        recording::resume(&resumed, Options { threads: 1, trials: false, audit: false }, &mut |_| (), stop)
-            .map_err(failed)?;
+    recording::run(&case, source(), &resumed, Options::default(), &mut watch, &halt).map_err(failed)?;
+    let done = recording::resume(&resumed, Options::default(), &mut |_| (), stop).map_err(failed)?;
     if done.end == End::Interrupted {
         return Ok(None);
     }

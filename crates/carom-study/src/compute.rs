@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use carom_record::study::{Arm, StudyManifest};
 use carom_run::case::Case;
-use carom_run::recording::{self, Options, Progress};
+use carom_run::recording::{self, Options, Progress, RunError};
 
 use crate::error::StudyError;
 use crate::jobs::Ended;
@@ -21,7 +21,7 @@ pub(crate) fn compute(
 ) -> Result<Ended, StudyError> {
     let arm = manifest.run(i);
     let path = directory.join(&arm.directory);
-    let options = Options { threads: 1, trials: false, audit: false };
+    let options = Options::default();
     let done = if begun {
         recording::resume(&path, options, observe, stop)
     } else {
@@ -29,7 +29,10 @@ pub(crate) fn compute(
         let source = manifest.source_of(arm);
         recording::run(&case, source, &path, options, observe, stop)
     };
-    done.map(Ended::of).map_err(|source| StudyError::Arm { arm: arm.name.clone(), source })
+    done.map(Ended::of).map_err(|error| match error {
+        RunError::Record(error) => StudyError::of_record(arm, directory, error),
+        source => StudyError::Arm { arm: arm.name.clone(), source },
+    })
 }
 
 /// The case of a run.

@@ -32,7 +32,8 @@ pub fn plan(plan: &Plan, directory: &Path) -> Result<(), StudyError> {
 /// checkpoint. One that has ended is returned as it is.
 ///
 /// # Errors
-/// Input/output or system error, no such run, and a run that another process is computing.
+/// Input/output or system error, no such run, a damaged record, and a run that another process is
+/// computing.
 pub fn arm(
     directory: &Path,
     number: usize,
@@ -46,27 +47,31 @@ pub fn arm(
     }
     let i = number - 1;
     let arm = manifest.run(i);
-    if let (Some(status @ (Status::Finished | Status::Failed)), reason) = manifest.state(directory, arm)? {
-        return Ok(Ended { status, reason, wall: 0.0 });
+    let damaged = |error| StudyError::of_record(arm, directory, error);
+    let record = manifest.record(directory, arm).map_err(damaged)?;
+    if let Some(ended) = record.as_ref().and_then(|run| ended(&run.manifest)) {
+        return Ok(ended);
     }
-    let begun = manifest.state(directory, arm)?.0.is_some();
-    match compute(&manifest, directory, i, begun, observe, stop) {
+    match compute(&manifest, directory, i, record.is_some(), observe, stop) {
         // Another process created it since.
         Err(StudyError::Arm { source: RunError::Record(RecordError::Exists { path }), .. }) => {
-            let run = Manifest::read(&path)?;
-            match run.status {
-                Status::Finished | Status::Failed => {
-                    Ok(Ended { status: run.status, reason: run.reason, wall: 0.0 })
-                }
-                Status::Running | Status::Stopped => compute(&manifest, directory, i, true, observe, stop),
+            match ended(&Manifest::read(&path).map_err(damaged)?) {
+                Some(ended) => Ok(ended),
+                None => compute(&manifest, directory, i, true, observe, stop),
             }
         }
         other => other,
     }
 }
 
-/// Writes the tables of a study from what has been computed. An arm that is missing is a row without
-/// values.
+/// How a run ended, if it has.
+fn ended(run: &Manifest) -> Option<Ended> {
+    let has_ended = matches!(run.status, Status::Finished | Status::Failed);
+    has_ended.then(|| Ended { status: run.status, reason: run.reason.clone(), wall: 0.0 })
+}
+
+/// Writes the tables of a study from what has been computed. An arm that is missing or damaged is a row
+/// without values.
 ///
 /// # Errors
 /// Input/output or system error.

@@ -1,8 +1,9 @@
 //! Errors of studies.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use carom_record::RecordError;
+use carom_record::study::Arm;
 use carom_run::recording::RunError;
 
 /// Why a study cannot continue.
@@ -18,6 +19,16 @@ pub enum StudyError {
         arm: String,
         /// Why.
         source: RunError,
+    },
+    /// The record of an arm is damaged.
+    #[error("the record of arm \"{arm}\" cannot be used: {what}")]
+    Damaged {
+        /// The arm.
+        arm: String,
+        /// The directory of its run.
+        place: PathBuf,
+        /// What is wrong.
+        what: String,
     },
     /// `study.json` has a case that this version cannot read.
     #[error("the case of arm \"{arm}\" is not compatible with this version of Carom: {what}")]
@@ -52,4 +63,18 @@ pub enum StudyError {
         /// The directory.
         path: PathBuf,
     },
+}
+
+impl StudyError {
+    /// An error of the record of an arm, with the directory that can be removed.
+    pub(crate) fn of_record(arm: &Arm, study: &Path, error: RecordError) -> Self {
+        match error {
+            error @ (RecordError::Io { .. } | RecordError::Busy { .. } | RecordError::Exists { .. }) => {
+                Self::Arm { arm: arm.name.clone(), source: error.into() }
+            }
+            error => {
+                Self::Damaged { arm: arm.name.clone(), place: study.join(&arm.directory), what: error.what() }
+            }
+        }
+    }
 }

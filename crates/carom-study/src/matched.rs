@@ -331,7 +331,7 @@ fn trial(
     progress: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Option<Ended>, StudyError> {
-    let options = Options { threads: 1, trials: false, audit: false };
+    let options = Options::default();
     let done = if path.join("manifest.json").is_file() {
         recording::resume(path, options, progress, stop)
     } else {

@@ -56,6 +56,14 @@ impl Plan {
     /// All problems, with their places in the study file, or in the case file for problems that it
     /// has without any arm.
     pub fn of(study: &Document, folder: &Path) -> Result<Self, CaseError> {
+        Self::with_case(study, folder, None)
+    }
+
+    /// As [`Self::of`], with a case that has been read, and need not be a file: that of its name.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn with_case(study: &Document, folder: &Path, case: Option<&Document>) -> Result<Self, CaseError> {
         let mut problems = Vec::new();
         let file = file::read(study, &mut problems);
         let drafts = arms::all(&file);
@@ -66,7 +74,7 @@ impl Plan {
         if !problems.is_empty() {
             return Err(study.diagnose_all(&problems));
         }
-        let bases = bases(study, folder, &file, &drafts)?;
+        let bases = bases(study, folder, case, &file, &drafts)?;
         let mut checked = Checked { study, found: Vec::new() };
         let planned = checked.arms(&file, drafts, &bases)?;
         let known: Vec<(&str, &Case)> = planned.iter().map(|p| (p.draft.name.as_str(), &p.case)).collect();
@@ -101,6 +109,7 @@ struct Planned<'a> {
 fn bases(
     study: &Document,
     folder: &Path,
+    given: Option<&Document>,
     file: &StudyFile,
     drafts: &[Draft],
 ) -> Result<BTreeMap<String, Base>, CaseError> {
@@ -108,7 +117,11 @@ fn bases(
     let named = drafts.iter().map(|d| (d.case.as_ref(), format!("{}.case", d.path)));
     for (name, place) in std::iter::once((file.case.as_ref(), "case".to_owned())).chain(named) {
         if let Some(name) = name.filter(|name| !bases.contains_key(*name)) {
-            bases.insert(name.clone(), Base::read(study, folder, name, &place)?);
+            let base = match given.filter(|case| case.name() == name) {
+                Some(case) => Base::of(case)?,
+                None => Base::read(study, folder, name, &place)?,
+            };
+            bases.insert(name.clone(), base);
         }
     }
     Ok(bases)
@@ -300,6 +313,10 @@ impl Base {
             }
             error => error,
         })?;
+        Self::of(&document)
+    }
+
+    fn of(document: &Document) -> Result<Self, CaseError> {
         let (name, text) = (document.name().to_owned(), document.text().to_owned());
         let diagnostics = resolved(&name, &text, &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
         Ok(Self { name, text, diagnostics })

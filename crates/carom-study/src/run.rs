@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use carom_record::study::{Study, StudyManifest};
+use carom_record::study::{Row, Study, StudyManifest};
 use carom_record::{RecordError, Status};
 use carom_run::recording::Progress;
 
@@ -19,7 +19,8 @@ use crate::{checks, matched, theory};
 /// A study that ended.
 #[derive(Debug)]
 pub struct Outcome {
-    /// Whether it was stopped before all arms had ended; `resume` continues it.
+    /// Whether it was stopped before all arms had ended; `resume` continues it. An arm whose record is
+    /// damaged is not waited for.
     pub interrupted: bool,
     /// The study, read from its records.
     pub study: Study,
@@ -75,7 +76,8 @@ pub fn resume(
     let settled = matched::settle(&mut manifest, directory, jobs, observe, stop)?;
     let mut waiting = Vec::new();
     for (i, arm) in manifest.runs().enumerate() {
-        match manifest.state(directory, arm)?.0 {
+        let state = manifest.state(directory, arm);
+        match state.map_err(|error| StudyError::of_record(arm, directory, error))?.0 {
             Some(Status::Finished | Status::Failed) => observe(&Event::AlreadyDone(i)),
             // If the steps of matched cost are not settled, no other arm is run.
             _ if !settled => {}
@@ -101,14 +103,16 @@ pub(crate) fn conclude(
     directory: &Path,
     stop: &AtomicBool,
 ) -> Result<Outcome, StudyError> {
-    if manifest.goal.is_some() && !stop.load(Ordering::Relaxed) {
+    let ended =
+        |arm| matches!(manifest.state(directory, arm), Ok((Some(Status::Finished | Status::Failed), _)));
+    // Which arm is checked must not depend on which of them have ended first.
+    if manifest.goal.is_some() && !stop.load(Ordering::Relaxed) && manifest.runs().all(ended) {
         checks::make(&manifest, directory, stop);
     }
     let study = Study::open(directory, &mut |_, _| ())?;
-    let ended =
-        |row: &carom_record::study::Row| matches!(row.status, Some(Status::Finished | Status::Failed));
-    let interrupted = !study.rows.iter().chain(&study.members).all(ended);
-    manifest.status = if interrupted { Status::Stopped } else { Status::Finished };
+    let rows = || study.rows.iter().chain(&study.members);
+    let interrupted = rows().any(|row| !row.has_ended() && !row.is_damaged());
+    manifest.status = if rows().all(Row::has_ended) { Status::Finished } else { Status::Stopped };
     manifest.write(directory)?;
     study.write_tables()?;
     Ok(Outcome { interrupted, study: Study { manifest, ..study } })

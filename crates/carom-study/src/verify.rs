@@ -82,14 +82,8 @@ impl Suite {
                 halt.fetch_or(stop.load(Ordering::Relaxed), Ordering::Relaxed);
                 progress(p);
             };
-            let done = recording::run(
-                case,
-                source.clone(),
-                directory,
-                Options { threads: 1, trials: false, audit: false },
-                &mut watched,
-                &halt,
-            );
+            let done =
+                recording::run(case, source.clone(), directory, Options::default(), &mut watched, &halt);
             done.map(Ended::of).map_err(|source| StudyError::Arm { arm: name.clone(), source })
         };
         let mut judged: Vec<Option<Result<SetUp, StudyError>>> = self.items.iter().map(|_| None).collect();

@@ -87,3 +87,45 @@ fn forces_may_act_along_other_directions() {
         }
     }
 }
+
+/// Nodes on two springs each, K_tt = 3 and K_nt = −1, that slide forward with the coefficients μ: the
+/// slip u of one with a load f obeys (K_tt + μ K_nt) u = f_t + μ f_n, which says nothing for μ = 3 and
+/// has, for more, solutions beside those that stick (p > 0 and f_t < μ|f_n|) or lift off. R is
+/// diagonal with the entries 1 + μ K_nt/K_tt.
+#[test]
+fn large_friction_is_singular_where_the_springs_of_a_node_say() {
+    let regularity = |coefficients: &[f64], order: &[usize]| {
+        let (m, n) = (coefficients.len(), 2 * coefficients.len());
+        let entry = |i: usize, j: usize| match (i / 2 == j / 2, i % 2, j % 2) {
+            (true, 0, 0) => 2.0,
+            (true, 1, 1) => 3.0,
+            (true, ..) => -1.0,
+            _ => 0.0,
+        };
+        let stiffness: Vec<f64> = (0..n * n).map(|k| entry(k % n, k / n)).collect();
+        let mut saddle = Saddle::default();
+        saddle.begin(&stiffness, n, m);
+        saddle.direct();
+        for (r, &node) in order.iter().enumerate() {
+            saddle.add_row(r, 2 * node, 1.0);
+            saddle.add_direction(r, 2 * node, 1.0);
+            saddle.add_direction(r, 2 * node + 1, -coefficients[node]);
+        }
+        saddle.augment(10.0);
+        assert!(saddle.factor().unwrap());
+        saddle.regularity().unwrap()
+    };
+    for coefficient in [0.0, 0.3, 2.9, 2.9999, 3.0001, 3.1, -5.0] {
+        let found = regularity(&[coefficient], &[0]);
+        assert!((found - (1.0 - coefficient / 3.0)).abs() < 1e-13, "{coefficient}: {found}");
+    }
+    assert!(regularity(&[3.0], &[0]).abs() < 1e-12);
+    // The smallest is that of the second node; each node beyond 3 changes the sign.
+    for order in [[0, 1, 2], [2, 0, 1], [1, 0, 2]] {
+        for (coefficients, sign) in [([0.3, 2.4, 1.0], 1.0), ([0.3, 3.6, 1.0], -1.0), ([5.0, 3.6, 0.0], 1.0)]
+        {
+            let found = regularity(&coefficients, &order);
+            assert!((found - sign * 0.2).abs() < 1e-6, "{coefficients:?} {order:?}: {found}");
+        }
+    }
+}

@@ -1,4 +1,5 @@
-//! Checks of friction: what it is built for. Everything else is refused, never without friction.
+//! Checks of friction. What it is not built for is refused, so that no case runs without the friction
+//! that it asks for.
 
 use super::super::{ContactLaw, Detection};
 use super::super::{
@@ -7,7 +8,7 @@ use super::super::{
 use super::Check;
 
 impl Check<'_> {
-    /// Combinations that have no friction yet.
+    /// Combinations for which friction is not built.
     pub(super) fn friction(&mut self, contact: &ContactSpec) {
         self.friction_keys(contact);
         if !contact.friction.exists() {
@@ -25,7 +26,11 @@ impl Check<'_> {
         let light = is_light(&contact.secondary) || contact.primary.side().is_some_and(is_light);
         let mut refuse = |with: &str, why: &str, help: &str| {
             let key = if contact.friction.mu.is_some() { "mu" } else { "shear" };
-            let value = contact.friction.mu.as_ref().map(|mu| format!(" = {mu}")).unwrap_or_default();
+            let value = match &contact.friction.mu {
+                Some(FormulaSpec::Number(mu)) => format!(" = {mu}"),
+                Some(FormulaSpec::Text(mu)) => format!(" = \"{mu}\""),
+                None => String::new(),
+            };
             self.add_unique(contact.path(key), format!("{key}{value} cannot be used {with}"), why, help);
         };
         if draft.dimension == Some(1) {
@@ -76,29 +81,30 @@ impl Check<'_> {
     /// Keys of friction that say nothing without another one.
     fn friction_keys(&mut self, contact: &ContactSpec) {
         let FrictionSpec { mu, mu_dynamic, decay, stick_stiffness, .. } = &contact.friction;
-        let mut needs = |key: &str, given: bool, other: &str, has: bool, why: &str| {
-            if given && !has {
+        // Not if the other key is there, but misspelt, which is an error of its own.
+        let mut needs = |key: &str, given: bool, wanted: &'static str, other: &str, has: bool, why: &str| {
+            if given && !has && !self.is_misspelt("contact", contact.entry, wanted) {
                 let what = format!("`{key}` is given without {other}");
                 self.add(contact.path(key), what, why, format!("give {other}, or leave out `{key}`"));
             }
         };
         let why = "it is the coefficient of a node that slips, which is at most that of one that sticks";
-        needs("mu_dynamic", mu_dynamic.is_some(), "`mu`", mu.is_some(), why);
+        needs("mu_dynamic", mu_dynamic.is_some(), "mu", "`mu`", mu.is_some(), why);
         let why = "it is the rate of the transition from `mu` to `mu_dynamic`";
-        needs("decay", decay.is_some(), "`mu_dynamic`", mu_dynamic.is_some(), why);
+        needs("decay", decay.is_some(), "mu_dynamic", "`mu_dynamic`", mu_dynamic.is_some(), why);
         let (penalty, why) =
             (contact.enforcement == Enforcement::Penalty, "a multiplier holds a node that sticks exactly");
-        needs("stick_stiffness", stick_stiffness.is_some(), "a penalty", penalty, why);
-        if let (Some(FormulaSpec::Number(stick)), Some(slip)) = (mu, mu_dynamic)
+        needs("stick_stiffness", stick_stiffness.is_some(), "enforcement", "a penalty", penalty, why);
+        let constant = mu.as_ref().and_then(FormulaSpec::constant);
+        if let (Some(stick), Some(slip)) = (constant, *mu_dynamic)
             && slip > stick
         {
             let what = format!("mu_dynamic = {slip} is larger than mu = {stick}");
             let why = "a node that began to slip would stick again at once";
-            self.add(contact.path("mu_dynamic"), what, why, "give a smaller one");
+            let help = "give a smaller one, or leave out `mu_dynamic`";
+            self.add(contact.path("mu_dynamic"), what, why, help);
         }
-        if let Some(FormulaSpec::Number(mu)) = mu
-            && *mu < 0.0
-        {
+        if let Some(mu) = constant.filter(|mu| *mu < 0.0) {
             let what = format!("`mu` must be a number ≥ 0, not {mu}");
             self.add(
                 contact.path("mu"),

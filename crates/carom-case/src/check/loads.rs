@@ -40,7 +40,7 @@ impl Check<'_> {
                 table.get("fix").and_then(Node::list).unwrap_or(&[]).iter().filter_map(Node::text).collect();
             let known = ["name", "on", "fix", "move"];
             let misspelt = table.0.iter().any(|e| !known.contains(&e.key.as_str()))
-                || moved.is_some_and(|m| m.0.iter().any(|e| !["x", "y"].contains(&e.key.as_str())));
+                || moved.is_some_and(|m| m.0.iter().any(|e| !["x", "y", "z"].contains(&e.key.as_str())));
             if !misspelt
                 && table.get("fix").is_none()
                 && moved.is_none_or(|m| m.0.is_empty())
@@ -63,13 +63,11 @@ impl Check<'_> {
                         "a direction is either fixed or has a prescribed displacement",
                         "remove it from `fix`",
                     );
-                } else if entry.key == "y" && self.draft.dimension == Some(1) {
-                    self.add(
-                        path,
-                        "there is no direction y",
-                        "the case has dimension = 1",
-                        "use move = { x = … }",
-                    );
+                } else if let Some(d) = self.draft.dimension
+                    && ["y", "z"].iter().position(|axis| *axis == entry.key).is_some_and(|axis| axis + 2 > d)
+                {
+                    let what = format!("there is no direction {}", entry.key);
+                    self.add(path, what, format!("the case has dimension = {d}"), "use move = { x = … }");
                 }
             }
         }

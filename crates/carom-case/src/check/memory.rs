@@ -1,9 +1,11 @@
 //! Checks that the model fits into memory, by an estimate made before anything is allocated.
 //!
 //! Per node of degree-k cells in dimension D, with c nodes coupled to it (mean over a large mesh:
-//! 3, 4, 5 for L2 L3 L4; 7, 12, 19 for T3 T6 T10): half the matrix with 8-byte values and indices,
-//! 16·D²·c/2; its factor, a fill of c·log₂n/2 by nested dissection in the plane and c/2 on a line,
-//! twice (numbers and scratch); a dozen state vectors.
+//! 3, 4, 5 for L2 L3 L4; 7, 12, 19 for T3 T6 T10; 9, 16 for Q4 Q9; 15, 29, 51 for Tet4 Tet10
+//! Tet20; 27, 64 for Hex8 Hex27): half the matrix
+//! with 8-byte values and indices, 16·D²·c/2; its factor, a fill of c·log₂n/2 by nested dissection in
+//! the plane, c·n^(1/3)/2 in space and c/2 on a line, twice (numbers and scratch); a dozen state
+//! vectors.
 
 use carom_solid::Element;
 
@@ -20,9 +22,20 @@ fn bytes(element: Element, nodes: f64) -> f64 {
         Element::T3 => 7.0,
         Element::T6 => 12.0,
         Element::T10 => 19.0,
+        Element::Q4 => 9.0,
+        Element::Q9 => 16.0,
+        Element::Hex8 => 27.0,
+        Element::Hex27 => 64.0,
+        Element::Tet4 => 15.0,
+        Element::Tet10 => 29.0,
+        Element::Tet20 => 51.0,
     };
     let d = element.dimension() as f64;
-    let levels = if element.dimension() == 1 { 1.0 } else { nodes.max(2.0).log2() };
+    let levels = match element.dimension() {
+        1 => 1.0,
+        2 => nodes.max(2.0).log2(),
+        _ => nodes.cbrt(),
+    };
     nodes * (16.0 * d * d * coupled * (0.5 + levels) + 12.0 * 8.0 * d)
 }
 
@@ -37,7 +50,7 @@ impl Check<'_> {
         let (cells, nodes) = body.mesh.estimate(body.element);
         let key = match body.mesh {
             MeshSpec::File { .. } => "file",
-            MeshSpec::Interval { .. } | MeshSpec::Rectangle { .. } => "cells",
+            MeshSpec::Interval { .. } | MeshSpec::Rectangle { .. } | MeshSpec::Box { .. } => "cells",
             _ => "size",
         };
         let what = format!(

@@ -9,6 +9,7 @@ mod restitution;
 mod scheme;
 mod time;
 
+use super::BodySpec;
 use super::columns;
 use super::document::Document;
 use super::draft::Draft;
@@ -17,7 +18,6 @@ use super::problem::Problem;
 use super::spec::SKIN;
 use super::suggest;
 use super::tree::Node;
-use super::{BodySpec, Quantity};
 
 /// Adds the problems found across tables.
 pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Problem>) {
@@ -86,17 +86,23 @@ impl<'a> Check<'a> {
 
     fn dimension(&mut self) {
         let given = self.document.root().get("dimension").and_then(Node::count);
-        if let Some(d) = given.filter(|d| *d > 2) {
-            let why = if d == 3 {
-                "three dimensions are planned for a later version of Carom"
-            } else {
-                "a case has 1 or 2 dimensions"
-            };
-            self.add("dimension", format!("dimension {d} is not supported"), why, "use dimension = 1 or 2");
+        if let Some(d) = given.filter(|d| *d > 3) {
+            let why = "a case has 1, 2 or 3 dimensions";
+            self.add(
+                "dimension",
+                format!("dimension {d} is not supported"),
+                why,
+                "use dimension = 1, 2 or 3",
+            );
+        }
+        if given == Some(3) && !self.tables("contact").is_empty() {
+            let why = "contact in three dimensions is planned for a later version of Carom";
+            let help = "leave [[contact]] out, or compute a plane section with dimension = 2";
+            self.add("contact[0]", "a case of dimension 3 has no contact yet", why, help);
         }
         let plane = self.document.root().get("plane").and_then(Node::text);
-        if given == Some(1) && plane == Some("stress") {
-            let why = "a bar has no plane state; its only strain is along x";
+        if given.is_some_and(|d| d != 2) && plane == Some("stress") {
+            let why = "a bar has no plane state, its only strain is along x; nor has a body in space";
             self.add("plane", "plane = \"stress\" needs dimension = 2", why, "leave it out");
         }
     }
@@ -203,9 +209,21 @@ impl<'a> Check<'a> {
             if let (Some(d), Some(element)) = (self.draft.dimension, element)
                 && element.dimension() != d
             {
-                let help = if d == 1 { "use L2, L3 or L4" } else { "use T3, T6 or T10" };
+                let help = [
+                    "use L2, L3 or L4",
+                    "use T3, T6, T10, Q4 or Q9",
+                    "use Tet4, Tet10, Tet20, Hex8 or Hex27",
+                ][d.clamp(1, 3) - 1];
                 let what = format!("the element {element:?} has dimension {}", element.dimension());
                 self.add(format!("body[{i}].element"), what, format!("the case has dimension = {d}"), help);
+            }
+            let shape = || table.table()?.get("mesh")?.table()?.get("shape")?.text();
+            if let Some(element @ (carom_solid::Element::Q4 | carom_solid::Element::Q9)) = element
+                && let Some(shape) = shape().filter(|shape| *shape != "rectangle")
+            {
+                let what = format!("the element {element:?} does not fill the shape \"{shape}\"");
+                let why = "quadrilaterals fill rectangles only";
+                self.add(format!("body[{i}].element"), what, why, "use T3, T6 or T10");
             }
         }
     }
@@ -219,15 +237,16 @@ impl<'a> Check<'a> {
             for (j, side) in texts("on") {
                 self.side(side, format!("support[{i}].on[{j}]"));
             }
-            for (j, _) in
-                texts("fix").filter(|(_, d)| *d == "y" && self.draft.dimension == Some(1)).collect::<Vec<_>>()
-            {
-                let why = "the case has dimension = 1";
+            let axes = &["x", "y", "z"][..self.draft.dimension.unwrap_or(3).min(3)];
+            let missing: Vec<_> = texts("fix").filter(|(_, axis)| !axes.contains(axis)).collect();
+            for (j, axis) in missing.into_iter().filter(|(_, axis)| ["y", "z"].contains(axis)) {
+                let why = format!("the case has dimension = {}", axes.len());
+                let help = format!("use fix = {axes:?}");
                 self.add(
                     format!("support[{i}].fix[{j}]"),
-                    "there is no direction y",
+                    format!("there is no direction {axis}"),
                     why,
-                    "use fix = [\"x\"]",
+                    help,
                 );
             }
         }
@@ -240,14 +259,14 @@ impl<'a> Check<'a> {
             for (j, quantity) in probe.record.iter().enumerate() {
                 let name = columns::quantity(*quantity);
                 let path = format!("probe[{i}].record[{j}]");
-                if self.draft.dimension == Some(1) && !in_one_dimension(*quantity) {
-                    let why = "the case has dimension = 1";
-                    self.add(
-                        path,
-                        format!("there is no quantity {name}"),
-                        why,
-                        "use ux, vx, ax, sigma_xx, von_mises or det_f",
-                    );
+                if let Some(d) = self.draft.dimension.filter(|d| !columns::exists(*quantity, *d)) {
+                    let why = format!("the case has dimension = {d}");
+                    let help = if d == 1 {
+                        "use ux, vx, ax, sigma_xx, von_mises or det_f"
+                    } else {
+                        "use a quantity without z"
+                    };
+                    self.add(path, format!("there is no quantity {name}"), why, help);
                 } else if probe.record[..j].contains(quantity) {
                     self.add(
                         path,
@@ -264,9 +283,4 @@ impl<'a> Check<'a> {
 fn all_sides(body: &BodySpec) -> String {
     let sides: Vec<_> = body.mesh.sides().into_iter().map(|side| format!("{}.{side}", body.name)).collect();
     sides.join(", ")
-}
-
-fn in_one_dimension(quantity: Quantity) -> bool {
-    use Quantity::{Ax, DetF, SigmaXx, Ux, VonMises, Vx};
-    matches!(quantity, Ux | Vx | Ax | SigmaXx | VonMises | DetF)
 }

@@ -35,7 +35,9 @@ impl Check {
             (Kind::Counts(least), Value::Integer(n)) if self.dimension == Some(1) => {
                 self.count(*n, *least, node, key, path);
             }
-            (Kind::Counts(least), Value::List(list)) if list.len() == 2 => {
+            (Kind::Counts(least), Value::List(list))
+                if self.dimension.map_or([2, 3].contains(&list.len()), |d| d == list.len()) =>
+            {
                 for (i, node) in list.iter().enumerate() {
                     let path = format!("{path}[{i}]");
                     match node.value {
@@ -46,6 +48,23 @@ impl Check {
             }
             (Kind::Vector, Value::List(list)) if self.dimension.is_none_or(|d| d == list.len()) => {
                 self.numbers(list, key, path);
+            }
+            (Kind::Direction, Value::Text(word)) if ["x", "y", "z"].contains(&word.as_str()) => {}
+            (Kind::Direction, Value::List(list)) if self.dimension.is_none_or(|d| d == list.len()) => {
+                self.numbers(list, key, path);
+            }
+            (Kind::Angular, Value::List(list))
+                if self.dimension.is_none_or(|d| d == 3) && list.len() == 3 =>
+            {
+                self.numbers(list, key, path);
+            }
+            (Kind::Angular | Kind::Rotation(_), Value::Integer(_) | Value::Float(_))
+                if self.dimension != Some(3) =>
+            {
+                self.number(node, &keys::ANY, key, path);
+            }
+            (Kind::Rotation(spec), Value::Table(table)) if self.dimension.is_none_or(|d| d == 3) => {
+                self.table(table, spec, path);
             }
             (Kind::Numbers, Value::List(list)) => self.numbers(list, key, path),
             (Kind::Points(least), Value::List(list)) if list.len() >= *least => {
@@ -167,7 +186,7 @@ impl Check {
         match &node.value {
             Value::Integer(_) | Value::Float(_) => self.number(node, &keys::ANY, key, path),
             Value::Text(text) => {
-                let variables = keys::variables(variables, self.dimension.unwrap_or(2));
+                let variables = keys::variables(variables, self.dimension.unwrap_or(3));
                 // Whether it is given is checked when the model is built.
                 if FormulaSpec::Text(text.clone()).function().is_some() && may_be_given(path) {
                     return;

@@ -48,8 +48,8 @@ pub(super) const BODY: Table = Table {
         key("material", Name, "Name of its material.").example("\"rubber\""),
         key(
             "element",
-            Choice(&["L2", "L3", "L4", "T3", "T6", "T10"], &[]),
-            "Cell type: L2 L3 L4 in dimension 1, T3 T6 T10 in dimension 2.",
+            Choice(&["L2", "L3", "L4", "T3", "T6", "T10", "Q4", "Q9", "Tet4", "Tet10", "Tet20", "Hex8", "Hex27"], &[]),
+            "Cell type: L2 L3 L4 in dimension 1, T3 T6 T10 Q4 Q9 in dimension 2, Tet4 Tet10 Tet20 Hex8 Hex27 in dimension 3. Q4 and Q9 fill rectangles, Hex8 and Hex27 every shape.",
         )
         .example("\"T6\""),
         key("mesh", Variant(shapes), "Mesh: a built-in shape with its mesh size, or a body of a Gmsh file.")
@@ -57,7 +57,7 @@ pub(super) const BODY: Table = Table {
         key("place", Kind::Table(&PLACE), "Rotation and translation of the mesh, applied before anything else.")
             .optional()
             .example("{ rotate = 30.0, about = [0.0, 0.0], shift = [0.0, 1.0] }"),
-        key("position", Formulas(IN_SPACE), "Positions at t = 0 as formulas in X, Y, for a body that starts deformed. Default: X, Y.")
+        key("position", Formulas(IN_SPACE), "Positions at t = 0 as formulas in X, Y, Z, for a body that starts deformed. Default: X, Y, Z.")
             .unit("length")
             .optional()
             .example("[\"X + 0.1*X*Y\", \"Y\"]"),
@@ -68,7 +68,7 @@ pub(super) const BODY: Table = Table {
         key(
             "velocity",
             FormulasOr(IN_SPACE, &VELOCITY),
-            "Initial velocity: numbers or formulas in X, Y, or the table of a rigid-body motion. Default: zero.",
+            "Initial velocity: numbers or formulas in X, Y, Z, or the table of a rigid-body motion. Default: zero.",
         )
         .unit("length/time")
         .optional()
@@ -93,9 +93,14 @@ const VELOCITY: Table = Table {
             .unit("length/time")
             .optional()
             .example("[0.0, -1.0]"),
-        key("angular", Number(ANY), "Angular velocity, counter-clockwise; dimension 2.")
-            .unit("1/time")
-            .default("0.0"),
+        key(
+            "angular",
+            Kind::Angular,
+            "Angular velocity: counter-clockwise in dimension 2, [ωx, ωy, ωz] in dimension 3. Default: zero.",
+        )
+        .unit("1/time")
+        .optional()
+        .example("2.0"),
         key("about", Vector, "Centre of the rotation; required with `angular`.")
             .unit("length")
             .optional()
@@ -104,13 +109,26 @@ const VELOCITY: Table = Table {
     later: &[],
 };
 
+const ROTATION: Table = Table {
+    name: "rotate",
+    doc: "A rotation in space.",
+    keys: &[
+        key("axis", Vector, "Direction of the axis, of any length.").example("[0.0, 0.0, 1.0]"),
+        key("angle", Number(ANY), "Angle, counter-clockwise seen against the axis.")
+            .unit("degrees")
+            .example("30.0"),
+    ],
+    later: &[],
+};
+
 const PLACE: Table = Table {
     name: "place",
     doc: "Rotation, then translation of a mesh, built in or from a file.",
     keys: &[
-        key("rotate", Number(ANY), "Angle of rotation, counter-clockwise; dimension 2.")
+        key("rotate", Kind::Rotation(&ROTATION), "Angle of rotation, counter-clockwise, in dimension 2; the table of axis and angle in dimension 3. Default: none.")
             .unit("degrees")
-            .default("0.0"),
+            .optional()
+            .example("30.0"),
         key("about", Vector, "Centre of rotation. Default: the origin.")
             .unit("length")
             .optional()

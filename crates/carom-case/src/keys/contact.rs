@@ -84,20 +84,24 @@ pub(super) const CONTACT: Table = Table {
             Formula(IN_SPACE_AND_TIME),
             "Coefficient of Coulomb friction μ, for the slip of the secondary side on the primary one: a node sticks while its tangential force is \
              less than μ times its normal force, and otherwise slips against exactly this force. A number, or a formula of the node's reference \
-             position and time. 0: no friction. Dimension 2; rigid obstacles that do not turn, and sides of bodies.",
+             position and time. 0: no friction. Default: no friction, or that of `shear`. Dimension 2; rigid obstacles that do not turn, and \
+             sides of bodies.",
         )
-        .default("0.0"),
+        .optional()
+        .example("0.3"),
         key(
             "mu_dynamic",
             Number(NOT_NEGATIVE),
-            "Coefficient of friction of a node that slips, at most `mu`, which is then that of a node that sticks. Default: `mu`.",
+            "Coefficient of friction of a node that slips, at most `mu`, which is then that of a node that sticks. Where a formula `mu` is \
+             smaller, it counts for both. Default: `mu`.",
         )
         .optional()
         .example("0.2"),
         key(
             "decay",
-            Number(NOT_NEGATIVE),
-            "Rate c of the transition to `mu_dynamic`: at a slip rate v, μ = mu_dynamic + (mu − mu_dynamic) exp(−c v). Default: at once.",
+            Number(POSITIVE),
+            "Rate c of the transition to `mu_dynamic`: at a slip rate v, μ = mu_dynamic + (mu − mu_dynamic) exp(−c v). In load steps, v is the rate \
+             in the time of their formulas. Default: at once.",
         )
         .unit("time/length")
         .optional()

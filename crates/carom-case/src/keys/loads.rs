@@ -9,7 +9,7 @@ pub(super) const SUPPORT: Table = Table {
     keys: &[
         key("name", Name, "Name; the reaction forces of a named support are recorded.").optional().example("\"floor\""),
         key("on", Sides, "Sides that are constrained.").example("[\"prism.bottom\"]"),
-        key("fix", Choices(&["x", "y"]), "Directions that are fixed.").optional().example("[\"x\", \"y\"]"),
+        key("fix", Choices(&["x", "y", "z"]), "Directions that are fixed.").optional().example("[\"x\", \"y\"]"),
         key(
             "move",
             Kind::Table(&MOVE),
@@ -33,13 +33,17 @@ const MOVE: Table = Table {
             .unit("length")
             .optional()
             .example("\"-0.1*t\""),
+        key("z", Formula(IN_SPACE_AND_TIME), "Displacement along z; dimension 3.")
+            .unit("length")
+            .optional()
+            .example("\"0.1*t\""),
     ],
     later: &[],
 };
 
 pub(super) const LOAD: Table = Table {
     name: "[[load]]",
-    doc: "A load on sides (`on` with `traction` or `pressure`) or in a body (`body` with `body_force`). Formulas are functions of the reference position X, Y and the time t.",
+    doc: "A load on sides (`on` with `traction` or `pressure`) or in a body (`body` with `body_force`). Formulas are functions of the reference position X, Y, Z and the time t.",
     keys: &[
         key("name", Name, "Name used in messages.").optional().example("\"press\""),
         key("on", Sides, "Loaded sides, with `traction` or `pressure`.")

@@ -77,15 +77,17 @@ pub enum Kind {
     Truth,
     /// An integer of at least this.
     Count(usize),
-    /// An integer in dimension 1, a pair in dimension 2.
+    /// An integer in dimension 1, one per direction in dimensions 2 and 3.
     Counts(usize),
     /// One finite number per dimension.
     Vector,
+    /// `"x"`, `"y"` or `"z"`, or one number per dimension.
+    Direction,
     /// Any number of finite numbers.
     Numbers,
     /// At least this many points of the plane.
     Points(usize),
-    /// A finite number, or a formula in these variables (`Y` in dimension 2 only).
+    /// A finite number, or a formula in these variables (`Y` and `Z` where they exist).
     Formula(&'static [&'static str]),
     /// One number or formula per dimension.
     Formulas(&'static [&'static str]),
@@ -103,6 +105,10 @@ pub enum Kind {
     Between,
     /// A side, or this table.
     SideOr(&'static Table),
+    /// A number in dimensions 1 and 2, one number per direction in space.
+    Angular,
+    /// A number in dimensions 1 and 2, in space this table.
+    Rotation(&'static Table),
     /// A table.
     Table(&'static Table),
     /// Any number of tables, `[[name]]`.
@@ -174,15 +180,16 @@ impl Range {
 }
 
 /// Reference position and time.
-pub const IN_SPACE_AND_TIME: &[&str] = &["X", "Y", "t"];
+pub const IN_SPACE_AND_TIME: &[&str] = &["X", "Y", "Z", "t"];
 /// Time.
 pub const IN_TIME: &[&str] = &["t"];
 /// Reference position.
-pub const IN_SPACE: &[&str] = &["X", "Y"];
+pub const IN_SPACE: &[&str] = &["X", "Y", "Z"];
 
-/// The variables of a formula in a space of this dimension: no `Y` in dimension 1.
+/// The variables of a formula in a space of this dimension: `Y` in the plane, `Z` in space.
 pub fn variables(all: &'static [&'static str], dimension: usize) -> Vec<&'static str> {
-    all.iter().copied().filter(|name| dimension > 1 || *name != "Y").collect()
+    let exists = |name: &&str| !["Y", "Z"][dimension.clamp(1, 3) - 1..].contains(name);
+    all.iter().copied().filter(exists).collect()
 }
 
 impl Table {
@@ -218,8 +225,9 @@ impl Kind {
             Self::Truth => "true or false".into(),
             Self::Count(least) => format!("an integer ≥ {least}"),
             Self::Counts(least) if dimension == Some(1) => format!("an integer ≥ {least}"),
-            Self::Counts(least) => format!("a list of 2 integers ≥ {least}"),
+            Self::Counts(least) => format!("a list of {} integers ≥ {least}", dimension.unwrap_or(2)),
             Self::Vector => several(dimension),
+            Self::Direction => format!("\"x\", \"y\" or \"z\", or {}", several(dimension)),
             Self::Numbers => "a list of numbers".into(),
             Self::Points(least) => format!("a list of at least {least} points [x, y]"),
             Self::Formula(_) => "a number or a formula in quotes".into(),
@@ -233,6 +241,9 @@ impl Kind {
             Self::SideOr(_) => {
                 "a side \"body.side\" or a rigid obstacle { plane = …, circle = … or polyline = … }".into()
             }
+            Self::Angular if dimension == Some(3) => several(dimension),
+            Self::Rotation(_) if dimension == Some(3) => "a table { axis = [x, y, z], angle = … }".into(),
+            Self::Angular | Self::Rotation(_) => "a finite number".into(),
             Self::Table(_) => "a table { key = value }".into(),
             Self::Tables(table) => format!("a list of tables {}", table.name),
             Self::Variant(variants) => format!("a table {{ {} = \"…\", … }}", variants().tag),

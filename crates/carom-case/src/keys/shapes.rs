@@ -1,6 +1,6 @@
 //! Keys of meshes: built-in shapes and files.
 
-use super::Kind::{Count, Counts, Number, Points, Tables, Text, Truth, Vector};
+use super::Kind::{Choices, Count, Counts, Direction, Number, Points, Tables, Text, Truth, Vector};
 use super::{ANY, Key, NOT_NEGATIVE, POSITIVE, Table, Variants, key};
 
 /// Built-in shapes.
@@ -34,13 +34,80 @@ const SHAPES: Variants = Variants {
                 keys: &[
                     key("min", Vector, "Lower left corner.").unit("length").example("[0.0, 0.0]"),
                     key("max", Vector, "Upper right corner.").unit("length").example("[1.0, 1.0]"),
-                    key("cells", Counts(1), "Number of squares along x and y, each split into two triangles; or give `size`.")
+                    key("cells", Counts(1), "Number of squares along x and y, each a quadrilateral or split into two triangles; or give `size`.")
                         .optional()
                         .example("[8, 4]"),
                     key("size", Number(POSITIVE), "Largest side length of the squares; or give `cells`.")
                         .unit("length")
                         .optional()
                         .example("0.1"),
+                ],
+                later: &[],
+            },
+        ),
+        (
+            "box",
+            Table {
+                name: "mesh of shape \"box\"",
+                doc: "Dimension 3; sides left, right (along x), front, back (along y), bottom, top (along z).",
+                keys: &[
+                    key("min", Vector, "Lowest corner.").unit("length").example("[0.0, 0.0, 0.0]"),
+                    key("max", Vector, "Highest corner.").unit("length").example("[1.0, 1.0, 1.0]"),
+                    key("cells", Counts(1), "Number of boxes along x, y and z, each a hexahedron or split into six tetrahedra; or give `size`.")
+                        .optional()
+                        .example("[8, 4, 4]"),
+                    key("size", Number(POSITIVE), "Largest side length of the boxes; or give `cells`.")
+                        .unit("length")
+                        .optional()
+                        .example("0.1"),
+                    SYMMETRY,
+                ],
+                later: &[],
+            },
+        ),
+        (
+            "ball",
+            Table {
+                name: "mesh of shape \"ball\"",
+                doc: "Dimension 3; side sphere, and plane_x, plane_y, plane_z where planes of symmetry cut it.",
+                keys: &[
+                    key("radius", Number(POSITIVE), "Radius.").unit("length").example("0.5"),
+                    key("center", Vector, "Centre.").unit("length").example("[0.0, 0.0, 1.0]"),
+                    SIZE,
+                    SYMMETRY,
+                ],
+                later: &[],
+            },
+        ),
+        (
+            "cylinder",
+            Table {
+                name: "mesh of shape \"cylinder\"",
+                doc: "Dimension 3; sides side, bottom, top, and plane_x, plane_y, plane_z where planes of symmetry cut it.",
+                keys: &[
+                    key("radius", Number(POSITIVE), "Radius.").unit("length").example("0.5"),
+                    HEIGHT,
+                    BOTTOM,
+                    AXIS,
+                    SIZE,
+                    SYMMETRY,
+                ],
+                later: &[],
+            },
+        ),
+        (
+            "tube",
+            Table {
+                name: "mesh of shape \"tube\"",
+                doc: "Dimension 3; sides inner, outer, bottom, top, and plane_x, plane_y, plane_z where planes of symmetry cut it.",
+                keys: &[
+                    key("inner", Number(POSITIVE), "Inner radius.").unit("length").example("0.4"),
+                    key("outer", Number(POSITIVE), "Outer radius.").unit("length").example("0.5"),
+                    HEIGHT,
+                    BOTTOM,
+                    AXIS,
+                    SIZE,
+                    SYMMETRY,
                 ],
                 later: &[],
             },
@@ -100,6 +167,24 @@ const SHAPES: Variants = Variants {
     later_keys: &[],
 };
 
+const HEIGHT: Key = key("height", Number(POSITIVE), "Length along the axis.").unit("length").example("2.0");
+
+const BOTTOM: Key = key("center", Vector, "Centre of the bottom.").unit("length").example("[0.0, 0.0, 0.0]");
+
+const AXIS: Key =
+    key("axis", Direction, "Direction from the bottom to the top: a coordinate, or a vector of any length.")
+        .default("\"z\"");
+
+const SIZE: Key = key("size", Number(POSITIVE), "Edge length of the cells.").unit("length").example("0.1");
+
+const SYMMETRY: Key = key(
+    "symmetry",
+    Choices(&["x", "y", "z"]),
+    "Directions in which a plane of symmetry through the middle of the shape cuts it; the half with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or plane_z. A cylinder or a tube is cut only if its axis is a coordinate.",
+)
+.optional()
+.example("[\"x\", \"y\"]");
+
 const REFINE: Table = Table {
     name: "refine",
     doc: "A region of local refinement; outside its radius, the edge length grows by 3/10 of the distance, up to the size of the mesh.",
@@ -115,12 +200,16 @@ const REFINE: Table = Table {
 
 const MESH_FILE: Table = Table {
     name: "mesh from a file",
-    doc: "A body from a Gmsh file; its sides are the named physical curves (dimension 1: points) on its boundary.",
+    doc: "A body from a Gmsh file; its sides are the named physical curves (dimension 1: points, dimension 3: surfaces) on its boundary.",
     keys: &[
         key("file", Text, "Path of a .msh file of version 4.1 or 2.2, relative to the folder of the case.")
             .example("\"impact.msh\""),
-        key("surface", Text, "Name of the physical surface (dimension 1: curve) that is the body.")
+        key("surface", Text, "Name of the physical surface (dimension 1: curve) that is the body; in dimension 3 give `volume`.")
+            .unless("volume")
             .example("\"cylinder\""),
+        key("volume", Text, "Dimension 3: name of the physical volume that is the body.")
+            .optional()
+            .example("\"part\""),
         key("slits", Truth, "Whether neighbouring cells may have nodes of their own at one place: a closed slit, or pieces that touch. Otherwise this is reported as a mistake.")
             .default("false"),
     ],

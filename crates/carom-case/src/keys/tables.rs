@@ -17,7 +17,7 @@ pub const CASE: Table = Table {
         key("title", Text, "Title of figures and report pages. Default: the name of the file.")
             .optional()
             .example("\"Two bars\""),
-        key("dimension", Kind::Count(1), "Space dimension: 1 (bars) or 2.").example("2"),
+        key("dimension", Kind::Count(1), "Space dimension: 1 (bars), 2 (the plane) or 3.").example("2"),
         key(
             "plane",
             Choice(&["strain", "stress"], &["axisymmetric"]),
@@ -105,7 +105,7 @@ const INITIAL: Table = Table {
 const MANUFACTURED: Table = Table {
     name: "[manufactured]",
     doc: "A manufactured solution for all bodies: the load is ρÿ − Div P, boundary nodes follow the given motion, and history.csv has the columns error_l2 and error_h1.",
-    keys: &[key("y", Formulas(IN_SPACE_AND_TIME), "Current positions as formulas in X, Y and t.")
+    keys: &[key("y", Formulas(IN_SPACE_AND_TIME), "Current positions as formulas in X, Y, Z and t.")
         .unit("length")
         .example("[\"X + 0.1*sin(X + 2*Y)*t\", \"Y - 0.1*cos(X*Y)*t\"]")],
     later: &[],
@@ -187,8 +187,25 @@ const PROBE: Table = Table {
     later: &[],
 };
 
-const QUANTITIES: &[&str] =
-    &["ux", "uy", "vx", "vy", "ax", "ay", "sigma_xx", "sigma_yy", "sigma_xy", "von_mises", "det_f"];
+const QUANTITIES: &[&str] = &[
+    "ux",
+    "uy",
+    "uz",
+    "vx",
+    "vy",
+    "vz",
+    "ax",
+    "ay",
+    "az",
+    "sigma_xx",
+    "sigma_yy",
+    "sigma_zz",
+    "sigma_xy",
+    "sigma_yz",
+    "sigma_xz",
+    "von_mises",
+    "det_f",
+];
 
 const OUTPUT: Table = Table {
     name: "[output]",

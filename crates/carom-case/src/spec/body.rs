@@ -69,12 +69,12 @@ pub struct BodySpec {
     /// Placement of the mesh; none: as generated or read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<PlaceSpec>,
-    /// Positions at t = 0, formulas in X, Y; none: the reference positions.
+    /// Positions at t = 0, formulas in X, Y, Z; none: the reference positions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position: Option<Vec<FormulaSpec>>,
     /// Gravitational acceleration, one component per dimension.
     pub gravity: Vec<f64>,
-    /// Initial velocity, formulas in X, Y.
+    /// Initial velocity, formulas in X, Y, Z.
     pub velocity: Vec<FormulaSpec>,
     /// Mass matrix.
     pub mass: MassKind,
@@ -85,6 +85,9 @@ pub struct BodySpec {
 pub struct PlaceSpec {
     /// Angle in degrees, counter-clockwise; 0 in dimension 1.
     pub rotate: f64,
+    /// Unit axis of the rotation, in dimension 3; empty if there is none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub axis: Vec<f64>,
     /// Centre of rotation.
     pub about: Vec<f64>,
     /// Translation.

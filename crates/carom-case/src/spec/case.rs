@@ -23,7 +23,7 @@ fn unrefined() -> f64 {
 pub struct Case {
     /// Title for figures and pages.
     pub title: String,
-    /// Space dimension: 1 or 2.
+    /// Space dimension: 1, 2 or 3.
     pub dimension: usize,
     /// Plane strain or plane stress; dimension 2.
     pub plane: Plane,

@@ -55,7 +55,7 @@ pub struct ContactSpec {
 /// The law of friction.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrictionSpec {
-    /// μ, in stick if `mu_dynamic` is given; none: no friction, or Tresca's.
+    /// μ, in stick if `mu_dynamic` is given; zero: no friction; none: that of `shear` alone.
     pub mu: Option<FormulaSpec>,
     /// μ in slip.
     pub mu_dynamic: Option<f64>,
@@ -70,7 +70,7 @@ pub struct FrictionSpec {
 impl FrictionSpec {
     /// Whether there is friction.
     pub fn exists(&self) -> bool {
-        self.mu.is_some() || self.shear.is_some()
+        self.mu.as_ref().map_or(self.shear.is_some(), |mu| !mu.is_zero())
     }
 }
 

@@ -36,9 +36,17 @@ impl FormulaSpec {
         }
     }
 
-    /// Whether it is the number zero.
+    /// Its value, if it does not depend on anything.
+    pub fn constant(&self) -> Option<f64> {
+        match self {
+            Self::Number(value) => Some(*value),
+            Self::Text(text) => Some(Formula::parse(text, &[]).ok()?.value(&[])),
+        }
+    }
+
+    /// Whether it is zero.
     pub fn is_zero(&self) -> bool {
-        matches!(self, Self::Number(x) if *x == 0.0)
+        self.constant() == Some(0.0)
     }
 }
 

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
-use carom_solid::Element;
+use carom_solid::{Element, generate};
 use serde::{Deserialize, Serialize};
 
 /// Name of the side that is the whole boundary of a body in the plane, unless its mesh has a side of
@@ -30,7 +30,7 @@ pub enum MeshSpec {
         min: [f64; 2],
         /// Upper right corner.
         max: [f64; 2],
-        /// Number of squares along x and y, each split into two triangles.
+        /// Number of squares along x and y, each a quadrilateral or split into two triangles.
         cells: [usize; 2],
     },
     /// Whole disc, side `arc`.
@@ -71,8 +71,66 @@ pub enum MeshSpec {
         /// Regions of local refinement.
         refine: Vec<RefineSpec>,
     },
-    /// A named physical surface (dimension 1: curve) of a .msh file; sides are its named physical
-    /// curves (points).
+    /// Dimension 3: `left right front back bottom top` at −x +x −y +y −z +z.
+    Box {
+        /// Lowest corner.
+        min: [f64; 3],
+        /// Highest corner.
+        max: [f64; 3],
+        /// Number of boxes along x, y and z, each a hexahedron or split into six tetrahedra.
+        cells: [usize; 3],
+        /// Whether a plane of symmetry cuts it along x, y, z: `min` is in these planes.
+        #[serde(default, skip_serializing_if = "whole_shape")]
+        symmetry: [bool; 3],
+    },
+    /// Dimension 3: `sphere`.
+    Ball {
+        /// Radius.
+        radius: f64,
+        /// Centre.
+        center: [f64; 3],
+        /// Edge length of the cells.
+        size: f64,
+        /// Whether a plane of symmetry cuts it along x, y, z: the sides `plane_x` ….
+        #[serde(default, skip_serializing_if = "whole_shape")]
+        symmetry: [bool; 3],
+    },
+    /// Dimension 3: `side bottom top`.
+    Cylinder {
+        /// Radius.
+        radius: f64,
+        /// Length along the axis.
+        height: f64,
+        /// Centre of the bottom.
+        center: [f64; 3],
+        /// From the bottom to the top, of any length.
+        axis: [f64; 3],
+        /// Edge length of the cells.
+        size: f64,
+        /// As of a ball; the plane across the axis stands for the bottom.
+        #[serde(default, skip_serializing_if = "whole_shape")]
+        symmetry: [bool; 3],
+    },
+    /// Dimension 3: `inner outer bottom top`.
+    Tube {
+        /// Inner radius.
+        inner: f64,
+        /// Outer radius.
+        outer: f64,
+        /// Length along the axis.
+        height: f64,
+        /// Centre of the bottom.
+        center: [f64; 3],
+        /// From the bottom to the top, of any length.
+        axis: [f64; 3],
+        /// Edge length of the cells.
+        size: f64,
+        /// As of a cylinder.
+        #[serde(default, skip_serializing_if = "whole_shape")]
+        symmetry: [bool; 3],
+    },
+    /// A named physical surface (dimension 1: curve, dimension 3: volume) of a .msh file; sides are its
+    /// named physical curves (points, surfaces).
     File {
         /// Absolute path.
         file: PathBuf,
@@ -102,6 +160,17 @@ fn whole() -> usize {
     1
 }
 
+/// Whether no plane of symmetry cuts a shape.
+#[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
+fn whole_shape(symmetry: &[bool; 3]) -> bool {
+    *symmetry == [false; 3]
+}
+
+/// The coordinate along which a vector points.
+fn coordinate(axis: [f64; 3]) -> Option<usize> {
+    (0..3).find(|&i| axis[i] > 0.0 && (0..3).all(|j| i == j || axis[j] == 0.0))
+}
+
 impl MeshSpec {
     /// The mesh with cells smaller by a factor ≥ 1: a built-in shape is made anew with smaller cells,
     /// the cells of a file are divided. `refine.rs` rejects factors with which given numbers of cells,
@@ -113,9 +182,13 @@ impl MeshSpec {
         match &mut self {
             Self::Interval { cells, .. } => *cells = more(*cells),
             Self::Rectangle { cells, .. } => *cells = cells.map(more),
-            Self::Disc { size, .. } | Self::HalfDisc { size, .. } | Self::Ring { size, .. } => {
-                *size /= factor;
-            }
+            Self::Box { cells, .. } => *cells = cells.map(more),
+            Self::Disc { size, .. }
+            | Self::HalfDisc { size, .. }
+            | Self::Ring { size, .. }
+            | Self::Ball { size, .. }
+            | Self::Cylinder { size, .. }
+            | Self::Tube { size, .. } => *size /= factor,
             Self::Polygon { size, refine, .. } => {
                 *size /= factor;
                 refine.iter_mut().for_each(|region| region.size /= factor);
@@ -127,7 +200,28 @@ impl MeshSpec {
 
     /// Names of the sides, in order along the boundary.
     pub fn sides(&self) -> Vec<String> {
+        let planes = ["plane_x", "plane_y", "plane_z"];
+        let cut = |words: &[&str], symmetry: &[bool; 3], across: [Option<&str>; 3]| {
+            let gone = |word: &str| (0..3).any(|i| symmetry[i] && across[i] == Some(word));
+            let kept = words.iter().filter(|word| !gone(word)).copied();
+            kept.chain((0..3).filter(|&i| symmetry[i]).map(|i| planes[i])).map(str::to_owned).collect()
+        };
+        let bottom = |axis: [f64; 3]| {
+            let along = coordinate(axis);
+            std::array::from_fn(|i| (along == Some(i)).then_some("bottom"))
+        };
         let words: &[&str] = match self {
+            Self::Box { symmetry, .. } => {
+                let words = ["left", "right", "front", "back", "bottom", "top"];
+                return cut(&words, symmetry, [Some("left"), Some("front"), Some("bottom")]);
+            }
+            Self::Ball { symmetry, .. } => return cut(&["sphere"], symmetry, [None; 3]),
+            Self::Cylinder { symmetry, axis, .. } => {
+                return cut(&["side", "bottom", "top"], symmetry, bottom(*axis));
+            }
+            Self::Tube { symmetry, axis, .. } => {
+                return cut(&["inner", "outer", "bottom", "top"], symmetry, bottom(*axis));
+            }
             Self::File { sides, .. } => return sides.clone(),
             Self::Polygon { points, .. } => return (1..=points.len()).map(|k| format!("side{k}")).collect(),
             Self::Interval { .. } => &["left", "right"],
@@ -168,7 +262,22 @@ impl MeshSpec {
             Self::Interval { cells, .. } => (cells as f64, k * cells as f64 + 1.0),
             Self::Rectangle { cells: [nx, ny], .. } => {
                 let (nx, ny) = (nx as f64, ny as f64);
-                (2.0 * nx * ny, (k * nx + 1.0) * (k * ny + 1.0))
+                let each = if matches!(element, Element::Q4 | Element::Q9) { 1.0 } else { 2.0 };
+                (each * nx * ny, (k * nx + 1.0) * (k * ny + 1.0))
+            }
+            Self::Box { cells, .. } => {
+                let [nx, ny, nz] = cells.map(|n| n as f64);
+                let each = if matches!(element, Element::Hex8 | Element::Hex27) { 1.0 } else { 6.0 };
+                (each * nx * ny * nz, (k * nx + 1.0) * (k * ny + 1.0) * (k * nz + 1.0))
+            }
+            Self::Ball { radius, size, symmetry, .. } => {
+                filled_space(element, generate::ball_hexahedra(radius, size, symmetry))
+            }
+            Self::Cylinder { radius, height, size, symmetry, .. } => {
+                filled_space(element, generate::cylinder_hexahedra(radius, height, size, symmetry))
+            }
+            Self::Tube { inner, outer, height, size, symmetry, .. } => {
+                filled_space(element, generate::tube_hexahedra([inner, outer], height, size, symmetry))
             }
             Self::Disc { radius, size, .. } => {
                 let n = rings(radius, size);
@@ -180,6 +289,13 @@ impl MeshSpec {
             }
         }
     }
+}
+
+/// Cells and nodes of a body of hexahedra, about as thick in all directions.
+fn filled_space(element: Element, hexahedra: f64) -> (f64, f64) {
+    let hexahedral = matches!(element, Element::Hex8 | Element::Hex27);
+    let along = element.degree() as f64 * hexahedra.cbrt();
+    (if hexahedral { hexahedra } else { 6.0 * hexahedra }, (along + 1.0).powi(3))
 }
 
 /// A region of local refinement.

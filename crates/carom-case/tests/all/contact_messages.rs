@@ -193,3 +193,26 @@ fn friction_is_refused_where_it_is_not_built() {
         assert!(message.contains(&format!("mu = 0.3 cannot be used {what}")), "{set}:\n{message}");
     }
 }
+
+/// Coefficients that contradict each other, also as formulas; zero is none.
+#[test]
+fn coefficients_of_friction_are_judged_by_their_values() {
+    let with = |keys: &str| IMPACT.replacen("[[contact]]", &format!("[[contact]]\n{keys}"), 1);
+    let cases: &[(&str, &str)] = &[
+        ("mu = 0.3\nmu_dynamic = 0.4", "mu_dynamic = 0.4 is larger than mu = 0.3"),
+        ("mu = \"0.3\"\nmu_dynamic = 0.4", "mu_dynamic = 0.4 is larger than mu = 0.3"),
+        ("mu = 0\nmu_dynamic = 0.1", "mu_dynamic = 0.1 is larger than mu = 0"),
+        ("mu = \"-0.1\"", "`mu` must be a number ≥ 0, not -0.1"),
+        ("mu_dynamic = 0.1", "`mu_dynamic` is given without `mu`"),
+        ("mu = 0.3\nmu_dynamic = 0.1\ndecay = 0", "`decay` must be a number > 0, not 0"),
+    ];
+    for (keys, message) in cases {
+        let shown = shown(&with(keys), &[]);
+        assert!(shown.contains(message), "{keys}:\n{shown}");
+    }
+    let refused = shown(&with("mu = \"0.3 + 0*t\""), &["contact.strike.law=\"predictor\""]);
+    assert!(refused.contains("mu = \"0.3 + 0*t\" cannot be used"), "{refused}");
+    for zero in ["mu = 0", "mu = \"0\"", "mu = 0\nshear = 1.0", "mu = 0\nmu_dynamic = 0"] {
+        assert!(resolved(&with(zero), &["contact.strike.detection=\"trajectory\""]).is_ok(), "{zero}");
+    }
+}

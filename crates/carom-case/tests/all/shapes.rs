@@ -34,7 +34,10 @@ fn shapes_are_resolved_and_survive_json() {
 fn bodies_are_placed() {
     let case = resolved(IMPACT, &["body.cylinder.place={ rotate = 30, shift = [0.0, 1.0] }"]).unwrap();
     let place = case.bodies[0].place.clone().unwrap();
-    assert_eq!(place, PlaceSpec { rotate: 30.0, about: vec![0.0; 2], shift: vec![0.0, 1.0] });
+    assert_eq!(
+        place,
+        PlaceSpec { rotate: 30.0, axis: Vec::new(), about: vec![0.0; 2], shift: vec![0.0, 1.0] }
+    );
     let bar = resolved(BARS, &["body.left.place={ shift = [-0.5] }"]).unwrap();
     assert_eq!(bar.bodies[0].place.as_ref().unwrap().shift, [-0.5]);
     let problems = resolved(BARS, &["body.left.place={ rotate = 30 }"]).unwrap_err();
@@ -45,4 +48,60 @@ fn bodies_are_placed() {
 fn plane_stress_needs_dimension_two() {
     assert_eq!(resolved(IMPACT, &["plane=stress"]).unwrap().plane, Plane::Stress);
     assert!(resolved(BARS, &["plane=stress"]).unwrap_err()[0].what.contains("needs dimension = 2"));
+}
+
+const SOLID: &str = r#"
+dimension = 3
+material = [{ name = "steel", law = "linear-elastic", density = 7850.0, young = 2.1e11, poisson = 0.3 }]
+time = { end = 1e-3, step = 1e-5, scheme = { kind = "newmark", rho_inf = 1 } }
+
+[[body]]
+name = "part"
+material = "steel"
+element = "Tet10"
+mesh = { shape = "ball", radius = 1.0, center = [0, 0, 0], size = 0.5 }
+"#;
+
+/// The sides that a case names are those of the mesh, and the estimate is near its size.
+#[test]
+fn solids_are_resolved_and_survive_json() {
+    let tube = "shape = \"tube\", inner = 0.5, outer = 1, height = 2, center = [0, 0, 0], size = 0.25";
+    for (mesh, sides) in [
+        ("shape = \"ball\", radius = 1, center = [0, 0, 1], size = 0.3".to_owned(), &["sphere"][..]),
+        (
+            "shape = \"cylinder\", radius = 1, height = 1, center = [0, 0, 1], axis = [1, 1, 0], size = 0.3"
+                .to_owned(),
+            &["bottom", "side", "top"],
+        ),
+        (
+            format!("{tube}, axis = \"y\", symmetry = [\"x\"]"),
+            &["bottom", "inner", "outer", "plane_x", "top"],
+        ),
+        (format!("{tube}, symmetry = [\"z\"]"), &["inner", "outer", "plane_z", "top"]),
+        (
+            "shape = \"box\", min = [0, 0, 0], max = [2, 1, 1], size = 0.2, symmetry = [\"x\", \"z\"]"
+                .to_owned(),
+            &["back", "front", "plane_x", "plane_z", "right", "top"],
+        ),
+    ] {
+        for element in ["Tet4", "Tet20", "Hex27"] {
+            let sets = [format!("body.part.mesh={{ {mesh} }}"), format!("body.part.element={element}")];
+            let case = resolved(SOLID, &[&sets[0], &sets[1]]).unwrap_or_else(|p| panic!("{}", p[0]));
+            let body = &case.bodies[0];
+            let mut named = body.mesh.sides();
+            named.sort();
+            assert_eq!(named, sides);
+            let mesh = body.make_mesh(3).unwrap();
+            assert_eq!(mesh.sides.into_keys().collect::<Vec<_>>(), sides);
+            let (cells, nodes) = body.mesh.estimate(mesh.element);
+            assert_eq!(cells, mesh.cells.len() as f64 / mesh.element.nodes() as f64);
+            let ratio = nodes / mesh.nodes.len() as f64;
+            assert!((0.5..2.0).contains(&ratio), "{element} {named:?}: {ratio}");
+            let written = serde_json::to_string(&case).unwrap();
+            assert_eq!(serde_json::from_str::<Case>(&written).unwrap(), case);
+        }
+    }
+    let oblique = format!("body.part.mesh={{ {tube}, axis = [1, 1, 0], symmetry = [\"z\"] }}");
+    let problems = resolved(SOLID, &[&oblique]).unwrap_err();
+    assert!(problems[0].to_string().contains("axis = \"z\""), "{}", problems[0]);
 }

@@ -30,7 +30,11 @@ impl Surface {
     /// Facets as lists of global nodes (start, end, interior), traversed with the body on their
     /// left; `orientations` only matters for points
     /// ([`Mesh::orientation`](carom_solid::Mesh::orientation)).
+    ///
+    /// # Panics
+    /// For facets in space, between which there is no contact yet.
     pub fn new(shape: FacetShape, facets: &[Vec<usize>], orientations: &[f64]) -> Self {
+        assert!(shape.dimension() < 3, "contact of surfaces in space");
         let end = |facet: &[usize]| facet[shape.nodes().min(2) - 1];
         let starts: HashMap<usize, usize> = facets.iter().enumerate().map(|(k, f)| (f[0], k)).collect();
         let ends: HashMap<usize, usize> = facets.iter().enumerate().map(|(k, f)| (end(f), k)).collect();
@@ -38,7 +42,7 @@ impl Surface {
         let none = |_| [None, None];
         let neighbours: Vec<[Option<usize>; 2]> = match shape {
             FacetShape::Point => facets.iter().map(none).collect(),
-            FacetShape::L2 | FacetShape::L3 | FacetShape::L4 => facets.iter().map(neighbours_of).collect(),
+            _ => facets.iter().map(neighbours_of).collect(),
         };
         let (nodes, orientations) = (facets.concat(), orientations.to_vec());
         let is_whole = neighbours.iter().flatten().all(Option::is_some);

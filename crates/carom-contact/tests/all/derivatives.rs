@@ -17,7 +17,7 @@ fn scene(shape: FacetShape, point: ContactPoint, height: f64) -> (NodeToFacet, V
     match shape {
         FacetShape::L3 => y.extend([0.05, 0.21]),
         FacetShape::L4 => y.extend([0.4, 0.22, -0.35, 0.12]),
-        FacetShape::L2 | FacetShape::Point => {}
+        _ => {}
     }
     let facet: Vec<usize> = (1..y.len() / 2).collect();
     let contact = NodeToFacet::new(vec![0], Surface::new(shape, &[facet], &[1.0]), Detection::Trajectory);

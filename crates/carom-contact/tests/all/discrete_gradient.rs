@@ -15,7 +15,7 @@ fn start(shape: FacetShape) -> Vec<f64> {
     match shape {
         FacetShape::L3 => y.extend([0.05, 0.21]),
         FacetShape::L4 => y.extend([0.4, 0.22, -0.35, 0.12]),
-        FacetShape::L2 | FacetShape::Point => {}
+        _ => {}
     }
     y
 }

@@ -15,7 +15,7 @@ fn scenes(height: f64) -> Vec<(Box<dyn Kinematics>, Vec<f64>)> {
         match shape {
             FacetShape::L3 => y.extend([0.05, 0.21]),
             FacetShape::L4 => y.extend([0.4, 0.22, -0.35, 0.12]),
-            FacetShape::L2 | FacetShape::Point => {}
+            _ => {}
         }
         let facet: Vec<usize> = (1..y.len() / 2).collect();
         let side = Surface::new(shape, &[facet], &[1.0]);

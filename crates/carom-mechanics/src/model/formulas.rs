@@ -3,9 +3,12 @@
 
 use carom_formula::Formula;
 
-/// A formula without a finite value.
+/// A formula without a value that is allowed: it is not finite, or negative.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{what} has no finite value at X = {place:?}, t = {time}: {formula} = {value}")]
+#[error(
+    "{what} {} at X = {place:?}, t = {time}: {formula} = {value}",
+    if value.is_finite() { "is negative" } else { "has no finite value" }
+)]
 pub struct NoValue {
     /// The source of the formula.
     pub what: String,

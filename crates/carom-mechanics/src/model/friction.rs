@@ -5,11 +5,14 @@ use carom_formula::Formula;
 
 use super::formulas::{NoValue, value};
 
+/// A negative coefficient down to this one is the round-off of a formula that ends at zero.
+const ROUND_OFF: f64 = 1e-12;
+
 /// Friction between the sides of a contact.
 pub struct Friction {
     /// μ_s as a formula of reference position and time, and its label; none: only the limit counts.
     pub stick: Option<(Formula, String)>,
-    /// μ_d; μ_s if none.
+    /// μ_d; μ_s if none, or where this is less.
     pub slip: Option<f64>,
     /// See [`Law::decay`].
     pub decay: f64,
@@ -45,11 +48,12 @@ impl Friction {
                 return Ok(Law { stick: f64::INFINITY, slip: f64::INFINITY, decay: 0.0, limit });
             };
             let stick = value(formula, label, place, time)?;
-            if stick < 0.0 {
+            if stick < -ROUND_OFF {
                 let formula = formula.text().to_owned();
                 let place = place.clone();
                 return Err(NoValue { what: label.clone(), formula, place, time, value: stick });
             }
+            let stick = stick.max(0.0);
             Ok(Law { stick, slip: self.slip.unwrap_or(stick).min(stick), decay: self.decay, limit })
         };
         self.places.iter().enumerate().map(law).collect()

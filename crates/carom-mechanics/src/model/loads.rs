@@ -141,11 +141,11 @@ impl Loads {
     }
 
     /// Calls `visit(nodes, tangent)` for every facet under pressure, tangent = ∂f_ext/∂y (`(n·D)²`,
-    /// row-major); zero without `at`.
+    /// row-major) at positions `y`; zero without `at`.
     pub(crate) fn each_facet_tangent(
         &self,
         dimension: usize,
-        at: Option<&LoadsAt>,
+        at: Option<(&LoadsAt, &[f64])>,
         mut visit: impl FnMut(&[usize], &[f64]),
     ) {
         let mut tangent = Vec::new();
@@ -153,8 +153,8 @@ impl Loads {
             for (facet, nodes) in load.on.facets().iter().enumerate() {
                 tangent.clear();
                 tangent.resize((nodes.len() * dimension).pow(2), 0.0);
-                if let Some(at) = at {
-                    load.on.facet_tangent(facet, &at.pressures[k], &mut tangent);
+                if let Some((at, y)) = at {
+                    load.on.facet_tangent(facet, &at.pressures[k], y, &mut tangent);
                 }
                 visit(nodes, &tangent);
             }

@@ -26,16 +26,20 @@ pub struct Mode {
 
 /// An unconstrained body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "body \"{body}\" is free to {motion}: neither supports nor closed contacts constrain this motion. Add a [[support]], press the body \
-     with the `move` of a support instead of a force, start with the contact closed, or use a scheme with inertia"
-)]
+#[error("body \"{body}\" is free to {motion}: {}", if *slips { SLIPS } else { FREE })]
 pub struct Unconstrained {
     /// Its name.
     pub body: String,
     /// Its free motion.
     pub motion: &'static str,
+    /// Whether closed contacts would constrain it if they did not slip.
+    pub slips: bool,
 }
+
+const FREE: &str = "neither supports nor closed contacts constrain this motion. Add a [[support]], press the body with the `move` of a support instead of \
+     a force, start with the contact closed, or use a scheme with inertia";
+const SLIPS: &str = "its closed contacts slip, and the load exceeds what friction can hold. Use a smaller load, a larger `mu` or `shear`, the `move` of a \
+     support instead of a force, or a scheme with inertia";
 
 /// Axes of the translations and of the rotations in a dimension.
 fn axes(dimension: usize) -> (&'static [usize], &'static [usize]) {
@@ -71,7 +75,7 @@ impl Mode {
     }
 
     /// Displacement of a point along an axis.
-    fn at(&self, place: &[f64], axis: usize) -> f64 {
+    pub(crate) fn at(&self, place: &[f64], axis: usize) -> f64 {
         let arm = |i: usize| place.get(i).map_or(0.0, |x| (x - self.centre[i]) / self.size);
         let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
         self.translation[axis] + self.rotation[j] * arm(k) - self.rotation[k] * arm(j)
@@ -138,7 +142,7 @@ fn null_space(size: usize, rows: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>
 }
 
 /// Checks that active contacts, by their rows at positions `y`, constrain the rigid modes left free
-/// by supports.
+/// by supports. `slips`: the rows of pairs that slip.
 ///
 /// # Errors
 /// The body and its motion.
@@ -147,6 +151,7 @@ pub(crate) fn check_rigid_modes<'a>(
     free: &[Mode],
     y: &[f64],
     rows: impl Iterator<Item = Row<'a>>,
+    slips: impl Iterator<Item = Row<'a>>,
 ) -> Result<(), Unconstrained> {
     if free.is_empty() {
         return Ok(());
@@ -160,9 +165,13 @@ pub(crate) fn check_rigid_modes<'a>(
         };
         free.iter().map(along).collect()
     };
-    let Some(remaining) = null_space(free.len(), rows.map(row)).into_iter().next() else { return Ok(()) };
+    let rows: Vec<Vec<f64>> = rows.map(row).collect();
+    let Some(remaining) = null_space(free.len(), rows.iter().cloned()).into_iter().next() else {
+        return Ok(());
+    };
+    let held = null_space(free.len(), rows.into_iter().chain(slips.map(row)));
     let largest =
         (0..remaining.len()).max_by(|a, b| remaining[*a].abs().total_cmp(&remaining[*b].abs())).unwrap_or(0);
     let mode = &free[largest];
-    Err(Unconstrained { body: parts[mode.part].name.clone(), motion: mode.motion() })
+    Err(Unconstrained { body: parts[mode.part].name.clone(), motion: mode.motion(), slips: held.is_empty() })
 }

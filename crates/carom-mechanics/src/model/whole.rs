@@ -25,7 +25,7 @@ pub struct Support {
 
 /// The constant data of a simulation.
 pub struct Model {
-    /// Components of a position: 1 or 2.
+    /// Components of a position: 1, 2 or 3.
     pub dimension: usize,
     /// Bodies; their nodes are numbered consecutively in this order.
     pub parts: Vec<BodyInstance>,
@@ -51,7 +51,7 @@ pub struct Model {
     pub loads: Loads,
     /// Moving supports.
     pub motions: Motions,
-    /// Rigid modes that supports leave free; only determined without inertia.
+    /// Rigid modes that supports leave free.
     pub unconstrained: Vec<Mode>,
     /// Contacts.
     pub contacts: Vec<Contact>,

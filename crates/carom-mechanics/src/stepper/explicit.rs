@@ -31,9 +31,10 @@
 //! force at t_n then acts over a whole step.
 
 use carom_algebra::{Kind, complementarity, coulomb, proximal};
-use carom_contact::{Hold, Law, Pair, Pairing, Rows, Tangential};
+use carom_contact::{Pair, Pairing, Rows, Tangential};
 
 use super::forward::Forward;
+use super::rubbing::{hold, kind};
 use super::scratch::Scratch;
 use super::watch::{active, approach, carry_into, depth, gap_at, held, measure_into, moves};
 use super::{Accepted, StepReport, Stepper, difference};
@@ -50,8 +51,6 @@ use crate::workspace::Workspace;
 
 /// Linearisations of the gaps in a step before it is rejected; two to five are typical.
 const ROUNDS: u32 = 60;
-/// Distance from the edge of the cone, relative to its radius, at which a node slips.
-const EDGE: f64 = 1e-12;
 
 /// The explicit stepper.
 pub struct Explicit {
@@ -148,6 +147,9 @@ impl Explicit {
                 impulse[i] += 0.5 * dt * (before[i] + now[i]);
             }
         }
+        // Gaps are closed to a tolerance, over which the work of their forces is not known.
+        let pressed = |state: &State| state.pairs.iter().flatten().map(|pair| -pair.lambda).sum::<f64>();
+        next.ledger.open += GAP_TOLERANCE * model.scale * (pressed(start) + pressed(next));
         next.ledger.potential = model.potential(&next.y);
         self.book_kinetic(next);
     }
@@ -307,8 +309,9 @@ impl Explicit {
             impulses.extend(places.iter().map(|&(k, p)| of(&pairings[k].pairs[p])[0]));
             for (i, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
                 let Some(law) = laws[k].get(pairings[k].pairs[p].node) else { continue };
-                let kind = slip_into(model, state, (k, &pairings[k].pairs[p]), law, i, acting)?;
-                kinds.push(kind);
+                let pair = &pairings[k].pairs[p];
+                slip_into(model, state, (k, pair), acting)?;
+                kinds.push(kind(law, i, state, (k, pair), acting.row(acting.len() - 1), before));
                 impulses.push(of(&pairings[k].pairs[p])[1]);
             }
             let (mut matrix, mut right) = self.matrix(acting);
@@ -362,12 +365,10 @@ impl Explicit {
             }
         }
         for (i, kind) in kinds.iter().enumerate() {
-            if let Kind::Tangential { of, coefficient, limit } = *kind {
+            if let Kind::Tangential { of, .. } = *kind {
                 let (k, p) = places[of];
-                let radius = (coefficient * impulses[of]).min(limit);
                 let tangential = &mut pairings[k].pairs[p].tangential;
-                let sticks = tangential.traction.abs() < radius * (1.0 - EDGE);
-                tangential.hold = if sticks { Hold::Stick } else { Hold::of(tangential.traction, 0.0) };
+                tangential.hold = hold(*kind, impulses[of], impulses[i]);
                 tangential.slip += dt * acting.row(i).along(velocity);
             }
         }
@@ -404,27 +405,18 @@ impl Explicit {
     }
 }
 
-/// Adds H at y_n of a pair, the i-th one, and returns the law of its force. A node that stuck has its
-/// coefficient of stick until it slips.
+/// Adds H at y_n of a pair.
 fn slip_into(
     model: &Model,
     state: &State,
     (k, pair): (usize, &Pair),
-    law: &Law,
-    i: usize,
     rows: &mut Rows,
-) -> Result<Kind, Rejected> {
+) -> Result<(), Rejected> {
     let (contact, mut at) = (&model.contacts[k], *pair);
     let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
     contact.kinematics.measure(&mut at, &state.y, rows).map_err(failed)?;
     rows.pop();
-    contact.kinematics.slip(&at, &state.y, rows).map_err(failed)?;
-    let rate = rows.row(rows.len() - 1).along(&state.v).abs();
-    let coefficient = match pair.tangential.hold {
-        Hold::Stick => law.stick,
-        _ => law.coefficient(rate).0,
-    };
-    Ok(Kind::Tangential { of: i, coefficient, limit: law.limit })
+    contact.kinematics.slip(&at, &state.y, rows).map_err(failed)
 }
 
 /// Contact, node and facet of the pairs with a force.

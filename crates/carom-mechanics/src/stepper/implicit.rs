@@ -7,13 +7,14 @@ use carom_time::{Before, Kernel, Memory, Stage, Weights};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::carried;
 use crate::contact_update::{GAP_TOLERANCE, search, start_step};
-use crate::equations::{Equations, Iterate};
+use crate::equations::Equations;
+use crate::evaluation::Iterate;
 use crate::friction::{book_states, take_slips};
 use crate::ledger;
 use crate::model::{Contact, LoadsAt, Model};
 use crate::newton::solve_stage;
 use crate::persistency::{averaged_contact_into, project};
-use crate::rejected::Rejected;
+use crate::rejected::{Rejected, SINGULAR};
 use crate::restitution::{self, Impact, separate};
 use crate::settings::Settings;
 use crate::state::{Means, Previous, State};
@@ -75,6 +76,10 @@ impl Stepper for Implicit {
             let (solved, effort) =
                 solve_stage(&equations, &next.frozen, before, &self.settings, guess, work)?;
             report.newton += effort.iterations;
+            if effort.regularity < SINGULAR {
+                let before = report.ambiguity.unwrap_or(f64::INFINITY);
+                report.ambiguity = Some(before.min(effort.regularity));
+            }
             report.events.extend(effort.events);
             next.frozen = effort.frozen;
             ledger::add_stage(&equations, &solved, previous, &mut means);
@@ -104,7 +109,7 @@ impl Stepper for Implicit {
         }
         take_motions(&equations, &mut next);
         next.take_pairs(&solved.at.pairings);
-        take_slips(model, &mut next, &solved.slips);
+        take_slips(&equations, &solved, &mut next);
         next.f_external.clone_from(&solved.forces.loads);
         next.f_internal.clone_from(&solved.forces.internal);
         let mut strain = solved.strain;

@@ -13,22 +13,21 @@
 //! d := d − K⁻¹r₀ + s K⁻¹GᵀP,    G v_{n+1} = b + D P,    D = v' s G K⁻¹Gᵀ + c G M⁻¹Gᵀ
 //! ```
 //!
-//! so that P solves a small complementarity problem, exactly (`carom_algebra::coulomb` with friction:
-//! each normal row then has one of slip, H at the predicted positions, whose impulse obeys Coulomb's
-//! law with the rate H v_{n+1}; e acts on normal rates alone, which can create energy), and Newton's method converges as
-//! without contact. D is symmetric and positive definite. Velocities are constrained, not
-//! positions: an arriving node penetrates by up to Δt times its speed, which is recorded as it is.
+//! so that P solves a small complementarity problem (`impulses.rs`), exactly, and Newton's method
+//! converges as without contact. Velocities are constrained, not positions: an arriving node penetrates
+//! by up to Δt times its speed, which is recorded as it is.
 
-use carom_algebra::{Kind, complementarity, coulomb, proximal};
-use carom_contact::{Hold, Pairing, Rows, Tangential};
+use carom_contact::{Pairing, Rows, Tangential};
 use carom_time::{Impulse, ImpulseShares, Memory, Stage};
 
-use super::watch::{active, approach, carry_into, depth, gap_at, held, measure_into, moves};
+use super::impulses::{Impulses, TIE};
+use super::watch::{approach, carry_into, depth, gap_at, measure_into};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::balance::residual_into;
-use crate::constraints::{Constraints, independent_rows};
+use crate::constraints::Constraints;
 use crate::contact_update::search;
-use crate::equations::{Equations, Evaluation, Iterate};
+use crate::equations::Equations;
+use crate::evaluation::{Evaluation, Iterate};
 use crate::friction::book_states;
 use crate::ledger::{book_kinetic, open_work, work_of_loads};
 use crate::model::{LoadsAt, Model};
@@ -42,37 +41,15 @@ use crate::timings::timed;
 use crate::trace::Iteration;
 use crate::workspace::Workspace;
 
-/// A predicted gap above minus this fraction of L is open, so that round-off does not decide ties.
-const TIE: f64 = 1e-10;
 /// Share of the allowed depth by which a node may sink in a step.
 const SINKS: f64 = 0.1;
 /// Bisections of a Newton step that inverts a cell.
 const BISECTIONS: usize = 8;
-/// Distance from the edge of the cone, relative to its radius, at which a node slips.
-const EDGE: f64 = 1e-12;
 
 /// The stepper of impulse schemes.
 pub struct Impulsive {
     scheme: Box<dyn Impulse>,
     settings: Settings,
-}
-
-/// The contacts of a step, and their impulses.
-struct Impulses {
-    /// Rows at the predicted positions.
-    rows: Constraints,
-    /// e of each contact; 0 of slips.
-    restitution: Vec<f64>,
-    /// The law of each row.
-    kinds: Vec<Kind>,
-    /// Whether rows depend on each other.
-    dependent: bool,
-    /// G v_n.
-    before: Vec<f64>,
-    /// P ≥ 0.
-    values: Vec<f64>,
-    /// M⁻¹Gᵀ, if the scheme needs it.
-    released: Vec<Vec<f64>>,
 }
 
 impl Impulsive {
@@ -83,6 +60,10 @@ impl Impulsive {
 }
 
 impl Stepper for Impulsive {
+    fn accelerates_freely(&self) -> bool {
+        true
+    }
+
     fn step(
         &self,
         model: &Model,
@@ -144,29 +125,7 @@ impl Stepper for Impulsive {
             model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
         }
         next.ledger.open += open_work(state, &next, &solved.at.increment);
-        for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
-            pair.lambda = 0.0;
-        }
-        impulses.record(dt, &mut next);
-        for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
-            pair.tangential.traction = 0.0;
-        }
-        for (r, (&(k, p), impulse)) in impulses.rows.places.iter().zip(&impulses.values).enumerate() {
-            let pair = &mut pairings[k].pairs[p];
-            match impulses.kinds[r] {
-                Kind::Normal => pair.lambda = -impulse / dt,
-                Kind::Tangential { of, coefficient, limit } => {
-                    let radius = (coefficient * impulses.values[of]).min(limit);
-                    let sticks = impulse.abs() < radius * (1.0 - EDGE);
-                    pair.tangential = Tangential {
-                        hold: if sticks { Hold::Stick } else { Hold::of(-impulse, 0.0) },
-                        traction: -impulse / dt,
-                        slip: pair.tangential.slip + dt * impulses.rows.rows.row(r).along(&next.v),
-                        ..Tangential::default()
-                    };
-                }
-            }
-        }
+        impulses.record(dt, &mut next, &mut pairings);
         // Nodes that arrived later in the step than the prediction are tracked from now on.
         measure_into(model, &next.y, &mut pairings, &mut Vec::new())?;
         search(model, &state.y, &next.y, &mut pairings, &mut report.events);
@@ -255,7 +214,7 @@ impl Impulsive {
                 }
                 Ok(())
             })?;
-            impulses_into(equations, shares, &now, impulses, &correction, &columns, &mut target)?;
+            impulses.solve(equations, shares, &now, &correction, &columns, &mut target)?;
             for (column, impulse) in columns.iter().zip(&target) {
                 for (x, c) in correction.iter_mut().zip(column) {
                     *x += shares.force * impulse * c;
@@ -306,43 +265,6 @@ fn sinks_slowly(model: &Model, before: &State, now: &State) -> Result<(), Reject
     Ok(())
 }
 
-/// P of the linearised step: b and D from the solutions for −r₀ and for each row.
-fn impulses_into(
-    equations: &Equations,
-    shares: ImpulseShares,
-    now: &Evaluation,
-    impulses: &Impulses,
-    correction: &[f64],
-    columns: &[Vec<f64>],
-    values: &mut Vec<f64>,
-) -> Result<(), Rejected> {
-    let count = impulses.rows.len();
-    let velocity = &equations.stage.velocity;
-    let end: Vec<f64> = (0..correction.len())
-        .map(|i| velocity.slope * (now.at.increment[i] + correction[i]) + velocity.at_start[i])
-        .collect();
-    let mut matrix = vec![0.0; count * count];
-    let mut right = vec![0.0; count];
-    for (i, row) in impulses.rows.rows.iter().enumerate() {
-        right[i] = row.along(&end) + impulses.restitution[i] * impulses.before[i];
-        for j in 0..=i {
-            let direct = impulses.released.get(j).map_or(0.0, |r| shares.velocity * row.along(r));
-            matrix[i * count + j] = velocity.slope * shares.force * row.along(&columns[j]) + direct;
-        }
-    }
-    if impulses.dependent {
-        proximal(&mut matrix, &mut right, &impulses.values);
-    }
-    if impulses.rows.slips.contains(&true) {
-        for i in 0..count {
-            (0..i).for_each(|j| matrix[j * count + i] = matrix[i * count + j]);
-        }
-        values.clone_from(&impulses.values);
-        return Ok(coulomb(&matrix, &right, &impulses.kinds, values)?);
-    }
-    Ok(complementarity(&matrix, &right, values)?)
-}
-
 /// Forces and residual at an increment, with the impulses as contact forces.
 fn evaluate(
     equations: &Equations,
@@ -363,113 +285,4 @@ fn evaluate(
     let norms = residual_into(model, &equations.stage, &now.forces, &equations.known, &mut now.residual);
     (now.measure.residual, now.measure.forces) = norms;
     Ok(now)
-}
-
-impl Impulses {
-    fn none(dimension: usize) -> Self {
-        Self {
-            rows: Constraints::none(dimension),
-            restitution: Vec::new(),
-            kinds: Vec::new(),
-            dependent: false,
-            before: Vec::new(),
-            values: Vec::new(),
-            released: Vec::new(),
-        }
-    }
-
-    /// The contacts whose gap is closed at the predicted positions.
-    fn closed(
-        model: &Model,
-        (state, dt): (&State, f64),
-        shares: ImpulseShares,
-        predicted: &[f64],
-        pairings: &mut [Pairing],
-        work: &mut Workspace,
-    ) -> Result<Self, Rejected> {
-        let mut measured = Vec::new();
-        measure_into(model, predicted, pairings, &mut measured)?;
-        for (pairing, rows) in pairings.iter_mut().zip(&measured) {
-            for (pair, row) in pairing.pairs.iter_mut().zip(rows.iter()) {
-                pair.active = row.gap < -TIE * model.scale;
-            }
-        }
-        let (places, stuck): (Vec<_>, Vec<_>) =
-            active(pairings).partition(|&(k, p)| moves(model, measured[k].row(p)));
-        for (k, p) in stuck {
-            // No impulse changes its velocity.
-            let row = measured[k].row(p);
-            let path = |dof: usize| predicted[dof] - state.y[dof];
-            let sinks = -row.entries().map(|(dof, slope)| slope * path(dof)).sum::<f64>();
-            if sinks > TIE * model.scale {
-                return Err(held(&model.contacts[k], &pairings[k].pairs[p], row.gap));
-            }
-        }
-        let dependent = independent_rows(model, places.iter().copied(), &measured).len() < places.len();
-        let mut rows =
-            Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
-        let mut kinds = vec![Kind::Normal; places.len()];
-        let mut restitution: Vec<f64> = places.iter().map(|&(k, _)| model.contacts[k].restitution).collect();
-        let laws = model.friction_laws(state.time + dt)?;
-        for (of, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
-            let (contact, pair) = (&model.contacts[k], &pairings[k].pairs[p]);
-            let Some(law) = laws[k].get(pair.node) else { continue };
-            let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
-            let mut slip = Rows::new(model.dimension);
-            contact.kinematics.slip(pair, predicted, &mut slip).map_err(failed)?;
-            let coefficient = match pair.tangential.hold {
-                Hold::Stick => law.stick,
-                _ => law.coefficient(slip.row(0).along(&state.v).abs()).0,
-            };
-            rows.push_plain((k, p), slip.row(0), true);
-            kinds.push(Kind::Tangential { of, coefficient, limit: dt * law.limit });
-            restitution.push(0.0);
-        }
-        let mut released = Vec::new();
-        if !rows.is_empty() && (shares.velocity != 0.0 || shares.acceleration != 0.0) {
-            work.system.factor_mass(model, &Constraints::none(model.dimension))?;
-            let mut force = vec![0.0; model.dofs()];
-            for row in rows.rows.iter() {
-                force.fill(0.0);
-                row.add_to(1.0, &mut force);
-                let mut column = vec![0.0; model.dofs()];
-                work.system.factor.solve(model, &force, &[], &mut column, &mut Vec::new())?;
-                released.push(column);
-            }
-        }
-        Ok(Self {
-            restitution,
-            kinds,
-            dependent,
-            before: rows.rows.iter().map(|row| row.along(&state.v)).collect(),
-            values: vec![0.0; rows.len()],
-            rows,
-            released,
-        })
-    }
-
-    /// x += factor M⁻¹GᵀP.
-    fn release(&self, x: &mut [f64], factor: f64) {
-        for (column, impulse) in self.released.iter().zip(&self.values) {
-            for (x, c) in x.iter_mut().zip(column) {
-                *x += factor * impulse * c;
-            }
-        }
-    }
-
-    /// Adds impulses to the ledger and, as forces P/Δt, to those of the contacts: work ½(Gv⁻ +
-    /// Gv⁺)·P.
-    fn record(&self, dt: f64, next: &mut State) {
-        next.contact_forces.fill([0.0; 3]);
-        for (r, (row, impulse)) in self.rows.rows.iter().zip(&self.values).enumerate() {
-            let normal = row.normal();
-            for i in 0..3 {
-                next.contact_forces[self.rows.places[r].0][i] += impulse * normal[i] / dt;
-                next.impulses[self.rows.places[r].0][i] += impulse * normal[i];
-            }
-            let work = 0.5 * impulse * (self.before[r] + row.along(&next.v));
-            let is_slip = self.rows.slips[r];
-            *(if is_slip { &mut next.ledger.friction_work } else { &mut next.ledger.contact_work }) += work;
-        }
-    }
 }

@@ -3,7 +3,9 @@
 mod explicit;
 mod forward;
 mod implicit;
+mod impulses;
 mod impulsive;
+mod rubbing;
 mod scratch;
 mod watch;
 
@@ -32,6 +34,9 @@ pub struct StepReport {
     pub releases: Vec<(usize, usize)>,
     /// Hand-overs and slides off the end, with the index of their contact.
     pub events: Vec<(usize, PairEvent)>,
+    /// Where stick and slip are not unique: the smallest relative singular value of the interface, with
+    /// the sign of its determinant.
+    pub ambiguity: Option<f64>,
     /// Jump of kinetic energy at activation.
     pub projection: f64,
     /// Jump of kinetic energy by restitution where contact ends.
@@ -104,6 +109,11 @@ impl Accepted {
 
 /// A time stepper.
 pub trait Stepper: Send + Sync {
+    /// Whether the acceleration of a state is that without contact, whose forces are impulses.
+    fn accelerates_freely(&self) -> bool {
+        false
+    }
+
     /// One step of size `dt` from `state` to the time `to`. The caller sets the grid index of the
     /// result.
     fn step(

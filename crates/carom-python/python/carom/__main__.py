@@ -25,7 +25,7 @@ def main() -> int:
         export(open_run(arguments.directory), arguments.out, arguments.format)
     except (Error, ValueError, OSError, ImportError) as error:
         print(f"error: {error}", file=sys.stderr)
-        return 4 if isinstance(error, OSError) else 2
+        return 4 if isinstance(error, OSError) and not isinstance(error, FileExistsError) else 2
     return 0
 
 

@@ -8,9 +8,9 @@ from os import PathLike
 from typing import Any
 
 from . import _carom
-from .errors import StoppedError
+from .errors import CaseError, StoppedError
 from .functions import plain
-from .progress import progress_bar, threads_or_cores
+from .progress import concurrency, progress_bar
 from .run import Run
 
 
@@ -73,16 +73,24 @@ class Case:
         Case
             The same case, changed. After an error it is unchanged.
         """
-        functions = dict(self._functions)
         values = key if isinstance(key, Mapping) else {key: value}
-        sets = dict(self._sets)
+        # The last override of a key counts.
+        sets = {path: text for path, text in self._sets.items() if path not in values}
+        functions = self._functions_of(sets | {path: "0" for path in values})
         for path, new in values.items():
-            # The last override of a key counts.
-            sets.pop(path, None)
             sets[path] = _carom.toml(plain(new, functions))
-        self._core = self._core.with_sets([f"{path}={text}" for path, text in sets.items()])
+        self._core = self._core.with_sets(_listed(sets))
         self._sets, self._functions = sets, functions
         return self
+
+    def _functions_of(self, sets: Mapping[str, str]) -> dict[str, Callable[..., Any]]:
+        """The functions that the case has with other overrides."""
+        try:
+            text = self._core.text_with(_listed(sets))
+        except CaseError:
+            # A key that is not there: the check of the new case says which.
+            return dict(self._functions)
+        return {name: function for name, function in self._functions.items() if f'"@{name}"' in text}
 
     def copy(self) -> Case:
         """An independent case with the same values."""
@@ -159,12 +167,16 @@ class Case:
         """
         with progress_bar(self.title, progress) as report:
             core, raised = self._core.run(
-                out, threads_or_cores(threads), trials, audit, page, self._functions, report
+                out, concurrency("threads", threads), trials, audit, page, self._functions, report
             )
         return ended(Run(core), raised)
 
     def __repr__(self) -> str:
         return f"<Case {self.title!r}>"
+
+
+def _listed(sets: Mapping[str, str]) -> list[str]:
+    return [f"{path}={text}" for path, text in sets.items()]
 
 
 def ended(run: Run, raised: BaseException | None) -> Run:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import json
 import sys
 from os import PathLike
 from pathlib import Path
@@ -22,42 +20,27 @@ def export(run: Run, path: str | PathLike[str] | None, format: str) -> None:
     run
         The run.
     path
-        The file; ``None`` for standard output, except for Parquet.
+        The file, which must not exist yet; ``None`` for standard output, except for Parquet.
     format
         ``parquet`` (units and meanings are metadata of the columns), ``csv`` (names, units, rows) or
-        ``json`` (columns with name, unit, description and values).
+        ``json`` (columns with name, unit, description and values; ``null`` is not a number), as
+        ``carom export`` writes them.
     """
+    if format not in FORMATS:
+        raise ValueError(f"no format is called {format!r}; the formats are: {', '.join(FORMATS)}")
+    if path is not None and Path(path).is_file():
+        # It may be one of the record.
+        raise FileExistsError(f"{path} exists already, and Carom never overwrites a file; name another file")
     if format == "parquet":
         import pyarrow.parquet as parquet
 
         if path is None:
             raise ValueError("a Parquet file needs a name: --out FILE")
         parquet.write_table(run.to_arrow(), path)
-        return
-    if format not in FORMATS:
-        raise ValueError(f"no format is called {format!r}; the formats are: {', '.join(FORMATS)}")
-    out = sys.stdout if path is None else Path(path).open("w", encoding="utf-8", newline="")
-    try:
-        if format == "json":
-            columns = [
-                {
-                    "name": name,
-                    "unit": run.history.units[name],
-                    "description": run.history.descriptions.get(name, ""),
-                    "values": values.tolist(),
-                }
-                for name, values in run.history.items()
-            ]
-            json.dump({"title": run.title, "version": run.manifest["version"], "columns": columns}, out)
-            out.write("\n")
-        else:
-            writer = csv.writer(out, lineterminator="\n")
-            writer.writerow(run.history)
-            writer.writerow(run.history.units.values())
-            writer.writerows(zip(*(values.tolist() for values in run.history.values())))
-    finally:
-        if path is not None:
-            out.close()
+    elif path is None:
+        sys.stdout.write(run._core.text(format))
+    else:
+        Path(path).write_text(run._core.text(format), encoding="utf-8", newline="")
 
 
 def read_parquet(path: str | PathLike[str]) -> Table:

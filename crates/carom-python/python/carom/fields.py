@@ -23,11 +23,11 @@ class Block:
     body
         Its name.
     vtk_type
-        68: Lagrange curve; 69: Lagrange triangle.
+        Lagrange cells. 68: curve; 69: triangle; 70: quadrilateral; 71: tetrahedron; 72: hexahedron.
     degree
         1 to 3.
     cells : ndarray, shape (cells, nodes)
-        Point numbers: corners, then the nodes of each edge, then the interior.
+        Point numbers: corners, then the nodes of each edge, of each face, and the interior.
     """
 
     body: str
@@ -143,8 +143,11 @@ class Fields(Mapping[float, Any]):
         return self.number(int(np.argmin(np.abs(self.times - time))))
 
     def number(self, i: int) -> FieldSet:
-        """The fields of recorded instant number `i`, from 0."""
-        raw = self._core.field(i)
+        """The fields of recorded instant number `i`, from 0, or of number -1 for the last one."""
+        try:
+            raw = self._core.field(range(len(self))[i])
+        except IndexError:
+            raise IndexError(f"{len(self)} instants are recorded, and none of them is number {i}") from None
         return FieldSet(
             time=raw["time"],
             points=raw["points"],

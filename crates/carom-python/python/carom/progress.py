@@ -9,13 +9,18 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from . import _carom
 
-def threads_or_cores(requested: int | None) -> int:
-    """The number of threads asked for, or one per core."""
+
+def concurrency(name: str, requested: int | None) -> int:
+    """The number of threads or concurrent runs asked for by an argument, or one per core."""
     if requested is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    if requested < 1:
-        raise ValueError(f"threads must be at least 1, not {requested}")
+    most = _carom.most_concurrent()
+    if not 1 <= requested <= most:
+        raise ValueError(
+            f"{name} must be from 1 to {most}, not {requested}; more than one per core costs time and memory"
+        )
     return requested
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from . import _carom
 from .fields import Fields
 from .functions import name_of
-from .progress import progress_bar, threads_or_cores
+from .progress import concurrency, progress_bar
 from .table import Table
 
 if TYPE_CHECKING:
@@ -234,14 +234,17 @@ def resume(
     directory
         The run directory.
     *functions
-        The Python functions of the case, which must be the same: their code, defaults and the values
-        they enclose are compared.
+        The Python functions of the case, which must be the same: their code, defaults, the values they
+        enclose and their attributes are compared. Functions that begin alike are given in the order of
+        the case.
     threads, progress, page
         As in `Case.run`.
     """
     from .case import ended
 
-    given = {name_of(function): function for function in functions}
+    given: dict[str, Callable[..., Any]] = {}
+    for function in functions:
+        given[name_of(function, given)] = function
     with progress_bar(str(directory), progress) as report:
-        core, raised = _carom.resume(directory, threads_or_cores(threads), page, given, report)
+        core, raised = _carom.resume(directory, concurrency("threads", threads), page, given, report)
     return ended(Run(core), raised)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import _carom
 from .case import Case
-from .progress import threads_or_cores
+from .progress import concurrency
 from .table import Table
 
 Floats = NDArray[np.float64]
@@ -64,7 +64,7 @@ class Simulation:
     """
 
     def __init__(self, case: Case, threads: int | None = None) -> None:
-        self._core = _carom.Simulation(case._core, threads_or_cores(threads), case._functions)
+        self._core = _carom.Simulation(case._core, concurrency("threads", threads), case._functions)
         self._columns = self._core.columns()
 
     def advance(self) -> Step:
@@ -166,7 +166,8 @@ class Simulation:
     @property
     def contacts(self) -> Table:
         """The active contact nodes, with the columns of `Run.contact`."""
-        return Table({name: np.asarray(values) for name, values in self._core.contact().items()})
+        columns = {name: np.asarray(values) for name, values in self._core.contact().items()}
+        return Table(columns, self._core.contact_units())
 
     def checkpoint(self) -> bytes:
         """The state, to be restored in this or another simulation of the same case."""

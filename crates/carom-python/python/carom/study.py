@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from . import _carom
 from .case import Case
 from .errors import CaseError, RecordError
-from .progress import progress_bar, threads_or_cores
+from .progress import concurrency, progress_bar
 from .run import Run
 from .run import open as open_run
 
@@ -65,10 +65,10 @@ class Study:
 
     def __getitem__(self, arm: str) -> Run:
         """The record of an arm."""
-        for name, status, _, directory, _ in self._rows:
+        for name, status, reason, directory, _ in self._rows:
             if name == arm:
                 if status is None:
-                    raise RecordError(f"arm {arm!r} has not been computed")
+                    raise RecordError(reason or f"arm {arm!r} has not been computed")
                 return open_run(self.directory / directory)
         raise KeyError(f"no arm is named {arm!r}; the arms are: {', '.join(self.arms)}")
 
@@ -137,15 +137,17 @@ def study(
         )
     temporary = tempfile.TemporaryDirectory(prefix="carom-") if out is None else None
     directory = Path(out) if out is not None else Path(temporary.name if temporary else "") / "study"
-    with tempfile.TemporaryDirectory(prefix="carom-") as folder:
-        text = _study_text(case, arms, grid, keys, Path(folder))
-        if client is not None:
-            _on_workers(client, text, folder, directory)
-        else:
-            with progress_bar(case.title, progress) as report:
-                raised = _carom.study(text, folder, directory, threads_or_cores(jobs), report)
-            if raised is not None:
-                raise raised
+    # The files that the case names are found from every directory, also by workers.
+    name = str(Path(case._core.name).absolute())
+    text = _study_text(case, name, arms, grid, keys)
+    if client is not None:
+        count = _carom.study_plan(text, name, case._core, directory)
+        _on_workers(client, count, directory)
+    else:
+        with progress_bar(case.title, progress) as report:
+            raised = _carom.study(text, name, case._core, directory, concurrency("jobs", jobs), report)
+        if raised is not None:
+            raise raised
     found = Study(directory)
     found._temporary = temporary
     if page:
@@ -155,24 +157,17 @@ def study(
 
 def _study_text(
     case: Case,
+    name: str,
     arms: Sequence[Mapping[str, Any]] | Mapping[str, Mapping[str, Any]] | None,
     grid: Mapping[str, Sequence[Any]] | None,
     keys: Mapping[str, Any],
-    folder: Path,
 ) -> str:
-    """The text of a study file in `folder`, where the case is written if it has no file."""
+    """The text of a study file, which names the case."""
     from .functions import plain
 
-    file = Path(case._core.name)
-    study: dict[str, Any] = {"title": case.title}
-    if file.is_file():
-        # Meshes and tables are beside it.
-        study["case"] = str(file.resolve())
-        sets = case._sets
-    else:
-        (folder / "case.toml").write_text(case.to_toml(), encoding="utf-8")
-        study["case"], sets = "case.toml", {}
-    study |= plain(dict(keys), {})
+    given = plain(dict(keys), {})
+    sets = case._sets | {key: _carom.toml(value) for key, value in given.pop("set", {}).items()}
+    study: dict[str, Any] = {"title": case.title, "case": name} | given
     if isinstance(arms, Mapping):
         arms = [{"name": name, "set": dict(changes)} for name, changes in arms.items()]
     if arms is not None:
@@ -181,14 +176,13 @@ def _study_text(
         study["grid"] = plain(dict(grid), {})
     text = _carom.toml_document(study)
     if sets:
-        common = "".join(f'{_carom.toml(key)} = {value}\n' for key, value in sets.items())
+        common = "".join(f"{_carom.toml(key)} = {value}\n" for key, value in sets.items())
         text += f"\n[set]\n{common}"
     return text
 
 
-def _on_workers(client: Any, text: str, folder: str, directory: Path) -> None:
-    """Computes a study by the workers of a Dask client."""
-    count = _carom.study_plan(text, folder, directory)
+def _on_workers(client: Any, count: int, directory: Path) -> None:
+    """Computes the runs of a planned study by the workers of a Dask client."""
     place = str(directory.resolve())
     futures = client.map(
         _arm, [place] * count, range(1, count + 1), pure=False, retries=3, key=f"carom-{place}"

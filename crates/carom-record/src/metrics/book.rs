@@ -1,7 +1,8 @@
 //! The table of metrics for the book.
 
 use super::definition::Definition;
-use super::table::{COLUMNS, FREE, HISTORY, PRESSURE, WORK};
+use super::run_table::{PRESSURE, WORK};
+use super::table::{COLUMNS, FREE, HISTORY};
 
 /// All definitions as a Markdown table for the book.
 pub fn book_table() -> String {

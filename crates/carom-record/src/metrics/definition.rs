@@ -83,3 +83,19 @@ pub struct Metric {
     /// Its meaning.
     pub definition: &'static str,
 }
+
+/// A row of a table.
+pub(super) const fn d(
+    name: &'static str,
+    unit: Unit,
+    formula: &'static str,
+    source: &'static str,
+    meaning: &'static str,
+) -> Definition {
+    Definition { name, formula, unit, source, meaning }
+}
+
+/// Source of what is defined here.
+pub(super) const OWN: &str = "this project";
+/// Source of what published tables of impacts list.
+pub(super) const TABLES: &str = "used by Doyen, Ern, Piperno 2011";

@@ -5,7 +5,8 @@ use super::definition::{Definition, Metric, Unit};
 use super::episode::{default_bridge, episodes};
 use super::facts::Facts;
 use super::ledger::energy_lost_at;
-use super::table::{COLUMNS, FREE, HISTORY, PRESSURE, WORK};
+use super::run_table::{PRESSURE, WORK};
+use super::table::{COLUMNS, FREE, HISTORY};
 use crate::{History, Run};
 
 /// Every named metric of a history, in the order of [`HISTORY`].
@@ -24,6 +25,11 @@ impl Metric {
     /// Whether it is one of the computational work, which says nothing about the solution.
     pub fn is_work(&self) -> bool {
         WORK.iter().any(|(definition, _)| definition.name == self.name)
+    }
+
+    /// Whether it is a measured time, which differs from run to run.
+    pub fn is_measured(&self) -> bool {
+        WORK.iter().any(|(definition, _)| definition.name == self.name && definition.unit == Unit::Second)
     }
 }
 

@@ -108,6 +108,15 @@ pub(crate) fn largest(run: &Run) -> Option<f64> {
     extreme(&at_rest(run)?.1, f64::gt).map(|x| x.1)
 }
 
+/// Largest tangential traction of a node at the end of a static run, a force over the weight that the
+/// pressure is one over; none without friction.
+pub(crate) fn largest_traction(run: &Run) -> Option<f64> {
+    at_rest(run)?;
+    let rows = last_rows(run);
+    let tractions = rows.iter().filter(|r| r.friction != "none" && r.multiplier != 0.0);
+    tractions.map(|r| (r.traction * r.pressure / r.multiplier).abs()).reduce(f64::max)
+}
+
 /// [`hertz`] of the pressures at the end of a static run.
 pub(crate) fn ellipse(run: &Run) -> Option<(f64, f64)> {
     let (places, pressures) = at_rest(run)?;

@@ -36,6 +36,8 @@ pub enum Goal {
     Force,
     /// Accuracy of the stresses.
     Stress,
+    /// Accuracy of what friction takes and of how long nodes stick.
+    Friction,
     /// Accuracy of the displacements.
     Trajectory,
     /// Least work for displacements of the required accuracy.
@@ -44,7 +46,7 @@ pub enum Goal {
 
 impl Goal {
     /// Names in study files, with the measure that each goal ranks by.
-    pub const NAMES: [(&str, Goal, &str); 5] = [
+    pub const NAMES: [(&str, Goal, &str); 6] = [
         ("energy", Goal::Energy, "largest change of energy at any time"),
         (
             "force",
@@ -55,6 +57,11 @@ impl Goal {
             "stress",
             Goal::Stress,
             "total variation of the stresses of the probes; substitutes: their mean peaks, their deviations",
+        ),
+        (
+            "friction",
+            Goal::Friction,
+            "mean of the errors of friction's work and of the share of the time in contact that nodes stick; substitutes: one of them",
         ),
         ("trajectory", Goal::Trajectory, "deviation of displacements and centres"),
         ("cost", Goal::Cost, "processor time of arms whose displacements are within `accuracy`"),

@@ -9,7 +9,7 @@ use super::arm::Arm;
 use super::claim::Claim;
 use super::design::{Design, Goal, Kind};
 use super::ensemble::Ensemble;
-use crate::{Expect, Machine, Manifest, RecordError, Source, Status, files};
+use crate::{Expect, Machine, Manifest, RecordError, Run, Source, Status, files};
 
 /// The files a study was made from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -77,10 +77,15 @@ impl StudyManifest {
     /// Reads `study.json`.
     ///
     /// # Errors
-    /// Input/output or system error, or a damaged file.
+    /// Input/output or system error, no study, or a damaged file.
     pub fn read(directory: &Path) -> Result<Self, RecordError> {
         let path = directory.join("study.json");
-        let text = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
+        let text = std::fs::read(&path).map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => {
+                RecordError::NotAStudy { path: directory.to_path_buf() }
+            }
+            _ => RecordError::io("read", &path)(error),
+        })?;
         serde_json::from_slice(&text).map_err(|error| {
             let line = Some(error.line() as u64);
             RecordError::corrupt(&path, line, error.to_string(), "run the study again")
@@ -159,5 +164,19 @@ impl StudyManifest {
             return Ok((None, None));
         }
         Manifest::read(&path).map(|m| (Some(m.status), m.reason))
+    }
+
+    /// The record of an arm, none if it has not started.
+    ///
+    /// # Errors
+    /// Input/output or system error, or a damaged record.
+    pub fn record(&self, directory: &Path, arm: &Arm) -> Result<Option<Run>, RecordError> {
+        let path = directory.join(&arm.directory);
+        path.join("manifest.json").is_file().then(|| Run::open(&path)).transpose()
+    }
+
+    /// As [`Self::record`], and none of a record that is damaged.
+    pub(super) fn intact(&self, directory: &Path, arm: &Arm) -> Result<Option<Run>, RecordError> {
+        self.record(directory, arm).or_else(|error| if error.is_system() { Err(error) } else { Ok(None) })
     }
 }

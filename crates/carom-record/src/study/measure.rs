@@ -24,6 +24,8 @@ pub struct Measure {
 /// A possible measure of a goal.
 pub(super) enum Candidate {
     Metric(&'static str),
+    /// The mean error of several.
+    Mean(&'static [&'static str]),
     /// The deviation of columns.
     Columns(&'static str, fn(&str) -> bool),
     /// A metric of columns.
@@ -43,6 +45,11 @@ pub(super) fn candidates(goal: Goal) -> Vec<Candidate> {
             Candidate::OfColumns("variation", is_stress),
             Candidate::OfColumns("peak_mean", is_stress),
             Candidate::Columns("stresses", is_stress),
+        ],
+        Goal::Friction => vec![
+            Candidate::Mean(&["friction_lost", "stick_share"]),
+            Candidate::Metric("friction_lost"),
+            Candidate::Metric("stick_share"),
         ],
         Goal::Trajectory | Goal::Cost => vec![Candidate::Columns("displacements", is_trajectory)],
     }
@@ -102,6 +109,21 @@ impl Judge<'_> {
                     ))
                 }
             },
+            Candidate::Mean(names) => {
+                let parts: Result<Vec<_>, _> =
+                    names.iter().map(|name| self.measured(&Candidate::Metric(name))).collect();
+                let parts = parts?;
+                let mean = |run: usize| {
+                    let each: Option<Vec<f64>> = parts.iter().map(|(_, errors)| errors[run]).collect();
+                    each.map(|errors| errors.iter().sum::<f64>() / parts.len() as f64)
+                };
+                let uncertainty = parts.iter().map(|(part, _)| part.uncertainty).fold(0.0, f64::max);
+                let words = format!("mean error of {}", names.join(" and "));
+                Ok((
+                    measure(&names.join(" and "), words, uncertainty),
+                    (0..self.rows.len()).map(mean).collect(),
+                ))
+            }
             Candidate::Columns(name, kind) => {
                 let Some(reference) = self.reference else {
                     return Err(((*name).to_owned(), "the study has no reference".to_owned()));

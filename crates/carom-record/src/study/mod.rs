@@ -89,10 +89,10 @@ impl Study {
     }
 
     /// Reads a study arm by arm, with only one record in memory at a time. `visit` is called for
-    /// every arm that has a record.
+    /// every arm that has a record. An arm whose record is damaged is a row with the reason.
     ///
     /// # Errors
-    /// Input/output or system error, or a damaged record.
+    /// Input/output or system error, or no study.
     pub fn open(directory: &Path, visit: &mut dyn FnMut(usize, &Run)) -> Result<Self, RecordError> {
         let manifest = StudyManifest::read(directory)?;
         let comparisons: Vec<_> =
@@ -112,12 +112,21 @@ impl Study {
         });
         let (mut rows, mut compared) = (Vec::new(), Vec::new());
         for (i, arm) in manifest.runs().enumerate() {
-            let (status, reason) = manifest.state(directory, arm)?;
+            let (mut status, mut reason) = (None, None);
             let (mut metrics, mut expectations, mut had_contact) = (Vec::new(), Vec::new(), false);
             let mut warnings = Vec::new();
             let mut comparison = None;
-            if status.is_some() {
-                let run = Run::open(&directory.join(&arm.directory))?;
+            let record = match manifest.record(directory, arm) {
+                Err(error) if !error.is_system() => {
+                    let place = directory.join(&arm.directory);
+                    let cure = format!("remove {} and compute the arm again", place.display());
+                    reason = Some(format!("{}; {cure}", error.what()));
+                    None
+                }
+                record => record?,
+            };
+            if let Some(run) = record {
+                (status, reason) = (Some(run.manifest.status), run.manifest.reason.clone());
                 if i < manifest.arms.len() {
                     visit(i, &run);
                 }
@@ -162,7 +171,10 @@ impl Study {
         let (expectations, verdicts) = (judged.collect(), verdicts.collect());
         let ranking =
             manifest.goal.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref()));
-        let others = Goal::all().filter(|goal| manifest.goal.is_some_and(|own| own != *goal));
+        let rubs = rows.iter().any(|row| row.value("friction_lost").is_some());
+        let others = Goal::all().filter(|goal| {
+            manifest.goal.is_some_and(|own| own != *goal) && (rubs || *goal != Goal::Friction)
+        });
         let other_rankings: Vec<Ranking> =
             others.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref())).collect();
         let members = rows.split_off(manifest.arms.len());

@@ -7,7 +7,7 @@ use super::manifest::StudyManifest;
 use super::reference::{Level, Reference};
 use super::trajectory::Trajectory;
 use crate::metrics;
-use crate::{RecordError, Run, Status};
+use crate::{RecordError, Status};
 
 /// What happens where contact begins, which is a part of the mathematical problem as long as contact
 /// nodes have mass.
@@ -50,7 +50,7 @@ impl StudyManifest {
     /// The reference that arms are compared with.
     ///
     /// # Errors
-    /// Input/output or system error, or a damaged record.
+    /// Input/output or system error.
     pub(super) fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
         if self.reference.as_deref() == Some("exact") {
             let Some(case) = self.arms.first().map(|a| &a.case) else { return Ok(None) };
@@ -65,8 +65,8 @@ impl StudyManifest {
             let (mut members, mut phases) = (Vec::new(), Vec::new());
             for run in self.runs_of(i) {
                 let phase = self.run(run).role.member.map_or(0.0, |of| of.member.phase);
-                if self.state(directory, self.run(run))?.0 == Some(Status::Finished) {
-                    let run = Run::open(&directory.join(&self.run(run).directory))?;
+                let record = self.intact(directory, self.run(run))?;
+                if let Some(run) = record.filter(|run| run.manifest.status == Status::Finished) {
                     if members.is_empty() && Some(&i) == arms.last() {
                         averaged = metrics::of_averages(&run);
                     }

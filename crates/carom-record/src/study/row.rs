@@ -8,9 +8,9 @@ use crate::{Expectation, Status, Warning};
 pub struct Row {
     /// The arm.
     pub name: String,
-    /// Status; none if it has not started.
+    /// Status; none if it has not started, or if its record is damaged.
     pub status: Option<Status>,
-    /// Why it did not finish.
+    /// Why it did not finish, or how its record is damaged and what to do about it.
     pub reason: Option<String>,
     /// Metrics of a finished run; empty otherwise, because those of an unfinished run would be
     /// misleading.
@@ -28,6 +28,16 @@ impl Row {
     pub fn is_unsound(&self) -> bool {
         self.status == Some(Status::Failed)
             || self.value("energy_created").is_some_and(|share| share > MUCH_CREATED)
+    }
+
+    /// Whether its record is damaged.
+    pub fn is_damaged(&self) -> bool {
+        self.status.is_none() && self.reason.is_some()
+    }
+
+    /// Whether it has finished or failed.
+    pub fn has_ended(&self) -> bool {
+        matches!(self.status, Some(Status::Finished | Status::Failed))
     }
 
     /// Value of a metric.

@@ -5,13 +5,14 @@ use super::arm::step;
 use super::ensemble::Spread;
 use super::measure::standing;
 use super::reference::Standing;
-use super::{Study, Verdict};
+use super::{Row, Study, Verdict};
 use crate::metrics::Metric;
 use crate::{RecordError, Status, files};
 
-/// A status in the tables.
-pub(super) fn word(status: Option<Status>) -> &'static str {
-    match status {
+/// The status of an arm in the tables.
+fn word(row: &Row) -> &'static str {
+    match row.status {
+        None if row.is_damaged() => "damaged",
         None => "waiting",
         Some(Status::Running) => "running",
         Some(Status::Finished) => "finished",
@@ -30,10 +31,12 @@ impl Study {
     /// # Errors
     /// Input/output or system error.
     pub fn write_tables(&self) -> Result<(), RecordError> {
-        let names: Vec<&str> = self.metrics().iter().map(|m| m.name.as_ref()).collect();
+        // Without measured times, so that its bytes do not depend on what computed the study.
+        let metrics = self.metrics().into_iter().filter(|m| !m.is_measured());
+        let names: Vec<&str> = metrics.map(|m| m.name.as_ref()).collect();
         let header = [&["arm", "status", "reason"], &names[..]].concat();
         let wide = self.rows.iter().map(|row| {
-            let first = [row.name.clone(), word(row.status).into(), row.reason.clone().unwrap_or_default()];
+            let first = [row.name.clone(), word(row).into(), row.reason.clone().unwrap_or_default()];
             first.into_iter().chain(names.iter().map(|name| cell(row.value(name)))).collect()
         });
         self.write("study.csv", &header, wide)?;

@@ -16,6 +16,12 @@ pub enum Cell {
     Curve,
     /// `VTK_LAGRANGE_TRIANGLE`: corners, edges, interior.
     Triangle,
+    /// `VTK_LAGRANGE_QUADRILATERAL` of degree 1 or 2: corners, edges, interior.
+    Quadrilateral,
+    /// `VTK_LAGRANGE_TETRAHEDRON`: corners, edges, faces, interior.
+    Tetrahedron,
+    /// `VTK_LAGRANGE_HEXAHEDRON` of degree 1 or 2: corners, edges, faces, interior.
+    Hexahedron,
 }
 
 impl Cell {
@@ -24,6 +30,9 @@ impl Cell {
         match self {
             Self::Curve => 68,
             Self::Triangle => 69,
+            Self::Quadrilateral => 70,
+            Self::Tetrahedron => 71,
+            Self::Hexahedron => 72,
         }
     }
 
@@ -32,6 +41,9 @@ impl Cell {
         match self {
             Self::Curve => degree + 1,
             Self::Triangle => (degree + 1) * (degree + 2) / 2,
+            Self::Quadrilateral => (degree + 1).pow(2),
+            Self::Hexahedron => (degree + 1).pow(3),
+            Self::Tetrahedron => (degree + 1) * (degree + 2) * (degree + 3) / 6,
         }
     }
 }

@@ -110,6 +110,9 @@ impl Block {
             let cell = match kind {
                 68 => Cell::Curve,
                 69 => Cell::Triangle,
+                70 => Cell::Quadrilateral,
+                71 => Cell::Tetrahedron,
+                72 => Cell::Hexahedron,
                 _ => return Err(format!("cells of VTK type {kind} are not supported")),
             };
             let degree = (1..=3).find(|&d| cell.nodes(d) == nodes.len());

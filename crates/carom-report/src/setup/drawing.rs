@@ -13,10 +13,16 @@ use crate::symbols::{direction, plus};
 /// Colours of the two sides of a contact.
 pub(super) const SECONDARY: &str = LINES[2];
 pub(super) const PRIMARY: &str = LINES[1];
+/// Largest width of the picture, and width of the key.
+pub(super) const ROOM: f64 = 470.0;
+pub(super) const KEY: f64 = 320.0;
 /// Height of a bar in pixels.
 pub(super) const BAR: f64 = 26.0;
 /// Fill colours of bodies, used in turn.
 pub(super) const BODIES: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
+
+/// Fill colour of supported sides in space.
+pub(super) const SUPPORT: &str = "#9db4ca";
 
 /// The polyline of a side in pixels, with outward unit normals.
 pub(super) type Walk = Vec<(Point, Point)>;

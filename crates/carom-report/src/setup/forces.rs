@@ -10,20 +10,20 @@ use crate::labels::number;
 use crate::pen::Point;
 use crate::symbols::{along, arrow, direction, plus};
 
-const COLOR: &str = "#7a2f8f";
+pub(super) const COLOR: &str = "#7a2f8f";
 /// Length of an arrow at a side, and its gap to the side.
 const LENGTH: f64 = 20.0;
 const GAP: f64 = 3.0;
 const SPACING: f64 = 26.0;
 
 /// A load of the manifest.
-struct Load<'a> {
-    kind: &'a str,
-    spec: &'a Value,
+pub(super) struct Load<'a> {
+    pub(super) kind: &'a str,
+    pub(super) spec: &'a Value,
     components: Vec<&'a Value>,
 }
 
-fn load(value: &Value) -> Option<Load<'_>> {
+pub(super) fn load(value: &Value) -> Option<Load<'_>> {
     let (kind, spec) = value.get("kind")?.as_object()?.iter().next()?;
     let given = spec.get("value")?;
     let components = given.as_array().map_or_else(|| vec![given], |list| list.iter().collect());
@@ -37,19 +37,24 @@ pub(super) fn written(value: &Value) -> String {
 
 impl Setup<'_> {
     /// The value of a formula at a reference position and a time.
-    fn value(&self, given: &Value, [x, y]: Point, time: f64) -> f64 {
-        let (names, values) =
-            if self.flat { (vec!["X", "t"], vec![x, time]) } else { (vec!["X", "Y", "t"], vec![x, y, time]) };
+    fn value(given: &Value, place: &[f64], time: f64) -> f64 {
+        let names = [&["X", "Y", "Z"][..place.len()], &["t"]].concat();
+        let values = [place, &[time]].concat();
         let formula = |text: &str| Formula::parse(text, &names).map_or(0.0, |f| f.value(&values));
         given.as_str().map_or_else(|| given.as_f64().unwrap_or(0.0), formula)
     }
 
-    /// The components of a load at a pixel, at the last time when they are not all zero.
+    /// The components of a load at a pixel.
     fn values(&self, load: &Load, pixel: Point) -> Vec<f64> {
         let place = [(pixel[0] - self.origin[0]) / self.scale, (self.origin[1] - pixel[1]) / self.scale];
+        self.values_at(load, &place[..if self.flat { 1 } else { 2 }])
+    }
+
+    /// The components of a load at a place, at the last time when they are not all zero.
+    pub(super) fn values_at(&self, load: &Load, place: &[f64]) -> Vec<f64> {
         let end = self.case().pointer("/time/end").and_then(Value::as_f64).unwrap_or(0.0);
         let at = |share: f64| -> Vec<f64> {
-            load.components.iter().map(|c| self.value(c, place, share * end)).collect()
+            load.components.iter().map(|c| Self::value(c, place, share * end)).collect()
         };
         let times = [1.0, 0.75, 0.5, 0.25, 0.125, 0.03, 0.0];
         times.into_iter().map(at).find(|v| v.iter().any(|x| *x != 0.0 && x.is_finite())).unwrap_or_default()
@@ -109,7 +114,7 @@ impl Setup<'_> {
 
     /// The conditions of a support: `u_{x} = u_{y} = 0`.
     pub(super) fn support_in_words(support: &Value) -> String {
-        let axis = |i: f64| if i == 0.0 { "u_{x}" } else { "u_{y}" };
+        let axis = |i: f64| ["u_{x}", "u_{y}", "u_{z}"][(i as usize).min(2)];
         let fixed: Vec<&str> = vector(support.get("fix")).iter().map(|i| axis(*i)).collect();
         let fixed = (!fixed.is_empty()).then(|| fixed.join(" = ") + " = 0");
         let moved = list(support, "move").iter().filter_map(|m| {

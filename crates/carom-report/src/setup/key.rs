@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use super::drawing::{PRIMARY, SECONDARY, Setup};
+use super::drawing::{PRIMARY, SECONDARY, SUPPORT, Setup};
 use super::values::{list, text, tuple, vector};
+use crate::bodies::fill_space;
 use crate::chart::write_text;
 use crate::labels::number;
 use crate::symbols::{plus, rollers, wall};
@@ -74,7 +75,12 @@ impl Setup<'_> {
             let on: Vec<&str> = list(support, "on").iter().filter_map(Value::as_str).collect();
             let mut swatch = String::new();
             let ends = [([0.0, -3.0], [0.0, 1.0]), ([20.0, -3.0], [0.0, 1.0])];
-            if fixed.len() > 1 || self.flat {
+            if fill_space(self.fields) {
+                let _ = write!(
+                    swatch,
+                    "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{SUPPORT}\" stroke=\"#44607c\"/>"
+                );
+            } else if fixed.len() > 1 || self.flat {
                 wall(&mut swatch, &ends, 0.0);
             } else {
                 rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));

@@ -4,10 +4,10 @@
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
-use carom_record::{Cell, FieldSet, Run, Stop, StopPlace};
+use carom_record::{FieldSet, Run, Stop, StopPlace};
 
 use crate::axis::round_step;
-use crate::bodies::{Instant, bezier, edge_nodes, edges, places};
+use crate::bodies::{Instant, bezier, corners, edge_nodes, edges, is_plane, places};
 use crate::chart::{open, write_text};
 use crate::obstacles;
 use crate::palette::LINES;
@@ -31,7 +31,7 @@ const FILLS: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
 pub(super) fn figure(run: &Run, stop: &Stop) -> Option<(String, String)> {
     let fields = carom_record::Stop::fields(&run.directory, &run.manifest).ok()??;
     let place = stop.place.as_ref()?;
-    if fields.blocks.iter().any(|block| block.cell != Cell::Triangle) {
+    if fields.blocks.iter().any(|block| !is_plane(block)) {
         return None;
     }
     let (svg, moved) = draw(run, stop, place, &fields)?;
@@ -88,7 +88,7 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
         let degree =
             fields.blocks.iter().find(|b| Some(&b.body) == place.body.as_ref()).map_or(1, |b| b.degree);
         let mut pen = Pen::default();
-        for e in 0..3 {
+        for e in 0..corners(cell) {
             let edge: Vec<Point> = edge_nodes(degree, cell, e).map(|k| to(points[k])).collect();
             bezier(&mut pen, &edge, e == 0);
         }
@@ -195,7 +195,9 @@ fn rejected(fields: &FieldSet) -> Option<Vec<Point>> {
 /// Length of the facet or of the longest edge at the place.
 fn size(place: &StopPlace, fields: &FieldSet, points: &[Point], node: usize) -> f64 {
     let distance = |a: usize, b: usize| (points[a][0] - points[b][0]).hypot(points[a][1] - points[b][1]);
-    let longest = |cell: &[usize]| (0..3).map(|e| distance(cell[e], cell[(e + 1) % 3])).fold(0.0, f64::max);
+    let longest = |cell: &[usize]| {
+        (0..corners(cell)).map(|e| distance(cell[e], cell[(e + 1) % corners(cell)])).fold(0.0, f64::max)
+    };
     let numbers: Vec<usize> =
         place.facet_nodes.iter().map(|n| n.number).filter(|&n| n < points.len()).collect();
     if let [first, .., last] = &numbers[..] {

@@ -246,5 +246,5 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
     };
     manifest.expectations =
         vec![expectation("min A.uy", Some(-0.7811), true), expectation("min <B>.uy", None, false)];
-    writer.finish(&manifest).unwrap();
+    writer.finish(&mut manifest).unwrap();
 }

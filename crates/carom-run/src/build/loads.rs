@@ -50,9 +50,7 @@ pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Prob
             let mesh = found.body.mesh();
             let facets = name.split_once('.').and_then(|(_, side)| mesh.sides.get(side));
             let facets = facets.map_or(&[][..], Vec::as_slice);
-            let Some(side) = LoadedSide::new(mesh, facets, found.first_node, case.thickness) else {
-                continue;
-            };
+            let side = LoadedSide::new(mesh, facets, found.first_node, case.thickness);
             if matches!(spec.kind, LoadKind::Pressure { .. }) {
                 loads.add_pressure(load(spec, side, value.clone()));
             } else {

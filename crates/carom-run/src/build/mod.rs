@@ -102,9 +102,10 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let gravity = gravity(case, &parts, &obstacles, &mass, dofs);
     let contacts = contacts::contacts(case, &parts, &obstacles, &massless, &mut problems);
     let probes = probes(case, &parts, &mut problems);
-    let is_static = case.time.scheme.is_static();
-    let unconstrained = if is_static { free_motions(&parts, &fixed) } else { Vec::new() };
-    problems.extend(unsolvable::unconstrained(&parts, &unconstrained, &contacts));
+    let unconstrained = free_motions(&parts, &fixed);
+    if case.time.scheme.is_static() {
+        problems.extend(unsolvable::unconstrained(&parts, &unconstrained, &contacts));
+    }
     problems.extend(unsolvable::massless(case, &parts, &massless));
 
     let free: Vec<usize> = (0..dofs).filter(|&i| !fixed[i]).collect();
@@ -139,7 +140,7 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     }
 }
 
-/// Values of the formulas of a body's `key`, in X and Y, at its nodes.
+/// Values of the formulas of a body's `key` at its nodes.
 fn nodal(
     part: &BodyInstance,
     body: usize,
@@ -218,7 +219,7 @@ fn with_skin(case: &Case, body: &str, mut mesh: carom_solid::Mesh) -> carom_soli
     let supports = case.supports.iter().flat_map(|support| &support.on);
     let loads = case.loads.iter().flat_map(carom_case::LoadSpec::sides);
     let mut sides = contacts.flatten().chain(supports.chain(loads).map(String::as_str));
-    if mesh.dimension() == 2 && sides.any(|side| side == name) && !mesh.sides.contains_key(SKIN) {
+    if mesh.dimension() > 1 && sides.any(|side| side == name) && !mesh.sides.contains_key(SKIN) {
         let skin = mesh.ordered_skin();
         mesh.sides.insert(SKIN.to_owned(), skin);
     }
@@ -315,13 +316,19 @@ pub(crate) fn quantity(name: carom_case::Quantity) -> Quantity {
     match name {
         Name::Ux => Quantity::Displacement(0),
         Name::Uy => Quantity::Displacement(1),
+        Name::Uz => Quantity::Displacement(2),
         Name::Vx => Quantity::Velocity(0),
         Name::Vy => Quantity::Velocity(1),
+        Name::Vz => Quantity::Velocity(2),
         Name::Ax => Quantity::Acceleration(0),
         Name::Ay => Quantity::Acceleration(1),
+        Name::Az => Quantity::Acceleration(2),
         Name::SigmaXx => Quantity::Stress(0, 0),
         Name::SigmaYy => Quantity::Stress(1, 1),
+        Name::SigmaZz => Quantity::Stress(2, 2),
         Name::SigmaXy => Quantity::Stress(0, 1),
+        Name::SigmaYz => Quantity::Stress(1, 2),
+        Name::SigmaXz => Quantity::Stress(0, 2),
         Name::VonMises => Quantity::VonMises,
         Name::DetF => Quantity::DetF,
     }

@@ -49,15 +49,12 @@ pub(crate) fn side(parts: &[BodyInstance], name: &str, path: &str) -> Result<Sid
         let sides = mesh.sides.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
         return Err(missing(format!("the sides of \"{body}\" are: {sides}"), "use one of them".into()));
     };
-    let Some(shape) = mesh.element.facet_shape() else {
-        return Err(missing("its cells have no facets".into(), "use another element".into()));
-    };
     Ok(Side {
         part,
         nodes: nodes.iter().map(|n| n + first).collect(),
         facets: facets.iter().map(|f| f.nodes.iter().map(|n| n + first).collect()).collect(),
         orientations: facets.iter().map(|f| mesh.orientation(f)).collect(),
-        shape,
+        shape: mesh.element.facet_shape(),
     })
 }
 

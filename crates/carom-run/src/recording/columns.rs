@@ -49,8 +49,16 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
     for axis in axes {
         add(format!("momentum_{axis}"), &label.momentum, "momentum of all bodies", false);
     }
-    if model.dimension == 2 {
-        add("angular_momentum".into(), &label.angular_momentum, "angular momentum about the origin", false);
+    let about_the_origin = "angular momentum about the origin";
+    match model.dimension {
+        2 => add("angular_momentum".into(), &label.angular_momentum, about_the_origin, false),
+        3 => {
+            for axis in axes {
+                let name = format!("angular_momentum_{axis}");
+                add(name, &label.angular_momentum, about_the_origin, false);
+            }
+        }
+        _ => {}
     }
     for axis in axes {
         add(
@@ -225,9 +233,15 @@ pub(super) fn row(model: &Model, state: &State, dt: f64, since: &Since, weights:
     let mut momentum = vec![0.0; state.v.len()];
     model.mass.multiply_into(&state.v, &mut momentum);
     row.extend((0..d).map(|i| momentum.iter().skip(i).step_by(d).sum::<f64>()));
-    if d == 2 {
-        let pairs = state.y.as_chunks::<2>().0.iter().zip(momentum.as_chunks::<2>().0);
-        row.push(pairs.map(|(y, p)| y[0] * p[1] - y[1] * p[0]).sum());
+    let about = |i: usize| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let pairs = state.y.chunks_exact(d).zip(momentum.chunks_exact(d));
+        pairs.map(|(y, p)| y[j] * p[k] - y[k] * p[j]).sum::<f64>()
+    };
+    match d {
+        2 => row.push(about(2)),
+        3 => row.extend((0..3).map(about)),
+        _ => {}
     }
     row.extend((0..d).map(|i| state.contact_forces.iter().map(|f| f[i]).sum::<f64>()));
     row.extend(&state.impulse()[..d]);

@@ -74,6 +74,9 @@ fn cell(element: Element) -> Cell {
     match element {
         Element::L2 | Element::L3 | Element::L4 => Cell::Curve,
         Element::T3 | Element::T6 | Element::T10 => Cell::Triangle,
+        Element::Q4 | Element::Q9 => Cell::Quadrilateral,
+        Element::Tet4 | Element::Tet10 | Element::Tet20 => Cell::Tetrahedron,
+        Element::Hex8 | Element::Hex27 => Cell::Hexahedron,
     }
 }
 
@@ -133,13 +136,16 @@ pub(crate) fn consistent_weights<'a>(
         let rule = shape.rule(5);
         for facet in facets {
             for &(xi, w) in &rule {
-                let functions = shape.at(xi);
-                let mut tangent = [0.0; 2];
-                for (&n, slope) in facet.iter().zip(&functions.first) {
-                    (0..d).for_each(|i| tangent[i] += slope * y[n * d + i]);
-                }
-                let [x, y] = shape.normal(tangent, 1.0);
-                let measure = x.hypot(y);
+                let functions = shape.functions(xi);
+                let tangents = functions.slopes.map(|slopes| {
+                    let mut tangent = [0.0; 3];
+                    for (&n, slope) in facet.iter().zip(slopes) {
+                        (0..d).for_each(|i| tangent[i] += slope * y[n * d + i]);
+                    }
+                    tangent
+                });
+                let [x, y, z] = shape.area_vector(tangents, 1.0);
+                let measure = x.hypot(y).hypot(z);
                 for (n, value) in facet.iter().zip(&functions.values) {
                     if let Some(weight) = weights.get_mut(n) {
                         *weight += w * value * measure * thickness;
@@ -160,22 +166,20 @@ pub(super) fn gap_of(contact: &Contact, pair: &Pair, state: &State) -> (f64, [f6
     }
 }
 
-/// Chains of point numbers of every named side, in the order of traversal.
+/// Chains of point numbers of every named side, in the order of traversal; in space one for every
+/// face.
 pub(super) fn sides(model: &Model) -> BTreeMap<String, Vec<Vec<usize>>> {
     let mut named = BTreeMap::new();
     for part in &model.parts {
         for (side, facets) in &part.body.mesh().sides {
             let mut chains: Vec<Vec<usize>> = Vec::new();
             for facet in facets {
-                let (ends, interior) = facet.nodes.split_at(facet.nodes.len().min(2));
-                let walk = ends
-                    .iter()
-                    .take(1)
-                    .chain(interior)
-                    .chain(ends.iter().skip(1))
-                    .map(|n| n + part.first_node);
+                let walk = facet.walk(model.dimension).map(|n| n + part.first_node);
+                let continues = |chain: &Vec<usize>| {
+                    model.dimension == 2 && chain.last() == Some(&(facet.nodes[0] + part.first_node))
+                };
                 match chains.last_mut() {
-                    Some(chain) if chain.last() == Some(&(facet.nodes[0] + part.first_node)) => {
+                    Some(chain) if continues(chain) => {
                         chain.extend(walk.skip(1));
                     }
                     _ => chains.push(walk.collect()),

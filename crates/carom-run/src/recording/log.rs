@@ -81,6 +81,15 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             let what = if a == b { "crosses itself" } else { "overlap: there is no contact between them" };
             Event::new(step, *time, "overlap", format!("{place} {what}")).with("place", place)
         }
+        LogEvent::Ambiguous { time, regularity } => {
+            let message = format!(
+                "friction so large that stick and slip are not unique: the matrix of the contacts has the smallest singular value {:.3e}, \
+                 relative to that without friction{}",
+                regularity.abs(),
+                if *regularity < 0.0 { ", and a negative determinant" } else { "" }
+            );
+            Event::new(step, *time, "ambiguous", message).with("regularity", *regularity)
+        }
         LogEvent::Projection { time, jump } => {
             let message =
                 format!("velocities projected at contact activation: kinetic energy changes by {jump:.6e}");

@@ -17,6 +17,13 @@ pub struct Options {
     pub audit: bool,
 }
 
+/// One thread, no trials, no audit.
+impl Default for Options {
+    fn default() -> Self {
+        Self { threads: 1, trials: false, audit: false }
+    }
+}
+
 /// Progress of a simulation after an accepted step, and every second while a step is bisected.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {

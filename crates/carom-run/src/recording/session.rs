@@ -341,7 +341,7 @@ impl<'a> Session<'a> {
             remarks,
             end,
         };
-        self.writer.finish(&self.manifest)?;
+        self.writer.finish(&mut self.manifest)?;
         if let Some(run) = read.transpose()?
             && let Some(manifest) = judged(Run { manifest: self.manifest, ..run }, &self.case.expects)
         {

@@ -154,6 +154,8 @@ pub fn resume_with(
     (manifest.counters, manifest.timings) = (tally.counters.clone(), tally.timings.clone());
     manifest.reason = None;
     Stop::forget(directory, &mut manifest);
+    // The tables will be longer.
+    manifest.hashes.clear();
     manifest.started = carom_record::now();
     manifest.threads = options.threads;
     let remarks = reopened.fallback.iter().map(ToString::to_string).collect();

@@ -39,7 +39,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 9] = [
+pub const WARNINGS: [Entry; 10] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side follow those of the secondary one and may enter between them, by a fiftieth of a facet",
@@ -89,6 +89,12 @@ pub const WARNINGS: [Entry; 9] = [
         why: "nothing keeps them apart: contact acts only where a [[contact]] declares it",
         advice: "a [[contact]] with between = \"all\", or ending the run before they meet",
         rule: Rule::Record(record::undeclared_contact),
+    },
+    Entry {
+        id: "ambiguous-friction",
+        why: "μ is so large that the same forces allow stick, slip or lift-off; which of them is found depends on the path of the iteration",
+        advice: "a smaller mu, a shorter step (inertia makes it unique), or mu as a formula that grows to its value",
+        rule: Rule::Record(record::ambiguous_friction),
     },
     Entry {
         id: "energy-created",

@@ -42,6 +42,18 @@ pub(super) fn undeclared_contact(_: &Case, run: &Run) -> Vec<Found> {
     found.collect()
 }
 
+/// Friction so large that stick and slip were not unique in some step.
+pub(super) fn ambiguous_friction(_: &Case, run: &Run) -> Vec<Found> {
+    let mut events = run.log.iter().filter(|event| event.kind == "ambiguous");
+    let Some(first) = events.next() else { return Vec::new() };
+    let what = format!(
+        "stick and slip were not unique from t = {} on, {} times",
+        short(first.time),
+        1 + events.count()
+    );
+    vec![Found { place: "the run".into(), what }]
+}
+
 /// More energy created than the default of `time.energy_guard` allows. Load steps create none: the
 /// difference of their works and energies is the error of a sum over few steps.
 pub(super) fn energy_created(case: &Case, run: &Run) -> Vec<Found> {

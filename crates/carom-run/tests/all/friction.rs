@@ -1,4 +1,4 @@
-//! Friction: none for μ = 0, to the last bit; resumed runs; momentum and the ledger of two discs that
+//! Friction: none for μ = 0; resumed runs; momentum and the ledger of two discs that
 //! rub; Coulomb's law at every node; springs, limits and coefficients that change.
 
 use carom_contact::Hold;
@@ -22,23 +22,52 @@ fn discs(scheme: &str, mu: f64) -> Vec<String> {
     vec![format!("time.scheme={scheme}"), format!("contact.strike.mu={mu}"), "time.end=0.3".into()]
 }
 
+/// Until the first node opens; then round-off decides when nodes do.
 #[test]
-fn no_friction_is_a_coefficient_of_zero_to_the_last_bit() {
+fn a_coefficient_of_zero_is_no_friction() {
     for scheme in SCHEMES {
-        let with = finish(simulation(DISCS, &discs(scheme, 0.0)));
         let mut sets = discs(scheme, 0.0);
-        sets.remove(1);
-        let without = finish(simulation(DISCS, &sets));
-        assert_eq!(with.state(), without.state());
-        assert_eq!(with.state().ledger.friction_work, 0.0);
-        // Nothing happens at once: the law is continuous at 0.
-        let little = finish(simulation(DISCS, &discs(scheme, 1e-10)));
-        let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        // Undamped, and with few nodes, which nodes are in contact depends on round-off.
-        let is_smooth = !scheme.contains("newmark") && !scheme.contains("bathe");
-        assert!(!is_smooth || apart(&little.state().y, &with.state().y) < 1e-7, "{scheme}");
+        let without = &mut simulation(DISCS, &sets);
+        // A formula, so that friction is in the model.
+        sets[1] = "contact.strike.mu=\"0*t\"".into();
+        let with = &mut simulation(DISCS, &sets);
+        assert!(
+            with.model().contacts[0].friction.is_some() && without.model().contacts[0].friction.is_none()
+        );
+        let (mut closed, mut opens) = (0, false);
+        while !opens && !with.finished() {
+            for sim in [&mut *with, &mut *without] {
+                let before = sim.state().clone();
+                sim.advance(&mut GridReport::default()).unwrap();
+                opens |= before.pairs[0].iter().filter(|pair| pair.active).any(|old| {
+                    let mut now = sim.state().pairs[0].iter().filter(|pair| pair.active);
+                    !now.any(|pair| pair.node == old.node)
+                });
+            }
+            if !opens {
+                let [a, b] = [with.state(), without.state()];
+                assert!(apart(&a.y, &b.y) < 1e-10 && apart(&a.v, &b.v) < 1e-8, "{scheme}: {}", a.time);
+                closed += usize::from(a.pairs[0].iter().any(|pair| pair.active));
+            }
+        }
+        assert!(closed > 2, "{scheme}");
+        assert_eq!(with.state().ledger.friction_work, 0.0, "{scheme}");
+    }
+}
+
+/// Nothing happens at once: the law is continuous at 0.
+#[test]
+fn a_little_friction_takes_a_little() {
+    // Undamped, and with few nodes, which nodes are in contact depends on round-off.
+    for scheme in SCHEMES.iter().filter(|scheme| !scheme.contains("newmark") && !scheme.contains("bathe")) {
+        let [little, none] = [1e-10, 0.0].map(|mu| finish(simulation(DISCS, &discs(scheme, mu))));
+        assert!(apart(&little.state().y, &none.state().y) < 1e-7, "{scheme}");
         assert!(little.state().ledger.friction_work < 0.0, "{scheme}");
     }
+}
+
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 fn count(state: &State, hold: Hold) -> usize {
@@ -165,15 +194,63 @@ fn a_coefficient_may_depend_on_the_rate_of_slip() {
     let (dynamic, rest, c) = (0.1_f64, 0.2_f64, 2.0_f64);
     let at =
         |t: f64| (((dynamic * c.exp() + rest) * (-c * dynamic * 10.0 * t).exp() - rest) / dynamic).ln() / c;
-    for scheme in [SCHEMES[0], SCHEMES[3], SCHEMES[5], SCHEMES[6], SCHEMES[7]] {
-        let text = block("mu = 0.3\nmu_dynamic = 0.1\ndecay = 2.0", scheme);
-        let sim = finish(simulation(&text, &[] as &[&str]));
+    let law = "mu = 0.3\nmu_dynamic = 0.1\ndecay = 2.0";
+    let on_springs = &format!("{law}\n{SPRINGS}");
+    for (contact, scheme) in
+        [0, 3, 5, 6, 7].map(|k| (law, SCHEMES[k])).into_iter().chain([(on_springs.as_str(), SCHEMES[0])])
+    {
+        let sim = finish(simulation(&block(contact, scheme), &[] as &[&str]));
         let velocity = momenta(&sim, &sim.state().v)[0] / 0.1;
         assert!((velocity - at(0.2)).abs() < 2e-3, "{scheme}: {velocity} {}", at(0.2));
     }
 }
 
-/// A spring that sticks moves by Q/k and returns its energy.
+/// Springs of the contact and of its nodes that stick.
+const SPRINGS: &str = "enforcement = \"penalty\"\nstiffness = 1.0";
+
+/// J_T = μ_d J_N of a block that slides on springs, also where it moves in a step by less than a spring
+/// stretches between the tractions of slip and of stick.
+#[test]
+fn a_node_on_a_spring_goes_on_to_slip_against_the_dynamic_coefficient() {
+    for decay in ["", "decay = 1e3"] {
+        let contact = format!("mu = 0.3\nmu_dynamic = 0.1\n{decay}\n{SPRINGS}");
+        for (velocity, step) in [(1.0, 2e-4), (0.5, 1e-5)] {
+            let sets = [
+                format!("body.block.velocity=[{velocity}, 0.0]"),
+                format!("time.step={step}"),
+                "time.end=0.02".into(),
+            ];
+            let sim = finish(simulation(&block(&contact, SCHEMES[0]), &sets));
+            let [along, normal, _] = sim.state().impulse();
+            assert!((-along / normal - 0.1).abs() < 1e-3, "{decay} {step}: {along} {normal}");
+        }
+    }
+}
+
+/// Without inertia.
+const RESTS: [&str; 2] = ["body.block.velocity=[0.0, 0.0]", "body.block.gravity=[0.0, 0.0]"];
+
+/// F_T = μ_d F_N of a block that is pressed and dragged without inertia, at the rate of its motion.
+#[test]
+fn load_steps_slip_against_the_coefficient_of_the_rate_in_their_time() {
+    let support = r#"
+[[support]]
+name = "grip"
+on = ["block.top"]
+move = { x = "0.05*t", y = "-0.001*min(t, 1)" }
+[time]"#;
+    for (decay, expected) in [("", 0.1), ("decay = 1e3", 0.1), ("decay = 0.2", 0.1 + 0.2 * (-0.01_f64).exp())]
+    {
+        let contact = format!("mu = 0.3\nmu_dynamic = 0.1\n{decay}");
+        let text = block(&contact, r#"{ kind = "static" }"#).replace("[time]", support);
+        let sets = ["time.end=3.0", "time.step=0.1", RESTS[0], RESTS[1]];
+        let sim = finish(simulation(&text, &sets));
+        let [along, normal, _] = sim.state().contact_forces[0];
+        assert!((-along / normal - expected).abs() < 1e-9, "{decay}: {along} {normal}");
+    }
+}
+
+/// Nodes on springs stick, and little is lost; the springs have the energy Σ q²/2k.
 #[test]
 fn a_node_on_a_spring_sticks_elastically() {
     let with = "mu = 0.9\nenforcement = \"penalty\"\nstiffness = 1.0\nstick_stiffness = 0.5";
@@ -183,4 +260,173 @@ fn a_node_on_a_spring_sticks_elastically() {
     // The block falls on its springs, so that nodes bounce and slip then.
     assert!(ledger.friction_work <= 0.0, "{ledger:?}");
     assert!(ledger.stick_springs > 0.0 && ledger.stick_springs < ledger.springs);
+    let springs = &sim.model().contacts[0].friction.as_ref().unwrap().springs;
+    let closed = sim.state().pairs[0].iter().filter(|pair| pair.active);
+    let energy: f64 = closed.map(|pair| 0.5 * pair.tangential.traction.powi(2) / springs[pair.node]).sum();
+    assert!((ledger.stick_springs / energy - 1.0).abs() < 1e-12, "{energy} {ledger:?}");
+}
+
+/// A block that strikes the plane, or lies on it, and slides: J_T = μ_d J_N from the first touch.
+#[test]
+fn a_node_that_touches_while_it_slides_slips_from_the_start() {
+    let schemes = [
+        SCHEMES[0],
+        SCHEMES[3],
+        SCHEMES[5],
+        SCHEMES[6],
+        SCHEMES[7],
+        r#"{ kind = "paoli-schatzman" }"#,
+        r#"{ kind = "moreau-jean", theta = 1.0 }"#,
+        r#"{ kind = "nonsmooth-generalized-alpha", rho_inf = 0.8 }"#,
+    ];
+    for scheme in schemes {
+        let text = block("mu = 0.3\nmu_dynamic = 0.1", scheme);
+        let above = raised(&text);
+        let strikes = ["body.block.velocity=[5.0, -1.0]", "body.block.gravity=[0.0, 0.0]", "time.end=0.05"];
+        let lies = ["body.block.velocity=[5.0, 0.0]"];
+        for (text, sets) in [(&above, &strikes[..]), (&text, &lies[..])] {
+            let [along, normal, _] = finish(simulation(text, sets)).state().impulse();
+            assert!(normal > 0.05 && (-along / normal - 0.1).abs() < 1e-10, "{scheme}: {along} {normal}");
+        }
+    }
+}
+
+/// The block above the plane.
+fn raised(text: &str) -> String {
+    text.replace("min = [0.0, 0.0], max = [1.0, 0.1]", "min = [0.0, 0.01], max = [1.0, 0.11]")
+}
+
+/// J_T = μ J_N in full slip for every e, and nothing but friction takes energy for e = 1.
+#[test]
+fn restitution_of_the_conserving_constraint_obeys_the_law() {
+    for restitution in [0.0, 0.5, 1.0] {
+        let contact = format!("mu = 0.1\nrestitution = {restitution:?}");
+        let text = raised(&block(&contact, SCHEMES[5]));
+        let sets = ["body.block.velocity=[5.0, -1.0]", "body.block.gravity=[0.0, 0.0]", "time.end=0.05"];
+        let sim = finish(simulation(&text, &sets));
+        let (ledger, [along, normal, _]) = (&sim.state().ledger, sim.state().impulse());
+        assert!((-along / normal - 0.1).abs() < 1e-10, "{restitution}: {along} {normal}");
+        let momentum = momenta(&sim, &sim.state().v);
+        assert!((momentum[0] - 0.5 - along).abs() < 1e-11, "{momentum:?} {along}");
+        assert!(ledger.dissipation().abs() < 1e-11, "{ledger:?}");
+        assert!(restitution < 1.0 || (ledger.contact_work + ledger.owed).abs() < 1e-11, "{ledger:?}");
+        assert!(restitution > 0.0 || ledger.contact_work < 0.0, "{ledger:?}");
+    }
+}
+
+/// For large μ, with nodes that close in many steps.
+#[test]
+fn friction_of_a_conserving_contact_never_does_positive_work() {
+    let sets = [
+        "time.step=2e-3",
+        "material.stiff.poisson=0.3",
+        "body.block.mass=consistent",
+        "body.block.mesh.max=[1.0, 0.2]",
+        "body.block.mesh.cells=[4, 2]",
+    ];
+    for mu in [0.9, 2.0] {
+        let mut sim = simulation(&block(&format!("mu = {mu}\npersistency = \"none\""), SCHEMES[5]), &sets);
+        let (mut work, mut closes) = (0.0, 0_u32);
+        while !sim.finished() {
+            let mut report = GridReport::default();
+            sim.advance(&mut report).unwrap();
+            let now = lost(&sim);
+            assert!(now <= work + 1e-13, "{mu} {}: {:e}", sim.state().time, now - work);
+            (work, closes) = (now, closes + report.activations);
+        }
+        assert!(work < 0.0 && closes > 10, "{mu}: {work} {closes}");
+    }
+}
+
+/// On a plane it is the motion along it of each node, from the touch.
+#[test]
+fn the_recorded_slip_is_what_follows_the_touch() {
+    for scheme in &SCHEMES[..6] {
+        let text = block("mu = 0.1", scheme);
+        let mut sim = simulation(&text, &["time.step=0.02"]);
+        sim.advance(&mut GridReport::default()).unwrap();
+        let (state, contact) = (sim.state(), &sim.model().contacts[0]);
+        let mut closed = 0;
+        for pair in state.pairs[0].iter().filter(|pair| pair.active) {
+            let dof = 2 * contact.kinematics.secondary()[pair.node];
+            let moved = state.y[dof] - sim.model().reference[dof];
+            // Its direction is that of the plane, along −x.
+            assert!((pair.tangential.slip + moved).abs() < 1e-12, "{scheme}: {pair:?} {moved}");
+            closed += 1;
+        }
+        assert!(closed > 0, "{scheme}");
+        // Half of the step.
+        let mut sim = simulation(&raised(&text), &["time.step=0.02", "body.block.velocity=[1.0, -1.0]"]);
+        sim.advance(&mut GridReport::default()).unwrap();
+        let farthest = sim.state().ledger.rubbed.farthest;
+        assert!((0.008..0.0111).contains(&farthest), "{scheme}: {farthest}");
+    }
+}
+
+/// Zero wins over `shear`: the traction is the smaller one.
+#[test]
+fn a_coefficient_of_zero_with_a_limit_is_no_friction() {
+    for mu in ["0", "\"0\"", "1e-12"] {
+        let [along, normal, _] = impulses(&format!("mu = {mu}\nshear = 1.0"), SCHEMES[3]);
+        assert!(along.abs() <= 2e-12 * normal && normal > 0.1, "{mu}: {along} {normal}");
+    }
+}
+
+#[test]
+fn a_negative_coefficient_stops_the_run_by_its_name() {
+    let text = block("mu = \"0.3 - 10*t\"", SCHEMES[3]);
+    let mut sim = simulation(&text, &["time.step=5e-3"]);
+    let stopped = loop {
+        if let Err(stopped) = sim.advance(&mut GridReport::default()) {
+            break stopped.to_string();
+        }
+    };
+    // 0.3 − 10 t is −5.6e-17 at t = 0.03, which is zero.
+    let expected =
+        "the step at t = 0.030000 of Δt = 5.000e-3 is rejected: mu of contact \"floor\" is negative at X = ";
+    assert!(stopped.starts_with(expected), "{stopped}");
+}
+
+/// Drawn by a force along the plane that grows beyond what the weight holds.
+#[test]
+fn load_steps_that_exceed_what_friction_can_hold_say_so() {
+    let pull = r#"
+[[load]]
+name = "pull"
+on = ["block.top"]
+traction = ["0.1*t", "-min(t, 1)"]
+[time]"#;
+    let text = block("mu = 0.25", r#"{ kind = "static" }"#).replace("[time]", pull);
+    let mut sim = simulation(&text, &["time.end=6", "time.step=1", RESTS[0], RESTS[1]]);
+    let stopped = loop {
+        if let Err(stopped) = sim.advance(&mut GridReport::default()) {
+            break stopped.to_string();
+        }
+        assert!(sim.state().time < 2.6);
+    };
+    let expected =
+        "free to move along x: its closed contacts slip, and the load exceeds what friction can hold";
+    assert!(stopped.contains(expected), "{stopped}");
+}
+
+/// From nothing: what a gap is closed to is more than the body moves at first.
+#[test]
+fn a_body_at_rest_whose_weight_grows_creates_no_energy() {
+    let load = r#"
+[[load]]
+name = "weight"
+body = "block"
+body_force = ["0", "-1e4*t^3"]
+[time]"#;
+    for mu in ["", "mu = 0.3"] {
+        let text = block(mu, SCHEMES[6]).replace("[time]", load);
+        let mut sim = simulation(&text, &["time.end=0.02", "time.step=1e-4", RESTS[0], RESTS[1]]);
+        while !sim.finished() {
+            // The guard would stop it.
+            sim.step().unwrap();
+        }
+        let [_, normal, _] = sim.state().impulse();
+        // ∫ 1e4 t³ dt, times the mass: the block rests.
+        assert!((normal / (0.1 * 1e4 * 0.02_f64.powi(4) / 4.0) - 1.0).abs() < 0.05, "{mu}: {normal}");
+    }
 }

@@ -23,6 +23,7 @@ mod probe;
 mod restart;
 mod reversal;
 mod self_contact;
+mod space;
 mod statics;
 mod substeps;
 mod tangent;

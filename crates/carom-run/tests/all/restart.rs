@@ -96,7 +96,7 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
     let statics = text(&time(1.0, 0.25, r#"{ kind = "static" }"#), "", "-0.1*t");
     let case = case_of(&statics, &[""; 0]);
     let source = carom_record::Source { text: statics.clone(), sets: Vec::new(), folder: None };
-    let options = carom_run::recording::Options { threads: 1, trials: false, audit: false };
+    let options = carom_run::recording::Options::default();
     let stop = std::sync::atomic::AtomicBool::new(false);
     let preload = folder.path().join("preload");
     carom_run::recording::run(&case, source, &preload, options, &mut |_| {}, &stop).unwrap();
@@ -170,7 +170,7 @@ fn a_run_is_finished_even_if_its_record_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let directory = folder.path().join("run");
     let source = carom_record::Source { text: DISCS.to_owned(), sets: Vec::new(), folder: None };
-    let options = carom_run::recording::Options { threads: 1, trials: false, audit: false };
+    let options = carom_run::recording::Options::default();
     let stop = std::sync::atomic::AtomicBool::new(false);
     let damage = &mut |progress: &carom_run::recording::Progress| {
         if progress.step == progress.steps {
@@ -260,7 +260,7 @@ fn multipliers_start_from_a_run_with_springs() {
     };
     let springs = strips("enforcement = \"penalty\"\nstiffness = 10.0", "");
     let source = carom_record::Source { text: springs.clone(), sets: Vec::new(), folder: None };
-    let options = carom_run::recording::Options { threads: 1, trials: false, audit: false };
+    let options = carom_run::recording::Options::default();
     let stop = std::sync::atomic::AtomicBool::new(false);
     let pressed = folder.path().join("pressed");
     carom_run::recording::run(&case_of(&springs, &[""; 0]), source, &pressed, options, &mut |_| {}, &stop)

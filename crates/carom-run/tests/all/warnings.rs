@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use carom_record::{Manifest, Source};
 use carom_run::recording::{Options, run};
-use carom_run::{Setup, WARNINGS, warnings};
+use carom_run::{GridReport, Setup, WARNINGS, warnings};
 
 use super::common::{DISCS, case, finish, simulation};
 
@@ -84,7 +84,7 @@ fn recorded(text: &str, sets: &[&str]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let directory = folder.path().join("run");
     let source = Source { text: text.to_owned(), sets: Vec::new(), folder: None };
-    let options = Options { threads: 1, trials: false, audit: false };
+    let options = Options::default();
     run(&case(text, sets), source, &directory, options, &mut |_| {}, &AtomicBool::new(false)).unwrap();
     let warnings = Manifest::read(&directory).unwrap().warnings;
     let log = std::fs::read_to_string(directory.join("log.jsonl")).unwrap();
@@ -300,4 +300,47 @@ fn energy_that_a_run_without_guard_creates() {
     let unguarded: Vec<&str> = sets.into_iter().chain(["time.energy_guard=false"]).collect();
     assert!(recorded(IMPACT, &unguarded).contains(&id));
     assert!(!recorded(IMPACT, &sets[2..]).contains(&id));
+}
+
+/// A square of two triangles without lateral strain, of which one corner is free: its triangle has K =
+/// ¼ [3 −1; −1 3] (tangential, normal), so that pushed to the right it is singular for μ = 3.
+const CORNER: &str = r#"
+dimension = 2
+[[material]]
+name = "soft"
+law = "linear-elastic"
+density = 1.0
+young = 1.0
+poisson = 0.0
+[[body]]
+name = "block"
+material = "soft"
+element = "T3"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [1, 1] }
+[[support]]
+on = ["block.left", "block.top"]
+fix = ["x", "y"]
+[[contact]]
+name = "bed"
+secondary = "block.bottom"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+mu = 2.9
+[[load]]
+body = "block"
+body_force = ["3.1e-6*t", "-1e-6"]
+[time]
+end = 1.0
+step = 0.5
+scheme = { kind = "static" }
+"#;
+
+/// Beyond μ = 3 loads between 3 and μ times the pressure allow stick, slip and lift-off; a load above
+/// μ has no way from stick but to lift off, which slip does not find.
+#[test]
+fn friction_beyond_the_singular_coefficient_is_said() {
+    assert!(!recorded(CORNER, &["contact.bed.mu=2.9"]).contains(&"ambiguous-friction".to_owned()));
+    let mut simulation = Setup::new(&case(CORNER, &["contact.bed.mu=3.05"])).start().unwrap();
+    simulation.advance(&mut GridReport::default()).unwrap();
+    let stopped = simulation.advance(&mut GridReport::default()).unwrap_err().to_string();
+    assert!(stopped.contains("not unique (relative singular value -0.017"), "{stopped}");
 }

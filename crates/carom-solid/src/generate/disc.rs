@@ -6,8 +6,8 @@
 
 use std::f64::consts::PI;
 
-use super::MeshError;
 use super::elevate::{Circle, Side, Skeleton, elevate};
+use super::{MeshError, triangles};
 use crate::mesh::{Element, Mesh};
 
 /// Disc with edges of about `size`; side `arc`, a closed loop counter-clockwise from its lowest
@@ -55,9 +55,7 @@ fn rings(radius: f64, size: f64) -> usize {
 }
 
 fn check(element: Element, radius: f64, center: [f64; 2], size: f64) -> Result<usize, MeshError> {
-    if element.dimension() != 2 {
-        return Err(MeshError::Dimension { element, dimension: 2 });
-    }
+    triangles(element)?;
     let positive = |x: f64| x.is_finite() && x > 0.0;
     if !(positive(radius) && positive(size) && center.iter().all(|c| c.is_finite())) {
         return Err(MeshError::Disc { radius, size, center });

@@ -1,17 +1,29 @@
-//! Built-in meshes: interval, rectangle, disc, half-disc, ring and polygon. The cells of a shape
+//! Built-in meshes: interval, rectangle, disc, half-disc, ring and polygon; box, ball, cylinder, tube
+//! and extrusion. The cells of a shape
 //! are the same for every order; `elevate` adds the nodes between corners. `*_nodes` count without
 //! building, to check first whether a mesh fits into memory.
 
+mod ball;
+mod cuboid;
+mod cylinder;
 mod delaunay;
 mod disc;
 mod elevate;
+mod extrusion;
+mod frame;
+mod lattice;
 mod polygon;
 mod rectangle;
 mod ring;
 
 use std::collections::BTreeMap;
 
+pub use ball::{ball, ball_hexahedra};
+pub use cuboid::{cuboid, cuboid_nodes};
+pub use cylinder::{cylinder, cylinder_hexahedra, tube, tube_hexahedra};
 pub use disc::{disc, disc_nodes, half_disc, half_disc_nodes};
+pub use extrusion::{extruded, extrusion};
+pub use frame::Frame;
 pub use polygon::{Refinement, outline, polygon};
 pub use rectangle::{rectangle, rectangle_nodes};
 pub use ring::ring;
@@ -32,6 +44,14 @@ pub enum MeshError {
         "inner {inner}, outer {outer} and size {size} must be finite and > 0, with inner < outer, and the centre {center:?} finite"
     )]
     Ring { inner: f64, outer: f64, size: f64, center: [f64; 2] },
+    #[error("radius {radius} and size {size} must be finite and > 0, the centre {center:?} finite")]
+    Ball { radius: f64, size: f64, center: [f64; 3] },
+    #[error("inner {inner} must be less than outer {outer}")]
+    Tube { inner: f64, outer: f64 },
+    #[error("the axis {axis:?} must not be zero, and it and the centre {origin:?} must be finite")]
+    Axis { axis: [f64; 3], origin: [f64; 3] },
+    #[error("planes of symmetry across x, y or z do not cut a shape with the axis {axis:?} in half")]
+    Oblique { axis: [f64; 3] },
     #[error("a polygon has at least 3 points, not {count}")]
     Points { count: usize },
     #[error("point {point} of the polygon is not finite or coincides with the previous point")]
@@ -44,6 +64,8 @@ pub enum MeshError {
     Place { near: [f64; 2], radius: f64 },
     #[error("the polygon could not be meshed with angles of {angle}° or more")]
     Angles { angle: f64 },
+    #[error("element {element:?} fills rectangles only; this shape has triangles")]
+    Triangles { element: Element },
     #[error("element {element:?} does not fill a shape of dimension {dimension}")]
     Dimension { element: Element, dimension: usize },
 }
@@ -100,5 +122,16 @@ fn check(element: Element, min: &[f64], max: &[f64], cells: &[usize]) -> Result<
     Ok(())
 }
 
+/// Checks that an element is a triangle.
+fn triangles(element: Element) -> Result<(), MeshError> {
+    match element {
+        Element::T3 | Element::T6 | Element::T10 => Ok(()),
+        Element::Q4 | Element::Q9 => Err(MeshError::Triangles { element }),
+        _ => Err(MeshError::Dimension { element, dimension: 2 }),
+    }
+}
+
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+pub(crate) use tests::solids as testing;

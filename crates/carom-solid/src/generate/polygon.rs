@@ -7,7 +7,7 @@
 
 use super::delaunay::{Outline, fill};
 use super::elevate::elevate;
-use super::{MeshError, lerp};
+use super::{MeshError, lerp, triangles};
 use crate::mesh::{Element, Mesh};
 
 /// Growth of edges away from a refined point.
@@ -44,9 +44,7 @@ pub fn polygon(
     size: f64,
     refine: &[Refinement],
 ) -> Result<Mesh, MeshError> {
-    if element.dimension() != 2 {
-        return Err(MeshError::Dimension { element, dimension: 2 });
-    }
+    triangles(element)?;
     outline(points)?;
     let positive = |what, value: f64| {
         if value.is_finite() && value > 0.0 { Ok(()) } else { Err(MeshError::Size { what, value }) }

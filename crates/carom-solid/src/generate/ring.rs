@@ -7,8 +7,8 @@
 
 use std::f64::consts::PI;
 
-use super::MeshError;
 use super::elevate::{Circle, Side, Skeleton, elevate};
+use super::{MeshError, triangles};
 use crate::mesh::{Element, Mesh};
 
 /// Ring with edges of about `size`, shorter where the ring is thinner or the inner circle needs
@@ -31,9 +31,7 @@ pub fn ring(
     center: [f64; 2],
     size: f64,
 ) -> Result<Mesh, MeshError> {
-    if element.dimension() != 2 {
-        return Err(MeshError::Dimension { element, dimension: 2 });
-    }
+    triangles(element)?;
     let in_range = inner > 0.0 && outer > inner && outer.is_finite() && size > 0.0 && size.is_finite();
     if !(in_range && center.iter().all(|c| c.is_finite())) {
         return Err(MeshError::Ring { inner, outer, size, center });

@@ -11,6 +11,7 @@ use crate::reference::gradient;
 use crate::shape::{Shape, Tri3, Tri6, Tri10};
 
 mod free;
+pub(crate) mod solids;
 
 const TRIANGLES: [Element; 3] = [Element::T3, Element::T6, Element::T10];
 

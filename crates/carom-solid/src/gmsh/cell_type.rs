@@ -57,8 +57,10 @@ impl CellType {
 
     /// The element, if bodies can consist of it.
     pub(super) fn element(self) -> Option<Element> {
-        use Element::{L2, L3, L4, T3, T6, T10};
-        [L2, L3, L4, T3, T6, T10].into_iter().find(|e| number(*e) == self.number)
+        use Element::{Hex8, Hex27, L2, L3, L4, T3, T6, T10, Tet4, Tet10, Tet20};
+        [L2, L3, L4, T3, T6, T10, Tet4, Tet10, Tet20, Hex8, Hex27]
+            .into_iter()
+            .find(|e| number(*e) == self.number)
     }
 
     pub(super) fn dimension(self) -> i64 {
@@ -84,7 +86,12 @@ pub(super) fn number(element: Element) -> i64 {
         Element::T3 => 2,
         Element::T6 => 9,
         Element::T10 => 21,
-        #[cfg(test)]
         Element::Tet4 => 4,
+        Element::Tet10 => 11,
+        Element::Tet20 => 29,
+        Element::Q4 => 3,
+        Element::Q9 => 10,
+        Element::Hex8 => 5,
+        Element::Hex27 => 12,
     }
 }

@@ -87,6 +87,18 @@ pub enum Fault {
     Overlap { name: String, a: i64, b: i64, start: i64, end: i64 },
     #[error("the edge {start}–{end} has different interior nodes in {a} and in {b}")]
     EdgeNodes { a: String, b: String, start: i64, end: i64 },
+    #[error("cell {cell} of \"{name}\" is {kind}, but the previous cells are not")]
+    MixedKinds { name: String, cell: i64, kind: String },
+    #[error("cells {cells:?} of \"{name}\" share the facet {corners:?}")]
+    Crowded { name: String, cells: Vec<i64>, corners: Vec<i64> },
+    #[error("cells {a} and {b} of \"{name}\" lie on the same side of the facet {corners:?}")]
+    SameSide { name: String, a: i64, b: i64, corners: Vec<i64> },
+    #[error("the facet {corners:?} has different nodes between its corners in {a} and in {b}")]
+    FacetNodes { a: String, b: String, corners: Vec<i64> },
+    #[error(
+        "{facets} facets of the boundary of \"{name}\" meet at the edge {start}–{end} at {at:.6?}, of the cells {cells:?}"
+    )]
+    Pinched { name: String, facets: usize, start: i64, end: i64, cells: Vec<i64>, at: Vec<f64> },
     #[error("node {node} of \"{name}\" belongs to {cells} cells")]
     Branching { name: String, node: i64, cells: usize },
 }
@@ -123,14 +135,23 @@ impl MshError {
             }
             Fault::NoName { what, names, .. } => format!("the physical {what}s are: {}", names.join(", ")),
             Fault::NoCells { .. } => "the name is defined, but no cell belongs to it".into(),
-            Fault::Unsupported { .. } => "bodies consist of triangles of order 1, 2 or 3, bars of lines".into(),
-            Fault::MixedOrders { .. } => "all cells of a body must have the same type".into(),
+            Fault::Unsupported { .. } => {
+                "bodies consist of triangles or tetrahedra of order 1, 2 or 3 or of hexahedra of order 1 or 2, bars of lines".into()
+            },
+            Fault::MixedOrders { .. } | Fault::MixedKinds { .. } => "all cells of a body must have the same type".into(),
             Fault::NotFlat { .. } => "a body of dimension 2 lies in a plane z = constant, a bar on the x axis".into(),
             Fault::Folded { .. } => "the Jacobian of a cell must be positive everywhere in it".into(),
             Fault::Coincident { .. } => {
                 "cells at the two nodes are not connected, so the body would separate there".into()
             }
             Fault::Overlap { .. } => "an edge separates at most two cells, one on each side".into(),
+            Fault::Crowded { .. } | Fault::SameSide { .. } => {
+                "a facet separates at most two cells, one on each side".into()
+            }
+            Fault::FacetNodes { .. } => "neighbouring cells must share every node of their facet; otherwise the body would have a gap there".into(),
+            Fault::Pinched { .. } => {
+                "two facets of the boundary meet at an edge; the body is held together there by a line without thickness".into()
+            }
             Fault::EdgeNodes { .. } => "neighbouring cells must share every node of their edge; otherwise the body would have a gap there".into(),
             Fault::Branching { .. } => "a node of a bar joins at most two cells".into(),
         }
@@ -146,7 +167,9 @@ impl MshError {
             Fault::NoName { .. } | Fault::NoCells { .. } | Fault::NoSection(_) => {
                 "name groups in Gmsh, for example Physical Surface(\"body\") = {1}; and mesh again"
             }
-            Fault::Unsupported { .. } => "mesh with triangles (in Gmsh without Recombine), order at most 3",
+            Fault::Unsupported { .. } => {
+                "mesh with triangles or tetrahedra (in Gmsh without Recombine), order at most 3"
+            }
             Fault::MixedOrders { .. } => "set one Mesh.ElementOrder for the whole mesh",
             Fault::NotFlat { .. } => "draw the geometry in the plane z = 0",
             Fault::Folded { .. } => {
@@ -155,6 +178,14 @@ impl MshError {
             Fault::Coincident { .. } => {
                 "merge them in Gmsh: Coherence; in the geometry, or Coherence Mesh; or, if the body is to have a slit there, give slits = true"
             }
+            Fault::MixedKinds { .. } => "mesh the whole body with one kind of cell",
+            Fault::Crowded { .. } | Fault::SameSide { .. } => {
+                "look for volumes that overlap or are in the group twice"
+            }
+            Fault::Pinched { .. } => {
+                "join the parts by a face, separate them, or give slits = true if this is what you want"
+            }
+            Fault::FacetNodes { .. } => "set the order after all volumes are meshed",
             Fault::Overlap { .. } => "look for surfaces that overlap or are in the group twice",
             Fault::EdgeNodes { .. } => "set the order after all surfaces are meshed",
             Fault::Branching { .. } => "a bar is one line of cells",

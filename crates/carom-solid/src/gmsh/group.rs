@@ -20,7 +20,7 @@ pub(super) struct Group<'a, const D: usize> {
 
 impl<'a, const D: usize> Group<'a, D> {
     pub(super) fn of(file: &'a MshFile, name: &'a str) -> Result<Self, MshError> {
-        let what = if D == 1 { "curve" } else { "surface" };
+        let what = ["point", "curve", "surface", "volume"][D.min(3)];
         let names = file.names(D);
         if !names.contains(&name) {
             let names = names.into_iter().map(str::to_owned).collect();
@@ -36,6 +36,10 @@ impl<'a, const D: usize> Group<'a, D> {
                 return Err(file.at(row, fault));
             };
             let first = *element.get_or_insert(this);
+            if first.facets().len() != this.facets().len() {
+                let (kind, name) = (block.kind.described(), name());
+                return Err(file.at(row, Fault::MixedKinds { name, cell: row.tag, kind }));
+            }
             if first != this {
                 let (order, before) = (this.degree(), first.degree());
                 return Err(file.at(row, Fault::MixedOrders { name: name(), cell: row.tag, order, before }));
@@ -103,8 +107,15 @@ impl<'a, const D: usize> Group<'a, D> {
             let column = &mut order[start..i];
             start = i;
             column.sort_unstable_by(|&a, &b| self.positions[a][D - 1].total_cmp(&self.positions[b][D - 1]));
-            for pair in column.windows(2) {
-                let (a, b) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+            let column = &*column;
+            let last = |k: usize| self.positions[column[k]][D - 1];
+            // Many may share the last coordinate as well, in space.
+            let pairs = (0..column.len()).flat_map(|k| {
+                let end = (k + 1..column.len()).find(|&l| last(l) - last(k) > near).unwrap_or(column.len());
+                (k + 1..end).map(move |l| (k, l))
+            });
+            for (k, l) in pairs {
+                let (a, b) = (column[k].min(column[l]), column[k].max(column[l]));
                 if (0..D).all(|d| (self.positions[a][d] - self.positions[b][d]).abs() <= near) {
                     let (name, at) = (self.name.to_owned(), self.positions[b].to_vec());
                     let fault = Fault::Coincident { name, a: self.node(a).tag, b: self.node(b).tag, at };

@@ -1,7 +1,7 @@
 //! Meshes from and to Gmsh: .msh files of version 4.1 and 2.2, text and binary, of order 1 to 3.
 //!
-//! A body is a *named* physical surface (dimension 1: curve); its sides are the named physical
-//! curves (points) on its boundary. Node order is Gmsh's. Defects that can be repaired without
+//! A body is a *named* physical surface (dimension 1: curve, dimension 3: volume); its sides are the
+//! named physical curves (points, surfaces) on its boundary. Defects that can be repaired without
 //! changing the geometry are, and [`Mesh::repairs`](crate::Mesh::repairs) lists them; others are
 //! errors with line or byte.
 //!
@@ -21,11 +21,13 @@ mod checks;
 mod error;
 mod file;
 mod group;
+mod order;
 mod raw;
 mod read;
 mod source;
 mod version_2;
 mod version_4;
+mod volume;
 mod write;
 
 pub use error::{Fault, MshError, Place};

@@ -1,12 +1,14 @@
 //! Writes bodies as a .msh file, version 4.1, text. [`read`](super::read()) and
-//! [`body`](super::MshFile::body) recover them bitwise, and Gmsh opens the file. Each body is a
-//! surface, each of its sides a curve; sides of the same name on several bodies are one physical
-//! curve.
+//! [`body`](super::MshFile::body) or [`volume`](super::MshFile::volume) recover them bitwise, and Gmsh
+//! opens the file. Each body is a surface, each of its sides a curve, in space a volume and a surface;
+//! sides of the same name on several bodies are one physical group.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::cell_type::number;
+use super::order;
+use crate::facet::FacetShape;
 use crate::mesh::{Element, Facet, Mesh};
 
 /// Named bodies as a .msh file. A `"` in a name becomes `'`.
@@ -30,17 +32,23 @@ pub fn write_msh41(bodies: &[(&str, &Mesh)]) -> String {
     let names: Vec<&str> = sides.iter().map(|s| s.1).collect::<BTreeSet<_>>().into_iter().collect();
     let group = |name: &str| names.iter().position(|n| *n == name).map_or(0, |i| i + 1);
 
+    let dimension = bodies.first().map_or(2, |(_, mesh)| mesh.dimension());
+    let lower = dimension - 1;
     let mut out = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n");
     let quoted = |name: &str| name.replace(['"', '\n'], "'");
     // Writing to a String cannot fail.
     let _ = writeln!(out, "{}", names.len() + bodies.len());
     for name in &names {
-        let _ = writeln!(out, "1 {} \"{}\"", group(name), quoted(name));
+        let _ = writeln!(out, "{lower} {} \"{}\"", group(name), quoted(name));
     }
     for (i, (name, _)) in bodies.iter().enumerate() {
-        let _ = writeln!(out, "2 {} \"{}\"", i + 1, quoted(name));
+        let _ = writeln!(out, "{dimension} {} \"{}\"", i + 1, quoted(name));
     }
-    let _ = writeln!(out, "$EndPhysicalNames\n$Entities\n0 {} {} 0", sides.len(), bodies.len());
+    let entities = match dimension {
+        3 => format!("0 0 {} {}", sides.len(), bodies.len()),
+        _ => format!("0 {} {} 0", sides.len(), bodies.len()),
+    };
+    let _ = writeln!(out, "$EndPhysicalNames\n$Entities\n{entities}");
     for (tag, (body, name, facets)) in sides.iter().enumerate() {
         let mesh = bodies[*body].1;
         let places = facets.iter().flat_map(|f| &f.nodes).map(|&n| &mesh.nodes[n]);
@@ -66,12 +74,15 @@ pub fn write_msh41(bodies: &[(&str, &Mesh)]) -> String {
     let _ =
         writeln!(out, "$EndEntities\n$Nodes\n{} {total} {} {total}", bodies.len(), usize::from(total > 0));
     for (i, (_, mesh)) in bodies.iter().enumerate() {
-        let _ = writeln!(out, "2 {} 0 {}", i + 1, mesh.nodes.len());
+        let _ = writeln!(out, "{dimension} {} 0 {}", i + 1, mesh.nodes.len());
         for n in 0..mesh.nodes.len() {
             let _ = writeln!(out, "{}", first[i] + n);
         }
         for x in &mesh.nodes {
-            let _ = writeln!(out, "{:e} {:e} 0", x[0], x[1]);
+            let _ = match x.get(2) {
+                Some(z) => writeln!(out, "{:e} {:e} {z:e}", x[0], x[1]),
+                None => writeln!(out, "{:e} {:e} 0", x[0], x[1]),
+            };
         }
     }
 
@@ -89,31 +100,46 @@ pub fn write_msh41(bodies: &[(&str, &Mesh)]) -> String {
         out.push('\n');
     };
     for (s, (body, _, facets)) in sides.iter().enumerate() {
-        let line = number(edge(bodies[*body].1.element));
-        let _ = writeln!(out, "1 {} {line} {}", s + 1, facets.len());
+        let kind = number(facet(bodies[*body].1.element));
+        let _ = writeln!(out, "{lower} {} {kind} {}", s + 1, facets.len());
         facets.iter().for_each(|f| cell(&mut out, &f.nodes, first[*body]));
     }
     for (i, (_, mesh)) in bodies.iter().enumerate() {
-        let _ = writeln!(out, "2 {} {} {}", i + 1, number(mesh.element), mesh.cell_count());
-        (0..mesh.cell_count()).for_each(|c| cell(&mut out, mesh.cell(c), first[i]));
+        let _ = writeln!(out, "{dimension} {} {} {}", i + 1, number(mesh.element), mesh.cell_count());
+        (0..mesh.cell_count())
+            .for_each(|c| cell(&mut out, &order::written(mesh.element, mesh.cell(c)), first[i]));
     }
     out.push_str("$EndElements\n");
     out
 }
 
-/// The line element on the edge of a triangle.
-fn edge(element: Element) -> Element {
-    match element.degree() {
-        1 => Element::L2,
-        2 => Element::L3,
-        _ => Element::L4,
+/// The element that is a facet of another.
+fn facet(element: Element) -> Element {
+    match element.facet_shape() {
+        FacetShape::Point | FacetShape::L2 => Element::L2,
+        FacetShape::L3 => Element::L3,
+        FacetShape::L4 => Element::L4,
+        FacetShape::T3 => Element::T3,
+        FacetShape::T6 => Element::T6,
+        FacetShape::T10 => Element::T10,
+        FacetShape::Q4 => Element::Q4,
+        FacetShape::Q9 => Element::Q9,
     }
 }
 
-/// Lower and upper corner of the box around points, z = 0.
+/// Lower and upper corner of the box around points; z = 0 in the plane.
 fn corners<'a>(places: impl Iterator<Item = &'a [f64]>) -> String {
-    let start = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
-    let [a, b, c, d] =
-        places.fold(start, |[a, b, c, d], x| [a.min(x[0]), b.min(x[1]), c.max(x[0]), d.max(x[1])]);
-    format!("{a:e} {b:e} 0 {c:e} {d:e} 0")
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for x in places {
+        for i in 0..3 {
+            let x = x.get(i).copied().unwrap_or(0.0);
+            (low[i], high[i]) = (low[i].min(x), high[i].max(x));
+        }
+    }
+    // A zero is written as before, without an exponent.
+    let text = |x: [f64; 3], flat: bool| {
+        if flat { format!("{:e} {:e} 0", x[0], x[1]) } else { format!("{:e} {:e} {:e}", x[0], x[1], x[2]) }
+    };
+    let flat = low[2] == 0.0 && high[2] == 0.0;
+    format!("{} {}", text(low, flat), text(high, flat))
 }

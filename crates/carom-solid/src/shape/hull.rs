@@ -13,10 +13,10 @@
 
 use carom_algebra::Vector;
 
-use super::{Shape, line_shape};
+use super::{Domain, Shape, line_shape};
 use crate::bounds::Bounds;
 
-/// Control points of a line or a simplex as weights of its nodes.
+/// Control points of a line or a cell as weights of its nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
     nodes: usize,
@@ -25,9 +25,12 @@ pub struct Hull {
 }
 
 impl Hull {
-    /// The hull of a simplex of shape `S`, whose corners are its first nodes.
+    /// The hull of a cell of shape `S`; the corners of a simplex are its first nodes.
     #[must_use]
     pub fn of<const R: usize, const N: usize, S: Shape<R, N>>() -> Self {
+        if S::Domain::TENSOR {
+            return Self { nodes: N, weights: products(S::DEGREE, &S::NODES) };
+        }
         let weights =
             control(S::DEGREE, &S::NODES[..=R], N, |xi, values| values.copy_from_slice(&S::values(xi)));
         Self { nodes: N, weights }
@@ -75,6 +78,27 @@ impl Hull {
         }
         bounds
     }
+}
+
+/// Rows of weights of the control points of a square or cube, the first axis fastest: products of
+/// those of a line.
+fn products<const R: usize, const N: usize>(degree: usize, nodes: &[Vector<R>; N]) -> Vec<f64> {
+    let line = Hull::line(degree + 1, 1.0);
+    // The nodes of a line are its ends, then the interior.
+    let place = |xi: f64| match (0.5 * (xi + 1.0) * degree as f64).round() as usize {
+        0 => 0,
+        i if i == degree => 1,
+        i => i + 1,
+    };
+    let mut rows = Vec::with_capacity(N * N);
+    for code in 0..N {
+        let along = |axis: usize| code / (degree + 1).pow(axis as u32) % (degree + 1);
+        let weight = |node: &Vector<R>| {
+            (0..R).map(|axis| line.weights(along(axis))[place(node[axis])]).product::<f64>()
+        };
+        rows.extend(nodes.iter().map(weight));
+    }
+    rows
 }
 
 /// Rows of weights of the control points of `degree` corners each, from the shape functions

@@ -2,7 +2,7 @@
 
 use carom_algebra::{Mat, Vector, wide};
 
-use super::{Place, Solid, place};
+use super::{Place, Solid};
 use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
 use crate::discrete_gradient::change_between;
@@ -168,7 +168,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
                 || self.validity.margin(&nodes),
             );
             return margin.map_err(|loss| {
-                let gradients = S::gradients(&place::<D, N, S>(&loss));
+                let gradients = S::gradients(&loss.place);
                 let reference = gradient(&self.reference(cell), &gradients).det();
                 Inverted { cell, det_f: gradient(&nodes, &gradients).det() / reference }
             });

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::reference::gradient;
-use crate::shape::{Line4, Tet4, Tri3, Tri6, Tri10};
+use crate::shape::{Domain, Hex8, Hex27, Line4, Quad4, Quad9, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10};
 
 /// The reference cell.
 fn cell<const D: usize, const N: usize, S: Shape<D, N>>() -> [Vector<D>; N] {
@@ -18,6 +18,11 @@ fn moved(node: usize, by: [f64; 2]) -> [Vector<2>; 6] {
     nodes
 }
 
+fn barycentric(loss: &Loss<2>) -> [f64; 3] {
+    let Vector([x, y]) = loss.place;
+    [1.0 - x - y, x, y]
+}
+
 #[test]
 fn a_mid_node_may_move_by_a_quarter_of_its_edge() {
     let test = Validity::<2, 6>::of::<Tri6>();
@@ -26,7 +31,7 @@ fn a_mid_node_may_move_by_a_quarter_of_its_edge() {
         assert!(test.margin(&moved(3, [sign * near, 0.0])).is_ok());
         let loss = test.margin(&moved(3, [sign * 0.25, 0.0])).unwrap_err();
         // The corner towards which it moves.
-        assert!(loss.place[usize::from(sign > 0.0)] > 0.999, "{loss:?}");
+        assert!(barycentric(&loss)[usize::from(sign > 0.0)] > 0.999, "{loss:?}");
         let lost = test.lost_between(&moved(3, [0.0; 2]), &moved(3, [sign * 0.3, 0.0])).unwrap();
         assert!(lost.theta <= 5.0 / 6.0 && lost.theta > 5.0 / 6.0 - 2e-6, "{lost:?}");
         assert_eq!(test.lost_between(&moved(3, [0.0; 2]), &moved(3, [sign * near, 0.0])), None);
@@ -55,7 +60,7 @@ fn a_cubic_folds_in_the_middle_of_an_edge() {
     for sign in [-1.0, 1.0] {
         assert!(test.margin(&by(sign * (exact - 1e-6))).is_ok());
         let loss = test.margin(&by(sign * (exact + 1e-6))).unwrap_err();
-        let middle = loss.place.iter().filter(|x| (**x - 0.5).abs() < 0.01).count();
+        let middle = barycentric(&loss).iter().filter(|x| (**x - 0.5).abs() < 0.01).count();
         assert_eq!(middle, 2, "{loss:?}");
         let lost = test.lost_between(&by(0.0), &by(sign * 0.2)).unwrap();
         assert!(lost.theta <= exact / 0.2 && lost.theta > exact / 0.2 - 1e-3, "{lost:?}");
@@ -88,8 +93,9 @@ fn check<const D: usize, const N: usize, S: Shape<D, N>>(shifts: &[[f64; 3]], am
         let mut least = f64::INFINITY;
         for code in 0..(steps + 1).pow(D as u32) {
             let part = |i: usize| (code / (steps + 1).pow(i as u32) % (steps + 1)) as f64 / steps as f64;
-            let xi = Vector(std::array::from_fn(|i| if D == 1 { 2.0 * part(i) - 1.0 } else { part(i) }));
-            if D == 1 || (0..D).map(part).sum::<f64>() <= 1.0 + 1e-9 {
+            let whole = D == 1 || S::Domain::TENSOR;
+            let xi = Vector(std::array::from_fn(|i| if whole { 2.0 * part(i) - 1.0 } else { part(i) }));
+            if whole || (0..D).map(part).sum::<f64>() <= 1.0 + 1e-9 {
                 least = least.min(gradient(nodes, &S::gradients(&xi)).det());
             }
         }
@@ -104,7 +110,7 @@ fn check<const D: usize, const N: usize, S: Shape<D, N>>(shifts: &[[f64; 3]], am
                 let mut other = nodes;
                 for a in 0..N {
                     for i in 0..D {
-                        other[a][i] += if shifts[(a + k) % 10][i] > 0.0 { margin } else { -margin };
+                        other[a][i] += if shifts[(a + k) % 27][i] > 0.0 { margin } else { -margin };
                     }
                 }
                 assert!(least(&other) > 0.0);
@@ -120,9 +126,7 @@ fn check<const D: usize, const N: usize, S: Shape<D, N>>(shifts: &[[f64; 3]], am
             }
         }
         Err(loss) => {
-            let corners: [Vector<D>; 4] = std::array::from_fn(|c| S::NODES[c.min(D)]);
-            let xi = (0..=D).fold(Vector::ZERO, |sum, c| sum + corners[c] * loss.place[c]);
-            assert!(gradient(&nodes, &S::gradients(&xi)).det() < 1e-9, "{loss:?}");
+            assert!(gradient(&nodes, &S::gradients(&loss.place)).det() < 1e-9, "{loss:?}");
             assert!(test.lost_between(&S::NODES, &nodes).is_some());
         }
     }
@@ -132,13 +136,44 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
     #[test]
     fn the_test_agrees_with_samples(
-        shifts in prop::collection::vec([-1.0..1.0, -1.0..1.0, -1.0..1.0], 10),
+        shifts in prop::collection::vec([-1.0..1.0, -1.0..1.0, -1.0..1.0], 27),
         amount in 0.0..0.4,
     ) {
         check::<1, 4, Line4>(&shifts, amount);
         check::<2, 3, Tri3>(&shifts, amount);
         check::<2, 6, Tri6>(&shifts, amount);
         check::<2, 10, Tri10>(&shifts, 0.5 * amount);
+        check::<2, 4, Quad4>(&shifts, 2.0 * amount);
+        check::<2, 9, Quad9>(&shifts, amount);
         check::<3, 4, Tet4>(&shifts, amount);
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20))]
+    #[test]
+    fn the_test_agrees_with_samples_of_large_cells(
+        shifts in prop::collection::vec([-1.0..1.0, -1.0..1.0, -1.0..1.0], 27),
+        amount in 0.0..0.4,
+    ) {
+        check::<3, 8, Hex8>(&shifts, 1.5 * amount);
+        check::<3, 10, Tet10>(&shifts, 0.5 * amount);
+        check::<3, 20, Tet20>(&shifts, 0.25 * amount);
+        check::<3, 27, Hex27>(&shifts, 0.5 * amount);
+    }
+}
+
+#[test]
+fn a_corner_of_a_square_may_move_to_the_other_diagonal() {
+    let test = Validity::<2, 4>::of::<Quad4>();
+    let by = |s: f64| {
+        let mut nodes = cell::<2, 4, Quad4>();
+        nodes[2] += Vector([-s, -s]);
+        nodes
+    };
+    // The Jacobian at the corners next to it vanishes when three corners are on a line.
+    assert!(test.margin(&by(1.0 - 1e-9)).is_ok());
+    assert!(test.margin(&by(1.0 + 1e-9)).is_err());
+    let lost = test.lost_between(&by(0.0), &by(2.0)).unwrap();
+    assert!(lost.theta <= 0.5 && lost.theta > 0.5 - 2e-6, "{lost:?}");
 }

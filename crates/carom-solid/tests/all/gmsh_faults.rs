@@ -15,7 +15,7 @@ fn fixtures() -> Vec<(String, Vec<u8>)> {
         .map(|p| (p.file_name().unwrap().to_string_lossy().into_owned(), std::fs::read(&p).unwrap()))
         .collect();
     all.sort();
-    assert!(all.len() >= 17);
+    assert!(all.len() >= 21);
     all
 }
 
@@ -27,6 +27,9 @@ fn everything(bytes: &[u8]) {
     }
     for name in file.names(1) {
         let _ = file.bar(name);
+    }
+    for name in file.names(3) {
+        let _ = file.volume(name);
     }
 }
 
@@ -45,7 +48,7 @@ fn cut_files_are_errors() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
     #[test]
-    fn bent_bytes_never_panic(which in 0..17_usize, bends in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6)) {
+    fn bent_bytes_never_panic(which in 0..21_usize, bends in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6)) {
         thread_local!(static FILES: Vec<(String, Vec<u8>)> = fixtures());
         let mut bytes = FILES.with(|f| f[which].1.clone());
         for (at, byte) in bends {
@@ -56,7 +59,7 @@ proptest! {
     }
 
     #[test]
-    fn bent_digits_never_panic(which in 0..17_usize, bends in prop::collection::vec((any::<prop::sample::Index>(), 0..12_usize), 1..6)) {
+    fn bent_digits_never_panic(which in 0..21_usize, bends in prop::collection::vec((any::<prop::sample::Index>(), 0..12_usize), 1..6)) {
         thread_local!(static FILES: Vec<(String, Vec<u8>)> = fixtures());
         let mut bytes = FILES.with(|f| f[which].1.clone());
         for (at, digit) in bends {

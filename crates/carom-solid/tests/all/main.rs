@@ -5,6 +5,8 @@
 mod body;
 mod gmsh;
 mod gmsh_faults;
+mod gmsh_volume;
 mod manufactured;
 mod plane_stress;
+mod space;
 mod subdivided;

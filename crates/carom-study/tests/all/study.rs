@@ -113,6 +113,8 @@ fn rows_failures_and_claims() {
     assert!(table.lines().nth(2).unwrap().starts_with("guarded,failed,"));
     let tidy = fs::read_to_string(directory.join("study_tidy.csv")).unwrap();
     assert!(tidy.contains("damped,steps,40.0,\n"));
+    // Measured times are in one of the tables only.
+    assert!(tidy.contains("damped,wall_time,") && !table.contains("wall_time"));
     assert!(fs::read_to_string(directory.join("claims.csv")).unwrap().contains("confirmed"));
     // Nothing is computed twice, and nothing is overwritten.
     let mut done_before = 0;

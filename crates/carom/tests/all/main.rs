@@ -5,6 +5,7 @@
 mod book;
 mod commands;
 mod common;
+mod export;
 #[cfg(unix)]
 mod input;
 mod mesh;
@@ -14,4 +15,5 @@ mod new;
 mod resume;
 mod schemes;
 mod stopped;
+mod study;
 mod verify;

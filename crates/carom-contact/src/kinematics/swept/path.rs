@@ -278,18 +278,18 @@ fn cubic(shape: FacetShape, at: impl Fn(usize) -> Vector<2>, largest: &mut f64) 
         *largest = if size > *largest || size.is_nan() { size } else { *largest };
         x
     };
-    match shape {
-        FacetShape::Point => [value(0); 4],
-        FacetShape::L2 => {
+    match shape.degree() {
+        0 => [value(0); 4],
+        1 => {
             let (a, b) = (value(0), value(1));
             [a, a * (2.0 * THIRD) + b * THIRD, a * THIRD + b * (2.0 * THIRD), b]
         }
-        FacetShape::L3 => {
+        2 => {
             let (a, b, c) = (value(0), value(1), value(2));
             let (third, c) = (THIRD, c * (4.0 * THIRD));
             [a, c - b * third, c - a * third, b]
         }
-        FacetShape::L4 => {
+        _ => {
             let (a, b, c, d) = (value(0), value(1), value(2), value(3));
             [
                 a,

@@ -40,7 +40,7 @@ impl Query {
             FacetShape::Point => &[0.0],
             FacetShape::L2 => &[-1.0, 1.0],
             FacetShape::L3 => &[-1.0, 1.0, 0.0],
-            FacetShape::L4 => &[-1.0, 1.0, -1.0 / 3.0, 1.0 / 3.0],
+            _ => &[-1.0, 1.0, -1.0 / 3.0, 1.0 / 3.0],
         };
         let facet = curves.map(|curve| places.iter().map(|&xi| Vector(curve(xi))).collect());
         Self { shape, node: node.map(Vector), facet }

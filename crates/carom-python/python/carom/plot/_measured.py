@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
 from ..run import Run
-from ._style import Size
+from ._style import LINES, Size, style
 from ._time import history
 
 
@@ -90,8 +90,9 @@ def overlay(
     error = measured_error(run, column, times, values)
     ax = history(run, column, events=False, ax=ax, size=size)
     name = f"{label} (NRMS {100 * error.nrms:.2g} %)"
-    ax.plot(np.asarray(times), np.asarray(values), "o", ms=3, mfc="none", mew=0.8, color="#d55e00", label=name)
-    ax.legend(fontsize=7)
+    with style():
+        ax.plot(times, values, "o", ms=3, mfc="none", mew=0.8, color=LINES[2], label=name)
+        ax.legend()
     return ax
 
 

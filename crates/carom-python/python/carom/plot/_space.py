@@ -18,11 +18,13 @@ from ._style import Size, axes, labelled, style
 
 Floats = NDArray[np.float64]
 
-#: Triangles between the nodes of a Lagrange triangle of degree 1 to 3 (corners, edges, interior).
+#: Triangles between the nodes (corners, edges, interior) of plane Lagrange cells, by number of nodes.
 _LATTICE = {
-    1: [(0, 1, 2)],
-    2: [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)],
-    3: [
+    3: [(0, 1, 2)],
+    4: [(0, 1, 2), (0, 2, 3)],
+    6: [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)],
+    9: [(0, 4, 8), (4, 1, 8), (1, 5, 8), (5, 2, 8), (2, 6, 8), (6, 3, 8), (3, 7, 8), (7, 0, 8)],
+    10: [
         (0, 3, 8),
         (3, 9, 8),
         (3, 4, 9),
@@ -34,6 +36,9 @@ _LATTICE = {
         (7, 6, 2),
     ],
 }
+
+#: Corners of the plane cells, by VTK type.
+_CORNERS = {69: 3, 70: 4}
 
 
 def snapshot(
@@ -143,23 +148,35 @@ def pressure_map(
     Notes
     -----
     s is the arc length along the undeformed side, from its first node; from a node opposite to the
-    contact if the side is closed. Corners of the primary side that are in contact are not shown.
+    contact if the side is closed. The pressure of a corner of the primary side is shown at the node that
+    is nearest to it.
     """
     contacts = {c["name"]: c for c in run.case["contacts"]}
     if not contacts:
         raise ValueError("the case has no contact")
+    if run.case["dimension"] == 3:
+        raise ValueError("this map is along a line; in space, run.fields[t] contains contact_pressure")
     name = contact or next(iter(contacts))
     if name not in contacts:
         raise ValueError(f"no contact is named {name!r}; the contacts are: {', '.join(contacts)}")
-    chains = run.manifest["sides"][contacts[name]["secondary"]]
-    rows = run.contact
+    side = contacts[name]["secondary"]
+    chains = [np.asarray(chain) for chain in run.manifest["sides"][side]]
+    fields, rows = run.fields.number(0), run.contact
     mine = rows["contact"] == name
-    nodes = _unrolled(np.concatenate([np.asarray(chain) for chain in chains]), rows["node"][mine])
-    # Corners of the primary are contact nodes, too, but have no place on this side.
-    mine &= np.isin(rows["node"], nodes)
-    points = run.fields.number(0).points[nodes]
-    lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    active, pressures = rows["node"][mine], rows["pressure"][mine]
+    # Corners of the primary are contact nodes, too; their facets are those of this side.
+    corners = ~np.isin(active, np.concatenate(chains))
+    degree = next(block.degree for block in fields.blocks if block.body == side.split(".")[0])
+    facets = np.concatenate([_facets(chain, degree) for chain in chains])
+    nearest = np.rint((rows["xi"][mine] + 1) / 2 * degree).astype(int)
+    active = np.where(corners, 0, active)
+    active[corners] = facets[rows["facet"][mine][corners], nearest[corners]]
+    nodes = _unrolled(np.concatenate(chains), active)
+    lengths = np.concatenate(
+        [[0.0], np.cumsum(np.linalg.norm(np.diff(fields.points[nodes], axis=0), axis=1))]
+    )
     place = {int(node): k for k, node in enumerate(nodes)}
+    line = np.array([place[int(node)] for node in active], dtype=int)
 
     times, row = np.unique(rows["time"][mine], return_inverse=True)
     with style():
@@ -169,20 +186,28 @@ def pressure_map(
             grid = grid[(grid >= times[0]) & (grid <= times[-1])]
             pressure = np.zeros((len(nodes), len(grid)))
             column = np.searchsorted(grid, times)[row]
-            pressure[[place[int(node)] for node in rows["node"][mine]], column] = rows["pressure"][mine]
+            # A node that is in contact itself is not hidden by a corner beside it.
+            for some in (corners, ~corners):
+                pressure[line[some], column[some]] = pressures[some]
             drawn = ax.pcolormesh(grid, lengths, pressure, cmap="cividis", shading="nearest", rasterized=True)
             touched = lengths[(pressure != 0).any(axis=1)]
-            margin = 0.15 * (touched.max(initial=0) - touched.min(initial=lengths[-1]))
-            ax.set_ylim(
-                max(touched.min(initial=lengths[-1]) - margin, 0),
-                min(touched.max(initial=0) + margin, lengths[-1]),
-            )
+            low, high = touched.min(initial=lengths[-1]), touched.max(initial=0)
+            if high > low:  # not the end of a bar
+                margin = 0.15 * (high - low)
+                ax.set_ylim(max(low - margin, 0), min(high + margin, lengths[-1]))
             bar = ax.figure.colorbar(drawn, ax=ax)
             bar.set_label(labelled("contact pressure", rows.units["pressure"]))
         ax.set_xlabel(labelled("time", run.history.units["time"]))
         ax.set_ylabel(labelled("arc length", run.history.units["penetration"]))
         ax.set_title(name)
     return ax
+
+
+def _facets(chain: NDArray[np.int64], degree: int) -> NDArray[np.int64]:
+    """The nodes of every facet of a chain, shape (facets, degree + 1)."""
+    starts = np.arange(0, len(chain) - 1, degree)
+    nodes: NDArray[np.int64] = chain[starts[:, None] + np.arange(degree + 1)]
+    return nodes
 
 
 def _unrolled(nodes: NDArray[np.int64], active: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -217,7 +242,7 @@ def _draw(
     y = fields.positions
     triangles = np.concatenate([_triangles(block) for block in fields.blocks])
     if not len(triangles):
-        raise ValueError("these bodies are bars; a snapshot shows bodies in the plane")
+        raise ValueError("a snapshot shows bodies in the plane; run.fields[t] is a PyVista grid of any cells")
     # Where J ≤ 0 there is no stress.
     masked = np.isnan(values[triangles]).any(axis=1)
     shape = Triangulation(y[:, 0], y[:, 1], triangles, mask=masked)
@@ -237,16 +262,17 @@ def _draw(
 
 
 def _triangles(block: Block) -> NDArray[np.int64]:
-    if block.vtk_type != 69:
+    if block.vtk_type not in _CORNERS:
         return np.empty((0, 3), dtype=np.int64)
-    return np.concatenate([block.cells[:, list(corners)] for corners in _LATTICE[block.degree]])
+    lattice = _LATTICE[block.cells.shape[1]]
+    return np.concatenate([block.cells[:, list(corners)] for corners in lattice])
 
 
 def _edges(block: Block) -> NDArray[np.int64]:
     """Nodes along every edge of every cell, from corner to corner."""
-    inner, cells = block.degree - 1, block.cells
+    corners, inner, cells = _CORNERS[block.vtk_type], block.degree - 1, block.cells
     edges = []
-    for k in range(3):
-        between = [3 + k * inner + i for i in range(inner)]
-        edges.append(cells[:, [k, *between, (k + 1) % 3]])
+    for k in range(corners):
+        between = [corners + k * inner + i for i in range(inner)]
+        edges.append(cells[:, [k, *between, (k + 1) % corners]])
     return np.concatenate(edges)

@@ -53,15 +53,9 @@ def energy(run: Run, *, ax: Axes | None = None, size: Size = "single") -> Axes:
 
     Terms that are zero throughout are left out.
     """
-    terms = (
-        "kinetic",
-        "strain",
-        "potential",
-        "total",
-        "external_work",
-        "contact_work",
-        "dissipation",
-    )
+    # The columns of the ledger follow one another.
+    names = list(run.history)
+    terms = names[names.index("kinetic") : names.index("dissipation") + 1]
     with style():
         ax = axes(ax, size)
         time = run.history["time"]

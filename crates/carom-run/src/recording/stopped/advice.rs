@@ -63,7 +63,13 @@ const TABLE: &[(&str, &[Remedy])] = &[
         ],
     ),
     ("negative-mass", &[(None, "`mass = \"consistent\"` or `\"lumped\"`, or more cells behind the contact")]),
-    ("no-value", &[(None, "a formula with a finite value up to the end of the run")]),
+    (
+        "no-value",
+        &[(
+            None,
+            "a formula with a finite value up to the end of the run; for `mu` one that is not negative, as max(…, 0)",
+        )],
+    ),
     ("unconstrained-body", &[(None, "a support for the body, or a scheme with inertia")]),
     ("jump", &[(None, "a `move` that begins where its nodes are")]),
     ("penetration", &[SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FINER, ROUNDED]),

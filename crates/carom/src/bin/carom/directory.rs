@@ -38,16 +38,20 @@ impl Drop for NewDirectory {
 /// `runs/NAME`, `runs/NAME-2`, … with the name of the case file.
 pub(crate) fn of_run(case: &Path, out: Option<&Path>) -> Result<NewDirectory, Failure> {
     if let Some(out) = out {
-        return if out.exists() {
-            let what = format!("{} exists already, and Carom never overwrites a run", out.display());
-            Err(Failure::Argument { what, help: "name another directory, or omit --out".to_owned() })
-        } else {
-            Ok(NewDirectory { path: out.to_owned(), reserved: false, parent: None })
-        };
+        return given(out, "name another directory, or omit --out");
     }
     let case = if case == Path::new(STDIN) { Path::new("stdin") } else { case };
     let name = case.file_stem().map_or_else(|| "run".to_owned(), |stem| stem.to_string_lossy().into_owned());
     reserved(Path::new("runs"), &name)
+}
+
+/// The directory of `--out`, which must not exist and is not created here.
+pub(crate) fn given(out: &Path, help: &str) -> Result<NewDirectory, Failure> {
+    if out.exists() {
+        let what = format!("{} exists already, and Carom never overwrites a run", out.display());
+        return Err(Failure::Argument { what, help: help.to_owned() });
+    }
+    Ok(NewDirectory { path: out.to_owned(), reserved: false, parent: None })
 }
 
 /// A new directory `RUN-WORD` beside a run, or `--out`.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use carom::case::{CaseError, Problem};
 use carom::recording::RunError;
 use carom_record::RecordError;
+use carom_record::study::StudyManifest;
 use carom_report::ReportError;
 use carom_study::StudyError;
 
@@ -13,7 +14,7 @@ use carom_study::StudyError;
 pub(crate) enum Exit {
     /// Success.
     Done = 0,
-    /// An expectation was missed (`verify`, `--strict`).
+    /// An expectation was missed (`verify`, `--strict`), or runs of a study are missing or damaged.
     Missed = 1,
     /// The case or an argument is wrong.
     Wrong = 2,
@@ -65,12 +66,27 @@ impl From<std::io::Error> for Failure {
 impl From<RecordError> for Failure {
     fn from(error: RecordError) -> Self {
         let what = error.to_string();
-        match error {
-            error if error.exit_code() == 4 => Self::System { what },
-            // It says what to try.
-            RecordError::Corrupt { .. } => Self::Argument { what, help: String::new() },
-            _ => Self::Argument { what, help: AGAIN.to_owned() },
-        }
+        let help = match &error {
+            RecordError::Io { .. } => return Self::System { what },
+            // They say what to try.
+            RecordError::Corrupt { .. } | RecordError::Busy { .. } | RecordError::Exists { .. } => {
+                String::new()
+            }
+            RecordError::NotARun { path } if StudyManifest::is_in(path) => {
+                let what = format!("{} is the directory of a study, not of a run", path.display());
+                let help =
+                    format!("give that of one of its runs: they are in {}", path.join("arms").display());
+                return Self::Argument { what, help };
+            }
+            RecordError::NotARun { .. } => {
+                "give a directory that `carom run` created, for example runs/impact".to_owned()
+            }
+            RecordError::NotAStudy { .. } => {
+                "give a directory that `carom study` created, for example runs/fair".to_owned()
+            }
+            RecordError::Width { .. } | RecordError::Field { .. } => AGAIN.to_owned(),
+        };
+        Self::Argument { what, help }
     }
 }
 
@@ -117,6 +133,11 @@ impl From<StudyError> for Failure {
                 what: error.to_string(),
                 help: "run it with `carom study` on one machine, or give the arms their steps".to_owned(),
             },
+            error @ StudyError::Damaged { .. } => {
+                let StudyError::Damaged { place, .. } = &error else { unreachable!("the same error") };
+                let help = format!("remove {} and compute the arm again", place.display());
+                Self::Argument { what: error.to_string(), help }
+            }
             error @ StudyError::NoRun { .. } => {
                 Self::Argument { what: error.to_string(), help: "give one of these numbers".to_owned() }
             }

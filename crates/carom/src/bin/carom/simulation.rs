@@ -119,6 +119,8 @@ pub(crate) struct BodyFacts {
     pub(crate) sides: Vec<(String, usize)>,
     /// Free degrees of freedom.
     pub(crate) dofs: usize,
+    /// Smallest scaled Jacobian; none for bars.
+    pub(crate) scaled_jacobian: Option<f64>,
 }
 
 /// Runs a case in a new directory.
@@ -338,6 +340,7 @@ fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
             cells: mesh.cell_count(),
             sides: mesh.sides.keys().filter_map(|s| Some((s.clone(), mesh.side_nodes(s)?.len()))).collect(),
             dofs: free,
+            scaled_jacobian: mesh.scaled_jacobian(),
         });
     }
     Ok(Facts { bodies, transit_steps: transit, stable_step, warnings: carom::warnings(case, &model) })

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use carom_record::Status;
 use carom_record::study::ranking::Ranking;
 use carom_record::study::{Study, StudyManifest};
+use carom_report::ReportError;
 use carom_study::Outcome;
 use serde_json::json;
 
@@ -23,7 +24,11 @@ pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     for arm in &manifest.arms {
         let arm = directory.join(&arm.directory);
         if arm.join("manifest.json").is_file() {
-            carom_report::report(&arm)?;
+            match carom_report::report(&arm) {
+                // The table of the study says so.
+                Err(ReportError::Record(error)) if !error.is_system() => {}
+                made => drop(made?),
+            }
         }
     }
     Ok(carom_report::study(directory)?.page)
@@ -72,6 +77,7 @@ fn text(study: &Study) -> String {
                 format!("  failed: {}{alike}", row.reason.as_deref().unwrap_or("?"))
             }
             Some(_) => "  not finished".to_owned(),
+            None if row.is_damaged() => format!("  damaged: {}", row.reason.as_deref().unwrap_or("?")),
             None => "  not started".to_owned(),
         };
         lines.push(format!("{:width$}{cells}", row.name));

@@ -19,7 +19,7 @@ use crate::{console, out};
 /// Nodes listed without `--verbose`.
 const LISTED: usize = 10;
 
-/// Read and resolve a case or a study and report its errors, without running it; draw overlapping bodies
+/// Read a case or a study and report its errors without running it; draw bodies that overlap
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  carom check impact.toml --set time.scheme.rho_inf=0.5\n  carom check laboratory.toml"
@@ -155,17 +155,26 @@ fn table(case: &Case, facts: &Facts) -> String {
     for body in &case.bodies {
         let size = facts.bodies.iter().find(|b| b.name == body.name).map_or_else(String::new, counted);
         lines.push(format!("  body     {:12} {:?} of {}: {size}", body.name, body.element, body.material));
+        let facts = facts.bodies.iter().find(|b| b.name == body.name);
+        // In the plane every built-in cell is well shaped.
+        if let Some(quality) = facts.and_then(|b| b.scaled_jacobian).filter(|_| case.dimension == 3) {
+            lines.push(format!("           smallest scaled Jacobian {quality:.2}"));
+        }
         if let MeshSpec::File { file, repairs, .. } = &body.mesh {
             lines.push(format!("           from {}", file.display()));
             lines.extend(repairs.iter().map(|repair| format!("           repaired: {repair}")));
         }
-        if let Some(PlaceSpec { rotate, about, shift }) = &body.place {
-            lines.push(format!("           rotated by {rotate}° about {about:?}, translated by {shift:?}"));
+        if let Some(PlaceSpec { rotate, axis, about, shift }) = &body.place {
+            let axis = if axis.is_empty() { String::new() } else { format!(" around {axis:?}") };
+            lines.push(format!(
+                "           rotated by {rotate}°{axis} about {about:?}, translated by {shift:?}"
+            ));
         }
     }
     for support in &case.supports {
-        let fixed = support.fix.iter().map(|axis| ["x", "y"][*axis]).collect::<Vec<_>>().join(", ");
-        let moved = support.moves.iter().map(|(axis, u)| format!("moved along {} by {u}", ["x", "y"][*axis]));
+        let fixed = support.fix.iter().map(|axis| ["x", "y", "z"][*axis]).collect::<Vec<_>>().join(", ");
+        let moved =
+            support.moves.iter().map(|(axis, u)| format!("moved along {} by {u}", ["x", "y", "z"][*axis]));
         let fixed = (!fixed.is_empty()).then(|| format!("fixed in {fixed}"));
         lines.push(format!(
             "  support  {:12} {} {}",

@@ -1,26 +1,27 @@
 //! `carom export`: the history of a run as one file, with units.
 
-use std::path::PathBuf;
+#[cfg(feature = "parquet")]
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 
 use carom_record::Run;
-use serde_json::json;
 
 use crate::exit::{Exit, Failure};
 use crate::out;
 
-/// Write the history of a run as CSV or JSON with the units of its columns
+/// Write the history of a run as CSV, JSON or Parquet with the units of its columns
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   carom export runs/impact --format json > impact.json
-  python -m carom export runs/impact --format parquet      (Python package)")]
+  carom export runs/impact --format parquet --out impact.parquet")]
 pub(crate) struct Arguments {
     /// The run directory
     directory: PathBuf,
-    /// Format; Parquet is written by the Python package
+    /// Format
     #[arg(long, value_enum)]
     format: Format,
-    /// The file to write [default: standard output]
+    /// The file to write; must not exist yet [default: standard output, except for Parquet]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -31,57 +32,79 @@ enum Format {
     Csv,
     /// Columns with name, unit, description and values
     Json,
-    /// See `python -m carom export`
+    /// Columns with unit and description as metadata; in released programs and the Python package
     Parquet,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let run = match arguments.format {
-        Format::Parquet => {
-            let help = "python -m carom export DIR --format parquet (pip install carom[parquet])";
-            let what = "the command does not write Parquet; the Python package does".to_owned();
-            return Err(Failure::Argument { what, help: help.to_owned() });
-        }
-        Format::Csv | Format::Json => Run::open(&arguments.directory)?,
-    };
+    arguments.out.as_deref().map_or(Ok(()), free)?;
+    let run = Run::open(&arguments.directory)?;
     let text = match arguments.format {
-        Format::Json => json_text(&run),
-        _ => csv_text(&run),
+        Format::Json => run.to_json() + "\n",
+        Format::Csv => run.to_csv()?,
+        Format::Parquet => {
+            write_parquet(&run, arguments.out.as_deref())?;
+            return Ok(Exit::Done);
+        }
     };
     match &arguments.out {
-        Some(path) => std::fs::write(path, text + "\n")
-            .map_err(|e| Failure::System { what: format!("cannot write {}: {e}", path.display()) })?,
+        Some(path) => std::fs::write(path, text).map_err(|e| cannot_write(path, &e))?,
         None => out::line(&text)?,
     }
     Ok(Exit::Done)
 }
 
-fn json_text(run: &Run) -> String {
-    let history = &run.history;
-    let columns = history.columns.iter().zip(&history.values);
-    let columns: Vec<_> = columns
-        .map(|(c, values)| {
-            json!({ "name": c.name, "unit": c.unit, "description": c.description, "values": values })
-        })
-        .collect();
-    json!({ "title": run.manifest.case["title"], "version": run.manifest.version, "columns": columns })
-        .to_string()
+fn cannot_write(path: &Path, error: &dyn std::error::Error) -> Failure {
+    Failure::System { what: format!("cannot write {}: {error}", path.display()) }
 }
 
-/// Names, units, and rows of shortest decimals that read back to the same bits.
-fn csv_text(run: &Run) -> String {
-    let history = &run.history;
-    let of = |text: fn(&carom_record::Column) -> &str| history.columns.iter().map(text).collect::<Vec<_>>();
-    let mut lines = vec![of(|c| &c.name).join(","), of(|c| &c.unit).join(",")];
-    let cell = |k: usize, row: usize| {
-        let value = history.values[k][row];
-        if history.columns[k].integer && value.fract() == 0.0 {
-            format!("{value}")
-        } else {
-            format!("{value:?}")
-        }
-    };
-    let row = |i| (0..history.values.len()).map(|k| cell(k, i)).collect::<Vec<_>>().join(",");
-    lines.extend((0..history.times().len()).map(row));
-    lines.join("\n")
+#[cfg(feature = "parquet")]
+fn write_parquet(run: &Run, path: Option<&Path>) -> Result<(), Failure> {
+    use std::sync::Arc;
+
+    use arrow_array::{ArrayRef, Float64Array, RecordBatch};
+    use arrow_schema::{DataType, Field, Schema};
+    use parquet::arrow::ArrowWriter;
+
+    let path = path.ok_or_else(|| Failure::Argument {
+        what: "a Parquet file needs a name".to_owned(),
+        help: "--out FILE".to_owned(),
+    })?;
+    let pair = |key: &str, text: &str| (key.to_owned(), text.to_owned());
+    let columns = &run.history.columns;
+    let fields = columns.iter().map(|c| {
+        let data = [pair("unit", &c.unit), pair("description", &c.description)];
+        let data: HashMap<_, _> = data.into_iter().filter(|(_, text)| !text.is_empty()).collect();
+        Field::new(&c.name, DataType::Float64, false).with_metadata(data)
+    });
+    let schema = Arc::new(Schema::new(fields.collect::<Vec<_>>()));
+    let values = run.history.values.iter().map(|v| Arc::new(Float64Array::from(v.clone())) as ArrayRef);
+    let rows = RecordBatch::try_new(schema.clone(), values.collect()).map_err(|e| cannot_write(path, &e))?;
+    let file = std::fs::File::create(path).map_err(|e| cannot_write(path, &e))?;
+    ArrowWriter::try_new(file, schema, None)
+        .and_then(|mut writer| {
+            writer.write(&rows)?;
+            writer.close()
+        })
+        .map_err(|e| cannot_write(path, &e))?;
+    Ok(())
+}
+
+#[cfg(not(feature = "parquet"))]
+fn write_parquet(_: &Run, _: Option<&Path>) -> Result<(), Failure> {
+    Err(Failure::Argument {
+        what: "this program was built without Parquet".to_owned(),
+        help: "python -m carom export DIR --format parquet --out FILE (pip install carom[parquet]), or a \
+               build with `--features parquet`"
+            .to_owned(),
+    })
+}
+
+/// A file that exists may be one of the record.
+fn free(path: &Path) -> Result<(), Failure> {
+    if !path.is_file() {
+        return Ok(());
+    }
+    let what = format!("{} exists already, and Carom never overwrites a file", path.display());
+    Err(Failure::Argument { what, help: "name another file, or remove it first".to_owned() })
 }

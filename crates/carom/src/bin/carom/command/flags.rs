@@ -10,19 +10,19 @@ use crate::simulation::Options;
 #[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Flags {
     /// Number of threads of a run; results are bitwise identical for any number;
-    /// at most four per core, or 64 [default: one per core]
+    /// at most 64, or four per core if that is more [default: one per core]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZero<usize>>,
     /// Do not write figures and report page
     #[arg(long)]
     pub(crate) no_report: bool,
-    /// Where a run stops, do not try what may get it past that place
+    /// Where a run stops, do not try changes with which it may continue
     #[arg(long)]
-    no_trials: bool,
-    /// Check the contact of every step by a second method, which holds every node against the whole
-    /// outline of the other body, and stop where it contradicts; slow
+    pub(crate) no_trials: bool,
+    /// Check the contact of every step by a second method, which compares every node with the whole
+    /// outline of the other body, and stop where the two methods disagree; slow
     #[arg(long)]
-    audit: bool,
+    pub(crate) audit: bool,
     /// Print a timing profile of a run
     #[arg(long)]
     pub(crate) profile: bool,

@@ -85,6 +85,9 @@ fn vtu(case: &Case, meshes: &[Mesh]) -> Result<Vec<u8>, Failure> {
             cell: match mesh.element {
                 Element::L2 | Element::L3 | Element::L4 => Cell::Curve,
                 Element::T3 | Element::T6 | Element::T10 => Cell::Triangle,
+                Element::Q4 | Element::Q9 => Cell::Quadrilateral,
+                Element::Tet4 | Element::Tet10 | Element::Tet20 => Cell::Tetrahedron,
+                Element::Hex8 | Element::Hex27 => Cell::Hexahedron,
             },
             degree: mesh.element.degree(),
             connectivity: mesh.cells.iter().map(|n| first + n).collect(),

@@ -24,6 +24,7 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use carom::case::{Case, Document, read};
+use carom_record::Machine;
 use carom_study::Plan;
 
 use crate::console;
@@ -103,8 +104,8 @@ fn is_pipe(path: &Path) -> bool {
 /// The requested number of threads or concurrent runs, or one per core. Numbers that can only cost
 /// time and memory are refused: more than four per core, and more than 64.
 fn parallel(option: &str, requested: Option<NonZero<usize>>) -> Result<usize, Failure> {
-    let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
-    let most = (4 * cores).max(64);
+    let machine = Machine::current();
+    let (cores, most) = (machine.cpus, machine.most_concurrent());
     let count = requested.map_or(cores, NonZero::get);
     if count > most {
         let what = format!(

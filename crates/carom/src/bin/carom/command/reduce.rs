@@ -7,7 +7,7 @@ use carom::ReduceError;
 use crate::exit::{Exit, Failure};
 use crate::{console, directory, out, summary};
 
-/// Make a smaller case that stops as a run did, continuing just before the stop
+/// Make a smaller case that starts just before the stop of a run and stops in the same way
 #[derive(clap::Args)]
 #[command(after_help = "\
 The reduced case is run: exit code 0 means that it stops for the same reason at the same place.

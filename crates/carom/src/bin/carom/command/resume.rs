@@ -4,6 +4,7 @@ use std::num::NonZero;
 use std::path::PathBuf;
 
 use carom_record::study::StudyManifest;
+use carom_record::{Manifest, Status};
 use serde_json::json;
 
 use super::flags::Flags;
@@ -21,7 +22,7 @@ pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,
     /// Number of concurrent arms of a study; results are bitwise identical for any number;
-    /// at most four per core, or 64 [default: all cores]
+    /// at most 64, or four per core if that is more [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     #[command(flatten)]
@@ -35,12 +36,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             (flags.threads.is_some(), "--threads"),
             (flags.profile, "--profile"),
             (flags.strict, "--strict"),
+            (flags.audit, "--audit"),
+            (flags.no_trials, "--no-trials"),
         ];
         if let Some((_, option)) = of_a_run.iter().find(|(given, _)| *given) {
             let what =
                 format!("{option} is an option for runs, but {} is a study", arguments.directory.display());
-            let help = "each arm of a study uses one thread, and --jobs sets the number of concurrent arms; \
-                        the timings of an arm are in its manifest.json";
+            let help = "each arm of a study uses one thread, is not audited, and tries nothing where it \
+                        stops; --jobs sets the number of concurrent arms, and the timings of an arm are in \
+                        its manifest.json";
             return Err(Failure::Argument { what, help: help.to_owned() });
         }
         return super::study::resume(&arguments.directory, arguments.jobs, !flags.no_report, flags.json);
@@ -50,6 +54,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(Failure::Argument { what, help: "use --threads for a run".to_owned() });
     }
     super::report::run_directory(&arguments.directory)?;
+    if flags.audit && Manifest::read(&arguments.directory)?.status == Status::Finished {
+        let what = format!(
+            "{} has finished, and --audit checks the steps that are computed",
+            arguments.directory.display()
+        );
+        let help = "run its case again with --audit, into another directory".to_owned();
+        return Err(Failure::Argument { what, help });
+    }
     let options = flags.options()?;
     let stop = stop_on_signal()?;
     if flags.json {

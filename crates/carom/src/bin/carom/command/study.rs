@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
 
-use carom_record::study::StudyManifest;
+use carom_record::study::{Row, StudyManifest};
 use carom_study::{Event, Outcome, StudyError};
 use serde_json::json;
 
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Number of concurrent arms (variants); results are bitwise identical for any number;
-    /// at most four per core, or 64 [default: all cores]
+    /// at most 64, or four per core if that is more [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Do not write figures and report page
@@ -95,11 +95,16 @@ fn conclude(
     drop(seen);
     let outcome = done?;
     let interrupted = outcome.interrupted;
+    let damaged = outcome.study.rows.iter().chain(&outcome.study.members).any(Row::is_damaged);
     study_summary::print(&outcome, directory, page, json)?;
     if interrupted && !json && !console::is_quiet() {
         out::line(&format!("stopped by Ctrl-C; continue with: carom resume {}", directory.display()))?;
     }
-    Ok(if interrupted { Exit::Interrupted } else { Exit::Done })
+    Ok(match (interrupted, damaged) {
+        (true, _) => Exit::Interrupted,
+        (false, true) => Exit::Missed,
+        (false, false) => Exit::Done,
+    })
 }
 
 /// Progress of a study.

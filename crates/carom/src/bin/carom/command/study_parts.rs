@@ -1,10 +1,9 @@
 //! `carom study plan`, `arm` and `collect`: a study in separate processes.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 use carom_record::Status;
-use carom_record::study::StudyManifest;
+use carom_record::study::{Row, StudyManifest};
 use serde_json::json;
 
 use crate::exit::{Exit, Failure};
@@ -19,7 +18,7 @@ pub(super) enum Part {
     #[command(after_help = "\
 Then compute every run, in any order and on any machine that shares the directory:
   sbatch DIR/slurm.sh                           with --slurm
-  seq N | parallel carom study arm DIR          with GNU parallel
+  seq N | parallel carom study arm DIR          with GNU parallel, for N runs
 and make tables and page with:
   carom study collect DIR")]
     Plan {
@@ -40,6 +39,9 @@ and make tables and page with:
         number: usize,
     },
     /// Make tables and page of what has been computed, and list what is missing
+    ///
+    /// Once all runs of a study with a goal have ended, one of them is computed twice more, with two
+    /// threads and resumed, to check that it is reproduced bit for bit.
     Collect {
         /// Directory of the study
         directory: PathBuf,
@@ -61,7 +63,7 @@ impl Part {
 
 fn plan(study: &Path, directory: &Path, slurm: bool) -> Result<Exit, Failure> {
     let plan = super::plan(&super::document(study, &[])?, study)?;
-    let directory = directory::of_run(study, Some(directory))?;
+    let directory = directory::given(directory, "name another directory")?;
     carom_study::plan(&plan, &directory)?;
     let count = plan.manifest.runs().count();
     if slurm {
@@ -113,15 +115,21 @@ fn arm(directory: &Path, number: usize) -> Result<Exit, Failure> {
 }
 
 fn collect(directory: &Path, page: bool) -> Result<Exit, Failure> {
-    let outcome = carom_study::collect(directory, &AtomicBool::new(false))?;
+    let stop = stop_on_signal()?;
+    let outcome = carom_study::collect(directory, &stop)?;
     study_summary::print(&outcome, directory, page, false)?;
-    let rows = outcome.study.rows.iter().chain(&outcome.study.members).enumerate();
-    let missing = rows.filter(|(_, row)| !matches!(row.status, Some(Status::Finished | Status::Failed)));
-    let missing: Vec<String> = missing.map(|(i, row)| format!("{} ({})", i + 1, row.name)).collect();
-    if missing.is_empty() {
-        return Ok(Exit::Done);
+    let rows = || outcome.study.rows.iter().chain(&outcome.study.members).enumerate();
+    let listed = |of: fn(&Row) -> bool| {
+        let found = rows().filter(|(_, row)| of(row)).map(|(i, row)| format!("{} ({})", i + 1, row.name));
+        found.collect::<Vec<_>>().join(", ")
+    };
+    let (missing, damaged) = (listed(|row| !row.has_ended() && !row.is_damaged()), listed(Row::is_damaged));
+    if !damaged.is_empty() {
+        console::say(format_args!("damaged: {damaged}"));
     }
-    console::say(format_args!("missing: {}", missing.join(", ")));
-    console::say(format_args!("compute them with: carom study arm {} N", directory.display()));
-    Ok(Exit::Missed)
+    if !missing.is_empty() {
+        console::say(format_args!("missing: {missing}"));
+        console::say(format_args!("compute them with: carom study arm {} N", directory.display()));
+    }
+    Ok(if rows().all(|(_, row)| row.has_ended()) { Exit::Done } else { Exit::Missed })
 }

@@ -33,7 +33,8 @@ Examples:
 Exit codes: 0 all met · 1 an expectation was missed · 2 a case is invalid · 3 a run stopped unexpectedly")]
 #[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
-    /// Cases, studies, or folders of them [default: cases/, or the fast cases built into the program]
+    /// Cases, studies, or folders of them [default: cases/, or without it the fast cases that are built
+    /// into the program]
     paths: Vec<PathBuf>,
     /// Skip expectations marked slow, and cases that have no others
     #[arg(long)]
@@ -42,7 +43,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "report")]
     fail_fast: bool,
     /// Number of concurrent runs; results are bitwise identical for any number;
-    /// at most four per core, or 64 [default: all cores]
+    /// at most 64, or four per core if that is more [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Directory of the verification; must not exist yet [default: runs/verify, runs/verify-2, …]

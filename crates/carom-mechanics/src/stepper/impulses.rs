@@ -1,0 +1,207 @@
+//! The impulses of the contacts of a step: a complementarity problem of impulses and velocities,
+//!
+//! ```text
+//! 0 ≤ G v + e G v_n ⊥ P ≥ 0,   G v = b + D P
+//! ```
+//!
+//! with D symmetric and positive definite. With friction (`carom_algebra::coulomb`) each normal row has
+//! one of slip, H at the predicted positions, whose impulse obeys Coulomb's law with the rate H v; e acts
+//! on normal rates alone, which can create energy.
+
+use carom_algebra::{Kind, LinearError, complementarity, coulomb, proximal};
+use carom_contact::{Law, Pairing, Rows, Tangential};
+use carom_time::ImpulseShares;
+
+use super::rubbing::{hold, kind};
+use super::watch::{active, held, measure_into, moves};
+use crate::constraints::{Constraints, independent_rows};
+use crate::equations::Equations;
+use crate::evaluation::Evaluation;
+use crate::model::Model;
+use crate::rejected::Rejected;
+use crate::state::State;
+use crate::workspace::Workspace;
+
+/// A predicted gap of at most this fraction of L is a tie, which round-off does not decide: it is open,
+/// as the published results of these schemes require, unless it has been closed since the start of the
+/// run. Otherwise a body pressed at rest would spring off.
+pub(super) const TIE: f64 = 1e-10;
+
+/// The contacts of a step, and their impulses.
+pub(super) struct Impulses {
+    /// Rows at the predicted positions.
+    pub rows: Constraints,
+    /// e of each contact; 0 of slips.
+    restitution: Vec<f64>,
+    /// The law of each row.
+    kinds: Vec<Kind>,
+    /// Whether rows depend on each other.
+    dependent: bool,
+    /// G v_n.
+    before: Vec<f64>,
+    /// P ≥ 0.
+    pub values: Vec<f64>,
+    /// M⁻¹Gᵀ, if the scheme needs it.
+    released: Vec<Vec<f64>>,
+}
+
+impl Impulses {
+    pub(super) fn none(dimension: usize) -> Self {
+        Self {
+            rows: Constraints::none(dimension),
+            restitution: Vec::new(),
+            kinds: Vec::new(),
+            dependent: false,
+            before: Vec::new(),
+            values: Vec::new(),
+            released: Vec::new(),
+        }
+    }
+
+    /// The contacts whose gap is closed at the predicted positions.
+    pub(super) fn closed(
+        model: &Model,
+        (state, dt): (&State, f64),
+        shares: ImpulseShares,
+        predicted: &[f64],
+        pairings: &mut [Pairing],
+        work: &mut Workspace,
+    ) -> Result<Self, Rejected> {
+        let mut measured = Vec::new();
+        measure_into(model, predicted, pairings, &mut measured)?;
+        for (pairing, rows) in pairings.iter_mut().zip(&measured) {
+            for (pair, row) in pairing.pairs.iter_mut().zip(rows.iter()) {
+                let tie = if pair.rests { TIE } else { -TIE };
+                pair.active = row.gap < tie * model.scale;
+                pair.rests &= pair.active;
+            }
+        }
+        let (places, stuck): (Vec<_>, Vec<_>) =
+            active(pairings).partition(|&(k, p)| moves(model, measured[k].row(p)));
+        for (k, p) in stuck {
+            // No impulse changes its velocity.
+            let row = measured[k].row(p);
+            let path = |dof: usize| predicted[dof] - state.y[dof];
+            let sinks = -row.entries().map(|(dof, slope)| slope * path(dof)).sum::<f64>();
+            if sinks > TIE * model.scale {
+                return Err(held(&model.contacts[k], &pairings[k].pairs[p], row.gap));
+            }
+        }
+        let dependent = independent_rows(model, places.iter().copied(), &measured).len() < places.len();
+        let mut rows =
+            Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
+        let mut kinds = vec![Kind::Normal; places.len()];
+        let mut restitution: Vec<f64> = places.iter().map(|&(k, _)| model.contacts[k].restitution).collect();
+        let laws = model.friction_laws(state.time + dt)?;
+        for (of, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
+            let (contact, pair) = (&model.contacts[k], &pairings[k].pairs[p]);
+            let Some(law) = laws[k].get(pair.node) else { continue };
+            let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
+            let mut slip = Rows::new(model.dimension);
+            contact.kinematics.slip(pair, predicted, &mut slip).map_err(failed)?;
+            rows.push_plain((k, p), slip.row(0), true);
+            let law = Law { limit: dt * law.limit, ..*law };
+            kinds.push(kind(&law, of, state, (k, pair), slip.row(0), &state.v));
+            restitution.push(0.0);
+        }
+        let mut released = Vec::new();
+        if !rows.is_empty() && (shares.velocity != 0.0 || shares.acceleration != 0.0) {
+            work.system.factor_mass(model, &Constraints::none(model.dimension))?;
+            let mut force = vec![0.0; model.dofs()];
+            for row in rows.rows.iter() {
+                force.fill(0.0);
+                row.add_to(1.0, &mut force);
+                let mut column = vec![0.0; model.dofs()];
+                work.system.factor.solve(model, &force, &[], &mut column, &mut Vec::new())?;
+                released.push(column);
+            }
+        }
+        Ok(Self {
+            restitution,
+            kinds,
+            dependent,
+            before: rows.rows.iter().map(|row| row.along(&state.v)).collect(),
+            values: vec![0.0; rows.len()],
+            rows,
+            released,
+        })
+    }
+
+    /// P of the linearised step: b and D from the solutions for −r₀ and for each row.
+    pub(super) fn solve(
+        &self,
+        equations: &Equations,
+        shares: ImpulseShares,
+        now: &Evaluation,
+        correction: &[f64],
+        columns: &[Vec<f64>],
+        values: &mut Vec<f64>,
+    ) -> Result<(), LinearError> {
+        let count = self.rows.len();
+        let velocity = &equations.stage.velocity;
+        let end: Vec<f64> = (0..correction.len())
+            .map(|i| velocity.slope * (now.at.increment[i] + correction[i]) + velocity.at_start[i])
+            .collect();
+        let mut matrix = vec![0.0; count * count];
+        let mut right = vec![0.0; count];
+        for (i, row) in self.rows.rows.iter().enumerate() {
+            right[i] = row.along(&end) + self.restitution[i] * self.before[i];
+            for j in 0..=i {
+                let direct = self.released.get(j).map_or(0.0, |r| shares.velocity * row.along(r));
+                matrix[i * count + j] = velocity.slope * shares.force * row.along(&columns[j]) + direct;
+            }
+        }
+        if self.dependent {
+            proximal(&mut matrix, &mut right, &self.values);
+        }
+        if self.rows.slips.contains(&true) {
+            for i in 0..count {
+                (0..i).for_each(|j| matrix[j * count + i] = matrix[i * count + j]);
+            }
+            values.clone_from(&self.values);
+            return coulomb(&matrix, &right, &self.kinds, values);
+        }
+        complementarity(&matrix, &right, values)
+    }
+
+    /// x += factor M⁻¹GᵀP.
+    pub(super) fn release(&self, x: &mut [f64], factor: f64) {
+        for (column, impulse) in self.released.iter().zip(&self.values) {
+            for (x, c) in x.iter_mut().zip(column) {
+                *x += factor * impulse * c;
+            }
+        }
+    }
+
+    /// Adds impulses to the ledger and, as forces P/Δt, to those of the contacts and of their pairs: work
+    /// ½(Gv⁻ + Gv⁺)·P.
+    pub(super) fn record(&self, dt: f64, next: &mut State, pairings: &mut [Pairing]) {
+        for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
+            (pair.lambda, pair.tangential.traction) = (0.0, 0.0);
+        }
+        next.contact_forces.fill([0.0; 3]);
+        for (r, (row, impulse)) in self.rows.rows.iter().zip(&self.values).enumerate() {
+            let normal = row.normal();
+            for i in 0..3 {
+                next.contact_forces[self.rows.places[r].0][i] += impulse * normal[i] / dt;
+                next.impulses[self.rows.places[r].0][i] += impulse * normal[i];
+            }
+            let work = 0.5 * impulse * (self.before[r] + row.along(&next.v));
+            let is_slip = self.rows.slips[r];
+            *(if is_slip { &mut next.ledger.friction_work } else { &mut next.ledger.contact_work }) += work;
+            let (k, p) = self.rows.places[r];
+            let pair = &mut pairings[k].pairs[p];
+            match self.kinds[r] {
+                Kind::Normal => pair.lambda = -impulse / dt,
+                kind @ Kind::Tangential { of, .. } => {
+                    pair.tangential = Tangential {
+                        hold: hold(kind, self.values[of], *impulse),
+                        traction: -impulse / dt,
+                        slip: pair.tangential.slip + dt * row.along(&next.v),
+                        ..Tangential::default()
+                    };
+                }
+            }
+        }
+    }
+}

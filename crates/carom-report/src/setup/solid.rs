@@ -1,0 +1,265 @@
+//! The drawing of a case in space: bodies with their cells, supported and loaded sides, loads,
+//! gravity, initial velocities and probes.
+
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write as _;
+
+use carom_record::{FieldSet, Run};
+
+use super::drawing::{BODIES, KEY, ROOM, SUPPORT, Setup};
+use super::forces::{COLOR, Load, load};
+use super::values::{list, text, vector};
+use crate::axis::round_step;
+use crate::chart::{open, write_text};
+use crate::pen::Point;
+use crate::space::{
+    DRAWN, Facet, Paint, Place, View, corners, cross, draw, frame, minus, pieces, places, skin,
+};
+use crate::symbols::{arrow, direction, plus};
+
+/// Length in pixels of an arrow parallel to the page, and about how many are drawn on a side.
+const LENGTH: f64 = 30.0;
+const ARROWS: usize = 24;
+/// Room for the axes below the picture.
+const FOOT: f64 = 84.0;
+
+/// A case as it is seen.
+struct Solid<'a> {
+    setup: Setup<'a>,
+    view: View,
+    places: Vec<Place>,
+    skin: Vec<Facet>,
+    /// Numbers of the facets of the skin by the corners of their face.
+    numbers: HashMap<Vec<usize>, Vec<usize>>,
+}
+
+/// The figure; nothing without extent.
+pub(super) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
+    let (view, places, skin) = (View::axonometric(), places(fields), skin(fields));
+    let [x0, x1, y0, y1] = frame(&skin, &places, &view);
+    if !(x1 > x0 && y1 > y0) {
+        return None;
+    }
+    let margin = 52.0;
+    let scale = (ROOM / (x1 - x0)).min(430.0 / (y1 - y0));
+    let size = [(x1 - x0) * scale, (y1 - y0) * scale];
+    let (left, top) = (margin, margin);
+    let points = places.iter().map(|p| view.of(*p)).map(|[x, y, _]| [x, y]).collect();
+    let origin = [left - x0 * scale, top + y1 * scale];
+    let setup = Setup { run, fields, points, flat: false, scale, origin, inside: HashMap::new() };
+    let beside = left + size[0] + margin + 20.0;
+    let mut key = String::new();
+    let lines = setup.key(&mut key, beside);
+    let bottom = top + size[1] + margin;
+    let mut out = open("Initial configuration", beside + KEY, (bottom + FOOT).max(lines + 8.0));
+    let mut numbers: HashMap<Vec<usize>, Vec<usize>> = HashMap::new();
+    for (k, facet) in skin.iter().enumerate() {
+        numbers.entry(facet.face.clone()).or_default().push(k);
+    }
+    let solid = Solid { setup, view, places, skin, numbers };
+    solid.bodies(&mut out, ([left, top], size));
+    solid.sides(&mut out);
+    solid.loads(&mut out);
+    solid.probes(&mut out);
+    view.triad(&mut out, [40.0, bottom + 32.0], 30.0);
+    let bar = round_step(x1 - x0, 3.0);
+    let _ = writeln!(
+        out,
+        "<path d=\"M110 {:.1}v6m0 -3h{:.1}m0 -3v6\" fill=\"none\" stroke=\"#222\"/>",
+        bottom + 46.0,
+        bar * scale
+    );
+    let length = solid.setup.case().pointer("/units/length").and_then(|l| l.as_str()).unwrap_or_default();
+    write_text(&mut out, 118.0 + bar * scale, bottom + 53.0, "", format!("{bar} {length}").trim());
+    out.push_str(&key);
+    out.push_str("</svg>\n");
+    Some(out)
+}
+
+impl Solid<'_> {
+    fn to(&self, p: Place) -> Point {
+        let [x, y, _] = self.view.of(p);
+        self.setup.to([x, y])
+    }
+
+    /// Numbers of the facets of a side.
+    fn side(&self, name: &str) -> Vec<usize> {
+        let facets = self.setup.run.manifest.sides.get(name).map_or(&[][..], Vec::as_slice);
+        facets.iter().filter_map(|nodes| self.numbers.get(&corners(nodes))).flatten().copied().collect()
+    }
+
+    /// Facets of all sides that are named in a list of the case.
+    fn named(&self, what: &str) -> Vec<Vec<usize>> {
+        let of = |item| list(item, "on").iter().filter_map(|side| side.as_str()).map(|side| self.side(side));
+        list(self.setup.case(), what).iter().flat_map(of).collect()
+    }
+
+    /// Middle of a facet and its outward unit normal.
+    fn middle(&self, facet: &Facet) -> (Place, Place) {
+        let [a, b, c] = [0, 1, 2].map(|k| self.places[facet.nodes[k]]);
+        let n = cross(minus(b, a), minus(c, a));
+        let size = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        ([0, 1, 2].map(|d| (a[d] + b[d] + c[d]) / 3.0), n.map(|x| x / size))
+    }
+
+    fn seen(&self, facet: usize) -> bool {
+        self.view.of(self.middle(&self.skin[facet]).1)[2] > 1e-9
+    }
+
+    /// Bodies, with supported sides in a colour of their own.
+    fn bodies(&self, out: &mut String, place: (Point, Point)) {
+        let supported: HashSet<usize> = self.named("supports").into_iter().flatten().collect();
+        let number: HashMap<&Facet, f64> = (self.skin.iter().enumerate())
+            .map(|(k, facet)| {
+                let color = if supported.contains(&k) { BODIES.len() } else { facet.block % BODIES.len() };
+                (facet, color as f64)
+            })
+            .collect();
+        let to = |p: Point| self.setup.to(p);
+        let pieces =
+            pieces(&self.skin, &self.places, &|facet, _| number[facet], &self.view, &to, self.setup.scale);
+        let colors: Vec<&str> = BODIES.iter().copied().chain([SUPPORT]).collect();
+        let drawn = pieces.len() <= DRAWN;
+        draw(out, &pieces, (&Paint::Parts(&colors), colors.len()), place, drawn);
+    }
+
+    /// Outlines of supported and loaded sides; dashed where the side turns its back to the eye.
+    fn sides(&self, out: &mut String) {
+        for (what, color) in [("supports", "#44607c"), ("loads", COLOR)] {
+            for side in self.outlined(what) {
+                let mut found: HashMap<[usize; 2], (usize, usize)> = HashMap::new();
+                let mut order = Vec::new();
+                for &k in &side {
+                    for e in (0..3).filter(|&e| self.skin[k].sides[e]) {
+                        let [a, b] = [e, (e + 1) % 3].map(|c| self.skin[k].nodes[c]);
+                        let key = [a.min(b), a.max(b)];
+                        let entry = found.entry(key).or_insert_with(|| {
+                            order.push((key, e));
+                            (0, k)
+                        });
+                        entry.0 += 1;
+                    }
+                }
+                for (key, e) in order {
+                    let (count, facet) = found[&key];
+                    if count > 1 {
+                        continue;
+                    }
+                    let dashes = if self.seen(facet) { "" } else { " stroke-dasharray=\"4 3\"" };
+                    let facet = &self.skin[facet];
+                    let line = crate::bodies::edge_nodes(facet.degree, &facet.nodes, e)
+                        .map(|k| self.to(self.places[k]))
+                        .map(|[x, y]| format!("{x:.1},{y:.1}"))
+                        .collect::<Vec<_>>();
+                    let _ = writeln!(
+                        out,
+                        "<polyline points=\"{}\" fill=\"none\" stroke=\"{color}\" \
+                         stroke-width=\"1.6\"{dashes}/>",
+                        line.join(" ")
+                    );
+                }
+            }
+        }
+    }
+
+    /// The sides of supports or loads.
+    fn outlined(&self, what: &str) -> Vec<Vec<usize>> {
+        if what == "supports" {
+            return self.named(what);
+        }
+        let loads = list(self.setup.case(), "loads").iter().filter_map(load);
+        let sides = loads.flat_map(|l| list(l.spec, "on").iter().filter_map(|side| side.as_str()));
+        sides.map(|side| self.side(side)).collect()
+    }
+
+    /// An arrow along a vector that ends (`presses`) or begins at a place.
+    fn arrow(&self, out: &mut String, at: Place, vector: Place, presses: bool, color: &str) {
+        let size = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let [x, y, _] = self.view.of(vector.map(|x| x / size));
+        let along = [x * LENGTH, -y * LENGTH];
+        // Arrows towards the eye would be dots.
+        let length = along[0].hypot(along[1]);
+        if length < 0.25 * LENGTH || length.is_nan() {
+            return;
+        }
+        let p = self.to(at);
+        let [from, to] = if presses { [-1.0, 0.0] } else { [0.0, 1.0] };
+        arrow(out, plus(p, from, along), plus(p, to, along), color);
+    }
+
+    fn forces(&self, out: &mut String, load: &Load) {
+        let sides = list(load.spec, "on").iter().filter_map(|side| side.as_str());
+        for side in sides.map(|side| self.side(side)) {
+            let front: Vec<usize> = side.iter().copied().filter(|&k| self.seen(k)).collect();
+            let facets = if front.is_empty() { side } else { front };
+            for k in facets.iter().step_by(facets.len().div_ceil(ARROWS).max(1)) {
+                let (at, n) = self.middle(&self.skin[*k]);
+                let values = self.setup.values_at(load, &at);
+                let towards = match (load.kind, values.as_slice()) {
+                    ("pressure", [p, ..]) => n.map(|x| -x * p.signum()),
+                    (_, [x, y, z]) => [*x, *y, *z],
+                    _ => continue,
+                };
+                let presses = (0..3).map(|d| towards[d] * n[d]).sum::<f64>() < 0.0;
+                self.arrow(out, at, towards, presses, COLOR);
+            }
+        }
+    }
+
+    /// Loads, names of bodies, gravity and initial velocities.
+    fn loads(&self, out: &mut String) {
+        for load in list(self.setup.case(), "loads").iter().filter_map(load) {
+            self.forces(out, &load);
+        }
+        let halo = "font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
+                    paint-order=\"stroke\" stroke-linejoin=\"round\"";
+        for body in list(self.setup.case(), "bodies") {
+            let Some(block) = self.setup.fields.blocks.iter().find(|b| b.body == text(body, "name")) else {
+                continue;
+            };
+            let count = block.connectivity.len() as f64;
+            let middle =
+                [0, 1, 2].map(|d| block.connectivity.iter().map(|&k| self.places[k][d]).sum::<f64>() / count);
+            let [x, y] = self.to(middle);
+            write_text(out, x, y - 12.0, &format!("text-anchor=\"middle\" {halo}"), text(body, "name"));
+            let force = list(self.setup.case(), "loads")
+                .iter()
+                .filter_map(load)
+                .find(|l| l.kind == "body-force" && text(l.spec, "body") == text(body, "name"));
+            let force = force.map(|l| self.setup.values_at(&l, &middle)).unwrap_or_default();
+            for (symbol, color, v) in [
+                ("g", "#222", vector(body.get("gravity"))),
+                ("v_{0}", "#222", vector(body.get("velocity"))),
+                ("b", COLOR, force),
+            ] {
+                let Ok(v) = Place::try_from(v) else { continue };
+                if v.iter().all(|x| *x == 0.0) {
+                    continue;
+                }
+                self.arrow(out, middle, v, false, color);
+                let [right, up, _] = self.view.of(v);
+                let end = plus([x, y], LENGTH + 12.0, direction([0.0; 2], [right, -up]));
+                write_text(out, end[0] + 6.0, end[1] + 4.0, halo, symbol);
+            }
+        }
+    }
+
+    fn probes(&self, out: &mut String) {
+        for probe in list(self.setup.case(), "probes") {
+            let Ok(at) = Place::try_from(vector(probe.get("at"))) else { continue };
+            let distance = |p: &Place| (0..3).map(|d| (p[d] - at[d]).powi(2)).sum::<f64>();
+            let near = (self.setup.fields.points.iter().zip(&self.places))
+                .min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
+            let Some((from, to)) = near else { continue };
+            let [x, y] = self.to([0, 1, 2].map(|d| at[d] + to[d] - from[d]));
+            let _ = writeln!(
+                out,
+                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" \
+                 stroke-width=\"1.8\"/>"
+            );
+            let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
+                        paint-order=\"stroke\" stroke-linejoin=\"round\"";
+            write_text(out, x + 8.0, y - 7.0, bold, text(probe, "name"));
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! The sheet of a figure of several instants: pictures at the same scale side by side, with letters
+//! and times, a scale bar, and a colour bar.
+
+use std::fmt::Write as _;
+
+use crate::axis::{Axis, round_step};
+use crate::bands::Bands;
+use crate::chart::{open, scaled, write_text};
+use crate::labels::with_unit;
+use crate::pen::Point;
+
+const WIDTH: f64 = 940.0;
+/// Room for the colour bar, between pictures, and for a heading.
+const BAR: f64 = 96.0;
+const GAP: f64 = 14.0;
+const LINE: f64 = 30.0;
+
+/// What a colour bar shows: bands, whether values lie below and above them, quantity and unit.
+#[derive(Clone, Copy)]
+pub(crate) struct Legend<'a> {
+    pub(crate) bands: &'a Bands,
+    pub(crate) cut: [bool; 2],
+    pub(crate) label: &'a str,
+    pub(crate) unit: &'a str,
+}
+
+/// A figure under construction.
+pub(crate) struct Sheet {
+    pub(crate) out: String,
+    /// Left, right, bottom, top of every picture in units of length.
+    frame: [f64; 4],
+    /// Pixels per unit of length.
+    pub(crate) scale: f64,
+    columns: usize,
+    /// Height in pixels, without and with what is below the pictures.
+    pub(crate) pictures: f64,
+    height: f64,
+}
+
+impl Sheet {
+    /// A sheet for a number of pictures, with `foot` pixels below them.
+    pub(crate) fn new(title: &str, count: usize, frame: [f64; 4], foot: f64) -> Self {
+        let [x0, x1, y0, y1] = frame;
+        let aspect = (x1 - x0) / (y1 - y0).max(1e-12 * (x1 - x0).abs()).max(f64::MIN_POSITIVE);
+        let most = if aspect < 1.3 {
+            5
+        } else if aspect < 2.6 {
+            3
+        } else {
+            1
+        };
+        let columns = count.min(most).max(1);
+        let cell_width = (WIDTH - BAR - 8.0) / columns as f64;
+        let scale = ((cell_width - GAP) / (x1 - x0)).min(460.0 / (y1 - y0));
+        let pictures = count.div_ceil(columns) as f64 * ((y1 - y0) * scale + LINE + GAP);
+        let height = pictures + foot;
+        Self { out: open(title, WIDTH, height), frame, scale, columns, pictures, height }
+    }
+
+    /// Left end of the room of picture `k`, and top of the picture.
+    fn corner(&self, k: usize) -> Point {
+        let row = (self.frame[3] - self.frame[2]) * self.scale + LINE + GAP;
+        [8.0 + (k % self.columns) as f64 * self.cell_width(), (k / self.columns) as f64 * row + LINE]
+    }
+
+    fn cell_width(&self) -> f64 {
+        (WIDTH - BAR - 8.0) / self.columns as f64
+    }
+
+    /// Upper left corner of picture `k`, and its size.
+    pub(crate) fn picture(&self, k: usize) -> (Point, Point) {
+        let size = [self.frame[1] - self.frame[0], self.frame[3] - self.frame[2]].map(|s| s * self.scale);
+        let [left, top] = self.corner(k);
+        ([left + 0.5 * (self.cell_width() - GAP - size[0]), top], size)
+    }
+
+    /// The map from units of length to pixels in picture `k`.
+    pub(crate) fn map(&self, k: usize) -> impl Fn(Point) -> Point + use<> {
+        let ([left, top], _) = self.picture(k);
+        let (frame, scale) = (self.frame, self.scale);
+        move |p| [left + (p[0] - frame[0]) * scale, top + (frame[3] - p[1]) * scale]
+    }
+
+    /// Letter and time of picture `k`.
+    pub(crate) fn heading(&mut self, k: usize, time: &str) {
+        let [room, top] = self.corner(k);
+        let left = self.picture(k).0[0].min(room + 0.5 * self.cell_width() - 50.0);
+        let letter = char::from(b'B' + (k % 25) as u8);
+        let _ = writeln!(
+            self.out,
+            "<text x=\"{left:.1}\" y=\"{:.1}\"><tspan font-weight=\"bold\">({letter})</tspan> {}</text>",
+            top - 11.0,
+            crate::text::svg(time)
+        );
+    }
+
+    /// Adds a scale bar of a round length and the colour bar.
+    pub(crate) fn finish(mut self, legend: &Legend, length: &str) -> String {
+        let size = round_step(self.frame[1] - self.frame[0], 3.0);
+        let y = self.height - 22.0;
+        let _ = writeln!(
+            self.out,
+            "<path d=\"M8 {:.1}v6m0 -3h{:.1}m0 -3v6\" fill=\"none\" stroke=\"#222\"/>",
+            y - 3.0,
+            size * self.scale
+        );
+        let text = format!("{size} {length}");
+        write_text(&mut self.out, 8.0 + size * self.scale + 8.0, y + 4.0, "", text.trim());
+        color_bar(&mut self.out, legend, WIDTH - BAR + 18.0, (LINE, self.height - 50.0));
+        self.out.push_str("</svg>\n");
+        self.out
+    }
+}
+
+/// Vertical colour bar with ticks, and an arrow at an end beyond which there are values.
+pub(crate) fn color_bar(out: &mut String, legend: &Legend, x: f64, (top, bottom): (f64, f64)) {
+    let Legend { bands, cut, label, unit } = *legend;
+    let (top, width) = (top + 22.0, 15.0);
+    let h = (bottom - top) / bands.count as f64;
+    let mut arrow = |end: f64, tip: f64, band: usize| {
+        let color = bands.color(band);
+        let _ = writeln!(
+            out,
+            "<path d=\"M{x:.1} {end:.1}h{width}l-7.5 {tip}z\" fill=\"{color}\" stroke=\"#222\" \
+             stroke-width=\"0.7\"/>"
+        );
+    };
+    if cut[1] {
+        arrow(top, -11.0, bands.count - 1);
+    }
+    if cut[0] {
+        arrow(bottom, 11.0, 0);
+    }
+    for band in 0..bands.count {
+        let y = bottom - (band + 1) as f64 * h;
+        let _ = writeln!(
+            out,
+            "<rect x=\"{x:.1}\" y=\"{y:.2}\" width=\"{width}\" height=\"{:.2}\" fill=\"{}\"/>",
+            h + 0.3,
+            bands.color(band)
+        );
+    }
+    let _ = writeln!(
+        out,
+        "<rect x=\"{x:.1}\" y=\"{top:.1}\" width=\"{width}\" height=\"{:.1}\" fill=\"none\" stroke=\"#222\" \
+         stroke-width=\"0.7\"/>",
+        bottom - top
+    );
+    let axis = Axis::new((bands.low, bands.high), 6.0, true);
+    for (value, tick) in &axis.ticks {
+        let y = bottom - (bottom - top) * axis.position(*value);
+        let _ =
+            writeln!(out, "<path d=\"M{:.1} {y:.1}h4\" stroke=\"#222\" stroke-width=\"0.8\"/>", x + width);
+        write_text(out, x + width + 7.0, y + 4.3, "", tick);
+    }
+    write_text(out, x - 2.0, top - 20.0, "", &with_unit(label, &scaled(unit, axis.exponent)));
+}

@@ -1,0 +1,15 @@
+//! Bodies in space: the skin of their cells, seen in parallel projection, drawn for print and as a
+//! scene to turn.
+
+mod figure;
+mod painter;
+mod raster;
+mod scene;
+mod skin;
+mod view;
+
+pub(crate) use figure::{DRAWN, draw, frame, instants};
+pub(crate) use painter::{Paint, pieces};
+pub(crate) use scene::section;
+pub(crate) use skin::{Facet, Place, corners, places, skin};
+pub(crate) use view::{View, cross, minus};

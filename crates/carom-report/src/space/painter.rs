@@ -1,0 +1,149 @@
+//! Facets as small flat triangles, and their drawing by the painter: the farthest first.
+
+use std::fmt::Write as _;
+
+use super::skin::{Facet, Place};
+use super::view::View;
+use crate::bands::{Bands, parts, shape};
+use crate::palette::rgb;
+use crate::pen::{GRID, Pen, Point, open_grid};
+
+/// A triangle of the page that faces the eye.
+pub(crate) struct Piece {
+    /// Position on the page, and distance towards the eye, in pixels.
+    pub(crate) corners: [Place; 3],
+    pub(crate) values: [f64; 3],
+    pub(crate) brightness: f64,
+    /// Whether each of its sides, from corner i to i + 1, lies on an edge of the cell.
+    pub(crate) edges: [bool; 3],
+}
+
+/// How values are coloured.
+pub(crate) enum Paint<'a> {
+    /// In bands.
+    Bands(&'a Bands),
+    /// Values are numbers of these colours.
+    Parts(&'a [&'a str]),
+}
+
+impl Paint<'_> {
+    /// Number of the colour of a value.
+    pub(crate) fn of(&self, value: f64) -> usize {
+        match self {
+            Self::Bands(bands) => bands.of(value),
+            Self::Parts(colors) => (value.round() as usize).min(colors.len().saturating_sub(1)),
+        }
+    }
+
+    /// The colour with a number.
+    pub(crate) fn rgb(&self, number: usize) -> [u8; 3] {
+        match self {
+            Self::Bands(bands) => rgb(&bands.color(number)),
+            Self::Parts(colors) => colors.get(number).map_or([255; 3], |color| rgb(color)),
+        }
+    }
+
+    /// The parts of a piece by colour.
+    fn parts(&self, piece: &Piece) -> Vec<(usize, Vec<Point>)> {
+        let flat = piece.corners.map(|[x, y, _]| [x, y]);
+        match self {
+            Self::Bands(bands) => parts(&[0, 1, 2].map(|k| (flat[k], piece.values[k])), bands),
+            Self::Parts(_) => vec![(self.of(piece.values[0]), flat.to_vec())],
+        }
+    }
+}
+
+/// A colour in the light of a brightness.
+pub(crate) fn lit(color: [u8; 3], brightness: f64) -> [u8; 3] {
+    color.map(|part| (f64::from(part) * brightness).round() as u8)
+}
+
+/// Intervals along an edge of a facet: curved facets are drawn finely if there are few.
+pub(crate) fn intervals(degree: usize, facets: usize) -> usize {
+    if facets > 1500 { degree } else { [1, 4, 6][degree.saturating_sub(1).min(2)] }
+}
+
+/// The triangles of facets that face the eye; `value` is that of a node on a facet, `to` maps from
+/// the view to the page.
+pub(crate) fn pieces(
+    skin: &[Facet],
+    places: &[Place],
+    value: &dyn Fn(&Facet, usize) -> f64,
+    view: &View,
+    to: &dyn Fn(Point) -> Point,
+    scale: f64,
+) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let (mut n, mut corner) = (Vec::new(), Vec::new());
+    for facet in skin {
+        let m = intervals(facet.degree, skin.len());
+        let seen: Vec<Place> = facet.nodes.iter().map(|&k| view.of(places[k])).collect();
+        let of_node: Vec<f64> = facet.nodes.iter().map(|&k| value(facet, k)).collect();
+        corner.clear();
+        let row = |j: usize| j * (m + 1) - j * j.saturating_sub(1) / 2;
+        for (j, i) in (0..=m).flat_map(|j| (0..=m - j).map(move |i| (j, i))) {
+            let (b, c) = (i as f64 / m as f64, j as f64 / m as f64);
+            shape(facet.degree, [1.0 - b - c, b, c], &mut n);
+            let sum = |f: &dyn Fn(usize) -> f64| n.iter().enumerate().map(|(k, n)| n * f(k)).sum::<f64>();
+            corner.push(([0, 1, 2].map(|d| sum(&|k| seen[k][d])), sum(&|k| of_node[k])));
+        }
+        let mut piece = |numbers: [usize; 3], edges| {
+            let Some(brightness) = View::brightness(numbers.map(|k| corner[k].0)) else { return };
+            let place = |k: usize| {
+                let [x, y, z] = corner[k].0;
+                let [x, y] = to([x, y]);
+                [x, y, z * scale]
+            };
+            let values = numbers.map(|k| corner[k].1);
+            pieces.push(Piece { corners: numbers.map(place), values, brightness, edges });
+        };
+        for (j, i) in (0..m).flat_map(|j| (0..m - j).map(move |i| (j, i))) {
+            let (low, high) = (row(j) + i, row(j + 1) + i);
+            let [first, second, third] = facet.sides;
+            let edges = [first && j == 0, second && i + j + 1 == m, third && i == 0];
+            piece([low, low + 1, high], edges);
+            if i + 1 < m - j {
+                piece([low + 1, high + 1, high], [false; 3]);
+            }
+        }
+    }
+    pieces
+}
+
+/// Draws pieces, the farthest first.
+pub(crate) fn paint(out: &mut String, pieces: &[Piece], paint: &Paint) {
+    let depth = |p: &Piece| p.corners[0][2] + p.corners[1][2] + p.corners[2][2];
+    let mut order: Vec<&Piece> = pieces.iter().collect();
+    order.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+    out.push_str(&open_grid());
+    out.push_str("<g stroke-linejoin=\"round\" stroke-width=\"8\">\n");
+    for piece in order {
+        for (number, polygon) in paint.parts(piece) {
+            let mut pen = Pen::default();
+            pen.polygon(&polygon);
+            let [r, g, b] = lit(paint.rgb(number), piece.brightness);
+            // A stroke in the colour of the fill closes the hairlines between neighbours.
+            let color = format!("#{r:02x}{g:02x}{b:02x}");
+            let _ = writeln!(out, "<path d=\"{}\" fill=\"{color}\" stroke=\"{color}\"/>", pen.data());
+        }
+        let mut pen = Pen::default();
+        for side in (0..3).filter(|&side| piece.edges[side]) {
+            let [a, b] = [side, (side + 1) % 3].map(|k| [piece.corners[k][0], piece.corners[k][1]]);
+            pen.go(a);
+            pen.draw(&[b]);
+        }
+        if !pen.is_empty() {
+            let width = EDGE * GRID;
+            let _ = writeln!(
+                out,
+                "<path d=\"{}\" fill=\"none\" stroke=\"{LINE}\" stroke-width=\"{width}\"/>",
+                pen.data()
+            );
+        }
+    }
+    out.push_str("</g>\n</g>\n");
+}
+
+/// Width in pixels and colour of an edge of a cell.
+pub(crate) const EDGE: f64 = 0.5;
+pub(crate) const LINE: &str = "#33302c";

@@ -1,0 +1,398 @@
+//! The scene of a run in space: its skin, to be turned and played.
+//!
+//! The frames are the field files; nothing is interpolated. Of every node of the skin the scene has
+//! the reference position, and in each frame the displacement, the stress of von Mises and the
+//! pressure, as integers over their ranges. What is stored is how each number differs from what the
+//! two frames before and the node before let expect, compressed (RFC 1950); `scene.js` draws it.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use carom_record::{FieldEntry, Run};
+use maud::{Markup, PreEscaped, html};
+use serde_json::json;
+
+use super::skin::{Facet, Place, skin, stresses};
+use super::view::View;
+use crate::animation::{PLAYER, controls, histories};
+use crate::bands::{Bands, color_bands, positive_bands};
+use crate::chart::open;
+use crate::sheet::{Legend, color_bar};
+use crate::text::{Label, Prose};
+
+/// Largest number of bytes of the scene in the page, in base 64; frames are left out evenly to stay
+/// below.
+const BUDGET: usize = 7_000_000;
+const FRAMES: usize = 300;
+/// Largest number of nodes times frames that is tried.
+const NUMBERS: usize = 3_000_000;
+/// Steps of a displacement on either side of zero, of a reference position, and of a stress within
+/// its bands.
+const MOVED: f64 = 32_767.0;
+const PLACED: f64 = 65_535.0;
+const LEVELS: f64 = 500.0;
+/// Numbers per node and frame.
+const CHANNELS: usize = 5;
+
+/// Nodes of a facet row by row, for small triangles between them.
+const ROWS: [&[&[usize]]; 3] =
+    [&[&[0, 1], &[2]], &[&[0, 3, 1], &[5, 4], &[2]], &[&[0, 3, 4, 1], &[8, 9, 5], &[7, 6], &[2]]];
+
+/// The nodes of a skin in ascending order, the triangles between them, and the edges of cells, with
+/// numbers of these nodes.
+struct Surface {
+    nodes: Vec<usize>,
+    triangles: Vec<u32>,
+    edges: Vec<u32>,
+}
+
+impl Surface {
+    fn new(skin: &[Facet]) -> Self {
+        let mut nodes: Vec<usize> = skin.iter().flat_map(|f| f.nodes.iter().copied()).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let (mut triangles, mut edges) = (Vec::new(), Vec::new());
+        for facet in skin {
+            let number = |k: usize| nodes.partition_point(|n| *n < facet.nodes[k]) as u32;
+            let rows = ROWS[facet.degree.clamp(1, 3) - 1];
+            for (low, high) in rows.iter().zip(&rows[1..]) {
+                for i in 0..high.len() {
+                    triangles.extend([low[i], low[i + 1], high[i]].map(number));
+                    if i + 1 < high.len() {
+                        triangles.extend([low[i + 1], high[i + 1], high[i]].map(number));
+                    }
+                }
+            }
+            // Each edge belongs to two facets, which have it in opposite directions.
+            for e in (0..3).filter(|&e| facet.sides[e] && facet.nodes[e] < facet.nodes[(e + 1) % 3]) {
+                let walk: Vec<u32> =
+                    crate::bodies::edge_nodes(facet.degree, &facet.nodes, e).map(|n| n as u32).collect();
+                let number = |n: &u32| nodes.partition_point(|m| *m < *n as usize) as u32;
+                edges.extend(walk.windows(2).flat_map(|w| [number(&w[0]), number(&w[1])]));
+            }
+        }
+        Self { nodes, triangles, edges }
+    }
+}
+
+/// The nodes of the skin in one frame.
+struct Frame {
+    moved: Vec<Place>,
+    mises: Vec<f64>,
+    pressure: Vec<f64>,
+}
+
+/// Everything that is drawn.
+struct Scene {
+    surface: Surface,
+    /// Reference positions.
+    places: Vec<Place>,
+    frames: Vec<Frame>,
+    /// Largest component of a displacement.
+    largest: f64,
+    /// Von Mises, pressure and displacement.
+    bands: [(Bands, [bool; 2]); 3],
+}
+
+fn length(v: &Place) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+impl Scene {
+    fn new(surface: Surface, places: Vec<Place>, frames: Vec<Frame>) -> Self {
+        let moved = || frames.iter().flat_map(|f| &f.moved);
+        let largest = moved().flatten().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
+        let bands = [
+            positive_bands(frames.iter().flat_map(|f| f.mises.iter().copied())),
+            color_bands(frames.iter().flat_map(|f| f.pressure.iter().copied())),
+            positive_bands(moved().map(length)),
+        ];
+        Self { surface, places, frames, largest, bands }
+    }
+
+    /// Corners of the box of the reference positions.
+    fn box_of(&self) -> [Place; 2] {
+        let fold = |start: f64, pick: fn(f64, f64) -> f64| {
+            [0, 1, 2].map(|d| self.places.iter().map(|p| p[d]).fold(start, pick))
+        };
+        [fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    /// Every `stride`-th frame and the last one.
+    fn chosen(&self, stride: usize) -> Vec<usize> {
+        let last = self.frames.len() - 1;
+        (0..=last).filter(|k| k % stride == 0 || *k == last).collect()
+    }
+
+    /// Triangles, edges, reference positions and the given frames, in base 64.
+    fn packed(&self, frames: &[usize]) -> String {
+        let mut bytes = Vec::new();
+        for number in self.surface.triangles.iter().chain(&self.surface.edges) {
+            bytes.extend(number.to_le_bytes());
+        }
+        let [low, high] = self.box_of();
+        for d in 0..3 {
+            let scale = if high[d] > low[d] { PLACED / (high[d] - low[d]) } else { 0.0 };
+            put(&mut bytes, self.places.iter().map(|p| ((p[d] - low[d]) * scale).round() as u16));
+        }
+        let by = if self.largest > 0.0 { MOVED / self.largest } else { 0.0 };
+        // Stresses that are not finite are −1.
+        let level = |x: f64, bands: &Bands| {
+            let share = (x - bands.low) / (bands.high - bands.low);
+            if share.is_finite() { (share.clamp(0.0, 1.0) * LEVELS).round() as i16 } else { -1 }
+        };
+        let mut before = vec![[vec![0i16; self.places.len()], vec![0i16; self.places.len()]]; CHANNELS];
+        for (k, frame) in frames.iter().map(|&k| &self.frames[k]).enumerate() {
+            for channel in 0..CHANNELS {
+                let now: Vec<i16> = match channel {
+                    3 => frame.mises.iter().map(|x| level(*x, &self.bands[0].0)).collect(),
+                    4 => frame.pressure.iter().map(|x| level(*x, &self.bands[1].0)).collect(),
+                    d => frame.moved.iter().map(|u| (u[d] * by).round() as i16).collect(),
+                };
+                let [last, older] = &mut before[channel];
+                let mut left = 0i16;
+                let differs = (0..now.len()).map(|i| {
+                    // From the second frame on, displacements are expected to go on as before.
+                    let expected = if channel < 3 && k > 1 {
+                        last[i].wrapping_mul(2).wrapping_sub(older[i])
+                    } else {
+                        last[i]
+                    };
+                    let error = now[i].wrapping_sub(expected);
+                    let step = error.wrapping_sub(left);
+                    left = error;
+                    // Small numbers of either sign become small numbers.
+                    ((step << 1) ^ (step >> 15)) as u16
+                });
+                put(&mut bytes, differs);
+                *older = std::mem::replace(last, now);
+            }
+        }
+        STANDARD.encode(miniz_oxide::deflate::compress_to_vec_zlib(&bytes, 6))
+    }
+
+    /// The numbers of the frames that fit into the page, and the packed scene.
+    fn fitted(&self) -> (Vec<usize>, String) {
+        let mut stride = 1;
+        loop {
+            let frames = self.chosen(stride);
+            let packed = self.packed(&frames);
+            if packed.len() <= BUDGET || frames.len() <= 2 {
+                return (frames, packed);
+            }
+            stride = (stride + 1).max((stride * packed.len()).div_ceil(BUDGET));
+        }
+    }
+}
+
+/// Adds the low bytes of numbers, then their high bytes.
+fn put(bytes: &mut Vec<u8>, numbers: impl Iterator<Item = u16>) {
+    let numbers: Vec<u16> = numbers.collect();
+    bytes.extend(numbers.iter().map(|n| n.to_le_bytes()[0]));
+    bytes.extend(numbers.iter().map(|n| n.to_le_bytes()[1]));
+}
+
+/// The nodes of a skin in a field file.
+fn frame(run: &Run, entry: &FieldEntry, nodes: &[usize], points: usize) -> Option<Frame> {
+    let fields = run.field(entry).ok().filter(|fields| fields.points.len() == points)?;
+    let u = fields.array("displacement").filter(|a| a.components == 3)?;
+    let [mises, pressure] = stresses(&fields)?;
+    Some(Frame {
+        moved: nodes.iter().map(|&k| [0, 1, 2].map(|d| u.values[3 * k + d])).collect(),
+        mises: nodes.iter().map(|&k| mises[k]).collect(),
+        pressure: nodes.iter().map(|&k| pressure[k]).collect(),
+    })
+}
+
+/// The section of the page, hidden until its script runs; nothing for fewer than two field files.
+pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Option<Markup> {
+    let first = run.field(run.fields.first()?).ok()?;
+    let surface = Surface::new(&skin(&first));
+    let most = (NUMBERS / surface.nodes.len().max(1)).min(FRAMES);
+    if most < 2 {
+        return None;
+    }
+    let stride = run.fields.len().div_ceil(most).max(1);
+    let last = run.fields.len() - 1;
+    let read = run.fields.iter().enumerate().filter(|(k, _)| k % stride == 0 || *k == last);
+    let (mut entries, mut frames) = (Vec::new(), Vec::new());
+    for (_, entry) in read {
+        frames.push(frame(run, entry, &surface.nodes, first.points.len())?);
+        entries.push(entry);
+    }
+    if frames.len() < 2 {
+        return None;
+    }
+    let places = surface.nodes.iter().map(|&k| first.points[k]).collect();
+    let scene = Scene::new(surface, places, frames);
+    let (chosen, packed) = scene.fitted();
+    let peak = |k: &usize| scene.frames[*k].mises.iter().copied().fold(0.0, f64::max);
+    let start = chosen.iter().max_by(|a, b| peak(a).total_cmp(&peak(b)).then(b.cmp(a))).copied()?;
+    let unit = |array: &str| first.array(array).map_or(String::new(), |a| a.unit.clone());
+    let (stress, length) = (unit("stress"), unit("displacement"));
+    let kinds = [
+        ("von Mises stress", "σ_{vM}", &stress),
+        ("pressure", "p", &stress),
+        ("displacement", "|u|", &length),
+    ];
+    let quantity = |(bands, _): &(Bands, _)| {
+        let colors: Vec<String> = (0..bands.count).map(|b| bands.color(b)).collect();
+        json!({ "low": bands.low, "high": bands.high, "colors": colors })
+    };
+    let entry = |k: &usize| {
+        json!({ "time": entries[*k].time, "step": entries[*k].step,
+                                    "file": run.field_file(entries[*k]) })
+    };
+    let [low, high] = scene.box_of();
+    let data = json!({
+        "unit": run.history.unit("time"), "nodes": scene.places.len(),
+        "triangles": scene.surface.triangles.len(), "edges": scene.surface.edges.len(),
+        "low": low, "high": high, "largest": scene.largest, "levels": LEVELS,
+        "view": View::axonometric().axes, "first": entries[start].time,
+        "quantities": scene.bands.iter().map(quantity).collect::<Vec<_>>(),
+        "frames": chosen.iter().map(entry).collect::<Vec<_>>(), "packed": packed,
+    });
+    let bar = |((bands, cut), (_, label, unit)): (&(Bands, [bool; 2]), &(&str, &str, &String))| {
+        let mut out = open("Colour bar of the scene", 92.0, 330.0);
+        color_bar(&mut out, &Legend { bands, cut: *cut, label, unit }, 8.0, (8.0, 312.0));
+        out + "</svg>\n"
+    };
+    let every = if chosen.len() < run.fields.len() {
+        format!("{} of the {} recorded instants", chosen.len(), run.fields.len())
+    } else {
+        format!("all {} recorded instants", chosen.len())
+    };
+    // Only `<` could end the script element.
+    let data = data.to_string().replace('<', "\\u003c");
+    Some(html! {
+        figure.animation #animation hidden {
+            div.stage {
+                div.scene {
+                    canvas tabindex="0" aria-label="the deformed bodies; arrow keys turn them" {}
+                    canvas.axes aria-hidden="true" {}
+                }
+                @for (k, bar) in scene.bands.iter().zip(&kinds).map(bar).enumerate() {
+                    div.bar hidden[k > 0] { (PreEscaped(bar)) }
+                }
+                div { (PreEscaped(histories(run, shades))) }
+            }
+            div.controls { (controls()) }
+            div.controls {
+                label {
+                    "colours "
+                    select.quantity {
+                        @for (k, (name, ..)) in kinds.iter().enumerate() { option value=(k) { (name) } }
+                    }
+                }
+                label {
+                    "cut "
+                    select.cut {
+                        option value="" { "none" }
+                        @for axis in ["x", "y", "z", "−x", "−y", "−z"] { option value=(axis) { (axis) } }
+                    }
+                }
+                input.depth type="range" min="0" max="1" step="any" value="0.5" disabled
+                    aria-label="position of the cut";
+                button.home type="button" { "reset" }
+            }
+            figcaption {
+                b { "Scene." } " The bodies, at first in the view of figure " (figure) "; frames are " (every)
+                ", without interpolation. Displacements are not magnified. " (Label("σ_{vM}"))
+                " and p = −tr σ/3 (red: compression) are those of nodal averages of the Cauchy stress. \
+                 The inside of a cut body is grey. Drag: turn; with the right button or Shift: move. Wheel, \
+                 after a click: zoom. Touch: one finger turns, two move and zoom. Keys, after a click: arrows \
+                 turn, with Shift they move; + and −: zoom; 0: reset; comma and full stop: previous and next frame. "
+                (Prose("Space: play or pause. Ticks below the histories: events in `log.jsonl`. A click in a \
+                        time history goes to that instant."))
+            }
+        }
+        script #animation-data type="application/json" { (PreEscaped(data)) }
+        script { (PreEscaped(PLAYER)) (PreEscaped(include_str!("scene.js"))) }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::skin::tests::solid;
+    use super::*;
+
+    /// A block of 20 172 triangles that falls, spins and rings for 100 frames, with the
+    /// stresses of waves that travel through it: 5.39 MB, all frames included.
+    #[test]
+    fn twenty_thousand_triangles_and_a_hundred_frames_are_below_eight_megabytes() {
+        let n = 41;
+        let surface = Surface::new(&skin(&solid(1, n, |p| p)));
+        assert_eq!(surface.triangles.len() / 3, 12 * n * n);
+        let full = solid(1, n, |[x, y, z]| [2.0 * x, y, 0.7 * z - 0.3 * x * y]);
+        let places: Vec<Place> = surface.nodes.iter().map(|&k| full.points[k]).collect();
+        let frame = |k: u32| {
+            let t = f64::from(k) / 100.0;
+            let (sin, cos) = (40.0 * t).sin_cos();
+            let ring = |p: &Place, w: f64| 0.02 * (w * p[0] + 60.0 * t).sin() * (5.0 * p[1] + w * t).cos();
+            let moved = |p: &Place| {
+                let q = [p[0] + ring(p, 9.0), p[1] + ring(p, 14.0), p[2] + ring(p, 23.0)];
+                [
+                    cos * q[0] - sin * q[2] - p[0] + 3.0 * t,
+                    q[1] - p[1] - 5.0 * t * t,
+                    sin * q[0] + cos * q[2] - p[2],
+                ]
+            };
+            let wave = |p: &Place, s: f64| {
+                (s * (p[0] + 0.3 * p[1]) - 90.0 * t).sin() * (-p[2]).exp()
+                    + 0.3 * (37.0 * p[1] * p[2] + 50.0 * t).cos()
+            };
+            Frame {
+                moved: places.iter().map(moved).collect(),
+                mises: places.iter().map(|p| wave(p, 17.0).abs()).collect(),
+                pressure: places.iter().map(|p| wave(p, 11.0)).collect(),
+            }
+        };
+        let scene = Scene::new(surface, places.clone(), (0..100).map(frame).collect());
+        let (frames, packed) = scene.fitted();
+        assert_eq!(frames.len(), 100);
+        assert!(packed.len() < 6_000_000, "{}", packed.len());
+        // What the page will read is what was there.
+        let bytes = miniz_oxide::inflate::decompress_to_vec_zlib(&STANDARD.decode(&packed).unwrap()).unwrap();
+        let count = places.len();
+        let start = 4 * (scene.surface.triangles.len() + scene.surface.edges.len());
+        let number = |list: usize, i: usize| {
+            let at = start + 2 * list * count + i;
+            u16::from_le_bytes([bytes[at], bytes[at + count]])
+        };
+        assert_eq!(bytes.len(), start + 2 * count * (3 + CHANNELS * frames.len()));
+        let back = |z: u16| (z >> 1) as i16 ^ -((z & 1) as i16);
+        let mut history = vec![vec![0i16; count]; 2];
+        for k in 0..100 {
+            let mut error = 0i16;
+            let next: Vec<i16> = (0..count)
+                .map(|i| {
+                    error = error.wrapping_add(back(number(3 + CHANNELS * k + 1, i)));
+                    let (last, older) = (history[1][i], history[0][i]);
+                    error.wrapping_add(if k > 1 { last.wrapping_mul(2).wrapping_sub(older) } else { last })
+                })
+                .collect();
+            history = vec![history.pop().unwrap(), next];
+            let off =
+                |i: usize| f64::from(history[1][i]) * scene.largest / MOVED - scene.frames[k].moved[i][1];
+            assert!((0..count).all(|i| off(i).abs() < 0.6 * scene.largest / MOVED));
+        }
+    }
+
+    /// Small triangles and edges of curved facets are those of the lattice of their nodes.
+    #[test]
+    fn surfaces_are_closed() {
+        for degree in 1..=3 {
+            let surface = Surface::new(&skin(&solid(degree, 2, |p| p)));
+            assert_eq!(surface.triangles.len(), 3 * 48 * degree * degree);
+            assert_eq!(surface.edges.len(), 2 * 72 * degree);
+            let sides: std::collections::HashSet<[u32; 2]> = surface
+                .triangles
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+                .collect();
+            assert_eq!(sides.len(), surface.triangles.len());
+            assert!(sides.iter().all(|&[a, b]| sides.contains(&[b, a])));
+        }
+    }
+}

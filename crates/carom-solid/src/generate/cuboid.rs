@@ -1,0 +1,113 @@
+//! Box of nx × ny × nz boxes: hexahedra, or each cut into six tetrahedra around the diagonal from its
+//! lowest to its highest corner (H. Freudenthal, Ann. Math. 43 (1942) 580–582): one tetrahedron for
+//! every order in which a path along the edges takes the three directions. Neighbouring boxes cut
+//! their common rectangle along the same diagonal. All nodes lie on the lattice that divides every
+//! edge by the degree, and every point of the lattice is a node.
+
+use std::collections::BTreeMap;
+
+use super::{MeshError, check, interval_nodes, lerp};
+use crate::mesh::{Element, Facet, Mesh};
+use crate::shape::{Hex8, Hex27, Shape, Tet4, Tet10, Tet20};
+
+/// Paths from the lowest to the highest corner: orders of the directions, even and odd in turn.
+const PATHS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [1, 2, 0], [2, 1, 0], [2, 0, 1], [0, 2, 1]];
+
+/// Sides: axis, and whether at its upper end.
+const SIDES: [(&str, usize, bool); 6] = [
+    ("left", 0, false),
+    ("right", 0, true),
+    ("front", 1, false),
+    ("back", 1, true),
+    ("bottom", 2, false),
+    ("top", 2, true),
+];
+
+/// Box from `min` to `max`, `cells` along x, y and z; sides `left` (−x), `right` (+x), `front` (−y),
+/// `back` (+y), `bottom` (−z), `top` (+z).
+///
+/// # Errors
+/// If an extent is not positive, there are no cells, or the element does not fill space.
+///
+/// ```
+/// use carom_solid::{Element, generate};
+/// let block = generate::cuboid(Element::Tet10, [0.0; 3], [3.0, 2.0, 1.0], [3, 2, 1])?;
+/// assert_eq!((block.cell_count(), block.nodes.len()), (36, generate::cuboid_nodes(Element::Tet10, [3, 2, 1])));
+/// # Ok::<(), carom_solid::generate::MeshError>(())
+/// ```
+pub fn cuboid(element: Element, min: [f64; 3], max: [f64; 3], cells: [usize; 3]) -> Result<Mesh, MeshError> {
+    check(element, &min, &max, &cells)?;
+    let k = element.degree();
+    let counts = cells.map(|n| k * n + 1);
+    let number = |at: [usize; 3]| (at[2] * counts[1] + at[1]) * counts[0] + at[0];
+    let mut nodes = Vec::with_capacity(counts.iter().product());
+    for z in 0..counts[2] {
+        for y in 0..counts[1] {
+            for x in 0..counts[0] {
+                let at = [x, y, z];
+                nodes.push([0, 1, 2].map(|i| lerp(min[i], max[i], at[i] as f64 / (counts[i] - 1) as f64)));
+            }
+        }
+    }
+    let pieces = pieces(element);
+    let mut numbers = Vec::new();
+    let mut sides: BTreeMap<String, Vec<Facet>> =
+        SIDES.iter().map(|(name, ..)| ((*name).to_owned(), Vec::new())).collect();
+    for place in 0..cells.iter().product() {
+        let lowest = [place % cells[0], place / cells[0] % cells[1], place / (cells[0] * cells[1])];
+        for piece in &pieces {
+            let at = |a: usize| [0, 1, 2].map(|i| k * lowest[i] + piece[a][i]);
+            let cell = numbers.len() / piece.len();
+            numbers.extend((0..piece.len()).map(|a| number(at(a))));
+            for facet in element.facets() {
+                for (name, axis, upper) in SIDES {
+                    let end = if upper { k * cells[axis] } else { 0 };
+                    if facet.iter().all(|&a| at(a)[axis] == end) {
+                        let nodes = facet.iter().map(|&a| number(at(a))).collect();
+                        sides.entry(name.to_owned()).or_default().push(Facet { cell, nodes });
+                    }
+                }
+            }
+        }
+    }
+    Ok(Mesh { element, nodes: nodes.into(), cells: numbers, sides, repairs: Vec::new() })
+}
+
+/// Number of nodes of a box; saturates.
+pub fn cuboid_nodes(element: Element, cells: [usize; 3]) -> usize {
+    cells.iter().fold(1, |count, n| count.saturating_mul(interval_nodes(element, *n)))
+}
+
+/// The cells that fill one box, by their nodes in its lattice.
+fn pieces(element: Element) -> Vec<Vec<[usize; 3]>> {
+    let simplex = match element {
+        Element::Hex8 => return vec![lattice::<8, Hex8>(-1.0)],
+        Element::Hex27 => return vec![lattice::<27, Hex27>(-1.0)],
+        Element::Tet4 => lattice::<4, Tet4>(0.0),
+        Element::Tet10 => lattice::<10, Tet10>(0.0),
+        _ => lattice::<20, Tet20>(0.0),
+    };
+    let tetrahedron = |(path, order): (usize, &[usize; 3])| {
+        let mut corners = [[0; 3]; 4];
+        for (step, axis) in order.iter().enumerate() {
+            corners[step + 1..].iter_mut().for_each(|corner| corner[*axis] += 1);
+        }
+        if path % 2 == 1 {
+            // Odd orders have negative volume.
+            corners.swap(1, 2);
+        }
+        let node = |at: &[usize; 3]| {
+            let weights = [element.degree() - at.iter().sum::<usize>(), at[0], at[1], at[2]];
+            [0, 1, 2].map(|i| (0..4).map(|c| weights[c] * corners[c][i]).sum())
+        };
+        simplex.iter().map(node).collect()
+    };
+    PATHS.iter().enumerate().map(tetrahedron).collect()
+}
+
+/// The nodes of a shape in the lattice of its degree; its reference cell begins at `low` and ends at
+/// 1.
+pub(super) fn lattice<const N: usize, S: Shape<3, N>>(low: f64) -> Vec<[usize; 3]> {
+    let scale = S::DEGREE as f64 / (1.0 - low);
+    S::NODES.iter().map(|xi| [0, 1, 2].map(|i| (scale * (xi[i] - low)).round() as usize)).collect()
+}

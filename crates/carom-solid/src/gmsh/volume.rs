@@ -1,0 +1,201 @@
+//! A physical volume as a body of dimension 3, with the named surfaces on its boundary as sides.
+//!
+//! A facet of one cell belongs to the boundary; one of two cells is traversed by them in opposite
+//! directions and has the same nodes in both. Cells are certified to be valid everywhere.
+
+use std::collections::{BTreeMap, HashMap};
+
+use carom_algebra::Vector;
+
+use super::error::{Fault, MshError};
+use super::file::{Block, MshFile};
+use super::group::Group;
+use super::order;
+use crate::mesh::{Element, Facet, Mesh};
+use crate::reference::{gradient, interpolate};
+use crate::shape::{Domain, Hex8, Hex27, Shape, Tet4, Tet10, Tet20};
+use crate::validity::Validity;
+
+impl MshFile {
+    /// The mesh of a physical volume. Its sides are the physical surfaces with facets on its boundary.
+    ///
+    /// # Errors
+    /// With line or byte: an unknown name, cells other than tetrahedra of one order 1 to 3 or hexahedra
+    /// of order 1 or 2, cells that are folded or overlap, coincident nodes, facets of more than two
+    /// cells, edges at which the boundary touches itself.
+    pub fn volume(&self, name: &str) -> Result<Mesh, MshError> {
+        let mut group = Group::<3>::of(self, name)?;
+        let element = group.element;
+        group.cells.chunks_exact_mut(element.nodes()).for_each(|cell| order::read(element, cell));
+        match element {
+            Element::Tet4 => orient::<4, Tet4>(&mut group)?,
+            Element::Tet10 => orient::<10, Tet10>(&mut group)?,
+            Element::Tet20 => orient::<20, Tet20>(&mut group)?,
+            Element::Hex8 => orient::<8, Hex8>(&mut group)?,
+            _ => orient::<27, Hex27>(&mut group)?,
+        }
+        let boundary = boundary(&group)?;
+        if !self.slits {
+            unpinched(&group, &boundary)?;
+        }
+        let sides = group.surfaces(&boundary)?;
+        let (nodes, cells) = (std::mem::take(&mut group.positions), std::mem::take(&mut group.cells));
+        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: group.finish() })
+    }
+}
+
+/// Reverses mirrored cells; a folded one is an error.
+fn orient<const N: usize, S: Shape<3, N>>(group: &mut Group<3>) -> Result<(), MshError> {
+    let validity = Validity::<3, N>::of::<S>();
+    let centre = S::gradients(&S::Domain::CENTRE);
+    // Two reference coordinates exchanged.
+    let mirror: [usize; N] = std::array::from_fn(|a| {
+        let [x, y, z] = S::NODES[a].0;
+        S::NODES.iter().position(|node| (*node - Vector([y, x, z])).norm() < 1e-9).unwrap_or(a)
+    });
+    let mut turned = 0;
+    for (cell, row) in group.cells.as_chunks_mut::<N>().0.iter_mut().zip(&group.rows) {
+        let place = |n: usize| Vector(group.positions[n]);
+        if gradient(&cell.map(place), &centre).det() < 0.0 {
+            turned += 1;
+            *cell = mirror.map(|a| cell[a]);
+        }
+        let x = cell.map(place);
+        if validity.margin(&x).is_err() {
+            // Named where it is worst among the nodes and the centre.
+            let slopes = S::NODES.iter().chain([&S::Domain::CENTRE]);
+            let jacobian = |xi: &Vector<3>| gradient(&x, &S::gradients(xi)).det();
+            let worst = slopes.min_by(|a, b| jacobian(a).total_cmp(&jacobian(b)));
+            let worst = worst.copied().unwrap_or(S::Domain::CENTRE);
+            let at = interpolate(&S::values(&worst), &x).0.to_vec();
+            let jacobian = jacobian(&worst);
+            let fault = Fault::Folded { name: group.name.to_owned(), cell: row.tag, jacobian, at };
+            return Err(group.file.at(row, fault));
+        }
+    }
+    if turned > 0 {
+        let all = group.rows.len();
+        group.repairs.push(format!("{turned} of {all} cells were mirrored; their nodes were reordered"));
+    }
+    Ok(())
+}
+
+/// Corners of a facet in ascending order: a key common to its cells.
+type Corners = Vec<usize>;
+
+fn key(nodes: &[usize], corners: usize) -> Corners {
+    let mut key = nodes[..corners].to_vec();
+    key.sort_unstable();
+    key
+}
+
+/// Facets of only one cell.
+fn boundary(group: &Group<3>) -> Result<BTreeMap<Corners, Facet>, MshError> {
+    let (element, ends) = (group.element, group.element.facet_shape().corners());
+    let mut open: BTreeMap<Corners, Facet> = BTreeMap::new();
+    let mut closed: HashMap<Corners, [usize; 2]> = HashMap::new();
+    for (cell, nodes) in group.cells.chunks_exact(element.nodes()).enumerate() {
+        for local in element.facets() {
+            let facet = Facet { cell, nodes: local.iter().map(|&a| nodes[a]).collect() };
+            let key = key(&facet.nodes, ends);
+            let at = |fault| Err(group.file.at(&group.rows[cell], fault));
+            let (name, tags) = (group.name.to_owned(), || key.iter().map(|&n| group.node(n).tag).collect());
+            if let Some(others) = closed.get(&key) {
+                let cells = others.iter().chain([&cell]).map(|&c| group.rows[c].tag).collect();
+                return at(Fault::Crowded { name, cells, corners: tags() });
+            }
+            let Some(other) = open.remove(&key) else {
+                open.insert(key, facet);
+                continue;
+            };
+            let (a, b) = (group.rows[other.cell].tag, group.rows[cell].tag);
+            // The cell after the first corner, in each direction.
+            let next = |nodes: &[usize]| {
+                let first = nodes[..ends].iter().position(|n| *n == key[0]).unwrap_or_default();
+                nodes[(first + 1) % ends]
+            };
+            if next(&other.nodes) == next(&facet.nodes) {
+                return at(Fault::SameSide { name, a, b, corners: tags() });
+            }
+            if !same(&other.nodes, &facet.nodes) {
+                let (a, b) = (format!("cell {a}"), format!("cell {b}"));
+                return at(Fault::FacetNodes { a, b, corners: tags() });
+            }
+            closed.insert(key, [other.cell, cell]);
+        }
+    }
+    Ok(open)
+}
+
+/// Whether two lists have the same nodes.
+fn same(a: &[usize], b: &[usize]) -> bool {
+    key(a, a.len()) == key(b, b.len())
+}
+
+/// At every edge of the boundary two of its facets meet.
+fn unpinched(group: &Group<3>, boundary: &BTreeMap<Corners, Facet>) -> Result<(), MshError> {
+    let ends = group.element.facet_shape().corners();
+    let mut at: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
+    for facet in boundary.values() {
+        for k in 0..ends {
+            let [a, b] = [facet.nodes[k], facet.nodes[(k + 1) % ends]];
+            at.entry([a.min(b), a.max(b)]).or_default().push(facet.cell);
+        }
+    }
+    match at.iter().find(|(_, cells)| cells.len() > 2) {
+        Some((&[a, b], cells)) => {
+            let [start, end] = [a, b].map(|n| group.node(n).tag);
+            let fault = Fault::Pinched {
+                name: group.name.to_owned(),
+                facets: cells.len(),
+                start,
+                end,
+                cells: cells.iter().map(|&c| group.rows[c].tag).collect(),
+                at: [0, 1, 2].map(|i| 0.5 * (group.positions[a][i] + group.positions[b][i])).to_vec(),
+            };
+            Err(group.file.at(&group.rows[cells[0]], fault))
+        }
+        None => Ok(()),
+    }
+}
+
+impl Group<'_, 3> {
+    /// Named surfaces on the boundary.
+    fn surfaces(
+        &self,
+        boundary: &BTreeMap<Corners, Facet>,
+    ) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
+        let own: HashMap<usize, usize> = self.used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
+        let ends = self.element.facet_shape().corners();
+        let mut sides = BTreeMap::new();
+        for name in self.file.names(2) {
+            let mut facets: Vec<Facet> = Vec::new();
+            let mut seen = std::collections::HashSet::new();
+            for (row, nodes) in self.file.blocks(2, name).flat_map(Block::cells) {
+                // A surface that leaves the body is not a facet of it.
+                let Some(nodes) = nodes.iter().map(|n| own.get(n).copied()).collect::<Option<Vec<_>>>()
+                else {
+                    continue;
+                };
+                if nodes.len() < ends {
+                    continue;
+                }
+                let key = key(&nodes, ends);
+                let Some(facet) = boundary.get(&key) else { continue };
+                if !same(&facet.nodes, &nodes) {
+                    let corners = key.iter().map(|&n| self.node(n).tag).collect();
+                    let a = format!("surface \"{name}\"");
+                    let b = format!("cell {}", self.rows[facet.cell].tag);
+                    return Err(self.file.at(row, Fault::FacetNodes { a, b, corners }));
+                }
+                if seen.insert(key) {
+                    facets.push(facet.clone());
+                }
+            }
+            if !facets.is_empty() {
+                sides.insert(name.to_owned(), facets);
+            }
+        }
+        Ok(sides)
+    }
+}

@@ -1,0 +1,67 @@
+//! Quality of cells: the scaled Jacobian, 1 for an equilateral cell, 0 for a flat one, below 0 for an
+//! inverted one.
+//!
+//! At a point of a cell the derivatives of X(ξ) span the affine cell nearest to it. The edges at a
+//! corner of that cell give det/∏ length, here divided by its value for equal edges; the least over the
+//! corners counts, and over the nodes of the cell (for straight cells: P. M. Knupp et al., The Verdict
+//! Geometric Quality Library, Sandia 2007). All corners of a parallelepiped are alike.
+
+use carom_algebra::Vector;
+
+use crate::mesh::{Element, Mesh};
+use crate::reference::gradient;
+use crate::shape::{Hex8, Hex27, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10};
+
+impl Mesh {
+    /// The smallest scaled Jacobian of its cells; none for bars.
+    ///
+    /// ```
+    /// use carom_solid::{Element, generate};
+    /// let cube = generate::cuboid(Element::Tet4, [0.0; 3], [1.0; 3], [2, 2, 2])?;
+    /// assert!((cube.scaled_jacobian().unwrap() - 1.0 / 3.0_f64.sqrt()).abs() < 1e-15);
+    /// # Ok::<(), carom_solid::generate::MeshError>(())
+    /// ```
+    pub fn scaled_jacobian(&self) -> Option<f64> {
+        match self.element {
+            Element::L2 | Element::L3 | Element::L4 => None,
+            Element::T3 => Some(smallest::<2, 3, Tri3>(self)),
+            Element::T6 => Some(smallest::<2, 6, Tri6>(self)),
+            Element::T10 => Some(smallest::<2, 10, Tri10>(self)),
+            Element::Tet4 => Some(smallest::<3, 4, Tet4>(self)),
+            Element::Tet10 => Some(smallest::<3, 10, Tet10>(self)),
+            Element::Tet20 => Some(smallest::<3, 20, Tet20>(self)),
+            Element::Q4 => Some(smallest::<2, 4, Quad4>(self)),
+            Element::Q9 => Some(smallest::<2, 9, Quad9>(self)),
+            Element::Hex8 => Some(smallest::<3, 8, Hex8>(self)),
+            Element::Hex27 => Some(smallest::<3, 27, Hex27>(self)),
+        }
+    }
+}
+
+fn smallest<const D: usize, const N: usize, S: Shape<D, N>>(mesh: &Mesh) -> f64 {
+    let simplex = mesh.element.facets().len() == D + 1;
+    let equal_edges = match (simplex, D) {
+        (false, _) => 1.0,
+        (true, 2) => 2.0 / 3.0_f64.sqrt(),
+        (true, _) => 2.0_f64.sqrt(),
+    };
+    // Straight simplices are the same everywhere.
+    let points = if simplex && S::DEGREE == 1 { 1 } else { N };
+    let slopes: Vec<_> = S::NODES[..points].iter().map(S::gradients).collect();
+    let positions = mesh.nodes.of_dimension::<D>();
+    let mut least = f64::INFINITY;
+    for nodes in mesh.cells.as_chunks::<N>().0 {
+        let x = nodes.map(|n| Vector(positions[n]));
+        for slope in &slopes {
+            let derivative = gradient(&x, slope);
+            let edges = derivative.transposed().0.map(Vector);
+            let at_first: f64 = edges.iter().map(Vector::norm).product();
+            let at_others = (0..if simplex { D } else { 0 }).map(|i| {
+                let to = |j: usize| if i == j { edges[i] } else { edges[j] - edges[i] };
+                (0..D).map(|j| to(j).norm()).product::<f64>()
+            });
+            least = least.min(equal_edges * derivative.det() / at_others.fold(at_first, f64::max));
+        }
+    }
+    least
+}

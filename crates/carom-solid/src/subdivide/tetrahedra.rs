@@ -1,0 +1,145 @@
+//! A tetrahedron as `parts`³ tetrahedra. With its corners in some order at (0,0,0), (1,0,0), (1,1,0)
+//! and (1,1,1), the lattice of small cubes, each cut along the orders of its directions (H. Freudenthal,
+//! Ann. Math. 43 (1942) 580–582), has parts³ tetrahedra in it, and divides each face into the same
+//! triangles whatever the order: neighbours agree. The order only chooses the diagonal of the
+//! octahedra between the tetrahedra at corners; the shortest of the three is taken, so that cells do not
+//! become flat when they are divided again (J. Bey, Computing 55 (1995) 355–378).
+
+use carom_algebra::Vector;
+
+use super::nodes::{Nodes, Place};
+use crate::mesh::{Facet, Mesh};
+use crate::shape::Shape;
+
+/// Barycentric coordinates times a whole number.
+type Weights = [usize; 4];
+
+/// Even orders of the corners, one per diagonal of the octahedron: from the middle of 0 and the third
+/// to that of the second and the fourth.
+const ORDERS: [[usize; 4]; 3] = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2]];
+
+/// Orders of the directions with positive volume after exchanging two corners of every other one.
+const PATHS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [1, 2, 0], [2, 1, 0], [2, 0, 1], [0, 2, 1]];
+
+pub(super) fn tetrahedra<const N: usize, S: Shape<3, N>>(mesh: &Mesh, parts: usize) -> Mesh {
+    let count = S::DEGREE * parts;
+    let steps: Vec<Weights> = S::NODES
+        .iter()
+        .map(|xi| {
+            let [a, b, c] = [0, 1, 2].map(|i| (xi[i] * S::DEGREE as f64).round() as usize);
+            [S::DEGREE - a - b - c, a, b, c]
+        })
+        .collect();
+    let children = ORDERS.map(|order| children(parts, order));
+    let of = |cell: usize| &children[diagonal(mesh, cell)];
+    let mut nodes = Nodes::new(mesh);
+    let mut cells = Vec::with_capacity(mesh.cells.len() * parts.pow(3));
+    for cell in 0..mesh.cell_count() {
+        let corners: [usize; 4] = std::array::from_fn(|a| mesh.cell(cell)[a]);
+        for child in of(cell) {
+            cells.extend(steps.iter().map(|step| {
+                let at: Weights =
+                    std::array::from_fn(|c| (0..4).map(|q| step[q] * child[q][c]).sum::<usize>());
+                let xi = Vector([1, 2, 3].map(|c| at[c] as f64 / count as f64));
+                let mut among: Vec<_> =
+                    corners.into_iter().zip(at).filter(|(_, weight)| *weight > 0).collect();
+                among.sort_unstable();
+                nodes.at(Place::Among(among), cell, &S::values(&xi))
+            }));
+        }
+    }
+    let divided = |facet: &Facet| {
+        // The corner of the cell opposite to the facet, which children on the facet do not contain.
+        let corner = |c: &usize| !facet.nodes.contains(&mesh.cell(facet.cell)[*c]);
+        let opposite = (0..4).find(corner).unwrap_or_default();
+        let all = of(facet.cell);
+        let mut facets = Vec::with_capacity(parts * parts);
+        for (k, child) in all.iter().enumerate() {
+            for local in mesh.element.facets() {
+                if local[..3].iter().all(|&a| child[a][opposite] == 0) {
+                    let cell = facet.cell * all.len() + k;
+                    facets.push(Facet { cell, nodes: local.iter().map(|&a| cells[cell * N + a]).collect() });
+                }
+            }
+        }
+        facets
+    };
+    nodes.into_mesh(cells.clone(), divided)
+}
+
+/// Corners of all parts in the whole's weights.
+fn children(parts: usize, order: [usize; 4]) -> Vec<[Weights; 4]> {
+    let mut all = Vec::with_capacity(parts.pow(3));
+    for cube in 0..parts.pow(3) {
+        let low = [cube % parts, cube / parts % parts, cube / (parts * parts)];
+        for (k, path) in PATHS.iter().enumerate() {
+            let mut corners = [low; 4];
+            for (step, axis) in path.iter().enumerate() {
+                corners[step + 1..].iter_mut().for_each(|corner| corner[*axis] += 1);
+            }
+            if corners.iter().any(|[x, y, z]| y > x || z > y) {
+                continue;
+            }
+            if k % 2 == 1 {
+                corners.swap(1, 2);
+            }
+            all.push(corners.map(|[x, y, z]| {
+                let mut weights = [0; 4];
+                for (corner, weight) in order.into_iter().zip([parts - x, x - y, y - z, z]) {
+                    weights[corner] = weight;
+                }
+                weights
+            }));
+        }
+    }
+    all
+}
+
+/// The order of corners with the shortest diagonal; the first of equal ones.
+fn diagonal(mesh: &Mesh, cell: usize) -> usize {
+    let x = |corner: usize| &mesh.nodes[mesh.cell(cell)[corner]];
+    let length = |order: &[usize; 4]| {
+        let [a, b, c, d] = order.map(x);
+        (0..3).map(|i| (a[i] + c[i] - b[i] - d[i]).powi(2)).sum::<f64>()
+    };
+    // Round-off does not choose between equal lengths.
+    let lengths = ORDERS.each_ref().map(length);
+    let least = lengths.iter().copied().fold(f64::INFINITY, f64::min);
+    lengths.iter().position(|l| *l <= least * (1.0 + 1e-9)).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::generate::ball;
+    use crate::generate::testing::{sound, volume};
+    use crate::mesh::Element;
+
+    /// A ball and its parts have the same curved boundary, so the same volume; a facet becomes parts².
+    #[test]
+    fn parts_fill_the_whole() {
+        for element in [Element::Tet4, Element::Tet10, Element::Tet20] {
+            let whole = ball(element, 1.0, [0.0; 3], 0.8, [true, false, false]).unwrap();
+            for parts in [2, 3] {
+                let divided = whole.subdivided(parts).unwrap();
+                assert_eq!(divided.cell_count(), whole.cell_count() * parts.pow(3));
+                for (side, facets) in &whole.sides {
+                    assert_eq!(divided.sides[side].len(), facets.len() * parts * parts);
+                }
+                let (before, after) = (volume(&whole), sound(&divided));
+                assert!((before - after).abs() < 1e-13 * before, "{element:?} {parts}: {before} {after}");
+            }
+        }
+    }
+
+    /// Dividing again and again leaves the cells as they are: their quality stays.
+    #[test]
+    fn quality_is_kept() {
+        let mut mesh = ball(Element::Tet4, 1.0, [0.0; 3], 1.0, [true; 3]).unwrap();
+        let first = mesh.subdivided(2).unwrap().scaled_jacobian().unwrap();
+        for _ in 0..2 {
+            mesh = mesh.subdivided(2).unwrap();
+        }
+        let last = mesh.scaled_jacobian().unwrap();
+        assert!(last > 0.99 * first, "{first} {last}");
+    }
+}
