@@ -88,6 +88,9 @@ fn property(key: &Key) -> Value {
     let unit = if key.unit.is_empty() { String::new() } else { format!(" Unit: {}.", key.unit) };
     let paper = key.paper.map_or_else(String::new, |toml| format!(" With preset = \"paper\": {toml}."));
     schema.insert("description".into(), json!(format!("{}{unit}{paper}", key.doc)));
+    if matches!(key.kind, Kind::Tables(_)) && !matches!(key.default, Default::Absent) {
+        schema.insert("minItems".into(), json!(1));
+    }
     if let Default::Is(toml) = key.default
         && let Some(default) = json_of(toml)
     {
@@ -144,7 +147,7 @@ fn values(kind: &Kind) -> Map<String, Value> {
         ] }),
         Kind::SideOr(spec) => json!({ "oneOf": [side, table(spec, None)] }),
         Kind::Table(spec) => Value::Object(table(spec, None)),
-        Kind::Tables(spec) => json!({ "type": "array", "minItems": 1, "items": table(spec, None) }),
+        Kind::Tables(spec) => json!({ "type": "array", "items": table(spec, None) }),
         Kind::Variant(variants) => one_of(variants()),
     };
     if let Value::Object(schema) = schema { schema } else { Map::new() }
@@ -155,7 +158,7 @@ fn formula() -> Value {
 }
 
 fn formulas() -> Value {
-    json!({ "type": "array", "minItems": 1, "maxItems": 2, "items": formula() })
+    json!({ "type": "array", "minItems": 1, "maxItems": 3, "items": formula() })
 }
 
 fn one_of(variants: &Variants) -> Value {
