@@ -6,7 +6,9 @@ use super::tree::{Node, Table};
 use super::view::{View, formula};
 use super::{ObstacleMotion, PrimarySpec};
 
-const SHAPES: [&str; 3] = ["plane", "circle", "polyline"];
+/// Shapes with the dimension that they need.
+const SHAPES: [(&str, Option<usize>); 4] =
+    [("plane", None), ("circle", Some(2)), ("sphere", Some(3)), ("polyline", Some(2))];
 
 /// Reads `primary`.
 pub(super) fn read(
@@ -22,7 +24,7 @@ pub(super) fn read(
     let path = format!("{path}.primary");
     let table = node.table()?;
     // A misspelt key is reported once, by `conform`.
-    let known = ["plane", "circle", "polyline", "motion", "mass", "velocity", "gravity"];
+    let known = ["plane", "circle", "sphere", "polyline", "motion", "mass", "velocity", "gravity"];
     if table.0.iter().any(|entry| !known.contains(&entry.key.as_str())) {
         return None;
     }
@@ -37,26 +39,34 @@ fn shape(
     path: &str,
     problems: &mut Vec<Problem>,
 ) -> Option<PrimarySpec> {
-    let given: Vec<_> = SHAPES.into_iter().filter(|key| table.get(key).is_some()).collect();
-    let [shape] = given[..] else {
-        let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
+    let given: Vec<_> = SHAPES.into_iter().filter(|(key, _)| table.get(key).is_some()).collect();
+    let [(shape, needs)] = given[..] else {
+        let names: Vec<_> = given.iter().map(|(name, _)| *name).collect();
+        let had = if given.is_empty() { "none".to_owned() } else { names.join(", ") };
         let what = format!("a rigid primary has exactly one shape; this one has {had}");
-        let why = "the shape is `plane`, `circle` or `polyline`";
+        let why = "the shape is `plane`, `circle`, `sphere` or `polyline`";
         let help = "write for example primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }";
         problems.push(Problem::new(path, what, why, help).at_key());
         return None;
     };
-    if shape != "plane" && dimension == Some(1) {
-        let what = format!("a {shape} needs dimension = 2");
-        let help = "use a plane with normal = [1.0] or [-1.0]";
-        problems.push(Problem::new(format!("{path}.{shape}"), what, "the case has dimension = 1", help));
+    if let (Some(needs), Some(d)) = (needs, dimension)
+        && needs != d
+    {
+        let what = format!("a {shape} needs dimension = {needs}");
+        let help = match d {
+            1 => "use a plane with normal = [1.0] or [-1.0]",
+            2 => "use a circle",
+            _ => "use a plane or a sphere",
+        };
+        let why = format!("the case has dimension = {d}");
+        problems.push(Problem::new(format!("{path}.{shape}"), what, why, help));
         return None;
     }
     let keys = table.get(shape)?.table()?;
     let number = |key: &str, default: f64| keys.get(key).map_or(Some(default), Node::number);
     Some(match shape {
         "plane" => PrimarySpec::Plane { point: numbers(keys, "point")?, normal: numbers(keys, "normal")? },
-        "circle" => PrimarySpec::Circle {
+        "circle" | "sphere" => PrimarySpec::Circle {
             center: numbers(keys, "center")?,
             radius: keys.get("radius")?.number()?,
             inside: keys.get("inside").map_or(Some(false), Node::flag)?,
@@ -111,7 +121,7 @@ fn motion(
     }
     let Some(keys) = table.get("motion") else { return Some(ObstacleMotion::Fixed) };
     let keys = keys.table()?;
-    if keys.0.iter().any(|entry| !["x", "y", "rotate", "about"].contains(&entry.key.as_str())) {
+    if keys.0.iter().any(|entry| !["x", "y", "z", "rotate", "about"].contains(&entry.key.as_str())) {
         return None;
     }
     let turns = keys.get("rotate").is_some();
@@ -121,15 +131,23 @@ fn motion(
         wrong(&format!("motion.{key}"), what, "an obstacle turns about a point by an angle", help);
         return None;
     }
-    let in_the_plane = ["y", "rotate"].into_iter().find(|key| keys.get(key).is_some());
-    if let (Some(1), Some(key)) = (dimension, in_the_plane) {
-        let what = format!("there is no motion `{key}` in dimension 1");
-        wrong(&format!("motion.{key}"), &what, "the case has dimension = 1", "use motion = { x = … }");
+    let absent: &[&str] = match dimension {
+        Some(1) => &["y", "z", "rotate"],
+        Some(2) => &["z"],
+        Some(3) => &["rotate"],
+        _ => &[],
+    };
+    if let (Some(d), Some(key)) = (dimension, absent.iter().find(|key| keys.get(key).is_some())) {
+        let what = format!("there is no motion `{key}` in dimension {d}");
+        let why = format!("the case has dimension = {d}");
+        let axes = ["x", "x and y", "x, y and z"][d.clamp(1, 3) - 1];
+        let help = format!("an obstacle moves along {axes} here; in the plane it also turns");
+        wrong(&format!("motion.{key}"), &what, &why, &help);
         return None;
     }
     let moves = displacements(keys)?;
     if moves.is_empty() && !turns {
-        let why = "a motion has at least one of `x`, `y` and `rotate`";
+        let why = "a motion has at least one of `x`, `y`, `z` and `rotate`";
         wrong("motion", "the motion is empty", why, "leave `motion` out for a fixed obstacle");
         return None;
     }

@@ -1,6 +1,6 @@
-//! Where a point lies relative to the boundary of a body in the plane, seen from the facet nearest to it.
+//! Where a point lies relative to the boundary of a body, seen from the facet nearest to it.
 //!
-//! Inside a facet the sign of the distance is that of the normal; at a joint the point is outside if the
+//! In the plane (for space see `kinematics/space/boundary.rs`): inside a facet the sign of the distance is that of the normal; at a joint the point is outside if the
 //! joint is convex, inside if it is concave.
 
 use carom_algebra::Vector;
@@ -15,8 +15,8 @@ pub struct Depth {
     pub distance: f64,
     /// Nearest facet, and its point.
     pub facet: usize,
-    /// ξ of that point.
-    pub xi: f64,
+    /// ξ of that point, one coordinate in the plane.
+    pub xi: [f64; 2],
 }
 
 impl Surface {
@@ -38,7 +38,7 @@ impl Surface {
         let outside =
             if joint { Self::is_outside_joint } else { Self::is_outside }(self, facet, xi, point, y);
         let distance = if outside { distance } else { -distance };
-        Depth { distance, facet, xi }
+        Depth { distance, facet, xi: [xi, 0.0] }
     }
 
     fn is_outside(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {

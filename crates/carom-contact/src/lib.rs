@@ -21,8 +21,8 @@ pub use interface::{
     Answer, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point, Unilateral,
 };
 pub use kinematics::{
-    BothSides, Carrier, ContactPoint, Crossings, Detection, Kinematics, NodeToFacet, NodeToObstacle,
-    Obstacle, Passed, Polyline, PolylineError, Side, Surface, Swept, SweptTest,
+    BothSides, Boundary, Carrier, ClosedSurface, ContactPoint, Crossings, Detection, Kinematics, NodeToFacet,
+    NodeToObstacle, NodeToPatch, Obstacle, Passed, Polyline, PolylineError, Side, Surface, Swept, SweptTest,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

@@ -16,6 +16,8 @@ pub struct Pair {
     pub facet: usize,
     /// Contact point on the facet, −1 … 1; 0 if the facet is a point or a plane.
     pub xi: f64,
+    /// Its second coordinate on a facet in space; 0 in the plane.
+    pub eta: f64,
     /// Whether it is active: for a constraint, whether its gap is constrained to zero.
     pub active: bool,
     /// Whether it has been active since the start of the run.
@@ -36,6 +38,7 @@ impl Pair {
             node,
             facet,
             xi,
+            eta: 0.0,
             active: false,
             rests: false,
             lambda: 0.0,

@@ -3,18 +3,16 @@
 //! The depth is that below the side of the contact. Where two strips of the same width overlap, the
 //! nodes at their ends lie on the boundary beside the side, and are as deep as their neighbours.
 
-use carom_contact::Skin;
-
 use crate::model::Model;
 use crate::penetration::has_gaps;
-use crate::skins::{part_of, skin};
+use crate::skins::{BodySkin, part_of, skin};
 
 /// Distance outside of a body, relative to L, at which a node still counts as on its boundary.
 const ON: f64 = 1e-9;
 
 /// Depths at positions `y`, ≥ 0: for each contact one per node of its kinematics.
 pub fn depths(model: &Model, y: &[f64]) -> Vec<Vec<f64>> {
-    let mut skins: Vec<Option<Skin>> = model.parts.iter().map(|_| None).collect();
+    let mut skins: Vec<Option<BodySkin>> = model.parts.iter().map(|_| None).collect();
     let mut all = Vec::new();
     for contact in &model.contacts {
         let first = contact.facets.first().and_then(|(_, facets)| part_of(model, *facets.first()?.first()?));
@@ -30,8 +28,7 @@ pub fn depths(model: &Model, y: &[f64]) -> Vec<Vec<f64>> {
                 skins[other] = skin(&model.parts[other]);
                 skins[other].iter_mut().for_each(|skin| skin.update(y));
             }
-            let at = [y[2 * node], y[2 * node + 1]];
-            let found = skins[other].as_ref().and_then(|skin| skin.depth(at, None, y));
+            let found = skins[other].as_ref().and_then(|skin| skin.depth(node, None, y));
             let distance = found.map_or(f64::INFINITY, |found| found.distance);
             // Behind a joint of a hollow side no facet is faced.
             if distance <= ON * model.scale { below.unwrap_or(-distance).max(0.0) } else { 0.0 }

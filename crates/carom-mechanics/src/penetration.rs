@@ -5,19 +5,19 @@
 //! A node outside, at a distance d from a body, cannot be inside before the two have moved by d
 //! together. Until then it is not measured; no result depends on when it was.
 
-use carom_contact::{Rows, Side, Skin};
+use carom_contact::{Rows, Side};
 use serde::{Deserialize, Serialize};
 
 use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
-use crate::skins::{folding_skin, length, part_of, skin};
+use crate::skins::{BodySkin, folding_skin, length, part_of, skin};
 use crate::state::State;
 use crate::watched::{Way, watched};
 
 /// Measures penetration. A cache: its content affects no result.
 #[derive(Debug, Default)]
 pub(crate) struct Penetration {
-    skins: Vec<Option<Skin>>,
+    skins: Vec<Option<BodySkin>>,
     pub(crate) ways: Vec<Way>,
     /// Positions to which the clearances refer.
     y: Vec<f64>,
@@ -72,7 +72,7 @@ impl Penetration {
             else {
                 continue;
             };
-            if model.dimension != 2 {
+            if model.dimension < 2 {
                 continue;
             }
             let Some(secondary) = secondary_facets.first().and_then(|f| part_of(model, f[0])) else {
@@ -90,7 +90,8 @@ impl Penetration {
             let part = &model.parts[body];
             let mut of_body = ways.iter().filter(|way| way.body == body).peekable();
             of_body.peek()?;
-            if of_body.any(|way| way.itself.is_some()) { folding_skin(model, part) } else { skin(part) }
+            let folds = of_body.any(|way| way.itself.is_some());
+            if folds { folding_skin(model, part).map(BodySkin::Plane) } else { skin(part) }
         };
         Self { skins: (0..model.parts.len()).map(skin).collect(), ways, ..Self::default() }
     }
@@ -145,6 +146,7 @@ impl Penetration {
         if !std::mem::replace(&mut self.current[body], true) {
             skin.update(y);
         }
+        let skin = skin.plane()?;
         if !skin.crosses_itself(y, |_, _| false) {
             return None;
         }
@@ -157,11 +159,11 @@ impl Penetration {
     /// Subtracts the motion since the last call from the clearances.
     pub(crate) fn begin(&mut self, model: &Model, y: &[f64]) {
         if self.y.len() == y.len() {
-            let moved = |node: usize| square(&self.y, y, node);
+            let moved = |node: usize| square(&self.y, y, model.dimension, node);
             for way in &mut self.ways {
                 if way.nodes.iter().any(|watched| watched.clearance > 0.0) {
                     let nodes = way.boundary.iter().map(|&node| moved(node)).fold(0.0, f64::max).sqrt();
-                    let body = nodes * self.skins[way.body].as_ref().map_or(1.0, Skin::amplification);
+                    let body = nodes * self.skins[way.body].as_ref().map_or(1.0, BodySkin::amplification);
                     for watched in way.nodes.iter_mut().filter(|watched| watched.clearance > 0.0) {
                         watched.clearance -= moved(watched.node).sqrt() + body;
                     }
@@ -198,7 +200,7 @@ impl Penetration {
             let of_way = |node: usize| itself.is_none_or(|side| (side == Side::Later) == (node < half));
             for pair in state.pairs[k].iter().filter(|pair| {
                 pair.active
-                    && pair.xi.abs() <= 1.0
+                    && contact.kinematics.is_on_facet(pair)
                     && contact.kinematics.allowed(pair.node) == 0.0
                     && of_way(pair.node)
             }) {
@@ -225,7 +227,6 @@ impl Penetration {
                 continue;
             }
             let node = watched.node;
-            let at = [y[2 * node], y[2 * node + 1]];
             let (depth, entered) = if let Ok(p) = held.binary_search_by_key(&node, |(held, ..)| *held) {
                 (held[p].1, held[p].2)
             } else {
@@ -234,19 +235,19 @@ impl Penetration {
                 }
                 let entered = |facet: usize| length(model, skin.facet_nodes(facet));
                 if let Some(side) = *itself {
-                    let found = skin.depth_of(node, side, watched.reach, y);
+                    let found = skin.plane().and_then(|skin| skin.depth_of(node, side, watched.reach, y));
                     watched.clearance = found.map_or(watched.reach, |found| found.distance);
                     found.map_or((0.0, 0.0), |found| (-found.distance - watched.kept, entered(found.facet)))
                 } else {
                     // No deeper than any point of the boundary is away: neither the deepest nor too deep.
                     let known = if watched.constrained { deepest.constrained } else { deepest.all };
                     if let Some((facet, xi)) = watched.near {
-                        let bound = skin.distance(facet, xi, at, y);
+                        let bound = skin.distance(facet, xi, node, y);
                         if bound <= known && bound <= watched.limit(entered(facet)) {
                             continue;
                         }
                     }
-                    let Some(found) = skin.depth(at, watched.near.map(|near| near.0), y) else {
+                    let Some(found) = skin.depth(node, watched.near.map(|near| near.0), y) else {
                         continue;
                     };
                     (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
@@ -302,6 +303,6 @@ pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
 /// Depth over the length of a facet that a chord of it may feign.
 const CHORDS: f64 = 0.01;
 /// Square of the distance between two positions of a node.
-fn square(a: &[f64], b: &[f64], node: usize) -> f64 {
-    (a[2 * node] - b[2 * node]).powi(2) + (a[2 * node + 1] - b[2 * node + 1]).powi(2)
+fn square(a: &[f64], b: &[f64], dimension: usize, node: usize) -> f64 {
+    (dimension * node..dimension * (node + 1)).map(|dof| (a[dof] - b[dof]).powi(2)).sum()
 }

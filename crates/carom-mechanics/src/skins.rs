@@ -1,13 +1,68 @@
 //! Boundaries of the bodies of a model, in global node numbers.
 
-use carom_contact::{Skin, Surface};
+use carom_contact::{Boundary, ClosedSurface, Depth, Skin, Surface};
 
 use crate::model::{BodyInstance, Model};
 
-/// Distance between the ends of a facet in the reference configuration.
+/// The boundary of a body.
+#[derive(Debug)]
+pub(crate) enum BodySkin {
+    Plane(Skin),
+    Space(ClosedSurface),
+}
+
+impl BodySkin {
+    /// Global numbers of the nodes of a facet.
+    pub(crate) fn facet_nodes(&self, facet: usize) -> &[usize] {
+        match self {
+            Self::Plane(skin) => skin.facet_nodes(facet),
+            Self::Space(surface) => surface.facet_nodes(facet),
+        }
+    }
+
+    /// How much further a point of a facet may move than each of its nodes.
+    pub(crate) fn amplification(&self) -> f64 {
+        match self {
+            Self::Plane(skin) => skin.amplification(),
+            Self::Space(surface) => surface.amplification(),
+        }
+    }
+
+    /// Moves it to positions `y`.
+    pub(crate) fn update(&mut self, y: &[f64]) {
+        match self {
+            Self::Plane(skin) => skin.update(y),
+            Self::Space(surface) => surface.update(y),
+        }
+    }
+
+    /// Where a node lies, searched from a facet near it if one is known.
+    pub(crate) fn depth(&self, node: usize, from: Option<usize>, y: &[f64]) -> Option<Depth> {
+        match self {
+            Self::Plane(skin) => skin.depth([y[2 * node], y[2 * node + 1]], from, y),
+            Self::Space(surface) => surface.depth(node, from, y),
+        }
+    }
+
+    /// Distance between a node and a point of a facet.
+    pub(crate) fn distance(&self, facet: usize, xi: [f64; 2], node: usize, y: &[f64]) -> f64 {
+        match self {
+            Self::Plane(skin) => skin.distance(facet, xi[0], [y[2 * node], y[2 * node + 1]], y),
+            Self::Space(surface) => surface.distance(facet, xi, node, y),
+        }
+    }
+
+    /// In the plane, where a boundary may be in contact with itself.
+    pub(crate) fn plane(&self) -> Option<&Skin> {
+        if let Self::Plane(skin) = self { Some(skin) } else { None }
+    }
+}
+
+/// Distance between the first corners of a facet in the reference configuration.
 pub(crate) fn length(model: &Model, facet: &[usize]) -> f64 {
-    let [start, end] = [facet[0], facet[1]].map(|node| &model.reference[2 * node..2 * node + 2]);
-    (end[0] - start[0]).hypot(end[1] - start[1])
+    let d = model.dimension;
+    let [start, end] = [facet[0], facet[1]].map(|node| &model.reference[d * node..d * node + d]);
+    start.iter().zip(end).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt()
 }
 
 pub(crate) fn part_of(model: &Model, node: usize) -> Option<usize> {
@@ -19,8 +74,18 @@ pub(crate) fn skin_facets(part: &BodyInstance) -> Vec<Vec<usize>> {
     skin.map(|facet| facet.nodes.iter().map(|node| node + part.first_node).collect()).collect()
 }
 
+/// The boundary of a body in the plane or in space.
+pub(crate) fn skin(part: &BodyInstance) -> Option<BodySkin> {
+    let shape = part.body.mesh().element.facet_shape();
+    match shape.dimension() {
+        2 => plane_skin(part).map(BodySkin::Plane),
+        3 => Some(BodySkin::Space(ClosedSurface::new(Boundary::new(shape, &skin_facets(part), &[], 0)))),
+        _ => None,
+    }
+}
+
 /// The boundary of a body in the plane.
-pub(crate) fn skin(part: &BodyInstance) -> Option<Skin> {
+pub(crate) fn plane_skin(part: &BodyInstance) -> Option<Skin> {
     let shape = Some(part.body.mesh().element.facet_shape()).filter(|shape| shape.dimension() == 2)?;
     let facets = skin_facets(part);
     Some(Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()])))
@@ -28,5 +93,5 @@ pub(crate) fn skin(part: &BodyInstance) -> Option<Skin> {
 
 /// The same for its own nodes too.
 pub(crate) fn folding_skin(model: &Model, part: &BodyInstance) -> Option<Skin> {
-    Some(skin(part)?.with_pieces(&part.body.mesh().pieces(), part.first_node, &model.reference))
+    Some(plane_skin(part)?.with_pieces(&part.body.mesh().pieces(), part.first_node, &model.reference))
 }

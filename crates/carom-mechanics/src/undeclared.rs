@@ -7,7 +7,7 @@ use carom_contact::Skin;
 
 use crate::model::{BodyInstance, Model};
 use crate::penetration::Penetration;
-use crate::skins::{part_of, skin, skin_facets};
+use crate::skins::{part_of, plane_skin, skin, skin_facets};
 use crate::watched::{Watched, Way, lengths};
 
 /// Allowed depth of bodies without a contact, over the length of a facet.
@@ -23,7 +23,7 @@ pub(crate) struct Undeclared {
 }
 
 impl Undeclared {
-    /// For all bodies in the plane.
+    /// For all bodies in the plane or in space; in space none is asked whether it crosses itself.
     pub(crate) fn new(model: &Model) -> Self {
         let declared = |a: usize, b: usize| {
             model.contacts.iter().any(|contact| {
@@ -33,7 +33,7 @@ impl Undeclared {
             })
         };
         let mut ways = Vec::new();
-        let solid = |(_, part): &(usize, &BodyInstance)| model.dimension == 2 && skin(part).is_some();
+        let solid = |(_, part): &(usize, &BodyInstance)| skin(part).is_some();
         for (a, part) in model.parts.iter().enumerate().filter(solid) {
             let facets = skin_facets(part);
             for body in (0..model.parts.len()).filter(|&b| b != a && !declared(a, b)) {
@@ -92,7 +92,7 @@ fn own(model: &Model) -> Vec<(usize, Skin, Vec<Option<usize>>)> {
         let of = |facet: &Vec<usize>| contact_of.get(facet.as_slice()).copied();
         let declared: Vec<Option<usize>> = skin_facets(part).iter().map(of).collect();
         let in_one = declared.iter().all(|contact| contact.is_some() && *contact == declared[0]);
-        if in_one { None } else { Some((body, skin(part)?, declared)) }
+        if in_one { None } else { Some((body, plane_skin(part)?, declared)) }
     });
     skins.collect()
 }

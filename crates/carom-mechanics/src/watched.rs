@@ -38,7 +38,7 @@ pub(crate) struct Watched {
     /// Distance that it and the body may still move together before it can be inside.
     pub clearance: f64,
     /// Its nearest facet and ξ, where the next search begins.
-    pub near: Option<(usize, f64)>,
+    pub near: Option<(usize, [f64; 2])>,
 }
 
 impl Way {

@@ -108,6 +108,21 @@ impl FacetShape {
         }
     }
 
+    /// ∂²φᵃ/∂ξ∂ξ, ∂²φᵃ/∂ξ∂η and ∂²φᵃ/∂η∂η of a surface: central differences of the first
+    /// derivatives, which are exact because these are quadratic in each coordinate at most.
+    pub fn second(self, xi: [f64; 2]) -> [[f64; NODES]; 3] {
+        let difference = |axis: usize| {
+            let [low, high] = [-0.5, 0.5].map(|step| {
+                let mut moved = xi;
+                moved[axis] += step;
+                self.functions(moved).slopes
+            });
+            [0, 1].map(|i| std::array::from_fn(|a| high[i][a] - low[i][a]))
+        };
+        let ([by_first, mixed], [_, by_second]) = (difference(0), difference(1));
+        [by_first, mixed, by_second]
+    }
+
     /// Quadrature points and weights exact for polynomials of a degree; a point has weight one.
     ///
     /// # Panics

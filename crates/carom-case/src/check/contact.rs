@@ -100,6 +100,31 @@ impl Check<'_> {
         add(what, why, hint);
     }
 
+    /// What contact in space is not built for is refused.
+    fn in_space(&mut self, contact: &ContactSpec) {
+        if self.draft.dimension != Some(3) {
+            return;
+        }
+        let later = "it is planned for a later version of Carom";
+        if contact.friction.exists() {
+            let key = if contact.friction.mu.is_some() { "mu" } else { "shear" };
+            let what = format!("`{key}` cannot be used in dimension 3");
+            let why = format!("friction with two tangential directions is not built: {later}");
+            self.add_unique(contact.path(key), what, why, "leave it out, or compute a plane section");
+        }
+        if contact.detection == Detection::Trajectory {
+            let what = "detection = \"trajectory\" cannot be used in dimension 3";
+            let why = "it is the method of the paper, for the plane";
+            self.add_unique(contact.path("detection"), what, why, "leave it out");
+        }
+        if contact.between || contact.is_of_itself() {
+            let key = if contact.between { "between" } else { "primary" };
+            let why = format!("contact of a body with itself is not built in space: {later}");
+            let help = "give `secondary` and `primary`, sides of two bodies";
+            self.add_unique(contact.path(key), format!("`{key}` cannot be used so in dimension 3"), why, help);
+        }
+    }
+
     /// What contact of a side with itself needs: a boundary that can fold, and a detection by the
     /// closest point.
     fn itself(&mut self, contact: &ContactSpec) {
@@ -193,6 +218,7 @@ impl Check<'_> {
             if !earlier().any(|other| other.entry == contact.entry) {
                 self.law(contact);
                 self.frozen_point(contact);
+                self.in_space(contact);
                 self.friction(contact);
                 self.of_between(contact);
             }

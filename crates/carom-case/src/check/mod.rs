@@ -95,11 +95,6 @@ impl<'a> Check<'a> {
                 "use dimension = 1, 2 or 3",
             );
         }
-        if given == Some(3) && !self.tables("contact").is_empty() {
-            let why = "contact in three dimensions is planned for a later version of Carom";
-            let help = "leave [[contact]] out, or compute a plane section with dimension = 2";
-            self.add("contact[0]", "a case of dimension 3 has no contact yet", why, help);
-        }
         let plane = self.document.root().get("plane").and_then(Node::text);
         if given.is_some_and(|d| d != 2) && plane == Some("stress") {
             let why = "a bar has no plane state, its only strain is along x; nor has a body in space";

@@ -9,7 +9,7 @@ pub(super) const CONTACT: Table = Table {
     keys: &[
         key("name", Name, "Name used in records and messages.").example("\"strike\""),
         key("secondary", Side, "Secondary (slave) side: its nodes may not penetrate the primary. `body.skin` is the whole boundary of a body.").example("\"cylinder.arc\"").unless("between"),
-        key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of `plane`, `circle` and `polyline`. The secondary side again: contact of this side with itself.").example("\"prism.top\"").unless("between"),
+        key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of `plane`, `circle`, `sphere` and `polyline`. The secondary side again: contact of this side with itself.").example("\"prism.top\"").unless("between"),
         key(
             "between",
             Kind::Between,
@@ -146,6 +146,9 @@ const RIGID: Table = Table {
         key("circle", Kind::Table(&CIRCLE), "A rigid circle, with bodies outside or inside it; dimension 2.")
             .optional()
             .example("{ center = [0.0, 0.0], radius = 1.0, inside = true }"),
+        key("sphere", Kind::Table(&SPHERE), "A rigid sphere, with bodies outside or inside it; dimension 3.")
+            .optional()
+            .example("{ center = [0.0, 0.0, 0.0], radius = 1.0, inside = true }"),
         key("polyline", Kind::Table(&POLYLINE), "A rigid chain of segments, solid to the left of the direction of travel; dimension 2.")
             .optional()
             .example("{ points = [[2.0, 0.0], [0.0, 0.0], [-2.0, 1.0]], radius = 0.1 }"),
@@ -181,6 +184,17 @@ const CIRCLE: Table = Table {
     doc: "A rigid circle.",
     keys: &[
         key("center", Vector, "Its centre.").unit("length").example("[0.0, 0.0]"),
+        key("radius", Number(POSITIVE), "Its radius.").unit("length").example("1.0"),
+        key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false"),
+    ],
+    later: &[],
+};
+
+const SPHERE: Table = Table {
+    name: "sphere",
+    doc: "A rigid sphere.",
+    keys: &[
+        key("center", Vector, "Its centre.").unit("length").example("[0.0, 0.0, 0.0]"),
         key("radius", Number(POSITIVE), "Its radius.").unit("length").example("1.0"),
         key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false"),
     ],

@@ -106,7 +106,7 @@ pub enum PrimarySpec {
         /// Outward normal, of any length > 0.
         normal: Vec<f64>,
     },
-    /// A rigid circle.
+    /// A rigid circle; in space a sphere.
     Circle {
         /// Its centre.
         center: Vec<f64>,

@@ -13,6 +13,7 @@ mod node_to_obstacle;
 mod obstacle;
 mod passed;
 mod projection;
+mod space;
 mod surface;
 mod swept;
 mod trajectory;
@@ -24,6 +25,7 @@ pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_obstacle::{Carrier, NodeToObstacle};
 pub use obstacle::{Obstacle, Polyline, PolylineError};
 pub use passed::Passed;
+pub use space::{Boundary, ClosedSurface, NodeToPatch};
 pub use surface::Surface;
 pub use swept::{Crossings, Swept, SweptTest};
 
@@ -52,6 +54,11 @@ pub trait Kinematics: Send + Sync {
 
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
     fn facet_nodes(&self, pair: &Pair) -> &[usize];
+
+    /// Whether the contact point of a pair lies on its facet, not on its extension.
+    fn is_on_facet(&self, pair: &Pair) -> bool {
+        pair.xi.abs() <= 1.0
+    }
 
     /// Number of facets that a pair of a secondary node, given by index, may name.
     fn facets(&self, node: usize) -> usize;

@@ -1,15 +1,15 @@
 //! The contacts of a model: kinematics from the named sides, interface from law and enforcement. A
 //! new contact method is one line here.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use carom_case::{
     ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, FrictionSpec, ObstacleMotion,
     Overlap, Persistency, PrimarySpec, Problem, load_variables,
 };
 use carom_contact::{
-    BothSides, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
-    NodeToObstacle, Penalty, Surface, Unilateral,
+    BothSides, Boundary, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics,
+    NodeToFacet, NodeToObstacle, NodeToPatch, Penalty, Surface, Unilateral,
 };
 use carom_mechanics::model::{BodyInstance, Contact, Friction, Model};
 use carom_solid::FacetShape;
@@ -57,7 +57,7 @@ pub(super) fn contacts(
         let obstacle = obstacles.iter().find(|obstacle| obstacle.contact == k);
         let kinematics: Box<dyn Kinematics> = match (shape, spec.primary.side()) {
             (Some(shape), _) => {
-                let lengths = longest(&nodes, &secondary.facets, &reference);
+                let lengths = longest(&nodes, &secondary.facets, &reference, case.dimension);
                 let mut contact = NodeToObstacle::new(nodes, case.dimension, shape).with_lengths(lengths);
                 if let Some(obstacle) = obstacle {
                     surface.extend(parts[obstacle.part].nodes());
@@ -69,6 +69,14 @@ pub(super) fn contacts(
                 Ok(primary) if primary.part == secondary.part => {
                     primary_part = Some(primary.part);
                     Box::new(itself(&secondary, parts, &reference))
+                }
+                Ok(primary) if case.dimension == 3 => {
+                    primary_part = Some(primary.part);
+                    surface.extend(&primary.nodes);
+                    let (before, after) = siblings(case, parts, k, primary.part, Which::Primary);
+                    let side = boundary_of(&primary, &[before, after].concat(), parts);
+                    primary_facets = Some((primary.shape, primary.facets));
+                    Box::new(NodeToPatch::new(nodes, side))
                 }
                 Ok(primary) => {
                     primary_part = Some(primary.part);
@@ -249,7 +257,7 @@ fn others(
     surface: &Surface,
     reference: &[f64],
 ) -> (Vec<usize>, Vec<f64>) {
-    let shortest = lengths(&secondary.facets, reference).map(|(_, l)| l).fold(f64::INFINITY, f64::min);
+    let shortest = lengths(&secondary.facets, reference, 2).map(|(_, l)| l).fold(f64::INFINITY, f64::min);
     let corners = surface.corners(reference);
     let mut nodes = without(&primary.nodes, earlier);
     nodes.sort_unstable();
@@ -258,18 +266,22 @@ fn others(
     (nodes, allowed)
 }
 
-/// The facets of a side in the plane with the distances between their ends.
-fn lengths<'a>(facets: &'a [Vec<usize>], reference: &[f64]) -> impl Iterator<Item = (&'a Vec<usize>, f64)> {
-    facets.iter().filter(|facet| facet.len() > 1).map(|facet| {
-        let [start, end] = [facet[0], facet[1]].map(|node| &reference[2 * node..2 * node + 2]);
-        (facet, (end[0] - start[0]).hypot(end[1] - start[1]))
+/// The facets of a side in `d` dimensions with the distances between their first corners.
+fn lengths<'a>(
+    facets: &'a [Vec<usize>],
+    reference: &[f64],
+    d: usize,
+) -> impl Iterator<Item = (&'a Vec<usize>, f64)> {
+    facets.iter().filter(|facet| facet.len() > 1).map(move |facet| {
+        let [start, end] = [facet[0], facet[1]].map(|node| &reference[d * node..d * node + d]);
+        (facet, start.iter().zip(end).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt())
     })
 }
 
-/// The length of the longest facet of each node of a side in the plane.
-fn longest(nodes: &[usize], facets: &[Vec<usize>], reference: &[f64]) -> Vec<f64> {
+/// The length of the longest facet of each node of a side.
+fn longest(nodes: &[usize], facets: &[Vec<usize>], reference: &[f64], d: usize) -> Vec<f64> {
     let mut of: HashMap<usize, f64> = HashMap::new();
-    for (facet, length) in lengths(facets, reference) {
+    for (facet, length) in lengths(facets, reference, d) {
         for &node in facet {
             let longest = of.entry(node).or_default();
             *longest = longest.max(length);
@@ -313,13 +325,25 @@ fn without(nodes: &[usize], sides: &[Side]) -> Vec<usize> {
     nodes.iter().copied().filter(|node| !belongs(node)).collect()
 }
 
-/// A side with its siblings and the rest of its body's boundary.
+/// A side of the plane with its siblings and the rest of its body's boundary.
 fn surface_of(side: &Side, siblings: &[Side], parts: &[BodyInstance]) -> Surface {
-    let mut rest = side.rest(parts);
-    let of_sibling = |facet: &Vec<usize>| siblings.iter().any(|sibling| sibling.facets.contains(facet));
-    rest.sort_by_key(|facet| !of_sibling(facet));
-    let count = rest.iter().filter(|facet| of_sibling(facet)).count();
+    let (rest, count) = rest_of(side, siblings, parts);
     Surface::new(side.shape, &side.facets, &side.orientations).bounded_by(&rest, count)
+}
+
+/// The same in space.
+fn boundary_of(side: &Side, siblings: &[Side], parts: &[BodyInstance]) -> Boundary {
+    let (rest, count) = rest_of(side, siblings, parts);
+    Boundary::new(side.shape, &side.facets, &rest, count)
+}
+
+/// The rest of the boundary of a side's body, the facets of its siblings first, and their number.
+fn rest_of(side: &Side, siblings: &[Side], parts: &[BodyInstance]) -> (Vec<Vec<usize>>, usize) {
+    let own: HashSet<&Vec<usize>> = siblings.iter().flat_map(|sibling| &sibling.facets).collect();
+    let mut rest = side.rest(parts);
+    rest.sort_by_key(|facet| !own.contains(facet));
+    let count = rest.iter().filter(|facet| own.contains(facet)).count();
+    (rest, count)
 }
 
 /// Mean over the directions of a node's diagonal of the tangent in the reference configuration.

@@ -13,8 +13,9 @@
 
 use carom_algebra::Vector;
 
-use super::{Domain, Shape, line_shape};
+use super::{Domain, Quad4, Quad9, Shape, Tri3, Tri6, Tri10, line_shape};
 use crate::bounds::Bounds;
+use crate::facet::FacetShape;
 
 /// Control points of a line or a cell as weights of its nodes.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +54,21 @@ impl Hull {
         let values =
             |xi: &Vector<1>, out: &mut [f64]| out.copy_from_slice(&line_shape(nodes, xi[0]).values[..nodes]);
         Self { nodes, weights: control(nodes - 1, &ends, nodes, values) }
+    }
+
+    /// The hull of a facet of any shape.
+    #[must_use]
+    pub fn facet(shape: FacetShape) -> Self {
+        match shape {
+            FacetShape::Point | FacetShape::L2 | FacetShape::L3 | FacetShape::L4 => {
+                Self::line(shape.nodes(), 1.0)
+            }
+            FacetShape::T3 => Self::of::<2, 3, Tri3>(),
+            FacetShape::T6 => Self::of::<2, 6, Tri6>(),
+            FacetShape::T10 => Self::of::<2, 10, Tri10>(),
+            FacetShape::Q4 => Self::of::<2, 4, Quad4>(),
+            FacetShape::Q9 => Self::of::<2, 9, Quad9>(),
+        }
     }
 
     /// Weights of the nodes in a control point.

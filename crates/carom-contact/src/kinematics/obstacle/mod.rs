@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! plane    g = (x − p)·n             ∇g = n              ∇²g = 0
-//! circle   g = |x − c| − r           ∇g = (x − c)/|x − c|   ∇²g = (1 − n nᵀ)/|x − c|        from inside all with the opposite sign
+//! circle, sphere
+//!          g = |x − c| − r           ∇g = (x − c)/|x − c|   ∇²g = (1 − n nᵀ)/|x − c|        from inside all with the opposite sign
 //! ```
 //!
 //! A polyline consists of such pieces. So ∇²g = h (1 − n nᵀ) with one number h for every piece.
@@ -28,7 +29,7 @@ pub enum Obstacle {
         /// Unit normal out of the rigid side.
         normal: [f64; 3],
     },
-    /// A circle.
+    /// A circle; in space a sphere.
     Circle {
         /// Its centre.
         center: [f64; 3],

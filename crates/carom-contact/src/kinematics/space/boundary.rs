@@ -1,0 +1,259 @@
+//! The boundary of a body in space as curved facets in global node numbers: neighbours across edges
+//! and around corners, and on which side of it a point lies.
+//!
+//! The sign of the distance to a closed surface is that of d·n at its nearest point; on an edge n is
+//! the sum of both facets' normals, at a corner the sum of all facets' normals there, each weighted
+//! with the facet's angle (Bærentzen and Aanæs, IEEE Trans. Vis. Comput. Graph. 11 (2005)).
+
+use std::collections::HashMap;
+
+use carom_algebra::Vector;
+use carom_solid::{Bounds, FacetShape, Hull, Tree};
+
+use super::patch::{Feature, Patch, cross, place};
+use crate::depth::Depth;
+
+/// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
+const SHARP: f64 = 0.87;
+
+/// Facets of a side, all of one shape, which may be followed by the rest of the body's boundary.
+#[derive(Clone, Debug)]
+pub struct Boundary {
+    shape: FacetShape,
+    nodes: Vec<usize>,
+    /// Across each edge: the facet there, and the number of the edge on it.
+    neighbours: Vec<[Option<(usize, usize)>; 4]>,
+    /// Facets at each node that is a corner.
+    around: HashMap<usize, Vec<usize>>,
+    side: usize,
+    siblings: usize,
+}
+
+impl Boundary {
+    /// Facets as lists of global nodes, corners first, counter-clockwise seen from outside: those of
+    /// the side, then the `rest` of the body's boundary, of which the first `siblings` belong to
+    /// sides that other contacts keep the same nodes away from.
+    pub fn new(shape: FacetShape, side: &[Vec<usize>], rest: &[Vec<usize>], siblings: usize) -> Self {
+        let facets: Vec<&Vec<usize>> = side.iter().chain(rest).collect();
+        let count = shape.corners();
+        let mut edges: HashMap<(usize, usize), (usize, usize)> = HashMap::new();
+        let mut around: HashMap<usize, Vec<usize>> = HashMap::new();
+        for (facet, nodes) in facets.iter().enumerate() {
+            for e in 0..count {
+                edges.insert((nodes[e], nodes[(e + 1) % count]), (facet, e));
+                around.entry(nodes[e]).or_default().push(facet);
+            }
+        }
+        let neighbours = |nodes: &&Vec<usize>| {
+            std::array::from_fn(|e| {
+                if e < count { edges.get(&(nodes[(e + 1) % count], nodes[e])).copied() } else { None }
+            })
+        };
+        Self {
+            shape,
+            neighbours: facets.iter().map(neighbours).collect(),
+            nodes: facets.iter().flat_map(|nodes| nodes.iter().copied()).collect(),
+            around,
+            side: side.len(),
+            siblings: side.len() + siblings,
+        }
+    }
+
+    /// Shape of every facet.
+    pub fn shape(&self) -> FacetShape {
+        self.shape
+    }
+
+    /// Number of facets of the side.
+    pub fn facets(&self) -> usize {
+        self.side
+    }
+
+    /// Number of facets with those of the rest of the boundary.
+    pub(crate) fn all(&self) -> usize {
+        self.neighbours.len()
+    }
+
+    pub(crate) fn is_of_side(&self, facet: usize) -> bool {
+        facet < self.side
+    }
+
+    pub(crate) fn is_of_sibling(&self, facet: usize) -> bool {
+        (self.side..self.siblings).contains(&facet)
+    }
+
+    /// A facet.
+    pub(crate) fn patch(&self, facet: usize) -> Patch<'_> {
+        let n = self.shape.nodes();
+        Patch { shape: self.shape, nodes: &self.nodes[facet * n..(facet + 1) * n] }
+    }
+
+    /// Global numbers of the nodes of a facet.
+    pub fn facet_nodes(&self, facet: usize) -> &[usize] {
+        self.patch(facet).nodes
+    }
+
+    /// The facet across an edge.
+    pub(crate) fn across(&self, facet: usize, edge: usize) -> Option<usize> {
+        self.neighbours[facet][edge].map(|(neighbour, _)| neighbour)
+    }
+
+    /// The facets that share a corner with a facet, without itself, ascending.
+    pub(crate) fn ring(&self, facet: usize) -> Vec<usize> {
+        let corners = &self.patch(facet).nodes[..self.shape.corners()];
+        let around = |corner: &usize| self.around.get(corner).into_iter().flatten();
+        let mut ring: Vec<usize> = corners.iter().flat_map(around).copied().filter(|&f| f != facet).collect();
+        ring.sort_unstable();
+        ring.dedup();
+        ring
+    }
+
+    /// Outward normals on both sides of the middle of an edge.
+    fn normals_at_edge(&self, facet: usize, edge: usize, s: f64, y: &[f64]) -> [Vector<3>; 2] {
+        let own = self.patch(facet);
+        let here = own.at(y, own.along(edge, s)).normal;
+        let there = self.neighbours[facet][edge].map(|(neighbour, other)| {
+            let patch = self.patch(neighbour);
+            patch.at(y, patch.along(other, 1.0 - s)).normal
+        });
+        [here, there.unwrap_or(here)]
+    }
+
+    /// Whether an edge is convex with a kink of more than 30°.
+    pub(crate) fn is_sharp(&self, facet: usize, edge: usize, y: &[f64]) -> bool {
+        let [here, there] = self.normals_at_edge(facet, edge, 0.5, y);
+        let nodes = self.patch(facet).nodes;
+        let along = place(y, nodes[(edge + 1) % self.shape.corners()]) - place(y, nodes[edge]);
+        // Counter-clockwise seen from outside: at a convex edge the normals turn about it.
+        here.dot(&there) < SHARP && cross(here, there).dot(&along) > 0.0
+    }
+
+    /// Nodes of the side at sharp convex edges, with all nodes of these edges, ascending.
+    pub fn sharp_nodes(&self, y: &[f64]) -> Vec<usize> {
+        let mut found = Vec::new();
+        for facet in 0..self.side {
+            for edge in (0..self.shape.corners()).filter(|&edge| self.is_sharp(facet, edge, y)) {
+                found.extend(self.edge_nodes(facet, edge));
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// Nodes of an edge: its corners, and those between them, which follow the corners edge by edge.
+    fn edge_nodes(&self, facet: usize, edge: usize) -> impl Iterator<Item = usize> {
+        let (nodes, corners) = (self.patch(facet).nodes, self.shape.corners());
+        let between = self.shape.degree() - 1;
+        let start = corners + edge * between;
+        [nodes[edge], nodes[(edge + 1) % corners]].into_iter().chain(nodes[start..start + between].to_vec())
+    }
+
+    /// Box around a facet at positions `y`.
+    pub(crate) fn bounds(&self, hull: &Hull, facet: usize, y: &[f64]) -> Bounds {
+        let nodes = self.patch(facet).nodes;
+        hull.bounds(|a| &y[3 * nodes[a]..3 * nodes[a] + 3])
+    }
+
+    /// Where a point lies whose nearest facet is known.
+    pub(crate) fn depth(&self, facet: usize, point: Vector<3>, y: &[f64]) -> Depth {
+        let patch = self.patch(facet);
+        let nearest = patch.nearest(y, point);
+        let at = patch.at(y, nearest.xi);
+        let d = point - at.position;
+        let normal = match nearest.at {
+            Feature::Inside => at.normal,
+            Feature::Edge(edge) => {
+                let s = {
+                    let [a, b] = [0.0, 1.0].map(|s| patch.along(edge, s));
+                    let i = usize::from((b[1] - a[1]).abs() > (b[0] - a[0]).abs());
+                    (nearest.xi[i] - a[i]) / (b[i] - a[i])
+                };
+                let [here, there] = self.normals_at_edge(facet, edge, s, y);
+                here + there
+            }
+            Feature::Corner(corner) => self.normal_at_corner(patch.nodes[corner], y),
+        };
+        let distance = if d.dot(&normal) >= 0.0 { nearest.distance } else { -nearest.distance };
+        Depth { distance, facet, xi: nearest.xi }
+    }
+
+    /// Sum of the normals at a corner, weighted with the facets' angles.
+    fn normal_at_corner(&self, node: usize, y: &[f64]) -> Vector<3> {
+        let mut sum = Vector::ZERO;
+        let count = self.shape.corners();
+        for &facet in self.around.get(&node).into_iter().flatten() {
+            let patch = self.patch(facet);
+            let Some(corner) = patch.nodes[..count].iter().position(|&n| n == node) else { continue };
+            let at = patch.at(y, patch.corner(corner));
+            // Directions of both edges at the corner.
+            let [out, back] = [patch.along(corner, 1.0), patch.corner((corner + count - 1) % count)].map(|to| {
+                let here = patch.corner(corner);
+                at.tangents[0] * (to[0] - here[0]) + at.tangents[1] * (to[1] - here[1])
+            });
+            let angle = cross(out, back).norm().atan2(out.dot(&back));
+            sum += at.normal * angle;
+        }
+        sum
+    }
+
+    /// A hierarchy of the boxes of all facets; filled by the caller.
+    pub(crate) fn hull(&self) -> Hull {
+        Hull::facet(self.shape)
+    }
+}
+
+/// The whole boundary of a body in space: how deep a point lies inside.
+#[derive(Debug)]
+pub struct ClosedSurface {
+    boundary: Boundary,
+    hull: Hull,
+    tree: Tree,
+}
+
+impl ClosedSurface {
+    /// All facets of a body's boundary.
+    pub fn new(boundary: Boundary) -> Self {
+        let hull = boundary.hull();
+        Self { boundary, hull, tree: Tree::default() }
+    }
+
+    /// Global numbers of the nodes of a facet.
+    pub fn facet_nodes(&self, facet: usize) -> &[usize] {
+        self.boundary.facet_nodes(facet)
+    }
+
+    /// Moves the boundary to positions `y`, flat over all nodes.
+    pub fn update(&mut self, y: &[f64]) {
+        let bounds = |facet: usize| self.boundary.bounds(&self.hull, facet, y);
+        if self.tree.is_empty() {
+            self.tree = Tree::new(self.boundary.all(), bounds);
+        } else {
+            self.tree.update(bounds);
+        }
+    }
+
+    /// Where a node lies at the positions of the last update, searched from a facet near it if one is
+    /// known; `None` without a boundary.
+    pub fn depth(&self, node: usize, from: Option<usize>, y: &[f64]) -> Option<Depth> {
+        let at = place(y, node);
+        let distance = |facet: usize| Some(self.boundary.patch(facet).nearest(y, at).distance);
+        let (facet, _) = self.tree.nearest(&at.0, from, distance)?;
+        Some(self.boundary.depth(facet, at, y))
+    }
+
+    /// Distance between a node and the boundary at ξ of a facet.
+    pub fn distance(&self, facet: usize, xi: [f64; 2], node: usize, y: &[f64]) -> f64 {
+        (place(y, node) - self.boundary.patch(facet).at(y, xi).position).norm()
+    }
+
+    /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵃ|.
+    pub fn amplification(&self) -> f64 {
+        match self.boundary.shape() {
+            FacetShape::T6 => 5.0 / 3.0,
+            FacetShape::Q9 => 1.5625,
+            FacetShape::T10 => 2.28,
+            _ => 1.0,
+        }
+    }
+}

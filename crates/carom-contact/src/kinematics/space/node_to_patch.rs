@@ -1,0 +1,451 @@
+//! Secondary nodes against a primary side of curved facets in space.
+//!
+//! The gap is measured at the closest point of the pair's facet, which is extrapolated up to a fifth
+//! of its height beyond its edges; between solves a pair past an edge is handed over:
+//!
+//! ```text
+//! blunt edge       to the facet on which the nearest point lies; where that is the edge itself, the
+//!                  pair keeps its facet
+//! dent             a node that would be handed back within the step has a pair with either facet
+//! sharp edge, end  nothing is faced past it; an active pair keeps its facet to the end of the step and
+//!                  leaves at the start of the next one
+//! ```
+//!
+//! A node without a pair meets the facet that its path crosses first, else the nearest one that it
+//! was not behind before.
+
+use std::sync::{Mutex, PoisonError};
+
+use carom_algebra::{Mat, Vector};
+use carom_solid::{Bounds, Hull, Tree};
+
+use super::boundary::Boundary;
+use super::gap::PatchGap;
+use super::patch::{Feature, Patch, cross, place};
+use crate::kinematics::Kinematics;
+use crate::pair::{ContactError, Pair, PairEvent, Pairing};
+use crate::rows::Rows;
+
+/// Distance past an edge, over the height of the facet, up to which a facet is extrapolated.
+const REACH: f64 = 0.2;
+/// The same before Newton's method has converged.
+const WANDER: f64 = 2.0;
+/// The same beyond which a pair is handed over before Newton's method has converged.
+const HAND_OVER: f64 = 0.02;
+const HAND_BACK: f64 = 0.1;
+/// The same above which a closest point is past an edge.
+const PAST: f64 = 1e-9;
+/// The same at a sharp edge or the end of a side.
+const PAST_SIDE: f64 = 1e-3;
+/// A node this far behind a facet, relative to its length, at the start of a step has not crossed it.
+const BEHIND: f64 = 0.02;
+/// Depth relative to the length of a facet that round-off feigns.
+const NOISE: f64 = 1e-9;
+
+/// Secondary nodes against a primary side of facets in space.
+#[derive(Debug)]
+pub struct NodeToPatch {
+    secondary: Vec<usize>,
+    primary: Boundary,
+    hull: Hull,
+    /// Depth that each node may have without contact; empty if none may have any.
+    allowed: Vec<f64>,
+    /// Depth that each node keeps; empty if none does.
+    kept: Vec<f64>,
+    /// Boxes of the facets' paths; a cache.
+    tree: Mutex<Tree>,
+}
+
+/// Where a pair belongs.
+enum Next {
+    Stay,
+    HandOver(usize, [f64; 2]),
+    Dent(usize, [f64; 2]),
+    Leave,
+}
+
+impl NodeToPatch {
+    /// Secondary nodes and primary boundary in global node numbers.
+    pub fn new(secondary: Vec<usize>, primary: Boundary) -> Self {
+        Self {
+            secondary,
+            hull: primary.hull(),
+            primary,
+            allowed: Vec::new(),
+            kept: Vec::new(),
+            tree: Mutex::new(Tree::default()),
+        }
+    }
+
+    /// The same with a depth for each node that it may have without contact.
+    #[must_use]
+    pub fn with_allowed(self, allowed: Vec<f64>) -> Self {
+        Self { allowed, ..self }
+    }
+
+    fn slack(&self, place: usize) -> f64 {
+        self.allowed(place) + self.kept(place)
+    }
+
+    fn gap(&self, facet: usize, xi: [f64; 2], from: Vector<3>, y: &[f64]) -> f64 {
+        let at = self.primary.patch(facet).at(y, xi);
+        (from - at.position).dot(&at.normal)
+    }
+
+    fn closest(&self, pair: &Pair, y: &[f64]) -> Option<[f64; 2]> {
+        let (patch, from) = (self.primary.patch(pair.facet), place(y, self.secondary[pair.node]));
+        let start = [pair.xi, pair.eta];
+        patch.closest_from(y, from, start, WANDER).or_else(|| patch.closest_point(y, from, REACH))
+    }
+
+    /// Whether ξ lies past an edge of a facet across which no blunt joint with the side follows.
+    fn faces_nothing(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> bool {
+        let patch = self.primary.patch(facet);
+        (0..patch.corners()).zip(patch.beyond(xi)).any(|(edge, beyond)| {
+            beyond > PAST
+                && match self.primary.across(facet, edge) {
+                    Some(next) if self.primary.is_of_sibling(next) => true,
+                    Some(next) if self.primary.is_of_side(next) => {
+                        beyond > PAST_SIDE && self.primary.is_sharp(facet, edge, y)
+                    }
+                    _ => beyond > PAST_SIDE,
+                }
+        })
+    }
+
+    /// The next facet of a pair that is past an edge of its facet.
+    fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: &[f64]) -> Next {
+        let xi = [pair.xi, pair.eta];
+        let patch = self.primary.patch(pair.facet);
+        if patch.furthest(xi).1 <= PAST {
+            return Next::Stay;
+        }
+        let from = place(y, self.secondary[pair.node]);
+        let own = patch.nearest(y, from);
+        let mut best = None;
+        for facet in self.primary.ring(pair.facet) {
+            let found = self.primary.patch(facet).nearest(y, from);
+            let least = best.map_or((1.0 - PAST) * own.distance, |(_, least, _)| least);
+            if found.at == Feature::Inside && found.distance < least {
+                best = Some((facet, found.distance, found.xi));
+            }
+        }
+        match best {
+            Some((facet, ..)) if !self.primary.is_of_side(facet) => {
+                if self.faces_nothing(pair.facet, xi, y) { Next::Leave } else { Next::Stay }
+            }
+            Some((facet, _, xi)) if came_from == Some(facet) => Next::Dent(facet, xi),
+            Some((facet, _, xi)) => Next::HandOver(facet, xi),
+            None => {
+                let bridged = patch.furthest(xi).1 <= REACH && !self.faces_nothing(pair.facet, xi, y);
+                if bridged { Next::Stay } else { Next::Leave }
+            }
+        }
+    }
+
+    /// Facet and ξ of possible contact of a node without a pair.
+    fn candidate(
+        &self,
+        near: &[usize],
+        place_of: usize,
+        before: &[f64],
+        now: &[f64],
+    ) -> Option<(usize, [f64; 2])> {
+        let (node, slack) = (self.secondary[place_of], self.slack(place_of));
+        let [start, end] = [before, now].map(|y| place(y, node));
+        let mut closest: Option<(f64, usize, [f64; 2], f64)> = None;
+        let mut first: Option<(f64, usize)> = None;
+        for &facet in near {
+            let patch = self.primary.patch(facet);
+            if let Some(theta) = crossing(patch, before, now, node)
+                && first.is_none_or(|(least, _)| theta < least)
+            {
+                first = Some((theta, facet));
+            }
+            let Some(xi) = patch.closest_point(now, end, REACH) else { continue };
+            let gap = self.gap(facet, xi, end, now);
+            let (of_side, length) = (self.primary.is_of_side(facet), patch.length(now));
+            let beyond = patch.furthest(xi).1.max(0.0);
+            let is_other = !of_side && (gap >= -NOISE * length || beyond > 0.0);
+            if is_other || of_side && self.faces_nothing(facet, xi, now) {
+                continue;
+            }
+            let distance = gap.abs() + beyond * length;
+            let least = closest.map_or(f64::INFINITY, |(least, ..)| least);
+            if distance < if of_side { least } else { (1.0 - PAST) * least } {
+                closest = Some((distance, facet, xi, gap));
+            }
+        }
+        if self.allowed(place_of) > 0.0 {
+            // It may be inside, and is no candidate before it is too deep.
+            let moved = (end - start).norm();
+            if moved < self.allowed(place_of) && closest.is_none_or(|(.., gap)| gap + slack >= 0.0) {
+                return None;
+            }
+        }
+        let faced = |facet: usize| {
+            let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
+            (!self.faces_nothing(facet, xi, now)).then_some(xi)
+        };
+        let entered = first.filter(|&(_, facet)| self.primary.is_of_side(facet));
+        if let Some((facet, xi)) = entered.and_then(|(_, facet)| Some((facet, faced(facet)?))) {
+            return Some((facet, xi));
+        }
+        let (_, facet, xi, _) = closest.filter(|&(_, facet, ..)| self.primary.is_of_side(facet))?;
+        let patch = self.primary.patch(facet);
+        let limit = slack + BEHIND * patch.length(before);
+        let behind = match patch.closest_point(before, start, REACH) {
+            Some(xi) => self.gap(facet, xi, start, before) < -limit,
+            None => entered.is_none() && first.is_some(),
+        };
+        (entered.is_some() || !behind).then_some((facet, xi))
+    }
+
+    fn pairs_twice(pairs: &[Pair]) -> Vec<(usize, usize)> {
+        let twice = pairs.windows(2).filter(|two| two[0].node == two[1].node);
+        twice.flat_map(|two| [two[0], two[1]].map(|pair| (pair.node, pair.facet))).collect()
+    }
+}
+
+/// Instant θ in [0, 1] at which a node's path first meets a facet's from outside, both moving on
+/// straight lines: Newton's method on x(θ) = y(ξ, θ) from the instant at which the gap vanishes if it
+/// changes linearly.
+fn crossing(patch: Patch, before: &[f64], now: &[f64], node: usize) -> Option<f64> {
+    /// θ and ξ beyond their ranges: a node exactly on the surface has crossed it.
+    const TOLERANCE: f64 = 1e-6;
+    let gap_at = |y: &[f64]| {
+        let xi = patch.closest_point(y, place(y, node), 1.0)?;
+        let at = patch.at(y, xi);
+        Some(((place(y, node) - at.position).dot(&at.normal), xi))
+    };
+    let ((old, _), (new, _)) = (gap_at(before)?, gap_at(now)?);
+    let length = patch.length(now);
+    if old < -TOLERANCE * length || new >= 0.0 {
+        return None;
+    }
+    let mut theta = if old > 0.0 { old / (old - new) } else { 0.0 };
+    let mut xi = gap_at(if theta < 0.5 { before } else { now })?.1;
+    let lerp = |n: usize, theta: f64| place(before, n) * (1.0 - theta) + place(now, n) * theta;
+    for _ in 0..20 {
+        let functions = patch.shape.functions(xi);
+        let mut miss = lerp(node, theta);
+        let mut relative = place(now, node) - place(before, node);
+        let mut tangents = [Vector::ZERO; 2];
+        for (k, &n) in patch.nodes.iter().enumerate() {
+            let x = lerp(n, theta);
+            miss += x * -functions.values[k];
+            relative += (place(now, n) - place(before, n)) * -functions.values[k];
+            (0..2).for_each(|i| tangents[i] += x * functions.slopes[i][k]);
+        }
+        // miss + relative dθ − τ_α dξ_α = 0
+        let matrix = Mat([relative.0, (-tangents[0]).0, (-tangents[1]).0]).transposed();
+        let step = matrix.inverse().apply(&-miss);
+        (theta, xi) = (theta + step[0], [xi[0] + step[1], xi[1] + step[2]]);
+        let size = step.0.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        if !size.is_finite() || theta.abs() > 3.0 || patch.furthest(xi).1 > WANDER {
+            return None;
+        }
+        if size <= 1e-12 {
+            let inwards = relative.dot(&cross(tangents[0], tangents[1])) < 0.0;
+            let valid =
+                (-TOLERANCE..=1.0 + TOLERANCE).contains(&theta) && patch.furthest(xi).1 <= TOLERANCE;
+            return (inwards && valid).then_some(theta);
+        }
+    }
+    None
+}
+
+impl Kinematics for NodeToPatch {
+    fn secondary(&self) -> &[usize] {
+        &self.secondary
+    }
+
+    fn allowed(&self, node: usize) -> f64 {
+        self.allowed.get(node).copied().unwrap_or(0.0)
+    }
+
+    fn keep(&mut self, depths: &[f64]) {
+        self.kept = depths.to_vec();
+    }
+
+    fn kept(&self, node: usize) -> f64 {
+        self.kept.get(node).copied().unwrap_or(0.0)
+    }
+
+    fn facet_nodes(&self, pair: &Pair) -> &[usize] {
+        self.primary.facet_nodes(pair.facet)
+    }
+
+    fn is_on_facet(&self, pair: &Pair) -> bool {
+        self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1 <= 0.0
+    }
+
+    fn facets(&self, _: usize) -> usize {
+        self.primary.facets()
+    }
+
+    fn stencil(&self) -> usize {
+        1 + self.primary.shape().nodes()
+    }
+
+    fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
+        let from = place(y, self.secondary[node]);
+        let gap = |facet: usize| {
+            let xi = self.primary.patch(facet).closest_point(y, from, PAST)?;
+            Some(self.gap(facet, xi, from, y))
+        };
+        let nearest = (0..self.primary.facets()).filter_map(gap);
+        nearest.min_by(|a, b| a.abs().total_cmp(&b.abs())).map(|gap| gap + self.kept(node))
+    }
+
+    fn search(
+        &self,
+        before: &[f64],
+        now: &[f64],
+        pairing: &mut Pairing,
+        events: &mut Vec<PairEvent>,
+    ) -> bool {
+        let Pairing { pairs, margin, left, fresh } = pairing;
+        let mut changed = false;
+        let starts = std::mem::replace(fresh, false);
+        let twice = Self::pairs_twice(pairs);
+        let mut dents = Vec::new();
+        pairs.retain_mut(|pair| {
+            let node = self.secondary[pair.node];
+            for _ in 0..=self.primary.facets() {
+                let came_from = left.get(&pair.node).copied();
+                match self.next_facet(pair, came_from, now) {
+                    Next::Stay => return true,
+                    Next::HandOver(facet, _) | Next::Dent(facet, _)
+                        if twice.contains(&(pair.node, facet)) =>
+                    {
+                        return true;
+                    }
+                    Next::Dent(facet, [xi, eta]) => {
+                        changed |= pair.active;
+                        dents.push(Pair { eta, ..Pair::open(pair.node, facet, xi) });
+                        return true;
+                    }
+                    Next::HandOver(facet, [xi, eta]) => {
+                        if pair.active {
+                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
+                        }
+                        let gap = self.gap(facet, [xi, eta], place(now, node), now);
+                        changed |= pair.active || gap + self.slack(pair.node) < 0.0;
+                        left.insert(pair.node, pair.facet);
+                        (pair.facet, pair.xi, pair.eta) = (facet, xi, eta);
+                    }
+                    Next::Leave if pair.active && !starts => return true,
+                    Next::Leave => {
+                        if pair.active {
+                            events.push(PairEvent::SlidOff { node, facet: pair.facet });
+                            changed = true;
+                        }
+                        left.remove(&pair.node);
+                        return false;
+                    }
+                }
+            }
+            true
+        });
+        if !dents.is_empty() {
+            pairs.append(&mut dents);
+            pairs.sort_by_key(|pair| pair.node);
+        }
+        let mut tree = self.tree.lock().unwrap_or_else(PoisonError::into_inner);
+        let swept = |facet: usize| {
+            let [old, new] = [before, now].map(|y| self.primary.bounds(&self.hull, facet, y));
+            let bounds = old.union(&new);
+            bounds.grown(*margin * bounds.size())
+        };
+        if tree.is_empty() {
+            *tree = Tree::new(self.primary.all(), swept);
+        } else {
+            tree.update(swept);
+        }
+        let (known, mut next, mut near) = (pairs.len(), 0, Vec::new());
+        for (k, &node) in self.secondary.iter().enumerate() {
+            let first = next;
+            while next < known && pairs[next].node == k {
+                next += 1;
+            }
+            if next > first {
+                continue;
+            }
+            let path: Bounds = [place(before, node).0, place(now, node).0].iter().collect();
+            tree.find_into(&path.grown(NOISE * path.size()), &mut near);
+            if near.is_empty() {
+                continue;
+            }
+            let Some((facet, [xi, eta])) = self.candidate(&near, k, before, now) else { continue };
+            let gap = self.gap(facet, [xi, eta], place(now, node), now) + self.slack(k);
+            if self.allowed(k) > 0.0 && gap >= 0.0 {
+                continue;
+            }
+            changed |= gap < 0.0;
+            pairs.push(Pair { eta, ..Pair::open(k, facet, xi) });
+        }
+        pairs.sort_by_key(|pair| pair.node);
+        changed
+    }
+
+    fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
+        let Pairing { pairs, left, .. } = pairing;
+        let twice = Self::pairs_twice(pairs);
+        let mut changed = false;
+        for pair in pairs.iter_mut().filter(|pair| pair.active) {
+            let came_from = left.get(&pair.node).copied();
+            let beyond = self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1;
+            let limit = if came_from.is_some() { HAND_BACK } else { HAND_OVER };
+            if beyond <= limit || twice.contains(&(pair.node, pair.facet)) {
+                continue;
+            }
+            let (from, mut previous) = (pair.facet, None);
+            for _ in 0..self.primary.facets() {
+                let Next::HandOver(facet, [xi, eta]) = self.next_facet(pair, previous, now) else { break };
+                previous = Some(pair.facet);
+                (pair.facet, pair.xi, pair.eta) = (facet, xi, eta);
+            }
+            if pair.facet != from {
+                left.extend(previous.map(|facet| (pair.node, facet)));
+                events.push(PairEvent::HandOver { node: self.secondary[pair.node], from, to: pair.facet });
+                changed = true;
+            }
+        }
+        changed
+    }
+
+    fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        let node = self.secondary[pair.node];
+        let lost = ContactError::Lost { node, facet: pair.facet, xi: pair.xi };
+        let xi = self.closest(pair, y).ok_or(lost)?;
+        [pair.xi, pair.eta] = xi;
+        if !pair.active && self.faces_nothing(pair.facet, xi, y) {
+            rows.push_open();
+            return Ok(());
+        }
+        let patch = self.primary.patch(pair.facet);
+        let gap = PatchGap::new(patch, y, place(y, node), xi);
+        let a = gap.regularity();
+        if a <= 0.0 || !a.is_finite() {
+            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a });
+        }
+        let nodes = std::iter::once(&node).chain(patch.nodes);
+        let slopes = gap.gradient(patch.nodes.len());
+        rows.push(gap.distance + self.slack(pair.node), nodes.zip(slopes).map(|(&n, slope)| (n, slope.0)));
+        Ok(())
+    }
+
+    fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
+        let (patch, from) = (self.primary.patch(pair.facet), place(y, self.secondary[pair.node]));
+        PatchGap::new(patch, y, from, [pair.xi, pair.eta]).curvature_into(patch.nodes.len(), curvature);
+    }
+
+    fn slip(&self, pair: &Pair, _: &[f64], _: &mut Rows) -> Result<(), ContactError> {
+        Err(ContactError::Lost { node: self.secondary[pair.node], facet: pair.facet, xi: pair.xi })
+    }
+
+    fn slip_derivative_into(&self, _: &Pair, _: &[f64], matrix: &mut [f64]) {
+        matrix.fill(0.0);
+    }
+}

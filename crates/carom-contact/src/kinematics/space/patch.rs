@@ -1,0 +1,315 @@
+//! A curved facet in space and its point closest to a given one: ξ with d·τ_α = 0, d = x − y(ξ),
+//! τ_α = ∂y/∂ξ_α, a minimum of the distance.
+//!
+//! The derivative of −d·τ_α by ξ_β is A_αβ = τ_α·τ_β − d·∂²y/∂ξ_α∂ξ_β; A > 0 marks a minimum.
+
+use carom_algebra::{Mat, Vector};
+use carom_solid::FacetShape;
+
+/// Positions of nodes in space, flat.
+pub(crate) fn place(y: &[f64], node: usize) -> Vector<3> {
+    Vector([y[3 * node], y[3 * node + 1], y[3 * node + 2]])
+}
+
+pub(crate) fn cross(a: Vector<3>, b: Vector<3>) -> Vector<3> {
+    Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+}
+
+/// A facet: its shape and its nodes, counter-clockwise seen from outside.
+#[derive(Clone, Copy)]
+pub(crate) struct Patch<'a> {
+    pub(crate) shape: FacetShape,
+    pub(crate) nodes: &'a [usize],
+}
+
+/// Position of a facet at ξ with its derivatives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PatchPoint {
+    pub(crate) position: Vector<3>,
+    pub(crate) tangents: [Vector<3>; 2],
+    /// ∂²y by ξξ, ξη and ηη.
+    pub(crate) second: [Vector<3>; 3],
+    /// Outward, of length one.
+    pub(crate) normal: Vector<3>,
+}
+
+/// The point of a closed facet nearest to a given one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Nearest {
+    pub(crate) xi: [f64; 2],
+    pub(crate) at: Feature,
+    pub(crate) distance: f64,
+}
+
+/// Where a point of a closed facet lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Feature {
+    Inside,
+    /// On the edge from this corner to the next one.
+    Edge(usize),
+    Corner(usize),
+}
+
+/// Steps of Newton's method; it needs fewer than ten from any good guess.
+const STEPS: usize = 40;
+/// Points between two corners from which the search of a closest point begins.
+const SAMPLES: usize = 4;
+
+impl PatchPoint {
+    /// τ_α·τ_β.
+    pub(crate) fn metric(&self) -> Mat<2> {
+        let [t, s] = &self.tangents;
+        Mat([[t.dot(t), t.dot(s)], [t.dot(s), s.dot(s)]])
+    }
+
+    /// v·∂²y/∂ξ_α∂ξ_β.
+    pub(crate) fn bend(&self, v: Vector<3>) -> Mat<2> {
+        let [a, b, c] = self.second.map(|second| second.dot(&v));
+        Mat([[a, b], [b, c]])
+    }
+}
+
+/// Whether a symmetric matrix is positive definite.
+pub(crate) fn is_positive(a: &Mat<2>) -> bool {
+    a.0[0][0] > 0.0 && a.det() > 0.0
+}
+
+impl Patch<'_> {
+    /// Number of corners.
+    pub(crate) fn corners(&self) -> usize {
+        self.shape.corners()
+    }
+
+    /// ξ of a corner.
+    pub(crate) fn corner(&self, corner: usize) -> [f64; 2] {
+        match (self.corners(), corner) {
+            (3, 0) => [0.0, 0.0],
+            (3, 1) => [1.0, 0.0],
+            (3, _) => [0.0, 1.0],
+            (_, 0) => [-1.0, -1.0],
+            (_, 1) => [1.0, -1.0],
+            (_, 2) => [1.0, 1.0],
+            _ => [-1.0, 1.0],
+        }
+    }
+
+    /// ξ between a corner, s = 0, and the next one, s = 1.
+    pub(crate) fn along(&self, edge: usize, s: f64) -> [f64; 2] {
+        let [a, b] = [edge, (edge + 1) % self.corners()].map(|corner| self.corner(corner));
+        std::array::from_fn(|i| a[i] + s * (b[i] - a[i]))
+    }
+
+    /// How far ξ lies beyond each edge, over the height of the facet; negative inside.
+    pub(crate) fn beyond(&self, [x, y]: [f64; 2]) -> [f64; 4] {
+        if self.corners() == 3 {
+            [-y, x + y - 1.0, -x, f64::NEG_INFINITY]
+        } else {
+            [-1.0 - y, x - 1.0, y - 1.0, -1.0 - x].map(|excess| 0.5 * excess)
+        }
+    }
+
+    /// The edge beyond which ξ lies furthest, and by how much.
+    pub(crate) fn furthest(&self, xi: [f64; 2]) -> (usize, f64) {
+        let beyond = self.beyond(xi);
+        (1..4).fold((0, beyond[0]), |most, e| if beyond[e] > most.1 { (e, beyond[e]) } else { most })
+    }
+
+    /// The facet at ξ.
+    pub(crate) fn at(&self, y: &[f64], xi: [f64; 2]) -> PatchPoint {
+        let functions = self.shape.functions(xi);
+        let second = self.shape.second(xi);
+        let mut at = PatchPoint {
+            position: Vector::ZERO,
+            tangents: [Vector::ZERO; 2],
+            second: [Vector::ZERO; 3],
+            normal: Vector::ZERO,
+        };
+        for (k, &node) in self.nodes.iter().enumerate() {
+            let x = place(y, node);
+            at.position += x * functions.values[k];
+            (0..2).for_each(|i| at.tangents[i] += x * functions.slopes[i][k]);
+            (0..3).for_each(|i| at.second[i] += x * second[i][k]);
+        }
+        let normal = cross(at.tangents[0], at.tangents[1]);
+        at.normal = normal * normal.norm().recip();
+        at
+    }
+
+    /// Distance between its first corners.
+    pub(crate) fn length(&self, y: &[f64]) -> f64 {
+        (place(y, self.nodes[1]) - place(y, self.nodes[0])).norm()
+    }
+
+    /// Newton's method from a good guess, on the facet and its extension by `reach` of its height;
+    /// `None` if it does not converge to a minimum there.
+    pub(crate) fn closest_from(
+        &self,
+        y: &[f64],
+        from: Vector<3>,
+        start: [f64; 2],
+        reach: f64,
+    ) -> Option<[f64; 2]> {
+        let mut xi = start;
+        for _ in 0..STEPS {
+            let at = self.at(y, xi);
+            let d = from - at.position;
+            let a = at.metric() - at.bend(d);
+            if !is_positive(&a) {
+                return None;
+            }
+            let slope = Vector(at.tangents.map(|tangent| d.dot(&tangent)));
+            let mut step = a.inverse().apply(&slope);
+            let length = step[0].abs().max(step[1].abs());
+            if !length.is_finite() {
+                return None;
+            }
+            if length > 0.5 {
+                step = step * (0.5 / length);
+            }
+            xi = [xi[0] + step[0], xi[1] + step[1]];
+            if self.furthest(xi).1 > reach {
+                return None;
+            }
+            // Below this, round-off, a step has no effect.
+            if length <= 4e-15 {
+                return Some(xi);
+            }
+        }
+        None
+    }
+
+    /// The closest stationary point on the facet and its extension by `reach`; `None` if the
+    /// distance decreases towards an edge.
+    pub(crate) fn closest_point(&self, y: &[f64], from: Vector<3>, reach: f64) -> Option<[f64; 2]> {
+        self.closest_from(y, from, self.nearest_sample(y, from), reach)
+    }
+
+    fn nearest_sample(&self, y: &[f64], from: Vector<3>) -> [f64; 2] {
+        let mut best = ([0.0; 2], f64::INFINITY);
+        for i in 0..=SAMPLES {
+            let count = if self.corners() == 3 { SAMPLES - i } else { SAMPLES };
+            for j in 0..=count {
+                let [s, t] = [i, j].map(|k| k as f64 / SAMPLES as f64);
+                let xi = if self.corners() == 3 { [s, t] } else { [2.0 * s - 1.0, 2.0 * t - 1.0] };
+                let functions = self.shape.functions(xi);
+                let mut d = from;
+                self.nodes.iter().zip(functions.values).for_each(|(&n, value)| d += place(y, n) * -value);
+                let square = d.dot(&d);
+                if square < best.1 {
+                    best = (xi, square);
+                }
+            }
+        }
+        best.0
+    }
+
+    /// The nearest point of the facet with its edges and corners.
+    pub(crate) fn nearest(&self, y: &[f64], from: Vector<3>) -> Nearest {
+        let distance = |xi: [f64; 2]| (from - self.at(y, xi).position).norm();
+        let inside = self.closest_point(y, from, 0.0).map(|xi| Nearest {
+            xi,
+            at: Feature::Inside,
+            distance: distance(xi),
+        });
+        let mut nearest = inside;
+        for edge in 0..self.corners() {
+            let s = self.nearest_on_edge(y, from, edge);
+            let xi = self.along(edge, s);
+            let found = distance(xi);
+            let at = match s {
+                0.0 => Feature::Corner(edge),
+                1.0 => Feature::Corner((edge + 1) % self.corners()),
+                _ => Feature::Edge(edge),
+            };
+            if nearest.is_none_or(|nearest| found < nearest.distance) {
+                nearest = Some(Nearest { xi, at, distance: found });
+            }
+        }
+        nearest.unwrap_or(Nearest { xi: self.corner(0), at: Feature::Corner(0), distance: f64::INFINITY })
+    }
+
+    /// s of the nearest point of an edge: the best sample, refined between its neighbours by
+    /// Newton's method guarded by bisection.
+    fn nearest_on_edge(&self, y: &[f64], from: Vector<3>, edge: usize) -> f64 {
+        const PIECES: usize = 4;
+        let direction: [f64; 2] = {
+            let [a, b] = [0.0, 1.0].map(|s| self.along(edge, s));
+            [b[0] - a[0], b[1] - a[1]]
+        };
+        let slope = |s: f64| {
+            let at = self.at(y, self.along(edge, s));
+            let d = from - at.position;
+            let first = at.tangents[0] * direction[0] + at.tangents[1] * direction[1];
+            let second = at.second[0] * (direction[0] * direction[0])
+                + at.second[1] * (2.0 * direction[0] * direction[1])
+                + at.second[2] * (direction[1] * direction[1]);
+            (-d.dot(&first), first.dot(&first) - d.dot(&second), d.dot(&d))
+        };
+        let at = |k: usize| k as f64 / PIECES as f64;
+        let best = (0..=PIECES).map(|k| (k, slope(at(k)).2)).fold((0, f64::INFINITY), |best, sample| {
+            if sample.1 < best.1 { sample } else { best }
+        });
+        let (mut low, mut high) = (at(best.0.saturating_sub(1)), at((best.0 + 1).min(PIECES)));
+        if slope(low).0 >= 0.0 {
+            return low;
+        }
+        if slope(high).0 <= 0.0 {
+            return high;
+        }
+        let mut s = at(best.0);
+        for _ in 0..60 {
+            let (first, second, _) = slope(s);
+            if first <= 0.0 {
+                low = s;
+            } else {
+                high = s;
+            }
+            let newton = s - first / second;
+            let next =
+                if second > 0.0 && newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            if (next - s).abs() <= 1e-15 {
+                return next;
+            }
+            s = next;
+        }
+        s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nodes of a T6 that are displaced from its plane.
+    fn curved() -> Vec<f64> {
+        [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.1],
+            [0.0, 1.0, -0.1],
+            [0.5, 0.0, 0.2],
+            [0.5, 0.5, 0.15],
+            [0.0, 0.5, 0.05],
+        ]
+        .concat()
+    }
+
+    #[test]
+    fn the_nearest_point_is_that_of_a_dense_scan() {
+        let y = curved();
+        let patch = Patch { shape: FacetShape::T6, nodes: &[0, 1, 2, 3, 4, 5] };
+        for k in 0..60 {
+            let t = f64::from(k);
+            let from = Vector([1.6 * (t * 0.61).sin().abs() - 0.3, 1.4 * (t * 0.37).cos().abs() - 0.2, (t * 0.23).sin()]);
+            let mut least = f64::INFINITY;
+            for i in 0..=300 {
+                for j in 0..=300 - i {
+                    let xi = [f64::from(i) / 300.0, f64::from(j) / 300.0];
+                    least = least.min((from - patch.at(&y, xi).position).norm());
+                }
+            }
+            let found = patch.nearest(&y, from);
+            assert!(found.distance <= least + 1e-14 && found.distance > least - 1e-4, "{found:?} {least}");
+            assert!(patch.furthest(found.xi).1 <= 1e-14);
+        }
+    }
+}
