@@ -31,7 +31,6 @@ use super::node_to_facet::{Detection, NodeToFacet};
 use super::passed::Passed;
 use super::surface::Surface;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
-use crate::places::Places;
 use crate::rows::Rows;
 
 /// Distance between a corner and a secondary node, relative to the corner's facet, below which the
@@ -40,34 +39,35 @@ const NEAR_NODE: f64 = 0.5 * PAST_SIDE;
 /// Cosine of the angle up to which two facets are parallel: 10°.
 const PARALLEL: f64 = 0.985;
 
+/// Secondary nodes against the facets of a primary side, one of the two directions.
+pub trait OneWay: Kinematics {
+    /// Facets of the primary side of which a node is a corner, with its ξ there.
+    fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])>;
+
+    /// Global numbers of the nodes of a primary facet.
+    fn nodes_of(&self, facet: usize) -> &[usize];
+
+    /// Outward unit normal of a primary facet at ξ, padded with zeros to space.
+    fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> [f64; 3];
+
+    /// Distance between the first corners of a primary facet.
+    fn length(&self, facet: usize, y: &[f64]) -> f64;
+
+    /// Distance between two nodes.
+    fn distance(&self, a: usize, b: usize, y: &[f64]) -> f64;
+}
+
 /// Contact in both directions.
 #[derive(Debug)]
-pub struct BothSides {
-    forward: NodeToFacet,
-    reverse: NodeToFacet,
+pub struct BothSides<K> {
+    forward: K,
+    reverse: K,
     /// Facets of the primary side at each of its nodes that is a corner, with the corner's ξ.
-    corners: Vec<Vec<(usize, f64)>>,
+    corners: Vec<Vec<(usize, [f64; 2])>>,
     all: Vec<usize>,
 }
 
-impl BothSides {
-    /// `forward`: secondary nodes against the primary side; `reverse`: nodes of the primary against
-    /// the secondary side, corners without an allowed depth.
-    pub fn new(forward: NodeToFacet, reverse: NodeToFacet) -> Self {
-        let all = [forward.secondary(), reverse.secondary()].concat();
-        let primary = forward.primary();
-        let end = |facet: usize, node: usize| {
-            let nodes = primary.facet(facet).nodes;
-            (nodes[0] == node).then_some((facet, -1.0)).or((nodes[1] == node).then_some((facet, 1.0)))
-        };
-        let corner = |(k, &node): (usize, &usize)| match reverse.allowed(k) {
-            0.0 => (0..primary.facets()).filter_map(|facet| end(facet, node)).collect(),
-            _ => Vec::new(),
-        };
-        let corners = reverse.secondary().iter().enumerate().map(corner).collect();
-        Self { forward, reverse, corners, all }
-    }
-
+impl BothSides<NodeToFacet> {
     /// A side against itself: its nodes, and the same with the depth that each may have where it comes
     /// earlier, none at corners; `piece`: the connected piece of its body to which each node belongs, from
     /// `first_node` on; `reference`: the reference positions, flat over all nodes.
@@ -86,8 +86,23 @@ impl BothSides {
         Self::new(of(nodes, Side::Later), of(earlier, Side::Earlier).with_allowed(allowed))
     }
 
+}
+
+impl<K: OneWay> BothSides<K> {
+    /// `forward`: secondary nodes against the primary side; `reverse`: nodes of the primary against
+    /// the secondary side, corners without an allowed depth.
+    pub fn new(forward: K, reverse: K) -> Self {
+        let all = [forward.secondary(), reverse.secondary()].concat();
+        let corner = |(k, &node): (usize, &usize)| match reverse.allowed(k) {
+            0.0 => forward.facets_at(node),
+            _ => Vec::new(),
+        };
+        let corners = reverse.secondary().iter().enumerate().map(corner).collect();
+        Self { forward, reverse, corners, all }
+    }
+
     /// The direction to which a node belongs, and its number there.
-    fn direction(&self, node: usize) -> (&NodeToFacet, usize) {
+    fn direction(&self, node: usize) -> (&K, usize) {
         let count = self.forward.secondary().len();
         if node < count { (&self.forward, node) } else { (&self.reverse, node - count) }
     }
@@ -95,21 +110,20 @@ impl BothSides {
     /// Whether a corner meets a node of the secondary facet that it faces, and has a facet parallel to
     /// that.
     fn is_left_to_node(&self, corner: &Pair, y: &[f64]) -> bool {
-        let (primary, secondary) = (self.forward.primary(), self.reverse.primary());
-        let y = Places::new(y, primary.shape().dimension());
-        let at = y.at(self.reverse.secondary()[corner.node]);
-        let faced = secondary.facet(corner.facet);
-        let normal = faced.at(y, corner.xi).normal;
+        let node = self.reverse.secondary()[corner.node];
+        let normal = self.reverse.normal(corner.facet, [corner.xi, corner.eta], y);
+        let faced = self.reverse.nodes_of(corner.facet);
         self.corners[corner.node].iter().any(|&(facet, xi)| {
             // Where an overlap is kept, they meet at that distance.
-            let near = NEAR_NODE * primary.length(facet, y) + self.reverse.kept(corner.node);
-            primary.facet(facet).at(y, xi).normal.dot(&normal) < -PARALLEL
-                && faced.nodes.iter().any(|&other| (y.at(other) - at).norm() < near)
+            let near = NEAR_NODE * self.forward.length(facet, y) + self.reverse.kept(corner.node);
+            let own = self.forward.normal(facet, xi, y);
+            own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2] < -PARALLEL
+                && faced.iter().any(|&other| self.forward.distance(other, node, y) < near)
         })
     }
 
     /// Applies `of` to the pairs of either direction in its own numbering.
-    fn each(&self, pairing: &mut Pairing, mut of: impl FnMut(&NodeToFacet, &mut Pairing) -> bool) -> bool {
+    fn each(&self, pairing: &mut Pairing, mut of: impl FnMut(&K, &mut Pairing) -> bool) -> bool {
         let count = self.forward.secondary().len();
         let mut reverse = pairing.split_off(count);
         let changed = of(&self.forward, pairing) | of(&self.reverse, &mut reverse);
@@ -118,7 +132,7 @@ impl BothSides {
     }
 }
 
-impl Kinematics for BothSides {
+impl<K: OneWay> Kinematics for BothSides<K> {
     fn secondary(&self) -> &[usize] {
         &self.all
     }
@@ -140,7 +154,12 @@ impl Kinematics for BothSides {
     }
 
     fn facet_nodes(&self, pair: &Pair) -> &[usize] {
-        self.direction(pair.node).0.facet_nodes(pair)
+        self.direction(pair.node).0.nodes_of(pair.facet)
+    }
+
+    fn is_on_facet(&self, pair: &Pair) -> bool {
+        let (direction, node) = self.direction(pair.node);
+        direction.is_on_facet(&Pair { node, ..*pair })
     }
 
     fn facets(&self, node: usize) -> usize {
@@ -184,7 +203,7 @@ impl Kinematics for BothSides {
             return Ok(());
         }
         direction.measure(&mut local, y, rows)?;
-        pair.xi = local.xi;
+        (pair.xi, pair.eta) = (local.xi, local.eta);
         if is_reverse {
             rows.reverse_last();
         }

@@ -18,7 +18,7 @@ mod surface;
 mod swept;
 mod trajectory;
 
-pub use both_sides::BothSides;
+pub use both_sides::{BothSides, OneWay};
 pub use folds::Side;
 pub(crate) use folds::{Folds, Turns};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};

@@ -13,13 +13,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use carom_solid::FacetShape;
 
-use super::facing::{Next, PAST, REACH};
+use super::facing::{Next, PAST, PAST_SIDE, REACH};
 use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
 use super::passed::{Passed, Paths};
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
-use super::{Kinematics, watch_every_node};
+use super::{Kinematics, OneWay, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
@@ -122,11 +122,6 @@ impl NodeToFacet {
         self.folds.is_some() && xi.abs() > 1.0 + PAST && next().is_some_and(|next| self.excludes(node, next))
     }
 
-    /// The primary side.
-    pub(super) fn primary(&self) -> &Surface {
-        &self.primary
-    }
-
     /// Depth of a node at which its gap is zero.
     pub(super) fn slack(&self, place: usize) -> f64 {
         self.allowed(place) + self.kept(place)
@@ -157,6 +152,35 @@ impl NodeToFacet {
             ContactPoint::Closest => Gap::closest(facet, y, from, pair.xi),
             ContactPoint::Frozen => Gap::fixed(facet, y, from, pair.xi),
         }
+    }
+}
+
+impl OneWay for NodeToFacet {
+    fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
+        let end = |facet: usize| {
+            let nodes = self.primary.facet(facet).nodes;
+            let xi = if nodes[0] == node { Some(-1.0) } else { (nodes[1] == node).then_some(1.0) };
+            xi.map(|xi| (facet, [xi, 0.0]))
+        };
+        (0..self.primary.facets()).filter_map(end).collect()
+    }
+
+    fn nodes_of(&self, facet: usize) -> &[usize] {
+        self.primary.facet(facet).nodes
+    }
+
+    fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> [f64; 3] {
+        let [x, y] = self.primary.facet(facet).at(self.places(y), xi[0]).normal.0;
+        [x, y, 0.0]
+    }
+
+    fn length(&self, facet: usize, y: &[f64]) -> f64 {
+        self.primary.length(facet, self.places(y))
+    }
+
+    fn distance(&self, a: usize, b: usize, y: &[f64]) -> f64 {
+        let y = self.places(y);
+        (y.at(a) - y.at(b)).norm()
     }
 }
 
@@ -241,7 +265,17 @@ impl Kinematics for NodeToFacet {
                     Next::HandOver(facet, _) | Next::Dent(facet, _)
                         if twice.contains(&(pair.node, facet)) =>
                     {
-                        return true;
+                        // In the joint the node has both pairs. Past it, that of the other facet is
+                        // responsible: an extrapolated facet is not the surface.
+                        if pair.xi.abs() <= 1.0 + PAST_SIDE || pair.active && !starts {
+                            return true;
+                        }
+                        if pair.active {
+                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
+                            changed = true;
+                        }
+                        left.remove(&pair.node);
+                        return false;
                     }
                     Next::Dent(facet, xi) => {
                         changed |= pair.active;

@@ -7,4 +7,5 @@ mod discrete_gradient;
 mod kinks;
 mod obstacles;
 mod slip;
+mod space;
 mod update_facets;

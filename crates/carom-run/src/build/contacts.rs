@@ -74,9 +74,14 @@ pub(super) fn contacts(
                     primary_part = Some(primary.part);
                     surface.extend(&primary.nodes);
                     let (before, after) = siblings(case, parts, k, primary.part, Which::Primary);
-                    let side = boundary_of(&primary, &[before, after].concat(), parts);
+                    let side = boundary_of(&primary, &[&before[..], &after].concat(), parts);
+                    let (of_earlier, of_later) = siblings(case, parts, k, secondary.part, Which::Secondary);
+                    let opposite = boundary_of(&secondary, &[of_earlier, of_later].concat(), parts);
+                    let sharp = side.sharp_nodes(&reference);
+                    let (others, allowed) = others(&primary, &before, &secondary, &sharp, &reference, 3);
                     primary_facets = Some((primary.shape, primary.facets));
-                    Box::new(NodeToPatch::new(nodes, side))
+                    let nodes = NodeToPatch::new(nodes, side);
+                    Box::new(BothSides::new(nodes, NodeToPatch::new(others, opposite).with_allowed(allowed)))
                 }
                 Ok(primary) => {
                     primary_part = Some(primary.part);
@@ -94,7 +99,8 @@ pub(super) fn contacts(
                     let side = beside(&primary, &[&before[..], &after].concat());
                     let (of_earlier, of_later) = siblings(case, parts, k, secondary.part, Which::Secondary);
                     let opposite = beside(&secondary, &[of_earlier, of_later].concat());
-                    let (others, allowed) = others(&primary, &before, &secondary, &side, &reference);
+                    let corners = side.corners(&reference);
+                    let (others, allowed) = others(&primary, &before, &secondary, &corners, &reference, 2);
                     primary_facets = Some((primary.shape, primary.facets));
                     let nodes = NodeToFacet::new(nodes, side, detection).with_point(point);
                     if case.dimension == 1 || detection == Detection::Trajectory {
@@ -234,9 +240,9 @@ fn friction<'a>(
 }
 
 /// Contact of a side with itself.
-fn itself(side: &Side, parts: &[BodyInstance], reference: &[f64]) -> BothSides {
+fn itself(side: &Side, parts: &[BodyInstance], reference: &[f64]) -> BothSides<NodeToFacet> {
     let surface = surface_of(side, &[], parts);
-    let earlier = others(side, &[], side, &surface, reference);
+    let earlier = others(side, &[], side, &surface.corners(reference), reference, 2);
     let part = &parts[side.part];
     BothSides::of_itself(
         &surface,
@@ -248,17 +254,17 @@ fn itself(side: &Side, parts: &[BodyInstance], reference: &[f64]) -> BothSides {
     )
 }
 
-/// The nodes of the primary side, each with the depth to which it may enter edges of the secondary
-/// side: none at corners.
+/// The nodes of the primary side in `d` dimensions, each with the depth to which it may enter facets
+/// of the secondary side: none at corners.
 fn others(
     primary: &Side,
     earlier: &[Side],
     secondary: &Side,
-    surface: &Surface,
+    corners: &[usize],
     reference: &[f64],
+    d: usize,
 ) -> (Vec<usize>, Vec<f64>) {
-    let shortest = lengths(&secondary.facets, reference, 2).map(|(_, l)| l).fold(f64::INFINITY, f64::min);
-    let corners = surface.corners(reference);
+    let shortest = lengths(&secondary.facets, reference, d).map(|(_, l)| l).fold(f64::INFINITY, f64::min);
     let mut nodes = without(&primary.nodes, earlier);
     nodes.sort_unstable();
     let allowed = nodes.iter().map(|node| if corners.contains(node) { 0.0 } else { ALLOWED * shortest });

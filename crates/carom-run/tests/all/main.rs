@@ -24,6 +24,7 @@ mod restart;
 mod reversal;
 mod self_contact;
 mod space;
+mod space_contact;
 mod statics;
 mod substeps;
 mod tangent;

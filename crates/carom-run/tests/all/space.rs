@@ -26,7 +26,7 @@ const SLAB: [&str; 7] = [
 ];
 
 /// Largest distance of a node of the slab from that of the plane at the same reference place.
-fn apart(plane: &Simulation, slab: &Simulation) -> f64 {
+pub(crate) fn apart(plane: &Simulation, slab: &Simulation) -> f64 {
     let (flat, solid) = (plane.model(), slab.model());
     let (mut worst, mut seen) = (0.0_f64, 0);
     for (k, x) in solid.reference.as_chunks::<3>().0.iter().enumerate() {

@@ -93,6 +93,17 @@ impl Boundary {
         self.patch(facet).nodes
     }
 
+    /// Facets of the side of which a node is a corner, with its ξ there.
+    pub(crate) fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
+        let around = self.around.get(&node).into_iter().flatten().filter(|&&facet| self.is_of_side(facet));
+        let at = |&facet: &usize| {
+            let patch = self.patch(facet);
+            let corner = patch.nodes[..patch.corners()].iter().position(|&n| n == node)?;
+            Some((facet, patch.corner(corner)))
+        };
+        around.filter_map(at).collect()
+    }
+
     /// The facet across an edge.
     pub(crate) fn across(&self, facet: usize, edge: usize) -> Option<usize> {
         self.neighbours[facet][edge].map(|(neighbour, _)| neighbour)

@@ -22,7 +22,7 @@ use carom_solid::{Bounds, Hull, Tree};
 use super::boundary::Boundary;
 use super::gap::PatchGap;
 use super::patch::{Feature, Patch, cross, place};
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Kinematics, OneWay};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -255,6 +255,28 @@ fn crossing(patch: Patch, before: &[f64], now: &[f64], node: usize) -> Option<f6
     None
 }
 
+impl OneWay for NodeToPatch {
+    fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
+        self.primary.facets_at(node)
+    }
+
+    fn nodes_of(&self, facet: usize) -> &[usize] {
+        self.primary.facet_nodes(facet)
+    }
+
+    fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> [f64; 3] {
+        self.primary.patch(facet).at(y, xi).normal.0
+    }
+
+    fn length(&self, facet: usize, y: &[f64]) -> f64 {
+        self.primary.patch(facet).length(y)
+    }
+
+    fn distance(&self, a: usize, b: usize, y: &[f64]) -> f64 {
+        (place(y, a) - place(y, b)).norm()
+    }
+}
+
 impl Kinematics for NodeToPatch {
     fn secondary(&self) -> &[usize] {
         &self.secondary
@@ -319,7 +341,18 @@ impl Kinematics for NodeToPatch {
                     Next::HandOver(facet, _) | Next::Dent(facet, _)
                         if twice.contains(&(pair.node, facet)) =>
                     {
-                        return true;
+                        let beyond = self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1;
+                        // In the joint the node has both pairs. Past it, that of the other facet is
+                        // responsible: an extrapolated facet is not the surface.
+                        if beyond <= PAST_SIDE || pair.active && !starts {
+                            return true;
+                        }
+                        if pair.active {
+                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
+                            changed = true;
+                        }
+                        left.remove(&pair.node);
+                        return false;
                     }
                     Next::Dent(facet, [xi, eta]) => {
                         changed |= pair.active;

@@ -1,0 +1,181 @@
+//! Contact in space: derivatives of the gap against differences, balance of force and moment,
+//! objectivity, the sign of the distance to a closed surface, hand-over across edges, dents.
+
+use carom_algebra::{Vector, jacobian_error};
+use carom_contact::{Boundary, ClosedSurface, Kinematics, NodeToPatch, Pair, Pairing, Rows};
+use carom_solid::FacetShape;
+
+const SHAPES: [FacetShape; 5] =
+    [FacetShape::T3, FacetShape::T6, FacetShape::T10, FacetShape::Q4, FacetShape::Q9];
+
+/// Places of the nodes of a facet in its plane: corners, then edge by edge, then the interior.
+fn lattice(shape: FacetShape) -> Vec<[f64; 2]> {
+    let k = shape.degree();
+    let corners: &[[f64; 2]] = match shape.corners() {
+        3 => &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+        _ => &[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+    };
+    let mut places = corners.to_vec();
+    for (e, a) in corners.iter().enumerate() {
+        let b = corners[(e + 1) % corners.len()];
+        for i in 1..k {
+            let s = i as f64 / k as f64;
+            places.push([a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]);
+        }
+    }
+    match shape {
+        FacetShape::T10 => places.push([1.0 / 3.0, 1.0 / 3.0]),
+        FacetShape::Q9 => places.push([0.5, 0.5]),
+        _ => {}
+    }
+    places
+}
+
+/// A curved facet (nodes 1 …) and a node (0) near it, inside or outside.
+fn scene(shape: FacetShape, height: f64) -> (NodeToPatch, Vec<f64>) {
+    let mut y = vec![0.31, 0.27, height];
+    for [x, z] in lattice(shape) {
+        y.extend([x + 0.05 * z * z, z - 0.07 * x * z, 0.15 * (2.0 * x + z).sin() - 0.1 * x * z]);
+    }
+    let facet: Vec<usize> = (1..y.len() / 3).collect();
+    (NodeToPatch::new(vec![0], Boundary::new(shape, &[facet], &[], 0)), y)
+}
+
+fn measured(contact: &NodeToPatch, y: &[f64]) -> (Rows, Pair) {
+    let (mut rows, mut pair) = (Rows::new(3), Pair { active: true, ..Pair::open(0, 0, 0.2) });
+    contact.measure(&mut pair, y, &mut rows).unwrap();
+    (rows, pair)
+}
+
+fn force(contact: &NodeToPatch, y: &[f64], lambda: f64) -> Vec<f64> {
+    let mut full = vec![0.0; y.len()];
+    measured(contact, y).0.row(0).add_to(lambda, &mut full);
+    full
+}
+
+#[test]
+fn gradient_and_second_derivative_agree_with_differences() {
+    for (shape, height) in SHAPES.into_iter().flat_map(|shape| [0.5, 0.2, 0.02].map(|h| (shape, h))) {
+        let (contact, y) = scene(shape, height);
+        let (_, pair) = measured(&contact, &y);
+        let gap = |y: &[f64]| vec![measured(&contact, y).0.row(0).gap];
+        let error = jacobian_error(&y, 1e-3, gap, &force(&contact, &y, 1.0));
+        assert!(error < 1e-9, "{shape:?}: gradient {error:e}");
+        let mut hessian = vec![0.0; y.len() * y.len()];
+        contact.curvature_into(&pair, &y, &mut hessian);
+        let error = jacobian_error(&y, 1e-3, |y| force(&contact, y, 1.0), &hessian);
+        assert!(error < 1e-8, "{shape:?}: second derivative {error:e}");
+        let n = y.len();
+        let skew = |e: usize| (hessian[e] - hessian[e % n * n + e / n]).abs();
+        assert!((0..n * n).all(|e| skew(e) < 1e-12), "{shape:?}");
+    }
+}
+
+#[test]
+fn force_and_moment_balance_and_the_gap_sees_no_rigid_motion() {
+    for shape in SHAPES {
+        let (contact, y) = scene(shape, 0.4);
+        let f = force(&contact, &y, -7.0);
+        let (mut sum, mut moment) = (Vector::<3>::ZERO, Vector::<3>::ZERO);
+        for (y, f) in y.as_chunks::<3>().0.iter().zip(f.as_chunks::<3>().0) {
+            sum += Vector(*f);
+            moment += Vector(std::array::from_fn(|i| {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                y[j] * f[k] - y[k] * f[j]
+            }));
+        }
+        assert!(sum.norm() < 1e-13 && moment.norm() < 1e-13, "{shape:?}: {sum:?} {moment:?}");
+        let (s, c) = 2.1_f64.sin_cos();
+        let turned = |x: &[f64; 3]| [c * x[1] - s * x[2] + 5.0, s * x[1] + c * x[2] - 3.0, x[0]];
+        let moved: Vec<f64> = y.as_chunks::<3>().0.iter().flat_map(turned).collect();
+        let gap = |y: &[f64]| measured(&contact, y).0.row(0).gap;
+        assert!((gap(&y) - gap(&moved)).abs() < 1e-13);
+    }
+}
+
+/// Nodes and facets of the boundary of the unit cube, two triangles a face.
+fn cube() -> (Vec<f64>, Vec<Vec<usize>>) {
+    let y = (0..8).flat_map(|k| [k & 1, k >> 1 & 1, k >> 2].map(|i| i as f64)).collect();
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    (y, faces.iter().flat_map(|&[a, b, c, d]| [vec![a, b, c], vec![a, c, d]]).collect())
+}
+
+#[test]
+fn the_sign_and_the_distance_are_those_of_a_cube() {
+    let (mut y, facets) = cube();
+    let node = y.len() / 3;
+    y.extend([0.0; 3]);
+    let mut surface = ClosedSurface::new(Boundary::new(FacetShape::T3, &facets, &[], 0));
+    surface.update(&y);
+    for k in 0..2000 {
+        let at = [0.7, 1.1, 1.9].map(|w| 0.5 + 1.1 * (f64::from(k) * w).sin());
+        y[3 * node..].copy_from_slice(&at);
+        let outside = at.map(|x| (x - 1.0).max(-x).max(0.0));
+        let inside = at.iter().map(|x| x.min(1.0 - x)).fold(f64::INFINITY, f64::min);
+        let square: f64 = outside.iter().map(|d| d * d).sum();
+        let exact = if square > 0.0 { square.sqrt() } else { -inside };
+        let found = surface.depth(node, None, &y).unwrap();
+        assert!((found.distance - exact).abs() < 1e-14, "{at:?}: {found:?} {exact}");
+    }
+}
+
+/// A strip of 2 × `count` quadrilaterals over x = 0 … count, of height `height(x)`; its nodes begin at 1.
+fn strip(count: usize, height: impl Fn(f64) -> f64) -> (Boundary, Vec<f64>) {
+    let mut y = vec![0.0; 3];
+    for x in 0..=count {
+        (0..3).for_each(|z| y.extend([x as f64, f64::from(z) - 1.0, height(x as f64)]));
+    }
+    let node = |x: usize, z: usize| 1 + 3 * x + z;
+    let facet = |k: usize| {
+        let (x, z) = (k / 2, k % 2);
+        vec![node(x, z), node(x + 1, z), node(x + 1, z + 1), node(x, z + 1)]
+    };
+    let facets: Vec<Vec<usize>> = (0..2 * count).map(facet).collect();
+    (Boundary::new(FacetShape::Q4, &facets, &[], 0), y)
+}
+
+#[test]
+fn a_node_that_slides_is_handed_over_and_leaves_at_the_end() {
+    let (surface, y) = strip(3, |_| 0.0);
+    let contact = NodeToPatch::new(vec![0], surface);
+    let at = |x: f64, z: f64| {
+        let mut y = y.clone();
+        (y[0], y[1], y[2]) = (x, 0.3, z);
+        y
+    };
+    let (mut pairing, mut events) = (Pairing::default(), Vec::new());
+    let (before, now) = (at(0.5, 0.1), at(0.6, -0.01));
+    assert!(contact.search(&before, &now, &mut pairing, &mut events));
+    assert_eq!((pairing.pairs.len(), pairing.pairs[0].facet), (1, 1));
+    let mut last = now;
+    let mut facets = Vec::new();
+    for x in [1.2, 1.9, 2.4, 3.5] {
+        let pairs = std::mem::take(&mut pairing.pairs);
+        pairing = Pairing::new(pairs.into_iter().map(|pair| Pair { active: true, ..pair }).collect());
+        let now = at(x, 0.0);
+        for pair in &mut pairing.pairs {
+            contact.measure(pair, &now, &mut Rows::new(3)).unwrap();
+        }
+        contact.search(&last, &now, &mut pairing, &mut events);
+        facets.push(pairing.pairs.first().map(|pair| pair.facet));
+        last = now;
+    }
+    assert_eq!(facets, [Some(3), Some(3), Some(5), None]);
+}
+
+#[test]
+fn a_node_that_crosses_a_thin_body_in_one_step_is_found() {
+    let (surface, y) = strip(2, |_| 0.0);
+    let contact = NodeToPatch::new(vec![0], surface);
+    let at = |z: f64| {
+        let mut y = y.clone();
+        (y[0], y[1], y[2]) = (0.4, 0.4, z);
+        y
+    };
+    let (mut pairing, mut events) = (Pairing::default(), Vec::new());
+    assert!(contact.search(&at(3.0), &at(-5.0), &mut pairing, &mut events));
+    assert_eq!(pairing.pairs.len(), 1);
+    let (mut pairing, mut events) = (Pairing::default(), Vec::new());
+    assert!(!contact.search(&at(-5.0), &at(3.0), &mut pairing, &mut events));
+}

@@ -1,0 +1,153 @@
+//! Contact in space: an impact of slabs is the impact of the plane, forces and moments balance,
+//! no direction is special, and the same bits come from every number of threads.
+
+use super::common::{finish, on_threads, simulation};
+use super::space::apart;
+use carom_run::Simulation;
+
+const IMPACT: &str = r#"
+dimension = 2
+material = [{ name = "rubber", law = "neo-hookean", density = 0.25, lambda = 200.0, mu = 15.0 }]
+body = [
+    { name = "upper", material = "rubber", element = "Q9", mesh = { shape = "rectangle", min = [0.55, 0.01], max = [2.55, 1.01], cells = [3, 2] }, velocity = ["0.4", "-3 - 0.3*X"] },
+    { name = "lower", material = "rubber", element = "Q9", mesh = { shape = "rectangle", min = [0.0, -1.0], max = [4.0, 0.0], cells = [5, 2] } },
+]
+support = [{ on = ["lower.bottom"], fix = ["x", "y"] }]
+contact = [{ name = "strike", secondary = "upper.bottom", primary = "lower.top" }]
+time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 2e-3, end = 0.06 }
+newton = { tolerance = 1e-12 }
+"#;
+
+/// Settings that make slabs of the bodies, with u_z = 0.
+const SLABS: [&str; 7] = [
+    "dimension=3",
+    "body.upper.element=\"Hex27\"",
+    "body.lower.element=\"Hex27\"",
+    "body.upper.mesh={ shape = \"box\", min = [0.55, 0.01, 0.0], max = [2.55, 1.01, 0.5], cells = [3, 2, 1] }",
+    "body.lower.mesh={ shape = \"box\", min = [0.0, -1.0, 0.0], max = [4.0, 0.0, 0.5], cells = [5, 2, 1] }",
+    "body.upper.velocity=[\"0.4\", \"-3 - 0.3*X\", 0]",
+    "support=[{ on = [\"lower.front\"], fix = [\"x\", \"y\"] }, { on = [\"lower.bottom\", \"lower.top\", \"upper.bottom\", \"upper.top\"], fix = [\"z\"] }]",
+];
+
+const SIDES: &str =
+    "contact=[{ name = \"strike\", secondary = \"upper.front\", primary = \"lower.back\" }]";
+
+fn slab(sets: &[&str]) -> Vec<String> {
+    SLABS.iter().chain([&SIDES]).chain(sets).map(ToString::to_string).collect()
+}
+
+#[test]
+fn an_impact_of_slabs_is_that_of_the_plane() {
+    let schemes = [
+        ("time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.8 }", "neo-hookean"),
+        ("time.scheme={ kind = \"bathe\", rho_inf = 0.0 }", "neo-hookean"),
+        ("time.scheme={ kind = \"energy-momentum\" }", "saint-venant-kirchhoff"),
+    ];
+    for (scheme, law) in schemes {
+        let law = format!("material.rubber.law=\"{law}\"");
+        let sets = [scheme, &law];
+        let (plane, space) =
+            (finish(simulation(IMPACT, &sets)), finish(simulation(IMPACT, &slab(&sets))));
+        assert!(plane.state().pairs[0].iter().any(|pair| pair.active), "{scheme}: no contact");
+        let worst = apart(&plane, &space);
+        assert!(worst < 1e-8, "{scheme}: {worst:e}");
+    }
+}
+
+const BALL: &str = r#"
+dimension = 3
+material = [{ name = "rubber", law = "neo-hookean", density = 0.25, lambda = 200.0, mu = 15.0 }]
+body = [
+    { name = "ball", material = "rubber", element = "Tet10", mesh = { shape = "ball", radius = 0.5, center = [0.1, -0.05, 0.51], size = 0.4 }, velocity = { linear = [0.5, 0.2, -3.0], angular = [1.0, 2.0, 3.0], about = [0.1, -0.05, 0.51] } },
+    { name = "block", material = "rubber", element = "Tet10", mesh = { shape = "box", min = [-1.0, -1.0, -0.5], max = [1.0, 1.0, 0.0], cells = [3, 3, 1] } },
+]
+support = []
+contact = [{ name = "strike", secondary = "ball.sphere", primary = "block.top" }]
+time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 5e-3, end = 0.1 }
+newton = { tolerance = 1e-12 }
+"#;
+
+/// Momentum and moment of momentum.
+fn momenta(sim: &Simulation) -> [f64; 6] {
+    let (y, v) = (&sim.state().y, &sim.state().v);
+    let mut p = vec![0.0; v.len()];
+    sim.model().mass.multiply_into(v, &mut p);
+    let pairs = y.as_chunks::<3>().0.iter().zip(p.as_chunks::<3>().0);
+    pairs.fold([0.0; 6], |s, (y, p)| {
+        let about = |i: usize| y[(i + 1) % 3] * p[(i + 2) % 3] - y[(i + 2) % 3] * p[(i + 1) % 3];
+        std::array::from_fn(|i| s[i] + if i < 3 { p[i] } else { about(i - 3) })
+    })
+}
+
+#[test]
+fn two_free_bodies_exchange_momentum_and_keep_their_sum() {
+    let set = [
+        "time.scheme={ kind = \"energy-momentum\" }",
+        "material.rubber.law=\"saint-venant-kirchhoff\"",
+        "contact.strike.restitution=1.0",
+    ];
+    let start = simulation(BALL, &set);
+    let (before, energy) = (momenta(&start), start.state().ledger.total());
+    let end = finish(start);
+    assert!(end.state().pairs[0].iter().any(|pair| pair.active));
+    let after = momenta(&end);
+    for (i, (a, b)) in before.iter().zip(&after).enumerate() {
+        assert!((a - b).abs() < 1e-11, "{i}: {a} {b}");
+    }
+    let ledger = &end.state().ledger;
+    let lost = energy + ledger.contact_work - ledger.total();
+    assert!(lost.abs() < 1e-9 * energy, "{lost:e} of {energy}");
+}
+
+#[test]
+fn a_turned_impact_is_the_same() {
+    let still = finish(simulation(BALL, &[] as &[&str]));
+    // 120° about the diagonal: x → y → z → x.
+    let turned = |x: [f64; 3]| [x[2], x[0], x[1]];
+    let place = "{ rotate = { axis = [1.0, 1.0, 1.0], angle = 120.0 } }";
+    let vector = |x: [f64; 3]| format!("{:?}", turned(x));
+    let sets = [
+        format!("body.ball.place={place}"),
+        format!("body.block.place={place}"),
+        format!(
+            "body.ball.velocity={{ linear = {}, angular = {}, about = {} }}",
+            vector([0.5, 0.2, -3.0]),
+            vector([1.0, 2.0, 3.0]),
+            vector([0.1, -0.05, 0.51])
+        ),
+    ];
+    let other = finish(simulation(BALL, &sets));
+    let pairs = still.state().y.as_chunks::<3>().0.iter().zip(other.state().y.as_chunks::<3>().0);
+    for (here, there) in pairs {
+        let expected = turned(*here);
+        assert!((0..3).all(|i| (expected[i] - there[i]).abs() < 1e-10), "{expected:?} {there:?}");
+    }
+}
+
+#[test]
+fn threads_change_no_bit_of_an_impact() {
+    let [one, two] = [1, 2].map(|threads| finish(on_threads(BALL, &[] as &[&str], threads)));
+    assert!(one.state().y == two.state().y && one.state().v == two.state().v);
+}
+
+/// A ball that hits a rigid plane, and the same plane as the facet of a rigid sphere of large radius.
+#[test]
+fn a_rigid_sphere_of_large_radius_is_a_plane() {
+    let rigid = |shape: &str| {
+        [
+            format!("contact=[{{ name = \"floor\", secondary = \"ball.sphere\", primary = {{ {shape} }} }}]"),
+            "body.block.place={ shift = [0.0, 0.0, -5.0] }".to_owned(),
+        ]
+    };
+    let plane = finish(simulation(BALL, &rigid("plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }")));
+    assert!(plane.state().pairs[0].iter().filter(|pair| pair.active).count() > 3);
+    let mut last = f64::INFINITY;
+    for radius in [1e3, 1e4, 1e5] {
+        let shape = format!("sphere = {{ center = [0.0, 0.0, -{radius:?}], radius = {radius:?} }}");
+        let sphere = finish(simulation(BALL, &rigid(&shape)));
+        let pairs = plane.state().y.iter().zip(&sphere.state().y);
+        let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(worst < 0.2 * last && worst < 1.0 / radius, "{radius}: {worst:e}");
+        last = worst;
+    }
+}
