@@ -17,14 +17,15 @@
 //! account for J too, which it can only by turning the force by any angle where J is not small
 //! against d.
 //!
-//! In the plane there is one rotation ω with the arm r = J x, x = y_½ − ȳ_½, J = [0 −1; 1 0], and
-//! with c = Δy − t
+//! With the rotations G_i about the axes, J = [0 −1; 1 0] alone in the plane, x = y_½ − ȳ_½,
+//! r_i = G_i x, c = Δy − t, M_ij = r_i·r_j and C the removal of the mean over the nodes:
 //!
 //! ```text
-//! ω = r·c / r·r,   d = c − ω r,   ∂d/∂y_{n+1} = C − r ⊗ ω' − ½ ω J C,   ω' = (r − ½ J c − ω x) / r·r
+//! ω = M⁻¹ (r_i·c),   d = c − Σ ω_i r_i,   ∂d/∂y_{n+1} = C − Σ r_i ⊗ Cω_i' − ½ Σ ω_i G_i C
+//! ω' = M⁻¹ (r_i − ½ G_i d + ½ Σ_j ω_j G_j r_i)
 //! ```
 //!
-//! with C the removal of the mean over the nodes.
+//! Where all nodes lie on a line, M⁻¹ leaves out the rotation about it, which moves none.
 
 use crate::rows::Row;
 
@@ -41,14 +42,17 @@ pub struct DiscreteGradient {
     /// Δy, then Δy − t.
     moved: Vec<f64>,
     centred: Vec<f64>,
-    /// x and r.
+    /// x.
     arms: Vec<f64>,
+    /// r_i, one after the other.
     turned: Vec<f64>,
     /// d.
     deforming: Vec<f64>,
-    /// ω and r·r.
-    rotation: f64,
-    inertia: f64,
+    /// ω and M⁻¹.
+    rotation: [f64; 3],
+    inverse: [[f64; 3]; 3],
+    /// ω_i', one after the other.
+    spins: Vec<f64>,
     /// α and |d|² + ε².
     factor: f64,
     size: f64,
@@ -60,7 +64,6 @@ impl DiscreteGradient {
     /// Evaluates it from the row at y_½ and the change ΔG, with y_½ and Δy flat over all dofs.
     pub fn evaluate(&mut self, middle: Row, change: f64, y: &[f64], increment: &[f64]) {
         let d = middle.dimension();
-        debug_assert!(d <= 2 || middle.nodes.len() == 1, "rotations in space are not there yet");
         self.dimension = d;
         self.middle.clear();
         self.middle.extend_from_slice(middle.gradient);
@@ -69,13 +72,7 @@ impl DiscreteGradient {
         self.centred.clone_from(&self.moved);
         remove_mean(&mut self.arms, d);
         remove_mean(&mut self.centred, d);
-        turn_into(&self.arms, d, &mut self.turned);
-        self.inertia = dot(&self.turned, &self.turned);
-        self.rotation =
-            if self.inertia > 0.0 { dot(&self.turned, &self.centred) / self.inertia } else { 0.0 };
-        self.deforming.clear();
-        let part = |(c, r): (&f64, &f64)| c - self.rotation * r;
-        self.deforming.extend(self.centred.iter().zip(&self.turned).map(part));
+        self.rotate();
         // The stencil at the step's start: ε is constant over the iterations.
         let start = self.arms.iter().zip(&self.centred).map(|(x, c)| x - 0.5 * c);
         let stencil: f64 = start.map(|x| x * x).sum();
@@ -89,6 +86,28 @@ impl DiscreteGradient {
         self.gradient.extend(self.middle.iter().zip(&self.deforming).map(corrected));
     }
 
+    /// ω, and d with the rigid rotation removed.
+    fn rotate(&mut self) {
+        let Self { dimension, arms, turned, centred, deforming, rotation, inverse, .. } = self;
+        let (count, n) = (rotations(*dimension), arms.len());
+        turned.clear();
+        for i in 0..count {
+            turned.extend((0..n).map(|q| turned_entry(arms, *dimension, i, q)));
+        }
+        let r = |i: usize| &turned[i * n..(i + 1) * n];
+        let mut moments = [[0.0; 3]; 3];
+        for (i, k) in (0..count).flat_map(|i| (0..count).map(move |k| (i, k))) {
+            moments[i][k] = dot(r(i), r(k));
+        }
+        *inverse = inverted(moments, count);
+        let driven: [f64; 3] = std::array::from_fn(|i| if i < count { dot(r(i), centred) } else { 0.0 });
+        *rotation = std::array::from_fn(|i| (0..count).map(|k| inverse[i][k] * driven[k]).sum());
+        deforming.clone_from(centred);
+        for i in 0..count {
+            deforming.iter_mut().zip(r(i)).for_each(|(d, r)| *d -= rotation[i] * r);
+        }
+    }
+
     /// ∇̄G, node-major as the gradient of the row.
     pub fn gradient(&self) -> &[f64] {
         &self.gradient
@@ -98,36 +117,104 @@ impl DiscreteGradient {
     /// not symmetric.
     pub fn derivative_into(&mut self, end: Row, matrix: &mut [f64]) {
         let (n, d) = (self.middle.len(), self.dimension);
-        let Self { arms, turned, centred, deforming, middle, moved, slope, .. } = self;
-        let (rotation, factor, size) = (self.rotation, self.factor, self.size);
-        let turn = |vector: &[f64], i: usize| turned_entry(vector, d, i);
-        let of_rotation = |q: usize| {
-            let slope = turned[q] - 0.5 * turn(centred, q) - rotation * arms[q];
-            if self.inertia > 0.0 { slope / self.inertia } else { 0.0 }
+        let Self { turned, deforming, middle, moved, slope, spins, rotation, inverse, .. } = self;
+        let (count, factor, size) = (rotations(d), self.factor, self.size);
+        // Σ ω_j G_j of a vector.
+        let spun = |vector: &[f64], q: usize| -> f64 {
+            (0..count).map(|j| rotation[j] * turned_entry(vector, d, j, q)).sum()
         };
+        let r = |i: usize| &turned[i * n..(i + 1) * n];
+        spins.clear();
+        spins.resize(count * n, 0.0);
+        for k in 0..count {
+            for q in 0..n {
+                let slope = r(k)[q] - 0.5 * turned_entry(deforming, d, k, q) + 0.5 * spun(r(k), q);
+                (0..count).for_each(|i| spins[i * n + q] += inverse[i][k] * slope);
+            }
+        }
         slope.clear();
         slope.resize(n, 0.0);
         for (q, slope) in slope.iter_mut().enumerate().filter(|_| d > 1 && size > 0.0) {
             let bent = 0.5 * dot(&matrix[q * n..(q + 1) * n], moved);
-            let longer = deforming[q] + 0.5 * rotation * turn(deforming, q);
+            let longer = deforming[q] + 0.5 * spun(deforming, q);
             *slope = (end.gradient[q] - middle[q] - bent - 2.0 * factor * longer) / size;
         }
         let nodes = (n / d.max(1)) as f64;
+        // Σ ω_j G_j of the unit vector of component q, at component p of the same node.
+        let turning = |p: usize, q: usize| -> f64 {
+            (0..count).map(|j| rotation[j] * generator(d, j, p, q)).sum()
+        };
         for p in 0..n {
             for q in 0..n {
                 let same = f64::from(u8::from(p / d == q / d)) - nodes.recip();
                 let centring = if p % d == q % d { same } else { 0.0 };
-                let turning = match (d, p % d, q % d) {
-                    (2, 0, 1) => -same,
-                    (2, 1, 0) => same,
-                    _ => 0.0,
-                };
-                let deformation = centring - turned[p] * of_rotation(q) - 0.5 * rotation * turning;
+                let rotating: f64 = (0..count).map(|i| r(i)[p] * spins[i * n + q]).sum();
+                let deformation = centring - rotating - 0.5 * same * turning(p % d, q % d);
                 let entry = &mut matrix[p * n + q];
                 *entry = 0.5 * *entry + deforming[p] * slope[q] + factor * deformation;
             }
         }
     }
+}
+
+/// Number of rotations.
+fn rotations(d: usize) -> usize {
+    [0, 0, 1, 3][d.min(3)]
+}
+
+/// Entry of the i-th rotation at row `p` and column `q` of one node.
+fn generator(d: usize, i: usize, p: usize, q: usize) -> f64 {
+    // About the i-th axis; in the plane about the third one.
+    let axis = if d == 2 { 2 } else { i };
+    match ((p + 3 - axis) % 3, (q + 3 - axis) % 3) {
+        (1, 2) => -1.0,
+        (2, 1) => 1.0,
+        _ => 0.0,
+    }
+}
+
+/// Entry `q` of the i-th rotation of a vector, node by node.
+fn turned_entry(vector: &[f64], d: usize, i: usize, q: usize) -> f64 {
+    let first = q - q % d;
+    (0..d).map(|k| generator(d, i, q % d, k) * vector[first + k]).sum()
+}
+
+/// Inverse of a symmetric matrix of `count` rows without its null space, by elimination: a pivot of
+/// round-off leaves its row out.
+fn inverted(mut matrix: [[f64; 3]; 3], count: usize) -> [[f64; 3]; 3] {
+    let mut inverse = [[0.0; 3]; 3];
+    let trace: f64 = (0..count).map(|i| matrix[i][i]).sum();
+    let mut order: Vec<usize> = (0..count).collect();
+    let mut kept = Vec::new();
+    while let Some(place) = (0..order.len())
+        .max_by(|&a, &b| matrix[order[a]][order[a]].total_cmp(&matrix[order[b]][order[b]]))
+        .filter(|&place| matrix[order[place]][order[place]] > 1e-12 * trace)
+    {
+        let pivot = order.swap_remove(place);
+        for &row in &order {
+            let factor = matrix[row][pivot] / matrix[pivot][pivot];
+            (0..count).for_each(|k| matrix[row][k] -= factor * matrix[pivot][k]);
+            (0..count).for_each(|k| inverse[row][k] -= factor * inverse[pivot][k]);
+            inverse[row][pivot] -= factor;
+        }
+        inverse[pivot][pivot] += 1.0;
+        kept.push(pivot);
+    }
+    // Rows that were left out have no rotation.
+    for &row in &order {
+        inverse[row] = [0.0; 3];
+        (0..count).for_each(|k| inverse[k][row] = 0.0);
+    }
+    for at in (0..kept.len()).rev() {
+        let row = kept[at];
+        for &later in &kept[at + 1..] {
+            let factor = matrix[row][later];
+            (0..count).for_each(|k| inverse[row][k] -= factor * inverse[later][k]);
+        }
+        let pivot = matrix[row][row];
+        (0..count).for_each(|k| inverse[row][k] /= pivot);
+    }
+    inverse
 }
 
 /// The entries of a vector over all dofs at the nodes of a row.
@@ -142,20 +229,6 @@ fn remove_mean(vector: &mut [f64], d: usize) {
     for i in 0..d {
         let mean = vector.iter().skip(i).step_by(d).sum::<f64>() / nodes;
         vector.iter_mut().skip(i).step_by(d).for_each(|x| *x -= mean);
-    }
-}
-
-/// J times a vector of the plane, node by node; zero in one dimension.
-fn turn_into(vector: &[f64], d: usize, turned: &mut Vec<f64>) {
-    turned.clear();
-    turned.extend((0..vector.len()).map(|i| turned_entry(vector, d, i)));
-}
-
-fn turned_entry(vector: &[f64], d: usize, i: usize) -> f64 {
-    match (d, i % 2) {
-        (2, 0) => -vector[i + 1],
-        (2, _) => vector[i - 1],
-        _ => 0.0,
     }
 }
 

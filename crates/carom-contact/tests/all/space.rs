@@ -2,7 +2,7 @@
 //! objectivity, the sign of the distance to a closed surface, hand-over across edges, dents.
 
 use carom_algebra::{Vector, jacobian_error};
-use carom_contact::{Boundary, ClosedSurface, Kinematics, NodeToPatch, Pair, Pairing, Rows};
+use carom_contact::{Boundary, ClosedSurface, DiscreteGradient, Kinematics, NodeToPatch, Pair, Pairing, Rows};
 use carom_solid::FacetShape;
 
 const SHAPES: [FacetShape; 5] =
@@ -178,4 +178,80 @@ fn a_node_that_crosses_a_thin_body_in_one_step_is_found() {
     assert_eq!(pairing.pairs.len(), 1);
     let (mut pairing, mut events) = (Pairing::default(), Vec::new());
     assert!(!contact.search(&at(-5.0), &at(3.0), &mut pairing, &mut events));
+}
+
+/// ∇̄G over all dofs, its derivative to the end of the step, and the change of the gap.
+fn discrete_gradient(contact: &dyn Kinematics, start: &[f64], end: &[f64]) -> (Vec<f64>, Vec<f64>, f64) {
+    let middle: Vec<f64> = start.iter().zip(end).map(|(a, b)| 0.5 * (a + b)).collect();
+    let moved: Vec<f64> = start.iter().zip(end).map(|(a, b)| b - a).collect();
+    let (mut rows, mut pair) = (Rows::new(3), Pair { active: true, ..Pair::open(0, 0, 0.2) });
+    contact.measure(&mut pair.clone(), start, &mut rows).unwrap();
+    contact.measure(&mut pair.clone(), end, &mut rows).unwrap();
+    contact.measure(&mut pair, &middle, &mut rows).unwrap();
+    let change = rows.row(1).gap - rows.row(0).gap;
+    let mut gradient = DiscreteGradient::default();
+    gradient.evaluate(rows.row(2), change, &middle, &moved);
+    let n = rows.row(2).gradient.len();
+    let (mut matrix, mut force) = (vec![0.0; n * n], vec![0.0; start.len()]);
+    contact.curvature_into(&pair, &middle, &mut matrix);
+    gradient.derivative_into(rows.row(1), &mut matrix);
+    for ((dof, _), slope) in rows.row(2).entries().zip(gradient.gradient()) {
+        force[dof] = *slope;
+    }
+    (force, matrix, change)
+}
+
+/// The end of a step: a finite rotation about an oblique axis, a translation, and a deformation.
+fn end(y: &[f64], angle: f64, size: f64) -> Vec<f64> {
+    let (sin, cos) = angle.sin_cos();
+    let axis = [0.48, 0.6, 0.64];
+    let turned = |x: &[f64; 3]| -> [f64; 3] {
+        let along: f64 = (0..3).map(|i| axis[i] * x[i]).sum();
+        std::array::from_fn(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            cos * x[i] + sin * (axis[j] * x[k] - axis[k] * x[j]) + (1.0 - cos) * along * axis[i]
+        })
+    };
+    let moved = y.as_chunks::<3>().0.iter().flat_map(turned);
+    moved.enumerate().map(|(k, x)| x + 0.03 + size * (2.3 * k as f64 + 1.0).sin()).collect()
+}
+
+#[test]
+fn the_discrete_gradient_does_the_work_of_the_gap_without_force_or_moment() {
+    for shape in SHAPES {
+        let (contact, y) = scene(shape, 0.3);
+        for (angle, size) in [(0.0, 0.05), (0.4, 0.05), (-0.7, 1e-3), (0.6, 0.0)] {
+            let end = end(&y, angle, size);
+            let (force, _, change) = discrete_gradient(&contact, &y, &end);
+            let work: f64 = force.iter().zip(end.iter().zip(&y)).map(|(f, (b, a))| f * (b - a)).sum();
+            let bound = if size > 0.01 { 1e-13 } else { 1e-9 };
+            assert!((work - change).abs() < bound, "{shape:?} {angle} {size}: {work} {change}");
+            let (mut sum, mut moment) = ([0.0; 3], [0.0; 3]);
+            let nodes = y.as_chunks::<3>().0.iter().zip(end.as_chunks::<3>().0);
+            for (f, (a, b)) in force.as_chunks::<3>().0.iter().zip(nodes) {
+                let arm: [f64; 3] = std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
+                for i in 0..3 {
+                    let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                    sum[i] += f[i];
+                    moment[i] += arm[j] * f[k] - arm[k] * f[j];
+                }
+            }
+            let worst = sum.iter().chain(&moment).fold(0.0_f64, |most, x| most.max(x.abs()));
+            assert!(worst < 1e-13, "{shape:?} {angle} {size}: {sum:?} {moment:?}");
+        }
+    }
+}
+
+#[test]
+fn the_derivative_of_the_discrete_gradient_agrees_with_differences() {
+    for shape in SHAPES {
+        let (contact, y) = scene(shape, 0.3);
+        for (angle, size) in [(0.0, 0.1), (0.3, 0.1)] {
+            let end = end(&y, angle, size);
+            let (_, derivative, _) = discrete_gradient(&contact, &y, &end);
+            let error =
+                jacobian_error(&end, 1e-2 * size, |end| discrete_gradient(&contact, &y, end).0, &derivative);
+            assert!(error < 2e-6, "{shape:?} {angle} {size}: {error:e}");
+        }
+    }
 }

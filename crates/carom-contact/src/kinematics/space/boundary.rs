@@ -5,7 +5,7 @@
 //! the sum of both facets' normals, at a corner the sum of all facets' normals there, each weighted
 //! with the facet's angle (Bærentzen and Aanæs, IEEE Trans. Vis. Comput. Graph. 11 (2005)).
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use carom_algebra::Vector;
 use carom_solid::{Bounds, FacetShape, Hull, Tree};
@@ -139,25 +139,21 @@ impl Boundary {
         here.dot(&there) < SHARP && cross(here, there).dot(&along) > 0.0
     }
 
-    /// Nodes of the side at sharp convex edges, with all nodes of these edges, ascending.
-    pub fn sharp_nodes(&self, y: &[f64]) -> Vec<usize> {
-        let mut found = Vec::new();
+    /// Nodes of the side where sharp convex edges of different directions meet, ascending.
+    pub fn corners(&self, y: &[f64]) -> Vec<usize> {
+        let count = self.shape.corners();
+        let mut directions: BTreeMap<usize, Vec<Vector<3>>> = BTreeMap::new();
         for facet in 0..self.side {
-            for edge in (0..self.shape.corners()).filter(|&edge| self.is_sharp(facet, edge, y)) {
-                found.extend(self.edge_nodes(facet, edge));
+            let patch = self.patch(facet);
+            for edge in (0..count).filter(|&edge| self.is_sharp(facet, edge, y)) {
+                let ends = [edge, (edge + 1) % count].map(|corner| patch.nodes[corner]);
+                let along = place(y, ends[1]) - place(y, ends[0]);
+                let along = along * along.norm().recip();
+                ends.iter().for_each(|&node| directions.entry(node).or_default().push(along));
             }
         }
-        found.sort_unstable();
-        found.dedup();
-        found
-    }
-
-    /// Nodes of an edge: its corners, and those between them, which follow the corners edge by edge.
-    fn edge_nodes(&self, facet: usize, edge: usize) -> impl Iterator<Item = usize> {
-        let (nodes, corners) = (self.patch(facet).nodes, self.shape.corners());
-        let between = self.shape.degree() - 1;
-        let start = corners + edge * between;
-        [nodes[edge], nodes[(edge + 1) % corners]].into_iter().chain(nodes[start..start + between].to_vec())
+        let turns = |at: &Vec<Vector<3>>| at.iter().any(|along| along.dot(&at[0]).abs() < SHARP);
+        directions.into_iter().filter(|(_, at)| turns(at)).map(|(node, _)| node).collect()
     }
 
     /// Box around a facet at positions `y`.
