@@ -112,10 +112,17 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
         let y = h.column(name)?.to_vec();
         Some(Series { label, color: LINES[k % LINES.len()], x: run.times(), y })
     };
-    let flat = h.column("contact_force_y").is_none();
-    let force = if flat { "contact_force_x" } else { "contact_force_y" };
+    // In the plane y, as in the figures; in space the component that grows largest.
+    let peak = |name: &str| h.column(name).map(|x| x.iter().fold(0.0_f64, |most, x| most.max(x.abs())));
+    let candidates = ["contact_force_x", "contact_force_y", "contact_force_z"];
+    let present = || candidates.into_iter().enumerate().filter_map(|(i, name)| Some((i, peak(name)?)));
+    let axis = match present().count() {
+        3 => present().fold((0, -1.0), |most, next| if next.1 > most.1 { next } else { most }).0,
+        count => count.saturating_sub(1),
+    };
+    let force = candidates[axis];
     let mut panels: Vec<Panel> = Vec::new();
-    let label = if flat { "f_{x}" } else { "f_{y}" };
+    let label = ["f_{x}", "f_{y}", "f_{z}"][axis];
     if let Some(s) = series(force, String::new(), 0) {
         panels.push(Panel {
             label: format!("force {label}"),

@@ -9,10 +9,11 @@ use carom_record::study::reference::FORCE;
 use crate::labels::{symbol, words};
 
 /// Columns shown besides those of the probes: name, label, caption.
-const OTHERS: [(&str, &str, &str); 4] = [
+const OTHERS: [(&str, &str, &str); 5] = [
     (FORCE, "|F|", "magnitude of the contact force"),
     ("contact_impulse_x", "P_{x}", "contact impulse in x direction"),
     ("contact_impulse_y", "P_{y}", "contact impulse in y direction"),
+    ("contact_impulse_z", "P_{z}", "contact impulse in z direction"),
     ("dissipation", "dissipation", "accumulated dissipation (negative: energy created)"),
 ];
 

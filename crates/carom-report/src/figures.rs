@@ -157,17 +157,28 @@ fn probes(run: &Run) -> Option<Figure> {
 fn force(run: &Run) -> Option<Figure> {
     let h = &run.history;
     let size = metrics::contact_force(h).into_iter().fold(f64::MIN_POSITIVE, f64::max);
-    let impulse = ["contact_impulse_x", "contact_impulse_y"].iter().filter_map(|c| run.column(c)).flatten();
+    let impulse = ["contact_impulse_x", "contact_impulse_y", "contact_impulse_z"]
+        .iter()
+        .filter_map(|c| run.column(c))
+        .flatten();
     let largest = impulse.fold(f64::MIN_POSITIVE, |m: f64, x| m.max(x.abs()));
-    let forces = curves(run, &[("contact_force_x", "f_{x}"), ("contact_force_y", "f_{y}")], size);
-    let impulses = curves(run, &[("contact_impulse_x", "P_{x}"), ("contact_impulse_y", "P_{y}")], largest);
+    let forces = curves(
+        run,
+        &[("contact_force_x", "f_{x}"), ("contact_force_y", "f_{y}"), ("contact_force_z", "f_{z}")],
+        size,
+    );
+    let impulses = curves(
+        run,
+        &[("contact_impulse_x", "P_{x}"), ("contact_impulse_y", "P_{y}"), ("contact_impulse_z", "P_{z}")],
+        largest,
+    );
     let panels = vec![
         panel("contact force f", h.unit("contact_force_x"), 200.0, forces),
         panel("impulse P", h.unit("contact_impulse_x"), 130.0, impulses),
     ];
     let caption = "Contact force on the secondary (slave) side at the end of each step, and its accumulated \
-                   impulse. Shaded: contact. Single peaks of the force depend on the time step; impulse, \
-                   duration and restitution do not. Data: `history.csv`, columns `contact_force_…` and \
+                   impulse. Shaded: contact. Single peaks of the force depend on the time step far more \
+                   than the impulse does. Data: `history.csv`, columns `contact_force_…` and \
                    `contact_impulse_…`.";
     Some(Figure {
         name: "force",

@@ -14,13 +14,14 @@ use crate::ranked;
 use crate::text::{Label, Prose};
 
 /// Metrics whose error a user should know before following a recommendation.
-const SIDE_EFFECTS: [(&str, &str); 8] = [
+const SIDE_EFFECTS: [(&str, &str); 9] = [
     ("energy_lost", "energy lost"),
     ("dissipated_integrator", "energy dissipated by the integrator"),
     ("dissipated_contact", "energy dissipated by contact"),
     ("force_variation", "error of the total variation of the contact force"),
     ("impulse_x", "error of the x impulse"),
     ("impulse_y", "error of the y impulse"),
+    ("impulse_z", "error of the z impulse"),
     ("contact_duration", "error of the contact duration"),
     ("restitution", "error of the restitution"),
 ];

@@ -84,7 +84,6 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["body.cylinder.element=T7"], &["`element` cannot be \"T7\"", "T10"]),
     (&["body.cylinder.element=L2"], &["the element L2 has dimension 1", "use T3, T6, T10, Q4 or Q9"]),
     (&["dimension=4"], &["dimension 4 is not supported", "use dimension = 1, 2 or 3"]),
-    (&["dimension=3"], &["a case of dimension 3 has no contact yet", "later version"]),
     (&["dimension=two"], &["`dimension` must be an integer"]),
     (&["newton.max_iterations=0"], &["integer ≥ 1"]),
     (&["time.energy_guard=true"], &["a number > 0, or false, not `true`"]),

@@ -43,9 +43,9 @@ impl<'a> Facts<'a> {
     }
 }
 
-/// Columns `NAME_x` and, in dimension 2, `NAME_y`.
+/// Columns `NAME_x`, `NAME_y` and `NAME_z`, as many as there are dimensions.
 pub(super) fn vector<'a>(history: &'a History, name: &str) -> Vec<&'a [f64]> {
-    ["_x", "_y"].iter().filter_map(|axis| history.column(&format!("{name}{axis}"))).collect()
+    ["_x", "_y", "_z"].iter().filter_map(|axis| history.column(&format!("{name}{axis}"))).collect()
 }
 
 pub(super) fn norms(vector: &[&[f64]]) -> Vec<f64> {

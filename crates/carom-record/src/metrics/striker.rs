@@ -61,7 +61,7 @@ pub(super) fn apex(facts: &Facts) -> Option<(f64, f64)> {
 /// changes sign, linearly interpolated between rows.
 pub(super) fn turning_time(facts: &Facts) -> Option<f64> {
     let (history, rows) = (facts.history, facts.rows.clone()?);
-    let impulse = [facts.impulse(0), facts.impulse(1)];
+    let impulse = [0, 1, 2].map(|axis| facts.impulse(axis));
     let velocity = vector(history, &format!("{}.velocity", striker(history)?));
     let along =
         |row: usize| velocity.iter().zip(impulse).map(|(v, p)| v[row] * p.unwrap_or_default()).sum::<f64>();

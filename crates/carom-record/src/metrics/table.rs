@@ -12,7 +12,7 @@ use super::{force, ledger, oscillation};
 use crate::History;
 
 /// Metrics of a history.
-pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 27] = [
+pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 28] = [
     (
         d(
             "contact_start",
@@ -65,6 +65,16 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 27] = [
             "y component of the contact impulse of the first episode, on the secondary side",
         ),
         |f| f.impulse(1),
+    ),
+    (
+        d(
+            "impulse_z",
+            Unit::Impulse,
+            "P_z(t_b) − P_z(t_{a−1})",
+            OWN,
+            "z component of the contact impulse of the first episode, on the secondary side",
+        ),
+        |f| f.impulse(2),
     ),
     (
         d(

@@ -31,7 +31,10 @@ pub struct Compared {
 
 /// Whether a column is a displacement or the position of a centre.
 pub fn is_trajectory(column: &str) -> bool {
-    column.rsplit('.').next().is_some_and(|q| ["ux", "uy", "center_x", "center_y"].contains(&q))
+    column
+        .rsplit('.')
+        .next()
+        .is_some_and(|q| ["ux", "uy", "uz", "center_x", "center_y", "center_z"].contains(&q))
 }
 
 /// Whether a column is a stress.

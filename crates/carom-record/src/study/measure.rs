@@ -36,11 +36,16 @@ pub(super) enum Candidate {
 pub(super) fn candidates(goal: Goal) -> Vec<Candidate> {
     match goal {
         Goal::Energy => vec![Candidate::Metric("energy_drift")],
-        Goal::Force => {
-            ["force_variation", "force_high_frequency", "peak_mean_force", "impulse_y", "impulse_x"]
-                .map(Candidate::Metric)
-                .into()
-        }
+        Goal::Force => [
+            "force_variation",
+            "force_high_frequency",
+            "peak_mean_force",
+            "impulse_y",
+            "impulse_x",
+            "impulse_z",
+        ]
+        .map(Candidate::Metric)
+        .into(),
         Goal::Stress => vec![
             Candidate::OfColumns("variation", is_stress),
             Candidate::OfColumns("peak_mean", is_stress),

@@ -1,7 +1,7 @@
 //! A state as fields for viewers: displacement, velocity, stress (nodal mean within each body) and
 //! contact pressure.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use carom_case::Case;
 use carom_contact::{Pair, Rows};
@@ -116,10 +116,19 @@ fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {
     pressure
 }
 
-/// The area of each multiplier of a contact at a state, one entry per node of its pairs.
+/// The area of each multiplier of a contact at a state, one entry per node of its pairs. NaN at the
+/// corners of triangles of degree 2, whose functions have no area: they have no nodal pressure.
 pub(super) fn weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f64> {
     let facets = contact.facets.iter().map(|(shape, facets)| (*shape, facets));
-    consistent_weights(contact.kinematics.secondary(), facets, &state.y, thickness)
+    let nodes = contact.kinematics.secondary();
+    let mut weights = consistent_weights(nodes, facets, &state.y, thickness);
+    let quadratic = contact.facets.iter().filter(|(shape, _)| *shape == FacetShape::T6);
+    let corners: HashSet<usize> =
+        quadratic.flat_map(|(_, facets)| facets).flat_map(|facet| facet[..3].iter().copied()).collect();
+    for (weight, _) in weights.iter_mut().zip(nodes).filter(|(_, node)| corners.contains(node)) {
+        *weight = f64::NAN;
+    }
+    weights
 }
 
 /// ∫φᴺ ds over the sides of each node at positions `y`, times the thickness.

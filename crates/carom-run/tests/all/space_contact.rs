@@ -14,7 +14,7 @@ body = [
 ]
 support = [{ on = ["lower.bottom"], fix = ["x", "y"] }]
 contact = [{ name = "strike", secondary = "upper.bottom", primary = "lower.top" }]
-time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 2e-3, end = 0.06 }
+time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 2e-3, end = 0.03 }
 newton = { tolerance = 1e-12 }
 "#;
 
@@ -29,8 +29,7 @@ const SLABS: [&str; 7] = [
     "support=[{ on = [\"lower.front\"], fix = [\"x\", \"y\"] }, { on = [\"lower.bottom\", \"lower.top\", \"upper.bottom\", \"upper.top\"], fix = [\"z\"] }]",
 ];
 
-const SIDES: &str =
-    "contact=[{ name = \"strike\", secondary = \"upper.front\", primary = \"lower.back\" }]";
+const SIDES: &str = "contact=[{ name = \"strike\", secondary = \"upper.front\", primary = \"lower.back\" }]";
 
 fn slab(sets: &[&str]) -> Vec<String> {
     SLABS.iter().chain([&SIDES]).chain(sets).map(ToString::to_string).collect()
@@ -38,19 +37,20 @@ fn slab(sets: &[&str]) -> Vec<String> {
 
 #[test]
 fn an_impact_of_slabs_is_that_of_the_plane() {
+    // A discrete gradient is corrected along the motion of all nodes of a facet, of which a slab has
+    // more: to the order of the scheme.
     let schemes = [
-        ("time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.8 }", "neo-hookean"),
-        ("time.scheme={ kind = \"bathe\", rho_inf = 0.0 }", "neo-hookean"),
-        ("time.scheme={ kind = \"energy-momentum\" }", "saint-venant-kirchhoff"),
+        ("time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.8 }", "neo-hookean", 1e-8),
+        ("time.scheme={ kind = \"bathe\", rho_inf = 0.0 }", "neo-hookean", 1e-8),
+        ("time.scheme={ kind = \"energy-momentum\" }", "saint-venant-kirchhoff", 1e-5),
     ];
-    for (scheme, law) in schemes {
+    for (scheme, law, bound) in schemes {
         let law = format!("material.rubber.law=\"{law}\"");
         let sets = [scheme, &law];
-        let (plane, space) =
-            (finish(simulation(IMPACT, &sets)), finish(simulation(IMPACT, &slab(&sets))));
+        let (plane, space) = (finish(simulation(IMPACT, &sets)), finish(simulation(IMPACT, &slab(&sets))));
         assert!(plane.state().pairs[0].iter().any(|pair| pair.active), "{scheme}: no contact");
         let worst = apart(&plane, &space);
-        assert!(worst < 1e-8, "{scheme}: {worst:e}");
+        assert!(worst < bound, "{scheme}: {worst:e}");
     }
 }
 
@@ -58,12 +58,12 @@ const BALL: &str = r#"
 dimension = 3
 material = [{ name = "rubber", law = "neo-hookean", density = 0.25, lambda = 200.0, mu = 15.0 }]
 body = [
-    { name = "ball", material = "rubber", element = "Tet10", mesh = { shape = "ball", radius = 0.5, center = [0.1, -0.05, 0.51], size = 0.4 }, velocity = { linear = [0.5, 0.2, -3.0], angular = [1.0, 2.0, 3.0], about = [0.1, -0.05, 0.51] } },
-    { name = "block", material = "rubber", element = "Tet10", mesh = { shape = "box", min = [-1.0, -1.0, -0.5], max = [1.0, 1.0, 0.0], cells = [3, 3, 1] } },
+    { name = "ball", material = "rubber", element = "Tet10", mesh = { shape = "ball", radius = 0.5, center = [0.1, -0.05, 0.51], size = 0.5 }, velocity = { linear = [0.5, 0.2, -3.0], angular = [1.0, 2.0, 3.0], about = [0.1, -0.05, 0.51] } },
+    { name = "block", material = "rubber", element = "Tet10", mesh = { shape = "box", min = [-1.0, -1.0, -0.5], max = [1.0, 1.0, 0.0], cells = [2, 2, 1] } },
 ]
 support = []
 contact = [{ name = "strike", secondary = "ball.sphere", primary = "block.top" }]
-time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 5e-3, end = 0.1 }
+time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 5e-3, end = 0.05 }
 newton = { tolerance = 1e-12 }
 "#;
 
@@ -139,7 +139,8 @@ fn a_rigid_sphere_of_large_radius_is_a_plane() {
             "body.block.place={ shift = [0.0, 0.0, -5.0] }".to_owned(),
         ]
     };
-    let plane = finish(simulation(BALL, &rigid("plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }")));
+    let plane =
+        finish(simulation(BALL, &rigid("plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }")));
     assert!(plane.state().pairs[0].iter().filter(|pair| pair.active).count() > 3);
     let mut last = f64::INFINITY;
     for radius in [30.0, 100.0, 300.0] {
