@@ -1,11 +1,12 @@
 //! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
 use carom_algebra::LinearError;
-use carom_case::{Case, ContactLaw, ContactPoint, ContactSpec, NewtonSpec, Problem, Problems, TangentRule};
+use carom_case::{Case, ContactLaw, ContactPoint, ContactSpec, LinearRule, Problem, Problems, TangentRule};
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, stable_step};
 use carom_mechanics::{
-    Before, Explicit, Grid, Implicit, Impulsive, Rejected, Settings, Simulation, State, Stepper, Tangent,
+    Before, Explicit, Grid, Implicit, Impulsive, Linear, Rejected, Settings, Simulation, State, Stepper,
+    Tangent,
 };
 use carom_solid::Constitutive;
 use carom_time::{Integrator, Kernel, Nonsmooth};
@@ -232,7 +233,7 @@ fn stepper(
     model: &Model,
     kernel: Option<Box<dyn Kernel>>,
 ) -> Result<Box<dyn Stepper>, Vec<Problem>> {
-    let settings = settings(&case.newton);
+    let settings = settings(case, model);
     if let Some(kernel) = kernel {
         return Ok(Box::new(Implicit::new(kernel, settings)));
     }
@@ -253,7 +254,20 @@ fn stepper(
     })
 }
 
-fn settings(newton: &NewtonSpec) -> Settings {
+/// Unknowns in space from which iteration is faster than factors (ADR 52).
+const MANY: usize = 20_000;
+
+fn settings(case: &Case, model: &Model) -> Settings {
+    let newton = &case.newton;
+    let linear = match newton.linear {
+        LinearRule::Direct => Linear::Direct,
+        LinearRule::Iterative => Linear::Iterative,
+        LinearRule::Auto => {
+            let moves = !case.time.scheme.is_static() && case.time.scheme.nonsmooth().is_none();
+            let many = model.dimension == 3 && model.free.len() >= MANY;
+            if many && moves && model.contacts.iter().all(|contact| contact.friction.is_none()) { Linear::Iterative } else { Linear::Direct }
+        }
+    };
     let tangent = match newton.tangent {
         TangentRule::Frozen => Tangent::Frozen,
         TangentRule::FrozenDouble => Tangent::FrozenDouble,
@@ -263,6 +277,7 @@ fn settings(newton: &NewtonSpec) -> Settings {
         tolerance: newton.tolerance,
         max_iterations: newton.max_iterations,
         tangent,
+        linear,
         mixing: newton.mixing,
     }
 }
