@@ -41,6 +41,7 @@ pub(crate) struct Iterative {
     rows: ConstraintRows,
     patches: Patches,
     method: ConjugateGradients,
+    iterations: u64,
     forces: Vec<f64>,
     gaps: Vec<f64>,
 }
@@ -84,6 +85,7 @@ impl Iterative {
             rows: ConstraintRows::default(),
             patches: Patches::default(),
             method: ConjugateGradients::default(),
+            iterations: 0,
             forces: Vec::new(),
             gaps: Vec::new(),
         }
@@ -147,6 +149,10 @@ impl Iterative {
 impl Preconditioner for Iterative {
     fn cost(&self) -> f64 {
         COST
+    }
+
+    fn iterations(&self) -> Option<u64> {
+        Some(self.iterations)
     }
 
     fn diagonals(&self) -> &[Vec<f64>; 2] {
@@ -244,6 +250,7 @@ impl Preconditioner for Iterative {
                 [increment, multipliers],
                 (if *of_mass { ROUND_OFF } else { REDUCTION }, MOST),
             );
+            self.iterations += ended.iterations as u64;
             if ended.is_indefinite && self.patches.is_curved() {
                 // An inaccurate multiplier can make the curvature terms too large: without second
                 // derivatives there is still a descent direction.

@@ -23,6 +23,11 @@ pub(crate) trait Preconditioner: Send + Sync {
     /// Cost of forming a tangent, in solves with it.
     fn cost(&self) -> f64;
 
+    /// Iterations of all its solves so far; none without.
+    fn iterations(&self) -> Option<u64> {
+        None
+    }
+
     /// Diagonals over the free dofs of the mass and of the last tangent of the internal forces.
     fn diagonals(&self) -> &[Vec<f64>; 2];
 

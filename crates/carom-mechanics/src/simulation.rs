@@ -203,6 +203,11 @@ impl Simulation {
         self.work.system.factorisations
     }
 
+    /// Iterations of conjugate gradients so far; none if linear systems are solved directly.
+    pub fn linear_iterations(&self) -> Option<u64> {
+        self.work.system.preconditioner.iterations()
+    }
+
     /// Assembles the tangent of the internal forces at the current state, as for every factorisation. For
     /// measurements.
     ///

@@ -1,7 +1,7 @@
 //! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
 use carom_algebra::LinearError;
-use carom_case::{Case, ContactLaw, ContactPoint, ContactSpec, LinearRule, Problem, Problems, TangentRule};
+use carom_case::{Case, ContactLaw, ContactPoint, ContactSpec, Problem, Problems, TangentRule};
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, stable_step};
 use carom_mechanics::{
@@ -254,20 +254,10 @@ fn stepper(
     })
 }
 
-/// Unknowns in space from which iteration is faster than factors (ADR 52).
-const MANY: usize = 20_000;
-
 fn settings(case: &Case, model: &Model) -> Settings {
     let newton = &case.newton;
-    let linear = match newton.linear {
-        LinearRule::Direct => Linear::Direct,
-        LinearRule::Iterative => Linear::Iterative,
-        LinearRule::Auto => {
-            let moves = !case.time.scheme.is_static() && case.time.scheme.nonsmooth().is_none();
-            let many = model.dimension == 3 && model.free.len() >= MANY;
-            if many && moves && model.contacts.iter().all(|contact| contact.friction.is_none()) { Linear::Iterative } else { Linear::Direct }
-        }
-    };
+    let iterates =
+        newton.linear.iterates(model.dimension, model.free.len() as f64, &case.time, case.contacts.iter());
     let tangent = match newton.tangent {
         TangentRule::Frozen => Tangent::Frozen,
         TangentRule::FrozenDouble => Tangent::FrozenDouble,
@@ -277,7 +267,7 @@ fn settings(case: &Case, model: &Model) -> Settings {
         tolerance: newton.tolerance,
         max_iterations: newton.max_iterations,
         tangent,
-        linear,
+        linear: if iterates { Linear::Iterative } else { Linear::Direct },
         mixing: newton.mixing,
     }
 }

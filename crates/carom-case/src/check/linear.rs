@@ -1,13 +1,49 @@
-//! What `newton.linear = "iterative"` cannot solve.
+//! What solves the linear systems of a case, and what `newton.linear = "iterative"` cannot solve.
 
 use super::super::tree::Node;
+use super::super::{ContactSpec, LinearRule, TimeSpec};
 use super::Check;
 
-impl Check<'_> {
+/// Unknowns in space from which conjugate gradients take less time than factors (ADR 52).
+const MANY: f64 = 20_000.0;
+
+impl LinearRule {
+    /// Whether a case with this many unknowns is solved by iteration.
+    pub fn iterates<'a>(
+        self,
+        dimension: usize,
+        unknowns: f64,
+        time: &TimeSpec,
+        mut contacts: impl Iterator<Item = &'a ContactSpec>,
+    ) -> bool {
+        let moves = !time.scheme.is_static() && time.scheme.nonsmooth().is_none();
+        match self {
+            Self::Direct => false,
+            Self::Iterative => true,
+            Self::Auto => {
+                let many = dimension == 3 && unknowns >= MANY;
+                many && moves && !contacts.any(|contact| contact.friction.exists())
+            }
+        }
+    }
+}
+
+impl<'a> Check<'a> {
+    fn newton(&self, key: &str) -> Option<&'a str> {
+        self.document.root().get("newton")?.table()?.get(key)?.text()
+    }
+
+    /// `newton.linear`.
+    pub(super) fn linear_rule(&self) -> LinearRule {
+        match self.newton("linear") {
+            Some("direct") => LinearRule::Direct,
+            Some("iterative") => LinearRule::Iterative,
+            _ => LinearRule::Auto,
+        }
+    }
+
     pub(super) fn linear(&mut self) {
-        let newton = self.document.root().get("newton").and_then(Node::table);
-        let given = |key: &str| newton.and_then(|table| table.get(key)).and_then(Node::text);
-        if given("linear") != Some("iterative") {
+        if self.linear_rule() != LinearRule::Iterative {
             return;
         }
         const HELP: &str = "leave `linear` out";
@@ -27,7 +63,7 @@ impl Check<'_> {
             let why = "its steps need solutions for single contact forces, accurate to round-off, not the stages of an implicit scheme";
             self.add("newton.linear", what(format!("the steps of {}", time.scheme.kind)), why, HELP);
         }
-        if given("tangent") == Some("frozen-double") {
+        if self.newton("tangent") == Some("frozen-double") {
             let why = "\"frozen-double\" asks for a factorisation in double precision, and there is none";
             self.add("newton.tangent", what("with that tangent".into()), why, "use tangent = \"frozen\"");
         }
