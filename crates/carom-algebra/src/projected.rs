@@ -303,7 +303,7 @@ pub struct ConjugateGradients {
 
 impl ConjugateGradients {
     /// Overwrites `x` and `multipliers` (zero for springs) with the solution for `forces` and `gaps`,
-    /// whose residual is smaller by `reduction` than the first, or which took `most` iterations.
+    /// whose residual is at most `reduction` times the first, or which took `most` iterations.
     /// `product(x, out)`: A x. Where a component is constrained, forces, entries of G and products
     /// are zero.
     pub fn solve(

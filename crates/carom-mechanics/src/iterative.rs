@@ -20,7 +20,7 @@ use crate::renewal::Point;
 /// Cost of assembling a tangent, in solves with it.
 const COST: f64 = 3.0;
 /// Reduction of the residual by a solve with the tangent, and with the mass.
-const REDUCTION: f64 = 0.03;
+const REDUCTION: f64 = 0.01;
 const ROUND_OFF: f64 = 1e-15;
 /// Iterations after which a solve has failed.
 const MOST: usize = 5000;

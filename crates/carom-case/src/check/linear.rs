@@ -1,11 +1,10 @@
 //! What solves the linear systems of a case, and what `newton.linear = "iterative"` cannot solve.
 
-use super::super::tree::Node;
 use super::super::{ContactSpec, LinearRule, TimeSpec};
 use super::Check;
 
 /// Unknowns in space from which conjugate gradients take less time than factors (ADR 52).
-const MANY: f64 = 20_000.0;
+const MANY: f64 = 5_000.0;
 
 impl LinearRule {
     /// Whether a case with this many unknowns is solved by iteration.

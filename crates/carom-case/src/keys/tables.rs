@@ -157,7 +157,7 @@ const NEWTON: Table = Table {
         key(
             "linear",
             Choice(&["auto", "direct", "iterative"], &[]),
-            "What solves with the tangent. direct: its factorisation. iterative: conjugate gradients with the blocks of the nodes as preconditioner; only the rows of closed contacts are factorised. auto: iterative for bodies in space that move, with 20 000 unknowns or more and without friction; otherwise direct.",
+            "What solves with the tangent. direct: its factorisation. iterative: conjugate gradients with the blocks of the nodes as preconditioner; only the rows of closed contacts are factorised. auto: iterative for bodies in space that move, with 5 000 unknowns or more and without friction; otherwise direct.",
         )
         .default("\"auto\""),
         key(
