@@ -141,9 +141,8 @@ impl DiscreteGradient {
         }
         let nodes = (n / d.max(1)) as f64;
         // Σ ω_j G_j of the unit vector of component q, at component p of the same node.
-        let turning = |p: usize, q: usize| -> f64 {
-            (0..count).map(|j| rotation[j] * generator(d, j, p, q)).sum()
-        };
+        let turning =
+            |p: usize, q: usize| -> f64 { (0..count).map(|j| rotation[j] * generator(d, j, p, q)).sum() };
         for p in 0..n {
             for q in 0..n {
                 let same = f64::from(u8::from(p / d == q / d)) - nodes.recip();

@@ -22,7 +22,8 @@ pub use interface::{
 };
 pub use kinematics::{
     BothSides, Boundary, Carrier, ClosedSurface, ContactPoint, Crossings, Detection, Kinematics, NodeToFacet,
-    NodeToObstacle, NodeToPatch, Obstacle, OneWay, Passed, Polyline, PolylineError, Side, Surface, Swept, SweptTest,
+    NodeToObstacle, NodeToPatch, Obstacle, OneWay, Passed, Polyline, PolylineError, Side, Surface, Swept,
+    SweptTest,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

@@ -121,7 +121,12 @@ impl Check<'_> {
             let key = if contact.between { "between" } else { "primary" };
             let why = format!("contact of a body with itself is not built in space: {later}");
             let help = "give `secondary` and `primary`, sides of two bodies";
-            self.add_unique(contact.path(key), format!("`{key}` cannot be used so in dimension 3"), why, help);
+            self.add_unique(
+                contact.path(key),
+                format!("`{key}` cannot be used so in dimension 3"),
+                why,
+                help,
+            );
         }
     }
 

@@ -5,6 +5,7 @@ use super::Check;
 
 /// Unknowns in space from which conjugate gradients take less time than factors (ADR 52).
 const MANY: f64 = 5_000.0;
+const HELP: &str = "leave `linear` out";
 
 impl LinearRule {
     /// Whether a case with this many unknowns is solved by iteration.
@@ -45,7 +46,6 @@ impl<'a> Check<'a> {
         if self.linear_rule() != LinearRule::Iterative {
             return;
         }
-        const HELP: &str = "leave `linear` out";
         let what = |of: String| format!("linear = \"iterative\" does not solve {of}");
         let draft = self.draft;
         if let Some(contact) = draft.contacts.iter().flatten().find(|contact| contact.friction.exists()) {

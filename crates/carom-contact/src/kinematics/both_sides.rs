@@ -85,7 +85,6 @@ impl BothSides<NodeToFacet> {
         };
         Self::new(of(nodes, Side::Later), of(earlier, Side::Earlier).with_allowed(allowed))
     }
-
 }
 
 impl<K: OneWay> BothSides<K> {

@@ -29,8 +29,7 @@ const SLABS: [&str; 7] = [
     "support=[{ on = [\"lower.front\"], fix = [\"x\", \"y\"] }, { on = [\"lower.bottom\", \"lower.top\", \"upper.bottom\", \"upper.top\"], fix = [\"z\"] }]",
 ];
 
-const SIDES: &str =
-    "contact=[{ name = \"strike\", secondary = \"upper.front\", primary = \"lower.back\" }]";
+const SIDES: &str = "contact=[{ name = \"strike\", secondary = \"upper.front\", primary = \"lower.back\" }]";
 
 fn slab(sets: &[&str]) -> Vec<String> {
     SLABS.iter().chain([&SIDES]).chain(sets).map(ToString::to_string).collect()
@@ -46,8 +45,7 @@ fn an_impact_of_slabs_is_that_of_the_plane() {
     for (scheme, law) in schemes {
         let law = format!("material.rubber.law=\"{law}\"");
         let sets = [scheme, &law];
-        let (plane, space) =
-            (finish(simulation(IMPACT, &sets)), finish(simulation(IMPACT, &slab(&sets))));
+        let (plane, space) = (finish(simulation(IMPACT, &sets)), finish(simulation(IMPACT, &slab(&sets))));
         assert!(plane.state().pairs[0].iter().any(|pair| pair.active), "{scheme}: no contact");
         let worst = apart(&plane, &space);
         assert!(worst < 1e-8, "{scheme}: {worst:e}");
@@ -139,7 +137,8 @@ fn a_rigid_sphere_of_large_radius_is_a_plane() {
             "body.block.place={ shift = [0.0, 0.0, -5.0] }".to_owned(),
         ]
     };
-    let plane = finish(simulation(BALL, &rigid("plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }")));
+    let plane =
+        finish(simulation(BALL, &rigid("plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }")));
     assert!(plane.state().pairs[0].iter().filter(|pair| pair.active).count() > 3);
     let mut last = f64::INFINITY;
     for radius in [30.0, 100.0, 300.0] {

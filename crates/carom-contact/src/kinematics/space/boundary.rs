@@ -194,10 +194,11 @@ impl Boundary {
             let Some(corner) = patch.nodes[..count].iter().position(|&n| n == node) else { continue };
             let at = patch.at(y, patch.corner(corner));
             // Directions of both edges at the corner.
-            let [out, back] = [patch.along(corner, 1.0), patch.corner((corner + count - 1) % count)].map(|to| {
-                let here = patch.corner(corner);
-                at.tangents[0] * (to[0] - here[0]) + at.tangents[1] * (to[1] - here[1])
-            });
+            let [out, back] =
+                [patch.along(corner, 1.0), patch.corner((corner + count - 1) % count)].map(|to| {
+                    let here = patch.corner(corner);
+                    at.tangents[0] * (to[0] - here[0]) + at.tangents[1] * (to[1] - here[1])
+                });
             let angle = cross(out, back).norm().atan2(out.dot(&back));
             sum += at.normal * angle;
         }

@@ -132,7 +132,11 @@ impl NodeToPatch {
         }
         match best {
             Some((facet, ..)) if !self.primary.is_of_side(facet) => {
-                if self.faces_nothing(pair.facet, xi, y) { Next::Leave } else { Next::Stay }
+                if self.faces_nothing(pair.facet, xi, y) {
+                    Next::Leave
+                } else {
+                    Next::Stay
+                }
             }
             Some((facet, _, xi)) if came_from == Some(facet) => Next::Dent(facet, xi),
             Some((facet, _, xi)) => Next::HandOver(facet, xi),
@@ -247,8 +251,7 @@ fn crossing(patch: Patch, before: &[f64], now: &[f64], node: usize) -> Option<f6
         }
         if size <= 1e-12 {
             let inwards = relative.dot(&cross(tangents[0], tangents[1])) < 0.0;
-            let valid =
-                (-TOLERANCE..=1.0 + TOLERANCE).contains(&theta) && patch.furthest(xi).1 <= TOLERANCE;
+            let valid = (-TOLERANCE..=1.0 + TOLERANCE).contains(&theta) && patch.furthest(xi).1 <= TOLERANCE;
             return (inwards && valid).then_some(theta);
         }
     }

@@ -246,9 +246,9 @@ impl Patch<'_> {
             (-d.dot(&first), first.dot(&first) - d.dot(&second), d.dot(&d))
         };
         let at = |k: usize| k as f64 / PIECES as f64;
-        let best = (0..=PIECES).map(|k| (k, slope(at(k)).2)).fold((0, f64::INFINITY), |best, sample| {
-            if sample.1 < best.1 { sample } else { best }
-        });
+        let best = (0..=PIECES)
+            .map(|k| (k, slope(at(k)).2))
+            .fold((0, f64::INFINITY), |best, sample| if sample.1 < best.1 { sample } else { best });
         let (mut low, mut high) = (at(best.0.saturating_sub(1)), at((best.0 + 1).min(PIECES)));
         if slope(low).0 >= 0.0 {
             return low;
@@ -299,7 +299,11 @@ mod tests {
         let patch = Patch { shape: FacetShape::T6, nodes: &[0, 1, 2, 3, 4, 5] };
         for k in 0..60 {
             let t = f64::from(k);
-            let from = Vector([1.6 * (t * 0.61).sin().abs() - 0.3, 1.4 * (t * 0.37).cos().abs() - 0.2, (t * 0.23).sin()]);
+            let from = Vector([
+                1.6 * (t * 0.61).sin().abs() - 0.3,
+                1.4 * (t * 0.37).cos().abs() - 0.2,
+                (t * 0.23).sin(),
+            ]);
             let mut least = f64::INFINITY;
             for i in 0..=300 {
                 for j in 0..=300 - i {
