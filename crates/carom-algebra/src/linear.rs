@@ -21,6 +21,18 @@ pub enum LinearError {
         /// Residual after refinement.
         residual: f64,
     },
+    /// Conjugate gradients do not converge.
+    #[error(
+        "conjugate gradients do not converge: {iterations} iterations reduced the residual of {size} unknowns to {reduction:.1e}; use a smaller step, or solve directly"
+    )]
+    Stalled {
+        /// Unknowns.
+        size: usize,
+        /// Iterations.
+        iterations: usize,
+        /// Residual relative to the first.
+        reduction: f64,
+    },
     /// There is not enough memory for the factorisation.
     #[error("there is not enough memory to factorise a matrix of {size} unknowns")]
     Memory {

@@ -48,8 +48,8 @@ pub use read_scheme::read_scheme;
 pub use schema::{changes, expectation, schema};
 pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,
-    FormulaSpec, FrictionSpec, InitialSpec, Law, LoadKind, LoadSpec, MassKind, MaterialSpec, MeshSpec,
-    NewtonSpec, ObstacleMotion, OutputSpec, Overlap, Persistency, PlaceSpec, Plane, Preset, PrimarySpec,
-    ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units,
-    Velocities,
+    FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind, MaterialSpec,
+    MeshSpec, NewtonSpec, ObstacleMotion, OutputSpec, Overlap, Persistency, PlaceSpec, Plane, Preset,
+    PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec, TableSpec, TangentRule,
+    TimeSpec, Units, Velocities,
 };

@@ -185,6 +185,7 @@ pub(super) fn newton(v: View) -> Option<NewtonSpec> {
     Some(NewtonSpec {
         tolerance: v.number("tolerance")?,
         max_iterations: v.count("max_iterations")?,
+        linear: v.choice("linear")?,
         tangent: v.choice("tangent")?,
         mixing: v.count("mixing")?,
     })

@@ -256,9 +256,9 @@ impl Closed {
             rows.push_plain(self.places[i], self.slips.row(i), true);
             targets.push(right.slips[i]);
         }
-        system.factor_mass(model, &rows)?;
+        system.mass_with(model, &rows)?;
         let (mut x, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
-        system.factor.solve(model, &forces, &targets, &mut x, &mut multipliers)?;
+        system.solve(model, [&forces, &targets], &mut x, &mut multipliers)?;
         let held = multipliers.split_off(ways.len());
         let mut motion = Motion { x, normal: multipliers, tangential: vec![0.0; ways.len()] };
         for &i in &rubs {

@@ -8,7 +8,6 @@ use crate::equations::Equations;
 use crate::evaluation::Evaluation;
 use crate::rejected::Rejected;
 use crate::renewal::{Point, Renewal};
-use crate::tangent_factor::boundary;
 use crate::timings::timed;
 use crate::workspace::Workspace;
 
@@ -40,11 +39,12 @@ impl Workspace {
         renewal: &mut Renewal,
     ) -> Result<(), Rejected> {
         for again in [true, false] {
-            if renewal.due || !self.system.factor.spans(rows) {
+            if renewal.due || !self.system.preconditioner.spans(rows) {
                 self.renew(equations, now, rows, renewal)?;
             }
             let Self { system, timings, .. } = self;
-            let positive = timed(&mut timings.factor, || system.factor.prepare(equations.model, rows))?;
+            let positive =
+                timed(&mut timings.factor, || system.preconditioner.prepare(equations.model, rows))?;
             if positive || !again {
                 break;
             }
@@ -62,7 +62,8 @@ impl Workspace {
         renewal: &mut Renewal,
     ) -> Result<(), Rejected> {
         renewal.due = false;
-        let boundary = boundary(equations.model, &now.place, rows, renewal.frozen.point.as_deref());
+        let last = renewal.frozen.point.as_deref();
+        let boundary = self.system.preconditioner.boundary(equations.model, &now.place, rows, last);
         // Far from the solution the tangent may be indefinite; with inertia, that at the step's
         // start is almost always positive definite.
         let (present, start) =
@@ -89,6 +90,6 @@ impl Workspace {
         double: bool,
     ) -> Result<bool, Rejected> {
         let Self { system, timings, .. } = self;
-        timed(&mut timings.factor, || system.factor_at(equations.model, point, double))
+        timed(&mut timings.factor, || system.tangent_at(equations.model, point, double))
     }
 }

@@ -20,10 +20,11 @@
 use std::sync::Arc;
 
 use crate::constraints::Constraints;
+use crate::direct::Direct;
 use crate::model::Model;
+use crate::preconditioner::Preconditioner;
 use crate::renewal::Point;
 use crate::sums::dot;
-use crate::system::System;
 
 /// Maximum iterations per vector, and relative change of the quotient at convergence.
 const ITERATIONS: usize = 400;
@@ -44,7 +45,7 @@ pub struct Frequencies {
 
 /// Frequencies of a model; none if its tangent or its mass cannot be factored.
 pub fn frequencies(model: &Model) -> Option<Frequencies> {
-    let mut system = System::new(model);
+    let mut system = Direct::new(model);
     system.assemble(model, &model.reference).ok()?;
     let n = model.free.len();
     let massless = model.free.iter().any(|dof| model.massless[*dof]);
@@ -52,13 +53,13 @@ pub fn frequencies(model: &Model) -> Option<Frequencies> {
         |seed: f64| -> Vec<f64> { (0..n).map(|i| ((12.9898 + seed) * (i as f64 + 1.0)).sin()).collect() };
     let highest = if massless { None } else { Some(power(model, &mut system, start(0.0))?) };
     let scale = highest.unwrap_or_else(|| {
-        let stiffness: f64 = system.diagonal(0.0, 1.0).sum();
-        stiffness / system.diagonal(1.0, 0.0).sum::<f64>()
+        let [mass, stiffness] = system.diagonals();
+        stiffness.iter().sum::<f64>() / mass.iter().sum::<f64>()
     });
     let point = Arc::new(Point { mass: 1e-6 * scale, stiffness: 1.0, ..Point::default() });
     let none = Constraints::none(model.dimension);
     system.factor(model, &point, true).ok()?;
-    system.factor.prepare(model, &none).ok()?;
+    system.prepare(model, &none).ok()?;
     let mut found: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
     let mut lowest = Vec::new();
     for k in 0..VECTORS.min(n) {
@@ -99,9 +100,9 @@ pub fn spring(model: &Model) -> Option<f64> {
     {
         return None;
     }
-    let mut system = System::new(model);
+    let mut system = Direct::new(model);
     system.assemble(model, &model.reference).ok()?;
-    system.factor_mass(model, &Constraints::none(model.dimension)).ok()?;
+    system.form_mass(model, &Constraints::none(model.dimension)).ok()?;
     let mut highest: Option<f64> = None;
     let springs = model.contacts.iter().flat_map(|contact| {
         let nodes = contact.kinematics.secondary().iter().enumerate();
@@ -118,8 +119,8 @@ pub fn spring(model: &Model) -> Option<f64> {
     highest.map(f64::sqrt)
 }
 
-fn power(model: &Model, system: &mut System, mut x: Vec<f64>) -> Option<f64> {
-    system.factor_mass(model, &Constraints::none(model.dimension)).ok()?;
+fn power(model: &Model, system: &mut Direct, mut x: Vec<f64>) -> Option<f64> {
+    system.form_mass(model, &Constraints::none(model.dimension)).ok()?;
     let mut square = 0.0;
     for _ in 0..ITERATIONS {
         let quotient = normalise(model, system, &mut x);
@@ -135,15 +136,15 @@ fn power(model: &Model, system: &mut System, mut x: Vec<f64>) -> Option<f64> {
 }
 
 /// Solves with the last factor for a right-hand side on the free dofs.
-fn solved(model: &Model, system: &mut System, right: &[f64]) -> Option<Vec<f64>> {
+fn solved(model: &Model, system: &mut Direct, right: &[f64]) -> Option<Vec<f64>> {
     let (mut forces, mut answer) = (vec![0.0; model.dofs()], vec![0.0; model.dofs()]);
     model.free.iter().zip(right).for_each(|(dof, f)| forces[*dof] = *f);
-    system.factor.solve(model, &forces, &[], &mut answer, &mut Vec::new()).ok()?;
+    system.solve(model, [&forces, &[]], &mut answer, &mut Vec::new()).ok()?;
     Some(model.free.iter().map(|dof| answer[*dof]).collect())
 }
 
 /// Scales to xᵀMx = 1; returns Rayleigh's quotient.
-fn normalise(model: &Model, system: &System, x: &mut [f64]) -> f64 {
+fn normalise(model: &Model, system: &Direct, x: &mut [f64]) -> f64 {
     let weight = dot(x, &mass_product(model, x)).sqrt();
     x.iter_mut().for_each(|x| *x /= weight);
     let mut force = vec![0.0; x.len()];

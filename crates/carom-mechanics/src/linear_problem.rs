@@ -18,10 +18,10 @@ use crate::constraints::Constraints;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
 use crate::mixing::Mixing;
+use crate::preconditioner::Preconditioner;
 use crate::rejected::Rejected;
 use crate::renewal::Renewal;
 use crate::sums::max_abs;
-use crate::tangent_factor::TangentFactor;
 use crate::timings::{Timings, timed};
 
 /// Maximum number of solves of one linear problem; then the current solution is used.
@@ -87,7 +87,7 @@ impl LinearProblem {
         equations: &Equations,
         now: &Evaluation,
         rows: &Constraints,
-        factor: &mut TangentFactor,
+        preconditioner: &mut dyn Preconditioner,
         renewal: &mut Renewal,
         goal: Goal,
         depth: usize,
@@ -102,7 +102,7 @@ impl LinearProblem {
         let mut total = Correction::default();
         (total.increment, total.multipliers) = (self.increment.clone(), vec![0.0; rows.len()]);
         loop {
-            self.correct(equations, factor, depth, &mut total, timings)?;
+            self.correct(equations, preconditioner, depth, &mut total, timings)?;
             if let Some(last) = self.comparable.replace(total.last) {
                 renewal.observe(total.last / last);
             }
@@ -147,16 +147,15 @@ impl LinearProblem {
     fn correct(
         &mut self,
         equations: &Equations,
-        factor: &mut TangentFactor,
+        preconditioner: &mut dyn Preconditioner,
         depth: usize,
         total: &mut Correction,
         timings: &mut Timings,
     ) -> Result<(), LinearError> {
         timed(&mut timings.solve, || {
-            factor.solve(
+            preconditioner.solve(
                 equations.model,
-                &self.forces,
-                &self.gaps,
+                [&self.forces, &self.gaps],
                 &mut self.increment,
                 &mut self.multipliers,
             )

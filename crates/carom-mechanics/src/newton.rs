@@ -66,7 +66,8 @@ pub(crate) fn solve_stage(
     let (model, state, tolerance) = (equations.model, equations.state, settings.tolerance);
     let mut effort = Effort::default();
     let (mass, stiffness) = (equations.mass_factor(), equations.factor_stiffness());
-    let mut renewal = Renewal::new(frozen, mass, stiffness, settings.tangent != Tangent::Frozen);
+    let cost = work.system.preconditioner.cost();
+    let mut renewal = Renewal::new(frozen, [mass, stiffness], settings.tangent != Tangent::Frozen, cost);
     // Without inertia corrections may grow before they shrink, and the residual tolerance is mostly
     // round-off of positions: a remaining residual would appear in reactions.
     let (full, is_static) = (settings.tangent == Tangent::Full, equations.stage.is_static());
@@ -132,7 +133,7 @@ pub(crate) fn solve_stage(
         renewal.due |= full;
         work.factor_for(equations, &now, &rows, &mut renewal)?;
         if rows.is_skew {
-            let regularity = work.system.factor.regularity().unwrap_or(f64::INFINITY);
+            let regularity = work.system.preconditioner.regularity().unwrap_or(f64::INFINITY);
             contact.regularity = contact.regularity.min(regularity);
         }
         let trust = if fallback.is_some() && predicted > 0.0 { TRUST * predicted } else { f64::INFINITY };
@@ -145,7 +146,7 @@ pub(crate) fn solve_stage(
             equations,
             &now,
             &rows,
-            &mut system.factor,
+            &mut *system.preconditioner,
             &mut renewal,
             goal,
             settings.mixing,

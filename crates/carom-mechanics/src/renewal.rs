@@ -1,7 +1,7 @@
 //! The refactoring criterion of the frozen tangent.
 //!
 //! A solve with the factor reduces the error by θ on average and costs about as much as a residual;
-//! a new factor costs as much as [`COST`] solves (Deuflhard, Newton Methods for Nonlinear Problems,
+//! a new factor costs as much as several solves (Deuflhard, Newton Methods for Nonlinear Problems,
 //! §2.1.1). It is recomputed within a step if θ predicts more solves than that to the end of the
 //! stage. It is recomputed at the beginning of a step if the last one took more than the mean cost
 //! since the last refactoring, which minimises this mean for a growing number of solves.
@@ -13,8 +13,6 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-/// Cost of forming and factoring a tangent, in solves with the frozen one.
-const COST: f64 = 6.0;
 /// Expected reduction by a solve with an unknown factor.
 const EXPECTED: f64 = 0.1;
 /// ln of the reduction of the first correction in a step.
@@ -57,6 +55,8 @@ pub(crate) struct Renewal {
     pub(crate) due: bool,
     /// It is required in double precision.
     pub(crate) double: bool,
+    /// Cost of a factor, in solves.
+    cost: f64,
     /// Number of factors made.
     pub(crate) made: u32,
     /// Number of observed reductions with the current factor, and the ln of their product.
@@ -65,12 +65,12 @@ pub(crate) struct Renewal {
 
 impl Renewal {
     /// At the beginning of a stage with these factors of mass and stiffness.
-    pub(crate) fn new(frozen: &FrozenTangent, mass: f64, stiffness: f64, double: bool) -> Self {
+    pub(crate) fn new(frozen: &FrozenTangent, [mass, stiffness]: [f64; 2], double: bool, cost: f64) -> Self {
         let same = |a: f64, b: f64| (a - b).abs() <= SAME * b.abs();
         let fits = frozen.point.as_ref().is_some_and(|p| same(p.mass, mass) && same(p.stiffness, stiffness));
         let due =
-            !fits || (frozen.steps > 0 && frozen.last > (COST + frozen.spent) / f64::from(frozen.steps));
-        Self { frozen: frozen.clone(), due, double, made: 0, shrunk: (0.0, 0.0) }
+            !fits || (frozen.steps > 0 && frozen.last > (cost + frozen.spent) / f64::from(frozen.steps));
+        Self { frozen: frozen.clone(), due, double, cost, made: 0, shrunk: (0.0, 0.0) }
     }
 
     /// Records a new factor.
@@ -92,7 +92,7 @@ impl Renewal {
 
     /// Whether a new factor is cheaper than the remaining solves to the `goal` of the stage.
     pub(crate) fn pays(&self, size: f64, goal: f64) -> bool {
-        self.shrunk.0 > 0.0 && self.solves(size, goal) > COST
+        self.shrunk.0 > 0.0 && self.solves(size, goal) > self.cost
     }
 
     /// Records a reduction by the factor `ratio` in a solve.
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn a_factor_is_made_anew_where_more_solves_are_left_than_it_costs() {
-        let mut renewal = Renewal::new(&FrozenTangent::default(), 1.0, 1.0, true);
+        let mut renewal = Renewal::new(&FrozenTangent::default(), [1.0, 1.0], true, 6.0);
         assert!(renewal.due, "there is none");
         renewal.renewed(Arc::default());
         assert!(!renewal.pays(1.0, 1e-9), "nothing has been seen of it yet");
@@ -132,21 +132,21 @@ mod tests {
     fn steps_that_take_longer_than_the_mean_end_the_life_of_a_factor() {
         let point = Arc::new(Point { mass: 1.0, stiffness: 1.0, ..Point::default() });
         let mut frozen = {
-            let mut renewal = Renewal::new(&FrozenTangent::default(), 1.0, 1.0, true);
+            let mut renewal = Renewal::new(&FrozenTangent::default(), [1.0, 1.0], true, 6.0);
             renewal.renewed(point);
             renewal.observe(0.01);
             renewal.finish()
         };
         // ln 1e-2 takes 3.9 solves per step and the factor 6: the mean after n steps is 3.9 + 6/n.
         for _ in 0..5 {
-            let mut renewal = Renewal::new(&frozen, 1.0, 1.0, true);
+            let mut renewal = Renewal::new(&frozen, [1.0, 1.0], true, 6.0);
             assert!(!renewal.due);
             renewal.observe(0.01);
             frozen = renewal.finish();
         }
-        let mut slow = Renewal::new(&frozen, 1.0, 1.0, true);
+        let mut slow = Renewal::new(&frozen, [1.0, 1.0], true, 6.0);
         slow.observe(0.1);
-        assert!(Renewal::new(&slow.finish(), 1.0, 1.0, true).due);
-        assert!(Renewal::new(&frozen, 2.0, 1.0, true).due, "another step has another matrix");
+        assert!(Renewal::new(&slow.finish(), [1.0, 1.0], true, 6.0).due);
+        assert!(Renewal::new(&frozen, [2.0, 1.0], true, 6.0).due, "another step has another matrix");
     }
 }

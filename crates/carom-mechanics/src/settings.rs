@@ -7,10 +7,22 @@ pub struct Settings {
     pub tolerance: f64,
     /// Iterations before a step is rejected.
     pub max_iterations: usize,
+    /// What solves with it.
+    pub linear: Linear,
     /// When the tangent is formed and factored.
     pub tangent: Tangent,
     /// Number of earlier iterations with the same factor used to mix each correction.
     pub mixing: usize,
+}
+
+/// What solves with a frozen tangent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Linear {
+    /// Its factor.
+    #[default]
+    Direct,
+    /// Conjugate gradients.
+    Iterative,
 }
 
 /// When the tangent is formed and factored.

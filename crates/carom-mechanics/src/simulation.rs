@@ -125,7 +125,7 @@ impl Simulation {
 
     fn at(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
         let model = model.on_threads(threads);
-        let mut work = Workspace::new(&model);
+        let mut work = Workspace::new(&model, stepper.linear());
         work.system.restored.clone_from(&state.frozen.point);
         Self { model, state, grid, stepper, work, bisections: MOST, audited: false }
     }
@@ -203,13 +203,18 @@ impl Simulation {
         self.work.system.factorisations
     }
 
-    /// Assembles the tangent of the internal forces at the current state, as for every factor. For
+    /// Iterations of conjugate gradients so far; none if linear systems are solved directly.
+    pub fn linear_iterations(&self) -> Option<u64> {
+        self.work.system.preconditioner.iterations()
+    }
+
+    /// Assembles the tangent of the internal forces at the current state, as for every factorisation. For
     /// measurements.
     ///
     /// # Errors
     /// If a cell is inverted.
     pub fn assemble(&mut self) -> Result<(), Rejected> {
-        self.work.system.assemble(&self.model, &self.state.y)
+        self.work.system.preconditioner.assemble(&self.model, &self.state.y)
     }
 
     /// Advances to the next grid time and reports what happened.

@@ -1,267 +1,100 @@
-//! The matrices of the bodies over free dofs, in one pattern: the constant mass M, the tangent K =
-//! ∂f_int/∂y at given positions, and the symmetric part of K_ext = ∂f_ext/∂y of follower pressures
-//! (equal to it if the pressure is uniform and the side closed or constrained at its ends); and
-//! their factors.
-//!
-//! The pattern is built once, with the slots of every cell. It excludes contact, whose rows act on
-//! the last unknowns of a factor (`tangent_factor.rs`).
+//! The linear system of a model: its preconditioner, counted, and the scales that follow from its
+//! diagonal.
 
 use std::sync::Arc;
 
-use carom_algebra::{LinearError, Pattern};
+use carom_algebra::LinearError;
 
-use crate::cells;
 use crate::constraints::Constraints;
+use crate::direct::Direct;
 use crate::equations::Equations;
-use crate::model::{LoadsAt, Model};
+use crate::iterative::Iterative;
+use crate::model::Model;
+use crate::preconditioner::Preconditioner;
 use crate::rejected::Rejected;
 use crate::renewal::Point;
+use crate::settings::Linear;
 use crate::sums::max_abs;
-use crate::tangent_factor::TangentFactor;
 
-/// Slot of an entry that is not stored: of a constrained dof, or in a facet's upper triangle.
-const SKIP: u32 = u32::MAX;
-
-/// Matrices and factors.
+/// The preconditioner of a model.
 pub(crate) struct System {
-    pattern: Pattern,
-    stiffness: Vec<f64>,
-    mass: Vec<f64>,
-    /// Empty without follower loads.
-    follower: Vec<f64>,
-    /// Diagonals of both, cached.
-    diagonals: [Vec<f64>; 2],
-    /// Slots of each cell's pairs of dofs, the lower triangle by rows, cell after cell over all
-    /// bodies.
-    slots: Vec<u32>,
-    /// Slots of every pair of dofs of the facets under pressure.
-    facet_slots: Vec<u32>,
-    /// The reused factor, and that of the mass.
-    pub(crate) factor: TangentFactor,
-    /// Factorisations so far.
+    pub(crate) preconditioner: Box<dyn Preconditioner>,
+    /// Tangents and masses formed so far.
     pub factorisations: u64,
-    /// The point of the factor of a resumed state, until a factor is made.
+    /// The point of the tangent of a resumed state, until one is formed.
     pub restored: Option<Arc<Point>>,
 }
 
 impl System {
-    /// Pattern and slots of the bodies of a model.
-    pub(crate) fn new(model: &Model) -> Self {
-        let pattern = pattern(model);
-        let mut slots = Vec::new();
-        for_each_cell_pair(model, |pair| {
-            slots.push(pair.and_then(|(a, b)| pattern.slot(a, b)).map_or(SKIP, |s| s as u32));
-        });
-        let (d, mut mass) = (model.dimension, vec![0.0; pattern.len()]);
-        for node in 0..model.mass.nodes() {
-            for (other, value) in model.mass.row(node) {
-                for i in 0..d {
-                    if let (Some(a), Some(b)) = (model.unknown(node * d + i), model.unknown(other * d + i))
-                        && a >= b
-                        && let Some(slot) = pattern.slot(a, b)
-                    {
-                        mass[slot] += value;
-                    }
-                }
-            }
-        }
-        let mut facet_slots = Vec::new();
-        model.loads.each_facet_tangent(d, None, |nodes, _| {
-            let dofs =
-                || nodes.iter().flat_map(|n| (0..d).map(move |i| n * d + i)).map(|dof| model.unknown(dof));
-            for a in dofs() {
-                for b in dofs() {
-                    let slot = a.zip(b).filter(|(a, b)| a >= b).and_then(|(a, b)| pattern.slot(a, b));
-                    facet_slots.push(slot.map_or(SKIP, |s| s as u32));
-                }
-            }
-        });
-        let follower = vec![0.0; if model.loads.follow_sides() { pattern.len() } else { 0 }];
-        let diagonals = [diagonal_of(&pattern, &mass), vec![0.0; model.free.len()]];
-        let stiffness = vec![0.0; pattern.len()];
-        Self {
-            pattern,
-            stiffness,
-            mass,
-            follower,
-            diagonals,
-            slots,
-            facet_slots,
-            factor: TangentFactor::default(),
-            factorisations: 0,
-            restored: None,
-        }
+    /// For a model.
+    pub(crate) fn new(model: &Model, linear: Linear) -> Self {
+        let preconditioner: Box<dyn Preconditioner> = match linear {
+            Linear::Direct => Box::new(Direct::new(model)),
+            Linear::Iterative => Box::new(Iterative::new(model)),
+        };
+        Self { preconditioner, factorisations: 0, restored: None }
     }
 
-    /// Assembles the tangent at positions.
-    ///
-    /// # Errors
-    /// If a cell is inverted there.
-    pub(crate) fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
-        self.stiffness.fill(0.0);
-        let mut slots = self.slots.iter();
-        for part in &model.parts {
-            let (mesh, stiffness) = (part.body.mesh(), &mut self.stiffness);
-            let n = mesh.element.dofs();
-            let compute = |cell: usize, local: &mut [f64]| {
-                let (force, tangent) = local.split_at_mut(n);
-                part.body.cell_tangent(cell, part.of(y), force, tangent)
-            };
-            let add = |_: usize, local: &[f64]| {
-                for (row, k) in local[n..].chunks_exact(n).enumerate() {
-                    for (value, slot) in k[..=row].iter().zip(slots.by_ref()) {
-                        if *slot != SKIP {
-                            stiffness[*slot as usize] += value;
-                        }
-                    }
-                }
-            };
-            cells::for_each(&model.threads, mesh.cell_count(), n + n * n, compute, add)
-                .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
-        }
-        self.diagonals[1] = diagonal_of(&self.pattern, &self.stiffness);
-        Ok(())
-    }
-
-    /// Assembles the symmetric part of the loads' tangent at a time and positions `y`, which matter in
-    /// space only.
-    fn assemble_loads(&mut self, model: &Model, time: f64, y: &[f64]) -> Result<(), Rejected> {
-        let (mut at, mut slots) = (LoadsAt::default(), self.facet_slots.iter());
-        model.loads.at(&model.parts, model.dofs(), time, &mut at)?;
-        self.follower.fill(0.0);
-        let follower = &mut self.follower;
-        model.loads.each_facet_tangent(model.dimension, Some((&at, y)), |nodes, k| {
-            let n = nodes.len() * model.dimension;
-            for entry in 0..n * n {
-                if let Some(&slot) = slots.next().filter(|slot| **slot != SKIP) {
-                    follower[slot as usize] += 0.5 * (k[entry] + k[entry % n * n + entry / n]);
-                }
-            }
-        });
-        Ok(())
-    }
-
-    /// Diagonal of `mass_factor` M + `stiffness_factor` K over the free dofs: force per unit of
-    /// displacement.
-    pub(crate) fn diagonal(&self, mass_factor: f64, stiffness_factor: f64) -> impl Iterator<Item = f64> + '_ {
-        let [mass, stiffness] = &self.diagonals;
+    /// Diagonal of the tangent over the free dofs: force per unit of displacement.
+    fn diagonal(&self, equations: &Equations) -> impl Iterator<Item = f64> + '_ {
+        let [mass, stiffness] = self.preconditioner.diagonals();
+        let (mass_factor, stiffness_factor) = (equations.mass_factor(), equations.stiffness_factor());
         mass.iter().zip(stiffness).map(move |(m, k)| mass_factor * m + stiffness_factor * k)
     }
 
     /// Round-off of the residual due to that of the positions: a body far from the origin knows
     /// them to fewer digits than its size suggests.
     pub(crate) fn round_off(&self, equations: &Equations) -> f64 {
-        let diagonal = self.diagonal(equations.mass_factor(), equations.stiffness_factor());
         let reach = equations.model.scale.max(max_abs(&equations.state.y));
-        16.0 * f64::EPSILON * reach * diagonal.map(|d| d * d).sum::<f64>().sqrt()
+        16.0 * f64::EPSILON * reach * self.diagonal(equations).map(|d| d * d).sum::<f64>().sqrt()
     }
 
     /// Mean diagonal of the tangent: makes a gap comparable with a multiplier.
     pub(crate) fn mean_stiffness(&self, equations: &Equations) -> f64 {
-        let sum: f64 = self.diagonal(equations.mass_factor(), equations.stiffness_factor()).sum();
+        let sum: f64 = self.diagonal(equations).sum();
         // Without inertia there is no reference before the first tangent.
-        if sum > 0.0 { sum / self.pattern.size() as f64 } else { 1.0 }
+        if sum > 0.0 { sum / equations.model.free.len() as f64 } else { 1.0 }
     }
 
-    /// out += K x over the free dofs, with the last tangent.
-    pub(crate) fn stiffness_product(&self, x: &[f64], out: &mut [f64]) {
-        self.pattern.multiply_add(&self.stiffness, x, out);
-    }
-
-    /// Factors the tangent at a point unless that is done; `double`: in double precision. Returns
+    /// Forms the tangent of a point unless that is done; `double`: in double precision. Returns
     /// whether it is positive definite.
     ///
     /// # Errors
     /// If a cell is inverted there, or a load has no value.
-    pub(crate) fn factor_at(
+    pub(crate) fn tangent_at(
         &mut self,
         model: &Model,
         point: &Arc<Point>,
         double: bool,
     ) -> Result<bool, Rejected> {
-        if let Some(positive) = self.factor.of(point) {
+        if let Some(positive) = self.preconditioner.of(point) {
             return Ok(positive);
         }
-        self.assemble(model, &point.at)?;
-        if point.follower != 0.0 {
-            self.assemble_loads(model, point.time, &point.at)?;
-        }
-        Ok(self.factor(model, point, double)?)
-    }
-
-    /// Factors the last tangent with the coefficients of a point; returns whether it is positive
-    /// definite.
-    ///
-    /// # Errors
-    /// If a number is not finite.
-    pub(crate) fn factor(
-        &mut self,
-        model: &Model,
-        point: &Arc<Point>,
-        double: bool,
-    ) -> Result<bool, LinearError> {
-        // The factor of a run that is resumed was counted when it was first made.
+        let positive = self.preconditioner.form(model, point, double)?;
+        // That of a run that is resumed was counted when it was first formed.
         if self.restored.take().is_none_or(|restored| restored != *point) {
             self.factorisations += 1;
         }
-        self.factor.factor(model, &self.pattern, point, double, [&self.mass, &self.stiffness, &self.follower])
+        Ok(positive)
     }
 
-    /// Factors [M Gᵀ; G 0] over the free dofs that have mass.
+    /// Prepares solves with [M Gᵀ; G 0] over the free dofs that have mass.
     ///
     /// # Errors
     /// If M is not positive definite there, or the rows are linearly dependent.
-    pub(crate) fn factor_mass(&mut self, model: &Model, rows: &Constraints) -> Result<(), Rejected> {
+    pub(crate) fn mass_with(&mut self, model: &Model, rows: &Constraints) -> Result<(), Rejected> {
         self.factorisations += 1;
-        self.factor.factor_mass(model, &self.pattern, &self.mass, rows)
+        self.preconditioner.form_mass(model, rows)
     }
-}
 
-/// The diagonal of a symmetric matrix: the first entry of each column of its lower triangle.
-fn diagonal_of(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
-    pattern.starts[..pattern.size()].iter().map(|&slot| values[slot]).collect()
-}
-
-/// The pattern of the bodies: unknowns of every two nodes that share a cell. Nodes are paired
-/// first, which avoids a list of all pairs of dofs.
-fn pattern(model: &Model) -> Pattern {
-    let (d, mut neighbours) = (model.dimension, vec![Vec::new(); model.dofs() / model.dimension]);
-    for part in &model.parts {
-        let mesh = part.body.mesh();
-        for cell in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
-            for &a in cell {
-                let below = cell.iter().filter(|b| **b <= a).map(|b| part.first_node + b);
-                neighbours[part.first_node + a].extend(below);
-            }
-        }
-    }
-    for (node, nodes) in neighbours.iter_mut().enumerate() {
-        // The mass of a rigid obstacle has no cells.
-        if nodes.is_empty() {
-            nodes.push(node);
-        }
-        nodes.sort_unstable();
-        nodes.dedup();
-    }
-    let pairs = neighbours.iter().enumerate().flat_map(|(a, below)| below.iter().map(move |&b| (a, b)));
-    let entries = pairs.flat_map(|(a, b)| (0..d * d).map(move |k| (a * d + k / d, b * d + k % d)));
-    let unknowns = entries.filter_map(|(a, b)| model.unknown(a).zip(model.unknown(b)));
-    Pattern::from_entries(model.free.len(), unknowns)
-}
-
-/// Calls `visit` with the unknowns of every two dofs of every cell, the larger first, in the order
-/// of the lower triangles of the cells' tangents; with none if one is constrained.
-fn for_each_cell_pair(model: &Model, mut visit: impl FnMut(Option<(usize, usize)>)) {
-    let mut unknowns = Vec::new();
-    for part in &model.parts {
-        for cell in 0..part.body.mesh().cell_count() {
-            unknowns.clear();
-            unknowns.extend(part.cell_dofs(cell).iter().map(|dof| model.unknown(*dof as usize)));
-            for (row, a) in unknowns.iter().enumerate() {
-                for b in &unknowns[..=row] {
-                    visit(a.zip(*b).map(|(a, b)| (a.max(b), a.min(b))));
-                }
-            }
-        }
+    /// See [`Preconditioner::solve`].
+    pub(crate) fn solve(
+        &mut self,
+        model: &Model,
+        right: [&[f64]; 2],
+        increment: &mut [f64],
+        multipliers: &mut Vec<f64>,
+    ) -> Result<(), LinearError> {
+        self.preconditioner.solve(model, right, increment, multipliers)
     }
 }

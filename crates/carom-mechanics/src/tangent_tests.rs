@@ -12,6 +12,7 @@ use crate::evaluation::Iterate;
 use crate::grid_report::GridReport;
 use crate::linear_problem::LinearProblem;
 use crate::model::{Friction, Load, Loads, Model, Motions};
+use crate::settings::Linear;
 use crate::state::State;
 use crate::sums::dot;
 use crate::testing::{contact, loaded, model, nodes, parts, simulation};
@@ -34,7 +35,7 @@ impl<'a> Tangent<'a> {
     /// The same for other pairs.
     fn from(equations: &'a Equations<'a>, mut at: Iterate, size: f64) -> Self {
         let model = equations.model;
-        let mut work = Workspace::new(model);
+        let mut work = Workspace::new(model, Linear::Direct);
         model.free.iter().for_each(|&dof| at.increment[dof] = size * wave(dof, 0.3));
         let now = equations.evaluate(at, &mut work.spare, &mut work.timings).unwrap();
         let rows = Constraints::of(equations, &now);

@@ -6,7 +6,7 @@ use carom_time::Kernel;
 
 use crate::grid::Grid;
 use crate::model::{BodyInstance, Contact, Loads, Mass, Model, Motions};
-use crate::settings::{Settings, Tangent};
+use crate::settings::{Linear, Settings, Tangent};
 use crate::simulation::Simulation;
 use crate::stepper::Implicit;
 
@@ -108,7 +108,13 @@ pub(crate) fn model(
 
 /// A simulation of a model.
 pub(crate) fn simulation(model: Model, scheme: impl Kernel + 'static, dt: f64) -> Simulation {
-    let settings = Settings { tolerance: 1e-9, max_iterations: 20, tangent: Tangent::Full, mixing: 0 };
+    let settings = Settings {
+        tolerance: 1e-9,
+        max_iterations: 20,
+        tangent: Tangent::Full,
+        linear: Linear::Direct,
+        mixing: 0,
+    };
     let stepper = Box::new(Implicit::new(Box::new(scheme), settings));
     Simulation::new(model, stepper, Grid { dt, steps: u64::MAX, phase: 0.0, guard: None }, true, None, 1)
         .unwrap()

@@ -4,6 +4,7 @@ use crate::evaluation::Spare;
 use crate::linear_problem::LinearProblem;
 use crate::model::Model;
 use crate::penetration::Penetration;
+use crate::settings::Linear;
 use crate::state::State;
 use crate::stepper::Scratch;
 use crate::system::System;
@@ -38,9 +39,9 @@ pub struct Workspace {
 
 impl Workspace {
     /// Buffers for a model.
-    pub fn new(model: &Model) -> Self {
+    pub fn new(model: &Model, linear: Linear) -> Self {
         Self {
-            system: System::new(model),
+            system: System::new(model, linear),
             spare: Spare::default(),
             states: Vec::new(),
             explicit: Scratch::new(model.dimension),

@@ -21,7 +21,7 @@ use carom_case::{
 };
 use carom_contact::{Pairing, Rows};
 use carom_mechanics::model::Model;
-use carom_mechanics::{Before, Grid, Implicit, Settings, Simulation, Stepper, Tangent, depths};
+use carom_mechanics::{Before, Grid, Implicit, Linear, Settings, Simulation, Stepper, Tangent, depths};
 use carom_time::{ForceRule, Integrator};
 
 use crate::build::{Materials, build, overlaps};
@@ -185,7 +185,13 @@ fn settle(
 }
 
 fn stepper(tolerance: f64) -> Result<Box<dyn Stepper>, String> {
-    let settings = Settings { tolerance, max_iterations: 60, tangent: Tangent::Frozen, mixing: 0 };
+    let settings = Settings {
+        tolerance,
+        max_iterations: 60,
+        tangent: Tangent::Frozen,
+        linear: Linear::Direct,
+        mixing: 0,
+    };
     match scheme().integrator().map_err(|e| e.to_string())? {
         Integrator::Alpha(scheme, _) => Ok(Box::new(Implicit::new(Box::new(scheme), settings))),
         Integrator::Stages(kernel, _) => Ok(Box::new(Implicit::new(kernel, settings))),

@@ -1,11 +1,12 @@
 //! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
 use carom_algebra::LinearError;
-use carom_case::{Case, ContactLaw, ContactPoint, ContactSpec, NewtonSpec, Problem, Problems, TangentRule};
+use carom_case::{Case, ContactLaw, ContactPoint, ContactSpec, Problem, Problems, TangentRule};
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, stable_step};
 use carom_mechanics::{
-    Before, Explicit, Grid, Implicit, Impulsive, Rejected, Settings, Simulation, State, Stepper, Tangent,
+    Before, Explicit, Grid, Implicit, Impulsive, Linear, Rejected, Settings, Simulation, State, Stepper,
+    Tangent,
 };
 use carom_solid::Constitutive;
 use carom_time::{Integrator, Kernel, Nonsmooth};
@@ -232,7 +233,7 @@ fn stepper(
     model: &Model,
     kernel: Option<Box<dyn Kernel>>,
 ) -> Result<Box<dyn Stepper>, Vec<Problem>> {
-    let settings = settings(&case.newton);
+    let settings = settings(case, model);
     if let Some(kernel) = kernel {
         return Ok(Box::new(Implicit::new(kernel, settings)));
     }
@@ -253,7 +254,10 @@ fn stepper(
     })
 }
 
-fn settings(newton: &NewtonSpec) -> Settings {
+fn settings(case: &Case, model: &Model) -> Settings {
+    let newton = &case.newton;
+    let iterates =
+        newton.linear.iterates(model.dimension, model.free.len() as f64, &case.time, case.contacts.iter());
     let tangent = match newton.tangent {
         TangentRule::Frozen => Tangent::Frozen,
         TangentRule::FrozenDouble => Tangent::FrozenDouble,
@@ -263,6 +267,7 @@ fn settings(newton: &NewtonSpec) -> Settings {
         tolerance: newton.tolerance,
         max_iterations: newton.max_iterations,
         tangent,
+        linear: if iterates { Linear::Iterative } else { Linear::Direct },
         mixing: newton.mixing,
     }
 }

@@ -3,4 +3,5 @@
 #![allow(clippy::unwrap_used)]
 
 mod condensed;
+mod projected;
 mod saddle;

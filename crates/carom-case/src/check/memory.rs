@@ -5,7 +5,8 @@
 //! Tet20; 27, 64 for Hex8 Hex27): half the matrix
 //! with 8-byte values and indices, 16·D²·c/2; its factor, a fill of c·log₂n/2 by nested dissection in
 //! the plane, c·n^(1/3)/2 in space and c/2 on a line, twice (numbers and scratch); a dozen state
-//! vectors.
+//! vectors. Solved by iteration: the whole matrix in 4 bytes, that of the mass with its indices, 4·D²·c +
+//! 16·c, and three dozen vectors.
 
 use carom_solid::Element;
 
@@ -13,8 +14,8 @@ use super::Check;
 use crate::machine::available_memory;
 use crate::{BodySpec, MeshSpec};
 
-/// Bytes that a body of n nodes needs.
-fn bytes(element: Element, nodes: f64) -> f64 {
+/// Bytes that a body of n nodes needs, solved directly or by iteration.
+fn bytes(element: Element, nodes: f64, iterates: bool) -> f64 {
     let coupled = match element {
         Element::L2 => 3.0,
         Element::L3 => 4.0,
@@ -31,6 +32,9 @@ fn bytes(element: Element, nodes: f64) -> f64 {
         Element::Tet20 => 51.0,
     };
     let d = element.dimension() as f64;
+    if iterates {
+        return nodes * ((4.0 * d * d + 16.0) * coupled + 36.0 * 8.0 * d);
+    }
     let levels = match element.dimension() {
         1 => 1.0,
         2 => nodes.max(2.0).log2(),
@@ -42,7 +46,13 @@ fn bytes(element: Element, nodes: f64) -> f64 {
 impl Check<'_> {
     pub(super) fn memory(&mut self) {
         let bodies = || self.draft.bodies.iter().enumerate().filter_map(|(i, b)| Some((i, b.as_ref()?)));
-        let need = |body: &BodySpec| bytes(body.element, body.mesh.estimate(body.element).1);
+        let nodes = |body: &BodySpec| body.mesh.estimate(body.element).1;
+        let dimension = self.draft.dimension.unwrap_or(2);
+        let unknowns = bodies().map(|(_, b)| nodes(b)).sum::<f64>() * dimension as f64;
+        let contacts = || self.draft.contacts.iter().flatten();
+        let iterates = |time| self.linear_rule().iterates(dimension, unknowns, time, contacts());
+        let iterates = self.draft.time.as_ref().is_some_and(iterates);
+        let need = |body: &BodySpec| bytes(body.element, nodes(body), iterates);
         let total: f64 = bodies().map(|(_, b)| need(b)).sum();
         let available = available_memory();
         let largest = bodies().max_by(|(_, a), (_, b)| need(a).total_cmp(&need(b)));

@@ -3,6 +3,7 @@
 mod contact;
 mod expect;
 mod friction;
+mod linear;
 mod loads;
 mod memory;
 mod restitution;
@@ -36,6 +37,7 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
     check.probes();
     check.time();
     check.scheme();
+    check.linear();
     check.expects();
     check.memory();
 }

@@ -155,6 +155,12 @@ const NEWTON: Table = Table {
         .default("1e-9"),
         key("max_iterations", Count(1), "Largest number of iterations before a step is rejected.").default("20"),
         key(
+            "linear",
+            Choice(&["auto", "direct", "iterative"], &[]),
+            "What solves with the tangent. direct: its factorisation. iterative: conjugate gradients with the blocks of the nodes as preconditioner; only the rows of closed contacts are factorised. auto: iterative for bodies in space that move, with 5 000 unknowns or more and without friction; otherwise direct.",
+        )
+        .default("\"auto\""),
+        key(
             "tangent",
             Choice(&["frozen", "frozen-double", "full"], &[]),
             "When the tangent is factorised. frozen: the factorisation is reused as a preconditioner over iterations and steps as long as this reduces the cost; with 10 000 unknowns or more it is in single precision where this suffices. frozen-double: the same, always in double precision. full: in every iteration.",

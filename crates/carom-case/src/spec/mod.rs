@@ -21,4 +21,4 @@ pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};
 pub use mesh::{MeshSpec, RefineSpec, SKIN};
 pub use obstacle::ObstacleMotion;
 pub use output::{OutputSpec, ProbeSpec, Quantity};
-pub use time::{NewtonSpec, SchemeSpec, TangentRule, TimeSpec};
+pub use time::{LinearRule, NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

@@ -40,6 +40,9 @@ pub struct NewtonSpec {
     pub tolerance: f64,
     /// Largest number of iterations before a step is rejected.
     pub max_iterations: usize,
+    /// What solves with the tangent.
+    #[serde(default)]
+    pub linear: LinearRule,
     /// When the tangent is factorised.
     #[serde(default)]
     pub tangent: TangentRule,
@@ -47,6 +50,19 @@ pub struct NewtonSpec {
     /// records written before this key existed.
     #[serde(default)]
     pub mixing: usize,
+}
+
+/// What solves the linear systems.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LinearRule {
+    /// The faster of the two, by size and dimension.
+    #[default]
+    Auto,
+    /// A factorisation.
+    Direct,
+    /// Conjugate gradients.
+    Iterative,
 }
 
 /// When the tangent is assembled and factorised.

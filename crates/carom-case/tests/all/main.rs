@@ -101,7 +101,13 @@ fn shipped_cases_are_read() {
         assert_eq!(case.time.energy_guard, Some(0.02));
         assert_eq!(
             case.newton,
-            NewtonSpec { tolerance: 1e-9, max_iterations: 20, tangent: TangentRule::Frozen, mixing: 4 }
+            NewtonSpec {
+                tolerance: 1e-9,
+                max_iterations: 20,
+                linear: LinearRule::Auto,
+                tangent: TangentRule::Frozen,
+                mixing: 4
+            }
         );
         assert_eq!(case.units.mass, "kg");
     }

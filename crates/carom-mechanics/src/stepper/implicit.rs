@@ -16,7 +16,7 @@ use crate::newton::solve_stage;
 use crate::persistency::{averaged_contact_into, project};
 use crate::rejected::{Rejected, SINGULAR};
 use crate::restitution::{self, Impact, separate};
-use crate::settings::Settings;
+use crate::settings::{Linear, Settings};
 use crate::state::{Means, Previous, State};
 use crate::sums::dot;
 use crate::workspace::Workspace;
@@ -42,6 +42,10 @@ struct Point {
 }
 
 impl Stepper for Implicit {
+    fn linear(&self) -> Linear {
+        self.settings.linear
+    }
+
     fn step(
         &self,
         model: &Model,

@@ -106,13 +106,13 @@ impl Impulses {
         }
         let mut released = Vec::new();
         if !rows.is_empty() && (shares.velocity != 0.0 || shares.acceleration != 0.0) {
-            work.system.factor_mass(model, &Constraints::none(model.dimension))?;
+            work.system.mass_with(model, &Constraints::none(model.dimension))?;
             let mut force = vec![0.0; model.dofs()];
             for row in rows.rows.iter() {
                 force.fill(0.0);
                 row.add_to(1.0, &mut force);
                 let mut column = vec![0.0; model.dofs()];
-                work.system.factor.solve(model, &force, &[], &mut column, &mut Vec::new())?;
+                work.system.solve(model, [&force, &[]], &mut column, &mut Vec::new())?;
                 released.push(column);
             }
         }

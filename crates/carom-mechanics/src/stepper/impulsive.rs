@@ -197,8 +197,8 @@ impl Impulsive {
             let Workspace { system, timings, .. } = work;
             let point = equations.point(&now.place, &[]);
             timed(&mut timings.factor, || -> Result<(), Rejected> {
-                system.factor_at(model, &point, true)?;
-                Ok(system.factor.prepare(model, &none).map(|_| ())?)
+                system.tangent_at(model, &point, true)?;
+                Ok(system.preconditioner.prepare(model, &none).map(|_| ())?)
             })?;
             // −r₀: the residual without the impulses.
             for (right, (contact, r)) in right.iter_mut().zip(now.forces.contact.iter().zip(&now.residual)) {
@@ -206,11 +206,11 @@ impl Impulsive {
             }
             timed(&mut timings.solve, || -> Result<(), Rejected> {
                 let multipliers = &mut Vec::new();
-                system.factor.solve(model, &right, &[], &mut correction, multipliers)?;
+                system.solve(model, [&right, &[]], &mut correction, multipliers)?;
                 for (row, column) in impulses.rows.rows.iter().zip(&mut columns) {
                     right.fill(0.0);
                     row.add_to(1.0, &mut right);
-                    system.factor.solve(model, &right, &[], column, multipliers)?;
+                    system.solve(model, [&right, &[]], column, multipliers)?;
                 }
                 Ok(())
             })?;

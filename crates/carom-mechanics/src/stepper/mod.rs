@@ -19,6 +19,7 @@ use carom_contact::PairEvent;
 use crate::model::Model;
 use crate::penetration::Depths;
 use crate::rejected::Rejected;
+use crate::settings::Linear;
 use crate::state::State;
 use crate::timings::timed;
 use crate::workspace::Workspace;
@@ -112,6 +113,11 @@ pub trait Stepper: Send + Sync {
     /// Whether the acceleration of a state is that without contact, whose forces are impulses.
     fn accelerates_freely(&self) -> bool {
         false
+    }
+
+    /// What solves its linear systems.
+    fn linear(&self) -> Linear {
+        Linear::Direct
     }
 
     /// One step of size `dt` from `state` to the time `to`. The caller sets the grid index of the

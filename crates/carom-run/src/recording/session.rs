@@ -261,10 +261,14 @@ impl<'a> Session<'a> {
             let earlier = timings.get(phase).copied().unwrap_or_default();
             self.manifest.timings.insert(phase.into(), earlier + seconds);
         }
-        let factorisations = counters.get("factorisations").copied().unwrap_or_default();
+        let earlier = |name: &str| counters.get(name).copied().unwrap_or_default();
+        let (factorisations, iterations) = (earlier("factorisations"), earlier("linear_iterations"));
         let counters = &mut self.manifest.counters;
         counters.insert("steps".into(), self.simulation.state().step);
         counters.insert("factorisations".into(), factorisations + self.simulation.factorisations());
+        if let Some(spent) = self.simulation.linear_iterations() {
+            counters.insert("linear_iterations".into(), iterations + spent);
+        }
     }
 
     /// Writes a checkpoint of the state as it is.

@@ -11,6 +11,7 @@ mod frequencies;
 mod friction;
 mod impact;
 mod kernels;
+mod linear;
 mod loads;
 mod memory;
 mod momentum;

@@ -1,0 +1,346 @@
+//! Iterative solution: conjugate gradients under the rows of contact with the frozen tangent, stored
+//! by blocks of nodes in single precision, and with the mass. Nothing is factored but the complement
+//! of the active rows.
+//!
+//! A solve with the tangent need not be more accurate than the frozen tangent itself; the linear
+//! problem of an iteration (`linear_problem.rs`) applies the exact one. A solve with the mass is
+//! accurate to round-off.
+
+use std::sync::Arc;
+
+use carom_algebra::{ConjugateGradients, ConstraintRows, DiagonalBlocks, LinearError, NodeMatrix};
+
+use crate::cells;
+use crate::constraints::Constraints;
+use crate::model::Model;
+use crate::preconditioner::Preconditioner;
+use crate::rejected::Rejected;
+use crate::renewal::Point;
+
+/// Cost of assembling a tangent, in solves with it.
+const COST: f64 = 3.0;
+/// Reduction of the residual by a solve with the tangent, and with the mass.
+const REDUCTION: f64 = 0.01;
+const ROUND_OFF: f64 = 1e-15;
+/// Iterations after which a solve has failed.
+const MOST: usize = 5000;
+
+/// The frozen tangent of the bodies, and what solves with it.
+pub(crate) struct Iterative {
+    matrix: NodeMatrix,
+    /// Slots of the blocks of each cell, by rows, cell after cell over all bodies.
+    slots: Vec<u32>,
+    diagonals: [Vec<f64>; 2],
+    /// The point of the matrix.
+    point: Option<Arc<Point>>,
+    /// Diagonal blocks of the tangent and of the mass.
+    blocks: [DiagonalBlocks; 2],
+    constrained: Vec<usize>,
+    massless: Vec<usize>,
+    of_mass: bool,
+    rows: ConstraintRows,
+    patches: Patches,
+    method: ConjugateGradients,
+    iterations: u64,
+    forces: Vec<f64>,
+    gaps: Vec<f64>,
+}
+
+impl Iterative {
+    /// The structure for the bodies of a model.
+    pub(crate) fn new(model: &Model) -> Self {
+        let d = model.dimension;
+        let matrix = NodeMatrix::new(d, coupled(model)).on(&model.threads);
+        let mut slots = Vec::new();
+        for part in &model.parts {
+            let mesh = part.body.mesh();
+            for cell in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
+                for a in cell {
+                    let slot = |b| matrix.slot(part.first_node + a, part.first_node + b).unwrap_or_default();
+                    slots.extend(cell.iter().map(|b| slot(b) as u32));
+                }
+            }
+        }
+        let of_node: Vec<f64> = (0..model.mass.nodes())
+            .map(|node| model.mass.row(node).filter(|(other, _)| *other == node).map(|(_, m)| m).sum())
+            .collect();
+        let mut blocks = [DiagonalBlocks::default(), DiagonalBlocks::default()];
+        blocks[1].invert(d, of_node.len(), |node, block| {
+            block.fill(0.0);
+            for i in 0..d {
+                block[i * d + i] = if model.massless[node * d + i] { 1.0 } else { of_node[node] };
+            }
+        });
+        let mass = model.free.iter().map(|dof| of_node[dof / d]).collect();
+        let stiffness = vec![0.0; model.free.len()];
+        Self {
+            matrix,
+            slots,
+            diagonals: [mass, stiffness],
+            point: None,
+            blocks,
+            constrained: (0..model.dofs()).filter(|dof| model.fixed[*dof]).collect(),
+            massless: model.free.iter().copied().filter(|dof| model.massless[*dof]).collect(),
+            of_mass: false,
+            rows: ConstraintRows::default(),
+            patches: Patches::default(),
+            method: ConjugateGradients::default(),
+            iterations: 0,
+            forces: Vec::new(),
+            gaps: Vec::new(),
+        }
+    }
+
+    /// Replaces the matrix by `factor` K at positions.
+    fn assemble_times(&mut self, model: &Model, y: &[f64], factor: f64) -> Result<(), Rejected> {
+        self.point = None;
+        self.matrix.clear();
+        let (matrix, [_, diagonal], d) = (&mut self.matrix, &mut self.diagonals, model.dimension);
+        diagonal.fill(0.0);
+        let mut slots = self.slots.iter();
+        for part in &model.parts {
+            let mesh = part.body.mesh();
+            let n = mesh.element.dofs();
+            let compute = |cell: usize, local: &mut [f64]| {
+                let (force, tangent) = local.split_at_mut(n);
+                part.body.cell_tangent(cell, part.of(y), force, tangent)
+            };
+            let add = |cell: usize, local: &[f64]| {
+                let tangent = &local[n..];
+                for (a, b) in (0..n / d).flat_map(|a| (0..n / d).map(move |b| (a, b))) {
+                    let Some(slot) = slots.next() else { return };
+                    for (i, row) in matrix.block_mut(*slot as usize).chunks_exact_mut(d).enumerate() {
+                        let from = (a * d + i) * n + b * d;
+                        let entries = row.iter_mut().zip(&tangent[from..from + d]);
+                        entries.for_each(|(entry, k)| *entry += (factor * k) as f32);
+                    }
+                }
+                for (i, dof) in part.cell_dofs(cell).iter().enumerate() {
+                    if let Some(unknown) = model.unknown(*dof as usize) {
+                        diagonal[unknown] += tangent[i * n + i];
+                    }
+                }
+            };
+            cells::for_each(&model.threads, mesh.cell_count(), n + n * n, compute, add)
+                .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
+        }
+        Ok(())
+    }
+
+    /// Prepares solves with these rows, over the dofs that are `included`.
+    fn constrain(
+        &mut self,
+        model: &Model,
+        rows: &Constraints,
+        included: impl Fn(usize) -> bool,
+    ) -> Result<(), LinearError> {
+        debug_assert!(!rows.is_skew, "friction is solved directly");
+        self.rows.clear();
+        for (r, row) in rows.rows.iter().enumerate() {
+            let weight = rows.weights[r];
+            let entries = row.entries().filter(|(dof, _)| !model.fixed[*dof] && included(*dof));
+            let entries = entries.map(|(dof, slope)| (dof, weight * slope));
+            self.rows.push(weight * rows.compliances[r], entries);
+        }
+        self.rows.factor(&self.blocks[usize::from(self.of_mass)])
+    }
+}
+
+impl Preconditioner for Iterative {
+    fn cost(&self) -> f64 {
+        COST
+    }
+
+    fn iterations(&self) -> Option<u64> {
+        Some(self.iterations)
+    }
+
+    fn diagonals(&self) -> &[Vec<f64>; 2] {
+        &self.diagonals
+    }
+
+    fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
+        self.assemble_times(model, y, 1.0)
+    }
+
+    fn of(&self, point: &Arc<Point>) -> Option<bool> {
+        (self.point.as_ref() == Some(point)).then_some(true)
+    }
+
+    fn form(&mut self, model: &Model, point: &Arc<Point>, _double: bool) -> Result<bool, Rejected> {
+        self.assemble_times(model, &point.at, point.stiffness)?;
+        let d = model.dimension;
+        for node in 0..model.mass.nodes() {
+            for (other, mass) in model.mass.row(node) {
+                let Some(slot) = self.matrix.slot(node, other) else { continue };
+                let diagonal = self.matrix.block_mut(slot).iter_mut().step_by(d + 1);
+                diagonal.for_each(|entry| *entry += (point.mass * mass) as f32);
+            }
+        }
+        let matrix = &self.matrix;
+        self.blocks[0].invert(d, matrix.nodes(), |node, block| {
+            let slot = matrix.slot(node, node).unwrap_or_default();
+            let values = matrix.block(slot).iter().enumerate();
+            for (entry, (k, value)) in block.iter_mut().zip(values) {
+                let (i, j) = (k / d, k % d);
+                let is_free = !model.fixed[node * d + i] && !model.fixed[node * d + j];
+                *entry = if is_free { f64::from(*value) } else { f64::from(u8::from(i == j)) };
+            }
+        });
+        self.point = Some(point.clone());
+        Ok(true)
+    }
+
+    fn form_mass(&mut self, model: &Model, rows: &Constraints) -> Result<(), Rejected> {
+        self.of_mass = true;
+        self.patches.clear();
+        Ok(self.constrain(model, rows, |dof| !model.massless[dof])?)
+    }
+
+    fn boundary(&self, _: &Model, _: &[f64], _: &Constraints, _: Option<&Point>) -> Vec<usize> {
+        Vec::new()
+    }
+
+    fn spans(&self, _: &Constraints) -> bool {
+        self.point.is_some()
+    }
+
+    fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<bool, LinearError> {
+        self.of_mass = false;
+        self.patches.fill(model, rows);
+        self.constrain(model, rows, |_| true)?;
+        Ok(true)
+    }
+
+    fn regularity(&self) -> Option<f64> {
+        None
+    }
+
+    fn solve(
+        &mut self,
+        model: &Model,
+        [forces, gaps]: [&[f64]; 2],
+        increment: &mut [f64],
+        multipliers: &mut Vec<f64>,
+    ) -> Result<(), LinearError> {
+        self.forces.clear();
+        self.forces.extend_from_slice(forces);
+        self.constrained.iter().for_each(|dof| self.forces[*dof] = 0.0);
+        self.gaps.clear();
+        self.gaps.extend((0..gaps.len()).map(|r| if self.rows.is_spring(r) { 0.0 } else { gaps[r] }));
+        multipliers.resize(gaps.len(), 0.0);
+        loop {
+            let Self { matrix, patches, constrained, massless, of_mass, .. } = self;
+            let product = |x: &[f64], out: &mut [f64]| {
+                if *of_mass {
+                    model.mass.multiply_into(x, out);
+                    massless.iter().for_each(|dof| out[*dof] = x[*dof]);
+                } else {
+                    matrix.multiply_into(x, out);
+                    patches.add_product(x, out);
+                }
+                constrained.iter().for_each(|dof| out[*dof] = 0.0);
+            };
+            let ended = self.method.solve(
+                &model.threads,
+                product,
+                &self.blocks[usize::from(*of_mass)],
+                &mut self.rows,
+                [&self.forces, &self.gaps],
+                [increment, multipliers],
+                (if *of_mass { ROUND_OFF } else { REDUCTION }, MOST),
+            );
+            self.iterations += ended.iterations as u64;
+            if ended.is_indefinite && self.patches.is_curved() {
+                // An inaccurate multiplier can make the curvature terms too large: without second
+                // derivatives there is still a descent direction.
+                self.patches.straighten();
+                continue;
+            }
+            let unusable = ended.iterations == MOST || ended.is_indefinite && ended.iterations == 1;
+            if unusable || !increment.iter().all(|x| x.is_finite()) {
+                let (iterations, reduction) = (ended.iterations, ended.reduction);
+                return Err(LinearError::Stalled { size: model.free.len(), iterations, reduction });
+            }
+            return Ok(());
+        }
+    }
+}
+
+/// The terms of the active rows in the tangent, w/C ∇g ∇gᵀ of springs and w·λ∇²g, symmetrised: a
+/// dense matrix over the dofs of each row.
+#[derive(Default)]
+struct Patches {
+    starts: Vec<usize>,
+    dofs: Vec<usize>,
+    /// Of springs, and of the second derivatives; the latter empty if they are left out.
+    springs: Vec<f64>,
+    curved: Vec<f64>,
+}
+
+impl Patches {
+    fn clear(&mut self) {
+        self.starts.clear();
+        self.starts.push(0);
+        self.dofs.clear();
+        self.springs.clear();
+        self.curved.clear();
+    }
+
+    fn fill(&mut self, model: &Model, rows: &Constraints) {
+        self.clear();
+        for (r, row) in rows.rows.iter().enumerate() {
+            let (weight, compliance, n) = (rows.weights[r], rows.compliances[r], row.gradient.len());
+            self.dofs.extend(row.entries().map(|(dof, _)| dof));
+            self.starts.push(self.dofs.len());
+            let free: Vec<bool> = row.entries().map(|(dof, _)| !model.fixed[dof]).collect();
+            let curvature = rows.curvatures.get(r);
+            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+                let factor = if free[i] && free[j] { weight } else { 0.0 };
+                let bent = curvature.map_or(0.0, |c| 0.5 * (c[i * n + j] + c[j * n + i]));
+                let spring =
+                    if compliance == 0.0 { 0.0 } else { row.gradient[i] * row.gradient[j] / compliance };
+                self.springs.push(factor * spring);
+                self.curved.push(factor * bent);
+            }
+        }
+    }
+
+    fn is_curved(&self) -> bool {
+        self.curved.iter().any(|value| *value != 0.0)
+    }
+
+    /// Leaves the second derivatives out.
+    fn straighten(&mut self) {
+        self.curved.fill(0.0);
+    }
+
+    /// out += of these terms times x.
+    fn add_product(&self, x: &[f64], out: &mut [f64]) {
+        let mut from = 0;
+        for range in self.starts.windows(2) {
+            let dofs = &self.dofs[range[0]..range[1]];
+            let n = dofs.len();
+            for (i, dof) in dofs.iter().enumerate() {
+                let values = from + i * n..from + (i + 1) * n;
+                let both = self.springs[values.clone()].iter().zip(&self.curved[values]);
+                out[*dof] += both.zip(dofs).map(|((spring, bent), j)| (spring + bent) * x[*j]).sum::<f64>();
+            }
+            from += n * n;
+        }
+    }
+}
+
+/// The nodes that share a cell with each node.
+fn coupled(model: &Model) -> Vec<Vec<u32>> {
+    let mut coupled = vec![Vec::new(); model.dofs() / model.dimension];
+    for part in &model.parts {
+        let mesh = part.body.mesh();
+        for cell in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
+            for a in cell {
+                coupled[part.first_node + a].extend(cell.iter().map(|b| (part.first_node + b) as u32));
+            }
+        }
+    }
+    coupled
+}
