@@ -18,7 +18,7 @@ use super::keys;
 use super::problem::Problem;
 use super::spec::SKIN;
 use super::suggest;
-use super::tree::Node;
+use super::tree::{Node, Table};
 
 /// Adds the problems found across tables.
 pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Problem>) {
@@ -69,6 +69,17 @@ impl<'a> Check<'a> {
         self.tables(list).get(i).and_then(Node::table).is_some_and(|table| {
             let resembles = |name: &str| suggest::nearest(name, [key]).is_some();
             table.get(key).is_none() && table.0.iter().any(|entry| resembles(&entry.key))
+        })
+    }
+
+    /// Whether the mesh of a body seems to have a misspelt `symmetry`, which gives it sides.
+    fn is_symmetry_misspelt(&self, body: &str) -> bool {
+        let is_of_body = |table: &&Table| table.get("name").and_then(Node::text) == Some(body);
+        let mut tables = self.tables("body").iter().filter_map(Node::table);
+        let mesh = tables.find(is_of_body).and_then(|table| table.get("mesh")?.table());
+        mesh.is_some_and(|mesh| {
+            let resembles = |name: &str| suggest::nearest(name, ["symmetry"]).is_some();
+            mesh.get("symmetry").is_none() && mesh.0.iter().any(|entry| resembles(&entry.key))
         })
     }
 
@@ -175,7 +186,7 @@ impl<'a> Check<'a> {
         let body = self.body(name)?;
         let sides = body.mesh.sides();
         let is_skin = part == SKIN && self.draft.dimension != Some(1);
-        if !is_skin && !sides.iter().any(|s| s == part) {
+        if !is_skin && !sides.iter().any(|s| s == part) && !self.is_symmetry_misspelt(name) {
             let why = format!("its mesh has the sides: {}", all_sides(body));
             let help = suggest::nearest(part, sides.iter().map(String::as_str)).map_or_else(
                 || "use one of these sides".to_owned(),
