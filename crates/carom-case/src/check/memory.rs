@@ -47,11 +47,12 @@ impl Check<'_> {
     pub(super) fn memory(&mut self) {
         let bodies = || self.draft.bodies.iter().enumerate().filter_map(|(i, b)| Some((i, b.as_ref()?)));
         let nodes = |body: &BodySpec| body.mesh.estimate(body.element).1;
-        let dimension = self.draft.dimension.unwrap_or(2);
+        // A case that cannot be read has other errors.
+        let Some(dimension) = self.draft.dimension else { return };
         let unknowns = bodies().map(|(_, b)| nodes(b)).sum::<f64>() * dimension as f64;
         let contacts = || self.draft.contacts.iter().flatten();
         let iterates = |time| self.linear_rule().iterates(dimension, unknowns, time, contacts());
-        let iterates = self.draft.time.as_ref().is_some_and(iterates);
+        let iterates = self.draft.time.as_ref().is_none_or(iterates);
         let need = |body: &BodySpec| bytes(body.element, nodes(body), iterates);
         let total: f64 = bodies().map(|(_, b)| need(b)).sum();
         let available = available_memory();
