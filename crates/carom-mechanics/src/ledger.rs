@@ -52,10 +52,7 @@ pub(crate) fn add_stage(
     }
     for (k, contact) in model.contacts.iter().enumerate() {
         let (now, start) = if contact.at_the_end { (1.0, 0.0) } else { (now, start) };
-        let pairs = &solved.at.pairings[k].pairs;
-        let mut force = secondary_force(pairs, solved.directions(k).iter());
-        let friction = secondary_friction(solved, k);
-        (0..3).for_each(|i| force[i] += friction[i]);
+        let force = force_of(solved, k);
         for i in 0..3 {
             means.contact_forces[k][i] += now * force[i] + start * state.contact_forces[k][i];
         }
@@ -255,6 +252,28 @@ fn open_work_of_motions(model: &Model, state: &State, next: &State, increment: &
     };
     let (before, now) = (reactions(state), reactions(next));
     model.motions.dofs().map(|i| increment[i] * (now[i] - before[i])).sum()
+}
+
+/// Contact forces of a solved last stage as its balance has them, with friction along H(y_½) instead of
+/// H(y) between steps. The acceleration of the state contains them, and the first stage of a composite
+/// rule weighs both: momentum and energy are balanced with the same forces.
+pub(crate) fn keep_friction(model: &Model, solved: &Evaluation, state: &mut State) {
+    if !model.has_friction() {
+        return;
+    }
+    state.f_contact.clone_from(&solved.forces.contact);
+    state.f_friction.clone_from(&solved.forces.friction);
+    for (k, force) in state.contact_forces.iter_mut().enumerate() {
+        *force = force_of(solved, k);
+    }
+}
+
+/// Force of an evaluation on the secondary side of a contact.
+fn force_of(solved: &Evaluation, contact: usize) -> [f64; 3] {
+    let mut force = secondary_force(&solved.at.pairings[contact].pairs, solved.directions(contact).iter());
+    let friction = secondary_friction(solved, contact);
+    (0..3).for_each(|i| force[i] += friction[i]);
+    force
 }
 
 /// Force on a secondary side, −Σ λ ∂g/∂y_N over the active pairs.

@@ -125,6 +125,9 @@ impl Stepper for Implicit {
         }
         averaged_contact_into(model, &mut next, &solved.rows);
         ledger::account(&equations, &solved, &mut next, strain, dt, &means);
+        if self.kernel.stages() > 1 {
+            ledger::keep_friction(model, &solved, &mut next);
+        }
         if factor != 0.0 {
             let weights = [equations.stage.weights.mass, equations.stage.before.mass];
             carried::advance(&mut next, &means.contact_forces, weights);
