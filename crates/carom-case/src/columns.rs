@@ -113,8 +113,14 @@ pub(super) fn of(
     for contact in contacts.iter().flatten().filter(|_| contacts.len() > 1) {
         vector(&mut columns, &format!("{}.force", contact.name));
     }
-    for name in supports.iter().flatten().filter_map(|s| s.name.as_ref()) {
+    for support in supports.iter().flatten() {
+        let Some(name) = &support.name else { continue };
         vector(&mut columns, &format!("{name}.reaction"));
+        match (dimension, &support.moment_about) {
+            (2, Some(_)) => columns.push(format!("{name}.moment")),
+            (3, Some(_)) => vector(&mut columns, &format!("{name}.moment")),
+            _ => {}
+        }
     }
     for contact in moving().filter(|c| matches!(c.motion, ObstacleMotion::Prescribed { .. })) {
         vector(&mut columns, &format!("{}.reaction", contact.name));

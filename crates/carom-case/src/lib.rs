@@ -51,5 +51,5 @@ pub use spec::{
     FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind, MaterialSpec,
     MeshSpec, NewtonSpec, ObstacleMotion, OutputSpec, Overlap, Persistency, PlaceSpec, Plane, Preset,
     PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec, TableSpec, TangentRule,
-    TimeSpec, Units, Velocities,
+    TimeSpec, Units, Velocities, Volumetric,
 };

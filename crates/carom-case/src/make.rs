@@ -1,8 +1,8 @@
 //! The mesh of a body: generated from its shape or read from its file, then placed. A new built-in
 //! shape is one line here.
 
-use carom_solid::Mesh;
 use carom_solid::generate::{self, Refinement};
+use carom_solid::{Element, Mesh};
 
 use crate::mesh_file;
 use crate::{BodySpec, MeshSpec, RefineSpec};
@@ -46,32 +46,18 @@ impl BodySpec {
                     |frame| generate::tube(self.element, [inner, outer], height, &frame, size, symmetry);
                 message(generate::Frame::along(axis, center).and_then(tube))?
             }
+            MeshSpec::Extrusion { ref of, height, layers } if dimension == 3 => {
+                let element = generate::plane_of(self.element)
+                    .ok_or_else(|| format!("an extrusion has no cells {:?}", self.element))?;
+                message(generate::extrusion(&plane_mesh(of, element)?, height, layers))?
+            }
             MeshSpec::Box { .. }
             | MeshSpec::Ball { .. }
             | MeshSpec::Cylinder { .. }
-            | MeshSpec::Tube { .. } => return Err("this shape needs dimension = 3".into()),
+            | MeshSpec::Tube { .. }
+            | MeshSpec::Extrusion { .. } => return Err("this shape needs dimension = 3".into()),
             _ if dimension != 2 => return Err("this shape needs dimension = 2".into()),
-            MeshSpec::Rectangle { min, max, cells } => {
-                message(generate::rectangle(self.element, min, max, cells))?
-            }
-            MeshSpec::Disc { radius, center, size } => {
-                message(generate::disc(self.element, radius, center, size))?
-            }
-            MeshSpec::HalfDisc { radius, center, size } => {
-                message(generate::half_disc(self.element, radius, center, size))?
-            }
-            MeshSpec::Ring { inner, outer, center, size } => {
-                message(generate::ring(self.element, inner, outer, center, size))?
-            }
-            MeshSpec::Polygon { ref points, size, ref refine } => {
-                let place = |r: &RefineSpec| Refinement { near: r.near, radius: r.radius, size: r.size };
-                message(generate::polygon(
-                    self.element,
-                    points,
-                    size,
-                    &refine.iter().map(place).collect::<Vec<_>>(),
-                ))?
-            }
+            ref shape => plane_mesh(shape, self.element)?,
         };
         if let Some(place) = &self.place {
             place.apply(&mut mesh);
@@ -82,4 +68,23 @@ impl BodySpec {
 
 fn message(made: Result<Mesh, generate::MeshError>) -> Result<Mesh, String> {
     made.map_err(|error| error.to_string())
+}
+
+/// The mesh of a shape of the plane.
+fn plane_mesh(shape: &MeshSpec, element: Element) -> Result<Mesh, String> {
+    match *shape {
+        MeshSpec::Rectangle { min, max, cells } => message(generate::rectangle(element, min, max, cells)),
+        MeshSpec::Disc { radius, center, size } => message(generate::disc(element, radius, center, size)),
+        MeshSpec::HalfDisc { radius, center, size } => {
+            message(generate::half_disc(element, radius, center, size))
+        }
+        MeshSpec::Ring { inner, outer, center, size } => {
+            message(generate::ring(element, inner, outer, center, size))
+        }
+        MeshSpec::Polygon { ref points, size, ref refine } => {
+            let place = |r: &RefineSpec| Refinement { near: r.near, radius: r.radius, size: r.size };
+            message(generate::polygon(element, points, size, &refine.iter().map(place).collect::<Vec<_>>()))
+        }
+        _ => Err("this shape is not plane".into()),
+    }
 }

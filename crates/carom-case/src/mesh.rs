@@ -30,7 +30,7 @@ pub(super) fn read(
     let v = View { table, keys: keys::shapes().table(shape)?.keys, preset };
     let wanted = match shape {
         "interval" => 1,
-        "box" | "ball" | "cylinder" | "tube" => 3,
+        "box" | "ball" | "cylinder" | "tube" | "extrusion" => 3,
         _ => 2,
     };
     if wanted != dimension {
@@ -43,6 +43,11 @@ pub(super) fn read(
         };
         problems.push(Problem::new(format!("{path}.shape"), what, why, help));
         return None;
+    }
+    if shape == "extrusion" {
+        let of = read(v.value("of")?.table()?, 2, None, folder, preset, &format!("{path}.of"), problems)?;
+        let (height, layers) = (v.number("height")?, v.count("layers")?);
+        return Some(MeshSpec::Extrusion { of: Box::new(of), height, layers });
     }
     if dimension == 3 {
         return super::solids::read(v, shape, path, problems);

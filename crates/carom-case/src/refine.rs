@@ -8,7 +8,7 @@ const WHOLE: f64 = 1e-9;
 
 /// The numbers of a mesh that are multiplied by the factor.
 pub(super) struct Counts {
-    /// Path of the mesh.
+    /// Path of the mesh or of its numbers.
     path: String,
     /// Whether its cells are those of a file: every edge is one part.
     of_file: bool,
@@ -22,11 +22,27 @@ impl Counts {
         if mesh.get("file").is_some() {
             return Some(Self { path, of_file: true, numbers: vec![1] });
         }
+        if let (Some(layers), Some(of)) =
+            (mesh.get("layers").and_then(Node::count), mesh.get("of").and_then(Node::table))
+        {
+            let of = Self::of(of, String::new()).map_or(Vec::new(), |of| of.numbers);
+            let numbers = [&of[..], &[layers]].concat();
+            return (layers > 0).then(|| Self {
+                path: if of.is_empty() {
+                    format!("{path}.layers")
+                } else {
+                    format!("{path} with its layers")
+                },
+                of_file: false,
+                numbers,
+            });
+        }
         let cells = mesh.get("cells")?;
         let counts = match cells.list() {
             Some(list) => list.iter().map(Node::count).collect::<Option<Vec<_>>>()?,
             None => vec![cells.count()?],
         };
+        let path = format!("{path}.cells");
         counts.iter().all(|n| *n > 0).then_some(Self { path, of_file: false, numbers: counts })
     }
 }
@@ -40,8 +56,7 @@ pub(super) fn problem(factor: f64, meshes: &[Counts]) -> Option<Problem> {
         (what, "the cells of a file are divided into whole parts")
     } else {
         let products: Vec<_> = numbers.iter().map(|n| rounded(*n as f64 * factor).to_string()).collect();
-        let what =
-            format!("`refine` = {factor} makes {path}.cells = {numbers:?} into [{}]", products.join(", "));
+        let what = format!("`refine` = {factor} makes {path} = {numbers:?} into [{}]", products.join(", "));
         (what, "numbers of cells are multiplied by it, and must remain whole")
     };
     // Factors with which the cells of all meshes are whole are the multiples of 1/n.
@@ -78,7 +93,7 @@ mod tests {
 
     fn message(factor: f64, meshes: &[&[usize]]) -> Option<String> {
         let counts = |(k, n): (usize, &&[usize])| Counts {
-            path: format!("body[{k}].mesh"),
+            path: if **n == [1] { format!("body[{k}].mesh") } else { format!("body[{k}].mesh.cells") },
             of_file: **n == [1],
             numbers: n.to_vec(),
         };

@@ -70,6 +70,7 @@ pub(super) fn body(
         name: v.text("name")?,
         material: v.text("material")?,
         element: v.choice("element")?,
+        volumetric: v.choice("volumetric")?,
         mesh: mesh.refined(refine),
         place: match v.table.get("place") {
             Some(node) => {
@@ -91,8 +92,16 @@ pub(super) fn body(
 
 pub(super) fn support(v: View) -> Option<SupportSpec> {
     let fix = if v.has("fix") { v.texts("fix")? } else { Vec::new() };
-    let fix = fix.iter().map(|d| ["x", "y", "z"].iter().position(|x| x == d)).collect::<Option<_>>()?;
-    Some(SupportSpec { name: v.text("name"), on: v.texts("on")?, fix, moves: load::motion(&v)? })
+    let (normal, axes): (Vec<_>, Vec<_>) = fix.into_iter().partition(|direction| direction == "normal");
+    let axes = axes.iter().map(|d| ["x", "y", "z"].iter().position(|x| x == d)).collect::<Option<_>>()?;
+    Some(SupportSpec {
+        name: v.text("name"),
+        on: v.texts("on")?,
+        fix: axes,
+        normal: !normal.is_empty(),
+        moment_about: if v.has("moment_about") { Some(v.numbers("moment_about")?) } else { None },
+        moves: load::motion(&v)?,
+    })
 }
 
 pub(super) fn initial(v: View, folder: &Path) -> Option<InitialSpec> {

@@ -3,13 +3,13 @@
 
 use crate::body::Body;
 use crate::material::{
-    Law, LinearElastic, Material, NeoHookean, PlaneStress, SaintVenantKirchhoff, Thickness,
+    Law, LinearElastic, Material, NeoHookean, PlaneStress, SaintVenantKirchhoff, Thickness, Volumetric,
 };
 use crate::mesh::{Element, Mesh};
 use crate::shape::{
     Hex8, Hex27, Line2, Line3, Line4, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10,
 };
-use crate::solid::{Solid, SolidError};
+use crate::solid::{MeanDilatation, Solid, SolidError};
 
 /// A law that bodies of every shape can be made of: each [`Material`] that is known in every
 /// dimension, your own included.
@@ -100,6 +100,40 @@ pub fn plane_stress_body(
     thickness: f64,
 ) -> Result<Box<dyn Body>, SolidError> {
     law.constitutive().plane_stress_body(mesh, density, thickness)
+}
+
+/// Body whose volumetric energy depends on one measure of the change of volume of each cell
+/// ([`MeanDilatation`]): quadrilaterals and hexahedra of degree 1, in plane strain or in space.
+///
+/// # Errors
+/// As [`Constitutive::body`]; for another element, of which F is constant in a cell or the pressure
+/// would be too coarse.
+pub fn mean_dilatation_body(
+    mesh: Mesh,
+    law: Law,
+    density: f64,
+    thickness: f64,
+) -> Result<Box<dyn Body>, SolidError> {
+    match law {
+        Law::NeoHookean { lambda, mu } => averaged(mesh, NeoHookean { lambda, mu }, density, thickness),
+        Law::SaintVenantKirchhoff { lambda, mu } => {
+            averaged(mesh, SaintVenantKirchhoff { lambda, mu }, density, thickness)
+        }
+        Law::LinearElastic { lambda, mu } => averaged(mesh, LinearElastic { lambda, mu }, density, thickness),
+    }
+}
+
+fn averaged<L: Volumetric<2> + Volumetric<3>>(
+    mesh: Mesh,
+    law: L,
+    density: f64,
+    thickness: f64,
+) -> Result<Box<dyn Body>, SolidError> {
+    match mesh.element {
+        Element::Q4 => Ok(Box::new(MeanDilatation::<2, 4, Quad4, L>::new(mesh, law, density, thickness)?)),
+        Element::Hex8 => Ok(Box::new(MeanDilatation::<3, 8, Hex8, L>::new(mesh, law, density, 1.0)?)),
+        element => Err(SolidError::NoMeanDilatation { element }),
+    }
 }
 
 /// Body of a law of the plane.

@@ -44,6 +44,8 @@ pub enum SolidError {
         "cell {cell} is degenerate at {place:.4?}: the Jacobian of its reference shape is {jacobian:.3e}"
     )]
     Degenerate { cell: usize, place: Vec<f64>, jacobian: f64 },
+    #[error("element {element:?} has no mean dilatation: it is for Q4 and Hex8")]
+    NoMeanDilatation { element: Element },
     #[error("density {0} is not a finite number ≥ 0")]
     Density(f64),
     #[error("thickness {0} is not a finite number > 0")]
@@ -227,5 +229,8 @@ fn check<const D: usize, const N: usize>(
 
 mod body;
 mod integrals;
+mod mean;
 #[cfg(test)]
 mod tests;
+
+pub use mean::MeanDilatation;

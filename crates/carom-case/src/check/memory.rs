@@ -62,6 +62,7 @@ impl Check<'_> {
         let key = match body.mesh {
             MeshSpec::File { .. } => "file",
             MeshSpec::Interval { .. } | MeshSpec::Rectangle { .. } | MeshSpec::Box { .. } => "cells",
+            MeshSpec::Extrusion { .. } => "layers",
             _ => "size",
         };
         let what = format!(

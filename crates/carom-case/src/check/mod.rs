@@ -225,6 +225,11 @@ impl<'a> Check<'a> {
                 let what = format!("the element {element:?} has dimension {}", element.dimension());
                 self.add(format!("body[{i}].element"), what, format!("the case has dimension = {d}"), help);
             }
+            if text("volumetric") == Some("mean")
+                && let Some(element) = element
+            {
+                self.mean_dilatation(element, format!("body[{i}].volumetric"));
+            }
             let shape = || table.table()?.get("mesh")?.table()?.get("shape")?.text();
             if let Some(element @ (carom_solid::Element::Q4 | carom_solid::Element::Q9)) = element
                 && let Some(shape) = shape().filter(|shape| *shape != "rectangle")
@@ -233,7 +238,39 @@ impl<'a> Check<'a> {
                 let why = "quadrilaterals fill rectangles only";
                 self.add(format!("body[{i}].element"), what, why, "use T3, T6 or T10");
             }
+            let of = || table.table()?.get("mesh")?.table()?.get("of")?.table()?.get("shape")?.text();
+            if let Some(element @ (carom_solid::Element::Hex8 | carom_solid::Element::Hex27)) = element
+                && let Some(of) = of().filter(|shape| *shape != "rectangle")
+            {
+                let what = format!("the element {element:?} does not fill the extrusion of a \"{of}\"");
+                let why = "quadrilaterals, the faces of hexahedra, fill rectangles only";
+                self.add(format!("body[{i}].element"), what, why, "use Tet4, Tet10 or Tet20");
+            }
         }
+    }
+
+    fn mean_dilatation(&mut self, element: carom_solid::Element, path: String) {
+        use carom_solid::Element::{Hex8, Q4, T3, Tet4};
+        let stress = self.document.root().get("plane").and_then(Node::text) == Some("stress");
+        let (what, why, help) = match element {
+            Q4 if stress => {
+                let why = "the thickness changes freely in plane stress, and nothing locks";
+                ("volumetric = \"mean\" has no use in plane stress".to_owned(), why, "leave it out")
+            }
+            Q4 | Hex8 => return,
+            T3 | Tet4 => {
+                let what = format!("volumetric = \"mean\" changes nothing for {element:?}");
+                let why = "the volume ratio of such a cell is constant already";
+                (what, why, "use Q4 or Hex8 with it, or T6 or Tet10 without")
+            }
+            _ => {
+                let what = format!("the element {element:?} has no volumetric = \"mean\"");
+                let why =
+                    "one pressure in a cell is too coarse for cells of higher degree, which hardly lock";
+                (what, why, "leave it out, or use Q4 or Hex8")
+            }
+        };
+        self.add(path, what, why, help);
     }
 
     fn supports(&mut self) {
@@ -244,6 +281,19 @@ impl<'a> Check<'a> {
             };
             for (j, side) in texts("on") {
                 self.side(side, format!("support[{i}].on[{j}]"));
+            }
+            if let Some(keys) = table.table().filter(|keys| keys.get("moment_about").is_some()) {
+                let why = if self.draft.dimension == Some(1) {
+                    "forces on a line have no moment"
+                } else if keys.get("name").is_none() {
+                    "only the reactions of a named support are recorded"
+                } else {
+                    ""
+                };
+                if !why.is_empty() {
+                    let help = "leave it out, or name the support in dimension 2 or 3";
+                    self.add(format!("support[{i}].moment_about"), "there is no moment to record", why, help);
+                }
             }
             let axes = &["x", "y", "z"][..self.draft.dimension.unwrap_or(3).min(3)];
             let missing: Vec<_> = texts("fix").filter(|(_, axis)| !axes.contains(axis)).collect();

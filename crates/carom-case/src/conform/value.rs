@@ -109,7 +109,13 @@ impl Check {
                     }
                 }
             }
-            (Kind::Variant(variants), Value::Table(table)) => self.variant(table, variants(), path),
+            (Kind::Variant(variants), Value::Table(table)) => {
+                let variants = variants();
+                let outside = self.dimension;
+                self.dimension = variants.dimension.or(outside);
+                self.variant(table, variants, path);
+                self.dimension = outside;
+            }
             _ => self.wrong(node, key, path),
         }
     }

@@ -52,6 +52,13 @@ pub(super) const BODY: Table = Table {
             "Cell type: L2 L3 L4 in dimension 1, T3 T6 T10 Q4 Q9 in dimension 2, Tet4 Tet10 Tet20 Hex8 Hex27 in dimension 3. Q4 and Q9 fill rectangles, Hex8 and Hex27 every shape.",
         )
         .example("\"T6\""),
+        key(
+            "volumetric",
+            Choice(&["pointwise", "mean"], &[]),
+            "On which change of volume the volumetric energy depends: pointwise, that of each quadrature point; mean, the mean of the cell (mean \
+             dilatation), with which Q4 and Hex8 do not lock at nearly constant volume.",
+        )
+        .default("\"pointwise\""),
         key("mesh", Variant(shapes), "Mesh: a built-in shape with its mesh size, or a body of a Gmsh file.")
             .example("{ shape = \"rectangle\", min = [0.0, 0.0], max = [1.0, 1.0], cells = [8, 8] }"),
         key("place", Kind::Table(&PLACE), "Rotation and translation of the mesh, applied before anything else.")

@@ -1,6 +1,6 @@
 //! Keys of supports and loads.
 
-use super::Kind::{Choices, Formula, Formulas, Name, Sides, Text};
+use super::Kind::{Choices, Formula, Formulas, Name, Sides, Text, Vector};
 use super::{IN_SPACE_AND_TIME, Kind, Table, key};
 
 pub(super) const SUPPORT: Table = Table {
@@ -9,7 +9,21 @@ pub(super) const SUPPORT: Table = Table {
     keys: &[
         key("name", Name, "Name; the reaction forces of a named support are recorded.").optional().example("\"floor\""),
         key("on", Sides, "Sides that are constrained.").example("[\"prism.bottom\"]"),
-        key("fix", Choices(&["x", "y", "z"]), "Directions that are fixed.").optional().example("[\"x\", \"y\"]"),
+        key(
+            "fix",
+            Choices(&["x", "y", "z", "normal"]),
+            "Directions that are fixed; normal: the one across the side, which is plane and faces along x, y or z.",
+        )
+        .optional()
+        .example("[\"x\", \"y\"]"),
+        key(
+            "moment_about",
+            Vector,
+            "Point about which the moment of the reactions is recorded too, for a named support in dimension 2 or 3.",
+        )
+        .unit("length")
+        .optional()
+        .example("[0.0, 0.0]"),
         key(
             "move",
             Kind::Table(&MOVE),

@@ -130,6 +130,8 @@ pub struct Variants {
     pub tables: &'static [(&'static str, Table)],
     /// A table without the tag, recognised by its first key.
     pub or: Option<&'static Table>,
+    /// Dimension of its vectors, if it is not that of the case.
+    pub dimension: Option<usize>,
     /// Values planned for a later version.
     pub later: &'static [&'static str],
     /// Keys planned for a later version, for any value.

@@ -25,6 +25,7 @@ pub fn schemes() -> &'static Variants {
         doc: "Published name of the integrator.",
         tables: KINDS.iter().map(|kind| (kind.name, table(kind))).collect::<Vec<_>>().leak(),
         or: None,
+        dimension: None,
         later: &[],
         later_keys: &[],
     });

@@ -1,6 +1,6 @@
 //! Keys of meshes: built-in shapes and files.
 
-use super::Kind::{Choices, Count, Counts, Direction, Number, Points, Tables, Text, Truth, Vector};
+use super::Kind::{Choices, Count, Counts, Direction, Number, Points, Tables, Text, Truth, Variant, Vector};
 use super::{ANY, Key, NOT_NEGATIVE, POSITIVE, Table, Variants, key};
 
 /// Built-in shapes.
@@ -26,25 +26,7 @@ const SHAPES: Variants = Variants {
                 later: &[],
             },
         ),
-        (
-            "rectangle",
-            Table {
-                name: "mesh of shape \"rectangle\"",
-                doc: "Sides bottom, right, top, left.",
-                keys: &[
-                    key("min", Vector, "Lower left corner.").unit("length").example("[0.0, 0.0]"),
-                    key("max", Vector, "Upper right corner.").unit("length").example("[1.0, 1.0]"),
-                    key("cells", Counts(1), "Number of squares along x and y, each a quadrilateral or split into two triangles; or give `size`.")
-                        .optional()
-                        .example("[8, 4]"),
-                    key("size", Number(POSITIVE), "Largest side length of the squares; or give `cells`.")
-                        .unit("length")
-                        .optional()
-                        .example("0.1"),
-                ],
-                later: &[],
-            },
-        ),
+        ("rectangle", RECTANGLE),
         (
             "box",
             Table {
@@ -112,19 +94,81 @@ const SHAPES: Variants = Variants {
                 later: &[],
             },
         ),
-        ("disc", Table { name: "mesh of shape \"disc\"", doc: "A whole disc; side arc.", keys: ROUND, later: &[] }),
         (
-            "half-disc",
+            "extrusion",
             Table {
-                name: "mesh of shape \"half-disc\"",
-                doc: "The half of a disc to the right of its centre; sides arc, axis.",
-                keys: ROUND,
+                name: "mesh of shape \"extrusion\"",
+                doc: "Dimension 3; a shape of the plane from z = 0 to its height; its sides, and bottom, top (base, lid if it has sides of these names).",
+                keys: &[
+                    key("of", Variant(plane_shapes), "The shape of the plane, meshed with the faces of the cells.")
+                        .example("{ shape = \"ring\", inner = 0.4, outer = 0.5, center = [0.0, 0.0], size = 0.1 }"),
+                    key("height", Number(POSITIVE), "Length along z.").unit("length").example("0.2"),
+                    key("layers", Count(1), "Number of layers of cells.").example("2"),
+                ],
                 later: &[],
             },
         ),
-        (
-            "ring",
-            Table {
+        ("disc", DISC),
+        ("half-disc", HALF_DISC),
+        ("ring", RING),
+        ("polygon", POLYGON),
+    ],
+    or: Some(&MESH_FILE),
+    dimension: None,
+    later: &[],
+    later_keys: &[],
+};
+
+/// Shapes of the plane, to be extruded.
+fn plane_shapes() -> &'static Variants {
+    &PLANE
+}
+
+const PLANE: Variants = Variants {
+    name: "of",
+    tag: "shape",
+    doc: "Shape of the plane.",
+    tables: &[
+        ("rectangle", RECTANGLE),
+        ("disc", DISC),
+        ("half-disc", HALF_DISC),
+        ("ring", RING),
+        ("polygon", POLYGON),
+    ],
+    or: None,
+    dimension: Some(2),
+    later: &[],
+    later_keys: &[],
+};
+
+const RECTANGLE: Table = Table {
+                name: "mesh of shape \"rectangle\"",
+                doc: "Sides bottom, right, top, left.",
+                keys: &[
+                    key("min", Vector, "Lower left corner.").unit("length").example("[0.0, 0.0]"),
+                    key("max", Vector, "Upper right corner.").unit("length").example("[1.0, 1.0]"),
+                    key("cells", Counts(1), "Number of squares along x and y, each a quadrilateral or split into two triangles; or give `size`.")
+                        .optional()
+                        .example("[8, 4]"),
+                    key("size", Number(POSITIVE), "Largest side length of the squares; or give `cells`.")
+                        .unit("length")
+                        .optional()
+                        .example("0.1"),
+                ],
+                later: &[],
+            };
+
+const DISC: Table =
+    Table { name: "mesh of shape \"disc\"", doc: "A whole disc; side arc.", keys: ROUND, later: &[] };
+
+const HALF_DISC: Table = Table {
+    name: "mesh of shape \"half-disc\"",
+    doc: "The half of a disc to the right of its centre; sides arc, axis.",
+    keys: ROUND,
+    later: &[],
+};
+
+const RING: Table = Table {
                 name: "mesh of shape \"ring\"",
                 doc: "The region between two concentric circles; sides inner, outer.",
                 keys: &[
@@ -140,31 +184,23 @@ const SHAPES: Variants = Variants {
                     .example("0.05"),
                 ],
                 later: &[],
-            },
-        ),
-        (
-            "polygon",
-            Table {
-                name: "mesh of shape \"polygon\"",
-                doc: "Any simple polygon, convex or not; sides side1 (from the first point to the second), side2, ….",
-                keys: &[
-                    key("points", Points(3), "Corners in order, clockwise or counter-clockwise.")
-                        .unit("length")
-                        .example("[[0.0, 0.0], [48.0, 44.0], [48.0, 60.0], [0.0, 44.0]]"),
-                    key("size", Number(POSITIVE), "Edge length of the cells; smaller where the outline requires it.")
-                        .unit("length")
-                        .example("0.1"),
-                    key("refine", Tables(&REFINE), "Regions of local refinement.")
-                        .optional()
-                        .example("[{ near = [48.0, 60.0], radius = 2.0, size = 0.02 }]"),
-                ],
-                later: &[],
-            },
-        ),
+            };
+
+const POLYGON: Table = Table {
+    name: "mesh of shape \"polygon\"",
+    doc: "Any simple polygon, convex or not; sides side1 (from the first point to the second), side2, ….",
+    keys: &[
+        key("points", Points(3), "Corners in order, clockwise or counter-clockwise.")
+            .unit("length")
+            .example("[[0.0, 0.0], [48.0, 44.0], [48.0, 60.0], [0.0, 44.0]]"),
+        key("size", Number(POSITIVE), "Edge length of the cells; smaller where the outline requires it.")
+            .unit("length")
+            .example("0.1"),
+        key("refine", Tables(&REFINE), "Regions of local refinement.")
+            .optional()
+            .example("[{ near = [48.0, 60.0], radius = 2.0, size = 0.02 }]"),
     ],
-    or: Some(&MESH_FILE),
     later: &[],
-    later_keys: &[],
 };
 
 const HEIGHT: Key = key("height", Number(POSITIVE), "Length along the axis.").unit("length").example("2.0");

@@ -64,6 +64,9 @@ pub struct BodySpec {
     pub material: String,
     /// Cell type.
     pub element: carom_solid::Element,
+    /// Volumetric energy of a cell.
+    #[serde(default, skip_serializing_if = "Volumetric::is_pointwise")]
+    pub volumetric: Volumetric,
     /// Where its mesh comes from.
     pub mesh: MeshSpec,
     /// Placement of the mesh; none: as generated or read.
@@ -78,6 +81,24 @@ pub struct BodySpec {
     pub velocity: Vec<FormulaSpec>,
     /// Mass matrix.
     pub mass: MassKind,
+}
+
+/// On which change of volume the volumetric energy of a cell depends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Volumetric {
+    /// That of each quadrature point.
+    #[default]
+    Pointwise,
+    /// The mean of the cell.
+    Mean,
+}
+
+impl Volumetric {
+    #[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
+    fn is_pointwise(&self) -> bool {
+        *self == Self::Pointwise
+    }
 }
 
 /// A rigid motion of a mesh: x ↦ about + R(rotate)(x − about) + shift.

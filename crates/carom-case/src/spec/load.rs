@@ -13,6 +13,12 @@ pub struct SupportSpec {
     pub on: Vec<String>,
     /// Fixed directions: 0 is x, 1 is y.
     pub fix: Vec<usize>,
+    /// Whether the direction across each side is fixed, which must be plane.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub normal: bool,
+    /// Point about which the moment of the reactions is recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moment_about: Option<Vec<f64>>,
     /// Prescribed displacements by direction: formulas in X, Y, t.
     #[serde(rename = "move", default)]
     pub moves: Vec<(usize, FormulaSpec)>,

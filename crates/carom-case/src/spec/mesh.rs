@@ -129,6 +129,15 @@ pub enum MeshSpec {
         #[serde(default, skip_serializing_if = "whole_shape")]
         symmetry: [bool; 3],
     },
+    /// Dimension 3: a shape of the plane from z = 0 to a height; its sides, `bottom top`.
+    Extrusion {
+        /// The shape of the plane.
+        of: Box<MeshSpec>,
+        /// Length along z.
+        height: f64,
+        /// Number of layers of cells.
+        layers: usize,
+    },
     /// A named physical surface (dimension 1: curve, dimension 3: volume) of a .msh file; sides are its
     /// named physical curves (points, surfaces).
     File {
@@ -183,6 +192,10 @@ impl MeshSpec {
             Self::Interval { cells, .. } => *cells = more(*cells),
             Self::Rectangle { cells, .. } => *cells = cells.map(more),
             Self::Box { cells, .. } => *cells = cells.map(more),
+            Self::Extrusion { of, layers, .. } => {
+                **of = of.as_ref().clone().refined(factor);
+                *layers = more(*layers);
+            }
             Self::Disc { size, .. }
             | Self::HalfDisc { size, .. }
             | Self::Ring { size, .. }
@@ -221,6 +234,14 @@ impl MeshSpec {
             }
             Self::Tube { symmetry, axis, .. } => {
                 return cut(&["inner", "outer", "bottom", "top"], symmetry, bottom(*axis));
+            }
+            Self::Extrusion { of, .. } => {
+                let mut sides = of.sides();
+                for (end, other) in [("bottom", "base"), ("top", "lid")] {
+                    let end = if sides.iter().any(|side| side == end) { other } else { end };
+                    sides.push(end.to_owned());
+                }
+                return sides;
             }
             Self::File { sides, .. } => return sides.clone(),
             Self::Polygon { points, .. } => return (1..=points.len()).map(|k| format!("side{k}")).collect(),
@@ -278,6 +299,12 @@ impl MeshSpec {
             }
             Self::Tube { inner, outer, height, size, symmetry, .. } => {
                 filled_space(element, generate::tube_hexahedra([inner, outer], height, size, symmetry))
+            }
+            Self::Extrusion { ref of, layers, .. } => {
+                let hexahedral = matches!(element, Element::Hex8 | Element::Hex27);
+                let (cells, nodes) = of.estimate(generate::plane_of(element).unwrap_or(Element::T3));
+                let layers = layers as f64;
+                (cells * layers * if hexahedral { 1.0 } else { 3.0 }, nodes * (k * layers + 1.0))
             }
             Self::Disc { radius, size, .. } => {
                 let n = rings(radius, size);

@@ -10,7 +10,7 @@ mod obstacle;
 mod output;
 mod time;
 
-pub use body::{BodySpec, Law, MassKind, MaterialSpec, PlaceSpec, Plane};
+pub use body::{BodySpec, Law, MassKind, MaterialSpec, PlaceSpec, Plane, Volumetric};
 pub use case::{Case, InitialSpec, Preset, Units, Velocities};
 pub use contact::{
     ActiveSetRule, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime, FrictionSpec,

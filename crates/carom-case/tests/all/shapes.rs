@@ -105,3 +105,68 @@ fn solids_are_resolved_and_survive_json() {
     let problems = resolved(SOLID, &[&oblique]).unwrap_err();
     assert!(problems[0].to_string().contains("axis = \"z\""), "{}", problems[0]);
 }
+
+#[test]
+fn extrusions_are_resolved_and_survive_json() {
+    let rectangle = "shape = \"rectangle\", min = [0, 0], max = [2, 1], cells = [4, 2]";
+    let ring = "shape = \"ring\", inner = 0.5, outer = 1, center = [0, 0], size = 0.25";
+    for (of, element, sides) in [
+        (rectangle, "Hex8", &["base", "bottom", "left", "lid", "right", "top"][..]),
+        (rectangle, "Tet10", &["base", "bottom", "left", "lid", "right", "top"]),
+        (ring, "Tet20", &["bottom", "inner", "outer", "top"]),
+    ] {
+        let mesh =
+            format!("body.part.mesh={{ shape = \"extrusion\", of = {{ {of} }}, height = 0.4, layers = 2 }}");
+        let element = format!("body.part.element={element}");
+        let case = resolved(SOLID, &[&mesh, &element]).unwrap_or_else(|p| panic!("{}", p[0]));
+        let body = &case.bodies[0];
+        let mut named = body.mesh.sides();
+        named.sort();
+        assert_eq!(named, sides);
+        let made = body.make_mesh(3).unwrap();
+        assert_eq!(made.sides.keys().collect::<Vec<_>>(), sides);
+        let (cells, nodes) = body.mesh.estimate(made.element);
+        for (estimate, actual) in [(cells, made.cell_count()), (nodes, made.nodes.len())] {
+            assert!((0.5..3.0).contains(&(estimate / actual as f64)), "{estimate} for {actual}");
+        }
+        let written = serde_json::to_string(&case).unwrap();
+        assert_eq!(serde_json::from_str::<Case>(&written).unwrap(), case);
+    }
+    let of =
+        |of: &str| format!("body.part.mesh={{ shape = \"extrusion\", of = {of}, height = 1, layers = 3 }}");
+    let flat = of("{ shape = \"disc\", radius = 1, center = [0, 0], size = 0.5 }");
+    for (sets, text) in [
+        (&[&flat[..], "body.part.element=Hex8"][..], "does not fill the extrusion of a \"disc\""),
+        (&[&of("{ shape = \"ball\" }")], "`shape` cannot be \"ball\""),
+        (&[&of("{ shape = \"disc\", radius = 1, center = [0, 0, 0], size = 0.5 }")], "a list of 2 numbers"),
+        (&[&flat, "refine=1.5"], "body[0].mesh.layers = [3] into [4.5]"),
+    ] {
+        let problems = resolved(SOLID, sets).unwrap_err();
+        assert!(problems[0].to_string().contains(text), "{}", problems[0]);
+    }
+    assert!(resolved(IMPACT, &[&flat.replace("part", "prism")]).is_err());
+}
+
+#[test]
+fn mean_dilatation_is_for_cells_that_it_helps() {
+    let mean = "body.part.volumetric=mean";
+    let case = resolved(SOLID, &[mean, "body.part.element=Hex8"]).unwrap_or_else(|p| panic!("{}", p[0]));
+    assert_eq!(case.bodies[0].volumetric, Volumetric::Mean);
+    for (element, text) in [("Tet4", "changes nothing for Tet4"), ("Tet10", "has no volumetric = \"mean\"")] {
+        let problems = resolved(SOLID, &[mean, &format!("body.part.element={element}")]).unwrap_err();
+        assert!(problems[0].to_string().contains(text), "{}", problems[0]);
+    }
+    let sets = ["body.prism.volumetric=mean", "body.prism.element=Q4", "plane=stress"];
+    let problems = resolved(IMPACT, &sets).unwrap_err();
+    assert!(problems[0].what.contains("no use in plane stress"), "{}", problems[0]);
+}
+
+#[test]
+fn moments_need_a_name_and_an_arm() {
+    let support = |rest: &str| format!("support=[{{ on = [\"part.sphere\"], fix = [\"x\"]{rest} }}]");
+    let named = support(", name = \"wall\", moment_about = [0, 0, 1]");
+    let case = resolved(SOLID, &[&named]).unwrap_or_else(|p| panic!("{}", p[0]));
+    assert_eq!(case.supports[0].moment_about.as_deref(), Some(&[0.0, 0.0, 1.0][..]));
+    let problems = resolved(SOLID, &[&support(", moment_about = [0, 0, 1]")]).unwrap_err();
+    assert!(problems[0].why.contains("named support"), "{}", problems[0]);
+}

@@ -21,6 +21,8 @@ pub struct Support {
     pub name: String,
     /// Global dofs that it constrains.
     pub dofs: Vec<usize>,
+    /// Point about which their moment is recorded.
+    pub moment_about: Option<Vec<f64>>,
 }
 
 /// The constant data of a simulation.

@@ -12,11 +12,11 @@ mod unsolvable;
 use std::collections::BTreeMap;
 
 use carom_algebra::Threads;
-use carom_case::{Case, FormulaSpec, MassKind, Problem, SKIN};
+use carom_case::{Case, FormulaSpec, MassKind, Problem, SKIN, Volumetric};
 use carom_mechanics::model::{
     BodyInstance, Mass, Model, Probe, Quantity, Support, free_motions, redistribute, value,
 };
-use carom_solid::{Constitutive, Law, SolidError};
+use carom_solid::{Constitutive, Law, SolidError, mean_dilatation_body};
 
 use side::side;
 
@@ -72,6 +72,18 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
                         initial_velocity[dof] = 0.0;
                         constrained.push(dof);
                     }
+                    if spec.normal {
+                        match across(&side.nodes, &reference, d) {
+                            Some(axis) => {
+                                for dof in dofs(axis) {
+                                    fixed[dof] = true;
+                                    initial_velocity[dof] = 0.0;
+                                    constrained.push(dof);
+                                }
+                            }
+                            None => problems.push(not_plane(name, format!("support[{k}].fix"))),
+                        }
+                    }
                     constrained.extend(spec.moves.iter().flat_map(|(i, _)| dofs(*i)));
                 }
                 Err(problem) => problems.push(problem),
@@ -80,7 +92,8 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
         constrained.sort_unstable();
         constrained.dedup();
         if let Some(name) = &spec.name {
-            supports.push(Support { name: name.clone(), dofs: constrained });
+            let moment_about = spec.moment_about.clone().filter(|_| d > 1);
+            supports.push(Support { name: name.clone(), dofs: constrained, moment_about });
         }
     }
 
@@ -140,6 +153,34 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     }
 }
 
+/// Deviation from a plane, relative to the size of a side, that is round-off of its coordinates.
+const PLANE: f64 = 1e-9;
+
+/// The axis across a side whose nodes are in a plane x, y or z = constant.
+fn across(nodes: &[usize], reference: &[f64], d: usize) -> Option<usize> {
+    let extent = |axis: usize| {
+        let places = nodes.iter().map(|node| reference[node * d + axis]);
+        let ends =
+            places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+        ends[1] - ends[0]
+    };
+    let extents: Vec<f64> = (0..d).map(extent).collect();
+    let size = extents.iter().copied().fold(0.0, f64::max);
+    let mut flat = (0..d).filter(|&axis| extents[axis] <= PLANE * size);
+    flat.next().filter(|_| flat.next().is_none())
+}
+
+fn not_plane(side: &str, path: String) -> Problem {
+    let what = format!("the side \"{side}\" is not in a plane x, y or z = constant");
+    let why = "\"normal\" fixes one coordinate of all nodes of a side";
+    Problem::new(
+        path,
+        what,
+        why,
+        "place the body so that the side faces along x, y or z, or fix directions by name",
+    )
+}
+
 /// Values of the formulas of a body's `key` at its nodes.
 fn nodal(
     part: &BodyInstance,
@@ -185,9 +226,19 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
             carom_case::Law::SaintVenantKirchhoff => Law::SaintVenantKirchhoff { lambda, mu },
             carom_case::Law::LinearElastic => Law::LinearElastic { lambda, mu },
         };
+        let of_law = law;
         let of_case = law.constitutive();
+        let averages = spec.volumetric == Volumetric::Mean;
+        if averages && materials.contains_key(&material.name) {
+            let what = format!("the law of \"{}\" is your own, and has no mean dilatation", material.name);
+            let why = "the volumetric part of a law must be known to be averaged over a cell";
+            let help = "leave volumetric out, or use an element of higher degree";
+            problems.push(Problem::new(format!("body[{k}].volumetric"), what, why, help));
+            continue;
+        }
         let law = materials.get(&material.name).unwrap_or(&of_case);
         let body = |mesh: carom_solid::Mesh| match (mesh.dimension(), case.plane) {
+            _ if averages => mean_dilatation_body(mesh, of_law, material.density, case.thickness),
             (2, carom_case::Plane::Stress) => law.plane_stress_body(mesh, material.density, case.thickness),
             _ => law.body(mesh, material.density, case.thickness),
         };

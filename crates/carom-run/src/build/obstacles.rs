@@ -114,8 +114,11 @@ impl Moving<'_> {
     /// The support whose reaction is that of the obstacle; none if it is free.
     pub(super) fn support(&self) -> Option<Support> {
         let (d, node) = (self.dimension, self.carrier.node);
-        matches!(self.motion, ObstacleMotion::Prescribed { .. })
-            .then(|| Support { name: self.name.to_owned(), dofs: (node * d..(node + 1) * d).collect() })
+        matches!(self.motion, ObstacleMotion::Prescribed { .. }).then(|| Support {
+            name: self.name.to_owned(),
+            dofs: (node * d..(node + 1) * d).collect(),
+            moment_about: None,
+        })
     }
 
     /// Description for messages.

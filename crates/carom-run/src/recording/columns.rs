@@ -151,6 +151,17 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
                 false,
             );
         }
+        let moment = |name: String| (name, "moment of the reaction forces about the given point");
+        let columns = match (model.dimension, &support.moment_about) {
+            (2, Some(_)) => vec![moment(format!("{}.moment", support.name))],
+            (3, Some(_)) => {
+                axes.iter().map(|axis| moment(format!("{}.moment_{axis}", support.name))).collect()
+            }
+            _ => Vec::new(),
+        };
+        for (name, what) in columns {
+            add(name, &label.moment, what, false);
+        }
     }
     for probe in &model.probes {
         for quantity in &probe.record {
@@ -273,6 +284,10 @@ pub(super) fn row(model: &Model, state: &State, dt: f64, since: &Since, weights:
             row.extend((0..d).map(|i| {
                 support.dofs.iter().filter(|dof| *dof % d == i).map(|&dof| reaction[dof]).sum::<f64>()
             }));
+            if let Some(about) = &support.moment_about {
+                let moment = moment(&support.dofs, &reaction, &state.y, about);
+                row.extend(&moment[if d == 2 { 2..3 } else { 0..3 }]);
+            }
         }
     }
     for probe in &model.probes {
@@ -281,6 +296,22 @@ pub(super) fn row(model: &Model, state: &State, dt: f64, since: &Since, weights:
     if let Some(motion) = &model.loads.manufactured {
         row.extend(motion.errors(&model.parts, &state.y, state.time));
     }
+}
+
+/// Moment of the forces at some dofs about a point.
+fn moment(dofs: &[usize], forces: &[f64], y: &[f64], about: &[f64]) -> [f64; 3] {
+    let d = about.len();
+    let mut moment = [0.0; 3];
+    for &dof in dofs {
+        let (axis, node) = (dof % d, dof / d);
+        // e_i × e_axis = ± e_j.
+        for i in (0..d).filter(|&i| i != axis) {
+            let arm = y[node * d + i] - about[i];
+            let sign = if (i + 1) % 3 == axis { 1.0 } else { -1.0 };
+            moment[3 - i - axis] += sign * arm * forces[dof];
+        }
+    }
+    moment
 }
 
 fn mean(part: &BodyInstance, field: &[f64], weights: &[f64], i: usize) -> f64 {

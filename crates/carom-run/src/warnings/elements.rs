@@ -1,18 +1,18 @@
-//! Warnings about elements: T3, the triangles of constant strain.
+//! Warnings about elements of degree 1: they lock at nearly constant volume, and T3 in bending.
 //!
 //! A beam of n square cells across its thickness is too stiff in bending by 3/n², as measured on a
 //! cantilever with L/h = 20 and ν = 0 (n = 2, 4, 8, 16: 75 %, 19 %, 4.7 %, 1.2 %). Length L and
 //! thickness h of a body are the roots of x² − (P/2) x + A = 0, with its area A and its perimeter P:
 //! exact for a rectangle, to first order for a strip or ring that is bent.
 
-use carom_case::{Case, Plane};
+use carom_case::{BodySpec, Case, Plane, Volumetric};
 use carom_mechanics::model::{BodyInstance, Model};
 use carom_solid::{Element, Facet};
 
 use super::found::{Found, short};
 
-/// Poisson's ratio above which triangles of constant strain lock in plane strain: at 0.45 the bulk
-/// modulus is ten times the shear modulus.
+/// Poisson's ratio above which elements of degree 1 lock in plane strain and in space: at 0.45 the
+/// bulk modulus is ten times the shear modulus.
 const LOCKING: f64 = 0.45;
 /// L/h of a body that bends rather than shears: at 5 the shear of a cantilever contributes some
 /// three per cent of its deflection.
@@ -23,7 +23,13 @@ const TOO_STIFF: f64 = 0.05;
 /// In plane stress the thickness changes freely, so nothing locks.
 pub(super) fn locking(case: &Case, _: &Model) -> Vec<Found> {
     let mut found = Vec::new();
-    for body in case.bodies.iter().filter(|b| b.element == Element::T3 && case.plane == Plane::Strain) {
+    let locks = |body: &&BodySpec| match body.element {
+        Element::T3 | Element::Q4 => case.plane == Plane::Strain,
+        Element::Tet4 | Element::Hex8 => true,
+        _ => false,
+    };
+    let locking = case.bodies.iter().filter(locks).filter(|body| body.volumetric == Volumetric::Pointwise);
+    for body in locking {
         let Some(material) = case.materials.iter().find(|m| m.name == body.material) else { continue };
         let poisson = material.lambda / (2.0 * (material.lambda + material.mu));
         // A ratio given as 0.45 and recomputed from Λ and μ differs in its last digits.
@@ -31,11 +37,15 @@ pub(super) fn locking(case: &Case, _: &Model) -> Vec<Found> {
             let poisson = (poisson * 1e4).round() / 1e4;
             found.push(Found::of_body(
                 &body.name,
-                format!("T3 in plane strain with Poisson's ratio {poisson}"),
+                format!("{:?}{} with Poisson's ratio {poisson}", body.element, plane(body.element)),
             ));
         }
     }
     found
+}
+
+fn plane(element: Element) -> &'static str {
+    if element.dimension() == 2 { " in plane strain" } else { "" }
 }
 
 pub(super) fn stiff_bending(_: &Case, model: &Model) -> Vec<Found> {

@@ -62,8 +62,8 @@ pub const WARNINGS: [Entry; 10] = [
     },
     Entry {
         id: "locking",
-        why: "triangles of constant strain lock at nearly constant volume, and the response is too stiff",
-        advice: "element = \"T6\" or \"T10\"",
+        why: "elements of degree 1 lock at nearly constant volume, and the response is too stiff",
+        advice: "an element of degree 2 (T6, Q9, Tet10, Hex27), or volumetric = \"mean\" with Q4 or Hex8",
         rule: Rule::Model(elements::locking),
     },
     Entry {

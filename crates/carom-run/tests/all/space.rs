@@ -210,3 +210,48 @@ fn a_bar_is_a_prism_without_lateral_contraction() {
     }
     assert!((bar.state().ledger.strain - solid.state().ledger.strain).abs() < 1e-11);
 }
+
+/// Q4 in plane strain and Hex8 between planes: one pressure in a cell in both.
+#[test]
+fn mean_dilatation_of_a_slab_is_that_of_plane_strain() {
+    for scheme in ["{ kind = \"chung-hulbert\", rho_inf = 0.8 }", "{ kind = \"energy-momentum\" }"] {
+        let both = [
+            format!("time.scheme={scheme}"),
+            "body.beam.volumetric=\"mean\"".to_owned(),
+            "material.rubber.lambda=1500.0".to_owned(),
+        ];
+        let of = |sets: &[&str], element: &str| {
+            let sets = sets.iter().map(ToString::to_string).chain(both.iter().cloned());
+            sets.chain([format!("body.beam.element=\"{element}\"")]).collect::<Vec<_>>()
+        };
+        let plane = finish(simulation(BEAM, &of(&[], "Q4")));
+        let slab = finish(simulation(BEAM, &of(&SLAB, "Hex8")));
+        let worst = apart(&plane, &slab);
+        assert!(worst < 1e-12, "{scheme}: {worst:e}");
+        let (flat, thick) = (&plane.state().ledger, &slab.state().ledger);
+        assert!((flat.strain - 2.0 * thick.strain).abs() < 1e-10 * flat.strain, "{scheme}");
+        // The ledger closes: nothing dissipates.
+        if scheme.contains("energy") {
+            assert!(thick.dissipation().abs() < 1e-10 * thick.total().abs(), "{:e}", thick.dissipation());
+        }
+    }
+}
+
+/// fix = ["normal"] is the direction across a side, and refused where a side has none.
+#[test]
+fn sides_are_held_across() {
+    let on = "[\"block.left\", \"block.bottom\"], fix = [\"normal\"]";
+    let same = [
+        format!("support=[{{ on = {on} }}]"),
+        "support=[{ on = [\"block.left\"], fix = [\"x\"] }, { on = [\"block.bottom\"], fix = [\"z\"] }]"
+            .to_owned(),
+    ];
+    let still = "body.block.velocity=[0.1, 0.2, 0.0]";
+    let [across, named] = same.map(|support| finish(simulation(FREE, &[&support, still])).state().y.clone());
+    assert_eq!(across, named);
+    let turned = "body.block.place={ rotate = { axis = [0.0, 0.0, 1.0], angle = 30.0 } }";
+    let case =
+        carom_run::case::Case::from_text(FREE, &[&format!("support=[{{ on = {on} }}]"), turned]).unwrap();
+    let problems = carom_run::Setup::new(&case).start().err().unwrap();
+    assert!(problems.to_string().contains("is not in a plane"), "{problems}");
+}

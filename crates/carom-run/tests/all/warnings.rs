@@ -180,6 +180,9 @@ fn nearly_incompressible_t3() {
     assert_eq!(locking(&[]), none);
     assert_eq!(locking(&["body.prism.element=T3", soft]), none);
     assert_eq!(locking(&["body.prism.element=T3", "plane=stress"]), none);
+    let rectangle = ["body.prism.element=Q4", "body.prism.volumetric=mean"];
+    assert_eq!(locking(&rectangle[..1]).len(), 1);
+    assert_eq!(locking(&rectangle), none);
     let found: Vec<(String, String)> = locking(&["body.prism.element=T3"]);
     assert!(
         found.len() == 1 && found[0].1.contains("\"prism\"") && found[0].1.contains("0.4651"),

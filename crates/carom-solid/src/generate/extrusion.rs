@@ -88,6 +88,13 @@ pub fn extruded(plane: Element) -> Option<Element> {
     }
 }
 
+/// The cells of the plane whose extrusion gives these cells.
+pub fn plane_of(element: Element) -> Option<Element> {
+    [Element::T3, Element::T6, Element::T10, Element::Q4, Element::Q9]
+        .into_iter()
+        .find(|plane| extruded(*plane) == Some(element))
+}
+
 /// The nodes of a shape in the lattice of its degree; its reference cell begins at `low` and ends at
 /// 1.
 fn plane_lattice<const N: usize, S: Shape<2, N>>(low: f64) -> Vec<[usize; 2]> {

@@ -22,7 +22,7 @@ pub use ball::{ball, ball_hexahedra};
 pub use cuboid::{cuboid, cuboid_nodes};
 pub use cylinder::{cylinder, cylinder_hexahedra, tube, tube_hexahedra};
 pub use disc::{disc, disc_nodes, half_disc, half_disc_nodes};
-pub use extrusion::{extruded, extrusion};
+pub use extrusion::{extruded, extrusion, plane_of};
 pub use frame::Frame;
 pub use polygon::{Refinement, outline, polygon};
 pub use rectangle::{rectangle, rectangle_nodes};

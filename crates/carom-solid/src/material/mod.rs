@@ -16,6 +16,7 @@ mod linear_elastic;
 mod neo_hookean;
 mod plane_stress;
 mod saint_venant_kirchhoff;
+mod volumetric;
 
 pub(crate) use hyperelastic::moduli_of;
 pub use hyperelastic::{Material, NotPositive};
@@ -25,6 +26,7 @@ pub use linear_elastic::LinearElastic;
 pub use neo_hookean::NeoHookean;
 pub use plane_stress::{PlaneStress, Thickness};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
+pub use volumetric::Volumetric;
 
 #[cfg(test)]
 mod tests;

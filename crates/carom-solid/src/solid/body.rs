@@ -5,10 +5,9 @@ use carom_algebra::{Mat, Vector, wide};
 use super::{Place, Solid};
 use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
-use crate::discrete_gradient::change_between;
 use crate::material::{Material, NotPositive};
 use crate::mesh::Mesh;
-use crate::points::{LANES, get, set};
+use crate::points::get;
 use crate::reference::{self, gradient};
 use crate::shape::Shape;
 use crate::tree::Tree;
@@ -21,7 +20,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
     fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
         wide(
             #[inline(always)]
-            || self.integrate_at(cell, y, force, None),
+            || self.integrate_at(&self.law, cell, y, force, None),
         )
     }
 
@@ -34,7 +33,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
     ) -> Result<f64, Inverted> {
         wide(
             #[inline(always)]
-            || self.integrate_at(cell, y, force, Some(tangent)),
+            || self.integrate_at(&self.law, cell, y, force, Some(tangent)),
         )
     }
 
@@ -47,7 +46,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
     ) -> Result<f64, Inverted> {
         wide(
             #[inline(always)]
-            || self.integrate_between(cell, [before, now], force),
+            || self.integrate_between(&self.law, cell, [before, now], force),
         )
     }
 
@@ -61,31 +60,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
     ) -> Result<(), Inverted> {
         wide(
             #[inline(always)]
-            || match before {
-                None => self.differentiate(
-                    cell,
-                    [y],
-                    change,
-                    #[inline(always)]
-                    |[h], dh, count| self.law.changes(h, dh, count),
-                    product,
-                ),
-                Some(before) => self.differentiate(
-                    cell,
-                    [before, y],
-                    change,
-                    #[inline(always)]
-                    |[start, end], dh, count| {
-                        let mut changes = [[[0.0; LANES]; D]; D];
-                        for l in 0..count {
-                            let ends = [&get(start, l), &get(end, l)];
-                            set(&mut changes, l, &change_between(&self.law, ends, &get(dh, l))?, 1.0);
-                        }
-                        Ok(changes)
-                    },
-                    product,
-                ),
-            },
+            || self.product(&self.law, cell, before, [y, change], product),
         )
     }
 
@@ -133,20 +108,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
         }
     }
 
-    /// ∂Pᵢᴶ/∂Xᴶ = Σ ∂Pᵢᴶ/∂Fₖᴸ ∂²yₖ/∂Xᴶ∂Xᴸ.
     fn stress_divergence(&self, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
-        let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
-        let point = self.law.at(&h).map_err(|NotPositive(det_f)| det_f)?;
-        let unit = Mat::<D>::identity().0.map(Vector);
-        let mut sum = Vector::<D>::ZERO;
-        for j in 0..D {
-            for l in 0..D {
-                let bent = Vector(std::array::from_fn(|k| second[(k * D + j) * D + l]));
-                sum += self.law.tangent(&point, &unit[j], &unit[l]).apply(&bent);
-            }
-        }
-        out.copy_from_slice(&sum.0);
-        Ok(())
+        self.divergence_of(&self.law, h, second, out)
     }
 
     fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
@@ -177,21 +140,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
     }
 
     fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted> {
-        let x = self.reference(cell);
-        let inverse_transposed = gradient(&x, &S::gradients(&vector(xi))).inverse().transposed();
-        let g = S::gradients(&vector(xi)).map(|g| inverse_transposed.apply(&g));
-        let h = gradient(&self.displacements(cell, y), &g);
-        let point = self.law.at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-        let within = self.law.cauchy(&point);
-        let lateral = self.law.lateral(&point);
-        let cauchy = std::array::from_fn(|i| {
-            std::array::from_fn(|j| match (i < D && j < D, i == j) {
-                (true, _) => within.0[i][j],
-                (false, true) => lateral,
-                (false, false) => 0.0,
-            })
-        });
-        Ok(PointState { det_f: self.law.volume_ratio(&h), cauchy })
+        self.point_of(&self.law, cell, xi, y)
     }
 
     fn shape(&self, xi: &[f64], values: &mut [f64]) {
@@ -225,6 +174,55 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
 
     fn density(&self) -> f64 {
         self.density
+    }
+}
+
+impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N, S, L> {
+    /// [`Body::point`] of another law.
+    pub(super) fn point_of<M: Material<D>>(
+        &self,
+        law: &M,
+        cell: usize,
+        xi: &[f64],
+        y: &[f64],
+    ) -> Result<PointState, Inverted> {
+        let x = self.reference(cell);
+        let inverse_transposed = gradient(&x, &S::gradients(&vector(xi))).inverse().transposed();
+        let g = S::gradients(&vector(xi)).map(|g| inverse_transposed.apply(&g));
+        let h = gradient(&self.displacements(cell, y), &g);
+        let point = law.at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
+        let within = law.cauchy(&point);
+        let lateral = law.lateral(&point);
+        let cauchy = std::array::from_fn(|i| {
+            std::array::from_fn(|j| match (i < D && j < D, i == j) {
+                (true, _) => within.0[i][j],
+                (false, true) => lateral,
+                (false, false) => 0.0,
+            })
+        });
+        Ok(PointState { det_f: law.volume_ratio(&h), cauchy })
+    }
+
+    /// ∂Pᵢᴶ/∂Xᴶ = Σ ∂Pᵢᴶ/∂Fₖᴸ ∂²yₖ/∂Xᴶ∂Xᴸ.
+    pub(super) fn divergence_of<M: Material<D>>(
+        &self,
+        law: &M,
+        h: &[f64],
+        second: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), f64> {
+        let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
+        let point = law.at(&h).map_err(|NotPositive(det_f)| det_f)?;
+        let unit = Mat::<D>::identity().0.map(Vector);
+        let mut sum = Vector::<D>::ZERO;
+        for j in 0..D {
+            for l in 0..D {
+                let bent = Vector(std::array::from_fn(|k| second[(k * D + j) * D + l]));
+                sum += law.tangent(&point, &unit[j], &unit[l]).apply(&bent);
+            }
+        }
+        out.copy_from_slice(&sum.0);
+        Ok(())
     }
 }
 

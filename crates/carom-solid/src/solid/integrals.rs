@@ -4,7 +4,7 @@ use carom_algebra::{Mat, Vector};
 
 use super::{Place, Solid};
 use crate::body::Inverted;
-use crate::discrete_gradient::between;
+use crate::discrete_gradient::{between, change_between};
 use crate::material::{Material, NotPositive, moduli_of};
 use crate::points::{Blocks, LANES, Mats, Moduli, get, set, set_moduli, sum};
 use crate::shape::Shape;
@@ -64,10 +64,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         Ok(energy)
     }
 
-    /// `integrate` with the law in one configuration.
+    /// `integrate` with a law in one configuration.
     #[inline(always)]
-    pub(super) fn integrate_at(
+    pub(super) fn integrate_at<M: Material<D>>(
         &self,
+        law: &M,
         cell: usize,
         y: &[f64],
         force: &mut [f64],
@@ -78,9 +79,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             [y],
             #[inline(always)]
             |[h], with_moduli| {
-                let point = self.law.at(&h)?;
-                let moduli = with_moduli.then(|| moduli_of(&self.law, &point));
-                Ok((self.law.energy(&point), self.law.stress(&point), moduli))
+                let point = law.at(&h)?;
+                let moduli = with_moduli.then(|| moduli_of(law, &point));
+                Ok((law.energy(&point), law.stress(&point), moduli))
             },
             force,
             tangent,
@@ -89,8 +90,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
 
     /// `integrate` with the discrete gradient between two configurations, forces only.
     #[inline(always)]
-    pub(super) fn integrate_between(
+    pub(super) fn integrate_between<M: Material<D>>(
         &self,
+        law: &M,
         cell: usize,
         ends: [&[f64]; 2],
         force: &mut [f64],
@@ -100,7 +102,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             ends,
             #[inline(always)]
             |[start, end], _| {
-                let (energy, stress) = between(&self.law, [&start, &end])?;
+                let (energy, stress) = between(law, [&start, &end])?;
                 Ok((energy, stress, None))
             },
             force,
@@ -108,10 +110,48 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         )
     }
 
+    /// Derivative of [`Self::integrate_at`] or, with `before`, of [`Self::integrate_between`] along
+    /// `change`.
+    #[inline(always)]
+    pub(super) fn product<M: Material<D>>(
+        &self,
+        law: &M,
+        cell: usize,
+        before: Option<&[f64]>,
+        [y, change]: [&[f64]; 2],
+        product: &mut [f64],
+    ) -> Result<(), Inverted> {
+        let Some(before) = before else {
+            return self.differentiate(
+                cell,
+                [y],
+                change,
+                #[inline(always)]
+                |[h], dh, count| law.changes(h, dh, count),
+                product,
+            );
+        };
+        self.differentiate(
+            cell,
+            [before, y],
+            change,
+            #[inline(always)]
+            |[start, end], dh, count| {
+                let mut changes = [[[0.0; LANES]; D]; D];
+                for l in 0..count {
+                    let ends = [&get(start, l), &get(end, l)];
+                    set(&mut changes, l, &change_between(law, ends, &get(dh, l))?, 1.0);
+                }
+                Ok(changes)
+            },
+            product,
+        )
+    }
+
     /// Forces of the stress increments `at(h, dh, count)` in lanes, from the gradients of fields
     /// and of an increment of the last.
     #[inline(always)]
-    pub(super) fn differentiate<const M: usize>(
+    fn differentiate<const M: usize>(
         &self,
         cell: usize,
         fields: [&[f64]; M],

@@ -7,6 +7,7 @@ mod gmsh;
 mod gmsh_faults;
 mod gmsh_volume;
 mod manufactured;
+mod mean_dilatation;
 mod plane_stress;
 mod space;
 mod subdivided;

@@ -1,0 +1,255 @@
+//! The volumetric part of the laws, Ψ = Ψ₀ + W(q): Λ enters in W alone, and q measures the change of
+//! volume,
+//!
+//! ```text
+//! neo-Hookean             q = J − 1    ∂q/∂F = cof F    W = Λ/2 (ln (1 + q))²
+//! St. Venant–Kirchhoff    q = tr E     ∂q/∂F = F        W = Λ/2 q²
+//! linear elastic          q = tr ε     ∂q/∂F = I        W = Λ/2 q²
+//! ```
+//!
+//! Measures are laws themselves, with q as their energy, so that the kernels of forces, tangents and
+//! discrete gradients serve them too.
+
+use carom_algebra::{Mat, Vector};
+
+use super::kinematics::{excess_cofactor, excess_det, ln_1p};
+use super::{LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
+
+/// A law whose volumetric part can be averaged over a cell.
+pub trait Volumetric<const D: usize>: Material<D> + Sized {
+    /// q as a law.
+    type Measure: Material<D>;
+
+    /// Ψ₀: the same law with Λ = 0.
+    #[must_use]
+    fn without_volumetric(&self) -> Self;
+
+    /// q.
+    fn measure(&self) -> Self::Measure;
+
+    /// W, W′ and W″ at m.
+    fn volumetric(&self, m: f64) -> [f64; 3];
+
+    /// ΔW/Δm between two values of m, and its derivative with respect to the second; without
+    /// cancellation.
+    fn volumetric_between(&self, m: [f64; 2]) -> [f64; 2];
+}
+
+/// q = J − 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Swelling;
+
+/// H, cof F, J.
+pub struct OfSwelling<const D: usize> {
+    cofactor: Mat<D>,
+    excess: f64,
+}
+
+impl<const D: usize> Material<D> for Swelling {
+    const ENERGY_DEGREE: usize = D;
+    type Point = OfSwelling<D>;
+
+    #[inline(always)]
+    fn at(&self, h: &Mat<D>) -> Result<OfSwelling<D>, NotPositive> {
+        let excess = excess_det(h);
+        if excess <= -1.0 || excess.is_nan() {
+            return Err(NotPositive(1.0 + excess));
+        }
+        Ok(OfSwelling { cofactor: Mat::identity() + excess_cofactor(h), excess })
+    }
+
+    #[inline(always)]
+    fn energy(&self, p: &OfSwelling<D>) -> f64 {
+        p.excess
+    }
+
+    #[inline(always)]
+    fn stress(&self, p: &OfSwelling<D>) -> Mat<D> {
+        p.cofactor
+    }
+
+    /// J (ã⊗b̃ − b̃⊗ã), ã = F⁻ᵀa.
+    #[inline(always)]
+    fn tangent(&self, p: &OfSwelling<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
+        let (a, b) = (p.cofactor.apply(a), p.cofactor.apply(b));
+        (a.outer(&b) - b.outer(&a)) * (1.0 / (1.0 + p.excess))
+    }
+
+    fn cauchy(&self, _: &OfSwelling<D>) -> Mat<D> {
+        Mat::identity()
+    }
+
+    fn lateral(&self, _: &OfSwelling<D>) -> f64 {
+        1.0
+    }
+}
+
+/// q = tr E, E = (H + Hᵀ + HᵀH)/2; it is defined for J ≤ 0, which is an error as in the law.
+#[derive(Clone, Copy, Debug)]
+pub struct TraceOfStrain;
+
+/// H and J.
+pub struct OfStrain<const D: usize> {
+    h: Mat<D>,
+    det_f: f64,
+}
+
+impl<const D: usize> Material<D> for TraceOfStrain {
+    const ENERGY_DEGREE: usize = 2;
+    type Point = OfStrain<D>;
+
+    #[inline(always)]
+    fn at(&self, h: &Mat<D>) -> Result<OfStrain<D>, NotPositive> {
+        let det_f = 1.0 + excess_det(h);
+        if det_f <= 0.0 || det_f.is_nan() {
+            return Err(NotPositive(det_f));
+        }
+        Ok(OfStrain { h: *h, det_f })
+    }
+
+    #[inline(always)]
+    fn energy(&self, p: &OfStrain<D>) -> f64 {
+        p.h.trace() + 0.5 * p.h.double_dot(&p.h)
+    }
+
+    #[inline(always)]
+    fn stress(&self, p: &OfStrain<D>) -> Mat<D> {
+        Mat::identity() + p.h
+    }
+
+    #[inline(always)]
+    fn tangent(&self, _: &OfStrain<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
+        Mat::identity() * a.dot(b)
+    }
+
+    fn cauchy(&self, p: &OfStrain<D>) -> Mat<D> {
+        let f = Mat::identity() + p.h;
+        f * f.transposed() * (1.0 / p.det_f)
+    }
+
+    fn lateral(&self, p: &OfStrain<D>) -> f64 {
+        1.0 / p.det_f
+    }
+}
+
+/// q = tr ε = tr H.
+#[derive(Clone, Copy, Debug)]
+pub struct SmallSwelling;
+
+impl<const D: usize> Material<D> for SmallSwelling {
+    const ENERGY_DEGREE: usize = 1;
+    const OBJECTIVE: bool = false;
+    type Point = f64;
+
+    #[inline(always)]
+    fn at(&self, h: &Mat<D>) -> Result<f64, NotPositive> {
+        Ok(h.trace())
+    }
+
+    #[inline(always)]
+    fn energy(&self, trace: &f64) -> f64 {
+        *trace
+    }
+
+    #[inline(always)]
+    fn stress(&self, _: &f64) -> Mat<D> {
+        Mat::identity()
+    }
+
+    #[inline(always)]
+    fn tangent(&self, _: &f64, _: &Vector<D>, _: &Vector<D>) -> Mat<D> {
+        Mat::ZERO
+    }
+
+    fn cauchy(&self, _: &f64) -> Mat<D> {
+        Mat::identity()
+    }
+
+    fn lateral(&self, _: &f64) -> f64 {
+        1.0
+    }
+}
+
+impl<const D: usize> Volumetric<D> for NeoHookean {
+    type Measure = Swelling;
+
+    fn without_volumetric(&self) -> Self {
+        Self { lambda: 0.0, mu: self.mu }
+    }
+
+    fn measure(&self) -> Swelling {
+        Swelling
+    }
+
+    fn volumetric(&self, m: f64) -> [f64; 3] {
+        let (logarithm, ratio) = (ln_1p(m)[0], 1.0 + m);
+        let [energy, pressure] = [0.5 * logarithm * logarithm, logarithm / ratio];
+        [energy, pressure, (1.0 - logarithm) / (ratio * ratio)].map(|part| self.lambda * part)
+    }
+
+    /// With x = (m₁ − m₀)/(1 + m₀) and q(x) = ln(1 + x)/x: Λ (ln(1 + m₀) + ln(1 + m₁)) q(x)/(2 (1 + m₀)).
+    fn volumetric_between(&self, [start, end]: [f64; 2]) -> [f64; 2] {
+        let ratio = 1.0 + start;
+        let [quotient, slope] = logarithmic_quotient((end - start) / ratio);
+        let sum = ln_1p(start)[0] + ln_1p(end)[0];
+        let by_end = quotient / (1.0 + end) + sum * slope / ratio;
+        [sum * quotient, by_end].map(|part| 0.5 * self.lambda * part / ratio)
+    }
+}
+
+/// ln(1 + x)/x and its derivative.
+fn logarithmic_quotient(x: f64) -> [f64; 2] {
+    // The terms omitted are below x⁸: round-off.
+    if x.abs() < 0.01 {
+        let (mut value, mut slope) = (0.0, 0.0);
+        for k in (0..8_i32).rev() {
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            slope = slope * x + value;
+            value = value * x + sign / f64::from(k + 1);
+        }
+        return [value, slope];
+    }
+    let value = x.ln_1p() / x;
+    [value, (1.0 / (1.0 + x) - value) / x]
+}
+
+/// W, W′ and W″ of Λ/2 m², and the quotient of its differences.
+macro_rules! quadratic {
+    () => {
+        fn volumetric(&self, m: f64) -> [f64; 3] {
+            [0.5 * self.lambda * m * m, self.lambda * m, self.lambda]
+        }
+
+        fn volumetric_between(&self, [start, end]: [f64; 2]) -> [f64; 2] {
+            [0.5 * self.lambda * (start + end), 0.5 * self.lambda]
+        }
+    };
+}
+
+impl<const D: usize> Volumetric<D> for SaintVenantKirchhoff {
+    type Measure = TraceOfStrain;
+
+    fn without_volumetric(&self) -> Self {
+        Self { lambda: 0.0, mu: self.mu }
+    }
+
+    fn measure(&self) -> TraceOfStrain {
+        TraceOfStrain
+    }
+
+    quadratic!();
+}
+
+impl<const D: usize> Volumetric<D> for LinearElastic {
+    type Measure = SmallSwelling;
+
+    fn without_volumetric(&self) -> Self {
+        Self { lambda: 0.0, mu: self.mu }
+    }
+
+    fn measure(&self) -> SmallSwelling {
+        SmallSwelling
+    }
+
+    quadratic!();
+}
