@@ -177,17 +177,17 @@ impl Setup<'_> {
 
     fn supports(&self, out: &mut String) {
         for support in list(self.case(), "supports") {
-            let fix = Self::directions(support);
+            let (fix, across) = (Self::directions(support), Self::is_held_across(support));
             for side in list(support, "on").iter().filter_map(Value::as_str) {
                 for walk in self.walks(side) {
-                    if self.flat || fix.len() > 1 {
+                    if self.flat || fix.len() + usize::from(across) > 1 {
                         wall(out, &walk, 0.0);
                         continue;
                     }
                     let constrained = if fix.first() == Some(&0.0) { [1.0, 0.0] } else { [0.0, 1.0] };
                     let along_normal =
                         |(_, n): &(Point, Point)| (n[0] * constrained[0] + n[1] * constrained[1]).abs() > 0.7;
-                    if walk.iter().all(along_normal) {
+                    if across || walk.iter().all(along_normal) {
                         rollers(out, &walk);
                     } else {
                         guides(out, &walk, constrained);

@@ -285,7 +285,7 @@ impl<'a> Check<'a> {
             if let Some(keys) = table.table().filter(|keys| keys.get("moment_about").is_some()) {
                 let why = if self.draft.dimension == Some(1) {
                     "forces on a line have no moment"
-                } else if keys.get("name").is_none() {
+                } else if keys.get("name").is_none() && !self.is_misspelt("support", i, "name") {
                     "only the reactions of a named support are recorded"
                 } else {
                     ""

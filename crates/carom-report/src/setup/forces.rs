@@ -115,7 +115,9 @@ impl Setup<'_> {
     /// The conditions of a support: `u_{x} = u_{y} = 0`.
     pub(super) fn support_in_words(support: &Value) -> String {
         let axis = |i: f64| ["u_{x}", "u_{y}", "u_{z}"][(i as usize).min(2)];
-        let fixed: Vec<&str> = vector(support.get("fix")).iter().map(|i| axis(*i)).collect();
+        let across = Self::is_held_across(support);
+        let axes = vector(support.get("fix")).into_iter().map(axis);
+        let fixed: Vec<&str> = axes.chain(across.then_some("u_{n}")).collect();
         let fixed = (!fixed.is_empty()).then(|| fixed.join(" = ") + " = 0");
         let moved = list(support, "move").iter().filter_map(|m| {
             let [axis_number, formula] = m.as_array()?.as_slice() else { return None };
@@ -124,7 +126,12 @@ impl Setup<'_> {
         fixed.into_iter().chain(moved).collect::<Vec<_>>().join(", ")
     }
 
-    /// Directions constrained or moved by a support.
+    /// Whether a support fixes the direction across its sides.
+    pub(super) fn is_held_across(support: &Value) -> bool {
+        support.get("normal").and_then(Value::as_bool) == Some(true)
+    }
+
+    /// Directions constrained or moved by a support, by their axes.
     pub(super) fn directions(support: &Value) -> Vec<f64> {
         let moved = list(support, "move").iter().filter_map(|m| m.get(0).and_then(Value::as_f64));
         vector(support.get("fix")).into_iter().chain(moved).collect()

@@ -71,7 +71,7 @@ impl Setup<'_> {
             if k == 0 {
                 line("", "Supports", true);
             }
-            let fixed = Self::directions(support);
+            let fixed = Self::directions(support).len() + usize::from(Self::is_held_across(support));
             let on: Vec<&str> = list(support, "on").iter().filter_map(Value::as_str).collect();
             let mut swatch = String::new();
             let ends = [([0.0, -3.0], [0.0, 1.0]), ([20.0, -3.0], [0.0, 1.0])];
@@ -80,7 +80,7 @@ impl Setup<'_> {
                     swatch,
                     "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{SUPPORT}\" stroke=\"#44607c\"/>"
                 );
-            } else if fixed.len() > 1 || self.flat {
+            } else if fixed > 1 || self.flat {
                 wall(&mut swatch, &ends, 0.0);
             } else {
                 rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));

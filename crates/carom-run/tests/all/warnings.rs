@@ -175,7 +175,8 @@ fn a_step_in_which_a_wave_crosses_many_cells() {
 #[test]
 fn nearly_incompressible_t3() {
     let soft = "material.rubber.lambda=135.0"; // ν = 0.45: the bulk modulus is ten times μ
-    let locking = |sets: &[&str]| found(IMPACT, sets).into_iter().filter(|(id, _)| id == "locking").collect();
+    let locking =
+        |sets: &[&str]| found(IMPACT, sets).into_iter().filter(|(id, _)| id == "locking").collect::<Vec<_>>();
     let none: Vec<(String, String)> = Vec::new();
     assert_eq!(locking(&[]), none);
     assert_eq!(locking(&["body.prism.element=T3", soft]), none);

@@ -172,7 +172,8 @@ fn table(case: &Case, facts: &Facts) -> String {
         }
     }
     for support in &case.supports {
-        let fixed = support.fix.iter().map(|axis| ["x", "y", "z"][*axis]).collect::<Vec<_>>().join(", ");
+        let axes = support.fix.iter().map(|axis| ["x", "y", "z"][*axis]);
+        let fixed = axes.chain(support.normal.then_some("their normals")).collect::<Vec<_>>().join(", ");
         let moved =
             support.moves.iter().map(|(axis, u)| format!("moved along {} by {u}", ["x", "y", "z"][*axis]));
         let fixed = (!fixed.is_empty()).then(|| format!("fixed in {fixed}"));
