@@ -120,8 +120,9 @@ pub(crate) fn solve_stage(
             check_satisfiable(equations, &now)?;
             return Err(Rejected::NoConvergence {
                 iterations: effort.iterations,
-                step: step / model.scale,
-                residual: now.measure.residual / now.measure.forces.max(f64::MIN_POSITIVE),
+                step: [step / model.scale, tolerance],
+                residual: [now.measure.residual, enough].map(|r| r / now.measure.forces.max(f64::MIN_POSITIVE)),
+                gap: Some([now.measure.gap / model.scale, GAP_TOLERANCE]),
             });
         }
         let rows = Constraints::of(equations, &now);

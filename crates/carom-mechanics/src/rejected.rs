@@ -30,15 +30,18 @@ pub enum Rejected {
     },
     /// Newton did not converge.
     #[error(
-        "Newton's method did not converge in {iterations} iterations: last correction {step:.2e} L, residual {residual:.2e} of the sum of forces"
+        "Newton's method did not converge in {iterations} iterations: last correction {:.2e} L (allowed: {:.1e}), residual {:.2e} of the sum of forces (allowed: {:.1e}){}",
+        step[0], step[1], residual[0], residual[1], open(*gap)
     )]
     NoConvergence {
         /// Number of iterations.
         iterations: u32,
-        /// ‖Δy‖∞/L.
-        step: f64,
-        /// ‖r‖/Σ‖f‖.
-        residual: f64,
+        /// ‖Δy‖∞/L, and what is allowed.
+        step: [f64; 2],
+        /// ‖r‖/Σ‖f‖, and what is allowed.
+        residual: [f64; 2],
+        /// Largest |g|/L of an active constraint, and what is allowed; none without contact.
+        gap: Option<[f64; 2]>,
     },
     /// The active set returns to one visited before.
     #[error("contact \"{contact}\": the active set does not settle: nodes {nodes:?} open and close in turn")]
@@ -174,6 +177,12 @@ pub enum Rejected {
         /// Which number.
         what: &'static str,
     },
+}
+
+/// The part of a message about a constraint that is not satisfied.
+fn open(gap: Option<[f64; 2]>) -> String {
+    let violated = gap.filter(|[gap, allowed]| gap > allowed);
+    violated.map_or_else(String::new, |[gap, allowed]| format!(", gap {gap:.2e} L (allowed: {allowed:.1e})"))
 }
 
 impl Rejected {

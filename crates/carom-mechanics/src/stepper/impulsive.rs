@@ -190,8 +190,14 @@ impl Impulsive {
             }
             if iteration >= self.settings.max_iterations {
                 work.trace.blame(&now.residual, &model.free);
-                let (step, residual) = (step / model.scale, size / forces.max(f64::MIN_POSITIVE));
-                return Err(Rejected::NoConvergence { iterations: iteration as u32, step, residual });
+                let tolerance = self.settings.tolerance;
+                let allowed = tolerance * forces + work.system.round_off(equations);
+                return Err(Rejected::NoConvergence {
+                    iterations: iteration as u32,
+                    step: [step / model.scale, tolerance],
+                    residual: [size, allowed].map(|r| r / forces.max(f64::MIN_POSITIVE)),
+                    gap: None,
+                });
             }
             *iterations += 1;
             let Workspace { system, timings, .. } = work;
