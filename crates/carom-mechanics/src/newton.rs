@@ -121,7 +121,8 @@ pub(crate) fn solve_stage(
             return Err(Rejected::NoConvergence {
                 iterations: effort.iterations,
                 step: [step / model.scale, tolerance],
-                residual: [now.measure.residual, enough].map(|r| r / now.measure.forces.max(f64::MIN_POSITIVE)),
+                residual: [now.measure.residual, enough]
+                    .map(|r| r / now.measure.forces.max(f64::MIN_POSITIVE)),
                 gap: Some([now.measure.gap / model.scale, GAP_TOLERANCE]),
             });
         }

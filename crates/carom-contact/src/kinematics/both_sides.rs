@@ -28,6 +28,7 @@ use super::Kinematics;
 use super::facing::PAST_SIDE;
 use super::folds::{Folds, Side};
 use super::node_to_facet::{Detection, NodeToFacet};
+use super::one_way::OneWay;
 use super::passed::Passed;
 use super::surface::Surface;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
@@ -38,24 +39,6 @@ use crate::rows::Rows;
 const NEAR_NODE: f64 = 0.5 * PAST_SIDE;
 /// Cosine of the angle up to which two facets are parallel: 10°.
 const PARALLEL: f64 = 0.985;
-
-/// Secondary nodes against the facets of a primary side, one of the two directions.
-pub trait OneWay: Kinematics {
-    /// Facets of the primary side of which a node is a corner, with its ξ there.
-    fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])>;
-
-    /// Global numbers of the nodes of a primary facet.
-    fn nodes_of(&self, facet: usize) -> &[usize];
-
-    /// Outward unit normal of a primary facet at ξ, padded with zeros to space.
-    fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> [f64; 3];
-
-    /// Distance between the first corners of a primary facet.
-    fn length(&self, facet: usize, y: &[f64]) -> f64;
-
-    /// Distance between two nodes.
-    fn distance(&self, a: usize, b: usize, y: &[f64]) -> f64;
-}
 
 /// Contact in both directions.
 #[derive(Debug)]

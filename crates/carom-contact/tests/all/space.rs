@@ -97,7 +97,7 @@ fn force_and_moment_balance_and_the_gap_sees_no_rigid_motion() {
 
 /// Nodes and facets of the boundary of the unit cube, two triangles a face.
 fn cube() -> (Vec<f64>, Vec<Vec<usize>>) {
-    let y = (0..8).flat_map(|k| [k & 1, k >> 1 & 1, k >> 2].map(|i| i as f64)).collect();
+    let y = (0..8).flat_map(|k| [k & 1, k >> 1 & 1, k >> 2].map(f64::from)).collect();
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     (y, faces.iter().flat_map(|&[a, b, c, d]| [vec![a, b, c], vec![a, c, d]]).collect())
 }

@@ -237,7 +237,7 @@ fn mean_dilatation_of_a_slab_is_that_of_plane_strain() {
     }
 }
 
-/// fix = ["normal"] is the direction across a side, and refused where a side has none.
+/// `fix = ["normal"]` is the direction across a side, and refused where a side has none.
 #[test]
 fn sides_are_held_across() {
     let on = "[\"block.left\", \"block.bottom\"], fix = [\"normal\"]";

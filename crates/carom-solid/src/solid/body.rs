@@ -109,7 +109,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
     }
 
     fn stress_divergence(&self, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
-        self.divergence_of(&self.law, h, second, out)
+        divergence_of(&self.law, h, second, out)
     }
 
     fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
@@ -202,28 +202,27 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         });
         Ok(PointState { det_f: law.volume_ratio(&h), cauchy })
     }
+}
 
-    /// ∂Pᵢᴶ/∂Xᴶ = Σ ∂Pᵢᴶ/∂Fₖᴸ ∂²yₖ/∂Xᴶ∂Xᴸ.
-    pub(super) fn divergence_of<M: Material<D>>(
-        &self,
-        law: &M,
-        h: &[f64],
-        second: &[f64],
-        out: &mut [f64],
-    ) -> Result<(), f64> {
-        let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
-        let point = law.at(&h).map_err(|NotPositive(det_f)| det_f)?;
-        let unit = Mat::<D>::identity().0.map(Vector);
-        let mut sum = Vector::<D>::ZERO;
-        for j in 0..D {
-            for l in 0..D {
-                let bent = Vector(std::array::from_fn(|k| second[(k * D + j) * D + l]));
-                sum += law.tangent(&point, &unit[j], &unit[l]).apply(&bent);
-            }
+/// ∂Pᵢᴶ/∂Xᴶ = Σ ∂Pᵢᴶ/∂Fₖᴸ ∂²yₖ/∂Xᴶ∂Xᴸ.
+pub(super) fn divergence_of<const D: usize, M: Material<D>>(
+    law: &M,
+    h: &[f64],
+    second: &[f64],
+    out: &mut [f64],
+) -> Result<(), f64> {
+    let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
+    let point = law.at(&h).map_err(|NotPositive(det_f)| det_f)?;
+    let unit = Mat::<D>::identity().0.map(Vector);
+    let mut sum = Vector::<D>::ZERO;
+    for j in 0..D {
+        for l in 0..D {
+            let bent = Vector(std::array::from_fn(|k| second[(k * D + j) * D + l]));
+            sum += law.tangent(&point, &unit[j], &unit[l]).apply(&bent);
         }
-        out.copy_from_slice(&sum.0);
-        Ok(())
     }
+    out.copy_from_slice(&sum.0);
+    Ok(())
 }
 
 /// Reference coordinates from a slice of `D` numbers.

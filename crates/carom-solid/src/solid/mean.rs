@@ -16,6 +16,7 @@
 
 use carom_algebra::wide;
 
+use super::body::divergence_of;
 use super::{Solid, SolidError};
 use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
@@ -186,7 +187,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> Body for 
     }
 
     fn stress_divergence(&self, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
-        self.solid.divergence_of(&self.law, h, second, out)
+        divergence_of(&self.law, h, second, out)
     }
 
     fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
