@@ -68,6 +68,7 @@ fn sides_of(shape: &str) -> &'static [&'static str] {
         "ball" => &["sphere"],
         "cylinder" => &["side", "bottom", "top"],
         "tube" => &["outer", "inner", "bottom", "top"],
+        "extrusion" => &["top", "bottom"],
         _ => &[],
     }
 }
