@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use carom_solid::FacetShape;
 
-use super::facing::{Next, PAST, PAST_SIDE, REACH};
+use super::facing::{Next, PAST, REACH};
 use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
 use super::passed::{Passed, Paths};
@@ -265,9 +265,9 @@ impl Kinematics for NodeToFacet {
                     Next::HandOver(facet, _) | Next::Dent(facet, _)
                         if twice.contains(&(pair.node, facet)) =>
                     {
-                        // In the joint the node has both pairs. Past it, that of the other facet is
-                        // responsible: an extrapolated facet is not the surface.
-                        if pair.xi.abs() <= 1.0 + PAST_SIDE || pair.active && !starts {
+                        // In the joint the node has both pairs. Beyond the reach of this facet that of
+                        // the other one is responsible: an extrapolated facet is not the surface.
+                        if pair.xi.abs() <= REACH || pair.active && !starts {
                             return true;
                         }
                         if pair.active {

@@ -345,9 +345,9 @@ impl Kinematics for NodeToPatch {
                         if twice.contains(&(pair.node, facet)) =>
                     {
                         let beyond = self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1;
-                        // In the joint the node has both pairs. Past it, that of the other facet is
-                        // responsible: an extrapolated facet is not the surface.
-                        if beyond <= PAST_SIDE || pair.active && !starts {
+                        // In the joint the node has both pairs. Beyond the reach of this facet that of
+                        // the other one is responsible: an extrapolated facet is not the surface.
+                        if beyond <= REACH || pair.active && !starts {
                             return true;
                         }
                         if pair.active {
