@@ -19,7 +19,7 @@ use super::gap::Gap;
 use super::passed::{Passed, Paths};
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
-use super::{Kinematics, OneWay, watch_every_node};
+use super::{Kinematics, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
@@ -131,7 +131,7 @@ impl NodeToFacet {
         self.point == ContactPoint::Frozen
     }
 
-    fn places<'a>(&self, y: &'a [f64]) -> Places<'a> {
+    pub(super) fn places<'a>(&self, y: &'a [f64]) -> Places<'a> {
         Places::new(y, self.primary.shape().dimension())
     }
 
@@ -152,35 +152,6 @@ impl NodeToFacet {
             ContactPoint::Closest => Gap::closest(facet, y, from, pair.xi),
             ContactPoint::Frozen => Gap::fixed(facet, y, from, pair.xi),
         }
-    }
-}
-
-impl OneWay for NodeToFacet {
-    fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
-        let end = |facet: usize| {
-            let nodes = self.primary.facet(facet).nodes;
-            let xi = if nodes[0] == node { Some(-1.0) } else { (nodes[1] == node).then_some(1.0) };
-            xi.map(|xi| (facet, [xi, 0.0]))
-        };
-        (0..self.primary.facets()).filter_map(end).collect()
-    }
-
-    fn nodes_of(&self, facet: usize) -> &[usize] {
-        self.primary.facet(facet).nodes
-    }
-
-    fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> [f64; 3] {
-        let [x, y] = self.primary.facet(facet).at(self.places(y), xi[0]).normal.0;
-        [x, y, 0.0]
-    }
-
-    fn length(&self, facet: usize, y: &[f64]) -> f64 {
-        self.primary.length(facet, self.places(y))
-    }
-
-    fn distance(&self, a: usize, b: usize, y: &[f64]) -> f64 {
-        let y = self.places(y);
-        (y.at(a) - y.at(b)).norm()
     }
 }
 

@@ -1,6 +1,7 @@
 //! What contact in both directions asks of either of them.
 
 use super::Kinematics;
+use super::node_to_facet::NodeToFacet;
 
 /// Secondary nodes against the facets of a primary side, one of the two directions.
 pub trait OneWay: Kinematics {
@@ -18,4 +19,33 @@ pub trait OneWay: Kinematics {
 
     /// Distance between two nodes.
     fn distance(&self, a: usize, b: usize, y: &[f64]) -> f64;
+}
+
+impl OneWay for NodeToFacet {
+    fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
+        let end = |facet: usize| {
+            let nodes = self.primary.facet(facet).nodes;
+            let xi = if nodes[0] == node { Some(-1.0) } else { (nodes[1] == node).then_some(1.0) };
+            xi.map(|xi| (facet, [xi, 0.0]))
+        };
+        (0..self.primary.facets()).filter_map(end).collect()
+    }
+
+    fn nodes_of(&self, facet: usize) -> &[usize] {
+        self.primary.facet(facet).nodes
+    }
+
+    fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> [f64; 3] {
+        let [x, y] = self.primary.facet(facet).at(self.places(y), xi[0]).normal.0;
+        [x, y, 0.0]
+    }
+
+    fn length(&self, facet: usize, y: &[f64]) -> f64 {
+        self.primary.length(facet, self.places(y))
+    }
+
+    fn distance(&self, a: usize, b: usize, y: &[f64]) -> f64 {
+        let y = self.places(y);
+        (y.at(a) - y.at(b)).norm()
+    }
 }

@@ -102,6 +102,8 @@ impl Setup<'_> {
             let shape = ["circle", "polyline"]
                 .into_iter()
                 .find(|shape| contact.pointer(&format!("/primary/{shape}")).is_some());
+            let in_space = self.case().get("dimension").and_then(Value::as_u64) == Some(3);
+            let shape = shape.map(|shape| if in_space && shape == "circle" { "sphere" } else { shape });
             let rigid = format!("rigid {}", shape.unwrap_or("plane"));
             let primary = side.unwrap_or(&rigid);
             line(&bar(SECONDARY), &format!("{} (secondary)", text(contact, "secondary")), false);

@@ -2,6 +2,8 @@
 //! gaps with their derivatives, and the pairs of secondary nodes with them.
 
 mod boundary;
+mod candidate;
+mod crossing;
 mod gap;
 mod node_to_patch;
 mod patch;

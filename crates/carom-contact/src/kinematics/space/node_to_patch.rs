@@ -11,42 +11,39 @@
 //!                  leaves at the start of the next one
 //! ```
 //!
-//! A node without a pair meets the facet that its path crosses first, else the nearest one that it
-//! was not behind before.
+//! Which facet a node without a pair meets is in `candidate.rs`.
 
 use std::sync::{Mutex, PoisonError};
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::Boundary;
 use super::gap::PatchGap;
-use super::patch::{Feature, Patch, cross, place};
+use super::patch::{Feature, place};
 use crate::kinematics::{Kinematics, OneWay};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
 /// Distance past an edge, over the height of the facet, up to which a facet is extrapolated.
-const REACH: f64 = 0.2;
+pub(super) const REACH: f64 = 0.2;
 /// The same before Newton's method has converged.
-const WANDER: f64 = 2.0;
+pub(super) const WANDER: f64 = 2.0;
 /// The same beyond which a pair is handed over before Newton's method has converged.
 const HAND_OVER: f64 = 0.02;
 const HAND_BACK: f64 = 0.1;
 /// The same above which a closest point is past an edge.
-const PAST: f64 = 1e-9;
+pub(super) const PAST: f64 = 1e-9;
 /// The same at a sharp edge or the end of a side.
 const PAST_SIDE: f64 = 1e-3;
-/// A node this far behind a facet, relative to its length, at the start of a step has not crossed it.
-const BEHIND: f64 = 0.02;
 /// Depth relative to the length of a facet that round-off feigns.
-const NOISE: f64 = 1e-9;
+pub(super) const NOISE: f64 = 1e-9;
 
 /// Secondary nodes against a primary side of facets in space.
 #[derive(Debug)]
 pub struct NodeToPatch {
-    secondary: Vec<usize>,
-    primary: Boundary,
+    pub(super) secondary: Vec<usize>,
+    pub(super) primary: Boundary,
     hull: Hull,
     /// Depth that each node may have without contact; empty if none may have any.
     allowed: Vec<f64>,
@@ -83,11 +80,11 @@ impl NodeToPatch {
         Self { allowed, ..self }
     }
 
-    fn slack(&self, place: usize) -> f64 {
+    pub(super) fn slack(&self, place: usize) -> f64 {
         self.allowed(place) + self.kept(place)
     }
 
-    fn gap(&self, facet: usize, xi: [f64; 2], from: Vector<3>, y: &[f64]) -> f64 {
+    pub(super) fn gap(&self, facet: usize, xi: [f64; 2], from: Vector<3>, y: &[f64]) -> f64 {
         let at = self.primary.patch(facet).at(y, xi);
         (from - at.position).dot(&at.normal)
     }
@@ -99,7 +96,7 @@ impl NodeToPatch {
     }
 
     /// Whether ξ lies past an edge of a facet across which no blunt joint with the side follows.
-    fn faces_nothing(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> bool {
+    pub(super) fn faces_nothing(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> bool {
         let patch = self.primary.patch(facet);
         (0..patch.corners()).zip(patch.beyond(xi)).any(|(edge, beyond)| {
             beyond > PAST
@@ -147,115 +144,10 @@ impl NodeToPatch {
         }
     }
 
-    /// Facet and ξ of possible contact of a node without a pair.
-    fn candidate(
-        &self,
-        near: &[usize],
-        place_of: usize,
-        before: &[f64],
-        now: &[f64],
-    ) -> Option<(usize, [f64; 2])> {
-        let (node, slack) = (self.secondary[place_of], self.slack(place_of));
-        let [start, end] = [before, now].map(|y| place(y, node));
-        let mut closest: Option<(f64, usize, [f64; 2], f64)> = None;
-        let mut first: Option<(f64, usize)> = None;
-        for &facet in near {
-            let patch = self.primary.patch(facet);
-            if let Some(theta) = crossing(patch, before, now, node)
-                && first.is_none_or(|(least, _)| theta < least)
-            {
-                first = Some((theta, facet));
-            }
-            let Some(xi) = patch.closest_point(now, end, REACH) else { continue };
-            let gap = self.gap(facet, xi, end, now);
-            let (of_side, length) = (self.primary.is_of_side(facet), patch.length(now));
-            let beyond = patch.furthest(xi).1.max(0.0);
-            let is_other = !of_side && (gap >= -NOISE * length || beyond > 0.0);
-            if is_other || of_side && self.faces_nothing(facet, xi, now) {
-                continue;
-            }
-            let distance = gap.abs() + beyond * length;
-            let least = closest.map_or(f64::INFINITY, |(least, ..)| least);
-            if distance < if of_side { least } else { (1.0 - PAST) * least } {
-                closest = Some((distance, facet, xi, gap));
-            }
-        }
-        if self.allowed(place_of) > 0.0 {
-            // It may be inside, and is no candidate before it is too deep.
-            let moved = (end - start).norm();
-            if moved < self.allowed(place_of) && closest.is_none_or(|(.., gap)| gap + slack >= 0.0) {
-                return None;
-            }
-        }
-        let faced = |facet: usize| {
-            let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
-            (!self.faces_nothing(facet, xi, now)).then_some(xi)
-        };
-        let entered = first.filter(|&(_, facet)| self.primary.is_of_side(facet));
-        if let Some((facet, xi)) = entered.and_then(|(_, facet)| Some((facet, faced(facet)?))) {
-            return Some((facet, xi));
-        }
-        let (_, facet, xi, _) = closest.filter(|&(_, facet, ..)| self.primary.is_of_side(facet))?;
-        let patch = self.primary.patch(facet);
-        let limit = slack + BEHIND * patch.length(before);
-        let behind = match patch.closest_point(before, start, REACH) {
-            Some(xi) => self.gap(facet, xi, start, before) < -limit,
-            None => entered.is_none() && first.is_some(),
-        };
-        (entered.is_some() || !behind).then_some((facet, xi))
-    }
-
     fn pairs_twice(pairs: &[Pair]) -> Vec<(usize, usize)> {
         let twice = pairs.windows(2).filter(|two| two[0].node == two[1].node);
         twice.flat_map(|two| [two[0], two[1]].map(|pair| (pair.node, pair.facet))).collect()
     }
-}
-
-/// Instant θ in [0, 1] at which a node's path first meets a facet's from outside, both moving on
-/// straight lines: Newton's method on x(θ) = y(ξ, θ) from the instant at which the gap vanishes if it
-/// changes linearly.
-fn crossing(patch: Patch, before: &[f64], now: &[f64], node: usize) -> Option<f64> {
-    /// θ and ξ beyond their ranges: a node exactly on the surface has crossed it.
-    const TOLERANCE: f64 = 1e-6;
-    let gap_at = |y: &[f64]| {
-        let xi = patch.closest_point(y, place(y, node), 1.0)?;
-        let at = patch.at(y, xi);
-        Some(((place(y, node) - at.position).dot(&at.normal), xi))
-    };
-    let ((old, _), (new, _)) = (gap_at(before)?, gap_at(now)?);
-    let length = patch.length(now);
-    if old < -TOLERANCE * length || new >= 0.0 {
-        return None;
-    }
-    let mut theta = if old > 0.0 { old / (old - new) } else { 0.0 };
-    let mut xi = gap_at(if theta < 0.5 { before } else { now })?.1;
-    let lerp = |n: usize, theta: f64| place(before, n) * (1.0 - theta) + place(now, n) * theta;
-    for _ in 0..20 {
-        let functions = patch.shape.functions(xi);
-        let mut miss = lerp(node, theta);
-        let mut relative = place(now, node) - place(before, node);
-        let mut tangents = [Vector::ZERO; 2];
-        for (k, &n) in patch.nodes.iter().enumerate() {
-            let x = lerp(n, theta);
-            miss += x * -functions.values[k];
-            relative += (place(now, n) - place(before, n)) * -functions.values[k];
-            (0..2).for_each(|i| tangents[i] += x * functions.slopes[i][k]);
-        }
-        // miss + relative dθ − τ_α dξ_α = 0
-        let matrix = Mat([relative.0, (-tangents[0]).0, (-tangents[1]).0]).transposed();
-        let step = matrix.inverse().apply(&-miss);
-        (theta, xi) = (theta + step[0], [xi[0] + step[1], xi[1] + step[2]]);
-        let size = step.0.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        if !size.is_finite() || theta.abs() > 3.0 || patch.furthest(xi).1 > WANDER {
-            return None;
-        }
-        if size <= 1e-12 {
-            let inwards = relative.dot(&cross(tangents[0], tangents[1])) < 0.0;
-            let valid = (-TOLERANCE..=1.0 + TOLERANCE).contains(&theta) && patch.furthest(xi).1 <= TOLERANCE;
-            return (inwards && valid).then_some(theta);
-        }
-    }
-    None
 }
 
 impl OneWay for NodeToPatch {

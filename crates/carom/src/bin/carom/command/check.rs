@@ -191,6 +191,7 @@ fn table(case: &Case, facts: &Facts) -> String {
         let primary = match &contact.primary {
             PrimarySpec::Side(side) => side.clone(),
             PrimarySpec::Plane { .. } => "a rigid plane".to_owned(),
+            PrimarySpec::Circle { .. } if case.dimension == 3 => "a rigid sphere".to_owned(),
             PrimarySpec::Circle { .. } => "a rigid circle".to_owned(),
             PrimarySpec::Polyline { .. } => "a rigid polyline".to_owned(),
         };

@@ -1,0 +1,70 @@
+//! The facet that a node without a pair may have reached in a step: the first one that its path
+//! crosses, else the nearest one that it was not behind before.
+
+use super::crossing::crossing;
+use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
+use super::patch::place;
+use crate::kinematics::Kinematics;
+
+/// A node this far behind a facet, relative to its length, at the start of a step has not crossed it.
+const BEHIND: f64 = 0.02;
+
+impl NodeToPatch {
+    /// Facet and ξ of possible contact of a node without a pair.
+    pub(super) fn candidate(
+        &self,
+        near: &[usize],
+        place_of: usize,
+        before: &[f64],
+        now: &[f64],
+    ) -> Option<(usize, [f64; 2])> {
+        let (node, slack) = (self.secondary[place_of], self.slack(place_of));
+        let [start, end] = [before, now].map(|y| place(y, node));
+        let mut closest: Option<(f64, usize, [f64; 2], f64)> = None;
+        let mut first: Option<(f64, usize)> = None;
+        for &facet in near {
+            let patch = self.primary.patch(facet);
+            if let Some(theta) = crossing(patch, before, now, node)
+                && first.is_none_or(|(least, _)| theta < least)
+            {
+                first = Some((theta, facet));
+            }
+            let Some(xi) = patch.closest_point(now, end, REACH) else { continue };
+            let gap = self.gap(facet, xi, end, now);
+            let (of_side, length) = (self.primary.is_of_side(facet), patch.length(now));
+            let beyond = patch.furthest(xi).1.max(0.0);
+            let is_other = !of_side && (gap >= -NOISE * length || beyond > 0.0);
+            if is_other || of_side && self.faces_nothing(facet, xi, now) {
+                continue;
+            }
+            let distance = gap.abs() + beyond * length;
+            let least = closest.map_or(f64::INFINITY, |(least, ..)| least);
+            if distance < if of_side { least } else { (1.0 - PAST) * least } {
+                closest = Some((distance, facet, xi, gap));
+            }
+        }
+        if self.allowed(place_of) > 0.0 {
+            // It may be inside, and is no candidate before it is too deep.
+            let moved = (end - start).norm();
+            if moved < self.allowed(place_of) && closest.is_none_or(|(.., gap)| gap + slack >= 0.0) {
+                return None;
+            }
+        }
+        let faced = |facet: usize| {
+            let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
+            (!self.faces_nothing(facet, xi, now)).then_some(xi)
+        };
+        let entered = first.filter(|&(_, facet)| self.primary.is_of_side(facet));
+        if let Some((facet, xi)) = entered.and_then(|(_, facet)| Some((facet, faced(facet)?))) {
+            return Some((facet, xi));
+        }
+        let (_, facet, xi, _) = closest.filter(|&(_, facet, ..)| self.primary.is_of_side(facet))?;
+        let patch = self.primary.patch(facet);
+        let limit = slack + BEHIND * patch.length(before);
+        let behind = match patch.closest_point(before, start, REACH) {
+            Some(xi) => self.gap(facet, xi, start, before) < -limit,
+            None => entered.is_none() && first.is_some(),
+        };
+        (entered.is_some() || !behind).then_some((facet, xi))
+    }
+}
