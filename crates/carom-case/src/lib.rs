@@ -42,6 +42,7 @@ pub use document::Document;
 pub use excerpt::{Excerpt, merged};
 pub use expect::{Asked, read_expects};
 pub use load::load_variables;
+pub use make::NoMesh;
 pub use problem::{CaseError, Diagnostic, Problem, Problems};
 pub use read::read;
 pub use read_scheme::read_scheme;

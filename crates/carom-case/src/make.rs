@@ -7,12 +7,23 @@ use carom_solid::{Element, Mesh};
 use crate::mesh_file;
 use crate::{BodySpec, MeshSpec, RefineSpec};
 
+/// Why the mesh of a body cannot be made.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct NoMesh(String);
+
+impl<T: Into<String>> From<T> for NoMesh {
+    fn from(why: T) -> Self {
+        Self(why.into())
+    }
+}
+
 impl BodySpec {
     /// The mesh in a case of this dimension.
     ///
     /// # Errors
     /// Why it cannot be made.
-    pub fn make_mesh(&self, dimension: usize) -> Result<Mesh, String> {
+    pub fn make_mesh(&self, dimension: usize) -> Result<Mesh, NoMesh> {
         let mut mesh = match self.mesh {
             MeshSpec::File { ref file, ref surface, ref hash, parts, slits, .. } => {
                 let mesh = mesh_file::mesh(file, dimension, surface, slits, hash)?;
@@ -66,12 +77,12 @@ impl BodySpec {
     }
 }
 
-fn message(made: Result<Mesh, generate::MeshError>) -> Result<Mesh, String> {
-    made.map_err(|error| error.to_string())
+fn message(made: Result<Mesh, generate::MeshError>) -> Result<Mesh, NoMesh> {
+    Ok(made.map_err(|error| error.to_string())?)
 }
 
 /// The mesh of a shape of the plane.
-fn plane_mesh(shape: &MeshSpec, element: Element) -> Result<Mesh, String> {
+fn plane_mesh(shape: &MeshSpec, element: Element) -> Result<Mesh, NoMesh> {
     match *shape {
         MeshSpec::Rectangle { min, max, cells } => message(generate::rectangle(element, min, max, cells)),
         MeshSpec::Disc { radius, center, size } => message(generate::disc(element, radius, center, size)),

@@ -8,6 +8,7 @@ use carom_solid::{Element, Mesh, gmsh};
 
 use super::MeshSpec;
 use super::machine::available_memory;
+use super::make::NoMesh;
 use super::problem::Problem;
 use super::view::View;
 
@@ -159,9 +160,9 @@ impl MeshSpec {
     ///
     /// # Errors
     /// A message with the file's name.
-    pub fn verify(&self) -> Result<(), String> {
+    pub fn verify(&self) -> Result<(), NoMesh> {
         match self {
-            Self::File { file, hash, .. } => unchanged(file, hash).map(|_| ()),
+            Self::File { file, hash, .. } => Ok(unchanged(file, hash).map(|_| ())?),
             _ => Ok(()),
         }
     }

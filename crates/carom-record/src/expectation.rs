@@ -9,6 +9,7 @@
 use carom_formula::Formula;
 use serde::{Deserialize, Serialize};
 
+use crate::Reason;
 use crate::question::{Form, Question, Records, Series, Window};
 use crate::{Expectation, Run, Status};
 
@@ -171,7 +172,7 @@ impl Deviation {
     ///
     /// # Errors
     /// The formula is invalid, or its value at the time of a row is not finite.
-    pub fn of(&self, times: &[f64], values: &[f64]) -> Result<f64, String> {
+    pub fn of(&self, times: &[f64], values: &[f64]) -> Result<f64, Reason> {
         let text = self.exact.as_ref().unwrap_or(&self.formula);
         let formula = Formula::parse(text, &["t"]).map_err(|e| format!("`{text}`: {e}"))?;
         let difference = |(t, c): (&f64, &f64)| {
@@ -197,9 +198,9 @@ impl Expect {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn got(&self, records: &dyn Records) -> Result<f64, String> {
+    pub fn got(&self, records: &dyn Records) -> Result<f64, Reason> {
         match &self.deviation {
-            _ if self.order.is_some() => Err("an order of convergence needs a study".to_owned()),
+            _ if self.order.is_some() => Err("an order of convergence needs a study".into()),
             None => Question::parse(&self.what)?.answer(records, self.window()),
             Some(deviation) => {
                 let (times, values) = Series::parse(&self.what)?.rows(records, self.window())?;
@@ -228,10 +229,10 @@ impl Expect {
     }
 
     /// The outcome for a value, or for a missing one.
-    pub fn verdict(&self, got: Result<f64, String>) -> Expectation {
+    pub fn verdict(&self, got: Result<f64, Reason>) -> Expectation {
         let (got, why) = match got {
             Ok(got) => (Some(got), None),
-            Err(why) => (None, Some(why)),
+            Err(why) => (None, Some(why.into())),
         };
         Expectation {
             what: self.words(),
@@ -257,7 +258,8 @@ impl Expect {
 pub fn judge(run: &Run, expects: &[Expect]) -> Vec<Expectation> {
     let judged = run.manifest.status == Status::Finished || expects.iter().any(Expect::asks_whether_stopped);
     let reason = || run.manifest.reason.clone().unwrap_or_else(|| "it has not finished".to_owned());
-    let got = |e: &Expect| if judged { e.got(run) } else { Err(format!("the run stopped: {}", reason())) };
+    let got =
+        |e: &Expect| if judged { e.got(run) } else { Err(format!("the run stopped: {}", reason()).into()) };
     expects.iter().map(|e| e.verdict(got(e))).collect()
 }
 

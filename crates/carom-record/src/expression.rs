@@ -8,6 +8,8 @@
 //! A quantity is a sequence of words, quoted strings (names of arms) and groups in square brackets,
 //! which may contain operators. [`crate::question`] defines its meaning.
 
+use crate::Reason;
+
 /// An expression in quantities `Q`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expression<Q> {
@@ -108,7 +110,7 @@ impl Token {
 }
 
 /// Words and quoted strings of a text.
-pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, String> {
+pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, Reason> {
     let mut found = Vec::new();
     let mut remaining = text.trim_start();
     while let Some(first) = remaining.chars().next() {
@@ -131,35 +133,35 @@ pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, String> {
 /// Parses a sequence of tokens; `quantity` parses the tokens of one quantity.
 pub(crate) fn parse<Q>(
     tokens: &[Token],
-    quantity: &dyn Fn(&[Token]) -> Result<Q, String>,
-) -> Result<Expression<Q>, String> {
+    quantity: &dyn Fn(&[Token]) -> Result<Q, Reason>,
+) -> Result<Expression<Q>, Reason> {
     let mut parser = Parser { remaining: tokens, quantity };
     let expression = parser.sum()?;
     match parser.remaining.first() {
         None => Ok(expression),
-        Some(_) => Err("a bracket `)` was not opened".to_owned()),
+        Some(_) => Err("a bracket `)` was not opened".into()),
     }
 }
 
 struct Parser<'a, Q> {
     remaining: &'a [Token],
-    quantity: &'a dyn Fn(&[Token]) -> Result<Q, String>,
+    quantity: &'a dyn Fn(&[Token]) -> Result<Q, Reason>,
 }
 
 impl<Q> Parser<'_, Q> {
-    fn sum(&mut self) -> Result<Expression<Q>, String> {
+    fn sum(&mut self) -> Result<Expression<Q>, Reason> {
         self.row(&[Sign::Plus, Sign::Minus], Self::product)
     }
 
-    fn product(&mut self) -> Result<Expression<Q>, String> {
+    fn product(&mut self) -> Result<Expression<Q>, Reason> {
         self.row(&[Sign::Times, Sign::Over], Self::factor)
     }
 
     fn row(
         &mut self,
         signs: &[Sign],
-        part: fn(&mut Self) -> Result<Expression<Q>, String>,
-    ) -> Result<Expression<Q>, String> {
+        part: fn(&mut Self) -> Result<Expression<Q>, Reason>,
+    ) -> Result<Expression<Q>, Reason> {
         let mut left = part(self)?;
         while let Some(sign) = self.sign().filter(|s| signs.contains(s)) {
             self.remaining = &self.remaining[1..];
@@ -172,7 +174,7 @@ impl<Q> Parser<'_, Q> {
         Sign::of(self.remaining.first()?.word()?)
     }
 
-    fn factor(&mut self) -> Result<Expression<Q>, String> {
+    fn factor(&mut self) -> Result<Expression<Q>, Reason> {
         if self.remaining.first().is_some_and(|t| t.is("(")) {
             self.remaining = &self.remaining[1..];
             let inside = self.sum()?;
@@ -190,7 +192,7 @@ impl<Q> Parser<'_, Q> {
         let (operand, remaining) = self.remaining.split_at(length);
         self.remaining = remaining;
         match operand {
-            [] => Err("a value is missing".to_owned()),
+            [] => Err("a value is missing".into()),
             [Token::Word(word)] if let Ok(number) = word.parse::<f64>() => Ok(Expression::Number(number)),
             operand => (self.quantity)(operand).map(Expression::Quantity),
         }
@@ -202,7 +204,7 @@ mod tests {
     use super::*;
 
     /// The quantities are `x` = 2, and anything in brackets = 10.
-    fn value(text: &str) -> Result<f64, String> {
+    fn value(text: &str) -> Result<f64, Reason> {
         let name = |words: &[Token]| Ok(words[0].word().unwrap_or_default().to_owned());
         let parsed = parse(&tokens(text)?, &name)?;
         parsed.value(&mut |q: &String| match q.as_str() {

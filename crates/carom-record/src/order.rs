@@ -11,6 +11,8 @@
 //! studies", J. Fluids Eng. 116, 1994). An order is established if the estimates of two successive
 //! triples of steps agree within [`MARGIN`].
 
+use crate::Reason;
+
 /// Largest difference of two successive estimates of an established order.
 pub const MARGIN: f64 = 0.3;
 
@@ -36,20 +38,22 @@ pub struct Extrapolation {
 /// # Errors
 /// Why there is none: steps that do not decrease, differences of opposite signs, a difference of
 /// zero.
-pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, String> {
+pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, Reason> {
     decreasing(&steps)?;
     let quotient = differences[0] / differences[1];
     if differences.contains(&0.0) || !quotient.is_finite() {
         return Err(format!(
             "the quotient of the differences {:.3e} and {:.3e} is not defined",
             differences[0], differences[1]
-        ));
+        )
+        .into());
     }
     if quotient < 0.0 {
         return Err(format!(
             "convergence is not monotonic: the differences {:.3e} and {:.3e} have opposite signs",
             differences[0], differences[1]
-        ));
+        )
+        .into());
     }
     // (h₁ᵖ − h₂ᵖ)/(h₂ᵖ − h₃ᵖ), divided by h₂ᵖ; it grows with p from 0 to infinity.
     let (coarse, fine) = ((steps[0] / steps[1]).ln(), (steps[1] / steps[2]).ln());
@@ -61,7 +65,8 @@ pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, S
         return Err(format!(
             "no order fits the differences {:.3e} and {:.3e}",
             differences[0], differences[1]
-        ));
+        )
+        .into());
     }
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
@@ -74,27 +79,27 @@ pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, S
 ///
 /// # Errors
 /// Why there is none: steps that do not decrease, an error of zero.
-pub fn from_errors(steps: [f64; 2], errors: [f64; 2]) -> Result<f64, String> {
+pub fn from_errors(steps: [f64; 2], errors: [f64; 2]) -> Result<f64, Reason> {
     decreasing(&steps)?;
     let order = (errors[0] / errors[1]).abs().ln() / (steps[0] / steps[1]).ln();
     if order.is_finite() {
         Ok(order)
     } else {
-        Err(format!("no order fits the errors {:.3e} and {:.3e}", errors[0], errors[1]))
+        Err(format!("no order fits the errors {:.3e} and {:.3e}", errors[0], errors[1]).into())
     }
 }
 
 /// Orders of successive triples of steps.
-pub fn orders(steps: &[f64], values: &[f64]) -> Vec<Result<f64, String>> {
+pub fn orders(steps: &[f64], values: &[f64]) -> Vec<Result<f64, Reason>> {
     let triples = steps.windows(3).zip(values.windows(3));
     triples.map(|(h, f)| triple([h[0], h[1], h[2]], [f[0], f[1], f[2]])).collect()
 }
 
-fn triple(steps: [f64; 3], values: [f64; 3]) -> Result<f64, String> {
+fn triple(steps: [f64; 3], values: [f64; 3]) -> Result<f64, Reason> {
     let differences = [values[0] - values[1], values[1] - values[2]];
     let size = values.iter().fold(0.0, |size, x| f64::max(size, x.abs()));
     if differences.iter().any(|d| d.abs() <= ROUND_OFF * size) {
-        return Err("the differences are round-off".to_owned());
+        return Err("the differences are round-off".into());
     }
     from_differences(steps, differences)
 }
@@ -103,35 +108,38 @@ fn triple(steps: [f64; 3], values: [f64; 3]) -> Result<f64, String> {
 ///
 /// # Errors
 /// Why no order is established.
-pub fn extrapolated(steps: &[f64], values: &[f64]) -> Result<Extrapolation, String> {
+pub fn extrapolated(steps: &[f64], values: &[f64]) -> Result<Extrapolation, Reason> {
     decreasing(steps)?;
     if values.len() < 4 || steps.len() != values.len() {
-        return Err(format!("two estimates of an order need four values, not {}", values.len()));
+        return Err(format!("two estimates of an order need four values, not {}", values.len()).into());
     }
     let last = values.len() - 4;
     let [before, order] = &orders(&steps[last..], &values[last..])[..] else {
-        return Err("four values are needed".to_owned());
+        return Err("four values are needed".into());
     };
     let (before, order) = (before.clone()?, order.clone()?);
     if (order - before).abs() > MARGIN {
         return Err(format!(
             "the last two estimates, {before:.2} and {order:.2}, differ by more than {MARGIN}"
-        ));
+        )
+        .into());
     }
     if order <= 0.0 {
-        return Err(format!("the differences grow as the step decreases: the estimated order is {order:.2}"));
+        return Err(
+            format!("the differences grow as the step decreases: the estimated order is {order:.2}").into()
+        );
     }
-    let [.., h2, h3] = steps else { return Err("four values are needed".to_owned()) };
-    let [.., f2, f3] = values else { return Err("four values are needed".to_owned()) };
+    let [.., h2, h3] = steps else { return Err("four values are needed".into()) };
+    let [.., f2, f3] = values else { return Err("four values are needed".into()) };
     let value = f3 - (f2 - f3) / (order * (h2 / h3).ln()).exp_m1();
     Ok(Extrapolation { order, value, band: SAFE * (f3 - value).abs() })
 }
 
-fn decreasing(steps: &[f64]) -> Result<(), String> {
+fn decreasing(steps: &[f64]) -> Result<(), Reason> {
     if steps.windows(2).all(|h| h[0] > h[1]) && steps.iter().all(|h| *h > 0.0 && h.is_finite()) {
         Ok(())
     } else {
-        Err(format!("the steps {steps:?} do not decrease"))
+        Err(format!("the steps {steps:?} do not decrease").into())
     }
 }
 

@@ -2,6 +2,7 @@
 //! metric by step, its observed order, and the limit where the order is established
 //! ([`carom_record::order`]).
 
+use carom_record::Reason;
 use carom_record::order::{self, MARGIN};
 use carom_record::study::{Refinement, Study, numeric_keys};
 use maud::{Markup, html};
@@ -66,7 +67,7 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
 /// The cells of the observed order and the limit.
 fn observed(steps: &[f64], values: &[Option<f64>]) -> Markup {
     let known: Option<Vec<f64>> = values.iter().copied().collect();
-    let known = known.ok_or_else(|| "not available in every run".to_owned());
+    let known = known.ok_or_else(|| Reason::from("not available in every run"));
     html! {
         @match known.and_then(|values| order::extrapolated(steps, &values)) {
             Ok(limit) => {

@@ -2,6 +2,7 @@
 //! and costs; energy and contact force; penetration, errors and orders. A quantity that is not
 //! available in any arm has no column.
 
+use carom_record::Reason;
 use carom_record::study::compared::is_stress;
 use carom_record::study::design::{Design, Kind};
 use carom_record::study::ranking::{Ranking, error, standing};
@@ -114,7 +115,7 @@ impl Ranked<'_> {
             orders.iter().find(|o| o.method == method && Some(&o.column) == named.as_ref())
         };
         let cell =
-            |order: &Result<f64, String>| order.as_ref().ok().map(|p| format!("{p:.2}").replace('-', "−"));
+            |order: &Result<f64, Reason>| order.as_ref().ok().map(|p| format!("{p:.2}").replace('-', "−"));
         let head = |phase: &str| match &named {
             Some(column) => format!("Order of {column} {phase} contact"),
             None => format!("Order {phase} contact"),

@@ -1,6 +1,7 @@
 //! The recommendation of a study and its basis: ranking, reference values, orders before and after
 //! the first contact.
 
+use carom_record::Reason;
 use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ranking::{Crosscheck, Ranking, error, standing};
 use carom_record::study::reference::{Reference, Standing};
@@ -319,7 +320,7 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
 
 /// Observed orders before the first contact and after it.
 pub(crate) fn phases(study: &Study) -> Markup {
-    let cell = |order: &Result<f64, String>| {
+    let cell = |order: &Result<f64, Reason>| {
         html! {
             @match order {
                 Ok(order) => (format!("{order:.2}").replace('-', "−")),

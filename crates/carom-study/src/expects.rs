@@ -2,7 +2,7 @@
 //! and metrics.
 
 use carom_record::question::{Asked, Quantity, Question, Series, column_metric_names, metric_names};
-use carom_record::{Expect, Expression, OrderOf};
+use carom_record::{Expect, Expression, OrderOf, Reason};
 use carom_run::case::{Case, Problem, history_columns};
 
 /// Adds the problems of a study's expectations.
@@ -25,35 +25,39 @@ pub(crate) fn check(expects: &[Expect], arms: &[(&str, &Case)], problems: &mut V
     }
 }
 
-fn question(question: &Question, arms: &[(&str, &Case)]) -> Result<(), String> {
+fn question(question: &Question, arms: &[(&str, &Case)]) -> Result<(), Reason> {
     question.quantities().into_iter().try_for_each(|quantity| match quantity {
         Quantity::Reduced(_, columns) => series(columns, arms),
         Quantity::Metric(name, arm) => metric(name, arm.as_deref(), arms),
     })
 }
 
-fn series(series: &Series, arms: &[(&str, &Case)]) -> Result<(), String> {
+fn series(series: &Series, arms: &[(&str, &Case)]) -> Result<(), Reason> {
     series.columns.quantities().into_iter().try_for_each(|asked| column(asked, arms))
 }
 
-fn metric(name: &str, arm: Option<&str>, arms: &[(&str, &Case)]) -> Result<(), String> {
+fn metric(name: &str, arm: Option<&str>, arms: &[(&str, &Case)]) -> Result<(), Reason> {
     match name.rsplit_once(':') {
         Some(("energy_lost", _)) => arms_of(arm, arms).map(drop),
         Some((of, what)) if column_metric_names().contains(&what) => {
             column(&Asked { column: of.to_owned(), arm: arm.map(str::to_owned) }, arms)
         }
         _ if metric_names().contains(&name) => arms_of(arm, arms).map(drop),
-        _ => Err(format!("there is no metric `{name}`; the metrics are: {}", metric_names().join(", "))),
+        _ => {
+            Err(format!("there is no metric `{name}`; the metrics are: {}", metric_names().join(", ")).into())
+        }
     }
 }
 
-fn column(asked: &Asked, arms: &[(&str, &Case)]) -> Result<(), String> {
+fn column(asked: &Asked, arms: &[(&str, &Case)]) -> Result<(), Reason> {
     for (name, case) in arms_of(asked.arm.as_deref(), arms)? {
         let columns = history_columns(case);
         if !columns.contains(&asked.column) {
             let near = columns.iter().min_by_key(|c| strsim::damerau_levenshtein(c, &asked.column));
             let near = near.map_or_else(String::new, |near| format!(": did you mean `{near}`?"));
-            return Err(format!("the record of arm \"{name}\" will have no column `{}`{near}", asked.column));
+            return Err(
+                format!("the record of arm \"{name}\" will have no column `{}`{near}", asked.column).into()
+            );
         }
     }
     Ok(())
@@ -63,17 +67,17 @@ fn column(asked: &Asked, arms: &[(&str, &Case)]) -> Result<(), String> {
 fn arms_of<'a>(
     arm: Option<&str>,
     arms: &'a [(&'a str, &'a Case)],
-) -> Result<Vec<&'a (&'a str, &'a Case)>, String> {
+) -> Result<Vec<&'a (&'a str, &'a Case)>, Reason> {
     let Some(name) = arm else { return Ok(arms.iter().collect()) };
     let found: Vec<_> = arms.iter().filter(|(other, _)| *other == name).collect();
     if found.is_empty() {
         let known: Vec<_> = arms.iter().map(|(name, _)| format!("\"{name}\"")).collect();
-        return Err(format!("no arm is named \"{name}\"; the arms are: {}", known.join(", ")));
+        return Err(format!("no arm is named \"{name}\"; the arms are: {}", known.join(", ")).into());
     }
     Ok(found)
 }
 
-fn order_of(order: &OrderOf, arms: &[(&str, &Case)]) -> Result<(), String> {
+fn order_of(order: &OrderOf, arms: &[(&str, &Case)]) -> Result<(), Reason> {
     match Question::parse(&order.of) {
         // A single word that is not a metric is a column.
         Ok(Expression::Quantity(Quantity::Metric(name, None)))

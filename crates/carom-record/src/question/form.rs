@@ -1,5 +1,6 @@
 //! How a column is reduced to a number, and the words for it.
 
+use crate::Reason;
 use crate::expression::Token;
 use crate::metrics;
 
@@ -25,7 +26,7 @@ impl Form {
     ///
     /// # Errors
     /// The column has no rows, or the time was not recorded.
-    pub fn of(self, times: &[f64], values: &[f64]) -> Result<f64, String> {
+    pub fn of(self, times: &[f64], values: &[f64]) -> Result<f64, Reason> {
         let none = || "the history has no rows".to_owned();
         let least = metrics::extreme(values, f64::lt).ok_or_else(none)?;
         let most = metrics::extreme(values, f64::gt).ok_or_else(none)?;
@@ -70,7 +71,7 @@ pub fn form_names() -> String {
 }
 
 /// The form at the start of a sequence of tokens, and the tokens after it.
-pub(super) fn form(tokens: &[Token]) -> Result<Option<(Form, &[Token])>, String> {
+pub(super) fn form(tokens: &[Token]) -> Result<Option<(Form, &[Token])>, Reason> {
     for (name, form) in FORMS {
         let length = name.split(' ').count();
         let Some((words, after)) = tokens.split_at_checked(length) else { continue };

@@ -1,6 +1,7 @@
 //! The names of metrics that a question may use, and the message about all others.
 
 use super::form::form_names;
+use crate::Reason;
 use crate::metrics::{COLUMNS, FREE, HISTORY, PRESSURE, WORK};
 
 /// Names of the metrics of a column.
@@ -15,10 +16,11 @@ pub fn metric_names() -> Vec<&'static str> {
 }
 
 /// The message about words that are no quantity.
-pub(super) fn unknown(what: &str) -> String {
+pub(super) fn unknown(what: &str) -> Reason {
     format!(
         "`{what}` is not a valid quantity: give {} and a column, or one of the metrics {}",
         form_names(),
         metric_names().join(", ")
     )
+    .into()
 }

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::form::Form;
+use crate::Reason;
 use crate::expression::Expression;
 
 /// Two times are equal if they differ by less than this fraction of the span of the first record.
@@ -70,13 +71,13 @@ pub trait Records {
     ///
     /// # Errors
     /// Why there is none.
-    fn metric(&self, name: &str, arm: Option<&str>) -> Result<f64, String>;
+    fn metric(&self, name: &str, arm: Option<&str>) -> Result<f64, Reason>;
 
     /// A column.
     ///
     /// # Errors
     /// Why there is none.
-    fn column(&self, asked: &Asked) -> Result<Rows<'_>, String>;
+    fn column(&self, asked: &Asked) -> Result<Rows<'_>, Reason>;
 }
 
 impl Question {
@@ -84,7 +85,7 @@ impl Question {
     ///
     /// # Errors
     /// What is missing, or why there is no value.
-    pub fn answer(&self, records: &dyn Records, window: Window) -> Result<f64, String> {
+    pub fn answer(&self, records: &dyn Records, window: Window) -> Result<f64, Reason> {
         let value = self.value(&mut |quantity| match quantity {
             Quantity::Metric(name, arm) => records.metric(name, arm.as_deref()),
             Quantity::Reduced(form, series) => {
@@ -92,7 +93,7 @@ impl Question {
                 form.of(&times, &values)
             }
         })?;
-        if value.is_finite() { Ok(value) } else { Err(format!("its value is {value}")) }
+        if value.is_finite() { Ok(value) } else { Err(format!("its value is {value}").into()) }
     }
 
     /// The same question, with this arm for quantities that name none.
@@ -130,7 +131,7 @@ impl Series {
     ///
     /// # Errors
     /// What is missing.
-    pub fn rows(&self, records: &dyn Records, window: Window) -> Result<(Vec<f64>, Vec<f64>), String> {
+    pub fn rows(&self, records: &dyn Records, window: Window) -> Result<(Vec<f64>, Vec<f64>), Reason> {
         let (times, mut values) = common(std::slice::from_ref(self), records, window)?;
         Ok((times, values.swap_remove(0)))
     }
@@ -154,10 +155,10 @@ pub fn common(
     series: &[Series],
     records: &dyn Records,
     window: Window,
-) -> Result<(Vec<f64>, Vec<Vec<f64>>), String> {
+) -> Result<(Vec<f64>, Vec<Vec<f64>>), Reason> {
     let names: Vec<&Asked> = series.iter().flat_map(|s| s.columns.quantities()).collect();
     let columns = names.iter().map(|a| records.column(a)).collect::<Result<Vec<_>, _>>()?;
-    let Some(first) = columns.first() else { return Err("no column is named".to_owned()) };
+    let Some(first) = columns.first() else { return Err("no column is named".into()) };
     let by_step = series.iter().any(|s| s.by_step);
     let keys: Vec<&[f64]> = columns.iter().map(|c| if by_step { &*c.steps } else { &*c.times }).collect();
     let span = keys[0].last().unwrap_or(&0.0) - keys[0].first().unwrap_or(&0.0);
@@ -189,8 +190,8 @@ pub fn common(
     }
     match (times.is_empty(), window == Window::default(), columns.len()) {
         (false, ..) => Ok((times, values)),
-        (true, true, 1) => Err("the history has no rows".to_owned()),
-        (true, true, _) => Err("the records have no common rows".to_owned()),
-        (true, false, _) => Err("there are no rows between `after` and `before`".to_owned()),
+        (true, true, 1) => Err("the history has no rows".into()),
+        (true, true, _) => Err("the records have no common rows".into()),
+        (true, false, _) => Err("there are no rows between `after` and `before`".into()),
     }
 }

@@ -3,6 +3,7 @@
 use super::form::{Form, form};
 use super::names::unknown;
 use super::quantity::{Asked, Quantity, Question, Series};
+use crate::Reason;
 use crate::expression::{self, Expression, Token, tokens};
 
 impl Question {
@@ -10,11 +11,11 @@ impl Question {
     ///
     /// # Errors
     /// What is wrong with the text.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    pub fn parse(text: &str) -> Result<Self, Reason> {
         Self::of(&tokens(text)?)
     }
 
-    pub(crate) fn of(tokens: &[Token]) -> Result<Self, String> {
+    pub(crate) fn of(tokens: &[Token]) -> Result<Self, Reason> {
         expression::parse(tokens, &quantity)
     }
 }
@@ -24,12 +25,12 @@ impl Series {
     ///
     /// # Errors
     /// What is wrong with the text.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    pub fn parse(text: &str) -> Result<Self, Reason> {
         series(&tokens(text)?)
     }
 }
 
-fn quantity(tokens: &[Token]) -> Result<Quantity, String> {
+fn quantity(tokens: &[Token]) -> Result<Quantity, Reason> {
     let word = |i: usize| tokens.get(i).and_then(Token::word);
     match (word(0), word(1)) {
         (Some("difference"), _) => return difference(Form::Peak, &tokens[1..]),
@@ -49,7 +50,7 @@ fn quantity(tokens: &[Token]) -> Result<Quantity, String> {
     }
 }
 
-fn series(tokens: &[Token]) -> Result<Series, String> {
+fn series(tokens: &[Token]) -> Result<Series, Reason> {
     let bare = |t: &Token, text| t.word() == Some(text);
     let (inside, by_step) = match tokens {
         [open, inside @ .., close, by, step]
@@ -63,18 +64,18 @@ fn series(tokens: &[Token]) -> Result<Series, String> {
     Ok(Series { columns: expression::parse(inside, &column)?, by_step })
 }
 
-fn column(tokens: &[Token]) -> Result<Asked, String> {
+fn column(tokens: &[Token]) -> Result<Asked, Reason> {
     match tokens {
         [Token::Word(column)] => Ok(Asked { column: column.clone(), arm: None }),
         [Token::Word(column), Token::Word(of), Token::Quoted(arm)] if of == "of" => {
             Ok(Asked { column: column.clone(), arm: Some(arm.clone()) })
         }
-        [] => Err("a column is missing".to_owned()),
+        [] => Err("a column is missing".into()),
         _ => Err(unknown(&joined(tokens))),
     }
 }
 
-fn difference(form: Form, tokens: &[Token]) -> Result<Quantity, String> {
+fn difference(form: Form, tokens: &[Token]) -> Result<Quantity, Reason> {
     let [Token::Word(column), Token::Word(of), Token::Quoted(one), Token::Word(and), Token::Quoted(other)] =
         tokens
     else {
@@ -88,8 +89,9 @@ fn difference(form: Form, tokens: &[Token]) -> Result<Quantity, String> {
     Ok(Quantity::Reduced(form, Series { columns, by_step: false }))
 }
 
-fn not_a_difference(tokens: &[Token]) -> String {
+fn not_a_difference(tokens: &[Token]) -> Reason {
     format!("`difference {}` must have the form difference COLUMN of \"ARM\" and \"ARM\"", joined(tokens))
+        .into()
 }
 
 fn joined(tokens: &[Token]) -> String {

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::Reason;
 use crate::metrics::Metric;
 use crate::question::{self, Asked, Quantity, Question, Records, Rows, Series};
 use crate::{Run, Status};
@@ -10,7 +11,7 @@ use crate::{Run, Status};
 /// Numbers and columns of the arms.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmRecords {
-    metrics: BTreeMap<(String, String), Result<f64, String>>,
+    metrics: BTreeMap<(String, String), Result<f64, Reason>>,
     columns: BTreeMap<(String, String), [Vec<f64>; 3]>,
     /// Why an arm has no numbers.
     missing: BTreeMap<String, String>,
@@ -59,14 +60,15 @@ impl ArmRecords {
         self.metrics.insert((arm.to_owned(), name.to_owned()), Ok(value));
     }
 
-    fn none(&self, arm: &str, what: &str) -> String {
-        self.missing.get(arm).cloned().unwrap_or_else(|| format!("arm \"{arm}\" has no {what}"))
+    fn none(&self, arm: &str, what: &str) -> Reason {
+        let missing = self.missing.get(arm).cloned();
+        missing.unwrap_or_else(|| format!("arm \"{arm}\" has no {what}")).into()
     }
 }
 
 /// The arm of a quantity; in a study every quantity must name one.
-fn named<'a>(arm: Option<&'a str>, what: &str) -> Result<&'a str, String> {
-    arm.ok_or_else(|| format!("`{what}` names no arm: write `{what} of \"ARM\"`"))
+fn named<'a>(arm: Option<&'a str>, what: &str) -> Result<&'a str, Reason> {
+    arm.ok_or_else(|| format!("`{what}` names no arm: write `{what} of \"ARM\"`").into())
 }
 
 impl Question {
@@ -74,7 +76,7 @@ impl Question {
     ///
     /// # Errors
     /// A quantity that does not.
-    pub fn of_arms(&self) -> Result<(), String> {
+    pub fn of_arms(&self) -> Result<(), Reason> {
         for quantity in self.quantities() {
             match quantity {
                 Quantity::Metric(name, arm) => named(arm.as_deref(), name).map(drop)?,
@@ -90,13 +92,13 @@ impl Question {
 }
 
 impl Records for ArmRecords {
-    fn metric(&self, name: &str, arm: Option<&str>) -> Result<f64, String> {
+    fn metric(&self, name: &str, arm: Option<&str>) -> Result<f64, Reason> {
         let arm = named(arm, name)?;
         let found = self.metrics.get(&(arm.to_owned(), name.to_owned()));
         found.cloned().unwrap_or_else(|| Err(self.none(arm, name)))
     }
 
-    fn column(&self, asked: &Asked) -> Result<Rows<'_>, String> {
+    fn column(&self, asked: &Asked) -> Result<Rows<'_>, Reason> {
         let arm = named(asked.arm.as_deref(), &asked.column)?;
         let found = self.columns.get(&(arm.to_owned(), asked.column.clone()));
         let [times, steps, values] =

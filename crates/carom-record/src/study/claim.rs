@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::arms::ArmRecords;
 use super::ensemble::Spread;
+use crate::Reason;
 use crate::expression::{Token, tokens};
 use crate::question::{Question, Window};
 
@@ -131,7 +132,7 @@ impl Comparison {
     ///
     /// # Errors
     /// What is wrong with the text.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    pub fn parse(text: &str) -> Result<Self, Reason> {
         let tokens = tokens(text)?;
         let operator = |token: &Token| match token.word()? {
             "<" => Some(Operator::Less),
@@ -145,7 +146,8 @@ impl Comparison {
             return Err(format!(
                 "it has {} comparisons (<, <=, >, >= with blanks on both sides); exactly one is needed",
                 found.len()
-            ));
+            )
+            .into());
         };
         let sides = [Question::of(&tokens[..at])?, Question::of(&tokens[at + 1..])?];
         for side in &sides {

@@ -4,6 +4,7 @@
 use super::arm::step;
 use super::manifest::StudyManifest;
 use super::reference::{FORCE, Reference, Standing, Trajectory};
+use crate::Reason;
 use crate::metrics::{self, phase_shift};
 use crate::order::from_errors;
 
@@ -89,9 +90,9 @@ pub struct PhaseOrders {
     /// The column.
     pub column: String,
     /// Before the first contact.
-    pub smooth: Result<f64, String>,
+    pub smooth: Result<f64, Reason>,
     /// After the first contact.
-    pub across: Result<f64, String>,
+    pub across: Result<f64, Reason>,
 }
 
 /// Orders from errors with respect to the reference; there is none if the error is less than three
@@ -107,19 +108,20 @@ pub fn phase_orders(
         Standing::Established { uncertainty, .. } => Ok(uncertainty),
         Standing::Not(why) => Err(why),
     };
-    let order = |of: fn(&Deviated) -> Option<f64>| {
+    let order = |of: fn(&Deviated) -> Option<f64>| -> Result<f64, Reason> {
         let errors = [coarse, fine].map(|c| c.column(column).and_then(of));
         let [Some(before), Some(after)] = errors else {
-            return Err("there are no rows in this phase".to_owned());
+            return Err("there are no rows in this phase".into());
         };
         let uncertainty = uncertainty.clone()?;
         if after <= 1e-9 {
-            return Err("exact up to round-off".to_owned());
+            return Err("exact up to round-off".into());
         }
         if after <= 3.0 * uncertainty {
             return Err(format!(
                 "its error, {after:.1e}, is less than three times the uncertainty of the reference, {uncertainty:.1e}"
-            ));
+            )
+            .into());
         }
         from_errors([*h1, *h2], [before, after])
     };

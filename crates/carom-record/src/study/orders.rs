@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use super::arm::step;
 use super::arms::ArmRecords;
 use super::manifest::StudyManifest;
+use crate::Reason;
 use crate::order::{from_differences, from_errors};
 use crate::question::{self, Quantity, Question, Series};
 use crate::{Deviation, Expect, Expectation, Expression, Norm, OrderOf};
@@ -77,7 +78,7 @@ enum Of {
     Column(Series),
 }
 
-fn of(order: &OrderOf) -> Result<Of, String> {
+fn of(order: &OrderOf) -> Result<Of, Reason> {
     let parsed = Question::parse(&order.of);
     match parsed {
         // A single word that is not a metric is a column.
@@ -126,7 +127,7 @@ pub(super) fn judge(
         let why = format!("there are no {least} arms that differ only in {}", order.against);
         return vec![Expectation {
             what: words(order.arms.as_deref().unwrap_or_default()),
-            ..expect.verdict(Err(why))
+            ..expect.verdict(Err(why.into()))
         }];
     }
     let verdict = |group: &&Refinement| {
@@ -144,7 +145,7 @@ fn deviation(
     arm: usize,
     series: &Series,
     norm: Norm,
-) -> Result<Option<Deviation>, String> {
+) -> Result<Option<Deviation>, Reason> {
     let exact = manifest.reference.as_deref() == Some("exact");
     let known = expect.deviation.clone().map(|d| Deviation { norm, ..d });
     let standing = || Deviation { formula: "exact".into(), exact: None, norm, scale: 1.0 };
@@ -154,7 +155,7 @@ fn deviation(
     }
     let column = match &series.columns {
         Expression::Quantity(asked) => &asked.column,
-        _ => return Err("only a single column can have an exact formula".to_owned()),
+        _ => return Err("only a single column can have an exact formula".into()),
     };
     let found = manifest.arms[arm].case.get("exact").and_then(|e| e.get(column)).and_then(|f| f.as_str());
     let formula = found.ok_or_else(|| format!("the case has no [exact] formula for `{column}`"))?;
@@ -168,16 +169,16 @@ fn observed(
     manifest: &StudyManifest,
     records: &ArmRecords,
     reference: Option<&str>,
-) -> Result<f64, String> {
+) -> Result<f64, Reason> {
     let name = |i: &usize| manifest.arms[*i].name.as_str();
     let norm = expect.norm.unwrap_or(Norm::Rms);
     let window = expect.window();
-    let [.., h1, h2] = group.steps[..] else { return Err("two steps are needed".to_owned()) };
-    let [.., two, three] = &group.arms[..] else { return Err("two arms are needed".to_owned()) };
-    let triple = || {
+    let [.., h1, h2] = group.steps[..] else { return Err("two steps are needed".into()) };
+    let [.., two, three] = &group.arms[..] else { return Err("two arms are needed".into()) };
+    let triple = || -> Result<_, Reason> {
         let n = group.steps.len();
         if n < 3 {
-            return Err("three steps are needed".to_owned());
+            return Err("three steps are needed".into());
         }
         Ok(([group.steps[n - 3], h1, h2], name(&group.arms[n - 3])))
     };

@@ -28,6 +28,7 @@ use super::recommendation::recommended;
 pub use super::recommendation::{Confidence, Verdict};
 use super::reference::Reference;
 use super::row::Row;
+use crate::Reason;
 
 /// The ranking of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,7 +36,7 @@ pub struct Ranking {
     /// The goal.
     pub goal: Goal,
     /// The measure, or why there is none.
-    pub measure: Result<Measure, String>,
+    pub measure: Result<Measure, Reason>,
     /// Ranked arms per level, the best first.
     pub levels: Vec<Vec<Ranked>>,
     /// Per level, whether the conclusion is another one at equal cost (at equal steps, in a design of
@@ -72,7 +73,7 @@ impl Ranking {
             let reasons = vec!["the reference establishes no measure of this goal".to_owned()];
             return Self {
                 goal,
-                measure: Err(why),
+                measure: Err(why.into()),
                 levels: Vec::new(),
                 crosschecks: Vec::new(),
                 verdict: Err(reasons),

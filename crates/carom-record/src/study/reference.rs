@@ -24,6 +24,7 @@ use super::convergence::converged;
 use super::digits::short;
 use super::ensemble::Spread;
 pub use super::trajectory::{FORCE, Trajectory};
+use crate::Reason;
 use crate::metrics::{self, Metric};
 use crate::order::SAFE;
 use crate::{Column, History};
@@ -195,7 +196,7 @@ impl Reference {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn estimate(&self, name: &str) -> Result<Estimate, String> {
+    pub fn estimate(&self, name: &str) -> Result<Estimate, Reason> {
         if self.exact {
             let value = self.finest().and_then(|run| run.value(name));
             let value = value.ok_or("[exact] has no columns to compute it from")?;
@@ -222,7 +223,7 @@ impl Reference {
     /// Reference value of a metric.
     pub fn metric(&self, name: &str) -> Standing {
         match self.estimate(name) {
-            Err(why) => Standing::Not(why),
+            Err(why) => Standing::Not(why.into()),
             Ok(Estimate { value, uncertainty, .. }) if uncertainty <= RESOLVED * value.abs() => {
                 Standing::Established { value, uncertainty }
             }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use quick_xml::events::{BytesStart, Event};
 
 use super::{Block, Cell, FieldSet, PointArray};
+use crate::Reason;
 
 const APPENDED: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
 
@@ -24,7 +25,7 @@ fn attribute(tag: &BytesStart, name: &str) -> Option<String> {
 }
 
 /// Arrays of the head, each with its section, and the number of points.
-fn head(text: &str) -> Result<(Vec<Array>, usize), String> {
+fn head(text: &str) -> Result<(Vec<Array>, usize), Reason> {
     let mut reader = quick_xml::Reader::from_str(text);
     reader.config_mut().check_end_names = false;
     let (mut arrays, mut points, mut section, mut inside) = (Vec::<Array>::new(), 0, String::new(), "");
@@ -76,7 +77,7 @@ fn head(text: &str) -> Result<(Vec<Array>, usize), String> {
 }
 
 /// Values of an appended array, `B` bytes each.
-fn values<const B: usize>(data: &[u8], array: &Array) -> Result<Vec<[u8; B]>, String> {
+fn values<const B: usize>(data: &[u8], array: &Array) -> Result<Vec<[u8; B]>, Reason> {
     let block = || {
         let data = data.get(array.offset?..)?;
         let (length, data) = data.split_first_chunk::<8>()?;
@@ -88,22 +89,22 @@ fn values<const B: usize>(data: &[u8], array: &Array) -> Result<Vec<[u8; B]>, St
     if remainder.is_empty() {
         Ok(chunks.to_vec())
     } else {
-        Err(format!("array `{}` ends with an incomplete value", array.name))
+        Err(format!("array `{}` ends with an incomplete value", array.name).into())
     }
 }
 
-fn numbers(data: &[u8], array: &Array, expected: usize) -> Result<Vec<f64>, String> {
+fn numbers(data: &[u8], array: &Array, expected: usize) -> Result<Vec<f64>, Reason> {
     let values: Vec<f64> = values(data, array)?.into_iter().map(f64::from_le_bytes).collect();
     if values.len() == expected {
         return Ok(values);
     }
-    Err(format!("array `{}` has {} values instead of {expected}", array.name, values.len()))
+    Err(format!("array `{}` has {} values instead of {expected}", array.name, values.len()).into())
 }
 
 impl Block {
     /// Blocks of successive cells of the same body, type and degree; a cell is given by its body,
     /// its VTK type and its point numbers.
-    pub(crate) fn gather(cells: Vec<(usize, u8, &[usize])>, names: &[String]) -> Result<Vec<Self>, String> {
+    pub(crate) fn gather(cells: Vec<(usize, u8, &[usize])>, names: &[String]) -> Result<Vec<Self>, Reason> {
         let mut blocks: Vec<Self> = Vec::new();
         let mut last = None;
         for (body, kind, nodes) in cells {
@@ -113,7 +114,7 @@ impl Block {
                 70 => Cell::Quadrilateral,
                 71 => Cell::Tetrahedron,
                 72 => Cell::Hexahedron,
-                _ => return Err(format!("cells of VTK type {kind} are not supported")),
+                _ => return Err(format!("cells of VTK type {kind} are not supported").into()),
             };
             let degree = (1..=3).find(|&d| cell.nodes(d) == nodes.len());
             let degree =
@@ -136,7 +137,7 @@ impl FieldSet {
     ///
     /// # Errors
     /// What is wrong with the file.
-    pub fn from_vtu(bytes: &[u8]) -> Result<Self, String> {
+    pub fn from_vtu(bytes: &[u8]) -> Result<Self, Reason> {
         let cut = bytes.windows(APPENDED.len()).position(|w| w == APPENDED).ok_or("no appended raw data")?;
         let (text, data) = (&bytes[..cut], &bytes[cut + APPENDED.len()..]);
         let (arrays, n) = head(std::str::from_utf8(text).map_err(|e| e.to_string())?)?;
@@ -153,7 +154,7 @@ impl FieldSet {
         };
         let (connectivity, ends) = (read("connectivity")?, read("offsets")?);
         if let Some(node) = connectivity.iter().find(|&&node| node >= n) {
-            return Err(format!("a cell refers to node {node}, but there are {n} points"));
+            return Err(format!("a cell refers to node {node}, but there are {n} points").into());
         }
         let types = values::<1>(data, find("Cells", "types")?)?;
         let bodies = values::<4>(data, find("CellData", "body")?)?;
@@ -172,13 +173,13 @@ impl FieldSet {
             start = end;
             Ok((i32::from_le_bytes(body) as usize, kind, nodes))
         });
-        let blocks = Block::gather(cells.collect::<Result<Vec<_>, String>>()?, &names)?;
+        let blocks = Block::gather(cells.collect::<Result<Vec<_>, Reason>>()?, &names)?;
         let arrays = arrays.iter().filter(|a| a.section == "PointData").map(|a| {
             let expected = n.checked_mul(a.components).ok_or("too many points")?;
             let values = numbers(data, a, expected)?;
             Ok(PointArray { name: a.name.clone(), unit: a.unit.clone(), components: a.components, values })
         });
-        let arrays = arrays.collect::<Result<_, String>>()?;
+        let arrays = arrays.collect::<Result<_, Reason>>()?;
         Ok(Self { points, blocks, arrays })
     }
 }

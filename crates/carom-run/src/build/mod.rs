@@ -242,9 +242,9 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
             (2, carom_case::Plane::Stress) => law.plane_stress_body(mesh, material.density, case.thickness),
             _ => law.body(mesh, material.density, case.thickness),
         };
-        let made = spec
-            .make_mesh(case.dimension)
-            .and_then(|mesh| body(with_skin(case, &spec.name, mesh)).map_err(|e: SolidError| e.to_string()));
+        let made = spec.make_mesh(case.dimension).and_then(|mesh| {
+            body(with_skin(case, &spec.name, mesh)).map_err(|e: SolidError| e.to_string().into())
+        });
         match made {
             Ok(body) => {
                 let nodes = body.mesh().nodes.len();
@@ -254,7 +254,7 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
             Err(why) => problems.push(Problem::new(
                 format!("body[{k}].mesh"),
                 format!("the mesh of body \"{}\" cannot be generated", spec.name),
-                why,
+                why.to_string(),
                 "change the values of `mesh`",
             )),
         }

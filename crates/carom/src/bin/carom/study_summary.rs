@@ -117,8 +117,8 @@ fn recommendation(study: &Study, ranking: &Ranking) -> Vec<String> {
         Ok(verdict) => verdict,
         Err(reasons) => {
             let mut lines = vec![String::new(), format!("no recommendation for the goal \"{goal}\":")];
-            let why = ranking.measure.as_ref().err();
-            lines.extend(reasons.iter().chain(why).map(|reason| format!("  {reason}")));
+            let why = ranking.measure.as_ref().err().map(ToString::to_string);
+            lines.extend(reasons.iter().chain(&why).map(|reason| format!("  {reason}")));
             return lines;
         }
     };

@@ -66,7 +66,12 @@ fn meshes(case: &Case, document: &Document) -> Result<Vec<Mesh>, Failure> {
     let mesh = |(k, spec): (usize, &carom::case::BodySpec)| {
         spec.make_mesh(case.dimension).map_err(|why| {
             let what = format!("the mesh of body \"{}\" cannot be made", spec.name);
-            Failure::Case(document.diagnose_all(&[Problem::new(format!("body[{k}].mesh"), what, why, "")]))
+            Failure::Case(document.diagnose_all(&[Problem::new(
+                format!("body[{k}].mesh"),
+                what,
+                why.to_string(),
+                "",
+            )]))
         })
     };
     case.bodies.iter().enumerate().map(mesh).collect()
