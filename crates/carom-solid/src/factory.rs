@@ -1,9 +1,9 @@
-//! Builds a body, whose shape and law are compile-time types, from a mesh and a law known at run
-//! time.
+//! Builds a body, whose shape is a compile-time type, from a mesh and a law known at run time.
 
 use crate::body::Body;
 use crate::material::{
-    Law, LinearElastic, Material, NeoHookean, PlaneStress, SaintVenantKirchhoff, Thickness, Volumetric,
+    Law, LinearElastic, Material, NeoHookean, PlaneStress, Pointwise, SaintVenantKirchhoff, Thickness,
+    Volumetric,
 };
 use crate::mesh::{Element, Mesh};
 use crate::shape::{
@@ -36,19 +36,10 @@ pub trait Constitutive: Send + Sync {
 
 impl<L: Material<1> + Material<2> + Thickness + Clone> Constitutive for L {
     fn body(&self, mesh: Mesh, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
-        match mesh.element {
-            Element::L2 => solid::<1, 2, Line2, L>(mesh, self.clone(), density, thickness),
-            Element::L3 => solid::<1, 3, Line3, L>(mesh, self.clone(), density, thickness),
-            Element::L4 => solid::<1, 4, Line4, L>(mesh, self.clone(), density, thickness),
-            Element::T3 | Element::T6 | Element::T10 | Element::Q4 | Element::Q9 => {
-                plane(mesh, self.clone(), density, thickness)
-            }
-            // Solids in space have no thickness.
-            Element::Tet4 => solid::<3, 4, Tet4, L>(mesh, self.clone(), density, 1.0),
-            Element::Tet10 => solid::<3, 10, Tet10, L>(mesh, self.clone(), density, 1.0),
-            Element::Tet20 => solid::<3, 20, Tet20, L>(mesh, self.clone(), density, 1.0),
-            Element::Hex8 => solid::<3, 8, Hex8, L>(mesh, self.clone(), density, 1.0),
-            Element::Hex27 => solid::<3, 27, Hex27, L>(mesh, self.clone(), density, 1.0),
+        match mesh.element.dimension() {
+            1 => bar(mesh, Box::new(self.clone()), density, thickness),
+            2 => plane(mesh, Box::new(self.clone()), density, thickness),
+            _ => space(mesh, Box::new(self.clone()), density),
         }
     }
 
@@ -58,7 +49,7 @@ impl<L: Material<1> + Material<2> + Thickness + Clone> Constitutive for L {
         density: f64,
         thickness: f64,
     ) -> Result<Box<dyn Body>, SolidError> {
-        plane(mesh, PlaneStress(self.clone()), density, thickness)
+        plane(mesh, Box::new(PlaneStress(self.clone())), density, thickness)
     }
 }
 
@@ -136,28 +127,48 @@ fn averaged<L: Volumetric<2> + Volumetric<3>>(
     }
 }
 
-/// Body of a law of the plane.
-fn plane<L: Material<2>>(
+fn bar(mesh: Mesh, law: Box<dyn Pointwise<1>>, density: f64, area: f64) -> Result<Box<dyn Body>, SolidError> {
+    match mesh.element {
+        Element::L2 => solid::<1, 2, Line2>(mesh, law, density, area),
+        Element::L3 => solid::<1, 3, Line3>(mesh, law, density, area),
+        Element::L4 => solid::<1, 4, Line4>(mesh, law, density, area),
+        element => Err(SolidError::Dimension { element, dimension: 1 }),
+    }
+}
+
+fn plane(
     mesh: Mesh,
-    law: L,
+    law: Box<dyn Pointwise<2>>,
     density: f64,
     thickness: f64,
 ) -> Result<Box<dyn Body>, SolidError> {
     match mesh.element {
-        Element::T3 => solid::<2, 3, Tri3, L>(mesh, law, density, thickness),
-        Element::T6 => solid::<2, 6, Tri6, L>(mesh, law, density, thickness),
-        Element::T10 => solid::<2, 10, Tri10, L>(mesh, law, density, thickness),
-        Element::Q4 => solid::<2, 4, Quad4, L>(mesh, law, density, thickness),
-        Element::Q9 => solid::<2, 9, Quad9, L>(mesh, law, density, thickness),
+        Element::T3 => solid::<2, 3, Tri3>(mesh, law, density, thickness),
+        Element::T6 => solid::<2, 6, Tri6>(mesh, law, density, thickness),
+        Element::T10 => solid::<2, 10, Tri10>(mesh, law, density, thickness),
+        Element::Q4 => solid::<2, 4, Quad4>(mesh, law, density, thickness),
+        Element::Q9 => solid::<2, 9, Quad9>(mesh, law, density, thickness),
         element => Err(SolidError::Dimension { element, dimension: 2 }),
     }
 }
 
-fn solid<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>>(
+/// Solids in space have no thickness.
+fn space(mesh: Mesh, law: Box<dyn Pointwise<3>>, density: f64) -> Result<Box<dyn Body>, SolidError> {
+    match mesh.element {
+        Element::Tet4 => solid::<3, 4, Tet4>(mesh, law, density, 1.0),
+        Element::Tet10 => solid::<3, 10, Tet10>(mesh, law, density, 1.0),
+        Element::Tet20 => solid::<3, 20, Tet20>(mesh, law, density, 1.0),
+        Element::Hex8 => solid::<3, 8, Hex8>(mesh, law, density, 1.0),
+        Element::Hex27 => solid::<3, 27, Hex27>(mesh, law, density, 1.0),
+        element => Err(SolidError::Dimension { element, dimension: 3 }),
+    }
+}
+
+fn solid<const D: usize, const N: usize, S: Shape<D, N>>(
     mesh: Mesh,
-    law: L,
+    law: Box<dyn Pointwise<D>>,
     density: f64,
     thickness: f64,
 ) -> Result<Box<dyn Body>, SolidError> {
-    Ok(Box::new(Solid::<D, N, S, L>::new(mesh, law, density, thickness)?))
+    Ok(Box::new(Solid::<D, N, S>::new(mesh, law, density, thickness)?))
 }

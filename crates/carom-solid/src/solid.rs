@@ -1,4 +1,4 @@
-//! A body of one shape and one law: cell forces and tangents by quadrature,
+//! A body of one shape: cell forces and tangents by quadrature,
 //!
 //!   H = Σ (yᵃ − Xᵃ) ⊗ ∇₀φᵃ,   U = Σ w Ψ,   fᵃ = Σ w P ∇₀φᵃ,   Kᵃᵇ = Σ w ∂P/∂F : ∇₀φᵃ ∇₀φᵇ,
 //!
@@ -19,7 +19,7 @@ use std::sync::OnceLock;
 
 use carom_algebra::{Mat, Vector};
 
-use crate::material::Material;
+use crate::material::Pointwise;
 use crate::mesh::{Element, Mesh};
 use crate::points::{LANES, Points};
 use crate::quadrature::Rule;
@@ -62,10 +62,10 @@ struct Place<const D: usize> {
     volume: f64,
 }
 
-/// A body of cells of shape `S` (`D` reference coordinates, `N` nodes) and law `L`.
-pub struct Solid<const D: usize, const N: usize, S, L> {
+/// A body of cells of shape `S` (`D` reference coordinates, `N` nodes).
+pub struct Solid<const D: usize, const N: usize, S> {
     mesh: Mesh,
-    law: L,
+    law: Box<dyn Pointwise<D>>,
     density: f64,
     thickness: f64,
     /// Quadrature points for forces of each cell.
@@ -84,16 +84,21 @@ pub struct Solid<const D: usize, const N: usize, S, L> {
     shape: PhantomData<S>,
 }
 
-impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N, S, L> {
+impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// Body of a mesh, a law, a density ≥ 0 and a thickness > 0 (dimension 1: the area of the
     /// cross-section).
     ///
     /// # Errors
     /// If a number is out of range, or the reference shape of a cell is degenerate or inverted.
-    pub fn new(mesh: Mesh, law: L, density: f64, thickness: f64) -> Result<Self, SolidError> {
+    pub(crate) fn new(
+        mesh: Mesh,
+        law: Box<dyn Pointwise<D>>,
+        density: f64,
+        thickness: f64,
+    ) -> Result<Self, SolidError> {
         check::<D, N>(&mesh, density, thickness)?;
         let k = S::DEGREE;
-        let rule = |degree: usize| S::Domain::rule(degree.max(L::ENERGY_DEGREE * (k - 1)));
+        let rule = |degree: usize| S::Domain::rule(degree.max(law.energy_degree() * (k - 1)));
         let force_rules = [rule(2 * k), rule((2 * k).max(4 * (k - 1)))];
         // The Jacobian of a curved quadrilateral or hexahedron has the degree Dk − 1 along each axis.
         let curved_mass = if S::Domain::TENSOR { (D + 2) * k - 1 } else { 4 * k - 2 };
@@ -101,7 +106,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         let cells = mesh.cell_count();
         let mut mirrored = Mat::ZERO;
         mirrored.0[0][0] = -2.0;
-        let may_invert = law.at(&mirrored).is_ok();
+        let may_invert = law.cauchy_at(&mirrored).is_ok();
         let mut solid = Self {
             mesh,
             law,

@@ -15,6 +15,7 @@ mod law;
 mod linear_elastic;
 mod neo_hookean;
 mod plane_stress;
+mod pointwise;
 mod saint_venant_kirchhoff;
 mod volumetric;
 
@@ -25,6 +26,7 @@ pub use law::Law;
 pub use linear_elastic::LinearElastic;
 pub use neo_hookean::NeoHookean;
 pub use plane_stress::{PlaneStress, Thickness};
+pub(crate) use pointwise::{ModuliMats, Pointwise, Stress};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use volumetric::Volumetric;
 

@@ -5,23 +5,20 @@ use carom_algebra::{Mat, Vector, wide};
 use super::{Place, Solid};
 use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
-use crate::material::{Material, NotPositive};
+use crate::material::{NotPositive, Pointwise, Stress};
 use crate::mesh::Mesh;
 use crate::points::get;
 use crate::reference::{self, gradient};
 use crate::shape::Shape;
 use crate::tree::Tree;
 
-impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for Solid<D, N, S, L> {
+impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
     fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
-        wide(
-            #[inline(always)]
-            || self.integrate_at(&self.law, cell, y, force, None),
-        )
+        self.force_of(&*self.law, cell, y, force)
     }
 
     fn cell_tangent(
@@ -31,10 +28,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
         force: &mut [f64],
         tangent: &mut [f64],
     ) -> Result<f64, Inverted> {
-        wide(
-            #[inline(always)]
-            || self.integrate_at(&self.law, cell, y, force, Some(tangent)),
-        )
+        self.tangent_of(&*self.law, cell, y, force, tangent)
     }
 
     fn cell_between(
@@ -44,10 +38,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
         now: &[f64],
         force: &mut [f64],
     ) -> Result<f64, Inverted> {
-        wide(
-            #[inline(always)]
-            || self.integrate_between(&self.law, cell, [before, now], force),
-        )
+        self.between_of(&*self.law, cell, [before, now], force)
     }
 
     fn cell_product(
@@ -58,10 +49,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
         change: &[f64],
         product: &mut [f64],
     ) -> Result<(), Inverted> {
-        wide(
-            #[inline(always)]
-            || self.product(&self.law, cell, before, [y, change], product),
-        )
+        self.product_of(&*self.law, cell, before, [y, change], product)
     }
 
     fn cell_mass(&self, cell: usize, mass: &mut [f64]) {
@@ -109,7 +97,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
     }
 
     fn stress_divergence(&self, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
-        divergence_of(&self.law, h, second, out)
+        divergence_of(&*self.law, h, second, out)
     }
 
     fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
@@ -117,7 +105,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
         let Place { points, inverse, .. } = &self.places[cell];
         let ratios = self.points[points.clone()].iter().flat_map(|points| {
             let h = points.gradient(&u, inverse);
-            (0..points.count).map(move |l| self.law.volume_ratio(&get(&h, l)))
+            (0..points.count).map(move |l| self.law.volume_ratio_at(&get(&h, l)))
         });
         ratios.fold(f64::INFINITY, f64::min)
     }
@@ -140,7 +128,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
     }
 
     fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted> {
-        self.point_of(&self.law, cell, xi, y)
+        self.point_of(&*self.law, cell, xi, y)
     }
 
     fn shape(&self, xi: &[f64], values: &mut [f64]) {
@@ -177,11 +165,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
     }
 }
 
-impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N, S, L> {
+impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// [`Body::point`] of another law.
-    pub(super) fn point_of<M: Material<D>>(
+    pub(super) fn point_of(
         &self,
-        law: &M,
+        law: &dyn Pointwise<D>,
         cell: usize,
         xi: &[f64],
         y: &[f64],
@@ -190,9 +178,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         let inverse_transposed = gradient(&x, &S::gradients(&vector(xi))).inverse().transposed();
         let g = S::gradients(&vector(xi)).map(|g| inverse_transposed.apply(&g));
         let h = gradient(&self.displacements(cell, y), &g);
-        let point = law.at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-        let within = law.cauchy(&point);
-        let lateral = law.lateral(&point);
+        let Stress { within, lateral } =
+            law.cauchy_at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
         let cauchy = std::array::from_fn(|i| {
             std::array::from_fn(|j| match (i < D && j < D, i == j) {
                 (true, _) => within.0[i][j],
@@ -200,28 +187,19 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
                 (false, false) => 0.0,
             })
         });
-        Ok(PointState { det_f: law.volume_ratio(&h), cauchy })
+        Ok(PointState { det_f: law.volume_ratio_at(&h), cauchy })
     }
 }
 
-/// ∂Pᵢᴶ/∂Xᴶ = Σ ∂Pᵢᴶ/∂Fₖᴸ ∂²yₖ/∂Xᴶ∂Xᴸ.
-pub(super) fn divergence_of<const D: usize, M: Material<D>>(
-    law: &M,
+/// [`Body::stress_divergence`] of a law.
+pub(super) fn divergence_of<const D: usize>(
+    law: &dyn Pointwise<D>,
     h: &[f64],
     second: &[f64],
     out: &mut [f64],
 ) -> Result<(), f64> {
     let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
-    let point = law.at(&h).map_err(|NotPositive(det_f)| det_f)?;
-    let unit = Mat::<D>::identity().0.map(Vector);
-    let mut sum = Vector::<D>::ZERO;
-    for j in 0..D {
-        for l in 0..D {
-            let bent = Vector(std::array::from_fn(|k| second[(k * D + j) * D + l]));
-            sum += law.tangent(&point, &unit[j], &unit[l]).apply(&bent);
-        }
-    }
-    out.copy_from_slice(&sum.0);
+    out.copy_from_slice(&law.divergence(&h, second).map_err(|NotPositive(det_f)| det_f)?.0);
     Ok(())
 }
 

@@ -1,23 +1,25 @@
 //! Sums over the quadrature points of a cell: forces, tangents, and differentials of forces.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::{Vector, wide};
 
 use super::{Place, Solid};
+#[cfg(doc)]
+use crate::body::Body;
 use crate::body::Inverted;
-use crate::discrete_gradient::{between, change_between};
-use crate::material::{Material, NotPositive, moduli_of};
-use crate::points::{Blocks, LANES, Mats, Moduli, get, set, set_moduli, sum};
+use crate::material::{ModuliMats, NotPositive, Pointwise};
+use crate::points::{Blocks, LANES, Lanes, Mats, sum};
 use crate::shape::Shape;
 
-impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N, S, L> {
-    /// Forces and, if requested, the tangent of a cell from `at(h)` for the gradients H of several
-    /// displacement fields at a point: energy, P and the moduli.
+impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
+    /// Forces and, if requested, the tangent of a cell from `at(h, count, P, moduli)` for the
+    /// gradients H of several displacement fields at the points of a block: their energies, P and,
+    /// for a tangent, the moduli.
     #[inline(always)]
     fn integrate<const M: usize>(
         &self,
         cell: usize,
         fields: [&[f64]; M],
-        at: impl Fn([Mat<D>; M], bool) -> Result<(f64, Mat<D>, Option<Moduli<D>>), NotPositive>,
+        at: impl Fn(&[Mats<D>; M], usize, &mut Mats<D>, &mut ModuliMats<D>) -> Result<Lanes, NotPositive>,
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, Inverted> {
@@ -36,22 +38,16 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             }
             let mut stresses = [[[0.0; LANES]; D]; D];
             let mut moduli = [[[[[0.0; LANES]; D]; D]; D]; D];
+            let densities = at(&gradients, points.count, &mut stresses, &mut moduli)
+                .map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
+            let weights = points.weights.map(|weight| volume * weight);
             for l in 0..points.count {
-                let w = volume * points.weights[l];
-                let mut h = [Mat::ZERO; M];
-                for m in 0..M {
-                    h[m] = get(&gradients[m], l);
-                }
-                let (density, stress, of_point) =
-                    at(h, tangent.is_some()).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-                energy += w * density;
-                set(&mut stresses, l, &stress, w);
-                if let Some(of_point) = of_point {
-                    set_moduli(&mut moduli, l, &of_point, w);
-                }
+                energy += weights[l] * densities[l];
             }
+            scale(&mut stresses, &weights);
             points.add_force(&stresses, inverse, &mut f);
             if tangent.is_some() {
+                moduli.as_flattened_mut().iter_mut().for_each(|block| scale(block, &weights));
                 points.add_tangent(&moduli, inverse, &mut blocks);
             }
         }
@@ -64,87 +60,105 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         Ok(energy)
     }
 
-    /// `integrate` with a law in one configuration.
-    #[inline(always)]
-    pub(super) fn integrate_at<M: Material<D>>(
+    /// [`Body::cell_force`] of a law.
+    pub(super) fn force_of(
         &self,
-        law: &M,
+        law: &dyn Pointwise<D>,
         cell: usize,
         y: &[f64],
         force: &mut [f64],
-        tangent: Option<&mut [f64]>,
     ) -> Result<f64, Inverted> {
-        self.integrate(
-            cell,
-            [y],
+        wide(
             #[inline(always)]
-            |[h], with_moduli| {
-                let point = law.at(&h)?;
-                let moduli = with_moduli.then(|| moduli_of(law, &point));
-                Ok((law.energy(&point), law.stress(&point), moduli))
+            || {
+                self.integrate(
+                    cell,
+                    [y],
+                    #[inline(always)]
+                    |[h], count, stress, _| law.stresses(h, count, stress),
+                    force,
+                    None,
+                )
             },
-            force,
-            tangent,
         )
     }
 
-    /// `integrate` with the discrete gradient between two configurations, forces only.
-    #[inline(always)]
-    pub(super) fn integrate_between<M: Material<D>>(
+    /// [`Body::cell_tangent`] of a law.
+    pub(super) fn tangent_of(
         &self,
-        law: &M,
+        law: &dyn Pointwise<D>,
+        cell: usize,
+        y: &[f64],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> Result<f64, Inverted> {
+        wide(
+            #[inline(always)]
+            || {
+                self.integrate(
+                    cell,
+                    [y],
+                    #[inline(always)]
+                    |[h], count, stress, moduli| law.tangents(h, count, stress, moduli),
+                    force,
+                    Some(tangent),
+                )
+            },
+        )
+    }
+
+    /// [`Body::cell_between`] of a law.
+    pub(super) fn between_of(
+        &self,
+        law: &dyn Pointwise<D>,
         cell: usize,
         ends: [&[f64]; 2],
         force: &mut [f64],
     ) -> Result<f64, Inverted> {
-        self.integrate(
-            cell,
-            ends,
+        wide(
             #[inline(always)]
-            |[start, end], _| {
-                let (energy, stress) = between(law, [&start, &end])?;
-                Ok((energy, stress, None))
+            || {
+                self.integrate(
+                    cell,
+                    ends,
+                    #[inline(always)]
+                    |[start, end], count, stress, _| law.between([start, end], count, stress),
+                    force,
+                    None,
+                )
             },
-            force,
-            None,
         )
     }
 
-    /// Derivative of [`Self::integrate_at`] or, with `before`, of [`Self::integrate_between`] along
-    /// `change`.
-    #[inline(always)]
-    pub(super) fn product<M: Material<D>>(
+    /// [`Body::cell_product`] of a law.
+    pub(super) fn product_of(
         &self,
-        law: &M,
+        law: &dyn Pointwise<D>,
         cell: usize,
         before: Option<&[f64]>,
         [y, change]: [&[f64]; 2],
         product: &mut [f64],
     ) -> Result<(), Inverted> {
-        let Some(before) = before else {
-            return self.differentiate(
-                cell,
-                [y],
-                change,
-                #[inline(always)]
-                |[h], dh, count| law.changes(h, dh, count),
-                product,
-            );
-        };
-        self.differentiate(
-            cell,
-            [before, y],
-            change,
+        wide(
             #[inline(always)]
-            |[start, end], dh, count| {
-                let mut changes = [[[0.0; LANES]; D]; D];
-                for l in 0..count {
-                    let ends = [&get(start, l), &get(end, l)];
-                    set(&mut changes, l, &change_between(law, ends, &get(dh, l))?, 1.0);
-                }
-                Ok(changes)
+            || match before {
+                None => self.differentiate(
+                    cell,
+                    [y],
+                    change,
+                    #[inline(always)]
+                    |[h], dh, count| law.increments(h, dh, count),
+                    product,
+                ),
+                Some(before) => self.differentiate(
+                    cell,
+                    [before, y],
+                    change,
+                    #[inline(always)]
+                    |[start, end], dh, count| law.increments_between([start, end], dh, count),
+                    product,
+                ),
             },
-            product,
         )
     }
 
@@ -177,19 +191,25 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             }
             let mut stresses = at(&gradients, &points.gradient(&du, inverse), points.count)
                 .map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-            for i in 0..D {
-                for j in 0..D {
-                    for l in 0..LANES {
-                        stresses[i][j][l] *= volume * points.weights[l];
-                    }
-                }
-            }
+            scale(&mut stresses, &points.weights.map(|weight| volume * weight));
             points.add_force(&stresses, inverse, &mut f);
         }
         for (product, f) in product.iter_mut().zip(f.as_flattened()) {
             *product = sum(f);
         }
         Ok(())
+    }
+}
+
+/// Multiplies the matrices of the points by their weights.
+#[inline(always)]
+fn scale<const D: usize>(mats: &mut Mats<D>, weights: &Lanes) {
+    for i in 0..D {
+        for j in 0..D {
+            for l in 0..LANES {
+                mats[i][j][l] *= weights[l];
+            }
+        }
     }
 }
 

@@ -14,8 +14,6 @@
 //! The discrete gradient is p̄ ḡ with the quotient p̄ = ΔW/Δm and the discrete gradient ḡ of Σ w q, so
 //! that its work is V ΔW exactly.
 
-use carom_algebra::wide;
-
 use super::body::divergence_of;
 use super::{Solid, SolidError};
 use crate::body::{Body, Inverted, PointState};
@@ -27,7 +25,7 @@ use crate::shape::Shape;
 /// A solid with mean dilatation.
 pub struct MeanDilatation<const D: usize, const N: usize, S, L: Volumetric<D>> {
     /// The body of Ψ₀.
-    solid: Solid<D, N, S, L>,
+    solid: Solid<D, N, S>,
     law: L,
     measure: L::Measure,
 }
@@ -44,7 +42,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> MeanDilat
     /// # Errors
     /// As there.
     pub fn new(mesh: Mesh, law: L, density: f64, thickness: f64) -> Result<Self, SolidError> {
-        let solid = Solid::new(mesh, law.without_volumetric(), density, thickness)?;
+        let solid = Solid::new(mesh, Box::new(law.without_volumetric()), density, thickness)?;
         Ok(Self { solid, measure: law.measure(), law })
     }
 
@@ -57,10 +55,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> MeanDilat
 
     fn swelling(&self, cell: usize, y: &[f64], tangent: Option<&mut [f64]>) -> Result<Swelling, Inverted> {
         let mut gradient = vec![0.0; N * D];
-        let sum = wide(
-            #[inline(always)]
-            || self.solid.integrate_at(&self.measure, cell, y, &mut gradient, tangent),
-        )?;
+        let sum = match tangent {
+            None => self.solid.force_of(&self.measure, cell, y, &mut gradient)?,
+            Some(tangent) => self.solid.tangent_of(&self.measure, cell, y, &mut gradient, tangent)?,
+        };
         Ok(Swelling { gradient, measure: sum / self.volume(cell) })
     }
 
@@ -121,7 +119,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> Body for 
     ) -> Result<f64, Inverted> {
         let shear = self.solid.cell_between(cell, before, now, force)?;
         let mut gradient = vec![0.0; N * D];
-        let sum = self.solid.integrate_between(&self.measure, cell, [before, now], &mut gradient)?;
+        let sum = self.solid.between_of(&self.measure, cell, [before, now], &mut gradient)?;
         let (volume, start) = (self.volume(cell), self.swelling(cell, before, None)?.measure);
         let end = sum / volume;
         let [pressure, _] = self.law.volumetric_between([start, end]);
@@ -139,7 +137,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> Body for 
     ) -> Result<(), Inverted> {
         self.solid.cell_product(cell, before, y, change, product)?;
         let mut turning = vec![0.0; N * D];
-        self.solid.product(&self.measure, cell, before, [y, change], &mut turning)?;
+        self.solid.product_of(&self.measure, cell, before, [y, change], &mut turning)?;
         let volume = self.volume(cell);
         let now = self.swelling(cell, y, None)?;
         let swells = dot(&now.gradient, &self.of_cell(cell, change)) / volume;
@@ -152,7 +150,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> Body for 
                 let start = self.swelling(cell, before, None)?.measure;
                 let [pressure, stiffness] = self.law.volumetric_between([start, now.measure]);
                 let mut along = vec![0.0; N * D];
-                self.solid.integrate_between(&self.measure, cell, [before, y], &mut along)?;
+                self.solid.between_of(&self.measure, cell, [before, y], &mut along)?;
                 (pressure, stiffness, along)
             }
         };

@@ -7,7 +7,7 @@ use crate::body::Body;
 use crate::material::NeoHookean;
 use crate::shape::Tet4;
 
-fn tetrahedron() -> Solid<3, 4, Tet4, NeoHookean> {
+fn tetrahedron() -> Solid<3, 4, Tet4> {
     let nodes = vec![[0.0, 0.0, 0.0], [2.0, 0.1, 0.0], [0.2, 1.5, 0.1], [0.1, 0.2, 1.0]].into();
     let mesh = Mesh {
         element: Element::Tet4,
@@ -16,7 +16,7 @@ fn tetrahedron() -> Solid<3, 4, Tet4, NeoHookean> {
         sides: BTreeMap::new(),
         repairs: Vec::new(),
     };
-    Solid::new(mesh, NeoHookean { lambda: 2.0, mu: 1.5 }, 3.0, 1.0).unwrap()
+    Solid::new(mesh, Box::new(NeoHookean { lambda: 2.0, mu: 1.5 }), 3.0, 1.0).unwrap()
 }
 
 #[test]
