@@ -4,11 +4,12 @@
 //! M x + Gᵀp + Hᵀq = f,   G x = c,   H x = b in stick,   q = −sμp in slip,   |q| ≤ −μp,   s (H x − b) ≥ 0
 //! ```
 //!
-//! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations it
-//! is the rate of change of the slip rate, which decides for pairs that have none; others slip in
-//! their direction. All rows are equalities, as without friction: a closed gap stays closed
+//! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations
+//! it is the rate of change of the slip rate, which decides for pairs that have none; others slip
+//! in their direction. All rows are equalities, as without friction: a closed gap stays closed
 //! (`persistency.rs`), and one whose p pulls goes on to stick, or to slip with q = −sμp. So the
-//! solution depends continuously on μ, and tangential impulses that slip are μ times the normal ones.
+//! solution depends continuously on μ, and tangential impulses that slip are μ times the normal
+//! ones.
 
 use carom_contact::{Hold, Law, Rows, Rub, StickSlip, Tangential};
 

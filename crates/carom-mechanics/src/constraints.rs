@@ -150,8 +150,8 @@ impl Constraints {
         self.curvatures.push(curvature);
     }
 
-    /// Largest gap that a constraint has to close. The slip of a stick that depends on other rows, as
-    /// of a node on a symmetry axis, is theirs.
+    /// Largest gap that a constraint has to close. The slip of a stick that depends on other rows,
+    /// as of a node on a symmetry axis, is theirs.
     pub(crate) fn gap(equations: &Equations, evaluation: &Evaluation) -> f64 {
         let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
         let gaps = evaluation.pressing().map(of_pair).fold(0.0, f64::max);

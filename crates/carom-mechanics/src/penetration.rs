@@ -139,7 +139,8 @@ impl Penetration {
         (deepest, beyond)
     }
 
-    /// The deepest node of a body in contact with itself where its boundary crosses itself, pair or not.
+    /// The deepest node of a body in contact with itself where its boundary crosses itself, pair or
+    /// not.
     fn folded(&mut self, model: &Model, contact: &Contact, y: &[f64]) -> Option<(usize, Inside)> {
         let body = contact.primary_part?;
         let skin = self.skins[body].as_mut()?;
@@ -239,7 +240,8 @@ impl Penetration {
                     watched.clearance = found.map_or(watched.reach, |found| found.distance);
                     found.map_or((0.0, 0.0), |found| (-found.distance - watched.kept, entered(found.facet)))
                 } else {
-                    // No deeper than any point of the boundary is away: neither the deepest nor too deep.
+                    // No deeper than any point of the boundary is away: neither the deepest nor too
+                    // deep.
                     let known = if watched.constrained { deepest.constrained } else { deepest.all };
                     if let Some((facet, xi)) = watched.near {
                         let bound = skin.distance(facet, xi, node, y);

@@ -186,8 +186,8 @@ fn open(gap: Option<[f64; 2]>) -> String {
 }
 
 impl Rejected {
-    /// Whether no step to this time can be accepted, however short: a formula has no value there, or one
-    /// that is not allowed.
+    /// Whether no step to this time can be accepted, however short: a formula has no value there,
+    /// or one that is not allowed.
     pub(crate) fn is_final(&self, end: f64) -> bool {
         matches!(self, Self::NoValue(NoValue { time, value, .. }) if value.is_finite() || *time == end)
     }

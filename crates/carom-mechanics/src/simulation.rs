@@ -208,8 +208,8 @@ impl Simulation {
         self.work.system.preconditioner.iterations()
     }
 
-    /// Assembles the tangent of the internal forces at the current state, as for every factorisation. For
-    /// measurements.
+    /// Assembles the tangent of the internal forces at the current state, as for every
+    /// factorisation. For measurements.
     ///
     /// # Errors
     /// If a cell is inverted.

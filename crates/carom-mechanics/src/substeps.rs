@@ -1,8 +1,8 @@
-//! Substeps of a grid step. A rejected step is bisected, unless a formula has no value that is allowed.
-//! So is a step that creates more than a tenth of the energy that the guard still allows; it is kept, and
-//! taken after all if the shortest step is rejected, or a shorter one creates more than four times as
-//! much: energy that the error of a smooth motion creates falls with the cube of the step, that of an
-//! impact or a change of facet does not.
+//! Substeps of a grid step. A rejected step is bisected, unless a formula has no value that is
+//! allowed. So is a step that creates more than a tenth of the energy that the guard still allows;
+//! it is kept, and taken after all if the shortest step is rejected, or a shorter one creates more
+//! than four times as much: energy that the error of a smooth motion creates falls with the cube of
+//! the step, that of an impact or a change of facet does not.
 
 use crate::grid_report::GridReport;
 use crate::rejected::Rejected;
@@ -13,7 +13,8 @@ use crate::stepper::Accepted;
 pub(crate) const MOST: u32 = 12;
 /// Share of the energy that the guard still allows that one step may create.
 const STEP: f64 = 0.1;
-/// Created energy of a shorter step relative to that of the longer one, above which it makes it worse.
+/// Created energy of a shorter step relative to that of the longer one, above which it makes it
+/// worse.
 const WORSE: f64 = 4.0;
 
 /// Progress through a grid step in units of Δt/2^level.

@@ -42,8 +42,8 @@ pub(crate) struct Simulation {
 }
 
 impl Simulation {
-    /// The state between two steps. Waiting for the end of a step could wait for ever: a function of
-    /// the program, called within the step, may ask for it.
+    /// The state between two steps. Waiting for the end of a step could wait for ever: a function
+    /// of the program, called within the step, may ask for it.
     fn inner(&self) -> PyResult<MutexGuard<'_, Inner>> {
         match self.inner.try_lock() {
             Ok(inner) => Ok(inner),

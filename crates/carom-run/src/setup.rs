@@ -104,8 +104,8 @@ impl<'a> Setup<'a> {
     /// Builds the model and its state at t = 0.
     ///
     /// # Errors
-    /// As [`Setup::build`]; also where bodies overlap, an explicit step is longer than is stable, or
-    /// the start has no forces or accelerations.
+    /// As [`Setup::build`]; also where bodies overlap, an explicit step is longer than is stable,
+    /// or the start has no forces or accelerations.
     pub fn start(self) -> Result<Simulation, Problems> {
         if let Some(state) = saved(self.case.initial.as_ref())? {
             on_the_grid(&state, &grid(self.case))?;

@@ -3,13 +3,13 @@
 //!
 //! The determinant is a polynomial in ξ, and of degree D in θ. Where all its Bernstein coefficients
 //! (`bernstein.rs`) are positive, so is the determinant; otherwise the cell is divided (Johnen,
-//! Remacle, Geuzaine, J. Comput. Phys. 233 (2013) 359–372). J = det(∂y/∂ξ)/det(∂X/∂ξ) has the sign of
-//! the numerator, because the reference cell is valid.
+//! Remacle, Geuzaine, J. Comput. Phys. 233 (2013) 359–372). J = det(∂y/∂ξ)/det(∂X/∂ξ) has the sign
+//! of the numerator, because the reference cell is valid.
 //!
 //! Round-off, with u = 2⁻⁵³, positions relative to the first node of magnitude ≤ m, weights of
-//! control points Σ|w| ≤ Λ: a control point is wrong by (N + 2) u Λ m, a difference of size ≤ 2Λm by
-//! twice that, a determinant by D! (2Λm)ᴰ (D (N + 3) + D) u, and the sum over its n terms adds n.
-//! Every halving adds at most the degree.
+//! control points Σ|w| ≤ Λ: a control point is wrong by (N + 2) u Λ m, a difference of size ≤ 2Λm
+//! by twice that, a determinant by D! (2Λm)ᴰ (D (N + 3) + D) u, and the sum over its n terms adds
+//! n. Every halving adds at most the degree.
 
 use carom_algebra::{Mat, Vector};
 
@@ -62,9 +62,9 @@ impl<const D: usize, const N: usize> Validity<D, N> {
     /// Distance by which every component of every node's position may change, relative to a common
     /// translation, while the cell remains valid; 0 if the cell is only certified after division.
     ///
-    /// If differences change by at most q per component, their determinant u × v in the plane changes
-    /// by at most (|u|₁ + |v|₁) q + 2q², and in general by D! ((E + q)ᴰ − Eᴰ), E the largest
-    /// component.
+    /// If differences change by at most q per component, their determinant u × v in the plane
+    /// changes by at most (|u|₁ + |v|₁) q + 2q², and in general by D! ((E + q)ᴰ − Eᴰ), E the
+    /// largest component.
     ///
     /// # Errors
     /// A place where the determinant is not certified positive.
@@ -168,7 +168,8 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         out
     }
 
-    /// The earliest place that division does not certify, of coefficients in ξ per coefficient in θ.
+    /// The earliest place that division does not certify, of coefficients in ξ per coefficient in
+    /// θ.
     fn first_loss(&self, rows: Vec<Vec<f64>>, error: f64) -> Option<Loss<D>> {
         let corners = self.tables.corners.iter().map(|corner| corner.place).collect();
         let whole = Part { rows, corners, theta: [0.0, 1.0], level: 0, error };

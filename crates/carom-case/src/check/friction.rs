@@ -1,5 +1,5 @@
-//! Checks of friction. What it is not built for is refused, so that no case runs without the friction
-//! that it asks for.
+//! Checks of friction. What it is not built for is refused, so that no case runs without the
+//! friction that it asks for.
 
 use super::super::{ContactLaw, Detection};
 use super::super::{

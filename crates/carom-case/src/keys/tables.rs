@@ -1,4 +1,5 @@
-//! Keys of the case and of its remaining tables, for each: name, values, unit, default, meaning, example.
+//! Keys of the case and of its remaining tables, for each: name, values, unit, default, meaning,
+//! example.
 
 use super::Kind::{
     Choice, Choices, Count, Formulas, Name, Number, NumberOrFalse, Numbers, Tables, Text, Truth, Variant,

@@ -1,9 +1,10 @@
 //! The recommendation that follows from a ranking, with its confidence, or why there is none.
 //!
-//! Methods are ordered by their mean place over the levels. Of those that are not distinguished from
-//! the best and have the required accuracy, the cheapest is recommended; processor times within 10 % of
-//! the smallest count as equal, and the smaller error then decides. Nothing is recommended if only a
-//! substitute for the measure of the goal is established, or if none of them has the required accuracy.
+//! Methods are ordered by their mean place over the levels. Of those that are not distinguished
+//! from the best and have the required accuracy, the cheapest is recommended; processor times
+//! within 10 % of the smallest count as equal, and the smaller error then decides. Nothing is
+//! recommended if only a substitute for the measure of the goal is established, or if none of them
+//! has the required accuracy.
 
 use super::design::{Goal, Kind};
 use super::digits::short;

@@ -1,5 +1,6 @@
-//! Warnings: doubts that a reviewer would have about a valid case. None of them stops a run. They are
-//! written into the manifest and the log, and shown by `carom check`, `carom run`, `carom study` and the pages.
+//! Warnings: doubts that a reviewer would have about a valid case. None of them stops a run. They
+//! are written into the manifest and the log, and shown by `carom check`, `carom run`,
+//! `carom study` and the pages.
 //!
 //! [`WARNINGS`] is the one table; a rule is a function of the case and its model, or of the record.
 
