@@ -123,7 +123,7 @@ pub fn audit(model: &Model, before: &[f64], now: &[f64], measured: Depths) -> Re
 pub fn unaudited(model: &Model) -> Vec<String> {
     let mut list = Vec::new();
     if model.dimension != 2 {
-        return vec!["anything: the model is not plane".to_owned()];
+        return vec!["any contact, because the model is not plane".to_owned()];
     }
     for contact in &model.contacts {
         let name = &contact.name;

@@ -44,7 +44,10 @@ pub enum Rejected {
         gap: Option<[f64; 2]>,
     },
     /// The active set returns to one visited before.
-    #[error("contact \"{contact}\": the active set does not settle: nodes {nodes:?} open and close in turn")]
+    #[error(
+        "contact \"{contact}\": the active set does not settle: nodes {nodes:?} alternate between open \
+        and closed"
+    )]
     Cycle {
         /// Contact.
         contact: String,
@@ -53,7 +56,7 @@ pub enum Rejected {
     },
     /// The states of friction return to those visited before.
     #[error(
-        "contact \"{contact}\": friction does not settle: nodes {nodes:?} stick and slip in turn{}",
+        "contact \"{contact}\": friction does not settle: nodes {nodes:?} alternate between stick and slip{}",
         if *regularity < SINGULAR {
             format!(
                 "; μ is so large that stick and slip are not unique (relative singular value {regularity:.3}, negative where the determinant is)"

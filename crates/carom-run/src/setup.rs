@@ -180,7 +180,7 @@ fn unfit(kernel: &dyn Kernel, case: &Case) -> Option<Problem> {
         && let Some(contact) = first(&|contact| contact.xi == ContactPoint::Frozen)
     {
         let what = format!("this kernel has {} stages", kernel.stages());
-        let why = "xi = \"frozen\" keeps ξ during the one solve of a step";
+        let why = "xi = \"frozen\" keeps ξ during the single solve of a step";
         return Some(Problem::new(contact.path("xi"), what, why, "give xi = \"closest\""));
     }
     None

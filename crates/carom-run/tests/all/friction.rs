@@ -405,7 +405,7 @@ traction = ["0.1*t", "-min(t, 1)"]
         assert!(sim.state().time < 2.6);
     };
     let expected =
-        "free to move along x: its closed contacts slip, and the load exceeds what friction can hold";
+        "free to move along x: its closed contacts slip, and the load exceeds what friction can carry";
     assert!(stopped.contains(expected), "{stopped}");
 }
 

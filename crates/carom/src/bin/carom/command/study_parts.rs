@@ -41,7 +41,7 @@ and make tables and page with:
     /// Make tables and page of what has been computed, and list what is missing
     ///
     /// Once all runs of a study with a goal have ended, one of them is computed twice more, with
-    /// two threads and resumed, to check that it is reproduced bit for bit.
+    /// two threads and resumed, to check that the results are bitwise identical.
     Collect {
         /// Directory of the study
         directory: PathBuf,
