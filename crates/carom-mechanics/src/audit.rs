@@ -1,5 +1,5 @@
-//! A second opinion on contact, for doubters: no tree, no pairs, no certificate, no nearest facet.
-//! Every node of either side is held against every chord of the other body's outline.
+//! An independent check of contact, without tree, pairs, certificate and nearest facet: every node of
+//! either side is compared with every chord of the other body's outline.
 //!
 //! ```text
 //! inside    the outline turns around the node by 2π, not by 0
