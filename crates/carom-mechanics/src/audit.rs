@@ -1,5 +1,5 @@
-//! An independent check of contact, without tree, pairs, certificate and nearest facet: every node of
-//! either side is compared with every chord of the other body's outline.
+//! An independent check of contact, without tree, pairs, certificate and nearest facet: every node
+//! of either side is compared with every chord of the other body's outline.
 //!
 //! ```text
 //! inside    the outline turns around the node by 2π, not by 0
