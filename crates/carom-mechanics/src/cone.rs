@@ -260,13 +260,13 @@ impl Closed {
         system.mass_with(model, &rows)?;
         let (mut x, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
         system.solve(model, [&forces, &targets], &mut x, &mut multipliers)?;
-        let held = multipliers.split_off(ways.len());
+        let stick_multipliers = multipliers.split_off(ways.len());
         let mut motion = Motion { x, normal: multipliers, tangential: vec![0.0; ways.len()] };
         for &i in &rubs {
             let [coefficient, traction] = ways[i].slip;
             motion.tangential[i] = ways[i].hold.sign() * (traction - coefficient * motion.normal[i]);
         }
-        sticking.iter().zip(held).for_each(|(&i, q)| motion.tangential[i] = q);
+        sticking.iter().zip(stick_multipliers).for_each(|(&i, q)| motion.tangential[i] = q);
         Ok(motion)
     }
 }

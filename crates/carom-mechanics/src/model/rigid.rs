@@ -169,9 +169,13 @@ pub(crate) fn check_rigid_modes<'a>(
     let Some(remaining) = null_space(free.len(), rows.iter().cloned()).into_iter().next() else {
         return Ok(());
     };
-    let held = null_space(free.len(), rows.into_iter().chain(slips.map(row)));
+    let remaining_with_slips = null_space(free.len(), rows.into_iter().chain(slips.map(row)));
     let largest =
         (0..remaining.len()).max_by(|a, b| remaining[*a].abs().total_cmp(&remaining[*b].abs())).unwrap_or(0);
     let mode = &free[largest];
-    Err(Unconstrained { body: parts[mode.part].name.clone(), motion: mode.motion(), slips: held.is_empty() })
+    Err(Unconstrained {
+        body: parts[mode.part].name.clone(),
+        motion: mode.motion(),
+        slips: remaining_with_slips.is_empty(),
+    })
 }

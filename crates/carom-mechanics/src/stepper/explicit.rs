@@ -36,7 +36,7 @@ use carom_contact::{Pair, Pairing, Rows, Tangential};
 use super::forward::Forward;
 use super::rubbing::{hold, kind};
 use super::scratch::Scratch;
-use super::watch::{active, approach, carry_into, depth, gap_at, held, measure_into, moves};
+use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, moves, overconstrained};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::constraints::independent_rows;
 use crate::contact_update::{GAP_TOLERANCE, search};
@@ -285,7 +285,7 @@ impl Explicit {
                     let gap = rows[k].row(p).gap;
                     let wrong = if pair.lambda < 0.0 { gap.abs() } else { -gap };
                     if -gap > tolerance && !moves(model, rows[k].row(p)) {
-                        return Err(held(contact, pair, gap));
+                        return Err(overconstrained(contact, pair, gap));
                     }
                     worst = worst.max(wrong);
                     pair.active |= wrong > tolerance;

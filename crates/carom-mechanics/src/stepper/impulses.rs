@@ -13,7 +13,7 @@ use carom_contact::{Law, Pairing, Rows, Tangential};
 use carom_time::ImpulseShares;
 
 use super::rubbing::{hold, kind};
-use super::watch::{active, held, measure_into, moves};
+use super::watch::{active, measure_into, moves, overconstrained};
 use crate::constraints::{Constraints, independent_rows};
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
@@ -84,7 +84,7 @@ impl Impulses {
             let path = |dof: usize| predicted[dof] - state.y[dof];
             let sinks = -row.entries().map(|(dof, slope)| slope * path(dof)).sum::<f64>();
             if sinks > TIE * model.scale {
-                return Err(held(&model.contacts[k], &pairings[k].pairs[p], row.gap));
+                return Err(overconstrained(&model.contacts[k], &pairings[k].pairs[p], row.gap));
             }
         }
         let dependent = independent_rows(model, places.iter().copied(), &measured).len() < places.len();

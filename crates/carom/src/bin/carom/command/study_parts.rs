@@ -13,7 +13,7 @@ use crate::{console, directory, out, study_summary};
 
 /// Steps of a study that is computed by separate processes, also on several machines
 #[derive(clap::Subcommand)]
-pub(super) enum Part {
+pub(super) enum StudyCommand {
     /// Write the directory of a study without computing any run
     #[command(after_help = "\
 Then compute every run, in any order and on any machine that shares the directory:
@@ -51,7 +51,7 @@ and write the tables and the page with:
     },
 }
 
-impl Part {
+impl StudyCommand {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         match self {
             Self::Plan { study, out, slurm } => plan(study, out, *slurm),
