@@ -15,8 +15,8 @@ TRIANGLE, LINE = {1: 2, 2: 9, 3: 21}, {1: 1, 2: 8, 3: 26}  # Gmsh's numbers of c
 
 
 HEAD = '''\
-# Twenty discs fall into a box of rigid planes and come to rest on each other. There is no friction: only
-# the scheme takes energy. Written by scripts/make_ladder_cases.py.
+# Twenty discs fall into a box of rigid planes and come to rest on each other. There is no friction:
+# only the scheme takes energy. Written by scripts/make_ladder_cases.py.
 title = "Twenty discs settle"
 dimension = 2
 
@@ -155,7 +155,8 @@ def comb():
     mesh = Mesh()
     width = lambda s: 0.1 - 0.04 * s
     rake(mesh, "lower", [0.4 * k for k in range(5)], 0.1, width, 0.6, 0.2, None, 2, 5)
-    # Off the middle by 0.06, so that the teeth bend; the tips are 0.1 above those of the lower comb.
+    # Off the middle by 0.06, so that the teeth bend; the tips are 0.1 above those of the lower
+    # comb.
     rake(mesh, "upper", [0.4 * k for k in range(4)], 0.1, width, 0.6, 0.2, (1.46, 1.3), 2, 4)
     mesh.write("comb.msh")
 

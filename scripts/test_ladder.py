@@ -121,7 +121,8 @@ class Geometry(unittest.TestCase):
             self.assertEqual(len(body.facets), 12)
             np.testing.assert_allclose(body.h, 0.5)
             a, b = body.a, body.b
-            self.assertAlmostEqual(float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2), 2.25)  # anticlockwise
+            area = float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2)
+            self.assertAlmostEqual(area, 2.25)  # anticlockwise
             self.assertEqual(body.sag, 0.0)  # corners do not count
 
     def test_a_curved_facet_is_the_polynomial_and_not_its_chord(self):
@@ -130,7 +131,8 @@ class Geometry(unittest.TestCase):
             body = outline(*round_disc(R, n, p))
             off = np.abs(np.linalg.norm(body.samples, axis=2) - R).max()
             self.assertLess(off, error)
-        self.assertAlmostEqual(outline(*round_disc(R, n, 1)).sag, 0.0, places=12)  # 45 degrees: corners
+        # 45 degrees: corners
+        self.assertAlmostEqual(outline(*round_disc(R, n, 1)).sag, 0.0, places=12)
         self.assertAlmostEqual(outline(*round_disc(R, 12, 1)).sag, np.pi / 6 / 8, places=12)
         self.assertAlmostEqual(outline(*round_disc(R, n, 2)).sag, np.pi / 4 / 32, delta=1e-3)
 
@@ -189,7 +191,8 @@ class Geometry(unittest.TestCase):
                 body.at(np.column_stack([r * np.sin(a), -r * np.cos(a)]))
                 depth = body.self_depth()
                 self.assertEqual(depth > 0, wrong)
-            # The corners of the end are 0.04 turns inside: 0.25 rad, 0.1 wide, so at most half of 0.1.
+            # The corners of the end are 0.04 turns inside: 0.25 rad, 0.1 wide, so at most half of
+            # 0.1.
             self.assertLessEqual(depth, 0.05 / body.h.min() + 0.1)
 
     def test_plane(self):
@@ -223,7 +226,8 @@ class Records(unittest.TestCase):
         self.assertTrue(found["wrong"][0].startswith("nodes: nodes of shot in plate: 0.08 h"), found["wrong"])
 
     def test_a_primary_body_may_enter_between_nodes_but_not_far(self):
-        # Corners of the shot in the large facets of the plate: 0.04/0.5 is below the limit, 0.06/0.5 above.
+        # Corners of the shot in the large facets of the plate: 0.04/0.5 is below the limit,
+        # 0.06/0.5 above.
         self.assertEqual(self.judged([[(0, 0), (0, 0)], [(0.1, -1.04), (0, 0)]], secondary="plate.all")["wrong"], [])
         found = self.judged([[(0, 0), (0, 0)], [(0.1, -1.06), (0, 0)]], secondary="plate.all")
         self.assertTrue(found["wrong"][0].startswith("edges: edges of shot in plate: 0.12 h"), found["wrong"])

@@ -76,10 +76,10 @@ pub fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<(), Lin
     })
 }
 
-/// Makes D definite by a proximal step from an earlier solution `z`: adds ε D_ii to the diagonal and
-/// −ε D_ii z_i to b. Where D is semidefinite, because rows of contacts depend on each other, each
-/// inequality still counts, and repeated steps converge to a solution of the problem itself. ε =
-/// 1e-10.
+/// Makes D definite by a proximal step from an earlier solution `z`: adds ε D_ii to the diagonal
+/// and −ε D_ii z_i to b. Where D is semidefinite, because rows of contacts depend on each other,
+/// each inequality still counts, and repeated steps converge to a solution of the problem itself.
+/// ε = 1e-10.
 ///
 /// ```
 /// let (d, b, mut z) = (vec![1.0; 4], vec![-1.0, -2.0], vec![0.0; 2]);

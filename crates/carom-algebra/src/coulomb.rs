@@ -5,11 +5,11 @@
 //! |Q_j| ≤ r_j,   Q_j = −r_j sign u_j where u_j ≠ 0,   r_j = min(μ_j P_j, limit_j)
 //! ```
 //!
-//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero. Rows that
-//! depend on each other come as a proximal step (`complementarity.rs`). Each tangential force belongs to
-//! one normal one. Sweeps of the nonlinear Gauss–Seidel method find which contacts are open, stick, or
-//! slip; with that the problem is linear and is solved exactly. Where its solution contradicts it, the
-//! sweeps go on.
+//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero. Rows
+//! that depend on each other come as a proximal step (`complementarity.rs`). Each tangential force
+//! belongs to one normal one. Sweeps of the nonlinear Gauss–Seidel method find which contacts are
+//! open, stick, or slip; with that the problem is linear and is solved exactly. Where its solution
+//! contradicts it, the sweeps go on.
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
@@ -60,8 +60,8 @@ enum State {
     Slips(f64, bool),
 }
 
-/// Overwrites `z`, a first guess if it has the size, with the solution for a matrix by rows. Contacts
-/// that do not feel each other are solved apart.
+/// Overwrites `z`, a first guess if it has the size, with the solution for a matrix by rows.
+/// Contacts that do not feel each other are solved apart.
 ///
 /// # Errors
 /// If none is found, as for large μ, where there may be none.

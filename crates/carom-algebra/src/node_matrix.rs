@@ -1,5 +1,5 @@
-//! A sparse symmetric matrix of D × D blocks between nodes, both triangles, in single precision: of a
-//! matrix of which only products are needed, and to few digits.
+//! A sparse symmetric matrix of D × D blocks between nodes, both triangles, in single precision: of
+//! a matrix of which only products are needed, and to few digits.
 
 use crate::threads::Threads;
 

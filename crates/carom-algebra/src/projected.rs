@@ -5,14 +5,15 @@
 //! [ G  0  ] [λ] = [c]        A symmetric, positive definite where G x = 0
 //! ```
 //!
-//! preconditioned by the same matrix with the diagonal blocks D of A in its place, (r, c) ↦ z = D⁻¹(r −
-//! Gᵀμ) with G D⁻¹Gᵀ μ = G D⁻¹r − c (N. I. M. Gould, M. E. Hribar, J. Nocedal, SIAM J. Sci. Comput. 23
-//! (2001) 1376–1395). Every direction then satisfies G p = 0, so the constraints hold to round-off
-//! from the first iterate on, and A is only seen where it is positive definite. In each iteration Gᵀμ
-//! is moved from the residual to the multipliers (ibid., §6), which keeps its digits.
+//! preconditioned by the same matrix with the diagonal blocks D of A in its place, (r, c) ↦
+//! z = D⁻¹(r − Gᵀμ) with G D⁻¹Gᵀ μ = G D⁻¹r − c (N. I. M. Gould, M. E. Hribar, J. Nocedal, SIAM J.
+//! Sci. Comput. 23 (2001) 1376–1395). Every direction then satisfies G p = 0, so the constraints
+//! hold to round-off from the first iterate on, and A is only seen where it is positive definite.
+//! In each iteration Gᵀμ is moved from the residual to the multipliers (ibid., §6), which keeps its
+//! digits.
 //!
-//! A row with a compliance C > 0 is a spring: A contains GᵀC⁻¹G, and with C on the diagonal of G D⁻¹Gᵀ
-//! so does the preconditioner.
+//! A row with a compliance C > 0 is a spring: A contains GᵀC⁻¹G, and with C on the diagonal of
+//! G D⁻¹Gᵀ so does the preconditioner.
 
 use std::sync::Arc;
 
@@ -302,10 +303,10 @@ pub struct ConjugateGradients {
 }
 
 impl ConjugateGradients {
-    /// Overwrites `x` and `multipliers` (zero for springs) with the solution for `forces` and `gaps`,
-    /// whose residual is at most `reduction` times the first, or which took `most` iterations.
-    /// `product(x, out)`: A x. Where a component is constrained, forces, entries of G and products
-    /// are zero.
+    /// Overwrites `x` and `multipliers` (zero for springs) with the solution for `forces` and
+    /// `gaps`, whose residual is at most `reduction` times the first, or which took `most`
+    /// iterations. `product(x, out)`: A x. Where a component is constrained, forces, entries of G
+    /// and products are zero.
     pub fn solve(
         &mut self,
         threads: &Threads,

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Where forces act along other directions F than G (friction), U = L⁻¹Fᵀ replaces the second T of
-//! each product, and TᵀU is factored by LU with partial pivoting. Seen relative to the matrix without
-//! friction, TᵀT = K Kᵀ, it is R = K⁻¹TᵀU K⁻ᵀ, the identity for F = G.
+//! each product, and TᵀU is factored by LU with partial pivoting. Seen relative to the matrix
+//! without friction, TᵀT = K Kᵀ, it is R = K⁻¹TᵀU K⁻ᵀ, the identity for F = G.
 //!
 //! Both factors exist if S is positive definite and G has full rank; the matrix then has one
 //! negative eigenvalue per row of G (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). If S is
@@ -182,9 +182,9 @@ impl Saddle {
         (0..m).find(repeats).map_or(Ok(true), |i| Err(dependent(i)))
     }
 
-    /// The smallest singular value of R with the sign of its determinant, by inverse iteration; none if
-    /// F = G. Where it is not positive, a solution for other states of the contacts exists for some
-    /// forces, or none does.
+    /// The smallest singular value of R with the sign of its determinant, by inverse iteration;
+    /// none if F = G. Where it is not positive, a solution for other states of the contacts exists
+    /// for some forces, or none does.
     pub fn regularity(&self) -> Option<f64> {
         let (skew, m) = (self.skew.as_ref()?, self.count);
         let turns = |places: &[usize]| {

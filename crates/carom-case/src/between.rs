@@ -71,7 +71,8 @@ impl Bodies<'_> {
             [] if problems.iter().any(|p| p.path == format!("{path}.between")) => return None,
             [] => {
                 let what = format!("contact `{}` has no pair of sides", one.name);
-                let why = "it is between bodies that have no other body to meet, or whose contacts are all declared in tables of their own";
+                let why = "there is no other body, or the contacts of these bodies are all declared in \
+                    tables of their own";
                 let help = if of_itself { "leave it out" } else { "leave out `self = false`" };
                 problems.push(Problem::new(format!("{path}.between"), what, why, help));
                 return None;

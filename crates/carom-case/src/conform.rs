@@ -85,7 +85,7 @@ impl Check {
             |k: &Key| !k.unless.is_empty() && (table.get(k.unless).is_some() || meant.contains(&k.unless));
         for key in spec.keys.iter().filter(|k| replaced(k) && table.get(k.name).is_some()) {
             let what = format!("`{}` is given with `{}`", key.name, key.unless);
-            let why = format!("`{}` stands in its place", key.unless);
+            let why = format!("`{}` takes its place", key.unless);
             self.problems
                 .push(Problem::new(joined(path, key.name), what, why, "leave one of them out").at_key());
         }

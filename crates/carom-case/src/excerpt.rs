@@ -11,8 +11,8 @@ use super::problem::{CaseError, Diagnostic};
 pub struct Excerpt {
     /// Names of the bodies that remain.
     pub bodies: Vec<String>,
-    /// Numbers of the tables of the contacts that remain, with another name if it needs one: that of the
-    /// only contact that is left of those between bodies.
+    /// Numbers of the tables of the contacts that remain, with another name if it needs one: that
+    /// of the only contact that is left of those between bodies.
     pub contacts: BTreeMap<usize, Option<String>>,
     /// End time.
     pub end: f64,

@@ -12,8 +12,8 @@ use super::make::NoMesh;
 use super::problem::Problem;
 use super::view::View;
 
-/// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2, a volume in
-/// space.
+/// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2,
+/// a volume in space.
 fn group(file: gmsh::MshFile, dimension: usize, name: &str, slits: bool) -> Result<Mesh, gmsh::MshError> {
     let file = file.with_slits(slits);
     match dimension {

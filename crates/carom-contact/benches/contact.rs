@@ -60,8 +60,8 @@ fn detection_at_first_contact(bencher: Bencher, shape: FacetShape) {
     });
 }
 
-/// A whole search: as many nodes as facets, a quarter of which penetrate in the step while the others
-/// come near. Times per facet grow logarithmically.
+/// A whole search: as many nodes as facets, a quarter of which penetrate in the step while the
+/// others come near. Times per facet grow logarithmically.
 #[divan::bench(args = [1_000, 10_000, 100_000], sample_count = 20)]
 fn search_of_a_long_side(bencher: Bencher, facets: usize) {
     let points = 2 * facets;

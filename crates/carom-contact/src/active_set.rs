@@ -41,7 +41,7 @@ pub struct ActiveSet {
 
 /// The set returns to a visited one in spite of all restrictions.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the active set cycles: pairs {pairs:?} open and close in turn")]
+#[error("the active set cycles: pairs {pairs:?} alternate between open and closed")]
 pub struct Cycle {
     /// Indices of the pairs that would change.
     pub pairs: Vec<usize>,

@@ -1,7 +1,8 @@
 //! Where a point lies relative to the boundary of a body, seen from the facet nearest to it.
 //!
-//! In the plane (for space see `kinematics/space/boundary.rs`): inside a facet the sign of the distance is that of the normal; at a joint the point is outside if the
-//! joint is convex, inside if it is concave.
+//! In the plane (for space see `kinematics/space/boundary.rs`): inside a facet the sign of the
+//! distance is that of the normal; at a joint the point is outside if the joint is convex, inside
+//! if it is concave.
 
 use carom_algebra::Vector;
 
@@ -30,8 +31,8 @@ impl Surface {
         inner.filter(|inner| inner.1 < first.1).unwrap_or(first)
     }
 
-    /// Where a point lies whose nearest facet is known. Reads the positions of that facet and of its
-    /// neighbours alone.
+    /// Where a point lies whose nearest facet is known. Reads the positions of that facet and of
+    /// its neighbours alone.
     pub(crate) fn depth(&self, facet: usize, point: [f64; 2], y: Places) -> Depth {
         let (xi, distance) = self.nearest(facet, point, y);
         let joint = xi.abs() >= 1.0;
@@ -46,8 +47,9 @@ impl Surface {
         (Vector(point) - at.position).dot(&at.normal) >= 0.0
     }
 
-    /// The same where the nearest point is an end of the facet: in front of either facet at a convex
-    /// joint, of both at a concave one, which is nearest to a remote point by round-off only.
+    /// The same where the nearest point is an end of the facet: in front of either facet at a
+    /// convex joint, of both at a concave one, which is nearest to a remote point by round-off
+    /// only.
     fn is_outside_joint(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {
         let Some(neighbour) = self.neighbour(facet, xi > 0.0) else {
             return self.is_outside(facet, xi, point, y);

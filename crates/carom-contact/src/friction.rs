@@ -6,9 +6,10 @@
 //! ```
 //!
 //! S is the slip of a step and q the tangential traction: the force of the pair is λ∇g + qH with
-//! H = ∂S/∂y, and q S ≥ 0 is lost. A pair that slips has q = −sμλ, so that only the direction of its
-//! force, λ(∇g − sμH), differs from that without friction and the cone follows the pressure within
-//! Newton's method. A pair that sticks is a constraint S = 0 with the multiplier q, or a spring.
+//! H = ∂S/∂y, and q S ≥ 0 is lost. A pair that slips has q = −sμλ, so that only the direction of
+//! its force, λ(∇g − sμH), differs from that without friction and the cone follows the pressure
+//! within Newton's method. A pair that sticks is a constraint S = 0 with the multiplier q, or a
+//! spring.
 //!
 //! States follow from the iterates by a primal–dual active set over {open, stick, slip ±}: a stick
 //! whose traction leaves the cone slips in the direction of the traction, a slip in the wrong
@@ -37,8 +38,8 @@ pub enum Hold {
 }
 
 impl Hold {
-    /// The state in which a closing pair starts, from its slip in the iterate: the projection onto the
-    /// cone of a pressure that is still zero.
+    /// The state in which a closing pair starts, from its slip in the iterate: the projection onto
+    /// the cone of a pressure that is still zero.
     pub fn of(slip: f64, tolerance: f64) -> Self {
         match slip {
             s if s > tolerance => Self::Forward,
@@ -166,7 +167,8 @@ impl StickSlip {
         Self { visited: HashSet::new(), caution, slip_tolerance }
     }
 
-    /// Pairs to change, with their new states; none for an open pair, or one that has no traction yet.
+    /// Pairs to change, with their new states; none for an open pair, or one that has no traction
+    /// yet.
     ///
     /// # Errors
     /// If the states return to those visited before in spite of all restrictions.

@@ -1,8 +1,8 @@
-//! Nodes of a boundary that lie inside their own body: where a fold has passed through itself, places
-//! no longer face each other, and no pair says so.
+//! Nodes of a boundary that lie inside their own body: where a fold has passed through itself,
+//! places no longer face each other, and no pair says so.
 //!
-//! The angle under which a node sees the oriented boundary, without the facets that contain it, is that
-//! of the body at the node, in (0, 2π), and 2π more where another part of the body covers it.
+//! The angle under which a node sees the oriented boundary, without the facets that contain it, is
+//! that of the body at the node, in (0, 2π), and 2π more where another part of the body covers it.
 
 use std::f64::consts::PI;
 
@@ -15,8 +15,8 @@ use crate::skin::{CHORDS, Skin};
 const SHARPEST: f64 = PI / 6.0;
 
 impl Skin {
-    /// The node that lies deepest inside its own body at positions `y`, the nearest facet that does not
-    /// contain it, and the distance to it: on the flank of a slit, that to the other flank.
+    /// The node that lies deepest inside its own body at positions `y`, the nearest facet that does
+    /// not contain it, and the distance to it: on the flank of a slit, that to the other flank.
     pub fn deepest_in_itself(&self, y: &[f64]) -> Option<(usize, usize, f64)> {
         let at = Places::new(y, 2);
         let surface = self.surface();

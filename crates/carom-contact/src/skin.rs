@@ -1,6 +1,7 @@
 //! The whole boundary of a body in the plane: how deep a point lies inside.
 //!
-//! The nearest point of the boundary decides (`depth.rs`). Independent of pairs, sides and history, so that it can judge them.
+//! The nearest point of the boundary decides (`depth.rs`). Independent of pairs, sides and history,
+//! so that it can judge them.
 
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull, Tree};
@@ -26,8 +27,9 @@ impl Skin {
         Self { surface, hull, tree: Tree::default(), folds: None }
     }
 
-    /// The same, to measure its own nodes too; `piece`: the connected piece of the body to which each
-    /// node belongs, from `first_node` on; `reference`: the reference positions, flat over all nodes.
+    /// The same, to measure its own nodes too; `piece`: the connected piece of the body to which
+    /// each node belongs, from `first_node` on; `reference`: the reference positions, flat over all
+    /// nodes.
     #[must_use]
     pub fn with_pieces(self, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
         let folds = Folds::new(&self.surface, piece, first_node, reference);
@@ -69,8 +71,8 @@ impl Skin {
         }
     }
 
-    /// Where a point lies at the positions of the last update, searched from a facet near it if one is
-    /// known; `None` without a boundary.
+    /// Where a point lies at the positions of the last update, searched from a facet near it if one
+    /// is known; `None` without a boundary.
     pub fn depth(&self, point: [f64; 2], from: Option<usize>, y: &[f64]) -> Option<Depth> {
         let y = Places::new(y, 2);
         let (facet, _) =
@@ -78,8 +80,8 @@ impl Skin {
         Some(self.surface.depth(facet, point, y))
     }
 
-    /// Where a node of the boundary lies relative to those parts of it that it may meet and that lie
-    /// on one side of it in the order of the boundary, if one is nearer than `reach`.
+    /// Where a node of the boundary lies relative to those parts of it that it may meet and that
+    /// lie on one side of it in the order of the boundary, if one is nearer than `reach`.
     pub fn depth_of(&self, node: usize, side: Side, reach: f64, y: &[f64]) -> Option<Depth> {
         let (folds, turns) = self.folds.as_ref()?;
         let y = Places::new(y, 2);
@@ -88,7 +90,8 @@ impl Skin {
         let mut nearest: Option<(usize, f64)> = None;
         for facet in self.tree.meeting(&Bounds::of(&point.0).grown(reach)).filter(|&facet| meets(facet)) {
             let (xi, distance) = self.surface.nearest(facet, point.0, y);
-            // An end next to what the node cannot meet, such as its own facet, is no place to enter.
+            // An end next to what the node cannot meet, such as its own facet, is no place to
+            // enter.
             let beyond = || self.surface.neighbour(facet, xi > 0.0);
             if xi.abs() >= 1.0 && !beyond().is_some_and(meets) {
                 continue;
@@ -211,7 +214,8 @@ mod tests {
 
     #[test]
     fn a_curved_facet_is_measured_as_it_is() {
-        // The lower half of a lens: a parabola y = x² − 1 from (−1, 0) to (1, 0), closed by a chord.
+        // The lower half of a lens: a parabola y = x² − 1 from (−1, 0) to (1, 0), closed by a
+        // chord.
         let y = vec![-1.0, 0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0];
         let facets = [vec![0, 1, 2], vec![1, 0, 3]];
         let mut skin = Skin::new(Surface::new(FacetShape::L3, &facets, &[1.0; 2]));

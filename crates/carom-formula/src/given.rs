@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// A function of place and time, evaluated at many points in one call. A point is given by the values
-/// of its variables, `width` of them, time last. A value that cannot be computed is NaN.
+/// A function of place and time, evaluated at many points in one call. A point is given by the
+/// values of its variables, `width` of them, time last. A value that cannot be computed is NaN.
 pub trait Function: Send + Sync + fmt::Debug {
     /// One value per point.
     fn values(&self, points: &[f64], width: usize) -> Vec<f64>;

@@ -89,8 +89,8 @@ impl Formula {
         &self.text
     }
 
-    /// Whether the formula depends on a variable of this name; a function of a program may depend on
-    /// every variable.
+    /// Whether the formula depends on a variable of this name; a function of a program may depend
+    /// on every variable.
     pub fn depends_on(&self, variable: &str) -> bool {
         self.variables.iter().position(|v| v == variable).is_some_and(|k| match &self.body {
             Body::Tree(tree) => tree.mentions(k),

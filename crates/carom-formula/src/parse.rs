@@ -92,7 +92,8 @@ fn misplaced<T>(input: &Input, wanted: &str) -> ModalResult<T, FormulaError> {
 
 type Error = ErrMode<FormulaError>;
 
-/// Each sign and each power is a call: its parts are functions, which keeps the stack of 4000 small.
+/// Each sign and each power is a call: its parts are functions, which keeps the stack of 4000
+/// small.
 fn expression(input: &mut Input) -> ModalResult<Tree, FormulaError> {
     combinator::expression(preceded(multispace0, operand))
         .prefix(preceded(multispace0, sign))

@@ -1,5 +1,5 @@
-//! A second opinion on contact, for doubters: no tree, no pairs, no certificate, no nearest facet. Every
-//! node of either side is held against every chord of the other body's outline.
+//! An independent check of contact, without tree, pairs, certificate and nearest facet: every node
+//! of either side is compared with every chord of the other body's outline.
 //!
 //! ```text
 //! inside    the outline turns around the node by 2π, not by 0
@@ -7,9 +7,9 @@
 //! passed    inside at an instant of the straight path of the step, and at neither end of it
 //! ```
 //!
-//! It must find nothing that the measured penetration does not have, and no passage deeper than twice what
-//! the contact allows. It costs nodes × chords × instants in every step. What it does not judge is listed
-//! by [`unaudited`].
+//! It must find nothing that the measured penetration does not have, and no passage deeper than
+//! twice what the contact allows. It costs nodes × chords × instants in every step. What it does
+//! not judge is listed by [`unaudited`].
 
 use std::f64::consts::PI;
 
@@ -106,7 +106,8 @@ pub fn audit(model: &Model, before: &[f64], now: &[f64], measured: Depths) -> Re
                 }
                 if depth == 0.0 && depth_at(0) == 0.0 {
                     let depth = (1..INSTANTS).map(depth_at).fold(0.0, f64::max);
-                    // A path is measured at a few instants: its largest depth may be missed by a part.
+                    // A path is measured at a few instants: its largest depth may be missed by a
+                    // part.
                     let limit = allowed(node) + contact.depths[0].max(PASSED) * longest;
                     if depth > 2.0 * limit + SAME * longest {
                         return Err(Doubt::Passed { node, body: name(), depth });
@@ -122,7 +123,7 @@ pub fn audit(model: &Model, before: &[f64], now: &[f64], measured: Depths) -> Re
 pub fn unaudited(model: &Model) -> Vec<String> {
     let mut list = Vec::new();
     if model.dimension != 2 {
-        return vec!["anything: the model is not plane".to_owned()];
+        return vec!["any contact, because the model is not plane".to_owned()];
     }
     for contact in &model.contacts {
         let name = &contact.name;

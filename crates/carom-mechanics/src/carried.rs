@@ -7,9 +7,9 @@
 //! ```
 //!
 //! for a constant Δt. A projection replaces q by the force at the state, and another Δt changes
-//! c Δt q: the impulse c Δ(Δt q) that no force of a step accounts for. Both equations are linear, so
-//! the part of q that is due to contact obeys the first one with the mean contact force. This part is
-//! stored here, as a resultant on each secondary side.
+//! c Δt q: the impulse c Δ(Δt q) that no force of a step accounts for. Both equations are linear,
+//! so the part of q that is due to contact obeys the first one with the mean contact force. This
+//! part is stored here, as a resultant on each secondary side.
 
 use crate::state::State;
 

@@ -4,11 +4,12 @@
 //! M x + Gᵀp + Hᵀq = f,   G x = c,   H x = b in stick,   q = −sμp in slip,   |q| ≤ −μp,   s (H x − b) ≥ 0
 //! ```
 //!
-//! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations it
-//! is the rate of change of the slip rate, which decides for pairs that have none; others slip in
-//! their direction. All rows are equalities, as without friction: a closed gap stays closed
+//! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations
+//! it is the rate of change of the slip rate, which decides for pairs that have none; others slip
+//! in their direction. All rows are equalities, as without friction: a closed gap stays closed
 //! (`persistency.rs`), and one whose p pulls goes on to stick, or to slip with q = −sμp. So the
-//! solution depends continuously on μ, and tangential impulses that slip are μ times the normal ones.
+//! solution depends continuously on μ, and tangential impulses that slip are μ times the normal
+//! ones.
 
 use carom_contact::{Hold, Law, Rows, Rub, StickSlip, Tangential};
 
@@ -259,13 +260,13 @@ impl Closed {
         system.mass_with(model, &rows)?;
         let (mut x, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
         system.solve(model, [&forces, &targets], &mut x, &mut multipliers)?;
-        let held = multipliers.split_off(ways.len());
+        let stick_multipliers = multipliers.split_off(ways.len());
         let mut motion = Motion { x, normal: multipliers, tangential: vec![0.0; ways.len()] };
         for &i in &rubs {
             let [coefficient, traction] = ways[i].slip;
             motion.tangential[i] = ways[i].hold.sign() * (traction - coefficient * motion.normal[i]);
         }
-        sticking.iter().zip(held).for_each(|(&i, q)| motion.tangential[i] = q);
+        sticking.iter().zip(stick_multipliers).for_each(|(&i, q)| motion.tangential[i] = q);
         Ok(motion)
     }
 }

@@ -88,8 +88,8 @@ impl Constraints {
         let (mut rows, mut gradient) = (Rows::new(model.dimension), DiscreteGradient::default());
         // Springs may depend on each other: each adds its stiffness.
         let is_spring = |&(k, _): &(usize, usize)| !model.contacts[k].interface.is_constraint();
-        let held = evaluation.pressing().filter(|place| !is_spring(place));
-        let gaps = held.map(|(k, p)| ((k, p, false), evaluation.rows[k].row(p)));
+        let constrained = evaluation.pressing().filter(|place| !is_spring(place));
+        let gaps = constrained.map(|(k, p)| ((k, p, false), evaluation.rows[k].row(p)));
         // The slip of a pair after all gaps: what depends on both keeps its gap.
         let sticking = evaluation.sticking().filter(|place| !is_spring(place));
         let slips = sticking.map(|(k, p)| ((k, p, true), evaluation.slips[k].row(p)));
@@ -150,8 +150,8 @@ impl Constraints {
         self.curvatures.push(curvature);
     }
 
-    /// Largest gap that a constraint has to close. The slip of a stick that depends on other rows, as
-    /// of a node on a symmetry axis, is theirs.
+    /// Largest gap that a constraint has to close. The slip of a stick that depends on other rows,
+    /// as of a node on a symmetry axis, is theirs.
     pub(crate) fn gap(equations: &Equations, evaluation: &Evaluation) -> f64 {
         let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
         let gaps = evaluation.pressing().map(of_pair).fold(0.0, f64::max);

@@ -1,5 +1,5 @@
-//! Contact in the equations of a stage: the row of each pair, the response of its interface, and its
-//! force, weighted as in the balance.
+//! Contact in the equations of a stage: the row of each pair, the response of its interface, and
+//! its force, weighted as in the balance.
 
 use carom_contact::{ContactError, Direction, Pair, Point, Rows};
 
@@ -79,8 +79,8 @@ impl Equations<'_> {
         Ok(())
     }
 
-    /// Adds the row of a pair, and returns its gap: at the end of the step, or accumulated along the
-    /// midpoint.
+    /// Adds the row of a pair, and returns its gap: at the end of the step, or accumulated along
+    /// the midpoint.
     fn measure_pair(
         &self,
         k: usize,

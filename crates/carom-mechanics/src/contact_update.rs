@@ -76,7 +76,8 @@ pub(crate) struct ContactUpdate {
     holds: Vec<StickSlip>,
     /// Remaining early facet updates.
     facet_updates: u32,
-    /// The smallest relative singular value of the interface so far, with the sign of its determinant.
+    /// The smallest relative singular value of the interface so far, with the sign of its
+    /// determinant.
     pub(crate) regularity: f64,
 }
 

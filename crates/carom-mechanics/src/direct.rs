@@ -89,8 +89,8 @@ impl Direct {
         }
     }
 
-    /// Assembles the symmetric part of the loads' tangent at a time and positions `y`, which matter in
-    /// space only.
+    /// Assembles the symmetric part of the loads' tangent at a time and positions `y`, which matter
+    /// in space only.
     fn assemble_loads(&mut self, model: &Model, time: f64, y: &[f64]) -> Result<(), Rejected> {
         let (mut at, mut slots) = (LoadsAt::default(), self.facet_slots.iter());
         model.loads.at(&model.parts, model.dofs(), time, &mut at)?;

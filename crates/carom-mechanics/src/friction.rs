@@ -1,20 +1,21 @@
 //! Friction in a stage and in a state. With y_½ = (y_s + y)/2, the row H of
-//! [`Kinematics::slip`](carom_contact::Kinematics::slip) and the states of `carom_contact::StickSlip`
+//! [`Kinematics::slip`](carom_contact::Kinematics::slip) and the states of
+//! `carom_contact::StickSlip`:
 //!
 //! ```text
 //! S = H(y_½)·(Δy − Δy_free),   force  λ∇g + qH(y_½),   ∂S/∂y = H + ½ ∂H/∂yᵀ (Δy − Δy_free)
 //! ```
 //!
 //! Δy_free = 0, except for a pair that was open at the step's start: what slips before it touches
-//! does not count. Its S is the velocity at the end of the stage, v(Δy) = v'·(Δy − Δy_free), divided
-//! by v'; on a spring, the share of Δy in which the gap is negative. The force of a contact that
-//! conserves acts over the whole step, and so does its S: its work −qS is never positive. Ṡ is this
-//! velocity, or S over the time in which it slips; in load steps, the time of their formulas.
+//! does not count. Its S is the velocity at the end of the stage, v(Δy) = v'·(Δy − Δy_free),
+//! divided by v'; on a spring, the share of Δy in which the gap is negative. The force of a contact
+//! that conserves acts over the whole step, and so does its S: its work −qS is never positive. Ṡ is
+//! this velocity, or S over the time in which it slips; in load steps, the time of their formulas.
 //!
-//! A pair that slips has q = s r(λ, Ṡ) and is the normal row with the direction ∇g − s ∂r/∂|λ| H; one
-//! that sticks is a row of its own with the multiplier q, S = 0 or, on a spring, S = (q − q_s)/k. A
-//! spring that slipped in the last step goes on to do so while its stick would exceed r, whatever a
-//! stick could hold.
+//! A pair that slips has q = s r(λ, Ṡ) and is the normal row with the direction ∇g − s ∂r/∂|λ| H;
+//! one that sticks is a row of its own with the multiplier q, S = 0 or, on a spring,
+//! S = (q − q_s)/k. A spring that slipped in the last step goes on to do so while its stick would
+//! exceed r, whatever a stick could hold.
 //!
 //! Between steps q acts along H(y_s): in the averaged forces of the next step and in what is
 //! recorded.
@@ -129,8 +130,8 @@ impl Equations<'_> {
         Rubbing { sign, radius, rate }
     }
 
-    /// Adds the friction of a pair with this gap: the row of its slip, the direction of its force, and
-    /// what acts beyond that.
+    /// Adds the friction of a pair with this gap: the row of its slip, the direction of its force,
+    /// and what acts beyond that.
     pub(crate) fn add_friction(
         &self,
         contact: usize,
@@ -203,8 +204,8 @@ impl Equations<'_> {
         }
     }
 
-    /// Share of the step after the touch of a pair that closes, which approaches with its velocity at
-    /// the start, or at the mean one if that is larger.
+    /// Share of the step after the touch of a pair that closes, which approaches with its velocity
+    /// at the start, or at the mean one if that is larger.
     fn since_touch(&self, contact: usize, pair: &Pair, gap: Row, rows: &mut Rows) -> f64 {
         let start = self.gap_at_start(contact, pair, rows).unwrap_or(0.0);
         let approach = (-gap.along(&self.state.v)).max(start / self.duration);
@@ -216,8 +217,8 @@ impl Equations<'_> {
         !self.stage.is_static() && self.state.closed(contact, pair.node).is_none()
     }
 
-    /// ∂H/∂y of a pair at y_½ halved, the derivative of its row by the end of the step, row-major; and
-    /// ∂S/∂y.
+    /// ∂H/∂y of a pair at y_½ halved, the derivative of its row by the end of the step, row-major;
+    /// and ∂S/∂y.
     pub(crate) fn slip_derivatives(
         &self,
         evaluation: &Evaluation,
@@ -245,8 +246,8 @@ impl Equations<'_> {
         (matrix, gradient)
     }
 
-    /// Adds the derivative of the force s r H of a slipping pair, beyond that of r by λ, over the nodes
-    /// of its row.
+    /// Adds the derivative of the force s r H of a slipping pair, beyond that of r by λ, over the
+    /// nodes of its row.
     pub(crate) fn slip_curvature_into(
         &self,
         evaluation: &Evaluation,
@@ -272,8 +273,8 @@ impl Equations<'_> {
     }
 }
 
-/// Calls `visit(contact, pair, H)` for the closed pairs of a state that have friction, with H at its
-/// positions.
+/// Calls `visit(contact, pair, H)` for the closed pairs of a state that have friction, with H at
+/// its positions.
 pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usize, Row)) {
     let mut rows = Rows::new(model.dimension);
     let rubs = |(_, contact): &(usize, &Contact)| contact.friction.is_some();
@@ -290,8 +291,8 @@ pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usiz
     }
 }
 
-/// Force on a secondary side of the tractions that are not in the direction of λ: −Σ (q + s ∂r/∂|λ| λ)
-/// ∂S/∂y_N over the closed pairs.
+/// Force on a secondary side of the tractions that are not in the direction of λ:
+/// −Σ (q + s ∂r/∂|λ| λ) ∂S/∂y_N over the closed pairs.
 pub(crate) fn secondary_friction(evaluation: &Evaluation, contact: usize) -> [f64; 3] {
     let mut force = [0.0; 3];
     let pairs = evaluation.at.pairings[contact].pairs.iter();

@@ -1,6 +1,6 @@
-//! Iterative solution: conjugate gradients under the rows of contact with the frozen tangent, stored
-//! by blocks of nodes in single precision, and with the mass. Nothing is factored but the complement
-//! of the active rows.
+//! Iterative solution: conjugate gradients under the rows of contact with the frozen tangent,
+//! stored by blocks of nodes in single precision, and with the mass. Nothing is factored but the
+//! complement of the active rows.
 //!
 //! A solve with the tangent need not be more accurate than the frozen tangent itself; the linear
 //! problem of an iteration (`linear_problem.rs`) applies the exact one. A solve with the mass is

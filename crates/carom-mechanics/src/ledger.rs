@@ -254,9 +254,9 @@ fn open_work_of_motions(model: &Model, state: &State, next: &State, increment: &
     model.motions.dofs().map(|i| increment[i] * (now[i] - before[i])).sum()
 }
 
-/// Contact forces of a solved last stage as its balance has them, with friction along H(y_½) instead of
-/// H(y) between steps. The acceleration of the state contains them, and the first stage of a composite
-/// rule weighs both: momentum and energy are balanced with the same forces.
+/// Contact forces of a solved last stage as its balance has them, with friction along H(y_½)
+/// instead of H(y) between steps. The acceleration of the state contains them, and the first stage
+/// of a composite rule weighs both: momentum and energy are balanced with the same forces.
 pub(crate) fn keep_friction(model: &Model, solved: &Evaluation, state: &mut State) {
     if !model.has_friction() {
         return;

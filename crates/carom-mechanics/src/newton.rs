@@ -3,9 +3,9 @@
 //! H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16–32), with an inner primal–dual active set.
 //!
 //! Convergence requires all of: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus round-off according to the
-//! system's diagonal), and with friction and inertia its resultants vanish (`resultants.rs`); |g| ≤ 1e-12·L on
-//! every active constraint; no pair penetrates, pulls, or has slid off its facet. Nothing less is
-//! accepted.
+//! system's diagonal), and with friction and inertia its resultants vanish
+//! (`resultants.rs`); |g| ≤ 1e-12·L on every active constraint; no pair penetrates, pulls, or has
+//! slid off its facet. Nothing less is accepted.
 
 use crate::constraints::Constraints;
 use crate::contact_update::{

@@ -24,7 +24,7 @@ pub(crate) struct Penetration {
     /// Bodies whose skins have their positions of this step.
     current: Vec<bool>,
     /// Depths of the active pairs of a contact and lengths of their facets, by node.
-    held: Vec<(usize, f64, f64)>,
+    paired: Vec<(usize, f64, f64)>,
     rows: Option<Rows>,
 }
 
@@ -139,7 +139,8 @@ impl Penetration {
         (deepest, beyond)
     }
 
-    /// The deepest node of a body in contact with itself where its boundary crosses itself, pair or not.
+    /// The deepest node of a body in contact with itself where its boundary crosses itself, pair or
+    /// not.
     fn folded(&mut self, model: &Model, contact: &Contact, y: &[f64]) -> Option<(usize, Inside)> {
         let body = contact.primary_part?;
         let skin = self.skins[body].as_mut()?;
@@ -185,11 +186,11 @@ impl Penetration {
         way: usize,
         state: Option<&State>,
     ) -> (Depths, Option<Inside>) {
-        let Self { skins, ways, y, current, held, rows, .. } = self;
+        let Self { skins, ways, y, current, paired, rows, .. } = self;
         let Way { contact, body, itself, nodes, first, .. } = &mut ways[way];
         let (mut deepest, mut worst) = (Depths::default(), None::<Inside>);
         let Some(skin) = skins[*body].as_mut() else { return (deepest, worst) };
-        held.clear();
+        paired.clear();
         if let (Some(k), Some(state)) = (*contact, state)
             && nodes.iter().any(|watched| watched.clearance <= 0.0)
         {
@@ -211,12 +212,12 @@ impl Penetration {
                 if contact.kinematics.measure(&mut pair, y, rows).is_ok() {
                     let node = contact.kinematics.secondary()[pair.node];
                     let facet = contact.kinematics.facet_nodes(&pair);
-                    held.push((node, (-rows.row(0).gap).max(0.0), length(model, facet)));
+                    paired.push((node, (-rows.row(0).gap).max(0.0), length(model, facet)));
                 }
             }
             // A node in a dent has two pairs: the deeper one counts.
-            held.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
-            held.dedup_by_key(|(node, ..)| *node);
+            paired.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+            paired.dedup_by_key(|(node, ..)| *node);
         }
         let start = *first;
         for i in 0..nodes.len() {
@@ -227,8 +228,8 @@ impl Penetration {
                 continue;
             }
             let node = watched.node;
-            let (depth, entered) = if let Ok(p) = held.binary_search_by_key(&node, |(held, ..)| *held) {
-                (held[p].1, held[p].2)
+            let (depth, entered) = if let Ok(p) = paired.binary_search_by_key(&node, |(paired, ..)| *paired) {
+                (paired[p].1, paired[p].2)
             } else {
                 if !std::mem::replace(&mut current[*body], true) {
                     skin.update(y);
@@ -239,7 +240,8 @@ impl Penetration {
                     watched.clearance = found.map_or(watched.reach, |found| found.distance);
                     found.map_or((0.0, 0.0), |found| (-found.distance - watched.kept, entered(found.facet)))
                 } else {
-                    // No deeper than any point of the boundary is away: neither the deepest nor too deep.
+                    // No deeper than any point of the boundary is away: neither the deepest nor too
+                    // deep.
                     let known = if watched.constrained { deepest.constrained } else { deepest.all };
                     if let Some((facet, xi)) = watched.near {
                         let bound = skin.distance(facet, xi, node, y);

@@ -7,8 +7,9 @@
 //!
 //! with all active rows as equalities. Projecting v alone would retain the accelerations of the
 //! impact and does not remove the oscillations (theory.md §5.3). Massless dofs keep their velocity:
-//! they follow the massive side. With friction both systems have its impulses and forces (`cone.rs`).
-//! With a restitution, energy is returned (`restitution.rs`) before the accelerations are solved for.
+//! they follow the massive side. With friction both systems have its impulses and forces
+//! (`cone.rs`). With a restitution, energy is returned (`restitution.rs`) before the accelerations
+//! are solved for.
 
 use carom_contact::{Row, Rows};
 

@@ -44,7 +44,10 @@ pub enum Rejected {
         gap: Option<[f64; 2]>,
     },
     /// The active set returns to one visited before.
-    #[error("contact \"{contact}\": the active set does not settle: nodes {nodes:?} open and close in turn")]
+    #[error(
+        "contact \"{contact}\": the active set does not settle: nodes {nodes:?} alternate between open \
+        and closed"
+    )]
     Cycle {
         /// Contact.
         contact: String,
@@ -53,7 +56,7 @@ pub enum Rejected {
     },
     /// The states of friction return to those visited before.
     #[error(
-        "contact \"{contact}\": friction does not settle: nodes {nodes:?} stick and slip in turn{}",
+        "contact \"{contact}\": friction does not settle: nodes {nodes:?} alternate between stick and slip{}",
         if *regularity < SINGULAR {
             format!(
                 "; μ is so large that stick and slip are not unique (relative singular value {regularity:.3}, negative where the determinant is)"
@@ -186,8 +189,8 @@ fn open(gap: Option<[f64; 2]>) -> String {
 }
 
 impl Rejected {
-    /// Whether no step to this time can be accepted, however short: a formula has no value there, or one
-    /// that is not allowed.
+    /// Whether no step to this time can be accepted, however short: a formula has no value there,
+    /// or one that is not allowed.
     pub(crate) fn is_final(&self, end: f64) -> bool {
         matches!(self, Self::NoValue(NoValue { time, value, .. }) if value.is_finite() || *time == end)
     }

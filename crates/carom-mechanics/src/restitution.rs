@@ -7,11 +7,12 @@
 //! ```
 //!
 //! and returns it where pairs close or open. s are their approach speeds, after the projection,
-//! with which b = 0, or their separation speeds; zero for pairs that remain closed. Owed energy makes
-//! nodes separate faster. Energy that contact has created, owed < 0, makes them separate slower, at
-//! most until b + a f = 0; the rest is carried. Gradients are those at y_{n+1}, so momentum and
-//! moment of momentum do not change. With friction, M w + Gᵀp + Hᵀq = 0 with Coulomb's law for the
-//! impulse (`cone.rs`): what it takes is not owed. Which nodes stick depends on f, which is iterated.
+//! with which b = 0, or their separation speeds; zero for pairs that remain closed. Owed energy
+//! makes nodes separate faster. Energy that contact has created, owed < 0, makes them separate
+//! slower, at most until b + a f = 0; the rest is carried. Gradients are those at y_{n+1}, so
+//! momentum and moment of momentum do not change. With friction, M w + Gᵀp + Hᵀq = 0 with Coulomb's
+//! law for the impulse (`cone.rs`): what it takes is not owed. Which nodes stick depends on f,
+//! which is iterated.
 
 use carom_contact::{Hold, Row, Tangential};
 
@@ -106,8 +107,8 @@ pub(crate) fn separate(
     Ok(jump)
 }
 
-/// Changes velocities by the response of the mass to a factor times `speeds` of closed pairs. The work of
-/// friction is returned.
+/// Changes velocities by the response of the mass to a factor times `speeds` of closed pairs. The
+/// work of friction is returned.
 fn settle(
     model: &Model,
     state: &mut State,

@@ -9,9 +9,9 @@ use crate::start::press;
 use crate::state::{Created, Ledger, Previous, State};
 
 impl State {
-    /// The state of a model with fewer bodies and contacts: `dofs` and `contacts` are their numbers in
-    /// the larger model. Its ledger starts anew. What remains of active pairs, velocities and the memory
-    /// of the scheme is unchanged.
+    /// The state of a model with fewer bodies and contacts: `dofs` and `contacts` are their numbers
+    /// in the larger model. Its ledger starts anew. What remains of active pairs, velocities and
+    /// the memory of the scheme is unchanged.
     ///
     /// # Errors
     /// If a cell is inverted.

@@ -5,11 +5,12 @@
 //! ```
 //!
 //! ‖r‖ alone does not say that: the stresses of a stiff body are known to fewer digits than the
-//! forces that move it, but their sum over the body is zero to round-off. The second term is that of
-//! the sums: of the nodal forces, and of an acceleration that is a difference of velocities over Δt.
+//! forces that move it, but their sum over the body is zero to round-off. The second term is that
+//! of the sums: of the nodal forces, and of an acceleration that is a difference of velocities over
+//! Δt.
 //!
-//! Without friction the symmetric system of the contacts leaves no such rest, and momentum balances to
-//! 1e-12 without this test (`carom-run/tests/all/momentum.rs`): it would cost up to a fifth more
+//! Without friction the symmetric system of the contacts leaves no such rest, and momentum balances
+//! to 1e-12 without this test (`carom-run/tests/all/momentum.rs`): it would cost up to a fifth more
 //! iterations for nothing.
 
 use crate::equations::Equations;
@@ -21,8 +22,8 @@ const BALANCED: f64 = 1e-13;
 /// Digits lost in sums.
 const SUMMED: f64 = 16.0 * f64::EPSILON;
 
-/// Whether the resultants of the residual are zero; not asked without friction, nor of contacts that
-/// conserve energy, whose states more iterations disturb.
+/// Whether the resultants of the residual are zero; not asked without friction, nor of contacts
+/// that conserve energy, whose states more iterations disturb.
 pub(crate) fn are_balanced(equations: &Equations, now: &Evaluation) -> bool {
     let model = equations.model;
     let conserves = model.contacts.iter().any(Contact::conserves);

@@ -208,8 +208,8 @@ impl Simulation {
         self.work.system.preconditioner.iterations()
     }
 
-    /// Assembles the tangent of the internal forces at the current state, as for every factorisation. For
-    /// measurements.
+    /// Assembles the tangent of the internal forces at the current state, as for every
+    /// factorisation. For measurements.
     ///
     /// # Errors
     /// If a cell is inverted.
@@ -259,7 +259,7 @@ impl Simulation {
         // The state after the substeps so far; none before the first.
         let mut reached: Option<State> = None;
         let mut progress = Progress { level: self.state.bisection.level(), done: 0 };
-        let (mut kept, mut bisected, before) = (None, false, report.rejected);
+        let (mut stored, mut bisected, before) = (None, false, report.rejected);
         let end = start + length;
         let limits = Limits { guard: self.grid.guard, bisections: self.bisections, end };
         while progress.done() < 1.0 {
@@ -276,7 +276,7 @@ impl Simulation {
             });
             // A step that is returned to began earlier.
             let (mut taken, mut returned, mut why) = (None, None, None);
-            match decide(stepped, from, limits, &mut kept, &mut progress, report) {
+            match decide(stepped, from, limits, &mut stored, &mut progress, report) {
                 Next::Take(step) => taken = Some(step),
                 Next::Bisect(rejected) => why = Some(rejected),
                 Next::Return(rejected, step, start) => {

@@ -6,8 +6,9 @@
 //!
 //! Contacts active at the end of the other run remain active; in the reference configuration there
 //! are none (λ₀ = 0). A moving support has its own v₀, a₀ and must start at the position of its
-//! body. Schemes whose contact forces are impulses carry the acceleration of all other forces, M a₀ =
-//! f_ext − f_int. Without inertia v₀ and a₀ are zero, and the first load step finds the equilibrium.
+//! body. Schemes whose contact forces are impulses carry the acceleration of all other forces,
+//! M a₀ = f_ext − f_int. Without inertia v₀ and a₀ are zero, and the first load step finds the
+//! equilibrium.
 
 use carom_contact::{Pair, Point, Rows};
 

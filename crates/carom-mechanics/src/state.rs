@@ -25,8 +25,8 @@ pub struct Ledger {
     pub external_work: f64,
     /// Σ Δy·ΔF of the loads: their work with the forces at the ends of steps minus that with the
     /// forces at the starts, the scale of the scheme-dependent uncertainty. While a load is being
-    /// applied it can be as large as the work itself. Contact of explicit schemes adds the work of its
-    /// forces over the tolerance of gaps.
+    /// applied it can be as large as the work itself. Contact of explicit schemes adds the work of
+    /// its forces over the tolerance of gaps.
     pub open: f64,
     /// Work of the contact forces on the bodies, and the jumps of kinetic energy at activation.
     pub contact_work: f64,
@@ -34,8 +34,8 @@ pub struct Ledger {
     pub friction_work: f64,
     /// Slip so far.
     pub rubbed: Rubbed,
-    /// Energy that conserving contact with a restitution has still to return; negative if it created
-    /// some (`restitution.rs`).
+    /// Energy that conserving contact with a restitution has still to return; negative if it
+    /// created some (`restitution.rs`).
     pub owed: f64,
     /// Largest kinetic + strain energy so far.
     pub largest: f64,

@@ -1,8 +1,8 @@
-//! Substeps of a grid step. A rejected step is bisected, unless a formula has no value that is allowed.
-//! So is a step that creates more than a tenth of the energy that the guard still allows; it is kept, and
-//! taken after all if the shortest step is rejected, or a shorter one creates more than four times as
-//! much: energy that the error of a smooth motion creates falls with the cube of the step, that of an
-//! impact or a change of facet does not.
+//! Substeps of a grid step. A rejected step is bisected, unless a formula has no value that is
+//! allowed. So is a step that creates more than a tenth of the energy that the guard still allows;
+//! it is stored, and taken after all if the shortest step is rejected, or a shorter one creates
+//! more than four times as much: energy that the error of a smooth motion creates falls with the
+//! cube of the step, that of an impact or a change of facet does not.
 
 use crate::grid_report::GridReport;
 use crate::rejected::Rejected;
@@ -13,7 +13,8 @@ use crate::stepper::Accepted;
 pub(crate) const MOST: u32 = 12;
 /// Share of the energy that the guard still allows that one step may create.
 const STEP: f64 = 0.1;
-/// Created energy of a shorter step relative to that of the longer one, above which it makes it worse.
+/// Created energy of a shorter step relative to that of the longer one, above which it makes it
+/// worse.
 const WORSE: f64 = 4.0;
 
 /// Progress through a grid step in units of Δt/2^level.
@@ -48,7 +49,7 @@ impl Progress {
 }
 
 /// A step that created energy, with the report before it, while shorter ones are tried.
-pub(crate) struct Kept {
+pub(crate) struct StoredStep {
     step: Accepted,
     created: f64,
     /// Whether the guard allows it.
@@ -65,8 +66,8 @@ pub(crate) enum Next {
     Take(Accepted),
     /// Shorter ones are tried.
     Bisect(Rejected),
-    /// Shorter ones do not help, for this reason: the one that was kept is the next one, from these
-    /// positions.
+    /// Shorter ones do not help, for this reason: the one that was stored is the next one, from
+    /// these positions.
     Return(Rejected, Accepted, Vec<f64>),
     /// Not even the shortest one is accepted.
     Stop(Rejected),
@@ -88,12 +89,12 @@ pub(crate) fn decide(
     stepped: Result<Accepted, Rejected>,
     from: &State,
     limits: Limits,
-    kept: &mut Option<Kept>,
+    stored: &mut Option<StoredStep>,
     progress: &mut Progress,
     report: &mut GridReport,
 ) -> Next {
-    if kept.as_ref().is_some_and(|kept| progress.done() >= kept.at.next()) {
-        *kept = None;
+    if stored.as_ref().is_some_and(|stored| progress.done() >= stored.at.next()) {
+        *stored = None;
     }
     let is_final = |rejected: &Rejected| rejected.is_final(limits.end);
     let last = progress.level >= limits.bisections || stepped.as_ref().is_err_and(is_final);
@@ -103,25 +104,25 @@ pub(crate) fn decide(
             let Some((created, allowed)) = limits.guard.and_then(|share| beyond(&step, from, share)) else {
                 return Next::Take(step);
             };
-            let worse = |kept: &Kept| kept.is_within && (last || created > WORSE * kept.created);
-            let returns = kept.as_ref().is_some_and(worse);
+            let worse = |stored: &StoredStep| stored.is_within && (last || created > WORSE * stored.created);
+            let returns = stored.as_ref().is_some_and(worse);
             if last && !returns {
                 return Next::Take(step);
             }
-            if kept.is_none() {
+            if stored.is_none() {
                 let is_within = created <= allowed / STEP;
                 let (at, from, report) = (*progress, from.y.clone(), report.clone());
-                *kept = Some(Kept { step, created, is_within, at, from, report });
+                *stored = Some(StoredStep { step, created, is_within, at, from, report });
             }
             (Rejected::Energy { created, allowed }, returns)
         }
-        Err(rejected) => (rejected, last && kept.as_ref().is_some_and(|kept| kept.is_within)),
+        Err(rejected) => (rejected, last && stored.as_ref().is_some_and(|stored| stored.is_within)),
     };
-    match kept.take_if(|_| returns) {
-        Some(kept) => {
-            *progress = kept.at;
-            report.return_to(kept.report);
-            Next::Return(rejected, kept.step, kept.from)
+    match stored.take_if(|_| returns) {
+        Some(stored) => {
+            *progress = stored.at;
+            report.return_to(stored.report);
+            Next::Return(rejected, stored.step, stored.from)
         }
         None if last => Next::Stop(rejected),
         None => Next::Bisect(rejected),

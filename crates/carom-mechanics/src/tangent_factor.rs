@@ -6,8 +6,8 @@
 //! [ G             0  ] [Δλ] = [−g]       (or M where velocities are projected)
 //! ```
 //!
-//! F = G except with friction. Gradients and second derivatives of the gaps are those of the current iterate: nodes may come,
-//! leave and slide without a new factor. Only A is old.
+//! F = G except with friction. Gradients and second derivatives of the gaps are those of the
+//! current iterate: nodes may come, leave and slide without a new factor. Only A is old.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

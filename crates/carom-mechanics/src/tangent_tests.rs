@@ -159,8 +159,8 @@ fn the_whole_tangent_with_a_conserving_contact_is_the_derivative_of_the_residual
     }
 }
 
-/// With nodes that stick and others that slip, of which some closed in this step; the cone follows the
-/// pressure, and the matrix is not symmetric.
+/// With nodes that stick and others that slip, of which some closed in this step; the cone follows
+/// the pressure, and the matrix is not symmetric.
 #[test]
 fn the_whole_tangent_with_friction_is_the_derivative_of_the_residual() {
     for scheme in [Scheme::chung_hulbert(0.6).unwrap(), Scheme::hht(0.2).unwrap()] {

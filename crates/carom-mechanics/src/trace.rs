@@ -39,8 +39,8 @@ impl Trace {
         (self.count.saturating_sub(KEPT)..self.count).map(|k| self.ring[k % KEPT])
     }
 
-    /// Positions at the last iterate, or at the end of a step that was solved and then rejected; empty
-    /// if there are none.
+    /// Positions at the last iterate, or at the end of a step that was solved and then rejected;
+    /// empty if there are none.
     pub fn positions(&self) -> &[f64] {
         &self.y
     }

@@ -17,8 +17,8 @@ const UNDECLARED: f64 = 0.01;
 #[derive(Debug)]
 pub(crate) struct Undeclared {
     between: Penetration,
-    /// The bodies that may cross themselves, each with the contact of each facet with its own body, once
-    /// they have been asked for.
+    /// The bodies that may cross themselves, each with the contact of each facet with its own body,
+    /// once they have been asked for.
     own: Option<Vec<(usize, Skin, Vec<Option<usize>>)>>,
 }
 
@@ -45,8 +45,8 @@ impl Undeclared {
         Self { between: Penetration::new(model, ways), own: None }
     }
 
-    /// Pairs of bodies of which one is inside the other, and each body that crosses itself as a pair with
-    /// itself.
+    /// Pairs of bodies of which one is inside the other, and each body that crosses itself as a
+    /// pair with itself.
     pub(crate) fn found(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize)> {
         let mut pairs = self.overlapping(model, y);
         pairs.extend(self.crossing_themselves(model, y));

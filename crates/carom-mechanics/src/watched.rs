@@ -80,8 +80,8 @@ impl Watched {
         Self { node, length, constrained, share, kept: 0.0, reach: 0.0, clearance: 0.0, near: None }
     }
 
-    /// Allowed depth in a facet of this length: a node that the contact law keeps outside is judged by
-    /// the facet that it enters alone.
+    /// Allowed depth in a facet of this length: a node that the contact law keeps outside is judged
+    /// by the facet that it enters alone.
     pub(crate) fn limit(&self, entered: f64) -> f64 {
         self.share * if self.constrained { entered } else { self.length.max(entered) }
     }
@@ -102,7 +102,8 @@ pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -
     lengths(model, facets).map(watched).collect()
 }
 
-/// The nodes of facets, ascending, each with the longest of its facets in the reference configuration.
+/// The nodes of facets, ascending, each with the longest of its facets in the reference
+/// configuration.
 pub(crate) fn lengths(model: &Model, facets: &[Vec<usize>]) -> impl Iterator<Item = (usize, f64)> {
     let mut nodes = BTreeMap::new();
     for facet in facets {

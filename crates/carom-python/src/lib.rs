@@ -1,5 +1,5 @@
-//! The compiled part of the Python package `carom`. It passes cases, records and states to Python as
-//! plain data; the package in `python/carom` gives them their interface.
+//! The compiled part of the Python package `carom`. It passes cases, records and states to Python
+//! as plain data; the package in `python/carom` gives them their interface.
 
 // Arguments that come from Python are owned.
 #![allow(clippy::needless_pass_by_value)]

@@ -136,8 +136,8 @@ impl Record {
         self.run.fields.iter().map(|entry| entry.time).collect()
     }
 
-    /// Fields number `i`: points, blocks (body, VTK type, degree, connectivity) and arrays (name, unit,
-    /// values).
+    /// Fields number `i`: points, blocks (body, VTK type, degree, connectivity) and arrays (name,
+    /// unit, values).
     fn field<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyDict>> {
         let entry = self.run.fields.get(i).ok_or_else(|| PyIndexError::new_err("no such fields"))?;
         let set = match &self.fields {

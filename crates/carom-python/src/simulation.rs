@@ -42,8 +42,8 @@ pub(crate) struct Simulation {
 }
 
 impl Simulation {
-    /// The state between two steps. Waiting for the end of a step could wait for ever: a function of
-    /// the program, called within the step, may ask for it.
+    /// The state between two steps. Waiting for the end of a step could wait for ever: a function
+    /// of the program, called within the step, may ask for it.
     fn inner(&self) -> PyResult<MutexGuard<'_, Inner>> {
         match self.inner.try_lock() {
             Ok(inner) => Ok(inner),
@@ -191,7 +191,7 @@ impl Simulation {
 
     /// Continues from a checkpoint of the same case with the same functions.
     fn restore(&self, checkpoint: &[u8]) -> PyResult<()> {
-        let wrong = |why: &str| PyValueError::new_err(format!("this is no checkpoint: {why}"));
+        let wrong = |why: &str| PyValueError::new_err(format!("this is not a checkpoint: {why}"));
         let read: Result<((Vec<String>, String, State), _), _> = postcard::take_from_bytes(checkpoint);
         let ((given, case, state), rest) = read.map_err(|error| wrong(&error.to_string()))?;
         if !rest.is_empty() {

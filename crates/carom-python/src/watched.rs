@@ -15,8 +15,8 @@ const PAUSE: Duration = Duration::from_millis(100);
 pub(crate) type Done = (u64, u64, f64);
 
 /// Computes in a thread of its own. `report` is called with steps done, all steps and the time, at
-/// most ten times a second. If a signal handler or `report` raises, the computation is asked to stop;
-/// its result is returned with the exception.
+/// most ten times a second. If a signal handler or `report` raises, the computation is asked to
+/// stop; its result is returned with the exception.
 pub(crate) fn watched<T: Send>(
     py: Python<'_>,
     report: Option<&Bound<'_, PyAny>>,

@@ -50,7 +50,8 @@ def test_energy_and_comparison(disc_run: carom.Run) -> None:
 
 def test_a_snapshot_covers_the_bodies(disc_run: carom.Run, tmp_path: Path) -> None:
     ax = carom.plot.snapshot(disc_run, 0.0, "ux", mesh=True)
-    # Sub-triangles at t = 0 fill disc and block: their area is that of the polygon through all nodes.
+    # Sub-triangles at t = 0 fill disc and block: their area is that of the polygon through all
+    # nodes.
     from carom.plot._space import _triangles
 
     fields = disc_run.fields.at(0.0)

@@ -74,9 +74,9 @@ def test_restored_states_continue_bitwise(disc: carom.Case) -> None:
     finer["body"][0]["mesh"]["size"] = 0.2
     with pytest.raises(ValueError, match="another case: its bodies"):
         carom.Simulation(carom.Case.from_dict(finer)).restore(checkpoint)
-    with pytest.raises(ValueError, match="no checkpoint"):
+    with pytest.raises(ValueError, match="not a checkpoint"):
         simulation.restore(b"nothing")
-    with pytest.raises(ValueError, match="no checkpoint: 4 bytes follow"):
+    with pytest.raises(ValueError, match="not a checkpoint: 4 bytes follow"):
         simulation.restore(checkpoint + b"junk")
 
 

@@ -4,8 +4,8 @@
 //! "CAROMCKP" | version u32 | header length u32 | header (postcard) | payload | blake3 of all before (32 bytes)
 //! ```
 //!
-//! The header describes the other files of the directory at the checkpoint: lengths and checksums of
-//! the row files, and the list of field files with theirs, so that a record altered later is not
+//! The header describes the other files of the directory at the checkpoint: lengths and checksums
+//! of the row files, and the list of field files with theirs, so that a record altered later is not
 //! continued.
 
 use std::path::{Path, PathBuf};

@@ -81,8 +81,8 @@ impl Machine {
         }
     }
 
-    /// The largest number of threads, or of concurrent runs, that is accepted. More than one per core
-    /// can only cost time and memory.
+    /// The largest number of threads, or of concurrent runs, that is accepted. More than one per
+    /// core can only cost time and memory.
     pub fn most_concurrent(&self) -> usize {
         (4 * self.cpus).max(64)
     }
@@ -147,8 +147,8 @@ pub struct Manifest {
     pub timings: BTreeMap<String, f64>,
     /// Counts: steps, newton, factorisations, rejected, …
     pub counters: BTreeMap<String, u64>,
-    /// BLAKE3 hashes by the name of the file: of the tables and the log once the run has ended, and of
-    /// the files that a stop wrote.
+    /// BLAKE3 hashes by the name of the file: of the tables and the log once the run has ended, and
+    /// of the files that a stop wrote.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub hashes: BTreeMap<String, String>,
     /// Outcomes of the expectations, once the run has finished.
@@ -230,7 +230,8 @@ impl Manifest {
         })
     }
 
-    /// Reads a file of the run directory; it must be the one that the manifest describes, if it does.
+    /// Reads a file of the run directory; it must be the one that the manifest describes, if it
+    /// does.
     pub(crate) fn file(&self, directory: &Path, name: &str) -> Result<Vec<u8>, RecordError> {
         let path = directory.join(name);
         let bytes = std::fs::read(&path).map_err(|error| stream::unreadable(&path, error))?;

@@ -16,7 +16,8 @@ use crate::Reason;
 /// Largest difference of two successive estimates of an established order.
 pub const MARGIN: f64 = 0.3;
 
-/// Safety factor of the distance from a value that is extrapolated with an observed order (P. J. Roache).
+/// Safety factor of the distance from a value that is extrapolated with an observed order (P. J.
+/// Roache).
 pub(crate) const SAFE: f64 = 1.25;
 
 /// A difference below this fraction of the values is round-off.

@@ -30,8 +30,8 @@ pub trait Recorder: Send {
     fn stop(&mut self, stop: &Stop, fields: &FieldSet, manifest: &mut Manifest) -> Result<(), RecordError>;
     /// The record so far.
     fn read(&self) -> Result<Run, RecordError>;
-    /// Makes the record durable; last the manifest, which says how the run ended and may take hashes of
-    /// what was written.
+    /// Makes the record durable; last the manifest, which says how the run ended and may take
+    /// hashes of what was written.
     fn finish(&mut self, manifest: &mut Manifest) -> Result<(), RecordError>;
     /// The directory; empty for a record in memory.
     fn directory(&self) -> &Path;

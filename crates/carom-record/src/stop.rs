@@ -80,8 +80,8 @@ pub struct StopNode {
     pub at: Vec<f64>,
 }
 
-/// An iterate of Newton's method, as multiples of the sum of the forces and of the length of the model;
-/// what is not finite is none.
+/// An iterate of Newton's method, as multiples of the sum of the forces and of the length of the
+/// model; what is not finite is none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub struct StopIteration {

@@ -3,8 +3,8 @@
 //! A directory is created by one rename, with a first checkpoint in it. A checkpoint flushes the
 //! row files, and the field files written since the previous one, to the disk and then records
 //! their lengths and checksums. Reopening compares these with the files, truncates the row files to
-//! these lengths and removes later fields. Between checkpoints nothing is flushed, because a resumed
-//! run does not need it.
+//! these lengths and removes later fields. Between checkpoints nothing is flushed, because a
+//! resumed run does not need it.
 
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
@@ -261,8 +261,8 @@ impl RunWriter {
         manifest.write(&self.directory)
     }
 
-    /// Flushes everything to the disk; last the manifest, which says how the run ended, and takes the
-    /// hashes of the tables and the log.
+    /// Flushes everything to the disk; last the manifest, which says how the run ended, and takes
+    /// the hashes of the tables and the log.
     pub fn finish(&mut self, manifest: &mut Manifest) -> Result<(), RecordError> {
         self.sync()?;
         vtkhdf::finish(&self.directory)?;
@@ -308,8 +308,8 @@ pub fn last_checkpoint(directory: &Path) -> Result<Vec<u8>, RecordError> {
     Err(damage.unwrap_or_else(|| no_checkpoint(directory)))
 }
 
-/// Steps and payloads of the intact checkpoints, the newest first; nothing is changed, and the record
-/// beside them is not read.
+/// Steps and payloads of the intact checkpoints, the newest first; nothing is changed, and the
+/// record beside them is not read.
 ///
 /// # Errors
 /// There is no intact checkpoint.

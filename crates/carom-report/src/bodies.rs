@@ -25,8 +25,8 @@ pub(crate) struct Instant {
 }
 
 impl Instant {
-    /// Cells of the plane of a field set at reference position + displacement, coloured by one component of
-    /// an array.
+    /// Cells of the plane of a field set at reference position + displacement, coloured by one
+    /// component of an array.
     pub(crate) fn new(fields: &FieldSet, array: &str, component: usize, time: String) -> Option<Self> {
         let quantity = fields.array(array).filter(|a| component < a.components)?;
         let plane = fields.blocks.iter().filter(|block| is_plane(block));

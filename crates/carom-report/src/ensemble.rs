@@ -17,9 +17,9 @@ pub(crate) fn section(study: &Study) -> Markup {
     html! {
         h2 { "Ensemble" }
         p {
-            "Every arm was run with " (ensemble.words()) ". Given are the median and, in brackets, the range; \
-             headings are the numbers of the arms."
-            @if failed > 0 { " " (failed) " of " (study.members.len()) " members failed and are left out." }
+            "Every arm was run with " (ensemble.words()) ". The table gives the median and, in brackets, the \
+                range; headings are the numbers of the arms."
+            @if failed > 0 { " " (failed) " of " (study.members.len()) " members failed and are omitted." }
         }
         details {
             summary { (metrics.len()) " metrics of " (study.rows.len()) " arms" }

@@ -64,7 +64,7 @@ fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Vec<Cu
 /// What dashed grey curves of these panes are.
 fn apart(panes: &[Pane]) -> &'static str {
     if panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.apart) {
-        " Grey: arms that created more energy than the default guard allows; they do not set the axes."
+        " Grey: arms that created more energy than the default guard allows; they do not affect the axes."
     } else {
         ""
     }

@@ -167,8 +167,8 @@ impl Obstacle {
         self.walk.iter().map(|&(p, n)| (point(p), turned(n))).collect()
     }
 
-    /// A frame that shows its surface too: all of it up to a few sizes of the bodies, otherwise what
-    /// is near them.
+    /// A frame that shows its surface too: all of it up to a few sizes of the bodies, otherwise
+    /// what is near them.
     pub(crate) fn shown_in(&self, walk: &Walk, frame: [f64; 4], bodies: [f64; 4]) -> [f64; 4] {
         if self.is_plane {
             return frame;

@@ -1,5 +1,6 @@
-//! Picture of the overlap of bodies at the start: the mesh and the rigid obstacles around the nodes that
-//! lie inside another body or an obstacle, each node with a circle whose area grows with its depth.
+//! Picture of the overlap of bodies at the start: the mesh and the rigid obstacles around the nodes
+//! that lie inside another body or an obstacle, each node with a circle whose area grows with its
+//! depth.
 
 use std::fmt::Write as _;
 
@@ -19,7 +20,8 @@ use crate::symbols::wall;
 const WIDTH: f64 = 720.0;
 const TOP: f64 = 30.0;
 const FILLS: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
-/// Radius of the circle of the deepest node, where there is room for it, and of a node that touches.
+/// Radius of the circle of the deepest node, where there is room for it, and of a node that
+/// touches.
 const LARGE: f64 = 12.0;
 const SMALL: f64 = 2.0;
 

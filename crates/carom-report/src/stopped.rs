@@ -9,9 +9,9 @@ use crate::document::{figure, file, joined, or_dash};
 use crate::labels::number;
 use crate::text::{Label, Prose, typeset};
 
-const ITERATIONS: &str = "Newton's iterations of the last attempt, each before its correction. Residual: as a \
-    fraction of the sum of the forces. Gap and correction: as fractions of the length of the model. Part: the \
-    fraction of a correction that was taken. Data: `stopped.json`.";
+const ITERATIONS: &str = "Newton's iterations of the last attempt, each before its correction. Residual: as \
+    a fraction of the sum of the forces. Gap and correction: as fractions of the length of the model. Part: \
+    the fraction of a correction that was applied. Data: `stopped.json`.";
 
 /// Caption and picture of the place.
 pub(crate) fn picture(run: &Run) -> Option<(String, String)> {
@@ -30,7 +30,7 @@ pub(crate) fn section(run: &Run, picture: Option<(usize, &str, &str)>) -> Markup
         (advice(stop, unit))
         (iterations(&stop.iterations))
         p.small {
-            "To reproduce it with less: " code { "carom reduce " (run.directory.file_name().unwrap_or_default().to_string_lossy()) } ". Data: "
+            "To reproduce it with a smaller case: " code { "carom reduce " (run.directory.file_name().unwrap_or_default().to_string_lossy()) } ". Data: "
             (joined(["stopped.json", "stopped.vtu"].map(file), ", ")) " (the state at t = " (number(stop.last))
             " " (Label(unit)) " with the rejected displacements)."
         }
@@ -82,8 +82,8 @@ fn advice(stop: &Stop, unit: &str) -> Markup {
                 }
                 Some(trial) => {
                     td {
-                        // What fails before the place says nothing about it.
-                        @if trial.reached < stop.last { "stops before the place, at t = " } @else { "stops at t = " }
+                        // A trial that fails earlier is inconclusive.
+                        @if trial.reached < stop.last { "stops earlier, at t = " } @else { "stops at t = " }
                         (number(trial.reached)) " " (Label(unit))
                         @if let Some(why) = &trial.why { details { summary { "why" } (typeset(why)) } }
                     }

@@ -81,8 +81,8 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
             return None;
         }
         let apart = if curves.iter().any(|curve| curve.apart) {
-            " Dashed grey: arms that failed, up to where they stopped, and arms that created more energy than the \
-             default guard allows; they do not set the axes."
+            " Dashed grey: arms that failed, up to where they stopped, and arms that created more energy \
+             than the default guard allows; they do not affect the axes."
         } else {
             ""
         };

@@ -194,7 +194,7 @@ fn claims(study: &Study) -> Markup {
                 thead {
                     tr {
                         th { "Claim" }
-                        @if all { th { "Held in" } th.n { "Left/right: median (range)" } }
+                        @if all { th { "Confirmed in" } th.n { "Left/right: median (range)" } }
                         th.n { "Left side" } th.n { "Right side" } th { "Result" }
                     }
                 }
@@ -222,8 +222,8 @@ fn claims(study: &Study) -> Markup {
             }
             @if all {
                 p.small {
-                    "Held in: members of the ensemble in which the comparison is true, of those in which it \
-                     can be decided. Left and right side: of the arms as given."
+                    "Confirmed in: members of the ensemble in which the comparison is true, of those in \
+                     which it can be decided. Left and right side: of the arms as given."
                 }
             }
         }

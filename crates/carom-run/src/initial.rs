@@ -128,7 +128,8 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
         }
     }
     for contact in &case.contacts {
-        // Pairs of springs are nearly always dependent as constraints; those that touch are found anew.
+        // Pairs of springs are nearly always dependent as constraints; those that touch are found
+        // anew.
         let key = |c: &ContactSpec| (c.name.clone(), c.secondary.clone(), c.primary.clone(), c.enforcement);
         let same = old.contacts.iter().position(|c| key(c) == key(contact));
         before.pairs.push(same.and_then(|k| state.pairs.get(k).cloned()).unwrap_or_default());

@@ -3,8 +3,8 @@
 //! `overlap = "keep-gap"` adds its initial depth to the gap of each node, to the end of the run.
 //!
 //! `overlap = "relax"` finds the equilibrium in which the gaps are closed: an interference fit. The
-//! depths that the nodes keep are reduced to zero in stages, and each stage is solved by steps of the
-//! proximal point method in the metric of the mass matrix,
+//! depths that the nodes keep are reduced to zero in stages, and each stage is solved by steps of
+//! the proximal point method in the metric of the mass matrix,
 //!
 //! ```text
 //! y_k+1 = argmin U(y) + |y − y_k|²_M / 2τ²   with   g(y) + (1 − s) depth ≥ 0,
@@ -12,8 +12,9 @@
 //!
 //! which are steps of backward Euler from rest. With τ much longer than the longest period of the
 //! bodies a step is nearly static; bodies that supports leave free keep their centre of mass, and
-//! need no other regularisation. Loads and gravity do not act. The run starts from the positions found,
-//! with the velocities of the case, and the energy that the bodies then store is in its first row.
+//! need no other regularisation. Loads and gravity do not act. The run starts from the positions
+//! found, with the velocities of the case, and the energy that the bodies then store is in its
+//! first row.
 
 use carom_case::{
     Case, ContactLaw, FormulaSpec, FrictionSpec, MassKind, ObstacleMotion, Overlap, Persistency, Problem,
@@ -30,9 +31,9 @@ use crate::build::{Materials, build, overlaps};
 const STAGES: u32 = 8;
 /// τ as a multiple of the time in which a wave crosses the largest body.
 const LONG: f64 = 100.0;
-/// Relative change of the strain energy in a step with which the equilibrium is reached, and most steps
-/// to it. Positions would not do: bodies that may turn freely turn a little in every step, since the
-/// energy hardly depends on how facets of different lengths lie on each other.
+/// Relative change of the strain energy in a step with which the equilibrium is reached, and most
+/// steps to it. Positions would not do: bodies that may turn freely turn a little in every step,
+/// since the energy hardly depends on how facets of different lengths lie on each other.
 const SETTLED: f64 = 1e-10;
 const MOST: u32 = 200;
 /// Gap, relative to L, at which a pair is closed.
@@ -99,8 +100,8 @@ fn apply(case: &Case, model: &mut Model, share: impl Fn(Overlap) -> f64) {
     }
 }
 
-/// The start of a case whose contacts relax their overlap, for its own model; none if there is nothing
-/// to relax.
+/// The start of a case whose contacts relax their overlap, for its own model; none if there is
+/// nothing to relax.
 ///
 /// # Errors
 /// If there is no equilibrium, under the key of the contact.

@@ -1,5 +1,5 @@
-//! A smaller case that stops as a run did: it continues from a checkpoint a few steps before the stop,
-//! without the bodies and contacts that the stop does not need. Every reduction is run.
+//! A smaller case that stops as a run did: it continues from a checkpoint a few steps before the
+//! stop, without the bodies and contacts that the stop does not need. Every reduction is run.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -153,8 +153,8 @@ fn stops(mut simulation: Simulation, case: &Case, stop: &Stop) -> Option<String>
     None
 }
 
-/// Whether two places are the same node or cell of the same body. Numbers of nodes depend on the other
-/// bodies; reference positions do not.
+/// Whether two places are the same node or cell of the same body. Numbers of nodes depend on the
+/// other bodies; reference positions do not.
 fn same_place(a: Option<&StopPlace>, b: Option<&StopPlace>) -> bool {
     let key = |place: &StopPlace| {
         let node = place.node.as_ref().map(|node| (node.body.clone(), node.reference.clone()));

@@ -104,8 +104,8 @@ impl<'a> Setup<'a> {
     /// Builds the model and its state at t = 0.
     ///
     /// # Errors
-    /// As [`Setup::build`]; also where bodies overlap, an explicit step is longer than is stable, or
-    /// the start has no forces or accelerations.
+    /// As [`Setup::build`]; also where bodies overlap, an explicit step is longer than is stable,
+    /// or the start has no forces or accelerations.
     pub fn start(self) -> Result<Simulation, Problems> {
         if let Some(state) = saved(self.case.initial.as_ref())? {
             on_the_grid(&state, &grid(self.case))?;
@@ -180,7 +180,7 @@ fn unfit(kernel: &dyn Kernel, case: &Case) -> Option<Problem> {
         && let Some(contact) = first(&|contact| contact.xi == ContactPoint::Frozen)
     {
         let what = format!("this kernel has {} stages", kernel.stages());
-        let why = "xi = \"frozen\" keeps ξ during the one solve of a step";
+        let why = "xi = \"frozen\" keeps ξ during the single solve of a step";
         return Some(Problem::new(contact.path("xi"), what, why, "give xi = \"closest\""));
     }
     None

@@ -8,9 +8,10 @@
 //! ```
 //!
 //! C the multinomial coefficients: a polynomial of degree D(k − 1). On a square or cube the
-//! polynomials are products of those of a line, ∂y/∂ξᵢ ∝ Σ (c_{β+eᵢ} − c_β) B_β has the degree k − 1
-//! along ξᵢ and k along the others, and the determinant Dk − 1 along each. Restricted to either half
-//! of the domain, the coefficients follow from de Casteljau's algorithm along lines of them.
+//! polynomials are products of those of a line, ∂y/∂ξᵢ ∝ Σ (c_{β+eᵢ} − c_β) B_β has the degree
+//! k − 1 along ξᵢ and k along the others, and the determinant Dk − 1 along each. Restricted to
+//! either half of the domain, the coefficients follow from de Casteljau's algorithm along lines of
+//! them.
 
 use carom_algebra::Vector;
 

@@ -101,8 +101,8 @@ impl LoadedSide {
     }
 
     /// Overwrites `tangent` (`(n·D)²`, row-major, n nodes of the facet) with ∂f/∂y of a facet at
-    /// positions `y`, under a pressure given at all quadrature points of the side. It depends on the
-    /// positions in space only.
+    /// positions `y`, under a pressure given at all quadrature points of the side. It depends on
+    /// the positions in space only.
     pub fn facet_tangent(&self, facet: usize, pressure: &[f64], y: &[f64], tangent: &mut [f64]) {
         tangent.fill(0.0);
         let (n, d) = (self.facets[facet].len(), self.dimension);

@@ -1,8 +1,9 @@
 //! A mesh of one element type with named sides.
 //!
-//! Node order inside a cell and a facet is VTK's (in the plane also Gmsh's): corners, then the nodes
-//! of each edge in the direction of the edge, then those of faces and of the interior. In the plane a boundary is traversed with the
-//! body on its left, so a facet's outward normal is its tangent rotated to the right.
+//! Node order inside a cell and a facet is VTK's (in the plane also Gmsh's): corners, then the
+//! nodes of each edge in the direction of the edge, then those of faces and of the interior. In the
+//! plane a boundary is traversed with the body on its left, so a facet's outward normal is its
+//! tangent rotated to the right.
 
 use std::collections::BTreeMap;
 
@@ -227,8 +228,8 @@ impl Mesh {
         order
     }
 
-    /// The connected piece to which each node belongs, named by one of its nodes: nodes of a cell are
-    /// connected.
+    /// The connected piece to which each node belongs, named by one of its nodes: nodes of a cell
+    /// are connected.
     pub fn pieces(&self) -> Vec<usize> {
         let mut of: Vec<usize> = (0..self.nodes.len()).collect();
         let root = |of: &[usize], mut node: usize| {

@@ -8,8 +8,8 @@
 //!   next even rule: Dunavant's of degrees 3 and 7 have negative weights.
 //! - Tetrahedra: degree 2, 4 points (P. C. Hammer, A. H. Stroud, MTAC 10 (1956) 137–139); degrees 5
 //!   and 6, 14 and 24 points (the latter by P. Keast, CMAME 55 (1986) 339–348), both computed by
-//!   Newton's method on the moments; above, products of Gauss–Legendre rules on the collapsed cube (A. H. Stroud, Approximate Calculation
-//!   of Multiple Integrals, 1971, §2.5).
+//!   Newton's method on the moments; above, products of Gauss–Legendre rules on the collapsed cube
+//!   (A. H. Stroud, Approximate Calculation of Multiple Integrals, 1971, §2.5).
 
 use carom_algebra::Vector;
 

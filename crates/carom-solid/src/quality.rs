@@ -1,10 +1,10 @@
-//! Quality of cells: the scaled Jacobian, 1 for an equilateral cell, 0 for a flat one, below 0 for an
-//! inverted one.
+//! Quality of cells: the scaled Jacobian, 1 for an equilateral cell, 0 for a flat one, below 0 for
+//! an inverted one.
 //!
 //! At a point of a cell the derivatives of X(ξ) span the affine cell nearest to it. The edges at a
-//! corner of that cell give det/∏ length, here divided by its value for equal edges; the least over the
-//! corners counts, and over the nodes of the cell (for straight cells: P. M. Knupp et al., The Verdict
-//! Geometric Quality Library, Sandia 2007). All corners of a parallelepiped are alike.
+//! corner of that cell give det/∏ length, here divided by its value for equal edges; the least over
+//! the corners counts, and over the nodes of the cell (for straight cells: P. M. Knupp et al., The
+//! Verdict Geometric Quality Library, Sandia 2007). All corners of a parallelepiped are alike.
 
 use carom_algebra::Vector;
 

@@ -1,6 +1,6 @@
 //! Uniform subdivision of a mesh: every edge of a cell becomes `parts` edges, every triangle
-//! `parts`² triangles, every tetrahedron `parts`³ tetrahedra. New nodes lie on the curved cell that they
-//! divide, so the geometry stays that of the given mesh.
+//! `parts`² triangles, every tetrahedron `parts`³ tetrahedra. New nodes lie on the curved cell that
+//! they divide, so the geometry stays that of the given mesh.
 //!
 //! ```text
 //!  |\            nodes at (i, j)/(degree · parts) in reference coordinates;

@@ -3,13 +3,13 @@
 //!
 //! The determinant is a polynomial in ξ, and of degree D in θ. Where all its Bernstein coefficients
 //! (`bernstein.rs`) are positive, so is the determinant; otherwise the cell is divided (Johnen,
-//! Remacle, Geuzaine, J. Comput. Phys. 233 (2013) 359–372). J = det(∂y/∂ξ)/det(∂X/∂ξ) has the sign of
-//! the numerator, because the reference cell is valid.
+//! Remacle, Geuzaine, J. Comput. Phys. 233 (2013) 359–372). J = det(∂y/∂ξ)/det(∂X/∂ξ) has the sign
+//! of the numerator, because the reference cell is valid.
 //!
 //! Round-off, with u = 2⁻⁵³, positions relative to the first node of magnitude ≤ m, weights of
-//! control points Σ|w| ≤ Λ: a control point is wrong by (N + 2) u Λ m, a difference of size ≤ 2Λm by
-//! twice that, a determinant by D! (2Λm)ᴰ (D (N + 3) + D) u, and the sum over its n terms adds n.
-//! Every halving adds at most the degree.
+//! control points Σ|w| ≤ Λ: a control point is wrong by (N + 2) u Λ m, a difference of size ≤ 2Λm
+//! by twice that, a determinant by D! (2Λm)ᴰ (D (N + 3) + D) u, and the sum over its n terms adds
+//! n. Every halving adds at most the degree.
 
 use carom_algebra::{Mat, Vector};
 
@@ -62,9 +62,9 @@ impl<const D: usize, const N: usize> Validity<D, N> {
     /// Distance by which every component of every node's position may change, relative to a common
     /// translation, while the cell remains valid; 0 if the cell is only certified after division.
     ///
-    /// If differences change by at most q per component, their determinant u × v in the plane changes
-    /// by at most (|u|₁ + |v|₁) q + 2q², and in general by D! ((E + q)ᴰ − Eᴰ), E the largest
-    /// component.
+    /// If differences change by at most q per component, their determinant u × v in the plane
+    /// changes by at most (|u|₁ + |v|₁) q + 2q², and in general by D! ((E + q)ᴰ − Eᴰ), E the
+    /// largest component.
     ///
     /// # Errors
     /// A place where the determinant is not certified positive.
@@ -168,59 +168,61 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         out
     }
 
-    /// The earliest place that division does not certify, of coefficients in ξ per coefficient in θ.
+    /// The earliest place that division does not certify, of coefficients in ξ per coefficient in
+    /// θ.
     fn first_loss(&self, rows: Vec<Vec<f64>>, error: f64) -> Option<Loss<D>> {
         let corners = self.tables.corners.iter().map(|corner| corner.place).collect();
-        let whole = Part { rows, corners, theta: [0.0, 1.0], level: 0, error };
+        let whole = Subdomain { rows, corners, theta: [0.0, 1.0], level: 0, error };
         if whole.is_clear() {
             return None;
         }
-        let part = Earliest::new(BUDGET).first(whole, |_| false, |part| self.halves(part))?;
-        let value = |&corner: &usize| part.rows[0][self.tables.corners[corner].coefficient];
-        let worst = (0..part.corners.len()).min_by(|i, j| value(i).total_cmp(&value(j)));
-        Some(Loss { theta: part.theta[0], place: part.corners[worst.unwrap_or(0)] })
+        let domain = Earliest::new(BUDGET).first(whole, |_| false, |domain| self.halves(domain))?;
+        let value = |&corner: &usize| domain.rows[0][self.tables.corners[corner].coefficient];
+        let worst = (0..domain.corners.len()).min_by(|i, j| value(i).total_cmp(&value(j)));
+        Some(Loss { theta: domain.theta[0], place: domain.corners[worst.unwrap_or(0)] })
     }
 
     /// Halves in θ or in the direction with the larger changes; `None` where the loss is located.
-    fn halves(&self, part: &Part<D>) -> Option<[Part<D>; 2]> {
-        let (first, last) = (&part.rows[0], &part.rows[part.rows.len() - 1]);
+    fn halves(&self, domain: &Subdomain<D>) -> Option<[Subdomain<D>; 2]> {
+        let (first, last) = (&domain.rows[0], &domain.rows[domain.rows.len() - 1]);
         // A NaN is a loss.
-        let positive = |row: &[f64]| self.tables.corners.iter().all(|c| row[c.coefficient] > part.error);
+        let positive = |row: &[f64]| self.tables.corners.iter().all(|c| row[c.coefficient] > domain.error);
         let lost = |row: &[f64]| !positive(row);
-        if lost(first) || part.level >= DEEPEST {
+        if lost(first) || domain.level >= DEEPEST {
             return None;
         }
-        let in_time = part
+        let in_time = domain
             .rows
             .windows(2)
             .map(|rows| rows[0].iter().zip(&rows[1]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max));
         let in_time = in_time.fold(0.0, f64::max);
         let mut largest = (-1.0, 0);
         for (i, direction) in self.tables.directions.iter().enumerate() {
-            let size = part.rows.iter().map(|row| change(row, direction)).fold(0.0, f64::max);
+            let size = domain.rows.iter().map(|row| change(row, direction)).fold(0.0, f64::max);
             largest = if size > largest.0 { (size, i) } else { largest };
         }
-        let wide = part.theta[1] - part.theta[0] > TOLERANCE;
+        let wide = domain.theta[1] - domain.theta[0] > TOLERANCE;
         if wide && (in_time >= largest.0 || lost(last)) {
-            return Some(part.halves_in_time());
+            return Some(domain.halves_in_time());
         }
         if lost(last) {
             return None;
         }
         let direction = &self.tables.directions[largest.1];
-        let mut parts = [(); 2].map(|()| Part { rows: Vec::new(), level: part.level + 1, ..part.clone() });
-        for row in &part.rows {
+        let mut children =
+            [(); 2].map(|()| Subdomain { rows: Vec::new(), level: domain.level + 1, ..domain.clone() });
+        for row in &domain.rows {
             let [near, far] = halves(row, direction);
-            parts[0].rows.push(near);
-            parts[1].rows.push(far);
+            children[0].rows.push(near);
+            children[1].rows.push(far);
         }
         for &(start, end) in &direction.edges {
-            let middle = (part.corners[start] + part.corners[end]) * 0.5;
-            (parts[0].corners[end], parts[1].corners[start]) = (middle, middle);
+            let middle = (domain.corners[start] + domain.corners[end]) * 0.5;
+            (children[0].corners[end], children[1].corners[start]) = (middle, middle);
         }
-        let added = part.error * self.tables.degree as f64 / 100.0;
-        parts.iter_mut().for_each(|half| half.error += added);
-        Some(parts)
+        let added = domain.error * self.tables.degree as f64 / 100.0;
+        children.iter_mut().for_each(|half| half.error += added);
+        Some(children)
     }
 }
 
@@ -232,7 +234,7 @@ fn change(row: &[f64], direction: &Direction) -> f64 {
 
 /// The determinant over a part of the cell and an interval of θ.
 #[derive(Clone, Debug)]
-struct Part<const D: usize> {
+struct Subdomain<const D: usize> {
     /// Coefficients in ξ per coefficient in θ; one row without motion.
     rows: Vec<Vec<f64>>,
     /// Reference coordinates of the corners.
@@ -242,32 +244,32 @@ struct Part<const D: usize> {
     error: f64,
 }
 
-impl<const D: usize> Part<D> {
+impl<const D: usize> Subdomain<D> {
     fn halves_in_time(&self) -> [Self; 2] {
-        let mut parts = [self.clone(), self.clone()];
+        let mut children = [self.clone(), self.clone()];
         let count = self.rows.len();
         for c in 0..self.rows[0].len() {
             let mut column: Vec<f64> = self.rows.iter().map(|row| row[c]).collect();
             for k in 0..count {
-                parts[0].rows[k][c] = column[0];
-                parts[1].rows[count - 1 - k][c] = column[count - 1 - k];
+                children[0].rows[k][c] = column[0];
+                children[1].rows[count - 1 - k][c] = column[count - 1 - k];
                 for r in 0..count - 1 - k {
                     column[r] = 0.5 * (column[r] + column[r + 1]);
                 }
             }
         }
         let middle = 0.5 * (self.theta[0] + self.theta[1]);
-        (parts[0].theta[1], parts[1].theta[0]) = (middle, middle);
+        (children[0].theta[1], children[1].theta[0]) = (middle, middle);
         let added = self.error * count as f64 / 100.0;
-        for part in &mut parts {
-            part.level += 1;
-            part.error += added;
+        for domain in &mut children {
+            domain.level += 1;
+            domain.error += added;
         }
-        parts
+        children
     }
 }
 
-impl<const D: usize> Piece for Part<D> {
+impl<const D: usize> Piece for Subdomain<D> {
     fn theta(&self) -> f64 {
         self.theta[0]
     }

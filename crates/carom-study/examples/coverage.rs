@@ -1,9 +1,9 @@
 //! Do the stated uncertainties contain the truth? Twenty computed references of bars whose exact
-//! solution is known, five problems with four schemes each. Every reference has three levels of mesh
-//! and step, and five phases of the steps. Printed are value, stated 95 % half-width, actual error and
-//! their ratio for every quantity; then how many bands contain the exact value, and the median ratio.
-//! Exits with 1 if fewer than 95 of 100 bands contain it, or if the median half-width is more than
-//! three times the actual error.
+//! solution is known, five problems with four schemes each. Every reference has three levels of
+//! mesh and step, and five phases of the steps. Printed are value, stated 95 % half-width, actual
+//! error and their ratio for every quantity; then how many bands contain the exact value, and the
+//! median ratio. Exits with 1 if fewer than 95 of 100 bands contain it, or if the median half-width
+//! is more than three times the actual error.
 //!
 //!     cargo run --release -p carom-study --example coverage
 
@@ -32,8 +32,8 @@ const SCHEMES: [(&str, &str); 4] = [
 ];
 
 /// The bar on a spring without mass, of cases/bar/spring.toml: Z = 1, k = 0.2, v₀ = 0.1, a = k/Z.
-/// After the reflection from the free end at t = 20, F = Z v₀ [−1 + (2 a s + 2 − e⁻⁴) e^(−a s)] with
-/// s = t − 20, until F = 0. Returns the end of contact, the impulse and the largest force.
+/// After the reflection from the free end at t = 20, F = Z v₀ [−1 + (2 a s + 2 − e⁻⁴) e^(−a s)]
+/// with s = t − 20, until F = 0. Returns the end of contact, the impulse and the largest force.
 fn spring() -> [f64; 3] {
     let (a, v) = (0.2_f64, 0.1);
     let c = 2.0 - (-4.0_f64).exp();

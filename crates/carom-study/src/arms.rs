@@ -109,8 +109,8 @@ pub(crate) fn computes_reference(file: &StudyFile, drafts: &[Draft]) -> bool {
 
 /// Steps and mesh factors of the computed reference, the coarsest first. The finest step is at most
 /// `step` over `refine`. Without factors, the others are twice and four times as long, on the given
-/// mesh; with them, steps and cells are in the same ratios. All steps divide `end`; none if no number
-/// of steps fits the factors.
+/// mesh; with them, steps and cells are in the same ratios. All steps divide `end`; none if no
+/// number of steps fits the factors.
 fn levels_of_reference(file: &StudyFile, step: f64, end: f64) -> Option<Vec<(f64, f64)>> {
     let least = (end / step * f64::from(file.refine.unwrap_or(REFINE)) * (1.0 - 1e-9)).ceil();
     let factors = if file.fine_mesh.is_empty() { vec![1.0, 2.0, 4.0] } else { file.fine_mesh.clone() };

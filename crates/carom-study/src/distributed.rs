@@ -1,7 +1,8 @@
-//! A study in separate processes, on one machine or many: it is planned, each of its runs is computed
-//! by a process of its own, and the tables are made from the records. The run directory is all that
-//! the processes share: a run is created by one rename, locked while it is written, and resumed from
-//! its last checkpoint, so that a process can be killed, and its run started again, at any time.
+//! A study in separate processes, on one machine or many: it is planned, each of its runs is
+//! computed by a process of its own, and the tables are made from the records. The run directory is
+//! all that the processes share: a run is created by one rename, locked while it is written, and
+//! resumed from its last checkpoint, so that a process can be killed, and its run started again, at
+//! any time.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -70,8 +71,8 @@ fn ended(run: &Manifest) -> Option<Ended> {
     has_ended.then(|| Ended { status: run.status, reason: run.reason.clone(), wall: 0.0 })
 }
 
-/// Writes the tables of a study from what has been computed. An arm that is missing or damaged is a row
-/// without values.
+/// Writes the tables of a study from what has been computed. An arm that is missing or damaged is a
+/// row without values.
 ///
 /// # Errors
 /// Input/output or system error.

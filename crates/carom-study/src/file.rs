@@ -53,7 +53,8 @@ pub(crate) struct StudyFile {
     pub(crate) fine: Vec<(String, Value)>,
     /// Factor by which its step is smaller than the smallest one.
     pub(crate) refine: Option<u32>,
-    /// Factors by which its meshes are finer, from the coarsest to the finest; empty: the given mesh.
+    /// Factors by which its meshes are finer, from the coarsest to the finest; empty: the given
+    /// mesh.
     pub(crate) fine_mesh: Vec<f64>,
     /// What the members of every arm differ in.
     pub(crate) ensemble: Option<Ensemble>,

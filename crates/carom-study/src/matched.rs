@@ -227,8 +227,8 @@ pub(crate) fn settle(
     Ok(all_settled)
 }
 
-/// Gives an arm and its members the step of that many steps of the arm. A member with a phase has one
-/// step more.
+/// Gives an arm and its members the step of that many steps of the arm. A member with a phase has
+/// one step more.
 fn adopt(manifest: &mut StudyManifest, i: usize, steps: u64) -> Result<(), StudyError> {
     let step = case_with(manifest, i, steps)?.time.step;
     manifest.runs_of(i).into_iter().try_for_each(|run| place(manifest, run, step))
@@ -393,8 +393,8 @@ mod tests {
         assert_eq!(Weights::of(&run), Weights { step: 0.4, ..Weights::default() });
     }
 
-    /// 25 seconds in 500 steps, and in 501 with a phase. A budget that is met with 501 steps of the arm
-    /// gives its member the same step, and therefore 502 steps.
+    /// 25 seconds in 500 steps, and in 501 with a phase. A budget that is met with 501 steps of the
+    /// arm gives its member the same step, and therefore 502 steps.
     #[test]
     fn members_have_the_step_of_their_arm() {
         let folder = tempfile::tempdir().unwrap();

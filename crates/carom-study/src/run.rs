@@ -19,8 +19,8 @@ use crate::{checks, matched, theory};
 /// A study that ended.
 #[derive(Debug)]
 pub struct Outcome {
-    /// Whether it was stopped before all arms had ended; `resume` continues it. An arm whose record is
-    /// damaged is not waited for.
+    /// Whether it was stopped before all arms had ended; `resume` continues it. An arm whose record
+    /// is damaged is not waited for.
     pub interrupted: bool,
     /// The study, read from its records.
     pub study: Study,

@@ -1,6 +1,6 @@
 //! Runs a suite and evaluates its expectations: cases and arms run concurrently, the longest first,
-//! with one thread each. Fields and pages are written only on request. Expectations are about the arms
-//! of a study: the members of its ensemble are not run.
+//! with one thread each. Fields and pages are written only on request. Expectations are about the
+//! arms of a study: the members of its ensemble are not run.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};

@@ -102,8 +102,8 @@ impl Scheme {
         [[1.0 - gamma / beta, 1.0 - 0.5 * gamma / beta], [-1.0 / beta, 1.0 - 0.5 / beta]]
     }
 
-    /// Eigenvalues of [`Scheme::constrained_map`], which are those at Ω → ∞ except −α_f/(1 − α_f): from 1
-    /// + gs + hs² = 0.
+    /// Eigenvalues of [`Scheme::constrained_map`], which are those at Ω → ∞ except −α_f/(1 − α_f):
+    /// the roots of 1 + gs + hs² = 0.
     pub fn constrained_roots(&self) -> [Root; 2] {
         let [_, _, g, h] = self.coefficients();
         // Most members have a double root by construction; g and h satisfy it only to the round-off

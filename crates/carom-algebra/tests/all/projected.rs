@@ -1,10 +1,10 @@
-//! Conjugate gradients under constraints against a dense elimination of the whole saddle point, and the
-//! blocks of their preconditioner against a product with the blocks themselves.
+//! Conjugate gradients under constraints against a dense elimination of the whole saddle point, and
+//! the blocks of their preconditioner against a product with the blocks themselves.
 
 use carom_algebra::{ConjugateGradients, ConstraintRows, DiagonalBlocks, LinearError, NodeMatrix, Threads};
 
-/// A symmetric matrix over m × m nodes with d components: dominant blocks on the diagonal, others to
-/// the neighbours of a grid; and the same entries, dense by rows.
+/// A symmetric matrix over m × m nodes with d components: dominant blocks on the diagonal, others
+/// to the neighbours of a grid; and the same entries, dense by rows.
 fn grid(m: usize, d: usize) -> (NodeMatrix, Vec<f64>) {
     let mut pairs = Vec::new();
     for a in 0..m * m {

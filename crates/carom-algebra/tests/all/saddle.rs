@@ -88,10 +88,10 @@ fn forces_may_act_along_other_directions() {
     }
 }
 
-/// Nodes on two springs each, K_tt = 3 and K_nt = −1, that slide forward with the coefficients μ: the
-/// slip u of one with a load f obeys (K_tt + μ K_nt) u = f_t + μ f_n, which says nothing for μ = 3 and
-/// has, for more, solutions beside those that stick (p > 0 and f_t < μ|f_n|) or lift off. R is
-/// diagonal with the entries 1 + μ K_nt/K_tt.
+/// Nodes on two springs each, K_tt = 3 and K_nt = −1, that slide forward with the coefficients μ:
+/// the slip u of one with a load f obeys (K_tt + μ K_nt) u = f_t + μ f_n, which says nothing for
+/// μ = 3 and has, for more, solutions beside those that stick (p > 0 and f_t < μ|f_n|) or lift off.
+/// R is diagonal with the entries 1 + μ K_nt/K_tt.
 #[test]
 fn large_friction_is_singular_where_the_springs_of_a_node_say() {
     let regularity = |coefficients: &[f64], order: &[usize]| {

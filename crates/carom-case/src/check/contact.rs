@@ -94,8 +94,8 @@ impl Check<'_> {
             Some(scheme) => &format!("with scheme `{}`", scheme.kind),
             None => return,
         };
-        let why =
-            "it is the paper's method: ξ is kept during the one solve of a step of the generalised-α family";
+        let why = "it is the paper's method: ξ is constant during the single solve of a step of the generalised-α \
+             family";
         let hint = "use a scheme such as chung-hulbert with law = \"position\", or xi = \"closest\"";
         add(what, why, hint);
     }
@@ -109,7 +109,7 @@ impl Check<'_> {
         if contact.friction.exists() {
             let key = if contact.friction.mu.is_some() { "mu" } else { "shear" };
             let what = format!("`{key}` cannot be used in dimension 3");
-            let why = format!("friction with two tangential directions is not built: {later}");
+            let why = format!("friction with two tangential directions is not implemented: {later}");
             self.add_unique(contact.path(key), what, why, "leave it out, or compute a plane section");
         }
         if contact.detection == Detection::Trajectory {
@@ -119,11 +119,11 @@ impl Check<'_> {
         }
         if contact.between || contact.is_of_itself() {
             let key = if contact.between { "between" } else { "primary" };
-            let why = format!("contact of a body with itself is not built in space: {later}");
+            let why = format!("contact of a body with itself is not implemented in space: {later}");
             let help = "give `secondary` and `primary`, sides of two bodies";
             self.add_unique(
                 contact.path(key),
-                format!("`{key}` cannot be used so in dimension 3"),
+                format!("`{key}` cannot be used in this way in dimension 3"),
                 why,
                 help,
             );
@@ -161,7 +161,7 @@ impl Check<'_> {
     fn obstacle(&mut self, contact: &ContactSpec) {
         let is_static = self.draft.time.as_ref().is_some_and(|time| time.scheme.is_static());
         if is_free(contact) && is_static {
-            let why = "the scheme \"static\" has no inertia, and nothing else holds a free obstacle";
+            let why = "the scheme \"static\" has no inertia, and nothing else constrains a free obstacle";
             let help = "give it a `motion`, or use a scheme with inertia";
             self.add(contact.path("primary.mass"), "the obstacle has no equilibrium", why, help);
         }

@@ -12,8 +12,8 @@ impl Check<'_> {
     pub(super) fn expects(&mut self) {
         let draft = self.draft;
         // Columns are named after bodies, contacts and probes. If one of these could not be read,
-        // an unknown column is not necessarily an error; neither if contacts between bodies that do not
-        // exist were meant to give it.
+        // an unknown column is not necessarily an error; neither if contacts between bodies that do
+        // not exist were meant to give it.
         let between = |path: &str| path.starts_with("contact[") && path.contains("].between");
         let complete = !self.problems.iter().any(|p| p.at_key || between(&p.path))
             && draft.probes.iter().all(Option::is_some)

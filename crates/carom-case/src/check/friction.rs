@@ -1,5 +1,5 @@
-//! Checks of friction. What it is not built for is refused, so that no case runs without the friction
-//! that it asks for.
+//! Checks of friction. What it is not built for is refused, so that no case runs without the
+//! friction that it asks for.
 
 use super::super::{ContactLaw, Detection};
 use super::super::{
@@ -40,7 +40,8 @@ impl Check<'_> {
             && contact.enforcement == Enforcement::Penalty
             && scheme.conserves()
         {
-            let why = "the gap of a conserving spring is updated from step to step, and a stretch with it is not built";
+            let why = "the gap of an energy-conserving spring is updated from step to step, and a tangential \
+                spring is not implemented for it";
             refuse("with a conserving penalty", why, "use enforcement = \"multiplier\", or leave mu out");
         }
         let moves = matches!(contact.motion, ObstacleMotion::Prescribed { .. });
@@ -93,7 +94,7 @@ impl Check<'_> {
         let why = "it is the rate of the transition from `mu` to `mu_dynamic`";
         needs("decay", decay.is_some(), "mu_dynamic", "`mu_dynamic`", mu_dynamic.is_some(), why);
         let (penalty, why) =
-            (contact.enforcement == Enforcement::Penalty, "a multiplier holds a node that sticks exactly");
+            (contact.enforcement == Enforcement::Penalty, "a multiplier enforces stick exactly");
         needs("stick_stiffness", stick_stiffness.is_some(), "enforcement", "a penalty", penalty, why);
         let constant = mu.as_ref().and_then(FormulaSpec::constant);
         if let (Some(stick), Some(slip)) = (constant, *mu_dynamic)

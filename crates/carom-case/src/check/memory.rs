@@ -3,10 +3,10 @@
 //! Per node of degree-k cells in dimension D, with c nodes coupled to it (mean over a large mesh:
 //! 3, 4, 5 for L2 L3 L4; 7, 12, 19 for T3 T6 T10; 9, 16 for Q4 Q9; 15, 29, 51 for Tet4 Tet10
 //! Tet20; 27, 64 for Hex8 Hex27): half the matrix
-//! with 8-byte values and indices, 16·D²·c/2; its factor, a fill of c·log₂n/2 by nested dissection in
-//! the plane, c·n^(1/3)/2 in space and c/2 on a line, twice (numbers and scratch); a dozen state
-//! vectors. Solved by iteration: the whole matrix in 4 bytes, that of the mass with its indices, 4·D²·c +
-//! 16·c, and three dozen vectors.
+//! with 8-byte values and indices, 16·D²·c/2; its factor, a fill of c·log₂n/2 by nested dissection
+//! in the plane, c·n^(1/3)/2 in space and c/2 on a line, twice (numbers and scratch); a dozen state
+//! vectors. Solved by iteration: the whole matrix in 4 bytes, that of the mass with its indices,
+//! 4·D²·c + 16·c, and three dozen vectors.
 
 use carom_solid::Element;
 

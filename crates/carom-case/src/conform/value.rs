@@ -257,7 +257,8 @@ fn number_with_unit(node: &Node) -> Option<&str> {
     number.parse::<f64>().is_ok().then_some(number)
 }
 
-/// Whether the value at this path may be a function of a program: a load or the motion of a support.
+/// Whether the value at this path may be a function of a program: a load or the motion of a
+/// support.
 fn may_be_given(path: &str) -> bool {
     path.starts_with("load[") || (path.starts_with("support[") && path.contains("].move."))
 }

@@ -55,8 +55,9 @@ pub(super) const BODY: Table = Table {
         key(
             "volumetric",
             Choice(&["pointwise", "mean"], &[]),
-            "On which change of volume the volumetric energy depends: pointwise, that of each quadrature point; mean, the mean of the cell (mean \
-             dilatation), with which Q4 and Hex8 do not lock at nearly constant volume.",
+            "Change of volume on which the volumetric energy depends. pointwise: that at each quadrature \
+             point; mean: the mean over the cell (mean dilatation), with which Q4 and Hex8 do not lock in \
+             nearly incompressible materials.",
         )
         .default("\"pointwise\""),
         key("mesh", Variant(shapes), "Mesh: a built-in shape with its mesh size, or a body of a Gmsh file.")

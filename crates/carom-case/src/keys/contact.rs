@@ -9,13 +9,17 @@ pub(super) const CONTACT: Table = Table {
     keys: &[
         key("name", Name, "Name used in records and messages.").example("\"strike\""),
         key("secondary", Side, "Secondary (slave) side: its nodes may not penetrate the primary. `body.skin` is the whole boundary of a body.").example("\"cylinder.arc\"").unless("between"),
-        key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of `plane`, `circle`, `sphere` and `polyline`. The secondary side again: contact of this side with itself.").example("\"prism.top\"").unless("between"),
+        key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of \
+            `plane`, `circle`, `sphere` and `polyline`. If it is the secondary side, this side is in contact \
+            with itself.").example("\"prism.top\"").unless("between"),
         key(
             "between",
             Kind::Between,
-            "In place of `secondary` and `primary`: contact of each of several bodies with each other and with itself, of \"all\" bodies, or of those \
-             listed; of their whole boundaries, or of a side `body.side`. Of two bodies the softer one (smaller λ + 2μ) is secondary, of equals the first. A pair of bodies \
-             with a [[contact]] of its own is left out. Contacts are named NAME-BODY-BODY and NAME-BODY, or NAME if there is one.",
+            "In place of `secondary` and `primary`: contact between all pairs of bodies and of each with \
+             itself, for \"all\" bodies or those listed, on their whole boundaries or on a side `body.side`. \
+             Of two bodies the softer one (smaller λ + 2μ) is secondary; if they are equal, the first. A \
+             pair of bodies with a [[contact]] of its own is excluded. Contacts are named NAME-BODY-BODY and \
+             NAME-BODY, or NAME if there is one.",
         )
         .optional()
         .example("\"all\""),
@@ -92,16 +96,17 @@ pub(super) const CONTACT: Table = Table {
         key(
             "mu_dynamic",
             Number(NOT_NEGATIVE),
-            "Coefficient of friction of a node that slips, at most `mu`, which is then that of a node that sticks. Where a formula `mu` is \
-             smaller, it counts for both. Default: `mu`.",
+            "Coefficient of friction of a node that slips, at most `mu`, which is then that of a node that \
+             sticks. Where a formula `mu` is smaller, it is used for both. Default: `mu`.",
         )
         .optional()
         .example("0.2"),
         key(
             "decay",
             Number(POSITIVE),
-            "Rate c of the transition to `mu_dynamic`: at a slip rate v, μ = mu_dynamic + (mu − mu_dynamic) exp(−c v). In load steps, v is the rate \
-             in the time of their formulas. Default: at once.",
+            "Rate c of the transition to `mu_dynamic`: at a slip rate v, μ = mu_dynamic + (mu − mu_dynamic) \
+             exp(−c v). In load steps, v is the rate in the time of their formulas. Default: an immediate \
+             transition.",
         )
         .unit("time/length")
         .optional()
@@ -126,8 +131,10 @@ pub(super) const CONTACT: Table = Table {
         key(
             "restitution",
             Number(RESTITUTION),
-            "Coefficient of restitution e: Newton's, for contact laws on velocities; with energy-momentum and multipliers, e² is the fraction of the \
-             energy taken by contact that is returned where nodes close or open (1 elastic, 0 inelastic); with paoli-schatzman, the weight of the previous position.",
+            "Coefficient of restitution e: Newton's, for contact laws on velocities; with energy-momentum \
+             and multipliers, e² is the fraction of the energy lost in contact that is returned where nodes \
+             close or open (1 elastic, 0 inelastic); with paoli-schatzman, the weight of the previous \
+             position.",
         )
         .default("0.0"),
     ],
@@ -215,7 +222,8 @@ const POLYLINE: Table = Table {
         key(
             "radius",
             Number(NOT_NEGATIVE),
-            "Radius of the arcs that round the corners, tangent to both segments; 0: sharp corners. A sharp corner that is concave holds a node by one of its segments only.",
+            "Radius of the arcs that round the corners, tangent to both segments; 0: sharp corners. At a \
+             sharp concave corner a node is constrained by one of the segments only.",
         )
         .unit("length")
         .default("0.0"),

@@ -12,7 +12,8 @@ pub(super) const SUPPORT: Table = Table {
         key(
             "fix",
             Choices(&["x", "y", "z", "normal"]),
-            "Directions that are fixed; normal: the one across the side, which is plane and faces along x, y or z.",
+            "Directions that are fixed; normal: that of the side, which must be plane and normal to x, y or \
+             z.",
         )
         .optional()
         .example("[\"x\", \"y\"]"),

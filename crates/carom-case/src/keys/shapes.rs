@@ -98,9 +98,11 @@ const SHAPES: Variants = Variants {
             "extrusion",
             Table {
                 name: "mesh of shape \"extrusion\"",
-                doc: "Dimension 3; a shape of the plane from z = 0 to its height; its sides, and bottom, top (base, lid if it has sides of these names).",
+                doc: "Dimension 3; a plane shape from z = 0 to its height; its sides, and bottom, top (base, \
+                    lid if it has sides of these names).",
                 keys: &[
-                    key("of", Variant(plane_shapes), "The shape of the plane, meshed with the faces of the cells.")
+                    key("of", Variant(plane_shapes), "The plane shape; its cells are the faces of the solid \
+                        cells.")
                         .example("{ shape = \"ring\", inner = 0.4, outer = 0.5, center = [0.0, 0.0], size = 0.1 }"),
                     key("height", Number(POSITIVE), "Length along z.").unit("length").example("0.2"),
                     key("layers", Count(1), "Number of layers of cells.").example("2"),
@@ -246,7 +248,8 @@ const MESH_FILE: Table = Table {
         key("volume", Text, "Dimension 3: name of the physical volume that is the body.")
             .optional()
             .example("\"part\""),
-        key("slits", Truth, "Whether neighbouring cells may have nodes of their own at one place: a closed slit, or pieces that touch. Otherwise this is reported as a mistake.")
+        key("slits", Truth, "Whether neighbouring cells may have separate nodes at the same place: a closed \
+            slit, or pieces that touch. Otherwise this is an error.")
             .default("false"),
     ],
     later: &[],

@@ -1,4 +1,5 @@
-//! Keys of the case and of its remaining tables, for each: name, values, unit, default, meaning, example.
+//! Keys of the case and of its remaining tables, for each: name, values, unit, default, meaning,
+//! example.
 
 use super::Kind::{
     Choice, Choices, Count, Formulas, Name, Number, NumberOrFalse, Numbers, Tables, Text, Truth, Variant,
@@ -127,7 +128,9 @@ const TIME: Table = Table {
         key(
             "phase",
             Number(FRACTION),
-            "Fraction of a step by which all instants are earlier: the first step is shorter by it, and the last one has this length. Runs that differ in it meet contact at different instants of a step.",
+            "Fraction of a step by which all instants are shifted to earlier times: the first step is \
+             shorter by it, and the last one has this length. With another phase, contact begins at another \
+             instant within a step.",
         )
         .default("0.0"),
         key("scheme", Variant(schemes), "Time integrator.")
@@ -157,7 +160,10 @@ const NEWTON: Table = Table {
         key(
             "linear",
             Choice(&["auto", "direct", "iterative"], &[]),
-            "What solves with the tangent. direct: its factorisation. iterative: conjugate gradients with the blocks of the nodes as preconditioner; only the rows of closed contacts are factorised. auto: iterative for bodies in space that move, with 5 000 unknowns or more and without friction; otherwise direct.",
+            "Linear solver for systems with the tangent. direct: factorisation. iterative: conjugate \
+             gradients, preconditioned by the diagonal blocks of the nodes; only the rows of closed contacts \
+             are factorised. auto: iterative for dynamics in space with 5 000 unknowns or more and without \
+             friction; otherwise direct.",
         )
         .default("\"auto\""),
         key(

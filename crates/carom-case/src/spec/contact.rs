@@ -35,8 +35,8 @@ pub struct ContactSpec {
     pub active_set: ActiveSetRule,
     /// Which gap decides about activation.
     pub detection: Detection,
-    /// Where the gap is measured during a step; the closest point in records written before this key
-    /// existed.
+    /// Where the gap is measured during a step; the closest point in records written before this
+    /// key existed.
     #[serde(default)]
     pub xi: ContactPoint,
     /// What contact constrains; once resolved, the default is the law of the scheme.
@@ -211,7 +211,8 @@ pub enum Overlap {
     /// It is an error.
     #[default]
     Refuse,
-    /// It is closed before the start: the bodies begin in equilibrium with the pressure that closes it.
+    /// It is closed before the start: the bodies begin in equilibrium with the pressure that closes
+    /// it.
     Relax,
     /// The gap of every node is larger by its depth at the start, to the end of the run.
     KeepGap,

@@ -7,8 +7,8 @@ use std::path::PathBuf;
 use carom_solid::{Element, generate};
 use serde::{Deserialize, Serialize};
 
-/// Name of the side that is the whole boundary of a body in the plane, unless its mesh has a side of
-/// this name.
+/// Name of the side that is the whole boundary of a body in the plane, unless its mesh has a side
+/// of this name.
 pub const SKIN: &str = "skin";
 
 /// Source of a mesh: a built-in shape, or a file.
@@ -138,8 +138,8 @@ pub enum MeshSpec {
         /// Number of layers of cells.
         layers: usize,
     },
-    /// A named physical surface (dimension 1: curve, dimension 3: volume) of a .msh file; sides are its
-    /// named physical curves (points, surfaces).
+    /// A named physical surface (dimension 1: curve, dimension 3: volume) of a .msh file; sides are
+    /// its named physical curves (points, surfaces).
     File {
         /// Absolute path.
         file: PathBuf,
@@ -181,10 +181,10 @@ fn coordinate(axis: [f64; 3]) -> Option<usize> {
 }
 
 impl MeshSpec {
-    /// The mesh with cells smaller by a factor ≥ 1: a built-in shape is made anew with smaller cells,
-    /// the cells of a file are divided. `refine.rs` rejects factors with which given numbers of cells,
-    /// or the parts of an edge of a file, are not whole; the cells of a rectangle that is given by
-    /// their size are rounded up, as without a factor.
+    /// The mesh with cells smaller by a factor ≥ 1: a built-in shape is made anew with smaller
+    /// cells, the cells of a file are divided. `refine.rs` rejects factors with which given numbers
+    /// of cells, or the parts of an edge of a file, are not whole; the cells of a rectangle that is
+    /// given by their size are rounded up, as without a factor.
     #[must_use]
     pub fn refined(mut self, factor: f64) -> Self {
         let more = |cells: usize| (cells as f64 * factor * (1.0 - 2e-9)).ceil() as usize;

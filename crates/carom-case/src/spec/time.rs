@@ -16,8 +16,8 @@ pub struct TimeSpec {
     pub phase: f64,
     /// Time integrator as given.
     pub scheme: SchemeSpec,
-    /// Fraction of the energy scale so far that may be created before the run stops; none: the energy
-    /// is recorded only.
+    /// Fraction of the energy scale so far that may be created before the run stops; none: the
+    /// energy is recorded only.
     pub energy_guard: Option<f64>,
 }
 

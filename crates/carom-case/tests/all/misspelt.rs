@@ -54,8 +54,8 @@ fn shipped(directory: &Path) -> Vec<(String, String)> {
     found
 }
 
-/// Misspells every key of a case; returns the number of misspellings. `met` counts the keys of every
-/// path.
+/// Misspells every key of a case; returns the number of misspellings. `met` counts the keys of
+/// every path.
 fn misspellings(name: &str, text: &str, met: &Mutex<HashMap<String, usize>>) -> usize {
     let document = Document::parse(text).unwrap();
     let mut found = Vec::new();

@@ -51,9 +51,9 @@ pub struct BothSides<K> {
 }
 
 impl BothSides<NodeToFacet> {
-    /// A side against itself: its nodes, and the same with the depth that each may have where it comes
-    /// earlier, none at corners; `piece`: the connected piece of its body to which each node belongs, from
-    /// `first_node` on; `reference`: the reference positions, flat over all nodes.
+    /// A side against itself: its nodes, and the same with the depth that each may have where it
+    /// comes earlier, none at corners; `piece`: the connected piece of its body to which each node
+    /// belongs, from `first_node` on; `reference`: the reference positions, flat over all nodes.
     pub fn of_itself(
         side: &Surface,
         nodes: Vec<usize>,
@@ -89,8 +89,8 @@ impl<K: OneWay> BothSides<K> {
         if node < count { (&self.forward, node) } else { (&self.reverse, node - count) }
     }
 
-    /// Whether a corner meets a node of the secondary facet that it faces, and has a facet parallel to
-    /// that.
+    /// Whether a corner meets a node of the secondary facet that it faces, and has a facet parallel
+    /// to that.
     fn is_left_to_node(&self, corner: &Pair, y: &[f64]) -> bool {
         let node = self.reverse.secondary()[corner.node];
         let normal = self.reverse.normal(corner.facet, [corner.xi, corner.eta], y);

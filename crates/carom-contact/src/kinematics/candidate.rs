@@ -10,8 +10,8 @@ use crate::places::Places;
 /// A node this far behind a facet (relative to its length) at the start of a step has not crossed
 /// the facet.
 const BEHIND: f64 = 1e-6;
-/// The same where the whole boundary is known: a node whose nearest facet is of the side has entered
-/// the body there.
+/// The same where the whole boundary is known: a node whose nearest facet is of the side has
+/// entered the body there.
 const RECAPTURED: f64 = 0.02;
 
 impl NodeToFacet {

@@ -9,18 +9,19 @@
 //!
 //! The first line follows from the theorem of turning tangents (Hopf, Compos. Math. 2 (1935)): the
 //! arc and the point where it closes turn by −360° together, the point alone by −180°. A node is
-//! compared with a facet only if T along one of the two arcs is within 80° of −180°; at a corner, the
-//! normal may be any of its normals. A smooth part is never compared with itself, however short the
-//! arc; the flanks of a notch are, up to its tip, however sharp. Facets that contain the node, or have
-//! a node in common with one that does on the same smooth part, are excluded by this or as its own.
+//! compared with a facet only if T along one of the two arcs is within 80° of −180°; at a corner,
+//! the normal may be any of its normals. A smooth part is never compared with itself, however short
+//! the arc; the flanks of a notch are, up to its tip, however sharp. Facets that contain the node,
+//! or have a node in common with one that does on the same smooth part, are excluded by this or as
+//! its own.
 //!
 //! The boundaries of a hole and of its body are separated by material and cannot meet; pieces
 //! without a common cell always can.
 //!
-//! Of two places that meet, one is the secondary: that which comes later along the boundary. Each loop
-//! begins where it is least likely to meet itself: the boundary turns back least to the right after
-//! the beginning, and least to the right before it. At a beginning within a zone of contact the roles
-//! would change there. Any place of a hole may meet another one.
+//! Of two places that meet, one is the secondary: that which comes later along the boundary. Each
+//! loop begins where it is least likely to meet itself: the boundary turns back least to the right
+//! after the beginning, and least to the right before it. At a beginning within a zone of contact
+//! the roles would change there. Any place of a hole may meet another one.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -145,8 +146,8 @@ impl Folds {
         })
     }
 
-    /// Whether a node and a facet meet where the boundary folds: an admissible pair is compared only
-    /// then.
+    /// Whether a node and a facet meet where the boundary folds: an admissible pair is compared
+    /// only then.
     pub(crate) fn face(&self, turns: &Turns, node: usize, facet: usize) -> bool {
         let Some([before, after]) = self.around(node) else { return false };
         let (run, at) = (self.of[facet], self.place[facet]);
@@ -242,7 +243,8 @@ mod tests {
         admitted.contains(&true) && folds.face(&turns, node, facet)
     }
 
-    /// A block with a slot from the top: nodes 3, 4 on its right flank, 5 at the tip, 6, 7 on the left.
+    /// A block with a slot from the top: nodes 3, 4 on its right flank, 5 at the tip, 6, 7 on the
+    /// left.
     fn slotted(half: f64) -> Vec<[f64; 2]> {
         vec![
             [-2.0, 0.0],

@@ -88,7 +88,8 @@ impl Gap {
         let first = |p: usize| of(p, &self.shape.first, 0.0);
         for q in 0..=count {
             for k in 0..2 {
-                // Changes of ξ, of the direction, of J and of the gap with one component of one node.
+                // Changes of ξ, of the direction, of J and of the gap with one component of one
+                // node.
                 let xi = (-phi(q) * t.0[k] + gap * first(q) * n.0[k]) / self.a;
                 let turn = (first(q) * n.0[k] + self.kappa * xi) / j;
                 let longer = first(q) * along.0[k] + along.dot(&second) * xi;

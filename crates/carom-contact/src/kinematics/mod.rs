@@ -47,8 +47,8 @@ pub trait Kinematics: Send + Sync {
         0.0
     }
 
-    /// Adds to the gap of every secondary node, by index, a depth that it has at the start: an overlap
-    /// that is kept, or not yet closed.
+    /// Adds to the gap of every secondary node, by index, a depth that it has at the start: an
+    /// overlap that is kept, or not yet closed.
     fn keep(&mut self, depths: &[f64]);
 
     /// The depth that a secondary node, given by index, keeps.
@@ -78,9 +78,9 @@ pub trait Kinematics: Send + Sync {
     fn search(&self, before: &[f64], now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>)
     -> bool;
 
-    /// The node that was deepest inside the primary's body between `before` and `now`, and outside it
-    /// at both: its motion is that of a step without contact. `bounce`: allowed depth, over the length of
-    /// a facet, of a node that leaves on the side on which it entered.
+    /// The node that was deepest inside the primary's body between `before` and `now`, and outside
+    /// it at both: its motion is that of a step without contact. `bounce`: allowed depth, over the
+    /// length of a facet, of a node that leaves on the side on which it entered.
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         let _ = (before, now, bounce);
         None
@@ -113,15 +113,15 @@ pub trait Kinematics: Send + Sync {
 
     /// Adds the row H of the slip of a pair measured at `y`, over the nodes of its gap: H·Δy is the
     /// tangential motion of the first node relative to the other side, which turns with it. A slip
-    /// from y₀ to y₁ is H·(y₁ − y₀) at their midpoint, where every finite rigid motion of the pair is
-    /// an infinitesimal one: the slip is exactly zero. Plane only.
+    /// from y₀ to y₁ is H·(y₁ − y₀) at their midpoint, where every finite rigid motion of the pair
+    /// is an infinitesimal one: the slip is exactly zero. Plane only.
     ///
     /// # Errors
     /// If there is no unique closest point; no row is added.
     fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError>;
 
-    /// ∂H/∂y of a pair measured at `y`: overwrites the first `(n·D)²` entries of `matrix`, row-major,
-    /// not symmetric.
+    /// ∂H/∂y of a pair measured at `y`: overwrites the first `(n·D)²` entries of `matrix`,
+    /// row-major, not symmetric.
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], matrix: &mut [f64]);
 }
 

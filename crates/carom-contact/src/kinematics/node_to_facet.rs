@@ -6,8 +6,8 @@
 //! the paths in the first step of a pair, and of the closest point at the start of the step in the
 //! later ones; a step leaves it unchanged.
 //!
-//! Which facet a node faces, at joints and ends, is in `facing.rs`. A pair is handed to the neighbour
-//! only between solves.
+//! Which facet a node faces, at joints and ends, is in `facing.rs`. A pair is handed to the
+//! neighbour only between solves.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -236,8 +236,9 @@ impl Kinematics for NodeToFacet {
                     Next::HandOver(facet, _) | Next::Dent(facet, _)
                         if twice.contains(&(pair.node, facet)) =>
                     {
-                        // In the joint the node has both pairs. Beyond the reach of this facet that of
-                        // the other one is responsible: an extrapolated facet is not the surface.
+                        // In the joint the node has both pairs. Beyond the reach of this facet that
+                        // of the other one is responsible: an extrapolated facet is not the
+                        // surface.
                         if pair.xi.abs() <= REACH || pair.active && !starts {
                             return true;
                         }

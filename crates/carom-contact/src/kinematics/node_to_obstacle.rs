@@ -7,8 +7,8 @@
 //! ∂²g/∂x² = R H Rᵀ = ∂²g/∂c² = −∂²g/∂x∂c     ∂²g/∂x∂θ = R (Jn − H Js) = −∂²g/∂c∂θ     ∂²g/∂θ² = Js·H Js − n·s
 //! ```
 //!
-//! The slip of an obstacle that does not turn has the row ∂S/∂x = τ = Jn = −∂S/∂c, with ∂τ/∂x = −h n τᵀ
-//! where H = h (1 − n nᵀ).
+//! The slip of an obstacle that does not turn has the row ∂S/∂x = τ = Jn = −∂S/∂c, with
+//! ∂τ/∂x = −h n τᵀ where H = h (1 − n nᵀ).
 //!
 //! The angle is the first component of a node of its own, as the arc θℓ, a length like every other
 //! unknown; the force on it is moment/ℓ. So motion of an obstacle is motion of nodes: supports
@@ -65,7 +65,8 @@ impl NodeToObstacle {
         Self { carrier: Some(carrier), ..self }
     }
 
-    /// The same with the length of each node's facets, by which a path through the obstacle is judged.
+    /// The same with the length of each node's facets, by which a path through the obstacle is
+    /// judged.
     #[must_use]
     pub fn with_lengths(self, lengths: Vec<f64>) -> Self {
         Self { lengths, ..self }
@@ -88,8 +89,8 @@ impl NodeToObstacle {
         Local { at: std::array::from_fn(|i| origin[i] + arm[i]), arm, turn: [sin, cos] }
     }
 
-    /// The piece that an inactive node faces: the closest one outside, and inside that through which
-    /// it entered.
+    /// The piece that an inactive node faces: the closest one outside, and inside that through
+    /// which it entered.
     fn facing(&self, before: Point, now: Point) -> usize {
         let nearest = self.shape.nearest(now);
         let Obstacle::Polyline(line) = &self.shape else { return nearest };

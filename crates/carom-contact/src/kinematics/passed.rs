@@ -1,9 +1,9 @@
 //! Nodes that enter a body and leave it again within one step; through rigid obstacles in
 //! `obstacle/path.rs`.
 //!
-//! At the end of such a step nothing penetrates, and no facet is faced where the node entered: it has
-//! moved past the end of the side. Its straight path relative to the body shows it. A node that only
-//! cuts off a corner does so by less the shorter the step is.
+//! At the end of such a step nothing penetrates, and no facet is faced where the node entered: it
+//! has moved past the end of the side. Its straight path relative to the body shows it. A node that
+//! only cuts off a corner does so by less the shorter the step is.
 
 use carom_algebra::Vector;
 use carom_solid::FacetShape;
@@ -109,7 +109,8 @@ impl Paths<'_> {
                 let theta = entry.theta + (exit - entry.theta) * (k + 1) as f64 / (INSTANTS + 1) as f64;
                 let point = between.at(theta, node);
                 let mut distance = |facet: usize| between.distance(surface, facet, theta, point);
-                // No deeper than the facet that it entered is away, as nearly always where it slides.
+                // No deeper than the facet that it entered is away, as nearly always where it
+                // slides.
                 if distance(entered) <= allowed(place) + share * shortest {
                     continue;
                 }
@@ -131,8 +132,8 @@ fn square(v: Vector<2>) -> f64 {
     v.dot(&v)
 }
 
-/// Allowed depth over the length of a facet, from the normals where a node enters and leaves: on the same
-/// side it has bounced, and may be as deep as at the end of a step.
+/// Allowed depth over the length of a facet, from the normals where a node enters and leaves: on
+/// the same side it has bounced, and may be as deep as at the end of a step.
 pub(super) fn share([entered, left]: [Vector<2>; 2], bounce: f64) -> f64 {
     if entered.dot(&left) > 0.0 { bounce.max(SHARE) } else { SHARE }
 }
@@ -178,8 +179,8 @@ mod tests {
     use super::*;
     use crate::kinematics::{Detection, Kinematics, NodeToFacet};
 
-    /// A plate −1 ≤ x ≤ 1, −0.1 ≤ y ≤ 0 of two facets along its length, of which those at the top are the
-    /// side; node 6 moves from `start` to `end`, all of it with another motion as well.
+    /// A plate −1 ≤ x ≤ 1, −0.1 ≤ y ≤ 0 of two facets along its length, of which those at the top
+    /// are the side; node 6 moves from `start` to `end`, all of it with another motion as well.
     fn passed_by(start: [f64; 2], end: [f64; 2], with: [f64; 2]) -> Option<Passed> {
         bounced(start, end, with, 0.01)
     }

@@ -50,8 +50,8 @@ impl Surface {
     }
 
     /// The same side with the `rest` of its body's boundary, whose facets are traversed with the
-    /// body on their left. They only say where the side ends. The first `siblings` of them belong to
-    /// sides that other contacts keep the same nodes away from: a joint with one belongs to the
+    /// body on their left. They only say where the side ends. The first `siblings` of them belong
+    /// to sides that other contacts keep the same nodes away from: a joint with one belongs to the
     /// facet that ends there.
     #[must_use]
     pub fn bounded_by(self, rest: &[Vec<usize>], siblings: usize) -> Self {
@@ -208,8 +208,8 @@ impl Search {
         }
     }
 
-    /// The facet nearest to a point of a path at some instant of the motion, and its distance, which
-    /// `distance` gives at that instant; `None` excludes a facet.
+    /// The facet nearest to a point of a path at some instant of the motion, and its distance,
+    /// which `distance` gives at that instant; `None` excludes a facet.
     pub(crate) fn nearest(
         &self,
         point: [f64; 2],

@@ -1,5 +1,5 @@
-//! The row of the slip: zero in finite rigid motions, balance of force and moment, its derivative and
-//! that of the contact point against differences.
+//! The row of the slip: zero in finite rigid motions, balance of force and moment, its derivative
+//! and that of the contact point against differences.
 
 use carom_algebra::jacobian_error;
 use carom_contact::{

@@ -121,7 +121,8 @@ fn the_sign_and_the_distance_are_those_of_a_cube() {
     }
 }
 
-/// A strip of 2 × `count` quadrilaterals over x = 0 … count, of height `height(x)`; its nodes begin at 1.
+/// A strip of 2 × `count` quadrilaterals over x = 0 … count, of height `height(x)`; its nodes begin
+/// at 1.
 fn strip(count: usize, height: impl Fn(f64) -> f64) -> (Boundary, Vec<f64>) {
     let mut y = vec![0.0; 3];
     for x in 0..=count {

@@ -18,11 +18,11 @@ pub struct Contact {
     pub primary_part: Option<usize>,
     /// Whether the primary side is the secondary one.
     pub itself: bool,
-    /// Facets of either side in global nodes with their shape, for consistent weights; the secondary
-    /// side first; once if the side is in contact with itself.
+    /// Facets of either side in global nodes with their shape, for consistent weights; the
+    /// secondary side first; once if the side is in contact with itself.
     pub facets: Vec<(FacetShape, Vec<Vec<usize>>)>,
-    /// Allowed depth, over the length of a facet, of nodes that the contact constrains, and of other
-    /// nodes of its sides: a step in which a node is deeper is rejected.
+    /// Allowed depth, over the length of a facet, of nodes that the contact constrains, and of
+    /// other nodes of its sides: a step in which a node is deeper is rejected.
     pub depths: [f64; 2],
     /// Friction.
     pub friction: Option<Friction>,

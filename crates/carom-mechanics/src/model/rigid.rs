@@ -38,8 +38,8 @@ pub struct Unconstrained {
 
 const FREE: &str = "neither supports nor closed contacts constrain this motion. Add a [[support]], press the body with the `move` of a support instead of \
      a force, start with the contact closed, or use a scheme with inertia";
-const SLIPS: &str = "its closed contacts slip, and the load exceeds what friction can hold. Use a smaller load, a larger `mu` or `shear`, the `move` of a \
-     support instead of a force, or a scheme with inertia";
+const SLIPS: &str = "its closed contacts slip, and the load exceeds what friction can carry. Use a smaller \
+    load, a larger `mu` or `shear`, the `move` of a support instead of a force, or a scheme with inertia";
 
 /// Axes of the translations and of the rotations in a dimension.
 fn axes(dimension: usize) -> (&'static [usize], &'static [usize]) {
@@ -169,9 +169,13 @@ pub(crate) fn check_rigid_modes<'a>(
     let Some(remaining) = null_space(free.len(), rows.iter().cloned()).into_iter().next() else {
         return Ok(());
     };
-    let held = null_space(free.len(), rows.into_iter().chain(slips.map(row)));
+    let remaining_with_slips = null_space(free.len(), rows.into_iter().chain(slips.map(row)));
     let largest =
         (0..remaining.len()).max_by(|a, b| remaining[*a].abs().total_cmp(&remaining[*b].abs())).unwrap_or(0);
     let mode = &free[largest];
-    Err(Unconstrained { body: parts[mode.part].name.clone(), motion: mode.motion(), slips: held.is_empty() })
+    Err(Unconstrained {
+        body: parts[mode.part].name.clone(),
+        motion: mode.motion(),
+        slips: remaining_with_slips.is_empty(),
+    })
 }

@@ -20,12 +20,12 @@
 //! Δ dissipation = Δy·½(f_int,n + f_int,n+1) − ΔU − Δt²/8 Δ(a·M a)
 //! ```
 //!
-//! The law lets a node go behind its facet within a step, and takes it out in the next one. In shorter
-//! steps Δt < H that follow a step of H it is taken out at the same rate, g(y_{n+1}) ≥ (1 − Δt/H)
-//! g(y_n): within Δt it would be thrown out with g/Δt.
+//! The law lets a node go behind its facet within a step, and takes it out in the next one. In
+//! shorter steps Δt < H that follow a step of H it is taken out at the same rate,
+//! g(y_{n+1}) ≥ (1 − Δt/H) g(y_n): within Δt it would be thrown out with g/Δt.
 //!
-//! With friction Q acts along H_n, the row of the slip (`friction.rs`), and its law is that of the mean
-//! slip rate H_n v_{n+½}: P and Q solve one small problem (`carom_algebra::coulomb`).
+//! With friction Q acts along H_n, the row of the slip (`friction.rs`), and its law is that of the
+//! mean slip rate H_n v_{n+½}: P and Q solve one small problem (`carom_algebra::coulomb`).
 //!
 //! The first step, and one of another size, starts with v_{n−½} := v_n − Δt/2 M⁻¹f_n; a contact
 //! force at t_n then acts over a whole step.
@@ -36,7 +36,7 @@ use carom_contact::{Pair, Pairing, Rows, Tangential};
 use super::forward::Forward;
 use super::rubbing::{hold, kind};
 use super::scratch::Scratch;
-use super::watch::{active, approach, carry_into, depth, gap_at, held, measure_into, moves};
+use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, moves, overconstrained};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::constraints::independent_rows;
 use crate::contact_update::{GAP_TOLERANCE, search};
@@ -253,16 +253,16 @@ impl Explicit {
         at.resize(free.len(), 0.0);
         velocity.clone_from(free);
         let mut is_behind = false;
-        // Contact, node and facet of the rows that were last examined, and whether they depend on each
-        // other: their gradients are those at y_n in every round.
+        // Contact, node and facet of the rows that were last examined, and whether they depend on
+        // each other: their gradients are those at y_n in every round.
         let (mut examined, mut dependent) = (Vec::new(), false);
         for round in 0..=ROUNDS {
             Forward { state, before, velocity, dt }.place(0.0, at);
             loaded.clear();
             loaded.extend(forces(pairings));
             search(model, &state.y, at, pairings, &mut report.events);
-            // A force handed to another facet acts along another row. Gaps of new pairs are measured
-            // below with all others.
+            // A force handed to another facet acts along another row. Gaps of new pairs are
+            // measured below with all others.
             let moved_on = !forces(pairings).eq(loaded.iter().copied());
             measure_into(model, &state.y, pairings, rows)?;
             // Gaps at the positions of the law replace those at y_n; a violated pair joins the
@@ -285,7 +285,7 @@ impl Explicit {
                     let gap = rows[k].row(p).gap;
                     let wrong = if pair.lambda < 0.0 { gap.abs() } else { -gap };
                     if -gap > tolerance && !moves(model, rows[k].row(p)) {
-                        return Err(held(contact, pair, gap));
+                        return Err(overconstrained(contact, pair, gap));
                     }
                     worst = worst.max(wrong);
                     pair.active |= wrong > tolerance;

@@ -22,9 +22,9 @@ impl Forward<'_> {
         }
     }
 
-    /// Replaces the gaps at y_n by those that the law wants ≥ 0. `start` of a pair that is behind since
-    /// a longer step is the gap that it may still have at y_{n+1}. Returns whether any pair is behind
-    /// at y_n.
+    /// Replaces the gaps at y_n by those that the law wants ≥ 0. `start` of a pair that is behind
+    /// since a longer step is the gap that it may still have at y_{n+1}. Returns whether any pair
+    /// is behind at y_n.
     pub(super) fn gaps_of_law(
         &self,
         contact: &Contact,

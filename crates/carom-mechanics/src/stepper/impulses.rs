@@ -4,16 +4,16 @@
 //! 0 ≤ G v + e G v_n ⊥ P ≥ 0,   G v = b + D P
 //! ```
 //!
-//! with D symmetric and positive definite. With friction (`carom_algebra::coulomb`) each normal row has
-//! one of slip, H at the predicted positions, whose impulse obeys Coulomb's law with the rate H v; e acts
-//! on normal rates alone, which can create energy.
+//! with D symmetric and positive definite. With friction (`carom_algebra::coulomb`) each normal row
+//! has one of slip, H at the predicted positions, whose impulse obeys Coulomb's law with the rate
+//! H v; e acts on normal rates alone, which can create energy.
 
 use carom_algebra::{Kind, LinearError, complementarity, coulomb, proximal};
 use carom_contact::{Law, Pairing, Rows, Tangential};
 use carom_time::ImpulseShares;
 
 use super::rubbing::{hold, kind};
-use super::watch::{active, held, measure_into, moves};
+use super::watch::{active, measure_into, moves, overconstrained};
 use crate::constraints::{Constraints, independent_rows};
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
@@ -22,9 +22,9 @@ use crate::rejected::Rejected;
 use crate::state::State;
 use crate::workspace::Workspace;
 
-/// A predicted gap of at most this fraction of L is a tie, which round-off does not decide: it is open,
-/// as the published results of these schemes require, unless it has been closed since the start of the
-/// run. Otherwise a body pressed at rest would spring off.
+/// A predicted gap of at most this fraction of L is a tie, which round-off does not decide: it is
+/// open, as the published results of these schemes require, unless it has been closed since the
+/// start of the run. Otherwise a body pressed at rest would spring off.
 pub(super) const TIE: f64 = 1e-10;
 
 /// The contacts of a step, and their impulses.
@@ -84,7 +84,7 @@ impl Impulses {
             let path = |dof: usize| predicted[dof] - state.y[dof];
             let sinks = -row.entries().map(|(dof, slope)| slope * path(dof)).sum::<f64>();
             if sinks > TIE * model.scale {
-                return Err(held(&model.contacts[k], &pairings[k].pairs[p], row.gap));
+                return Err(overconstrained(&model.contacts[k], &pairings[k].pairs[p], row.gap));
             }
         }
         let dependent = independent_rows(model, places.iter().copied(), &measured).len() < places.len();
@@ -173,8 +173,8 @@ impl Impulses {
         }
     }
 
-    /// Adds impulses to the ledger and, as forces P/Δt, to those of the contacts and of their pairs: work
-    /// ½(Gv⁻ + Gv⁺)·P.
+    /// Adds impulses to the ledger and, as forces P/Δt, to those of the contacts and of their
+    /// pairs: work ½(Gv⁻ + Gv⁺)·P.
     pub(super) fn record(&self, dt: f64, next: &mut State, pairings: &mut [Pairing]) {
         for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
             (pair.lambda, pair.tangential.traction) = (0.0, 0.0);

@@ -14,8 +14,8 @@
 //! ```
 //!
 //! so that P solves a small complementarity problem (`impulses.rs`), exactly, and Newton's method
-//! converges as without contact. Velocities are constrained, not positions: an arriving node penetrates
-//! by up to Δt times its speed, which is recorded as it is.
+//! converges as without contact. Velocities are constrained, not positions: an arriving node
+//! penetrates by up to Δt times its speed, which is recorded as it is.
 
 use carom_contact::{Pairing, Rows, Tangential};
 use carom_time::{Impulse, ImpulseShares, Memory, Stage};
@@ -251,8 +251,8 @@ impl Impulsive {
     }
 }
 
-/// The law leaves the penetration of the step in which contact begins, and what facets turn: a step in
-/// which a node sinks by too much of the allowed depth is too long.
+/// The law leaves the penetration of the step in which contact begins, and what facets turn: a step
+/// in which a node sinks by too much of the allowed depth is too long.
 ///
 /// # Errors
 /// A node in contact sinks by more.

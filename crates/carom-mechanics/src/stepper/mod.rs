@@ -35,8 +35,8 @@ pub struct StepReport {
     pub releases: Vec<(usize, usize)>,
     /// Hand-overs and slides off the end, with the index of their contact.
     pub events: Vec<(usize, PairEvent)>,
-    /// Where stick and slip are not unique: the smallest relative singular value of the interface, with
-    /// the sign of its determinant.
+    /// Where stick and slip are not unique: the smallest relative singular value of the interface,
+    /// with the sign of its determinant.
     pub ambiguity: Option<f64>,
     /// Jump of kinetic energy at activation.
     pub projection: f64,
@@ -46,7 +46,8 @@ pub struct StepReport {
     pub penetration: Depths,
 }
 
-/// An accepted step: finite, converged, without penetration or inverted cells. Only a stepper creates one.
+/// An accepted step: finite, converged, without penetration or inverted cells. Only a stepper
+/// creates one.
 #[derive(Debug)]
 pub struct Accepted {
     state: State,

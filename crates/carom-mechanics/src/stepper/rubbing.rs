@@ -1,6 +1,6 @@
-//! Coulomb's law in a step of the schemes with their own contact law. The step has one coefficient: μ_s
-//! for a node that stuck, and for others that of their slip rate at its start. So a node that touches
-//! while it moves along the other side slips from the start.
+//! Coulomb's law in a step of the schemes with their own contact law. The step has one coefficient:
+//! μ_s for a node that stuck, and for others that of their slip rate at its start. So a node that
+//! touches while it moves along the other side slips from the start.
 
 use carom_algebra::Kind;
 use carom_contact::{Hold, Law, Pair, Row};
@@ -12,8 +12,8 @@ use crate::sums::max_abs;
 /// Distance from the edge of the cone, relative to its radius, at which a node slips.
 const EDGE: f64 = 1e-12;
 
-/// The law of the tangential force of a pair in a step from a state; `of` is the index of its normal
-/// force, `slip` its H, `v` the velocities at the start.
+/// The law of the tangential force of a pair in a step from a state; `of` is the index of its
+/// normal force, `slip` its H, `v` the velocities at the start.
 pub(super) fn kind(
     law: &Law,
     of: usize,

@@ -45,7 +45,7 @@ pub(super) fn moves(model: &Model, row: Row) -> bool {
 }
 
 /// The rejection of a gap that supports prevent from opening.
-pub(super) fn held(contact: &Contact, pair: &Pair, gap: f64) -> Rejected {
+pub(super) fn overconstrained(contact: &Contact, pair: &Pair, gap: f64) -> Rejected {
     let node = contact.kinematics.secondary()[pair.node];
     Rejected::Overconstrained { contact: contact.name.clone(), node, depth: -gap }
 }
@@ -85,8 +85,9 @@ pub(super) fn active(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize
     })
 }
 
-/// Depth of the deepest tracked node behind a rigid primary or a point at a state, ≥ 0. A node handed
-/// to another facet may be behind its extension; penetration of facets is measured over whole bodies.
+/// Depth of the deepest tracked node behind a rigid primary or a point at a state, ≥ 0. A node
+/// handed to another facet may be behind its extension; penetration of facets is measured over
+/// whole bodies.
 pub(super) fn depth(model: &Model, state: &State) -> f64 {
     let mut row = Rows::new(model.dimension);
     let contacts = model.contacts.iter().zip(&state.pairs).filter(|(contact, _)| has_gaps(model, contact));

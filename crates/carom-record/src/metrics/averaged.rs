@@ -1,9 +1,9 @@
 //! Metrics after the contact force and the columns of probes have been averaged over a short time,
 //! 1/16 of the first contact episode. Extremes, total variation and roughness of a smooth signal
 //! hardly change by that. Behind a jump, such as a wave front, a computed signal overshoots by a
-//! fraction of the jump on every mesh (Gibbs), so that these metrics converge under refinement, but to
-//! wrong values; averaging removes most of the overshoot. What it changes is therefore a part of their
-//! uncertainty.
+//! fraction of the jump on every mesh (Gibbs), so that these metrics converge under refinement, but
+//! to wrong values; averaging removes most of the overshoot. What it changes is therefore a part of
+//! their uncertainty.
 
 use super::definition::Metric;
 use super::episode::first_episode;
@@ -33,8 +33,8 @@ pub fn of_averages(run: &Run) -> Vec<Metric> {
     metrics
 }
 
-/// A history with some columns replaced by their means from t − w/2 to t + w/2, or to the ends of the
-/// record, with the trapezoidal rule between rows.
+/// A history with some columns replaced by their means from t − w/2 to t + w/2, or to the ends of
+/// the record, with the trapezoidal rule between rows.
 fn averaged(history: &History, window: f64, of: impl Fn(&str) -> bool) -> History {
     let times = history.times();
     let (first, last) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));

@@ -108,8 +108,8 @@ pub(crate) fn largest(run: &Run) -> Option<f64> {
     extreme(&at_rest(run)?.1, f64::gt).map(|x| x.1)
 }
 
-/// Largest tangential traction of a node at the end of a static run, a force over the weight that the
-/// pressure is one over; none without friction.
+/// Largest tangential traction of a node at the end of a static run, a force over the weight that
+/// the pressure is one over; none without friction.
 pub(crate) fn largest_traction(run: &Run) -> Option<f64> {
     at_rest(run)?;
     let rows = last_rows(run);

@@ -1,6 +1,6 @@
-//! The table of named metrics of a history: name, unit, formula, source and meaning of each, next to
-//! the function that computes it. Reports, studies, the book and expectations all use this table and
-//! that of whole runs (`run_table.rs`).
+//! The table of named metrics of a history: name, unit, formula, source and meaning of each, next
+//! to the function that computes it. Reports, studies, the book and expectations all use this table
+//! and that of whole runs (`run_table.rs`).
 
 use super::column::{column_roughness, in_contact, peak_of_means};
 use super::definition::{Definition, OWN, TABLES, Unit, d};

@@ -10,11 +10,11 @@
 //!   not monotone       U = 3 Δ
 //! ```
 //!
-//! f₁ belongs to the finest run, r are the ratios of successive sizes. These are the grid convergence
-//! index of P. J. Roache with its safety factors 1.25 and 3, and the treatment of irregular
-//! convergence after L. Eça and M. Hoekstra: nothing is extrapolated with an order that was not
-//! observed. Contact limits the order: where a method is of second order in smooth motion, forces
-//! and losses of an impact converge with first order or less.
+//! f₁ belongs to the finest run, r are the ratios of successive sizes. These are the grid
+//! convergence index of P. J. Roache with its safety factors 1.25 and 3, and the treatment of
+//! irregular convergence after L. Eça and M. Hoekstra: nothing is extrapolated with an order that
+//! was not observed. Contact limits the order: where a method is of second order in smooth motion,
+//! forces and losses of an impact converge with first order or less.
 
 use crate::order::{SAFE, from_differences};
 
@@ -84,8 +84,8 @@ mod tests {
         }
     }
 
-    /// By hand: the order 1/2 of 2, √2 and 1 puts the limit 1 below, as far as their range; an order of
-    /// 3 is not believed, and values that do not converge have three times their range.
+    /// By hand: the order 1/2 of 2, √2 and 1 puts the limit 1 below, as far as their range; an
+    /// order of 3 is not believed, and values that do not converge have three times their range.
     #[test]
     fn irregular_convergence_is_wider() {
         let h = [4.0, 2.0, 1.0];

@@ -1,9 +1,10 @@
 //! Whether the conclusion of a level depends on what was matched there. At equal steps a method may
 //! be best because its steps cost more; at equal cost, because another one was given longer steps.
-//! The error of every method is interpolated between its levels, linearly in logarithms, at the cost
-//! (in a design of matched cost, at the step) of the first arm of a level; its uncertainty is the larger
-//! one of the two levels. A method whose levels do not reach that far has no such error. The conclusion
-//! changes if another method is distinguishably better there, as in the ranking (places.rs).
+//! The error of every method is interpolated between its levels, linearly in logarithms, at the
+//! cost (in a design of matched cost, at the step) of the first arm of a level; its uncertainty is
+//! the larger one of the two levels. A method whose levels do not reach that far has no such error.
+//! The conclusion changes if another method is distinguishably better there, as in the ranking
+//! (places.rs).
 
 use super::arm::step;
 use super::design::Kind;
@@ -24,16 +25,16 @@ pub struct Crosscheck {
     pub first: String,
     /// Methods with their interpolated errors, the smallest first; the first one included.
     pub errors: Vec<(String, f64)>,
-    /// The method with the smallest interpolated error, if that is distinguished from the error of the
-    /// method ranked first.
+    /// The method with the smallest interpolated error, if that is distinguished from the error of
+    /// the method ranked first.
     pub better: Option<String>,
 }
 
 /// A method with its errors: abscissa, error, uncertainty.
 type Curve = (String, Vec<[f64; 3]>);
 
-/// Of every level of a design with at least two levels and two methods. `uncertainty`: that of errors
-/// from the reference.
+/// Of every level of a design with at least two levels and two methods. `uncertainty`: that of
+/// errors from the reference.
 pub(super) fn of(
     manifest: &StudyManifest,
     rows: &[Row],
@@ -73,8 +74,8 @@ pub(super) fn of(
     if levels.len() < 2 { Vec::new() } else { levels.iter().enumerate().filter_map(level).collect() }
 }
 
-/// Error, linear in logarithms between the two points around x, and uncertainty; none outside, up to
-/// round-off.
+/// Error, linear in logarithms between the two points around x, and uncertainty; none outside, up
+/// to round-off.
 fn interpolated(points: &[[f64; 3]], x: f64) -> Option<(f64, f64)> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));

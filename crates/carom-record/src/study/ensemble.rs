@@ -1,7 +1,7 @@
 //! Ensembles: every arm of a study is run several times with changes that should not matter, so
 //! that a number of a single run is not taken for a property of the method. Contact chatters: a
-//! small shift of the instant at which a body arrives within a step, the phase of the mesh, or which
-//! side is called secondary can change peaks, roughness and losses more than the method does.
+//! small shift of the instant at which a body arrives within a step, the phase of the mesh, or
+//! which side is called secondary can change peaks, roughness and losses more than the method does.
 //!
 //! ```text
 //! phases    the grid of times shifted by 0, 1/n, … of a step

@@ -3,15 +3,15 @@
 //! Every goal has measures in order of preference, and the first established one is used. The error
 //! of a run is |m − r|/|r| (|m| if r = 0) for a metric m, or the root mean square deviation of
 //! columns; that of an arm is the median over its ensemble, with the largest distance of a member
-//! from it as its uncertainty. Arms are ranked within a level only, that is, at the same step or the
-//! same cost. Two arms of a level are not distinguished if their errors differ by no more than the sum
-//! of their uncertainties, than that of the reference, or than 5 %. The place of an arm is one more
-//! than the number of arms that are distinguishably better; within a place arms are in the order of
-//! their cost. An arm that created so much energy that the default guard would have stopped it is placed
-//! behind all others; a member that did counts as failed.
+//! from it as its uncertainty. Arms are ranked within a level only, that is, at the same step or
+//! the same cost. Two arms of a level are not distinguished if their errors differ by no more than
+//! the sum of their uncertainties, than that of the reference, or than 5 %. The place of an arm is
+//! one more than the number of arms that are distinguishably better; within a place arms are in the
+//! order of their cost. An arm that created so much energy that the default guard would have
+//! stopped it is placed behind all others; a member that did counts as failed.
 //!
-//! The goal of least cost ranks the arms with the required accuracy by their own processor times, of
-//! which differences of up to 10 % are not distinguished.
+//! The goal of least cost ranks the arms with the required accuracy by their own processor times,
+//! of which differences of up to 10 % are not distinguished.
 
 use super::arm::Arm;
 use super::compared::Compared;
@@ -39,8 +39,8 @@ pub struct Ranking {
     pub measure: Result<Measure, Reason>,
     /// Ranked arms per level, the best first.
     pub levels: Vec<Vec<Ranked>>,
-    /// Per level, whether the conclusion is another one at equal cost (at equal steps, in a design of
-    /// matched cost).
+    /// Per level, whether the conclusion is another one at equal cost (at equal steps, in a design
+    /// of matched cost).
     pub crosschecks: Vec<Crosscheck>,
     /// The recommendation, or the reasons why there is none.
     pub verdict: Result<Verdict, Vec<String>>,

@@ -1,9 +1,10 @@
 //! The recommendation that follows from a ranking, with its confidence, or why there is none.
 //!
-//! Methods are ordered by their mean place over the levels. Of those that are not distinguished from
-//! the best and have the required accuracy, the cheapest is recommended; processor times within 10 % of
-//! the smallest count as equal, and the smaller error then decides. Nothing is recommended if only a
-//! substitute for the measure of the goal is established, or if none of them has the required accuracy.
+//! Methods are ordered by their mean place over the levels. Of those that are not distinguished
+//! from the best and have the required accuracy, the cheapest is recommended; processor times
+//! within 10 % of the smallest count as equal, and the smaller error then decides. Nothing is
+//! recommended if only a substitute for the measure of the goal is established, or if none of them
+//! has the required accuracy.
 
 use super::design::{Goal, Kind};
 use super::digits::short;
@@ -298,7 +299,7 @@ fn confidence(
         ),
         DecidedBy::Nothing if goal == Goal::Cost => at_most(
             Confidence::Low,
-            format!("other methods cost as much as it (differences of at most {} %)", 100.0 * EQUAL_COST),
+            format!("other methods have the same cost (differences of at most {} %)", 100.0 * EQUAL_COST),
         ),
         DecidedBy::Nothing => at_most(
             Confidence::Low,
@@ -321,7 +322,8 @@ fn confidence(
         unseen("all arms were computed on the given mesh", "`mesh = [1, 2]` in [ensemble] refines it")
     };
     let ensemble = unseen(
-        "there are arms with the value of a single run, so that chance is not told from method",
+        "there are arms with the value of a single run, so that chance cannot be distinguished from the \
+         method",
         "[ensemble] runs every arm with several phases, roles and meshes",
     );
     // One of them alone leaves the ranking of this mesh, or of these instants, open.

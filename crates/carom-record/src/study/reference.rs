@@ -12,9 +12,9 @@
 //! ideal       the values for elastic bodies: no change or dissipation of energy, no penetration
 //! ```
 //!
-//! A value is established if its uncertainty is less than half of it. A column is established in the
-//! same way, with the root mean square deviation between levels in the place of differences. Only
-//! established values are used for rankings.
+//! A value is established if its uncertainty is less than half of it. A column is established in
+//! the same way, with the root mean square deviation between levels in the place of differences.
+//! Only established values are used for rankings.
 
 use std::collections::BTreeMap;
 
@@ -208,8 +208,8 @@ impl Reference {
         let medians: Vec<f64> = levels.iter().map(Spread::median).collect();
         let found = converged(&self.sizes(), &medians).ok_or("a single run gives no error estimate")?;
         let (value, spread) = levels.last().map_or((0.0, 0.0), |s| (s.median(), s.half_width()));
-        // A recorded instant is late by up to a step; the median of n phases by (n + 1)/2n of one, which
-        // is at most half a step more than the spread of the phases, (n − 1)/2n.
+        // A recorded instant is late by up to a step; the median of n phases by (n + 1)/2n of one,
+        // which is at most half a step more than the spread of the phases, (n − 1)/2n.
         let late = |level: &Level| if level.phases > 1 { level.step / 2.0 } else { level.step };
         let instant = self.levels.last().filter(|_| INSTANTS.contains(&name)).map_or(0.0, late);
         let single = self.levels.last().and_then(|level| level.members.first()?.value(name));
@@ -344,9 +344,9 @@ mod tests {
         assert!(matches!(single.metric("m"), Standing::Not(_)) && !single.has_ensemble());
     }
 
-    /// By hand: instants 1.4, 1.2, 1.1 at the steps 4, 2, 1 are uncertain by 0.125 as above, and late by
-    /// up to one step; half of it where phases are known, not where roles or meshes are swapped only.
-    /// Members 0.2 before and after the median add 0.2.
+    /// By hand: instants 1.4, 1.2, 1.1 at the steps 4, 2, 1 are uncertain by 0.125 as above, and
+    /// late by up to one step; half of it where phases are known, not where roles or meshes are
+    /// swapped only. Members 0.2 before and after the median add 0.2.
     #[test]
     fn instants_are_late() {
         let of = |phases: usize, finest: &[f64]| {
@@ -374,9 +374,10 @@ mod tests {
         assert!((reference.estimate("peak_force").unwrap().uncertainty - 0.375).abs() < 1e-9);
     }
 
-    /// Columns off from 10 t by 0.4, 0.2 and 0.1 on [0, 1], except at the ends, which set the range: the
-    /// deviations between successive levels are in the ratio of 2, so that the order is 1 and the
-    /// uncertainty 5/4 of the last deviation. By hand, with a row in the middle only of three.
+    /// Columns off from 10 t by 0.4, 0.2 and 0.1 on [0, 1], except at the ends, which set the
+    /// range: the deviations between successive levels are in the ratio of 2, so that the order is
+    /// 1 and the uncertainty 5/4 of the last deviation. By hand, with a row in the middle only of
+    /// three.
     #[test]
     fn uncertainty_and_band_of_a_column() {
         let run = |off: f64| Trajectory {

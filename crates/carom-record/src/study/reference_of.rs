@@ -9,8 +9,8 @@ use super::trajectory::Trajectory;
 use crate::metrics;
 use crate::{RecordError, Status};
 
-/// What happens where contact begins, which is a part of the mathematical problem as long as contact
-/// nodes have mass.
+/// What happens where contact begins, which is a part of the mathematical problem as long as
+/// contact nodes have mass.
 fn begins(arm: &Arm) -> &'static str {
     let contacts = arm.case.get("contacts").and_then(serde_json::Value::as_array);
     let all = |value: &str| {

@@ -86,8 +86,8 @@ fn caption(bands: &Bands, cut: [bool; 2], during: &str) -> String {
         String::new()
     };
     format!(
-        "Deformed bodies with the stress of von Mises (of nodal averages of the Cauchy stress) at instants \
-         {during}. All at the same scale; displacements are not magnified. View: {}. The scale holds for \
+        "Deformed bodies with von Mises stress (of nodal averages of the Cauchy stress) at instants \
+         {during}. All at the same scale; displacements are not magnified. View: {}. The scale applies to \
          lengths parallel to the page.{arrow} Data: stress and displacement in the field files.",
         View::words()
     )

@@ -295,7 +295,7 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
                 button.home type="button" { "reset" }
             }
             figcaption {
-                b { "Scene." } " The bodies, at first in the view of figure " (figure) "; frames are " (every)
+                b { "Scene." } " The bodies, initially in the view of figure " (figure) "; frames are " (every)
                 ", without interpolation. Displacements are not magnified. " (Label("σ_{vM}"))
                 " and p = −tr σ/3 (red: compression) are those of nodal averages of the Cauchy stress. \
                  The inside of a cut body is grey. Drag: turn; with the right button or Shift: move. Wheel, \

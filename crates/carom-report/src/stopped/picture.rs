@@ -1,5 +1,5 @@
-//! The place of a stop: the deformed mesh of the last accepted state around the node, with node, facet
-//! and cell, and the outline of the rejected positions where it differs.
+//! The place of a stop: the deformed mesh of the last accepted state around the node, with node,
+//! facet and cell, and the outline of the rejected positions where it differs.
 
 use std::collections::HashSet;
 use std::fmt::Write as _;
@@ -37,8 +37,8 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<(String, String)> {
     let (svg, moved) = draw(run, stop, place, &fields)?;
     let rejected = if moved { " Dashed: the positions that were rejected." } else { "" };
     let caption = format!(
-        "The place at t = {:.6}, the last accepted state: deformed mesh with the node, and the facet or cell, \
-         where the next step failed.{rejected} Data: `stopped.vtu`, `stopped.json`.",
+        "The place of the stop at t = {:.6}, the last accepted state: deformed mesh with the node, and the \
+         facet or cell, where the next step failed.{rejected} Data: `stopped.vtu`, `stopped.json`.",
         stop.last
     );
     Some((caption, svg))
@@ -169,8 +169,8 @@ fn of_place(place: &StopPlace, fields: &FieldSet, points: &[Point]) -> Vec<Point
     blocks.flat_map(carom_record::Block::cells).flatten().map(|&node| points[node]).collect()
 }
 
-/// The part of a frame in which these points are, with a margin, and the scale with which it fills the
-/// picture: its whole width, and at most its height.
+/// The part of a frame in which these points are, with a margin, and the scale with which it fills
+/// the picture: its whole width, and at most its height.
 fn filled(around: [f64; 4], points: &[Point], margin: f64) -> ([f64; 4], f64) {
     let mut frame = around;
     for i in 0..2 {

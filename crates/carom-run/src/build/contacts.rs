@@ -158,8 +158,8 @@ pub(super) fn contacts(
         let contact = Contact {
             name: spec.name.clone(),
             interface: match spec.enforcement {
-                // With the predictor law y_{n+1} − y_n is not Δt v_½, and no force conserves moment of
-                // momentum.
+                // With the predictor law y_{n+1} − y_n is not Δt v_½, and no force conserves moment
+                // of momentum.
                 Enforcement::Multiplier if conserves && spec.law == Some(ContactLaw::Position) => {
                     Box::new(ConservingUnilateral)
                 }
@@ -254,8 +254,8 @@ fn itself(side: &Side, parts: &[BodyInstance], reference: &[f64]) -> BothSides<N
     )
 }
 
-/// The nodes of the primary side in `d` dimensions, each with the depth to which it may enter facets
-/// of the secondary side: none at corners.
+/// The nodes of the primary side in `d` dimensions, each with the depth to which it may enter
+/// facets of the secondary side: none at corners.
 fn others(
     primary: &Side,
     earlier: &[Side],
@@ -368,7 +368,8 @@ fn node_stiffness(parts: &[BodyInstance], node: usize) -> f64 {
     sum
 }
 
-/// Initial overlaps of the bodies of a case deeper than round-off: a problem per contact with the deepest point.
+/// Initial overlaps of the bodies of a case deeper than round-off: a problem per contact with the
+/// deepest point.
 ///
 /// Closing an overlap within one step would drive the bodies apart, so it is an error.
 pub fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {

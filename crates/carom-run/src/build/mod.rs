@@ -98,8 +98,8 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     }
 
     supports.extend(obstacles.iter().filter_map(obstacles::Moving::support));
-    let held = obstacles.iter().flat_map(obstacles::Moving::prescribed);
-    held.filter(|(_, formula)| formula.is_none()).for_each(|(dof, _)| fixed[dof] = true);
+    let prescribed = obstacles.iter().flat_map(obstacles::Moving::prescribed);
+    prescribed.filter(|(_, formula)| formula.is_none()).for_each(|(dof, _)| fixed[dof] = true);
 
     let motions = motions::motions(case, &parts, &obstacles, &fixed, &mut problems);
     motions.dofs().for_each(|dof| fixed[dof] = true);

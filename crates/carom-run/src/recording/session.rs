@@ -244,8 +244,8 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Adds what this process has spent so far to what earlier ones had. A checkpoint holds both, so
-    /// that a killed process is counted up to there.
+    /// Adds what this process has spent so far to what earlier ones had. A checkpoint holds both,
+    /// so that a killed process is counted up to there.
     fn tally(&mut self) {
         let Tally { counters, timings } = &self.earlier;
         let spent = self.simulation.timings();
@@ -283,8 +283,8 @@ impl<'a> Session<'a> {
         Ok(self.writer.checkpoint(state.step, &checkpoint(state, self.since, &tally)?)?)
     }
 
-    /// Writes why the simulation stopped, before and after the trials: a process that is killed in them
-    /// leaves a run that stopped.
+    /// Writes why the simulation stopped, before and after the trials: a process that is killed in
+    /// them leaves a run that stopped.
     fn explain(
         &mut self,
         stopped: &Stopped,

@@ -82,7 +82,7 @@ fn audit_remarks(options: Options, session: &Session) -> Vec<String> {
         return Vec::new();
     }
     let left_out = carom_mechanics::unaudited(session.simulation.model());
-    vec![format!("the audit did not judge: {}", left_out.join("; "))]
+    vec![format!("the audit did not check: {}", left_out.join("; "))]
 }
 
 /// Resumes a run that was stopped or killed; a finished one is returned as it is.

@@ -2,8 +2,8 @@
 //!
 //! A beam of n square cells across its thickness is too stiff in bending by 3/n², as measured on a
 //! cantilever with L/h = 20 and ν = 0 (n = 2, 4, 8, 16: 75 %, 19 %, 4.7 %, 1.2 %). Length L and
-//! thickness h of a body are the roots of x² − (P/2) x + A = 0, with its area A and its perimeter P:
-//! exact for a rectangle, to first order for a strip or ring that is bent.
+//! thickness h of a body are the roots of x² − (P/2) x + A = 0, with its area A and its perimeter
+//! P: exact for a rectangle, to first order for a strip or ring that is bent.
 
 use carom_case::{BodySpec, Case, Plane, Volumetric};
 use carom_mechanics::model::{BodyInstance, Model};

@@ -7,7 +7,8 @@ use carom_mechanics::model::Model;
 use super::found::{Found, short};
 use crate::build::side::side;
 
-/// Ratio of spacings up to which two sides count as equally fine: meshers do not meet a size better.
+/// Ratio of spacings up to which two sides count as equally fine: meshers do not meet a size
+/// better.
 const ALIKE: f64 = 1.1;
 /// Distance between nodes along the surface, relative to their spacing, up to which they match.
 const MATCH: f64 = 0.01;

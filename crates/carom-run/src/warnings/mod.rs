@@ -1,5 +1,6 @@
-//! Warnings: doubts that a reviewer would have about a valid case. None of them stops a run. They are
-//! written into the manifest and the log, and shown by `carom check`, `carom run`, `carom study` and the pages.
+//! Warnings: doubts that a reviewer would have about a valid case. None of them stops a run. They
+//! are written into the manifest and the log, and shown by `carom check`, `carom run`,
+//! `carom study` and the pages.
 //!
 //! [`WARNINGS`] is the one table; a rule is a function of the case and its model, or of the record.
 
@@ -42,7 +43,8 @@ pub struct Entry {
 pub const WARNINGS: [Entry; 10] = [
     Entry {
         id: "coarse-secondary",
-        why: "nodes of the primary side follow those of the secondary one and may enter between them, by a fiftieth of a facet",
+        why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of a \
+            facet",
         advice: "a finer secondary side, or the finer side as the secondary one",
         rule: Rule::Model(meshes::coarse_secondary),
     },
@@ -55,8 +57,8 @@ pub const WARNINGS: [Entry; 10] = [
     },
     Entry {
         id: "long-step",
-        why: "all waves that the step resolves are longer than that; the contact force is the change of momentum in a step over the step, and \
-              depends on the step more than on the body",
+        why: "the step resolves only waves longer than that; the contact force is the change of momentum in \
+            a step divided by the step, and depends on the step more than on the body",
         advice: "a shorter step, or reading only impulse, duration and motion",
         rule: Rule::Model(steps::long_step),
     },
@@ -68,19 +70,20 @@ pub const WARNINGS: [Entry; 10] = [
     },
     Entry {
         id: "stiff-bending",
-        why: "triangles of constant strain shear when they should bend",
+        why: "constant-strain triangles shear where they should bend",
         advice: "element = \"T6\" or \"T10\", or more cells across the thickness",
         rule: Rule::Model(elements::stiff_bending),
     },
     Entry {
         id: "strained-massless",
-        why: "a node without mass takes its position of equilibrium in the first step, and the strain energy released there is lost",
+        why: "a node without mass moves to its equilibrium position in the first step, and the strain energy \
+            released is lost",
         advice: "mass = \"consistent\", smaller cells at the contact, or a start from a state of equilibrium with [initial]",
         rule: Rule::Model(masses::strained_massless),
     },
     Entry {
         id: "one-node",
-        why: "force and pressure are those of one node and depend on its share of the mesh",
+        why: "force and pressure are those of a single node and depend on the mesh around it",
         advice: "a finer mesh at the contact",
         rule: Rule::Record(record::one_node),
     },
@@ -98,7 +101,8 @@ pub const WARNINGS: [Entry; 10] = [
     },
     Entry {
         id: "energy-created",
-        why: "no elastic body does that, and motion, forces and stresses after it are the scheme's",
+        why: "an elastic body cannot do that; motion, forces and stresses afterwards are artefacts of the \
+            scheme",
         advice: "persistency = \"project\", a scheme with more damping, another step, or the energy guard, which stops such a run",
         rule: Rule::Record(record::energy_created),
     },

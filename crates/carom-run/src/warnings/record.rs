@@ -8,8 +8,8 @@ use carom_record::metrics::{self, MUCH_CREATED};
 
 use super::found::{Found, short};
 
-/// A contact in the plane in which no row has more than one active node, of several. A node in a dent
-/// has several pairs; a corner of the primary side is a node, too.
+/// A contact in the plane in which no row has more than one active node, of several. A node in a
+/// dent has several pairs; a corner of the primary side is a node, too.
 pub(super) fn one_node(case: &Case, run: &Run) -> Vec<Found> {
     let mut active: BTreeMap<(&str, u64), BTreeSet<u64>> = BTreeMap::new();
     for row in &run.contact {

@@ -1,10 +1,10 @@
 //! Warning about the step: the Courant number C = c Δt/h with the speed c of pressure waves and the
 //! size h of a cell.
 //!
-//! An implicit step is stable for any C, but it resolves a wave of length ℓ only if ω Δt = 2π c Δt/ℓ
-//! is below about 1, where a scheme of order two is wrong by ω²Δt²/12 = 8 % in its period. So ℓ > 2π
-//! C h. At C = 10 these are 63 cells, more than the bodies of an impact usually have across: no wave
-//! that the mesh carries and the contact excites is resolved by the step.
+//! An implicit step is stable for any C, but it resolves a wave of length ℓ only if ω Δt = 2π c
+//! Δt/ℓ is below about 1, where a scheme of order two is wrong by ω²Δt²/12 = 8 % in its period. So
+//! ℓ > 2π C h. At C = 10 these are 63 cells, more than the bodies of an impact usually have across:
+//! no wave that the mesh carries and the contact excites is resolved by the step.
 
 use carom_case::{Case, ContactSpec};
 use carom_mechanics::model::Model;

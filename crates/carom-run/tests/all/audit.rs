@@ -35,8 +35,8 @@ fn the_audit_finds_what_was_not_measured_and_what_has_passed() {
 fn the_audit_finds_a_passage_that_the_contact_does_not_allow_and_says_what_it_leaves_out() {
     let sim = simulation(DISCS, &[""; 0]);
     let (model, start) = (sim.model(), &sim.state().y);
-    // The left disc, s lower, passes below the right one: on the way they overlap by 1 − |0.2 − s|, at most
-    // 0.4 of a facet.
+    // The left disc, s lower, passes below the right one: on the way they overlap by 1 − |0.2 − s|,
+    // at most 0.4 of a facet.
     let passed = |s: f64| {
         let mut y = moved(&sim, 2.5);
         model.parts[0].nodes().for_each(|node| y[2 * node + 1] -= s);

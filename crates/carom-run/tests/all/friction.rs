@@ -164,8 +164,8 @@ fn impulses(contact: &str, scheme: &str) -> [f64; 3] {
     finish(simulation(&block(contact, scheme), &[] as &[&str])).state().impulse()
 }
 
-/// Tresca's law alone: every node that is pressed slips against τ times its area, whatever the pressure.
-/// Beside Coulomb's law the smaller traction counts.
+/// Tresca's law alone: every node that is pressed slips against τ times its area, whatever the
+/// pressure. Beside Coulomb's law the smaller traction counts.
 #[test]
 fn a_limited_traction_is_that_stress_times_the_area() {
     for scheme in [SCHEMES[0], SCHEMES[5]] {
@@ -208,8 +208,8 @@ fn a_coefficient_may_depend_on_the_rate_of_slip() {
 /// Springs of the contact and of its nodes that stick.
 const SPRINGS: &str = "enforcement = \"penalty\"\nstiffness = 1.0";
 
-/// J_T = μ_d J_N of a block that slides on springs, also where it moves in a step by less than a spring
-/// stretches between the tractions of slip and of stick.
+/// J_T = μ_d J_N of a block that slides on springs, also where it moves in a step by less than a
+/// spring stretches between the tractions of slip and of stick.
 #[test]
 fn a_node_on_a_spring_goes_on_to_slip_against_the_dynamic_coefficient() {
     for decay in ["", "decay = 1e3"] {
@@ -405,7 +405,7 @@ traction = ["0.1*t", "-min(t, 1)"]
         assert!(sim.state().time < 2.6);
     };
     let expected =
-        "free to move along x: its closed contacts slip, and the load exceeds what friction can hold";
+        "free to move along x: its closed contacts slip, and the load exceeds what friction can carry";
     assert!(stopped.contains(expected), "{stopped}");
 }
 

@@ -1,5 +1,5 @@
-//! Iteration in place of factors: the same history, to the tolerance of Newton's method, with the same
-//! bits on any number of threads and after an interruption; and its errors.
+//! Iteration in place of factors: the same history, to the tolerance of Newton's method, with the
+//! same bits on any number of threads and after an interruption; and its errors.
 
 use carom_run::case::{Document, read};
 use carom_run::{GridReport, Setup, Simulation, State};

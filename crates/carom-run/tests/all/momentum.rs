@@ -94,8 +94,8 @@ const FOLDED: u64 = 20;
 const UNFOLDED: u64 = 420;
 
 /// Largest error of the balance over so many steps, relative to the largest momentum of any body;
-/// none where no body can be balanced or nothing touches. A body that can meet itself goes on until it
-/// has. A run that stops is judged up to there.
+/// none where no body can be balanced or nothing touches. A body that can meet itself goes on until
+/// it has. A run that stops is judged up to there.
 fn worst(case: &Case, steps: u64) -> Option<f64> {
     let mut sim = Setup::new(case).start().ok()?;
     let balances = Balance::all(case, &sim);

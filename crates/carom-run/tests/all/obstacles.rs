@@ -71,7 +71,8 @@ fn run(text: &str, sets: &[String], obstacle: &str) -> Option<Simulation> {
 #[test]
 fn a_floor_does_not_depend_on_its_description() {
     let (mut checked, mut wrong) = (0, Vec::new());
-    // Without projection the active set chatters: a plane shifted by 1e-15 makes the same difference.
+    // Without projection the active set chatters: a plane shifted by 1e-15 makes the same
+    // difference.
     let chatters = |sets: &[String]| sets.iter().any(|set| set.contains("\"none\""));
     for sets in combinations("floor").into_iter().filter(|sets| !chatters(sets)) {
         let [first, others @ ..] =

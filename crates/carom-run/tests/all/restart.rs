@@ -235,7 +235,8 @@ enforcement = "penalty"
     assert!((part.ledger.total() - part.ledger.total_at_start).abs() < 1e-15);
 }
 
-/// Both sides of strips pressed together by springs are active; as constraints they would be dependent.
+/// Both sides of strips pressed together by springs are active; as constraints they would be
+/// dependent.
 #[test]
 fn multipliers_start_from_a_run_with_springs() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! Contact of a body with itself against the same contact of two bodies, and against half of the body
-//! on a plane; continued from a state, bit for bit.
+//! Contact of a body with itself against the same contact of two bodies, and against half of the
+//! body on a plane; continued from a state, bit for bit.
 
 use carom_run::case::Case;
 use carom_run::{Setup, Simulation};
@@ -102,7 +102,8 @@ fn a_run_that_is_continued_from_its_state_is_the_same() {
     assert_eq!(whole.state().pairs, resumed.state().pairs);
 }
 
-/// Two rectangles of triangles in the format of Gmsh, each with a surface of its own and both with "both".
+/// Two rectangles of triangles in the format of Gmsh, each with a surface of its own and both with
+/// "both".
 fn rectangles(of: [(&str, [f64; 4], [usize; 2]); 2]) -> String {
     let (mut nodes, mut cells, mut names) = (Vec::new(), Vec::new(), vec!["2 9 \"both\"".to_owned()]);
     for (k, (name, [left, right, bottom, top], [n, m])) in of.into_iter().enumerate() {

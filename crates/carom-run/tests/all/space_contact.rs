@@ -37,8 +37,8 @@ fn slab(sets: &[&str]) -> Vec<String> {
 
 #[test]
 fn an_impact_of_slabs_is_that_of_the_plane() {
-    // A discrete gradient is corrected along the motion of all nodes of a facet, of which a slab has
-    // more: to the order of the scheme.
+    // A discrete gradient is corrected along the motion of all nodes of a facet, of which a slab
+    // has more: to the order of the scheme.
     let schemes = [
         ("time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.8 }", "neo-hookean", 1e-8),
         ("time.scheme={ kind = \"bathe\", rho_inf = 0.0 }", "neo-hookean", 1e-8),
@@ -130,7 +130,8 @@ fn threads_change_no_bit_of_an_impact() {
     assert!(one.state().y == two.state().y && one.state().v == two.state().v);
 }
 
-/// A ball that hits a rigid plane, and the same plane as the facet of a rigid sphere of large radius.
+/// A ball that hits a rigid plane, and the same plane as the facet of a rigid sphere of large
+/// radius.
 #[test]
 fn a_rigid_sphere_of_large_radius_is_a_plane() {
     let rigid = |shape: &str| {

@@ -1,4 +1,5 @@
-//! Steps that create energy are shortened; shortened steps keep the contact laws and resume bitwise.
+//! Steps that create energy are shortened; shortened steps keep the contact laws and resume
+//! bitwise.
 
 use carom_run::{GridReport, Rejected, Setup};
 
@@ -57,8 +58,8 @@ fn a_step_that_creates_energy_is_shortened_and_resumes_with_the_same_bits() {
     assert_eq!(resumed.state(), whole.state());
 }
 
-/// Paoli and Schatzman's law lets a node go behind the wall by a step of its motion and takes it out
-/// in the next one. In steps 64 times shorter it must not be thrown out 64 times as fast.
+/// Paoli and Schatzman's law lets a node go behind the wall by a step of its motion and takes it
+/// out in the next one. In steps 64 times shorter it must not be thrown out 64 times as fast.
 #[test]
 fn a_shorter_step_takes_a_node_out_at_the_rate_of_the_longer_one() {
     let sets = [
@@ -97,8 +98,8 @@ fn a_step_may_be_allowed_no_bisection_at_any_time() {
     assert!(stopped < 20);
 }
 
-/// Where shorter steps create more, the whole grid step is taken after all, and the next one is tried whole
-/// again. So tight a guard stops the run later.
+/// Where shorter steps create more, the whole grid step is taken after all, and the next one is
+/// tried whole again. So tight a guard stops the run later.
 #[test]
 fn a_grid_step_that_is_taken_whole_after_all_is_not_remembered_as_bisected() {
     let sets = [

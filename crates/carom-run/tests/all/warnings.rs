@@ -306,8 +306,8 @@ fn energy_that_a_run_without_guard_creates() {
     assert!(!recorded(IMPACT, &sets[2..]).contains(&id));
 }
 
-/// A square of two triangles without lateral strain, of which one corner is free: its triangle has K =
-/// ¼ [3 −1; −1 3] (tangential, normal), so that pushed to the right it is singular for μ = 3.
+/// A square of two triangles without lateral strain, of which one corner is free: its triangle has
+/// K = ¼ [3 −1; −1 3] (tangential, normal), so that pushed to the right it is singular for μ = 3.
 const CORNER: &str = r#"
 dimension = 2
 [[material]]
@@ -338,8 +338,8 @@ step = 0.5
 scheme = { kind = "static" }
 "#;
 
-/// Beyond μ = 3 loads between 3 and μ times the pressure allow stick, slip and lift-off; a load above
-/// μ has no way from stick but to lift off, which slip does not find.
+/// Beyond μ = 3 loads between 3 and μ times the pressure allow stick, slip and lift-off; a load
+/// above μ has no way from stick but to lift off, which slip does not find.
 #[test]
 fn friction_beyond_the_singular_coefficient_is_said() {
     assert!(!recorded(CORNER, &["contact.bed.mu=2.9"]).contains(&"ambiguous-friction".to_owned()));

@@ -1,15 +1,16 @@
 //! Ball: a rounded cube of cells around the centre, and on each of its faces a block of cells that
 //! reaches to the sphere.
 //!
-//! A point of the lattice has coordinates q in the cube −1 … 1, and a height t from the cube's surface
-//! to the sphere. With the direction d ∝ tan(πq/4), which divides the angles of a face equally, and
+//! A point of the lattice has coordinates q in the cube −1 … 1, and a height t from the cube's
+//! surface to the sphere. With the direction d ∝ tan(πq/4), which divides the angles of a face
+//! equally, and
 //!
 //! ```text
 //! X = r ((1 − t) c(q) + t d(q)),    c = (q + b(q))/4,    bᵢ = qᵢ √(1 − qⱼ²/2 − q_k²/2 + qⱼ²q_k²/3)
 //! ```
 //!
-//! where b maps the cube onto the ball. The mean of both opens the right angles of the cube's edges,
-//! where three blocks meet.
+//! where b maps the cube onto the ball. The mean of both opens the right angles of the cube's
+//! edges, where three blocks meet.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -17,9 +18,9 @@ use super::MeshError;
 use super::lattice::{Flat, HEXAHEDRON, Key, Lattice, divisions, on};
 use crate::mesh::{Element, Mesh};
 
-/// Ball of tetrahedra with edges of about `size` around it; side `sphere`. `symmetry` along x, y and z
-/// leaves the half with larger coordinates than the centre, with the sides `plane_x`, `plane_y`,
-/// `plane_z`.
+/// Ball of tetrahedra with edges of about `size` around it; side `sphere`. `symmetry` along x, y
+/// and z leaves the half with larger coordinates than the centre, with the sides `plane_x`,
+/// `plane_y`, `plane_z`.
 ///
 /// # Errors
 /// If radius or size is not positive, or the element is not a tetrahedron.
@@ -96,8 +97,8 @@ pub fn ball_hexahedra(radius: f64, size: f64, symmetry: [bool; 3]) -> f64 {
     edge * edge * (edge + 6.0 * layers as f64) / 2.0_f64.powi(cuts)
 }
 
-/// Cells on half an edge of the cube, which faces an eighth of a great circle, and as long ones between
-/// the cube and the sphere, which are 0.42 radii apart on average.
+/// Cells on half an edge of the cube, which faces an eighth of a great circle, and as long ones
+/// between the cube and the sphere, which are 0.42 radii apart on average.
 pub(super) fn counts(radius: f64, size: f64) -> (i64, i64) {
     let half = divisions(FRAC_PI_4 * radius, size);
     (half, divisions(0.42 / FRAC_PI_4 * half as f64, 1.0))

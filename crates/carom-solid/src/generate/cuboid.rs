@@ -1,8 +1,8 @@
-//! Box of nx × ny × nz boxes: hexahedra, or each cut into six tetrahedra around the diagonal from its
-//! lowest to its highest corner (H. Freudenthal, Ann. Math. 43 (1942) 580–582): one tetrahedron for
-//! every order in which a path along the edges takes the three directions. Neighbouring boxes cut
-//! their common rectangle along the same diagonal. All nodes lie on the lattice that divides every
-//! edge by the degree, and every point of the lattice is a node.
+//! Box of nx × ny × nz boxes: hexahedra, or each cut into six tetrahedra around the diagonal from
+//! its lowest to its highest corner (H. Freudenthal, Ann. Math. 43 (1942) 580–582): one tetrahedron
+//! for every order in which a path along the edges takes the three directions. Neighbouring boxes
+//! cut their common rectangle along the same diagonal. All nodes lie on the lattice that divides
+//! every edge by the degree, and every point of the lattice is a node.
 
 use std::collections::BTreeMap;
 
@@ -23,8 +23,8 @@ const SIDES: [(&str, usize, bool); 6] = [
     ("top", 2, true),
 ];
 
-/// Box from `min` to `max`, `cells` along x, y and z; sides `left` (−x), `right` (+x), `front` (−y),
-/// `back` (+y), `bottom` (−z), `top` (+z).
+/// Box from `min` to `max`, `cells` along x, y and z; sides `left` (−x), `right` (+x), `front`
+/// (−y), `back` (+y), `bottom` (−z), `top` (+z).
 ///
 /// # Errors
 /// If an extent is not positive, there are no cells, or the element does not fill space.
@@ -105,8 +105,8 @@ fn pieces(element: Element) -> Vec<Vec<[usize; 3]>> {
     PATHS.iter().enumerate().map(tetrahedron).collect()
 }
 
-/// The nodes of a shape in the lattice of its degree; its reference cell begins at `low` and ends at
-/// 1.
+/// The nodes of a shape in the lattice of its degree; its reference cell begins at `low` and ends
+/// at 1.
 pub(super) fn lattice<const N: usize, S: Shape<3, N>>(low: f64) -> Vec<[usize; 3]> {
     let scale = S::DEGREE as f64 / (1.0 - low);
     S::NODES.iter().map(|xi| [0, 1, 2].map(|i| (scale * (xi[i] - low)).round() as usize)).collect()

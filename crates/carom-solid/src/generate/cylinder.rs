@@ -1,8 +1,8 @@
 //! Cylinder and tube: a plane section of quadrangles times the height.
 //!
-//! The section of a cylinder is a rounded square around the axis, and on each of its edges a block of
-//! cells that reaches to the circle, in the manner of the [ball](super::ball()); that of a tube is a
-//! product of angle and radius.
+//! The section of a cylinder is a rounded square around the axis, and on each of its edges a block
+//! of cells that reaches to the circle, in the manner of the [ball](super::ball()); that of a tube
+//! is a product of angle and radius.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -16,8 +16,8 @@ use crate::mesh::{Element, Mesh};
 /// coordinates than the middle, with the sides `plane_x`, `plane_y`, `plane_z`.
 ///
 /// # Errors
-/// If a length is not positive, the axis is zero, symmetry is asked for and the axis is not a direction
-/// of the coordinates, or the element is not a tetrahedron.
+/// If a length is not positive, the axis is zero, symmetry is asked for and the axis is not a
+/// direction of the coordinates, or the element is not a tetrahedron.
 pub fn cylinder(
     element: Element,
     radius: f64,
@@ -72,8 +72,8 @@ pub fn cylinder(
     Ok(lattice.into_mesh(|corners| on(&sides, corners)))
 }
 
-/// Tube of tetrahedra with edges of about `size`, from the centre of its bottom along the axis; sides
-/// `inner`, `outer`, `bottom`, `top`, and those of `symmetry` as for the [`cylinder`].
+/// Tube of tetrahedra with edges of about `size`, from the centre of its bottom along the axis;
+/// sides `inner`, `outer`, `bottom`, `top`, and those of `symmetry` as for the [`cylinder`].
 ///
 /// # Errors
 /// As the [`cylinder`], and if `inner` is not less than `outer`.
@@ -173,8 +173,8 @@ fn direction(q: [f64; 2]) -> [f64; 2] {
     t.map(|x| x / length)
 }
 
-/// The point of the unit circle at `at` of four times `quarter` equal steps, mirrored bitwise at both
-/// axes and the diagonals.
+/// The point of the unit circle at `at` of four times `quarter` equal steps, mirrored bitwise at
+/// both axes and the diagonals.
 fn on_circle(at: i64, quarter: i64) -> [f64; 2] {
     let (turns, rest) = (at.div_euclid(quarter), at.rem_euclid(quarter));
     let angle = |steps: i64| FRAC_PI_2 * steps as f64 / quarter as f64;

@@ -8,8 +8,8 @@ use super::{MeshError, lerp};
 use crate::mesh::{Element, Mesh};
 use crate::shape::{Quad4, Quad9, Shape, Tri3, Tri6, Tri10};
 
-/// A mesh of the plane from z = 0 to the height, in layers of cells; its sides, and `bottom` and `top`,
-/// or if it has these, `base` and `lid`.
+/// A mesh of the plane from z = 0 to the height, in layers of cells; its sides, and `bottom` and
+/// `top`, or if it has these, `base` and `lid`.
 ///
 /// # Errors
 /// If the height is not positive, there are no layers, or the mesh is not plane.
@@ -95,8 +95,8 @@ pub fn plane_of(element: Element) -> Option<Element> {
         .find(|plane| extruded(*plane) == Some(element))
 }
 
-/// The nodes of a shape in the lattice of its degree; its reference cell begins at `low` and ends at
-/// 1.
+/// The nodes of a shape in the lattice of its degree; its reference cell begins at `low` and ends
+/// at 1.
 fn plane_lattice<const N: usize, S: Shape<2, N>>(low: f64) -> Vec<[usize; 2]> {
     let scale = S::DEGREE as f64 / (1.0 - low);
     S::NODES.iter().map(|xi| [0, 1].map(|i| (scale * (xi[i] - low)).round() as usize)).collect()

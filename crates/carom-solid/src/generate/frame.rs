@@ -14,8 +14,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// With the third direction along `axis`, of any length. Along a coordinate the others follow it in
-    /// cyclic order.
+    /// With the third direction along `axis`, of any length. Along a coordinate the others follow
+    /// it in cyclic order.
     ///
     /// # Errors
     /// If the axis is zero, or a number is not finite.

@@ -1,7 +1,7 @@
-//! Solids from hexahedra or prisms on a lattice, as they are or cut into tetrahedra. A generator names
-//! every point of the lattice by integers, so that neighbouring cells agree on their common nodes
-//! whatever their positions are rounded to, and places the points by one map that is smooth in every
-//! cell.
+//! Solids from hexahedra or prisms on a lattice, as they are or cut into tetrahedra. A generator
+//! names every point of the lattice by integers, so that neighbouring cells agree on their common
+//! nodes whatever their positions are rounded to, and places the points by one map that is smooth
+//! in every cell.
 //!
 //! A cell is cut into tetrahedra by its keys alone: cones from its first corner over the faces that
 //! do not contain it, every face cut into triangles from its own first corner. Neighbours therefore
@@ -83,8 +83,8 @@ impl<P: Fn(Key) -> [f64; 3]> Lattice<P> {
         Ok(Self { element, local, place, numbers, keys, nodes, cells })
     }
 
-    /// Adds a cell, given the key of each of its lattice points: of every corner times the degree, and
-    /// of the points between them.
+    /// Adds a cell, given the key of each of its lattice points: of every corner times the degree,
+    /// and of the points between them.
     pub(super) fn add(&mut self, solid: &Solid, key: impl Fn([usize; 3]) -> Key) {
         let k = self.element.degree();
         let corner = |c: usize| key(solid.corners[c].map(|x| k * x));

@@ -1,5 +1,5 @@
-//! Built-in meshes: interval, rectangle, disc, half-disc, ring and polygon; box, ball, cylinder, tube
-//! and extrusion. The cells of a shape
+//! Built-in meshes: interval, rectangle, disc, half-disc, ring and polygon; box, ball, cylinder,
+//! tube and extrusion. The cells of a shape
 //! are the same for every order; `elevate` adds the nodes between corners. `*_nodes` count without
 //! building, to check first whether a mesh fits into memory.
 

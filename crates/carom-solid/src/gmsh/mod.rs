@@ -1,9 +1,9 @@
 //! Meshes from and to Gmsh: .msh files of version 4.1 and 2.2, text and binary, of order 1 to 3.
 //!
-//! A body is a *named* physical surface (dimension 1: curve, dimension 3: volume); its sides are the
-//! named physical curves (points, surfaces) on its boundary. Defects that can be repaired without
-//! changing the geometry are, and [`Mesh::repairs`](crate::Mesh::repairs) lists them; others are
-//! errors with line or byte.
+//! A body is a *named* physical surface (dimension 1: curve, dimension 3: volume); its sides are
+//! the named physical curves (points, surfaces) on its boundary. Defects that can be repaired
+//! without changing the geometry are, and [`Mesh::repairs`](crate::Mesh::repairs) lists them;
+//! others are errors with line or byte.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

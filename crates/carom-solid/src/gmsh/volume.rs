@@ -17,12 +17,13 @@ use crate::shape::{Domain, Hex8, Hex27, Shape, Tet4, Tet10, Tet20};
 use crate::validity::Validity;
 
 impl MshFile {
-    /// The mesh of a physical volume. Its sides are the physical surfaces with facets on its boundary.
+    /// The mesh of a physical volume. Its sides are the physical surfaces with facets on its
+    /// boundary.
     ///
     /// # Errors
-    /// With line or byte: an unknown name, cells other than tetrahedra of one order 1 to 3 or hexahedra
-    /// of order 1 or 2, cells that are folded or overlap, coincident nodes, facets of more than two
-    /// cells, edges at which the boundary touches itself.
+    /// With line or byte: an unknown name, cells other than tetrahedra of one order 1 to 3 or
+    /// hexahedra of order 1 or 2, cells that are folded or overlap, coincident nodes, facets of
+    /// more than two cells, edges at which the boundary touches itself.
     pub fn volume(&self, name: &str) -> Result<Mesh, MshError> {
         let mut group = Group::<3>::of(self, name)?;
         let element = group.element;

@@ -1,7 +1,7 @@
 //! Writes bodies as a .msh file, version 4.1, text. [`read`](super::read()) and
-//! [`body`](super::MshFile::body) or [`volume`](super::MshFile::volume) recover them bitwise, and Gmsh
-//! opens the file. Each body is a surface, each of its sides a curve, in space a volume and a surface;
-//! sides of the same name on several bodies are one physical group.
+//! [`body`](super::MshFile::body) or [`volume`](super::MshFile::volume) recover them bitwise, and
+//! Gmsh opens the file. Each body is a surface, each of its sides a curve, in space a volume and a
+//! surface; sides of the same name on several bodies are one physical group.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

@@ -1,5 +1,5 @@
-//! The volumetric part of the laws, Ψ = Ψ₀ + W(q): Λ enters in W alone, and q measures the change of
-//! volume,
+//! The volumetric part of the laws, Ψ = Ψ₀ + W(q): Λ enters in W alone, and q measures the change
+//! of volume,
 //!
 //! ```text
 //! neo-Hookean             q = J − 1    ∂q/∂F = cof F    W = Λ/2 (ln (1 + q))²
@@ -7,8 +7,8 @@
 //! linear elastic          q = tr ε     ∂q/∂F = I        W = Λ/2 q²
 //! ```
 //!
-//! Measures are laws themselves, with q as their energy, so that the kernels of forces, tangents and
-//! discrete gradients serve them too.
+//! Measures are laws themselves, with q as their energy, so that the kernels of forces, tangents
+//! and discrete gradients serve them too.
 
 use carom_algebra::{Mat, Vector};
 
@@ -187,7 +187,8 @@ impl<const D: usize> Volumetric<D> for NeoHookean {
         [energy, pressure, (1.0 - logarithm) / (ratio * ratio)].map(|part| self.lambda * part)
     }
 
-    /// With x = (m₁ − m₀)/(1 + m₀) and q(x) = ln(1 + x)/x: Λ (ln(1 + m₀) + ln(1 + m₁)) q(x)/(2 (1 + m₀)).
+    /// With x = (m₁ − m₀)/(1 + m₀) and q(x) = ln(1 + x)/x: Λ (ln(1 + m₀) + ln(1 + m₁)) q(x)/(2
+    /// (1 + m₀)).
     fn volumetric_between(&self, [start, end]: [f64; 2]) -> [f64; 2] {
         let ratio = 1.0 + start;
         let [quotient, slope] = logarithmic_quotient((end - start) / ratio);

@@ -1,7 +1,8 @@
 //! Shape functions φᵃ(ξ) of the reference cells: Lagrange polynomials, φᵃ(ξᵇ) = δᵃᵇ, Σφᵃ = 1.
 //!
 //! Node order is VTK's: corners, then the nodes of each edge in its direction, then those of faces
-//! and of the interior. One file per reference domain; the test at the end of this file covers every shape.
+//! and of the interior. One file per reference domain; the test at the end of this file covers
+//! every shape.
 
 mod hull;
 mod line;
@@ -21,8 +22,8 @@ use crate::quadrature::Rule;
 
 /// A reference domain in `R` coordinates: the interval −1..1 or its powers, or the unit simplex.
 pub trait Domain<const R: usize>: Send + Sync + 'static {
-    /// Whether it is a product of intervals: a square or a cube. Its shape functions then have their
-    /// degree along every axis, otherwise in total.
+    /// Whether it is a product of intervals: a square or a cube. Its shape functions then have
+    /// their degree along every axis, otherwise in total.
     const TENSOR: bool = false;
 
     /// Barycentre.

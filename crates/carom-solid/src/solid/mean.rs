@@ -1,18 +1,19 @@
-//! Mean dilatation: the volumetric energy of a cell depends on one measure m of its change of volume
-//! alone (J. C. Nagtegaal, D. M. Parks, J. R. Rice, Comput. Methods Appl. Mech. Engrg. 4 (1974)
-//! 153–177; J. C. Simo, R. L. Taylor, K. S. Pister, ibid. 51 (1985) 177–208),
+//! Mean dilatation: the volumetric energy of a cell depends on one measure m of its change of
+//! volume alone (J. C. Nagtegaal, D. M. Parks, J. R. Rice, Comput. Methods Appl. Mech. Engrg. 4
+//! (1974) 153–177; J. C. Simo, R. L. Taylor, K. S. Pister, ibid. 51 (1985) 177–208),
 //!
 //! ```text
 //! U = Σ w Ψ₀(F) + V W(m),   m = (1/V) Σ w q(F),   Ψ = Ψ₀ + W(q)
 //! f = f₀ + p g,   g = Σ w ∂q/∂y,   p = W′(m),      K = K₀ + p ∂g/∂y + W″/V g ⊗ g
 //! ```
 //!
-//! with Ψ₀ the law without Λ and q its measure (`material/volumetric.rs`): m is the relative change of
-//! the cell's volume for the neo-Hookean law. A cell of nearly incompressible material has one
-//! constraint instead of one at each of its points. Where F is constant in a cell, it changes nothing.
+//! with Ψ₀ the law without Λ and q its measure (`material/volumetric.rs`): m is the relative change
+//! of the cell's volume for the neo-Hookean law. A cell of nearly incompressible material has one
+//! constraint instead of one at each of its points. Where F is constant in a cell, it changes
+//! nothing.
 //!
-//! The discrete gradient is p̄ ḡ with the quotient p̄ = ΔW/Δm and the discrete gradient ḡ of Σ w q, so
-//! that its work is V ΔW exactly.
+//! The discrete gradient is p̄ ḡ with the quotient p̄ = ΔW/Δm and the discrete gradient ḡ of Σ w q,
+//! so that its work is V ΔW exactly.
 
 use super::body::divergence_of;
 use super::{Solid, SolidError};

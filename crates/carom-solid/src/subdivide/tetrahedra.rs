@@ -1,9 +1,10 @@
-//! A tetrahedron as `parts`³ tetrahedra. With its corners in some order at (0,0,0), (1,0,0), (1,1,0)
-//! and (1,1,1), the lattice of small cubes, each cut along the orders of its directions (H. Freudenthal,
-//! Ann. Math. 43 (1942) 580–582), has parts³ tetrahedra in it, and divides each face into the same
-//! triangles whatever the order: neighbours agree. The order only chooses the diagonal of the
-//! octahedra between the tetrahedra at corners; the shortest of the three is taken, so that cells do not
-//! become flat when they are divided again (J. Bey, Computing 55 (1995) 355–378).
+//! A tetrahedron as `parts`³ tetrahedra. With its corners in some order at (0,0,0), (1,0,0),
+//! (1,1,0) and (1,1,1), the lattice of small cubes, each cut along the orders of its directions (H.
+//! Freudenthal, Ann. Math. 43 (1942) 580–582), has parts³ tetrahedra in it, and divides each face
+//! into the same triangles whatever the order: neighbours agree. The order only chooses the
+//! diagonal of the octahedra between the tetrahedra at corners; the shortest of the three is taken,
+//! so that cells do not become flat when they are divided again (J. Bey, Computing 55 (1995)
+//! 355–378).
 
 use carom_algebra::Vector;
 
@@ -14,8 +15,8 @@ use crate::shape::Shape;
 /// Barycentric coordinates times a whole number.
 type Weights = [usize; 4];
 
-/// Even orders of the corners, one per diagonal of the octahedron: from the middle of 0 and the third
-/// to that of the second and the fourth.
+/// Even orders of the corners, one per diagonal of the octahedron: from the middle of 0 and the
+/// third to that of the second and the fourth.
 const ORDERS: [[usize; 4]; 3] = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2]];
 
 /// Orders of the directions with positive volume after exchanging two corners of every other one.
@@ -114,7 +115,8 @@ mod tests {
     use crate::generate::testing::{sound, volume};
     use crate::mesh::Element;
 
-    /// A ball and its parts have the same curved boundary, so the same volume; a facet becomes parts².
+    /// A ball and its parts have the same curved boundary, so the same volume; a facet becomes
+    /// parts².
     #[test]
     fn parts_fill_the_whole() {
         for element in [Element::Tet4, Element::Tet10, Element::Tet20] {

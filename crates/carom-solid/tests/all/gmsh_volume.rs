@@ -117,8 +117,8 @@ fn file(nodes: &[[f64; 3]], cells: &[[usize; 4]]) -> Result<Mesh, MshError> {
 const CORNERS: [[f64; 3]; 6] =
     [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 0.0, -1.0]];
 
-/// Mirrored cells are turned; flat, overlapping and crowded ones, and bodies that hang together at an
-/// edge, are named with their cells and line.
+/// Mirrored cells are turned; flat, overlapping and crowded ones, and bodies that hang together at
+/// an edge, are named with their cells and line.
 #[test]
 fn faults_are_named() {
     let mirrored = file(&CORNERS[..4], &[[1, 3, 2, 4]]).unwrap();

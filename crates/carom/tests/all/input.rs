@@ -122,7 +122,8 @@ fn a_silent_pipe_is_named_after_two_seconds() {
     }
 }
 
-/// The paths of cases start at the folder of a pipe, and at the working directory for standard input.
+/// The paths of cases start at the folder of a pipe, and at the working directory for standard
+/// input.
 #[test]
 fn a_study_is_read_once_from_a_pipe_or_standard_input() {
     const STUDY: &str = "case = 'case.toml'\nset = { 'time.end' = 0.05 }\n[[arm]]\nname = 'only one'\n";

@@ -4,8 +4,8 @@ use carom_record::{Manifest, Stop};
 
 use crate::common::{Place, text};
 
-/// A press that moves through a block: a cell is inverted, whatever the step. A ball beside it matters
-/// to nothing.
+/// A press that moves through a block: a cell is inverted, whatever the step. A ball beside it
+/// matters to nothing.
 const CRUSHED: &str = r#"
 title = "Crushed"
 dimension = 2

@@ -91,8 +91,8 @@ fn advice_can_be_followed() {
     assert!(stderr.contains("st/arms"), "{stderr}");
 }
 
-/// The other arms have their rows, the message says what to remove, and after that the arm is computed
-/// as at first.
+/// The other arms have their rows, the message says what to remove, and after that the arm is
+/// computed as at first.
 #[test]
 fn a_damaged_arm_is_a_row_with_its_reason() {
     let place = place("damaged-arm", STUDY);

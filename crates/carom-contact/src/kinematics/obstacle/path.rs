@@ -9,12 +9,12 @@ use super::near::{Near, Point, distance};
 const SHORTEST: f64 = 1.0 / 1024.0;
 
 impl Obstacle {
-    /// The largest depth on the way between two points that are no deeper than `limit`, if it is deeper,
-    /// and the normals where the point enters and leaves.
+    /// The largest depth on the way between two points that are no deeper than `limit`, if it is
+    /// deeper, and the normals where the point enters and leaves.
     ///
-    /// At a distance s the signed distance is less by s at most: where it is g, a greater depth than the
-    /// largest so far is not nearer than g plus that. No depth is missed by more than the shortest step, the
-    /// limit or 1/1024 of the path.
+    /// At a distance s the signed distance is less by s at most: where it is g, a greater depth
+    /// than the largest so far is not nearer than g plus that. No depth is missed by more than the
+    /// shortest step, the limit or 1/1024 of the path.
     pub(in super::super) fn deepest_between(
         &self,
         from: Point,

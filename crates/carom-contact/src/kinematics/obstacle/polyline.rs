@@ -14,7 +14,8 @@
 
 use super::near::{Near, Point, distance, round};
 
-/// Cosine of the largest turn at a sharp corner across which a node keeps its contact: as for facets.
+/// Cosine of the largest turn at a sharp corner across which a node keeps its contact: as for
+/// facets.
 const CORNER_COSINE: f64 = 0.87;
 
 /// A piece of the chain.
@@ -193,8 +194,8 @@ impl Polyline {
         }
     }
 
-    /// The piece on which a node in contact is measured: it slides through rounded corners, and past
-    /// a sharp one on the line of its segment, since a vertex has no normal.
+    /// The piece on which a node in contact is measured: it slides through rounded corners, and
+    /// past a sharp one on the line of its segment, since a vertex has no normal.
     pub(in super::super) fn followed(&self, mut piece: usize, at: Point) -> usize {
         for _ in 0..self.pieces.len() {
             let Some(next) = self.beyond(piece, at) else { break };

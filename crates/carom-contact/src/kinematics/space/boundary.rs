@@ -1,9 +1,10 @@
 //! The boundary of a body in space as curved facets in global node numbers: neighbours across edges
 //! and around corners, and on which side of it a point lies.
 //!
-//! The sign of the distance to a closed surface is that of d·n at its nearest point; on an edge n is
-//! the sum of both facets' normals, at a corner the sum of all facets' normals there, each weighted
-//! with the facet's angle (Bærentzen and Aanæs, IEEE Trans. Vis. Comput. Graph. 11 (2005)).
+//! The sign of the distance to a closed surface is that of d·n at its nearest point; on an edge n
+//! is the sum of both facets' normals, at a corner the sum of all facets' normals there, each
+//! weighted with the facet's angle (Bærentzen and Aanæs, IEEE Trans. Vis. Comput. Graph. 11
+//! (2005)).
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -30,8 +31,8 @@ pub struct Boundary {
 }
 
 impl Boundary {
-    /// Facets as lists of global nodes, corners first, counter-clockwise seen from outside: those of
-    /// the side, then the `rest` of the body's boundary, of which the first `siblings` belong to
+    /// Facets as lists of global nodes, corners first, counter-clockwise seen from outside: those
+    /// of the side, then the `rest` of the body's boundary, of which the first `siblings` belong to
     /// sides that other contacts keep the same nodes away from.
     pub fn new(shape: FacetShape, side: &[Vec<usize>], rest: &[Vec<usize>], siblings: usize) -> Self {
         let facets: Vec<&Vec<usize>> = side.iter().chain(rest).collect();
@@ -241,8 +242,8 @@ impl ClosedSurface {
         }
     }
 
-    /// Where a node lies at the positions of the last update, searched from a facet near it if one is
-    /// known; `None` without a boundary.
+    /// Where a node lies at the positions of the last update, searched from a facet near it if one
+    /// is known; `None` without a boundary.
     pub fn depth(&self, node: usize, from: Option<usize>, y: &[f64]) -> Option<Depth> {
         let at = place(y, node);
         let distance = |facet: usize| Some(self.boundary.patch(facet).nearest(y, at).distance);

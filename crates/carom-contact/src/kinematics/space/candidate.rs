@@ -6,7 +6,8 @@ use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
 use super::patch::place;
 use crate::kinematics::Kinematics;
 
-/// A node this far behind a facet, relative to its length, at the start of a step has not crossed it.
+/// A node this far behind a facet, relative to its length, at the start of a step has not crossed
+/// it.
 const BEHIND: f64 = 0.02;
 
 impl NodeToPatch {

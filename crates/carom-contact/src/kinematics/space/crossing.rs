@@ -1,5 +1,5 @@
-//! Crossing of straight paths in space: x(θ) = y(ξ, θ), the node and the facet both moving on straight
-//! lines from θ = 0 to θ = 1.
+//! Crossing of straight paths in space: x(θ) = y(ξ, θ), the node and the facet both moving on
+//! straight lines from θ = 0 to θ = 1.
 //!
 //! Newton's method from the instant at which the gap vanishes if it changes linearly; unlike in the
 //! plane, no certificate says that none was missed.

@@ -1,7 +1,7 @@
 //! Secondary nodes against a primary side of curved facets in space.
 //!
-//! The gap is measured at the closest point of the pair's facet, which is extrapolated up to a fifth
-//! of its height beyond its edges; between solves a pair past an edge is handed over:
+//! The gap is measured at the closest point of the pair's facet, which is extrapolated up to a
+//! fifth of its height beyond its edges; between solves a pair past an edge is handed over:
 //!
 //! ```text
 //! blunt edge       to the facet on which the nearest point lies; where that is the edge itself, the
@@ -237,8 +237,9 @@ impl Kinematics for NodeToPatch {
                         if twice.contains(&(pair.node, facet)) =>
                     {
                         let beyond = self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1;
-                        // In the joint the node has both pairs. Beyond the reach of this facet that of
-                        // the other one is responsible: an extrapolated facet is not the surface.
+                        // In the joint the node has both pairs. Beyond the reach of this facet that
+                        // of the other one is responsible: an extrapolated facet is not the
+                        // surface.
                         if beyond <= REACH || pair.active && !starts {
                             return true;
                         }

@@ -14,8 +14,8 @@
 //!
 //! A hit may be false. Its distance |f| is then below 4δ + 2·separation, δ the tolerance times the
 //! extent of f along ξ or θ, whichever is larger. θ is early by at most the tolerance +
-//! (4δ + 2·separation)/v, v the normal velocity, where v does not vanish. Only a query that exhausts
-//! its budget may be coarser.
+//! (4δ + 2·separation)/v, v the normal velocity, where v does not vanish. Only a query that
+//! exhausts its budget may be coarser.
 
 mod path;
 #[cfg(test)]

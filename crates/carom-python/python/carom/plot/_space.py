@@ -18,7 +18,8 @@ from ._style import Size, axes, labelled, style
 
 Floats = NDArray[np.float64]
 
-#: Triangles between the nodes (corners, edges, interior) of plane Lagrange cells, by number of nodes.
+#: Triangles between the nodes (corners, edges, interior) of plane Lagrange cells, by number of
+#: nodes.
 _LATTICE = {
     3: [(0, 1, 2)],
     4: [(0, 1, 2), (0, 2, 3)],

@@ -43,7 +43,8 @@ _SETTINGS: Any = {
 @contextmanager
 def style() -> Iterator[None]:
     """Matplotlib settings of these figures, for own ones: ``with carom.plot.style(): …``."""
-    # Only these: `rc_context` would also undo the backend that notebooks choose at the first figure.
+    # Only these: `rc_context` would also undo the backend that notebooks choose at the first
+    # figure.
     before = {name: matplotlib.rcParams[name] for name in _SETTINGS}
     matplotlib.rcParams.update(_SETTINGS)
     try:

@@ -69,7 +69,8 @@ fn study(runs: &[Made]) -> (StudyManifest, Vec<Row>) {
     (manifest, rows.collect())
 }
 
-/// The same with deviations of a displacement in the place of energy drifts, from three identical runs.
+/// The same with deviations of a displacement in the place of energy drifts, from three identical
+/// runs.
 fn by_cost((manifest, rows): &(StudyManifest, Vec<Row>)) -> Ranking {
     let column = || ("A.uy".to_owned(), vec![0.0, 1.0]);
     let run = || Trajectory { times: vec![0.0, 1.0], columns: [column()].into(), metrics: Vec::new() };
@@ -97,8 +98,8 @@ fn accuracy_goes_before_cost() {
     assert_eq!((verdict.arm, verdict.alike, verdict.confidence), (1, vec!["cheap".into()], Confidence::Low));
 }
 
-/// A is first at the coarse level (0.2 against 0.4) and alike at the fine one (0.051 and 0.049); C is
-/// worse than A at the coarse level, and accurate at the fine one.
+/// A is first at the coarse level (0.2 against 0.4) and alike at the fine one (0.051 and 0.049); C
+/// is worse than A at the coarse level, and accurate at the fine one.
 #[test]
 fn a_refusal_is_true() {
     let at_two_levels = |fine: [f64; 2]| {
@@ -211,9 +212,9 @@ fn an_arm_that_creates_energy_is_last_and_not_recommended() {
     assert_eq!(why, ["no arm that did not create energy has a value for: energy_drift, which should be 0"]);
 }
 
-/// A has the error 0.4/cost. At the coarse step B has 0.3 at the cost 2, where A has 0.2: half more,
-/// which is a change unless the uncertainties are as large. At the fine step A does not reach the
-/// cost of B.
+/// A has the error 0.4/cost. At the coarse step B has 0.3 at the cost 2, where A has 0.2: half
+/// more, which is a change unless the uncertainties are as large. At the fine step A does not reach
+/// the cost of B.
 #[test]
 fn conclusions_change_by_more_than_the_uncertainties() {
     let runs = [("a", 0, 0.4, 1.0), ("b", 0, 0.3, 2.0), ("a", 1, 0.1, 4.0), ("b", 1, 0.03, 8.0)];

@@ -17,24 +17,26 @@ type Remedy = (Option<Kind>, &'static str);
 const SHORTER: Remedy = (Some(Kind::Shorter), "a shorter step from the start");
 const LONGER: Remedy = (
     Some(Kind::Longer),
-    "a longer step: contact creates energy where nodes begin to touch, the less often the longer the step",
+    "a longer step: energy is created where nodes come into contact, less often with longer steps",
 );
 const DAMPED: Remedy = (Some(Kind::Damped), "more damping of high frequencies by the same scheme");
 const BATHE: Remedy = (Some(Kind::Bathe), "a scheme that dissipates what the mesh does not resolve");
-const PENALTY: Remedy = (Some(Kind::Penalty), "penalty springs, which have no active set that must settle");
+const PENALTY: Remedy = (Some(Kind::Penalty), "penalty springs, which have no active set that must converge");
 const MULTIPLIER: Remedy = (Some(Kind::Multiplier), "multipliers, which prevent penetration exactly");
 const STIFFER: Remedy = (Some(Kind::Stiffer), "stiffer springs");
 const SOFTER: Remedy = (Some(Kind::Softer), "softer springs, which a step resolves better");
-const PROJECT: Remedy =
-    (Some(Kind::Project), "velocities that are projected where contact begins, so that it creates no energy");
+const PROJECT: Remedy = (
+    Some(Kind::Project),
+    "velocities that are projected where contact begins, so that this creates no energy",
+);
 const FULL: Remedy = (Some(Kind::Full), "a new tangent in every iteration");
-const FINER: Remedy =
-    (None, "a finer mesh at the place (`refine` of a polygon, or a mesh file), or a smaller load");
-const ROUNDED: Remedy = (None, "a rounded corner at the place, or the other side as the primary one");
-const DEGREE: Remedy = (None, "an element of lower degree (T3) at the place: its cells invert later");
+const FINER: Remedy = (None, "a finer mesh there (`refine` of a polygon, or a mesh file), or a smaller load");
+const ROUNDED: Remedy = (None, "a rounded corner there, or the other side as the primary one");
+const DEGREE: Remedy = (None, "an element of lower degree (T3) there: its cells invert later");
 const GUARD_OFF: Remedy = (
     None,
-    "`time.energy_guard = false`, to inspect what the run does beyond this point; its results are then suspect",
+    "`time.energy_guard = false`, to inspect what the run does beyond this point; its results are then \
+     unreliable",
 );
 
 /// The remedies of each reason.
@@ -49,7 +51,7 @@ const TABLE: &[(&str, &[Remedy])] = &[
             SHORTER,
             FULL,
             PENALTY,
-            (None, "supports that leave no rigid motion, and no part of zero stiffness"),
+            (None, "supports that prevent every rigid motion, and no part of zero stiffness"),
         ],
     ),
     (
@@ -57,7 +59,8 @@ const TABLE: &[(&str, &[Remedy])] = &[
         &[
             (
                 None,
-                "supports that do not hold the nodes of the contact, or a contact without the nodes that are held",
+                "supports that do not constrain the nodes of the contact, or contact sides without the \
+                 supported nodes",
             ),
             PENALTY,
         ],
@@ -71,7 +74,7 @@ const TABLE: &[(&str, &[Remedy])] = &[
         )],
     ),
     ("unconstrained-body", &[(None, "a support for the body, or a scheme with inertia")]),
-    ("jump", &[(None, "a `move` that begins where its nodes are")]),
+    ("jump", &[(None, "a `move` that starts at the positions of its nodes")]),
     ("penetration", &[SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FINER, ROUNDED]),
     ("not-finite", &[SHORTER, BATHE, FINER]),
     (AUDIT, &[SHORTER, (None, "a report of this run to the authors: one of the two methods is wrong")]),

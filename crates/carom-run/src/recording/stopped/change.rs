@@ -59,8 +59,8 @@ impl<'a> Original<'a> {
         Self { case, source: same.then_some(source), tables }
     }
 
-    /// A change of the case, at one contact or at all; none if it has no options, or these give no case:
-    /// a key that is given may contradict them.
+    /// A change of the case, at one contact or at all; none if it has no options, or these give no
+    /// case: a key that is given may contradict them.
     pub(super) fn changed(&self, kind: Kind, contact: Option<&str>) -> Option<Change> {
         let sets = self.sets(kind, contact)?;
         let case = read(&document(self.source?, &sets)?).ok()?;
@@ -127,8 +127,8 @@ impl<'a> Original<'a> {
         (!sets.is_empty()).then_some(sets)
     }
 
-    /// The keys of the tables of some contacts; several contacts have one table in the case if it says
-    /// `between`.
+    /// The keys of the tables of some contacts; several contacts have one table in the case if it
+    /// says `between`.
     fn each(
         &self,
         at: Option<&str>,

@@ -27,8 +27,8 @@ pub(super) struct Record<'a> {
     pub case: &'a Case,
     pub source: &'a Source,
     pub simulation: &'a Simulation,
-    /// States of this run at fixed steps, the latest first; none if it was resumed, since the same run
-    /// must try the same.
+    /// States of this run at fixed steps, the latest first; none if it was resumed, since the same
+    /// run must try the same.
     pub earlier: Option<&'a [State; 2]>,
 }
 
@@ -60,7 +60,8 @@ impl Found {
     /// Tries the changes and puts what got past first. Ctrl-C leaves the rest untried.
     pub(super) fn try_out(&mut self, record: &Record, threads: usize, interrupted: &AtomicBool) {
         let simulation = record.simulation;
-        // Not the counters: those of a run that was resumed count the attempts of the last step twice.
+        // Not the counters: those of a run that was resumed count the attempts of the last step
+        // twice.
         let effort = Effort {
             iterations: trials::TYPICAL * simulation.state().step,
             unknowns: simulation.model().free.len() as u64,

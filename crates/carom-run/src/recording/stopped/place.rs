@@ -57,7 +57,8 @@ fn elsewhere(
     let contact = |k: usize| Some(model.contacts[k].name.clone());
     if let Some(dof) = trace.worst() {
         let node = dof / model.dimension;
-        // The contact in which it, or a facet that has it, is active; a skin has all nodes of a body.
+        // The contact in which it, or a facet that has it, is active; a skin has all nodes of a
+        // body.
         let mut rows = Rows::new(model.dimension);
         let mut touched = (0..model.contacts.len()).filter(|&k| {
             state.pairs[k].iter().filter(|pair| pair.active).any(|pair| {

@@ -15,8 +15,8 @@ use crate::initial::saved;
 const BEYOND: f64 = 5.0;
 /// Bisections of a step in a trial. What succeeds with few of them succeeds with more.
 const BISECTIONS: u32 = 4;
-/// Effort of one trial: at most this multiple of that of the run, and at most this many iterations ×
-/// unknowns (about a second). A short run may take the least, too.
+/// Effort of one trial: at most this multiple of that of the run, and at most this many
+/// iterations × unknowns (about a second). A short run may take the least, too.
 const MULTIPLE: u64 = 8;
 const MOST: u64 = 4_000_000;
 const LEAST: u64 = 1_000_000;
@@ -70,15 +70,15 @@ impl Trials<'_> {
     /// How the trials are made.
     pub(super) fn words(&self) -> String {
         format!(
-            "Each change was tried alone, up to {BEYOND} steps past the place, with at most {BISECTIONS} bisections \
-             of a step and {:.1e} iterations × unknowns (the run took {:.1e}).",
+            "Each change was tried alone, up to {BEYOND} steps past the stop, with at most {BISECTIONS} \
+             bisections of a step and {:.1e} iterations × unknowns (the run took {:.1e}).",
             self.effort.limit() as f64,
             self.effort.spent() as f64
         )
     }
 
-    /// Runs a changed case past the stop: from its start if that is affordable, otherwise, or if it then
-    /// ends before the run itself did, from an earlier state of the run.
+    /// Runs a changed case past the stop: from its start if that is affordable, otherwise, or if it
+    /// then ends before the run itself did, from an earlier state of the run.
     pub(super) fn trial(&self, change: &Change, interrupted: &AtomicBool) -> Tried {
         let factor = match change.kind {
             Kind::Shorter => 4,

@@ -1,5 +1,5 @@
-//! Shapes of space at every order: exact volumes and areas, closed and outward boundaries, conforming
-//! cells with certified Jacobians.
+//! Shapes of space at every order: exact volumes and areas, closed and outward boundaries,
+//! conforming cells with certified Jacobians.
 
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -76,8 +76,8 @@ pub(crate) fn sound(mesh: &Mesh) -> f64 {
     of_sides.sort_by_key(|f| (f.cell, &f.nodes));
     of_sides.dedup();
     assert_eq!(of_sides.len(), skin.len());
-    // Facets with the same corners share all nodes, in two cells inside and one on the boundary; each
-    // edge of the boundary belongs to two facets of it, in opposite directions.
+    // Facets with the same corners share all nodes, in two cells inside and one on the boundary;
+    // each edge of the boundary belongs to two facets of it, in opposite directions.
     let ends = mesh.element.facet_shape().corners();
     let mut facets: HashMap<Vec<usize>, Vec<Vec<usize>>> = HashMap::new();
     for cell in 0..mesh.cell_count() {

@@ -67,7 +67,8 @@ impl Live {
         self.warned = Some(warnings.len());
     }
 
-    /// Shows the warnings that a run left at its end, whether it finished or stopped, and erases the bar.
+    /// Shows the warnings that a run left at its end, whether it finished or stopped, and erases
+    /// the bar.
     pub(crate) fn end(mut self, done: &Result<Outcome, Failure>) {
         if matches!(done, Ok(_) | Err(Failure::Stopped { .. })) {
             self.warn();
@@ -103,7 +104,8 @@ impl Live {
 }
 
 impl Live {
-    /// Shows that a step is still being bisected: in a log once in a while, on a terminal in the bar.
+    /// Shows that a step is still being bisected: in a log once in a while, on a terminal in the
+    /// bar.
     fn bisecting(&mut self, progress: &Progress) {
         if self.json {
             let _ = out::event(&Event { event: "bisecting", progress });

@@ -86,7 +86,7 @@ fn text(study: &Study) -> String {
         let value = |x: Option<f64>| x.map_or("–".into(), short);
         let word = v.held.as_ref().map_or_else(
             || format!("{:9}", v.word()),
-            |held| format!("held in {} of {}", held.held, held.of),
+            |held| format!("confirmed in {} of {}", held.held, held.of),
         );
         let ratio = v.held.as_ref().and_then(|held| held.ratio.as_ref()).map_or_else(String::new, |ratio| {
             let (low, high) = ratio.range();

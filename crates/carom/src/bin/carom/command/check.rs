@@ -63,8 +63,8 @@ struct Overlap {
 }
 
 impl Overlap {
-    /// Finds it, and draws it beside the other files of the working directory. A case whose model cannot
-    /// be built has none; what is wrong with it is told later.
+    /// Finds it, and draws it beside the other files of the working directory. A case whose model
+    /// cannot be built has none; what is wrong with it is told later.
     fn of(case: &Case, path: &Path) -> Result<Self, Failure> {
         let placed = case.initial.is_some() || case.manufactured.is_some();
         let Some(model) = carom::Setup::new(case).build().ok().filter(|_| !placed) else {

@@ -16,7 +16,7 @@ pub(crate) struct Flags {
     /// Do not write figures and report page
     #[arg(long)]
     pub(crate) no_report: bool,
-    /// Where a run stops, do not try changes with which it may continue
+    /// If a run stops, do not try changes that may get it past the stop
     #[arg(long)]
     pub(crate) no_trials: bool,
     /// Check the contact of every step by a second method, which compares every node with the whole

@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 fn meshes(case: &Case, document: &Document) -> Result<Vec<Mesh>, Failure> {
     let mesh = |(k, spec): (usize, &carom::case::BodySpec)| {
         spec.make_mesh(case.dimension).map_err(|why| {
-            let what = format!("the mesh of body \"{}\" cannot be made", spec.name);
+            let what = format!("the mesh of body \"{}\" cannot be generated", spec.name);
             Failure::Case(document.diagnose_all(&[Problem::new(
                 format!("body[{k}].mesh"),
                 what,

@@ -45,8 +45,8 @@ fn resolved(document: &Document) -> Result<Case, Failure> {
     Ok(read(document).map_err(|problems| document.diagnose_all(&problems))?)
 }
 
-/// A study that has been read; the paths of its cases start at its folder, or at the working directory
-/// if it comes from standard input.
+/// A study that has been read; the paths of its cases start at its folder, or at the working
+/// directory if it comes from standard input.
 fn plan(document: &Document, path: &Path) -> Result<Plan, Failure> {
     Ok(Plan::of(document, path.parent().unwrap_or(Path::new("")))?)
 }

@@ -42,9 +42,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         if let Some((_, option)) = of_a_run.iter().find(|(given, _)| *given) {
             let what =
                 format!("{option} is an option for runs, but {} is a study", arguments.directory.display());
-            let help = "each arm of a study uses one thread, is not audited, and tries nothing where it \
-                        stops; --jobs sets the number of concurrent arms, and the timings of an arm are in \
-                        its manifest.json";
+            let help = "each arm of a study uses one thread, without audit and without trials where it stops; \
+                --jobs sets the number of concurrent arms, and the timings of an arm are in its manifest.json";
             return Err(Failure::Argument { what, help: help.to_owned() });
         }
         return super::study::resume(&arguments.directory, arguments.jobs, !flags.no_report, flags.json);

@@ -15,7 +15,7 @@ use crate::exit::{Exit, Failure};
 use crate::live::{duration, stop_on_signal};
 use crate::{console, directory, out, study_summary};
 
-use super::study_parts::Part;
+use super::study_parts::StudyCommand;
 
 /// Run a case many times with some of its values replaced, and compare the runs
 #[derive(clap::Args)]
@@ -29,7 +29,7 @@ Examples:
 A failed arm is a row of the table; the exit code is still 0.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
-    part: Option<Part>,
+    command: Option<StudyCommand>,
     /// The study file, or - for standard input
     #[arg(required = true)]
     study: Option<PathBuf>,
@@ -49,8 +49,8 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    if let Some(part) = &arguments.part {
-        return part.run();
+    if let Some(command) = &arguments.command {
+        return command.run();
     }
     let path = arguments.study.as_deref().unwrap_or(Path::new(super::STDIN));
     let jobs = super::parallel("--jobs", arguments.jobs)?;

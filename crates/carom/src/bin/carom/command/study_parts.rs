@@ -11,15 +11,15 @@ use crate::live::{Live, stop_on_signal};
 use crate::simulation::seen;
 use crate::{console, directory, out, study_summary};
 
-/// Parts of a study that separate processes, also on other machines, carry out
+/// Steps of a study that is computed by separate processes, also on several machines
 #[derive(clap::Subcommand)]
-pub(super) enum Part {
-    /// Write the directory of a study and compute nothing
+pub(super) enum StudyCommand {
+    /// Write the directory of a study without computing any run
     #[command(after_help = "\
 Then compute every run, in any order and on any machine that shares the directory:
   sbatch DIR/slurm.sh                           with --slurm
   seq N | parallel carom study arm DIR          with GNU parallel, for N runs
-and make tables and page with:
+and write the tables and the page with:
   carom study collect DIR")]
     Plan {
         /// The study file, or - for standard input
@@ -38,10 +38,10 @@ and make tables and page with:
         /// Number of the run, from 1
         number: usize,
     },
-    /// Make tables and page of what has been computed, and list what is missing
+    /// Write the tables and the page of what has been computed, and list what is missing
     ///
-    /// Once all runs of a study with a goal have ended, one of them is computed twice more, with two
-    /// threads and resumed, to check that it is reproduced bit for bit.
+    /// Once all runs of a study with a goal have ended, one of them is computed twice more, with
+    /// two threads and resumed, to check that the results are bitwise identical.
     Collect {
         /// Directory of the study
         directory: PathBuf,
@@ -51,7 +51,7 @@ and make tables and page with:
     },
 }
 
-impl Part {
+impl StudyCommand {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         match self {
             Self::Plan { study, out, slurm } => plan(study, out, *slurm),

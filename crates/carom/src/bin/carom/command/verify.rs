@@ -33,8 +33,8 @@ Examples:
 Exit codes: 0 all met · 1 an expectation was missed · 2 a case is invalid · 3 a run stopped unexpectedly")]
 #[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
-    /// Cases, studies, or folders of them [default: cases/, or without it the fast cases that are built
-    /// into the program]
+    /// Cases, studies, or folders of them [default: cases/, or without it the fast cases that are
+    /// built into the program]
     paths: Vec<PathBuf>,
     /// Skip expectations marked slow, and cases that have no others
     #[arg(long)]
