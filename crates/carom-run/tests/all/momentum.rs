@@ -177,7 +177,7 @@ fn is_balanced(path: &Path) -> bool {
     }
     // These are long; what they have of contact they have early.
     let is_long = ["ladder", "self"].iter().any(|folder| path.to_string_lossy().contains(folder));
-    let Some(worst) = worst(&case, if is_long { 100 } else { 600 }) else { return false };
+    let Some(worst) = worst(&case, if is_long { 100 } else { 300 }) else { return false };
     // As above.
     let spring = case.time.scheme.conserves()
         && case.contacts.iter().any(|contact| contact.enforcement == Enforcement::Penalty);
