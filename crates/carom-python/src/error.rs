@@ -56,6 +56,12 @@ pub(crate) fn of_study(error: &StudyError) -> PyErr {
             let cure = format!("remove {} and compute the arm again", place.display());
             RecordError::new_err(format!("{error}\ntry: {cure}"))
         }
+        StudyError::Timed { .. } => RecordError::new_err(format!(
+            "{error}\ntry: compute it in this process, without client, or `carom study plan --settle`"
+        )),
+        StudyError::OtherMachine { .. } => {
+            RecordError::new_err(format!("{error}\ntry: compute it on that type, or plan the study here"))
+        }
         error => RecordError::new_err(error.to_string()),
     }
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import struct
 import subprocess
 import sys
 import threading
@@ -206,3 +207,25 @@ def test_an_interrupted_run_is_resumed_to_the_same_bits(tmp_path: Path) -> None:
     assert resumed.status == "finished"
     assert (tmp_path / "killed/history.csv").read_bytes() == (tmp_path / "whole/history.csv").read_bytes()
     assert resumed.history.rows == whole.history.rows
+
+
+def test_a_bar_is_shown_in_terminals_only(tmp_path: Path) -> None:
+    pytest.importorskip("tqdm")
+    fcntl, pty, termios = (pytest.importorskip(name) for name in ("fcntl", "pty", "termios"))
+    case = tmp_path / "case.toml"
+    case.write_text(carom.Case.from_dict(disc_dict()).set("time.step", 2e-4).to_toml())
+    command = [sys.executable, "-c", "import carom, sys; carom.Case.from_file(sys.argv[1]).run()", str(case)]
+    ours, theirs = pty.openpty()
+    # Of 24 lines and 80 columns; without columns, tqdm shows nothing.
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("4H", 24, 80, 0, 0))
+    process = subprocess.Popen(command, stderr=theirs)
+    os.close(theirs)
+    shown = b""
+    try:
+        while part := os.read(ours, 4096):
+            shown += part
+    except OSError:  # Linux: the other end is closed
+        pass
+    assert process.wait() == 0
+    assert b"A disc thrown on a block" in shown and b"/1500" in shown and b"t = 0." in shown
+    assert subprocess.run(command, stderr=subprocess.PIPE).stderr == b""

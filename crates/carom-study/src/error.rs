@@ -40,12 +40,20 @@ pub enum StudyError {
     },
     /// The steps of some arms depend on measured times, which differ between machines.
     #[error(
-        "arm \"{arm}\" has a step of matched cost, which is found from times measured on one machine; \
-         `carom study` computes such a study in one process, on one machine"
+        "arm \"{arm}\" has a step of matched cost, which is found from times measured on one machine, and those \
+         of the other runs are compared with them: processes elsewhere must have a machine of the same type"
     )]
     Timed {
         /// The arm.
         arm: String,
+    },
+    /// The steps of matched cost were found on a machine of another type.
+    #[error("the steps of matched cost were timed on another type of machine, {there}; this one is {here}")]
+    OtherMachine {
+        /// The machine of the plan.
+        there: String,
+        /// This machine.
+        here: String,
     },
     /// There is no such run.
     #[error("the study in {} has no run {number}: its runs are 1 to {count}", directory.display())]

@@ -20,13 +20,13 @@ class MeasuredError:
 
     Attributes
     ----------
-    rms
+    rms : float
         Root mean square of the differences at the measured times, in the unit of the column.
-    nrms
+    nrms : float
         The same divided by the range of the measured values.
-    r2
+    r2 : float
         Coefficient of determination.
-    samples
+    samples : int
         Number of measured values within the time of the run.
     """
 
@@ -41,12 +41,17 @@ def measured_error(run: Run, column: str, times: ArrayLike, values: ArrayLike) -
 
     Parameters
     ----------
-    run
+    run : Run
         The run; its column is interpolated linearly.
-    column
+    column : str
         The column.
     times, values : array_like, shape (samples,)
         Measured data in the units of the case. Samples outside the time of the run are ignored.
+
+    Returns
+    -------
+    MeasuredError
+        The deviation.
     """
     t, x = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
     if t.shape != x.shape or t.ndim != 1:
@@ -80,11 +85,24 @@ def overlay(
 
     Parameters
     ----------
-    run, column
-        The column of the run.
-    measured
+    run : Run
+        The run.
+    column : str
+        The column.
+    measured : str, PathLike or tuple of array_like, shape (samples,)
         A CSV file whose first two columns are time and value, with or without a header; or (times,
-        values).
+        values). In the units of the case.
+    label : str
+        What the data are called in the legend.
+    ax : Axes, optional
+        Where to draw; by default a new figure.
+    size : str or (float, float)
+        Of a new figure: ``"single"``, ``"double"`` or (width, height) in inches.
+
+    Returns
+    -------
+    Axes
+        The Axes.
     """
     times, values = measured if isinstance(measured, tuple) else _read(measured)
     error = measured_error(run, column, times, values)

@@ -131,7 +131,15 @@ impl From<StudyError> for Failure {
             },
             error @ StudyError::Timed { .. } => Self::Argument {
                 what: error.to_string(),
-                help: "run it with `carom study` on one machine, or give the arms their steps".to_owned(),
+                help: "plan it with --settle on a machine of the type that computes the runs, which finds these \
+                       steps there and then, run it with `carom study`, or give the arms their steps"
+                    .to_owned(),
+            },
+            error @ StudyError::OtherMachine { .. } => Self::Argument {
+                what: error.to_string(),
+                help: "compute it on that type (Slurm: --constraint, --nodelist), or plan the study here with \
+                       --settle"
+                    .to_owned(),
             },
             error @ StudyError::Damaged { .. } => {
                 let StudyError::Damaged { place, .. } = &error else { unreachable!("the same error") };
