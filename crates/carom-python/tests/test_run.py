@@ -229,3 +229,17 @@ def test_a_bar_is_shown_in_terminals_only(tmp_path: Path) -> None:
     assert process.wait() == 0
     assert b"A disc thrown on a block" in shown and b"/1500" in shown and b"t = 0." in shown
     assert subprocess.run(command, stderr=subprocess.PIPE).stderr == b""
+
+
+def test_what_is_no_record_says_what_to_try(command: str, tmp_path: Path, bar: carom.Case) -> None:
+    """As the command does."""
+    (tmp_path / "empty").mkdir()
+    carom.study(bar.set("time.end", 0.01), {"a": {}}, out=tmp_path / "study", progress=False)
+    for name, told in (("empty", "a directory that `carom run` created"), ("study", "study/arms")):
+        with pytest.raises(carom.RecordError, match="try: give .*") as error:
+            carom.open(tmp_path / name)
+        assert told in str(error.value)
+        export = [command, "export", str(tmp_path / name), "--format", "csv"]
+        assert str(error.value).split("try: ")[1] in subprocess.run(export, capture_output=True, text=True).stderr
+    with pytest.raises(carom.RecordError, match="never overwrites a directory\ntry: run the study again, into"):
+        carom.study(bar, {"a": {}}, out=tmp_path / "study", progress=False)

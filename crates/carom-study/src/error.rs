@@ -74,6 +74,30 @@ pub enum StudyError {
 }
 
 impl StudyError {
+    /// What to try; none if the message of its cause says it.
+    pub fn cure(&self) -> Option<String> {
+        Some(match self {
+            Self::Record(error) => return error.cure(),
+            Self::Arm { .. } => return None,
+            Self::Damaged { place, .. } => format!("remove {} and compute the arm again", place.display()),
+            Self::Timed { .. } => {
+                "plan it with --settle on a machine of the type that computes the runs, which \
+                                   finds these steps there and then, compute it in one process, or give the \
+                                   arms their steps"
+                    .to_owned()
+            }
+            Self::OtherMachine { .. } => {
+                "compute it on that type (Slurm: --constraint, --nodelist), or plan the \
+                                          study here"
+                    .to_owned()
+            }
+            Self::NoRun { .. } => "give one of these numbers".to_owned(),
+            Self::Incompatible { .. } | Self::Exists { .. } => {
+                "run the study again, into another directory".to_owned()
+            }
+        })
+    }
+
     /// An error of the record of an arm, with the directory that can be removed.
     pub(crate) fn of_record(arm: &Arm, study: &Path, error: RecordError) -> Self {
         match error {
