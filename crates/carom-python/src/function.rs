@@ -7,7 +7,7 @@ use carom::case::{Function, Functions};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyFloat, PyTuple};
 
 /// The first exception that a function raised.
 pub(crate) type Failure = Arc<Mutex<Option<PyErr>>>;
@@ -78,6 +78,15 @@ impl Given {
 
     /// A number for all points, or an array with one for each.
     fn numbers(&self, values: &Bound<'_, PyAny>, count: usize, expected: &str) -> PyResult<Vec<f64>> {
+        // Nearly always a number or such an array; anything else is what NumPy makes of it.
+        if let Ok(number) = values.cast::<PyFloat>() {
+            return Ok(vec![number.value(); count]);
+        }
+        if let Ok(array) = values.extract::<PyReadonlyArray1<'_, f64>>()
+            && array.len()? == count
+        {
+            return Ok(array.as_array().to_vec());
+        }
         let py = values.py();
         let array = py.import("numpy")?.call_method1("ravel", (values,))?;
         let array = array.call_method1("astype", ("float64",))?;

@@ -134,6 +134,36 @@ def test_measured_data(disc_run: carom.Run, tmp_path: Path) -> None:
     assert "NRMS" in ax.get_legend_handles_labels()[1][-1]
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "0.0,0.5\n0.1,0.25\n0.2,\n",
+        "# tracked by camera\ntime,uy\ns,m\n0.0,0.5\n0.1,0.25\n",
+        '"t","u"\n"0.0","0.5"\n"0.1","0.25"\n',
+        "t;u\n0,0;0,5\n0,1;0,25\n",
+        "\ufefft\tu\n0.0\t0.5\n0.1\t0.25\n\n",
+        "0.0 0.5 7\n0.1   0.25 8\n",
+    ],
+)
+def test_kinds_of_measured_files(text: str, tmp_path: Path) -> None:
+    from carom.plot._measured import _read
+
+    path = tmp_path / "measured.csv"
+    path.write_text(text, encoding="utf-8")
+    times, values = _read(path)
+    assert times[:2].tolist() == [0.0, 0.1] and values[:2].tolist() == [0.5, 0.25]
+
+
+def test_damaged_measured_files(tmp_path: Path) -> None:
+    from carom.plot._measured import _read
+
+    path = tmp_path / "measured.csv"
+    for text, told in (("t,u\n", "no rows of numbers"), ("0,1\n1,x\n", "csv:2 is no row of numbers: '1,x'")):
+        path.write_text(text)
+        with pytest.raises(ValueError, match=told):
+            _read(path)
+
+
 def test_an_animation_shows_recorded_instants(disc_run: carom.Run, tmp_path: Path) -> None:
     animation = disc_run.animate("von_mises", frames=3)
     animation.save(tmp_path / "disc.gif", writer="pillow")

@@ -231,6 +231,18 @@ def test_a_bar_is_shown_in_terminals_only(tmp_path: Path) -> None:
     assert subprocess.run(command, stderr=subprocess.PIPE).stderr == b""
 
 
+def test_pressures_have_a_unit_without_a_probe_of_stress(bar: carom.Case) -> None:
+    case = bar_dict() | {"units": {"length": "mm", "time": "ms", "mass": "g"}}
+    del case["probe"]
+    run = carom.Case.from_dict(case).set("time.end", 0.1).run(progress=False)
+    # Force over length squared.
+    assert run.contact.units["multiplier"] == "g mm/ms^2"
+    assert run.contact.units["pressure"] == "g/(mm ms^2)"
+    assert bar.set("probe", []).set("time.end", 0.1).run(progress=False).contact.units["pressure"] == "Pa"
+    for table in (run.contact, carom.Simulation(carom.Case.from_dict(case)).contacts):
+        assert not any(values.flags.writeable for values in table.values())
+
+
 def test_what_is_no_record_says_what_to_try(command: str, tmp_path: Path, bar: carom.Case) -> None:
     """As the command does."""
     (tmp_path / "empty").mkdir()

@@ -27,7 +27,7 @@ from .study import Study, study
 from .table import Table
 
 if TYPE_CHECKING:
-    from . import plot
+    from . import export, plot
 
 __all__ = [
     "Case",
@@ -44,6 +44,7 @@ __all__ = [
     "Table",
     "__version__",
     "explain",
+    "export",
     "open",
     "plot",
     "resume",
@@ -54,6 +55,6 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     # Matplotlib is imported only by those who plot.
-    if name == "plot":
+    if name in ("export", "plot"):
         return importlib.import_module(".plot", __name__)
     raise AttributeError(f"module 'carom' has no attribute {name!r}")

@@ -10,8 +10,6 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from . import _carom
 from .fields import Fields
 from .functions import name_of
@@ -145,8 +143,7 @@ class Run:
         Position (``x``, ``y``, and ``z`` in space), ``gap``, ``multiplier`` (force, negative for
         compression), ``pressure``, unit normal of the primary side. Columns have the shape (rows,).
         """
-        columns = {name: np.asarray(values) for name, values in self._core.contact().items()}
-        return Table(columns, self._core.contact_units())
+        return Table._of_core(self._core.contact(), self._core.contact_units())
 
     @cached_property
     def metrics(self) -> Metrics:

@@ -180,8 +180,7 @@ class Simulation:
     @property
     def contacts(self) -> Table:
         """The active contact nodes, with the columns of `Run.contact`."""
-        columns = {name: np.asarray(values) for name, values in self._core.contact().items()}
-        return Table(columns, self._core.contact_units())
+        return Table._of_core(self._core.contact(), self._core.contact_units())
 
     def checkpoint(self) -> bytes:
         """The state, to be restored in this or another simulation of the same case.

@@ -137,6 +137,14 @@ class Table(Mapping[str, NDArray[Any]]):
         return xr.Dataset(variables)
 
     @classmethod
+    def _of_core(cls, columns: Mapping[str, Any], units: Mapping[str, str]) -> Table:
+        """A table of arrays, and of lists of texts, that the compiled part made."""
+        arrays = {name: np.asarray(values) for name, values in columns.items()}
+        for values in arrays.values():
+            values.setflags(write=False)
+        return cls(arrays, units)
+
+    @classmethod
     def of_arrow(cls, table: Any) -> Table:
         """A table from Arrow's, with the units that `to_arrow` stored.
 
