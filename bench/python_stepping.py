@@ -6,8 +6,8 @@
 Each round runs the command (one thread, no page) and, in another process, a loop over
 `carom.Simulation` that reads y, v, a and the row of every step. Both include reading the case; the
 command also writes its record. Prints the medians of their processor times and the median of the
-ratios. With --instructions both are counted per step by valgrind's cachegrind, whatever the load of the
-machine, as the difference of two lengths of the run. Needs the package `carom`.
+ratios. With --instructions both are counted per step by valgrind's cachegrind, whatever the load of
+the machine, as the difference of two lengths of the run. Needs the package `carom`.
 """
 
 import argparse

@@ -32,7 +32,7 @@ pub(crate) fn watched<T: Send>(
             // Dropped at the end, also of a panic.
             let _sender = sender;
             let show = |done: Done| *latest.lock().unwrap_or_else(PoisonError::into_inner) = Some(done);
-            // The thread is made known to the interpreter once, and not for every call of a function.
+            // The interpreter learns of the thread once, and not at every call of a function.
             Python::attach(|py| py.detach(|| work(&show, stop)))
         });
         let mut raised = None;

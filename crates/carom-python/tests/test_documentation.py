@@ -48,7 +48,7 @@ def documented() -> Iterator[tuple[str, Any]]:
                         yield f"{module.__name__}.{name}.{key}", method
 
 
-@pytest.mark.parametrize("name, function", list(documented()), ids=lambda value: value if isinstance(value, str) else "")
+@pytest.mark.parametrize("name, function", [pytest.param(*found, id=found[0]) for found in documented()])
 def test_parameters_and_results_are_described(name: str, function: Any) -> None:
     text = inspect.getdoc(function)
     assert text, name

@@ -30,9 +30,9 @@ pub fn plan(plan: &Plan, directory: &Path) -> Result<(), StudyError> {
     create(plan, directory)
 }
 
-/// As [`plan`], but finds the steps of matched cost by timing runs on this machine, one after the other.
-/// The other runs can then be computed by processes on machines of its type. Returns whether all steps
-/// were found, which a stop prevents.
+/// As [`plan`], but finds the steps of matched cost by timing runs on this machine, one after the
+/// other. The other runs can then be computed by processes on machines of its type. Returns whether
+/// all steps were found, which a stop prevents.
 ///
 /// # Errors
 /// Input/output or system error.
@@ -83,7 +83,7 @@ pub fn arm(
     }
 }
 
-/// Costs that are matched are compared by their times: all steps have been found, on such a machine.
+/// Matched costs are compared by their times: all steps have been found, on a machine of this type.
 fn comparable(manifest: &StudyManifest, directory: &Path) -> Result<(), StudyError> {
     let timed: Vec<&Arm> = manifest.arms.iter().filter(|arm| manifest.by_cost(arm)).collect();
     if timed.is_empty() {

@@ -92,12 +92,13 @@ class Case:
             Path of the key; a table of a list is addressed by its name: ``body.cylinder.element``.
             A dictionary replaces several values at once.
         value : object
-            The new value. A component of a load may be a function ``f(t)`` of the time, or ``f(t, X)``
-            of the time and the reference positions, shape (points, dimension), that returns a number
-            or one per point, in the units of the case. The motion of a support may be a function that
-            returns displacement, velocity and acceleration, ``(u, v, a)``, each a number or one per
-            point. It is called once per evaluation, with all points: a few microseconds, about once per
-            step and stage. Arguments with defaults are the function's own.
+            The new value. A component of a load may be a function ``f(t)`` of the time, or
+            ``f(t, X)`` of the time and the reference positions, shape (points, dimension), that
+            returns a number or one per point, in the units of the case. The motion of a support may
+            be a function that returns displacement, velocity and acceleration, ``(u, v, a)``, each a
+            number or one per point. It is called once per evaluation, with all points: a few
+            microseconds, about once per step and stage. Arguments with defaults are the function's
+            own.
 
         Returns
         -------

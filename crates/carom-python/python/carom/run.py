@@ -81,8 +81,8 @@ class Run:
     Attributes
     ----------
     history : Table
-        One row per recorded step: energies, contact force, probes, … Columns have the shape (rows,) and
-        are not copied.
+        One row per recorded step: energies, contact force, probes, … Columns have the shape (rows,)
+        and are not copied.
     """
 
     def __init__(self, core: _carom.Record) -> None:

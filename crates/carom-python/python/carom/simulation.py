@@ -128,7 +128,7 @@ class Simulation:
 
     @property
     def y(self) -> Floats:
-        """Positions, shape (nodes, dimension), in units of length; kept as they are by the next step."""
+        """Positions, shape (nodes, dimension), in units of length; the next step keeps them."""
         return self._core.y
 
     @property
@@ -138,7 +138,7 @@ class Simulation:
 
     @property
     def a(self) -> Floats:
-        """Algorithmic accelerations, shape (nodes, dimension), in length per time squared, as `y`."""
+        """Algorithmic accelerations, shape (nodes, dimension), in length per time², as `y`."""
         return self._core.a
 
     @property

@@ -148,7 +148,7 @@ def study(
     CaseError
         If a case of the study is wrong.
     RecordError
-        If the directory exists, and, with a client, if steps of matched cost need times of one machine.
+        If the directory exists. With a client: if steps of matched cost need times.
 
     Examples
     --------

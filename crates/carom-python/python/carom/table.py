@@ -123,7 +123,7 @@ class Table(Mapping[str, NDArray[Any]]):
         Returns
         -------
         xarray.Dataset
-            Variables over ``time`` if there is such a column, else over ``row``; units are attributes.
+            Variables over ``time`` if there is such a column, else ``row``; units are attributes.
         """
         import xarray as xr
 

@@ -92,9 +92,9 @@ def overlay(
     column : str
         The column.
     measured : str, PathLike or tuple of array_like, shape (samples,)
-        A CSV file whose first two columns are time and value, with or without a header, separated by
-        commas, or by semicolons or tabs and then also with decimal commas; or (times, values). In the
-        units of the case.
+        A CSV file whose first two columns are time and value, with or without a header, separated
+        by commas, or by semicolons or tabs and then also with decimal commas; or (times, values).
+        In the units of the case.
     label : str
         What the data are called in the legend.
     ax : Axes, optional

@@ -63,7 +63,7 @@ def snapshot(
     time : float
         The instant, in units of time.
     quantity : str
-        ``sigma_xx``, ``sigma_yy``, ``sigma_xy``, ``von_mises``, ``contact_pressure``, ``ux`` and so on.
+        ``sigma_xx``, ``sigma_yy``, ``sigma_xy``, ``von_mises``, ``contact_pressure``, ``ux``, ``vy``.
     mesh : bool
         Whether the edges of cells are drawn.
     limits : (float, float), optional

@@ -106,8 +106,8 @@ fn plan(study: &Path, directory: &Path, slurm: bool, settle: bool) -> Result<Exi
     Ok(Exit::Done)
 }
 
-/// A job array. A run that was killed continues when its task is started again. `machine`: the type of
-/// node whose times are compared.
+/// A job array. A run that was killed continues when its task is started again. `machine`: the type
+/// of node whose times are compared.
 fn script(title: &str, directory: &Path, count: usize, machine: Option<&str>) -> String {
     let place = directory.display().to_string().replace('\'', "'\\''");
     let title = title.replace(|c: char| !c.is_alphanumeric(), "-");
