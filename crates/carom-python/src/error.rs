@@ -30,8 +30,13 @@ pub(crate) fn of_problems(document: &Document, problems: &Problems) -> PyErr {
 pub(crate) fn of_record(error: &Damaged) -> PyErr {
     match error {
         Damaged::Io { .. } => PyOSError::new_err(error.to_string()),
-        _ => RecordError::new_err(error.to_string()),
+        _ => cured(error, error.cure()),
     }
+}
+
+/// A message, and what to try.
+fn cured(error: &dyn std::error::Error, cure: Option<String>) -> PyErr {
+    RecordError::new_err(cure.map_or_else(|| error.to_string(), |cure| format!("{error}\ntry: {cure}")))
 }
 
 /// A run that cannot be computed; `document`: its case, if it is at hand.
@@ -40,7 +45,7 @@ pub(crate) fn of_run(error: &RunError, document: Option<&Document>) -> PyErr {
         (RunError::Case(problems), Some(document)) => of_problems(document, problems),
         (RunError::Case(problems), None) => CaseError::new_err(problems.to_string()),
         (RunError::Record(error), _) => of_record(error),
-        (RunError::Incompatible { what }, _) => RecordError::new_err(what.clone()),
+        (error @ RunError::Incompatible { .. }, _) => cured(error, Some("run the case again".to_owned())),
     }
 }
 
@@ -52,10 +57,6 @@ pub(crate) fn of_study(error: &StudyError) -> PyErr {
             let source = of_run(source, None).to_string();
             RecordError::new_err(format!("arm \"{arm}\": {source}"))
         }
-        StudyError::Damaged { place, .. } => {
-            let cure = format!("remove {} and compute the arm again", place.display());
-            RecordError::new_err(format!("{error}\ntry: {cure}"))
-        }
-        error => RecordError::new_err(error.to_string()),
+        error => cured(error, error.cure()),
     }
 }

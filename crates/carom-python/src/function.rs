@@ -7,15 +7,17 @@ use carom::case::{Function, Functions};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyFloat, PyTuple};
 
 /// The first exception that a function raised.
 pub(crate) type Failure = Arc<Mutex<Option<PyErr>>>;
 
-/// A callable f(t, X) with X of shape (points, dimension).
+/// A callable f(t) or f(t, X) with X of shape (points, dimension).
 struct Given {
     name: String,
     callable: Py<PyAny>,
+    /// Whether it takes X.
+    of_place: bool,
     failure: Failure,
 }
 
@@ -27,10 +29,13 @@ impl fmt::Debug for Given {
 
 /// Functions by name, and the place of their first exception.
 pub(crate) fn functions(given: &Bound<'_, PyDict>) -> PyResult<(Functions, Failure)> {
+    let py = given.py();
     let (mut functions, failure) = (Functions::default(), Failure::default());
     for (name, callable) in given {
         let name: String = name.extract()?;
-        let function = Given { name: name.clone(), callable: callable.unbind(), failure: failure.clone() };
+        let of_place = py.import("carom.functions")?.call_method1("takes_place", (&callable,))?.extract()?;
+        let callable = callable.unbind();
+        let function = Given { name: name.clone(), callable, of_place, failure: failure.clone() };
         functions.0.insert(name, Arc::new(function));
     }
     Ok((functions, failure))
@@ -55,9 +60,13 @@ impl Given {
     fn called(&self, py: Python<'_>, points: &[f64], width: usize, parts: usize) -> PyResult<Vec<Vec<f64>>> {
         let (d, count) = (width - 1, points.len() / width);
         let time = points.first().map_or(0.0, |_| points[d]);
-        let places = points.chunks_exact(width).flat_map(|point| point[..d].iter().copied()).collect();
-        let places = PyArray1::from_vec(py, places).reshape([count, d])?;
-        let values = self.callable.bind(py).call1((time, places))?;
+        let callable = self.callable.bind(py);
+        let values = if self.of_place {
+            let places = points.chunks_exact(width).flat_map(|point| point[..d].iter().copied()).collect();
+            callable.call1((time, PyArray1::from_vec(py, places).reshape([count, d])?))?
+        } else {
+            callable.call1((time,))?
+        };
         if parts == 1 {
             return Ok(vec![self.numbers(&values, count, "a number per point")?]);
         }
@@ -69,6 +78,15 @@ impl Given {
 
     /// A number for all points, or an array with one for each.
     fn numbers(&self, values: &Bound<'_, PyAny>, count: usize, expected: &str) -> PyResult<Vec<f64>> {
+        // Nearly always a number or such an array; anything else is what NumPy makes of it.
+        if let Ok(number) = values.cast::<PyFloat>() {
+            return Ok(vec![number.value(); count]);
+        }
+        if let Ok(array) = values.extract::<PyReadonlyArray1<'_, f64>>()
+            && array.len()? == count
+        {
+            return Ok(array.as_array().to_vec());
+        }
         let py = values.py();
         let array = py.import("numpy")?.call_method1("ravel", (values,))?;
         let array = array.call_method1("astype", ("float64",))?;

@@ -19,9 +19,8 @@ pub(crate) fn array(py: Python<'_>, values: Vec<f64>) -> PyResult<Bound<'_, PyAr
 /// The same with rows of `width` values.
 pub(crate) fn rows(py: Python<'_>, values: Vec<f64>, width: usize) -> PyResult<Bound<'_, PyArray2<f64>>> {
     let height = values.len() / width.max(1);
-    let rows = PyArray1::from_vec(py, values).reshape([height, width])?;
-    rows.call_method1("setflags", (false,))?;
-    Ok(rows)
+    // A view of a read-only array cannot be made writable again.
+    array(py, values)?.reshape([height, width])
 }
 
 /// A read-only array of integers.

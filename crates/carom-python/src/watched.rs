@@ -32,7 +32,8 @@ pub(crate) fn watched<T: Send>(
             // Dropped at the end, also of a panic.
             let _sender = sender;
             let show = |done: Done| *latest.lock().unwrap_or_else(PoisonError::into_inner) = Some(done);
-            work(&show, stop)
+            // The interpreter learns of the thread once, and not at every call of a function.
+            Python::attach(|py| py.detach(|| work(&show, stop)))
         });
         let mut raised = None;
         loop {
@@ -53,7 +54,7 @@ pub(crate) fn watched<T: Send>(
                 break;
             }
         }
-        match thread.join() {
+        match py.detach(|| thread.join()) {
             Ok(result) => Ok((result, raised)),
             Err(panic) => std::panic::resume_unwind(panic),
         }

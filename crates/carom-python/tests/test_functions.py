@@ -347,3 +347,32 @@ def test_the_same_code_has_the_same_name() -> None:
     assert len({name_of(made(1.0)) for made in makers}) == len(makers)
     assert name_of(np.sin) != name_of(np.cos)
     assert name_of(push).startswith("push:")
+
+
+def test_functions_of_time_only() -> None:
+    """f(t), with values of its own as defaults, is f(t, X) without X."""
+
+    def momentum(load: Any) -> float:
+        run = block(load=[{"on": ["block.top"], "traction": [load, 0.0]}], support=[]).run(progress=False)
+        return float(run.history["momentum_x"][-1])
+
+    expected = momentum("3*sin(40*t)")
+    assert expected != 0
+    for load in (
+        lambda t: 3.0 * np.sin(40.0 * t),
+        lambda t, gain=3.0: gain * np.sin(40.0 * t),
+        lambda t, x: 3.0 * np.sin(40.0 * t),
+        lambda *arguments: 3.0 * np.sin(40.0 * arguments[0]) + 0.0 * arguments[1][:, 0],
+        partial(lambda gain, t: gain * np.sin(40.0 * t), 3.0),
+    ):
+        assert momentum(load) == pytest.approx(expected, rel=1e-12)
+    # Universal functions have another meaning for their second argument.
+    assert momentum(np.sin) == pytest.approx(momentum("sin(t)"), rel=1e-12)
+    moved = {"name": "floor", "on": ["block.bottom"], "fix": ["y"]}
+    of_time, of_both = (
+        block(support=[moved | {"move": {"x": f}}]).run(progress=False) for f in (lambda t: shake(t, t), shake)
+    )
+    assert np.array_equal(of_time.history["block.center_x"], of_both.history["block.center_x"])
+    for wrong in (lambda: 0.0, lambda t, x, y: 0.0):
+        with pytest.raises(carom.CaseError, match="arguments without default\ntry: f"):
+            block(load=[{"on": ["block.top"], "traction": [0.0, wrong]}])

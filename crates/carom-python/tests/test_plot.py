@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from conftest import disc_dict
+from conftest import ROOT, disc_dict
 from matplotlib.axes import Axes
-
-from conftest import ROOT
 
 import carom
 
@@ -135,7 +134,97 @@ def test_measured_data(disc_run: carom.Run, tmp_path: Path) -> None:
     assert "NRMS" in ax.get_legend_handles_labels()[1][-1]
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "0.0,0.5\n0.1,0.25\n0.2,\n",
+        "# tracked by camera\ntime,uy\ns,m\n0.0,0.5\n0.1,0.25\n",
+        '"t","u"\n"0.0","0.5"\n"0.1","0.25"\n',
+        "t;u\n0,0;0,5\n0,1;0,25\n",
+        "\ufefft\tu\n0.0\t0.5\n0.1\t0.25\n\n",
+        "0.0 0.5 7\n0.1   0.25 8\n",
+    ],
+)
+def test_kinds_of_measured_files(text: str, tmp_path: Path) -> None:
+    from carom.plot._measured import _read
+
+    path = tmp_path / "measured.csv"
+    path.write_text(text, encoding="utf-8")
+    times, values = _read(path)
+    assert times[:2].tolist() == [0.0, 0.1] and values[:2].tolist() == [0.5, 0.25]
+
+
+def test_damaged_measured_files(tmp_path: Path) -> None:
+    from carom.plot._measured import _read
+
+    path = tmp_path / "measured.csv"
+    for text, told in (("t,u\n", "no rows of numbers"), ("0,1\n1,x\n", "csv:2 is no row of numbers: '1,x'")):
+        path.write_text(text)
+        with pytest.raises(ValueError, match=told):
+            _read(path)
+
+
 def test_an_animation_shows_recorded_instants(disc_run: carom.Run, tmp_path: Path) -> None:
     animation = disc_run.animate("von_mises", frames=3)
     animation.save(tmp_path / "disc.gif", writer="pillow")
     assert (tmp_path / "disc.gif").stat().st_size > 1000
+
+
+def cube() -> carom.Case:
+    """A cube of 27 cells that falls on a plane."""
+    return carom.Case.from_dict(
+        {
+            "dimension": 3,
+            "material": [{"name": "rubber", "law": "neo-hookean", "density": 0.25, "lambda": 200.0, "mu": 15.0}],
+            "body": [
+                {
+                    "name": "cube",
+                    "material": "rubber",
+                    "element": "Hex8",
+                    "mesh": {"shape": "box", "min": [0.0, 0.0, 0.01], "max": [1.0, 1.0, 1.01], "cells": [3, 3, 3]},
+                    "velocity": [0.0, 0.0, -2.0],
+                }
+            ],
+            "contact": [
+                {
+                    "name": "floor",
+                    "secondary": "cube.bottom",
+                    "primary": {"plane": {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0]}},
+                }
+            ],
+            "time": {"end": 0.05, "step": 2e-3, "scheme": {"kind": "chung-hulbert", "rho_inf": 0.5}},
+            "output": {"fields_every": 5},
+        }
+    )
+
+
+def test_bodies_in_space() -> None:
+    """Fields and histories are those of any run; figures of the plane name what shows them."""
+    run = cube().run(progress=False)
+    fields = run.fields.at(0.02)
+    assert fields.positions.shape == (64, 3) and fields.blocks[0].vtk_type == 72
+    assert carom.plot.history(run).get_ylabel() == "contact_force_z (N)"
+    assert carom.plot.energy(run).get_ylabel() == "energy (J)"
+    plt.close("all")
+    for figure in (lambda: carom.plot.snapshot(run, 0.02), run.animate):
+        with pytest.raises(ValueError, match="warp_by_vector"):
+            figure()
+    with pytest.raises(ValueError, match="contact_pressure"):
+        carom.plot.pressure_map(run)
+    assert not plt.get_fignums()
+    pyvista = pytest.importorskip("pyvista")
+    deformed = run.fields[0.02].warp_by_vector("displacement")
+    assert isinstance(deformed, pyvista.UnstructuredGrid)
+    # Free flight for 0.005, then the bottom stays on the plane.
+    assert deformed.bounds[4] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_what_a_figure_needs(bar: carom.Case, disc: carom.Case) -> None:
+    run = bar.set({"output.fields_every": 50, "time.end": 0.2}).run(progress=False)
+    for figure in (lambda: carom.plot.snapshot(run, 0.1), run.animate):
+        with pytest.raises(ValueError, match="of bars, run.fields"):
+            figure()
+    run = disc.set({"output.fields_every": 0, "time.end": 0.05}).run(progress=False)
+    for figure in (lambda: carom.plot.snapshot(run, 0.1), run.animate, lambda: carom.plot.pressure_map(run)):
+        with pytest.raises(KeyError, match="output.fields_every"):
+            figure()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import struct
 import subprocess
 import sys
 import threading
@@ -206,3 +207,51 @@ def test_an_interrupted_run_is_resumed_to_the_same_bits(tmp_path: Path) -> None:
     assert resumed.status == "finished"
     assert (tmp_path / "killed/history.csv").read_bytes() == (tmp_path / "whole/history.csv").read_bytes()
     assert resumed.history.rows == whole.history.rows
+
+
+def test_a_bar_is_shown_in_terminals_only(tmp_path: Path) -> None:
+    pytest.importorskip("tqdm")
+    fcntl, pty, termios = (pytest.importorskip(name) for name in ("fcntl", "pty", "termios"))
+    case = tmp_path / "case.toml"
+    case.write_text(carom.Case.from_dict(disc_dict()).set("time.step", 2e-4).to_toml())
+    command = [sys.executable, "-c", "import carom, sys; carom.Case.from_file(sys.argv[1]).run()", str(case)]
+    ours, theirs = pty.openpty()
+    # Of 24 lines and 80 columns; without columns, tqdm shows nothing.
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("4H", 24, 80, 0, 0))
+    process = subprocess.Popen(command, stderr=theirs)
+    os.close(theirs)
+    shown = b""
+    try:
+        while part := os.read(ours, 4096):
+            shown += part
+    except OSError:  # Linux: the other end is closed
+        pass
+    assert process.wait() == 0
+    assert b"A disc thrown on a block" in shown and b"/1500" in shown and b"t = 0." in shown
+    assert subprocess.run(command, stderr=subprocess.PIPE).stderr == b""
+
+
+def test_pressures_have_a_unit_without_a_probe_of_stress(bar: carom.Case) -> None:
+    case = bar_dict() | {"units": {"length": "mm", "time": "ms", "mass": "g"}}
+    del case["probe"]
+    run = carom.Case.from_dict(case).set("time.end", 0.1).run(progress=False)
+    # Force over length squared.
+    assert run.contact.units["multiplier"] == "g mm/ms^2"
+    assert run.contact.units["pressure"] == "g/(mm ms^2)"
+    assert bar.set("probe", []).set("time.end", 0.1).run(progress=False).contact.units["pressure"] == "Pa"
+    for table in (run.contact, carom.Simulation(carom.Case.from_dict(case)).contacts):
+        assert not any(values.flags.writeable for values in table.values())
+
+
+def test_what_is_no_record_says_what_to_try(command: str, tmp_path: Path, bar: carom.Case) -> None:
+    """As the command does."""
+    (tmp_path / "empty").mkdir()
+    carom.study(bar.set("time.end", 0.01), {"a": {}}, out=tmp_path / "study", progress=False)
+    for name, told in (("empty", "a directory that `carom run` created"), ("study", "study/arms")):
+        with pytest.raises(carom.RecordError, match="try: give .*") as error:
+            carom.open(tmp_path / name)
+        assert told in str(error.value)
+        export = [command, "export", str(tmp_path / name), "--format", "csv"]
+        assert str(error.value).split("try: ")[1] in subprocess.run(export, capture_output=True, text=True).stderr
+    with pytest.raises(carom.RecordError, match="never overwrites a directory\ntry: run the study again, into"):
+        carom.study(bar, {"a": {}}, out=tmp_path / "study", progress=False)

@@ -29,7 +29,11 @@ def test_views_keep_their_values(disc: carom.Case) -> None:
     nodes = simulation.bodies["disc"]
     before, velocity = simulation.y, simulation.v
     assert before.shape == simulation.reference.shape == (len(before), 2)
-    assert not before.flags.writeable
+    for array in (before, simulation.a, simulation.reference):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0, 0] = 1.0
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            array.setflags(write=True)
     copy = before.copy()
     simulation.advance()
     assert np.array_equal(before, copy) and not np.array_equal(simulation.y, copy)
@@ -95,3 +99,20 @@ def test_a_checkpoint_of_another_case_is_refused(disc: carom.Case, key: str, val
     with pytest.raises(ValueError, match=told):
         other.restore(simulation.checkpoint())
     assert other.step == 0
+
+
+def test_vectors_in_space() -> None:
+    """Three columns, and free flight: y = X + v t."""
+    from test_plot import cube
+
+    simulation = carom.Simulation(cube())
+    simulation.advance()
+    assert simulation.y.shape == simulation.v.shape == simulation.a.shape == simulation.reference.shape == (64, 3)
+    moved = simulation.y - simulation.reference
+    assert np.allclose(moved, np.array([0.0, 0.0, -2.0]) * simulation.time, atol=1e-12)
+    for _ in simulation:
+        pass
+    contacts = simulation.contacts
+    assert contacts.rows and np.allclose(contacts["normal_z"], 1.0)
+    force = -(contacts["multiplier"] * contacts["normal_z"]).sum()
+    assert force == pytest.approx(simulation.row["contact_force_z"], rel=1e-9)

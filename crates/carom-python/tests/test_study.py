@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +16,7 @@ import pytest
 from conftest import bar_dict, disc_dict
 
 import carom
+
 
 def test_arms_and_grid(bar: carom.Case) -> None:
     """Chung-Hulbert conserves energy with rho_inf = 1, and Hu's scheme dissipates."""
@@ -154,35 +157,81 @@ def test_the_parts_of_a_study(command: str, tmp_path: Path) -> None:
 
 
 def test_matched_costs_need_one_machine(command: str, tmp_path: Path) -> None:
+    """The steps are found where the study is planned, and the other runs are computed on machines of
+    its type."""
     (tmp_path / "disc.toml").write_text(carom.Case.from_dict(disc_dict()).to_toml())
-    study = 'case = "disc.toml"\ndesign = "matched-cost"\n[[arm]]\nname = "a"\n[[arm]]\nname = "b"\n'
-    (tmp_path / "s.toml").write_text(study + 'set = { "time.scheme" = { kind = "hu" } }\n')
-    told = subprocess.run(
-        [command, "study", "plan", "s.toml", "--out", "d"], cwd=tmp_path, capture_output=True, text=True
+    design = (
+        'case = "disc.toml"\ndesign = "matched-cost"\n[ensemble]\nphases = 2\n'
+        '[[arm]]\nname = "a"\n[[arm]]\nname = "b"\nset = { "time.scheme" = { kind = "hu" } }\n'
     )
-    assert told.returncode == 2 and "measured on one machine" in told.stderr
+    (tmp_path / "s.toml").write_text(design)
+
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([command, "study", *arguments], cwd=tmp_path, capture_output=True, text=True)
+
+    told = run("plan", "s.toml", "--out", "d")
+    assert told.returncode == 2 and "a machine of the same type" in told.stderr and "--settle" in told.stderr
     assert not (tmp_path / "d/study.json").exists()
+    told = run("plan", "s.toml", "--out", "d", "--settle", "--slurm")
+    assert told.returncode == 0, told.stderr
+    manifest = json.loads((tmp_path / "d/study.json").read_text())
+    machine = manifest["machine"]
+    script = (tmp_path / "d/slurm.sh").read_text()
+    assert "--exclusive" in script and "--constraint" in script and machine["arch"] in script
+    # The first two runs are those that were timed; their members are left.
+    assert run("collect", "d", "--no-report").stderr.startswith("missing: 3 (")
+    (tmp_path / "d/study.json").write_text(json.dumps(manifest | {"machine": machine | {"processor": "Z80"}}))
+    told = run("arm", "d", "3")
+    assert told.returncode == 2 and "another type of machine, Z80" in told.stderr and "try" in told.stderr
+    assert run("arm", "d", "1").returncode == 0
+    (tmp_path / "d/study.json").write_text(json.dumps(manifest))
+    assert [run("arm", "d", number).returncode for number in ("3", "4")] == [0, 0]
+    assert run("collect", "d", "--no-report").returncode == 0
+    case = carom.Case.from_dict(disc_dict())
+    arms = {"a": {}, "b": {"time.scheme": {"kind": "hu"}}}
+    with pytest.raises(carom.RecordError, match="a machine of the same type.*\ntry: "):
+        carom.study(case, arms, design="matched-cost", client=object(), out=tmp_path / "e")
 
 
-def test_dask_with_a_killed_worker(tmp_path: Path) -> None:
-    """Two worker processes, one of which is killed with signal 9: the study ends complete, with the
-    table of one process."""
-    distributed = pytest.importorskip("distributed")
-    case = carom.Case.from_dict(disc_dict()).set({"time.step": 5e-4, "output.checkpoint_every": 20})
-    grid = {"time.scheme.rho_inf": [0.2, 0.5, 0.8], "body.disc.velocity": [[0.0, -2.0], [0.0, -1.5]]}
-    carom.study(case, grid=grid, jobs=1, out=tmp_path / "one", progress=False)
-    killed: list[int] = []
+#: A sweep of six arms of 600 steps with checkpoints.
+GRID = {"time.scheme.rho_inf": [0.2, 0.5, 0.8], "body.disc.velocity": [[0.0, -2.0], [0.0, -1.5]]}
 
-    def kill(pids: dict[str, int]) -> None:
-        """Kills a worker that is in the middle of a run."""
+
+def sweep() -> carom.Case:
+    return carom.Case.from_dict(disc_dict()).set({"time.step": 5e-4, "output.checkpoint_every": 20})
+
+
+@pytest.fixture(scope="module")
+def table_of_one_process(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    out = tmp_path_factory.mktemp("study") / "one"
+    carom.study(sweep(), grid=GRID, jobs=1, out=out, progress=False)
+    return (out / "study.csv").read_bytes()
+
+
+class Killer(threading.Thread):
+    """Kills a worker, with signal 9, in the middle of a run of a study."""
+
+    def __init__(self, study: Path, worker: Callable[[], int | None]) -> None:
+        super().__init__()
+        self.study, self.worker = study, worker
+        self.killed: int | None = None
+        self.start()
+
+    def run(self) -> None:
         for _ in range(2000):
             time.sleep(0.01)
-            begun = list((tmp_path / "dask").glob("arms/*/checkpoint"))
-            if begun and any(len(list(place.iterdir())) > 1 for place in begun):
-                killed.append(next(iter(pids.values())))
-                os.kill(killed[0], signal.SIGKILL)
-                return
+            begun = list(self.study.glob("arms/*/checkpoint"))
+            if any(len(list(place.iterdir())) > 1 for place in begun):
+                self.killed = self.worker()
+                if self.killed:
+                    os.kill(self.killed, signal.SIGKILL)
+                    return
 
+
+def test_dask_with_a_killed_worker(tmp_path: Path, table_of_one_process: bytes) -> None:
+    """Two worker processes, one of which is killed: the study ends complete, with the table of one
+    process."""
+    distributed = pytest.importorskip("distributed")
     with (
         distributed.LocalCluster(
             n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
@@ -190,13 +239,35 @@ def test_dask_with_a_killed_worker(tmp_path: Path) -> None:
         distributed.Client(cluster) as client,
     ):
         pids: dict[str, Any] = client.run(os.getpid)
-        killer = threading.Thread(target=kill, args=(pids,))
-        killer.start()
-        found = carom.study(case, grid=grid, client=client, out=tmp_path / "dask")
+        killer = Killer(tmp_path / "dask", lambda: next(iter(pids.values())))
+        found = carom.study(sweep(), grid=GRID, client=client, out=tmp_path / "dask")
         killer.join()
-    assert killed and found.missing == []
+    assert killer.killed and found.missing == []
     assert (found.to_pandas()["status"] == "finished").all()
-    assert (tmp_path / "dask/study.csv").read_bytes() == (tmp_path / "one/study.csv").read_bytes()
+    assert (tmp_path / "dask/study.csv").read_bytes() == table_of_one_process
+
+
+def test_ray_with_a_killed_worker(tmp_path: Path, table_of_one_process: bytes) -> None:
+    """The same by Ray, where it is installed."""
+    ray = pytest.importorskip("ray")
+    psutil = pytest.importorskip("psutil")
+
+    def worker() -> int | None:
+        for process in psutil.Process().children(recursive=True):
+            if "".join(process.cmdline()[:1]).startswith("ray::_arm"):
+                return int(process.pid)
+        return None
+
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+    try:
+        killer = Killer(tmp_path / "ray", worker)
+        found = carom.study(sweep(), grid=GRID, client=ray, out=tmp_path / "ray")
+        killer.join()
+    finally:
+        ray.shutdown()
+    assert killer.killed and found.missing == []
+    assert (found.to_pandas()["status"] == "finished").all()
+    assert (tmp_path / "ray/study.csv").read_bytes() == table_of_one_process
 
 
 def test_functions_cannot_be_studied() -> None:

@@ -4,6 +4,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::study::StudyManifest;
+
 /// An error of a run directory; `exit_code` separates system errors from all others.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
@@ -91,6 +93,25 @@ impl RecordError {
             Self::Corrupt { path, line, what, .. } => damage(path, *line, what),
             other => other.to_string(),
         }
+    }
+
+    /// What to try; none if the message says it, or if it depends on the system.
+    pub fn cure(&self) -> Option<String> {
+        Some(match self {
+            Self::Io { .. } | Self::Corrupt { .. } | Self::Busy { .. } | Self::Exists { .. } => return None,
+            Self::NotARun { path } if StudyManifest::is_in(path) => {
+                format!("give that of one of its runs: they are in {}", path.join("arms").display())
+            }
+            Self::NotARun { .. } => {
+                "give a directory that `carom run` created, for example runs/impact".to_owned()
+            }
+            Self::NotAStudy { .. } => {
+                "give a directory that `carom study` created, for example runs/fair".to_owned()
+            }
+            Self::Width { .. } | Self::Field { .. } => {
+                "run the case again, or continue with carom resume".to_owned()
+            }
+        })
     }
 
     pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {

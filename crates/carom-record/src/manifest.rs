@@ -69,6 +69,9 @@ pub struct Machine {
     pub os: String,
     /// Processor family.
     pub arch: String,
+    /// Model of the processor, where the system tells it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub processor: String,
 }
 
 impl Machine {
@@ -78,7 +81,22 @@ impl Machine {
             cpus: std::thread::available_parallelism().map_or(1, usize::from),
             os: std::env::consts::OS.into(),
             arch: std::env::consts::ARCH.into(),
+            processor: processor(),
         }
+    }
+
+    /// Whether times measured on both machines can be compared.
+    pub fn is_of_type(&self, other: &Self) -> bool {
+        (&self.os, &self.arch, &self.processor) == (&other.os, &other.arch, &other.processor)
+    }
+
+    /// Its type in words.
+    pub fn kind(&self) -> String {
+        [&self.processor[..], &self.os, &self.arch]
+            .into_iter()
+            .filter(|s| !s.is_empty())
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 
     /// The largest number of threads, or of concurrent runs, that is accepted. More than one per
@@ -86,6 +104,16 @@ impl Machine {
     pub fn most_concurrent(&self) -> usize {
         (4 * self.cpus).max(64)
     }
+}
+
+/// Linux lists the model of every core; the first one counts.
+fn processor() -> String {
+    use std::io::{BufRead, BufReader};
+    let Ok(list) = std::fs::File::open("/proc/cpuinfo") else { return String::new() };
+    let mut lines = BufReader::new(list).lines().map_while(Result::ok);
+    let model =
+        lines.find_map(|line| Some(line.strip_prefix("model name")?.split_once(':')?.1.trim().to_owned()));
+    model.unwrap_or_default()
 }
 
 /// Outcome of one `[[expect]]`.

@@ -7,20 +7,21 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use carom_record::study::StudyManifest;
-use carom_record::{Manifest, RecordError, Status};
+use carom_record::study::{Arm, StudyManifest};
+use carom_record::{Machine, Manifest, RecordError, Status};
 use carom_run::recording::{Progress, RunError};
 
 use crate::compute::compute;
 use crate::error::StudyError;
-use crate::jobs::Ended;
+use crate::jobs::{Ended, Event};
+use crate::matched;
 use crate::plan::Plan;
 use crate::run::{Outcome, conclude, create};
 
 /// Creates the directory of a study, which must not exist, and computes nothing.
 ///
 /// # Errors
-/// Input/output or system error, and a study with steps of matched cost.
+/// Input/output or system error, and a study with steps of matched cost: [`plan_timed`].
 pub fn plan(plan: &Plan, directory: &Path) -> Result<(), StudyError> {
     let manifest = &plan.manifest;
     if let Some(arm) = manifest.arms.iter().find(|arm| manifest.by_cost(arm)) {
@@ -29,12 +30,28 @@ pub fn plan(plan: &Plan, directory: &Path) -> Result<(), StudyError> {
     create(plan, directory)
 }
 
+/// As [`plan`], but finds the steps of matched cost by timing runs on this machine, one after the
+/// other. The other runs can then be computed by processes on machines of its type. Returns whether
+/// all steps were found, which a stop prevents.
+///
+/// # Errors
+/// Input/output or system error.
+pub fn plan_timed(
+    plan: &Plan,
+    directory: &Path,
+    observe: &mut dyn FnMut(&Event),
+    stop: &AtomicBool,
+) -> Result<bool, StudyError> {
+    create(plan, directory)?;
+    matched::settle(&mut plan.manifest.clone(), directory, 1, observe, stop)
+}
+
 /// Computes run number `number`, from 1, of a planned study: from the start, or from its last
 /// checkpoint. One that has ended is returned as it is.
 ///
 /// # Errors
-/// Input/output or system error, no such run, a damaged record, and a run that another process is
-/// computing.
+/// Input/output or system error, no such run, a damaged record, a run that another process is
+/// computing, and another type of machine than that on which steps of matched cost were found.
 pub fn arm(
     directory: &Path,
     number: usize,
@@ -53,6 +70,7 @@ pub fn arm(
     if let Some(ended) = record.as_ref().and_then(|run| ended(&run.manifest)) {
         return Ok(ended);
     }
+    comparable(&manifest, directory)?;
     match compute(&manifest, directory, i, record.is_some(), observe, stop) {
         // Another process created it since.
         Err(StudyError::Arm { source: RunError::Record(RecordError::Exists { path }), .. }) => {
@@ -63,6 +81,23 @@ pub fn arm(
         }
         other => other,
     }
+}
+
+/// Matched costs are compared by their times: all steps have been found, on a machine of this type.
+fn comparable(manifest: &StudyManifest, directory: &Path) -> Result<(), StudyError> {
+    let timed: Vec<&Arm> = manifest.arms.iter().filter(|arm| manifest.by_cost(arm)).collect();
+    if timed.is_empty() {
+        return Ok(());
+    }
+    let begun = |arm: &&&Arm| matches!(manifest.state(directory, arm), Ok((Some(_), _)));
+    if let Some(arm) = timed.iter().find(|arm| !begun(arm)) {
+        return Err(StudyError::Timed { arm: arm.name.clone() });
+    }
+    let (there, here) = (&manifest.machine, Machine::current());
+    if there.is_of_type(&here) {
+        return Ok(());
+    }
+    Err(StudyError::OtherMachine { there: there.kind(), here: here.kind() })
 }
 
 /// How a run ended, if it has.

@@ -40,12 +40,20 @@ pub enum StudyError {
     },
     /// The steps of some arms depend on measured times, which differ between machines.
     #[error(
-        "arm \"{arm}\" has a step of matched cost, which is found from times measured on one machine; \
-         `carom study` computes such a study in one process, on one machine"
+        "arm \"{arm}\" has a step of matched cost, which is found from times measured on one machine, and those \
+         of the other runs are compared with them: processes elsewhere must have a machine of the same type"
     )]
     Timed {
         /// The arm.
         arm: String,
+    },
+    /// The steps of matched cost were found on a machine of another type.
+    #[error("the steps of matched cost were timed on another type of machine, {there}; this one is {here}")]
+    OtherMachine {
+        /// The machine of the plan.
+        there: String,
+        /// This machine.
+        here: String,
     },
     /// There is no such run.
     #[error("the study in {} has no run {number}: its runs are 1 to {count}", directory.display())]
@@ -66,6 +74,30 @@ pub enum StudyError {
 }
 
 impl StudyError {
+    /// What to try; none if the message of its cause says it.
+    pub fn cure(&self) -> Option<String> {
+        Some(match self {
+            Self::Record(error) => return error.cure(),
+            Self::Arm { .. } => return None,
+            Self::Damaged { place, .. } => format!("remove {} and compute the arm again", place.display()),
+            Self::Timed { .. } => {
+                "plan it with --settle on a machine of the type that computes the runs, which \
+                                   finds these steps there and then, compute it in one process, or give the \
+                                   arms their steps"
+                    .to_owned()
+            }
+            Self::OtherMachine { .. } => {
+                "compute it on that type (Slurm: --constraint, --nodelist), or plan the \
+                                          study here"
+                    .to_owned()
+            }
+            Self::NoRun { .. } => "give one of these numbers".to_owned(),
+            Self::Incompatible { .. } | Self::Exists { .. } => {
+                "run the study again, into another directory".to_owned()
+            }
+        })
+    }
+
     /// An error of the record of an arm, with the directory that can be removed.
     pub(crate) fn of_record(arm: &Arm, study: &Path, error: RecordError) -> Self {
         match error {

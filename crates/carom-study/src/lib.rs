@@ -22,7 +22,7 @@ mod suite;
 mod theory;
 mod verify;
 
-pub use distributed::{arm, collect, plan};
+pub use distributed::{arm, collect, plan, plan_timed};
 pub use error::StudyError;
 pub use jobs::{Ended, Event};
 pub use plan::{Plan, PlannedArm};

@@ -1,9 +1,13 @@
 """Impact and contact of deformable solids by the positional finite element method.
 
+A bar of length 10 strikes a rigid wall at speed 10; its waves have the speed 30, so that it is in
+contact from t = 0.5 for 2/3:
+
 >>> import carom
->>> case = carom.Case.from_file("cases/impact/impact.toml")
->>> run = case.set("time.scheme.rho_inf", 0.6).run()
->>> run.metrics["restitution"]
+>>> case = carom.Case.from_file("cases/bar/single.toml")
+>>> run = case.set("time.scheme.rho_inf", 0.6).run(progress=False)
+>>> round(run.metrics["contact_start"], 2), round(run.metrics["contact_duration"], 2)
+(0.5, 0.67)
 
 Units are those of the case, whose labels every table carries. Arrays are read-only.
 """
@@ -23,7 +27,7 @@ from .study import Study, study
 from .table import Table
 
 if TYPE_CHECKING:
-    from . import plot
+    from . import export, plot
 
 __all__ = [
     "Case",
@@ -40,6 +44,7 @@ __all__ = [
     "Table",
     "__version__",
     "explain",
+    "export",
     "open",
     "plot",
     "resume",
@@ -50,6 +55,6 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     # Matplotlib is imported only by those who plot.
-    if name == "plot":
+    if name in ("export", "plot"):
         return importlib.import_module(".plot", __name__)
     raise AttributeError(f"module 'carom' has no attribute {name!r}")

@@ -19,6 +19,12 @@ class Case:
 
     Make one with `from_file`, `from_dict` or `from_text`. It is checked at once: everything wrong
     with it is a `CaseError` with place, reason and what to try, as on the command line.
+
+    Examples
+    --------
+    >>> case = carom.Case.from_file("cases/bar/single.toml")
+    >>> case.set("time.step", 1e-3).resolved()["time"]["step"]
+    0.001
     """
 
     def __init__(self, core: _carom.Case, functions: Mapping[str, Callable[..., Any]]) -> None:
@@ -32,22 +38,46 @@ class Case:
 
         Parameters
         ----------
-        path
+        path : str or PathLike
             The TOML file. Meshes and tables that it names are looked for beside it.
+
+        Returns
+        -------
+        Case
+            The case.
         """
         return cls(_carom.Case.open(path, []), {})
 
     @classmethod
     def from_text(cls, text: str) -> Case:
-        """Read a case from TOML text. Files that it names are looked for in the working directory."""
+        """Read a case from TOML text.
+
+        Parameters
+        ----------
+        text : str
+            The text of a case file. Files that it names are looked for in the working directory.
+
+        Returns
+        -------
+        Case
+            The case.
+        """
         return cls(_carom.Case.parse("case", text, []), {})
 
     @classmethod
     def from_dict(cls, case: Mapping[str, Any]) -> Case:
         """Read a case from a dictionary with the keys of a case file.
 
-        Values may be NumPy numbers and arrays. Components of a load and the motion of a support may
-        be Python functions; see `set`.
+        Parameters
+        ----------
+        case : dict
+            Values may be NumPy numbers and arrays. Components of a load and the motion of a support
+            may be Python functions; see `set`.
+
+        Returns
+        -------
+        Case
+            The case.
         """
         functions: dict[str, Callable[..., Any]] = {}
         text = _carom.toml_document(plain(case, functions))
@@ -58,15 +88,17 @@ class Case:
 
         Parameters
         ----------
-        key
+        key : str or dict
             Path of the key; a table of a list is addressed by its name: ``body.cylinder.element``.
             A dictionary replaces several values at once.
-        value
-            The new value. A component of a load may be a function ``f(t, X)`` of the time and the
-            reference positions, shape (points, dimension), that returns a number or one per point.
-            The motion of a support may be a function that returns displacement, velocity and
-            acceleration, ``(u, v, a)``, each a number or one per point. It is called once per
-            evaluation, with all points: a few microseconds, about once per step and stage.
+        value : object
+            The new value. A component of a load may be a function ``f(t)`` of the time, or
+            ``f(t, X)`` of the time and the reference positions, shape (points, dimension), that
+            returns a number or one per point, in the units of the case. The motion of a support may
+            be a function that returns displacement, velocity and acceleration, ``(u, v, a)``, each a
+            number or one per point. It is called once per evaluation, with all points: a few
+            microseconds, about once per step and stage. Arguments with defaults are the function's
+            own.
 
         Returns
         -------
@@ -93,7 +125,13 @@ class Case:
         return {name: function for name, function in self._functions.items() if f'"@{name}"' in text}
 
     def copy(self) -> Case:
-        """An independent case with the same values."""
+        """An independent case with the same values.
+
+        Returns
+        -------
+        Case
+            The copy; changing one of the two leaves the other as it is.
+        """
         case = Case(self._core, self._functions)
         case._sets = dict(self._sets)
         return case
@@ -104,15 +142,33 @@ class Case:
         return self._core.title
 
     def to_dict(self) -> dict[str, Any]:
-        """The case as given, with the values that `set` replaced."""
+        """The case as given, with the values that `set` replaced.
+
+        Returns
+        -------
+        dict
+            Keys and values of a case file.
+        """
         return self._core.to_dict()
 
     def to_toml(self) -> str:
-        """The text of a case file."""
+        """The text of a case file.
+
+        Returns
+        -------
+        str
+            TOML, which `from_text` reads.
+        """
         return self._core.merged()
 
     def resolved(self) -> dict[str, Any]:
-        """The case with all defaults, as `carom check --json` prints it."""
+        """The case with all defaults, as `carom check --json` prints it.
+
+        Returns
+        -------
+        dict
+            Every key that the case could have, with its value.
+        """
         return self._core.resolved()
 
     def check(self) -> list[str]:
@@ -139,18 +195,18 @@ class Case:
 
         Parameters
         ----------
-        out
+        out : str or PathLike, optional
             Directory of the run, which must not exist yet. Without it the run is recorded in memory,
             and cannot be resumed.
-        threads
+        threads : int, optional
             Number of threads, by default one per core; the result does not depend on it.
-        progress
+        progress : bool
             Whether a bar is shown, in a terminal or a notebook, if tqdm is installed.
-        page
+        page : bool
             Whether figures and report page are made in `out`.
-        trials
+        trials : bool
             Where the simulation cannot continue: whether changes that may help are tried.
-        audit
+        audit : bool
             Whether the contact of every step is checked by a second, slow method.
 
         Returns
@@ -164,6 +220,12 @@ class Case:
             If only the meshes show that the case is wrong.
         StoppedError
             If the simulation cannot continue; its ``run`` is the record up to there.
+
+        Examples
+        --------
+        >>> run = carom.Case.from_file("cases/bar/single.toml").run(progress=False)
+        >>> run.history["time"].shape, run.history.units["time"]
+        ((601,), 's')
         """
         with progress_bar(self.title, progress) as report:
             core, raised = self._core.run(

@@ -17,11 +17,11 @@ def export(run: Run, path: str | PathLike[str] | None, format: str) -> None:
 
     Parameters
     ----------
-    run
+    run : Run
         The run.
-    path
+    path : str or PathLike or None
         The file, which must not exist yet; ``None`` for standard output, except for Parquet.
-    format
+    format : str
         ``parquet`` (units and meanings are metadata of the columns), ``csv`` (names, units, rows) or
         ``json`` (columns with name, unit, description and values; ``null`` is not a number), as
         ``carom export`` writes them.
@@ -44,7 +44,18 @@ def export(run: Run, path: str | PathLike[str] | None, format: str) -> None:
 
 
 def read_parquet(path: str | PathLike[str]) -> Table:
-    """Read a Parquet file that `export` wrote."""
+    """Read a Parquet file that `export` wrote.
+
+    Parameters
+    ----------
+    path : str or PathLike
+        The file.
+
+    Returns
+    -------
+    Table
+        The history, with units and meanings of its columns.
+    """
     import pyarrow.parquet as parquet
 
     return Table.of_arrow(parquet.read_table(path))

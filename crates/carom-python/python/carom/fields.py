@@ -13,6 +13,8 @@ from . import _carom
 
 Floats = NDArray[np.float64]
 
+NOT_RECORDED = 'no fields are recorded; set "output.fields_every" of the case to 1 or more'
+
 
 @dataclass(frozen=True)
 class Block:
@@ -20,11 +22,11 @@ class Block:
 
     Attributes
     ----------
-    body
+    body : str
         Its name.
-    vtk_type
+    vtk_type : int
         Lagrange cells. 68: curve; 69: triangle; 70: quadrilateral; 71: tetrahedron; 72: hexahedron.
-    degree
+    degree : int
         1 to 3.
     cells : ndarray, shape (cells, nodes)
         Point numbers: corners, then the nodes of each edge, of each face, and the interior.
@@ -42,15 +44,15 @@ class FieldSet:
 
     Attributes
     ----------
-    time
-        The instant.
+    time : float
+        The instant, in units of time.
     points : ndarray, shape (points, 3)
-        Reference positions.
-    blocks
+        Reference positions, in units of length.
+    blocks : list of Block
         Cells, one block per body.
     arrays : dict of str to ndarray, shape (points, components)
         ``displacement``, ``velocity``, ``stress`` (XX YY ZZ XY YZ XZ), ``contact_pressure``.
-    units
+    units : dict of str to str
         Their unit labels.
     """
 
@@ -66,12 +68,19 @@ class FieldSet:
         return self.points + self.arrays["displacement"]
 
     def quantity(self, name: str) -> tuple[Floats, str]:
-        """A scalar at the points, and its unit.
+        """A scalar at the points.
 
         Parameters
         ----------
-        name
+        name : str
             ``sigma_xx`` …, ``von_mises``, ``contact_pressure``, ``ux``, ``vy``, …
+
+        Returns
+        -------
+        values : ndarray, shape (points,)
+            The values; NaN where there is none.
+        unit : str
+            Their unit label.
         """
         stress = self.arrays["stress"]
         axes = {"x": 0, "y": 1, "z": 2}
@@ -93,9 +102,13 @@ class FieldSet:
         )
 
     def grid(self) -> Any:
-        """A ``pyvista.UnstructuredGrid`` of Lagrange cells at the reference positions.
+        """The fields for PyVista and VTK.
 
-        ``grid.warp_by_vector("displacement")`` is the deformed grid.
+        Returns
+        -------
+        pyvista.UnstructuredGrid
+            Lagrange cells, which are curved, at the reference positions;
+            ``grid.warp_by_vector("displacement")`` is the deformed grid.
         """
         import pyvista
 
@@ -130,20 +143,41 @@ class Fields(Mapping[float, Any]):
     def at(self, time: float) -> FieldSet:
         """The fields of the recorded instant nearest to a time, as arrays.
 
+        Parameters
+        ----------
+        time : float
+            The time, in units of time.
+
+        Returns
+        -------
+        FieldSet
+            The fields.
+
         Raises
         ------
         KeyError
             If nothing is recorded, or the time is outside the recorded interval.
         """
         if not len(self.times):
-            raise KeyError('no fields are recorded; set "output.fields_every" of the case to 1 or more')
+            raise KeyError(NOT_RECORDED)
         first, last = self.times[0], self.times[-1]
         if not first - 1e-9 <= time <= last * (1 + 1e-9) + 1e-12:
             raise KeyError(f"t = {time:g} is outside the recorded interval, {first:g} to {last:g}")
         return self.number(int(np.argmin(np.abs(self.times - time))))
 
     def number(self, i: int) -> FieldSet:
-        """The fields of recorded instant number `i`, from 0, or of number -1 for the last one."""
+        """The fields of a recorded instant by its number.
+
+        Parameters
+        ----------
+        i : int
+            From 0, or -1 for the last one.
+
+        Returns
+        -------
+        FieldSet
+            The fields.
+        """
         try:
             raw = self._core.field(range(len(self))[i])
         except IndexError:

@@ -6,11 +6,13 @@ functions continues only with functions of the same names.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
+from .errors import CaseError
 from .fingerprint import fingerprint
 
 
@@ -27,6 +29,30 @@ def name_of(function: Callable[..., Any], others: Mapping[str, Callable[..., Any
         number += 1
         name = f"{first}#{number}"
     return name
+
+
+def takes_place(function: Callable[..., Any]) -> bool:
+    """Whether a function is one of time and place, ``f(t, X)``, and not of time only, ``f(t)``.
+
+    Arguments with defaults are its own: ``lambda t, gain=gain: gain * t`` is a function of time.
+    """
+    if isinstance(function, np.ufunc):
+        required = function.nin
+    else:
+        try:
+            parameters = inspect.signature(function).parameters.values()
+        except (TypeError, ValueError):
+            return True
+        places = [p for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
+        required = sum(p.default is p.empty for p in places)
+        if required < 2 and any(p.kind is p.VAR_POSITIONAL for p in parameters):
+            return True
+    if required not in (1, 2):
+        raise CaseError(
+            f"the function {function!r} has {required} arguments without default\n"
+            "try: f(t), or f(t, X) with the reference positions X, shape (points, dimension)"
+        )
+    return required == 2
 
 
 def plain(value: object, functions: dict[str, Callable[..., Any]]) -> Any:
@@ -47,6 +73,7 @@ def plain(value: object, functions: dict[str, Callable[..., Any]]) -> Any:
     if hasattr(value, "__fspath__"):
         return str(value)
     if callable(value):
+        takes_place(value)
         name = name_of(value, functions)
         functions[name] = value
         return f"@{name}"

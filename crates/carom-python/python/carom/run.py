@@ -10,8 +10,6 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from . import _carom
 from .fields import Fields
 from .functions import name_of
@@ -58,15 +56,15 @@ class Expectation:
 
     Attributes
     ----------
-    what
+    what : str
         What was asked: ``min A.uy``.
-    expected
+    expected : str
         The bound: ``-0.7827 ± 0.004``.
-    got
+    got : float or None
         The value of the record; ``None`` if there is none.
-    met
+    met : bool
         Whether the bound is satisfied.
-    source
+    source : str or None
         Where the expected value comes from.
     """
 
@@ -83,7 +81,8 @@ class Run:
     Attributes
     ----------
     history : Table
-        One row per recorded step: energies, contact force, probes, …
+        One row per recorded step: energies, contact force, probes, … Columns have the shape (rows,)
+        and are not copied.
     """
 
     def __init__(self, core: _carom.Record) -> None:
@@ -141,11 +140,10 @@ class Run:
     def contact(self) -> Table:
         """One row per active contact node of a recorded step.
 
-        Position (``x``, ``y``), ``gap``, ``multiplier`` (force, negative for compression),
-        ``pressure``, unit normal of the primary side.
+        Position (``x``, ``y``, and ``z`` in space), ``gap``, ``multiplier`` (force, negative for
+        compression), ``pressure``, unit normal of the primary side. Columns have the shape (rows,).
         """
-        columns = {name: np.asarray(values) for name, values in self._core.contact().items()}
-        return Table(columns, self._core.contact_units())
+        return Table._of_core(self._core.contact(), self._core.contact_units())
 
     @cached_property
     def metrics(self) -> Metrics:
@@ -177,29 +175,72 @@ class Run:
         return Fields(self._core)
 
     def to_pandas(self) -> pd.DataFrame:
-        """The history as pandas DataFrame on the same memory."""
+        """The history for pandas.
+
+        Returns
+        -------
+        pandas.DataFrame, shape (rows, columns)
+            On the same memory; units are in ``attrs["units"]``.
+        """
         return self.history.to_pandas()
 
     def to_polars(self) -> Any:
-        """The history as polars DataFrame, through Arrow's C interface."""
+        """The history for polars, through Arrow's C interface.
+
+        Returns
+        -------
+        polars.DataFrame, shape (rows, columns)
+            On the same memory.
+        """
         return self.history.to_polars()
 
     def to_arrow(self) -> Any:
-        """The history as ``pyarrow.Table`` on the same memory."""
+        """The history for Arrow.
+
+        Returns
+        -------
+        pyarrow.Table, shape (rows, columns)
+            On the same memory; units and meanings are metadata of its fields.
+        """
         return self.history.to_arrow()
 
     def to_xarray(self) -> Any:
-        """The history as ``xarray.Dataset`` over time."""
+        """The history for xarray.
+
+        Returns
+        -------
+        xarray.Dataset
+            Variables over ``time``, shape (rows,), on the same memory; units are attributes.
+        """
         return self.history.to_xarray()
 
     def page(self) -> Path:
-        """Make figures and report page of a run directory; returns the page."""
+        """Make figures and report page of a run directory.
+
+        Returns
+        -------
+        Path
+            The page.
+        """
         if self.directory is None:
             raise ValueError("a run in memory has no page; give case.run a directory: out=…")
         return self._core.page()
 
     def animate(self, quantity: str = "sigma_yy", **options: Any) -> Any:
-        """An animation of the deformed bodies (Matplotlib), shown by notebooks; see `plot.animate`."""
+        """An animation of the deformed bodies in the plane.
+
+        Parameters
+        ----------
+        quantity : str
+            As in `FieldSet.quantity`.
+        **options : object
+            ``frames``, ``mesh``, ``size``: see `plot.animate`.
+
+        Returns
+        -------
+        matplotlib.animation.FuncAnimation
+            ``.save("impact.gif")``; notebooks show ``.to_jshtml()``.
+        """
         from . import plot
 
         return plot.animate(self, quantity, **options)
@@ -214,8 +255,13 @@ def open(directory: str | PathLike[str]) -> Run:
 
     Parameters
     ----------
-    directory
+    directory : str or PathLike
         The run directory.
+
+    Returns
+    -------
+    Run
+        The record.
     """
     return Run(_carom.open(directory))
 
@@ -231,14 +277,19 @@ def resume(
 
     Parameters
     ----------
-    directory
+    directory : str or PathLike
         The run directory.
-    *functions
+    *functions : callable
         The Python functions of the case, which must be the same: their code, defaults, the values they
         enclose and their attributes are compared. Functions that begin alike are given in the order of
         the case.
-    threads, progress, page
+    threads, progress, page : optional
         As in `Case.run`.
+
+    Returns
+    -------
+    Run
+        The record.
     """
     from .case import ended
 

@@ -22,18 +22,18 @@ class Step:
 
     Attributes
     ----------
-    number
+    number : int
         From 1.
-    time
-        At its end.
-    newton
+    time : float
+        At its end, in units of time.
+    newton : int
         Newton iterations.
-    rejected
+    rejected : int
         Attempts that were rejected and repeated with a smaller step.
-    activations, releases
+    activations, releases : int
         Nodes that came into contact, and that left it.
-    penetration
-        Depth of the deepest node of either side.
+    penetration : float
+        Depth of the deepest node of either side, in units of length.
     """
 
     number: int
@@ -50,17 +50,23 @@ class Simulation:
 
     Parameters
     ----------
-    case
+    case : Case
         The case; later changes of it have no effect.
-    threads
+    threads : int, optional
         Number of threads, by default one per core; the result does not depend on it.
 
     Examples
     --------
-    >>> simulation = carom.Simulation(case)
+    A bar of 100 cells whose end is 5 from a wall flies at speed 10, and touches it at t = 0.5:
+
+    >>> simulation = carom.Simulation(carom.Case.from_file("cases/bar/single.toml"))
+    >>> simulation.y.shape, float(simulation.y[0, 0]), round(simulation.energies["total"], 9)
+    ((101, 1), 5.0, 500.0)
     >>> for step in simulation:
-    ...     if simulation.time > 0.3:
+    ...     if simulation.contacts.rows:
     ...         break
+    >>> round(simulation.time, 2), simulation.contacts["node"].tolist()
+    (0.5, [0])
     """
 
     def __init__(self, case: Case, threads: int | None = None) -> None:
@@ -69,6 +75,11 @@ class Simulation:
 
     def advance(self) -> Step:
         """Advance to the next grid time.
+
+        Returns
+        -------
+        Step
+            What was done.
 
         Raises
         ------
@@ -107,32 +118,32 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """Time of the state."""
+        """Time of the state, in units of time."""
         return self._core.time
 
     @property
     def dt(self) -> float:
-        """Step of the grid of times."""
+        """Step of the grid of times, in units of time."""
         return self._core.dt
 
     @property
     def y(self) -> Floats:
-        """Positions, shape (nodes, dimension). The array keeps its values after the next step."""
+        """Positions, shape (nodes, dimension), in units of length; the next step keeps them."""
         return self._core.y
 
     @property
     def v(self) -> Floats:
-        """Velocities, shape (nodes, dimension), as `y`."""
+        """Velocities, shape (nodes, dimension), in length per time, as `y`."""
         return self._core.v
 
     @property
     def a(self) -> Floats:
-        """Algorithmic accelerations, shape (nodes, dimension), as `y`."""
+        """Algorithmic accelerations, shape (nodes, dimension), in length per time², as `y`."""
         return self._core.a
 
     @property
     def reference(self) -> Floats:
-        """Reference positions, shape (nodes, dimension)."""
+        """Reference positions, shape (nodes, dimension), in units of length."""
         return self._core.reference
 
     @property
@@ -155,7 +166,10 @@ class Simulation:
 
     @property
     def energies(self) -> dict[str, float]:
-        """Kinetic, strain, potential and total energy, works, dissipation: columns of `row`."""
+        """Kinetic, strain, potential and total energy, works, dissipation: columns of `row`.
+
+        In units of energy: ``units["kinetic"]``.
+        """
         row, units = self.row, self.units
         energy = units["kinetic"]
         # Other columns, such as moments, may have the unit of an energy.
@@ -166,15 +180,25 @@ class Simulation:
     @property
     def contacts(self) -> Table:
         """The active contact nodes, with the columns of `Run.contact`."""
-        columns = {name: np.asarray(values) for name, values in self._core.contact().items()}
-        return Table(columns, self._core.contact_units())
+        return Table._of_core(self._core.contact(), self._core.contact_units())
 
     def checkpoint(self) -> bytes:
-        """The state, to be restored in this or another simulation of the same case."""
+        """The state, to be restored in this or another simulation of the same case.
+
+        Returns
+        -------
+        bytes
+            The state, with the case and the names of its functions.
+        """
         return self._core.checkpoint()
 
     def restore(self, checkpoint: bytes) -> None:
         """Continue from a checkpoint; what follows is bitwise what followed it then.
+
+        Parameters
+        ----------
+        checkpoint : bytes
+            Of this case with the same Python functions.
 
         Raises
         ------

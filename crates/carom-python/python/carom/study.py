@@ -26,7 +26,7 @@ class Study:
 
     Parameters
     ----------
-    directory
+    directory : str or PathLike
         Its directory, also one that ``carom study`` wrote.
     """
 
@@ -51,7 +51,14 @@ class Study:
         return {metric: unit for *_, metrics in self._rows for metric, _, unit in metrics}
 
     def to_pandas(self) -> pd.DataFrame:
-        """One row per arm, one column per metric; ``status`` and ``reason`` first."""
+        """The table of metrics.
+
+        Returns
+        -------
+        pandas.DataFrame, shape (arms, metrics + 2)
+            One row per arm, one column per metric, ``status`` and ``reason`` first; units are in
+            ``attrs["units"]``.
+        """
         import pandas as pd
 
         rows = [
@@ -73,7 +80,13 @@ class Study:
         raise KeyError(f"no arm is named {arm!r}; the arms are: {', '.join(self.arms)}")
 
     def page(self) -> Path:
-        """Make figures and page, and the pages of the arms; returns the page."""
+        """Make figures and page, and the pages of the arms.
+
+        Returns
+        -------
+        Path
+            The page.
+        """
         for arm in self.arms:
             if arm not in self.missing:
                 self[arm].page()
@@ -103,32 +116,48 @@ def study(
 
     Parameters
     ----------
-    case
+    case : Case
         The case.
-    arms
+    arms : dict of str to dict, or list of dict, optional
         Changes of the case by the name of the arm: ``{"Hu": {"time.scheme": {"kind": "hu"}}}``; or a
         list of ``[[arm]]`` tables.
-    grid
+    grid : dict of str to list, optional
         Lists of values by key: all combinations are arms.
-    jobs
+    jobs : int, optional
         Number of concurrent runs, by default one per core.
-    out
+    out : str or PathLike, optional
         Directory of the study, which must not exist yet. Without it the records are kept in a
         temporary directory as long as the study is in use.
-    client
-        A ``distributed.Client``: arms are computed by its workers, which must share the file system
-        with this process. An arm whose worker is killed is continued by another.
-    progress
+    client : distributed.Client or the module ray, optional
+        Arms are computed by the workers of Dask or Ray, which must share the file system with this
+        process. An arm whose worker is killed is continued by another.
+    progress : bool
         Whether a bar is shown, if tqdm is installed.
-    page
+    page : bool
         Whether figures and page are made.
-    **keys
+    **keys : object
         Further keys of a study file: ``reference``, ``goal``, ``claim``, …
 
     Returns
     -------
     Study
         Its ``to_pandas()`` is the table of metrics, with the values of ``study.csv``.
+
+    Raises
+    ------
+    CaseError
+        If a case of the study is wrong.
+    RecordError
+        If the directory exists. With a client: if steps of matched cost need times.
+
+    Examples
+    --------
+    The steps of a grid, and their number, which is end / step:
+
+    >>> case = carom.Case.from_file("cases/bar/single.toml").set("time.end", 0.1)
+    >>> table = carom.study(case, grid={"time.step": [0.002, 0.001]}, progress=False).to_pandas()
+    >>> table["steps"].tolist()
+    [50.0, 100.0]
     """
     if case._functions:
         raise CaseError(
@@ -182,12 +211,14 @@ def _study_text(
 
 
 def _on_workers(client: Any, count: int, directory: Path) -> None:
-    """Computes the runs of a planned study by the workers of a Dask client."""
-    place = str(directory.resolve())
-    futures = client.map(
-        _arm, [place] * count, range(1, count + 1), pure=False, retries=3, key=f"carom-{place}"
-    )
-    client.gather(futures)
+    """Computes the runs of a planned study by the workers of a Dask client, or of Ray."""
+    place, numbers = str(directory.resolve()), range(1, count + 1)
+    if hasattr(client, "gather"):
+        key = f"carom-{place}"
+        client.gather(client.map(_arm, [place] * count, numbers, pure=False, retries=3, key=key))
+    else:
+        task = client.remote(max_retries=3)(_arm)
+        client.get([task.remote(place, number) for number in numbers])
     _carom.study_collect(directory, False)
 
 

@@ -13,14 +13,23 @@ if TYPE_CHECKING:
 
 
 class Table(Mapping[str, NDArray[Any]]):
-    """Columns of equal length by name: read-only NumPy arrays.
+    """Columns of equal length by name: NumPy arrays, read-only where Carom made them.
 
-    Attributes
+    Parameters
     ----------
-    units : dict of str to str
+    columns : dict of str to ndarray, shape (rows,)
+        The columns, which are not copied.
+    units : dict of str to str, optional
         Unit label of every column; empty for counts, ratios and names.
-    descriptions : dict of str to str
+    descriptions : dict of str to str, optional
         Meaning of the columns that have one.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> table = carom.Table({"time": np.array([0.0, 0.5])}, {"time": "s"})
+    >>> float(table["time"][1]), table.units["time"], table.rows
+    (0.5, 's', 2)
     """
 
     def __init__(
@@ -62,7 +71,13 @@ class Table(Mapping[str, NDArray[Any]]):
         return str(self.to_pandas().head(20).to_html())
 
     def to_pandas(self) -> pd.DataFrame:
-        """A pandas DataFrame on the same memory; units are in ``attrs["units"]``."""
+        """For pandas.
+
+        Returns
+        -------
+        pandas.DataFrame, shape (rows, columns)
+            On the same memory; units are in ``attrs["units"]``.
+        """
         import pandas as pd
 
         frame = pd.DataFrame(dict(self._columns), copy=False)
@@ -70,7 +85,13 @@ class Table(Mapping[str, NDArray[Any]]):
         return frame
 
     def to_arrow(self) -> Any:
-        """A ``pyarrow.Table`` on the same memory; units and meanings are metadata of its fields."""
+        """For Arrow.
+
+        Returns
+        -------
+        pyarrow.Table, shape (rows, columns)
+            On the same memory; units and meanings are metadata of its fields.
+        """
         import pyarrow as pa
 
         arrays = [pa.array(values) for values in self._columns.values()]
@@ -85,13 +106,25 @@ class Table(Mapping[str, NDArray[Any]]):
         return self.to_arrow().__arrow_c_stream__(requested_schema)
 
     def to_polars(self) -> Any:
-        """A polars DataFrame, through Arrow's C interface."""
+        """For polars, through Arrow's C interface.
+
+        Returns
+        -------
+        polars.DataFrame, shape (rows, columns)
+            On the same memory, but for texts.
+        """
         import polars as pl
 
         return pl.DataFrame(self)
 
     def to_xarray(self) -> Any:
-        """An ``xarray.Dataset`` over ``time``, if there is such a column; units are attributes."""
+        """For xarray.
+
+        Returns
+        -------
+        xarray.Dataset
+            Variables over ``time`` if there is such a column, else ``row``; units are attributes.
+        """
         import xarray as xr
 
         over = "time" if "time" in self._columns else "row"
@@ -104,8 +137,27 @@ class Table(Mapping[str, NDArray[Any]]):
         return xr.Dataset(variables)
 
     @classmethod
+    def _of_core(cls, columns: Mapping[str, Any], units: Mapping[str, str]) -> Table:
+        """A table of arrays, and of lists of texts, that the compiled part made."""
+        arrays = {name: np.asarray(values) for name, values in columns.items()}
+        for values in arrays.values():
+            values.setflags(write=False)
+        return cls(arrays, units)
+
+    @classmethod
     def of_arrow(cls, table: Any) -> Table:
-        """A table that `to_arrow`, or a Parquet file, holds."""
+        """A table from Arrow's, with the units that `to_arrow` stored.
+
+        Parameters
+        ----------
+        table : pyarrow.Table
+            Of `to_arrow`, or read from a Parquet file.
+
+        Returns
+        -------
+        Table
+            The table.
+        """
         columns = {
             name: np.asarray(table.column(name).combine_chunks().to_numpy(zero_copy_only=False))
             for name in table.column_names

@@ -49,7 +49,10 @@ impl Unit {
             Self::Length => history.unit("penetration").to_owned(),
             Self::Stress => {
                 let stress = |name: &str| name.contains(".sigma_") || name.ends_with(".von_mises");
-                history.columns.iter().find(|c| stress(&c.name)).map_or_else(String::new, |c| c.unit.clone())
+                let recorded = history.columns.iter().find(|c| stress(&c.name)).map(|c| c.unit.clone());
+                let derived =
+                    || stress_of(history.unit("contact_force_x"), history.unit("penetration"), time);
+                recorded.unwrap_or_else(derived)
             }
             Self::Second => "s".to_owned(),
         }
@@ -68,6 +71,16 @@ impl Unit {
             Self::Second => "s",
             Self::Column => "the column's",
         }
+    }
+}
+
+/// The label of stress where no column is one: from those of force, length and time.
+fn stress_of(force: &str, length: &str, time: &str) -> String {
+    let mass = force.strip_suffix(&format!(" {length}/{time}^2"));
+    match mass {
+        _ if force == "N" => "Pa".to_owned(),
+        Some(mass) => format!("{mass}/({length} {time}^2)"),
+        None => String::new(),
     }
 }
 

@@ -12,7 +12,7 @@ from matplotlib.colors import Normalize, TwoSlopeNorm
 from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
 
-from ..fields import Block, FieldSet
+from ..fields import NOT_RECORDED, Block, FieldSet
 from ..run import Run
 from ._style import Size, axes, labelled, style
 
@@ -58,17 +58,27 @@ def snapshot(
 
     Parameters
     ----------
-    run
+    run : Run
         A run in the plane with recorded fields.
-    time
-        The instant.
-    quantity
-        ``sigma_xx``, ``sigma_yy``, ``sigma_xy``, ``von_mises``, ``contact_pressure``, ``ux``, …
-    mesh
+    time : float
+        The instant, in units of time.
+    quantity : str
+        ``sigma_xx``, ``sigma_yy``, ``sigma_xy``, ``von_mises``, ``contact_pressure``, ``ux``, ``vy``.
+    mesh : bool
         Whether the edges of cells are drawn.
-    limits
+    limits : (float, float), optional
         Range of the colours; by default that of the instant, symmetric for signed quantities.
+    ax : Axes, optional
+        Where to draw; by default a new figure.
+    size : str or (float, float)
+        Of a new figure: ``"single"``, ``"double"`` or (width, height) in inches.
+
+    Returns
+    -------
+    Axes
+        The Axes.
     """
+    _in_the_plane(run)
     fields = run.fields.at(time)
     values, unit = fields.quantity(quantity)
     norm, colours = _colours(quantity, values, limits)
@@ -96,8 +106,16 @@ def animate(
 
     Parameters
     ----------
-    frames
+    run : Run
+        A run in the plane with recorded fields.
+    quantity : str
+        As in `snapshot`.
+    frames : int
         Largest number of recorded instants that are shown.
+    mesh : bool
+        Whether the edges of cells are drawn.
+    size : str or (float, float)
+        ``"single"``, ``"double"`` or (width, height) in inches.
 
     Returns
     -------
@@ -106,7 +124,10 @@ def animate(
     """
     from matplotlib.animation import FuncAnimation
 
+    _in_the_plane(run)
     count = len(run.fields)
+    if not count:
+        raise KeyError(NOT_RECORDED)
     chosen = np.unique(np.linspace(0, count - 1, min(frames, count)).round().astype(int))
     sets = [run.fields.number(int(i)) for i in chosen]
     found = [fields.quantity(quantity) for fields in sets]
@@ -141,10 +162,19 @@ def pressure_map(
 
     Parameters
     ----------
-    run
-        A run with recorded fields, which contain the side.
-    contact
+    run : Run
+        A run in the plane, or of bars, with recorded fields, which contain the side.
+    contact : str, optional
         Name of the contact; by default the first one.
+    ax : Axes, optional
+        Where to draw; by default a new figure.
+    size : str or (float, float)
+        Of a new figure: ``"single"``, ``"double"`` or (width, height) in inches.
+
+    Returns
+    -------
+    Axes
+        The Axes.
 
     Notes
     -----
@@ -157,6 +187,8 @@ def pressure_map(
         raise ValueError("the case has no contact")
     if run.case["dimension"] == 3:
         raise ValueError("this map is along a line; in space, run.fields[t] contains contact_pressure")
+    if not len(run.fields):
+        raise KeyError(NOT_RECORDED)
     name = contact or next(iter(contacts))
     if name not in contacts:
         raise ValueError(f"no contact is named {name!r}; the contacts are: {', '.join(contacts)}")
@@ -204,6 +236,22 @@ def pressure_map(
     return ax
 
 
+def _in_the_plane(run: Run) -> None:
+    """What shows the other bodies is named before a figure is begun."""
+    dimension = run.case["dimension"]
+    if dimension == 3:
+        raise ValueError(
+            "this figure shows bodies in the plane; in space, "
+            'run.fields[t].warp_by_vector("displacement").plot(scalars="stress", component=2) draws with '
+            "PyVista, and the page of a run in a directory has a scene to turn, cut and play"
+        )
+    if dimension == 1:
+        raise ValueError(
+            "this figure shows bodies in the plane; of bars, run.fields.at(t).points[:, 0] and "
+            '.quantity("sigma_xx") are place and stress'
+        )
+
+
 def _facets(chain: NDArray[np.int64], degree: int) -> NDArray[np.int64]:
     """The nodes of every facet of a chain, shape (facets, degree + 1)."""
     starts = np.arange(0, len(chain) - 1, degree)
@@ -242,8 +290,6 @@ def _draw(
     """The bodies; edges of cells along their nodes."""
     y = fields.positions
     triangles = np.concatenate([_triangles(block) for block in fields.blocks])
-    if not len(triangles):
-        raise ValueError("a snapshot shows bodies in the plane; run.fields[t] is a PyVista grid of any cells")
     # Where J ≤ 0 there is no stress.
     masked = np.isnan(values[triangles]).any(axis=1)
     shape = Triangulation(y[:, 0], y[:, 1], triangles, mask=masked)

@@ -24,14 +24,21 @@ def history(
 
     Parameters
     ----------
-    run
+    run : Run
         The run.
-    *columns
+    *columns : str
         Names of columns with one unit; without any, the contact force.
-    events
+    events : bool
         Whether rejected steps, overlaps and the place of a stop are marked below the lines.
-    ax, size
-        Where to draw.
+    ax : Axes, optional
+        Where to draw; by default a new figure.
+    size : str or (float, float)
+        Of a new figure: ``"single"``, ``"double"`` or (width, height) in inches.
+
+    Returns
+    -------
+    Axes
+        The Axes.
     """
     names = columns or (_force(run),)
     units = {run.history.units[name] for name in names}
@@ -52,6 +59,20 @@ def energy(run: Run, *, ax: Axes | None = None, size: Size = "single") -> Axes:
     """The energy ledger: kinetic, strain and potential energy, their total, works, dissipation.
 
     Terms that are zero throughout are left out.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; by default a new figure.
+    size : str or (float, float)
+        Of a new figure: ``"single"``, ``"double"`` or (width, height) in inches.
+
+    Returns
+    -------
+    Axes
+        The Axes.
     """
     # The columns of the ledger follow one another.
     names = list(run.history)
@@ -83,10 +104,19 @@ def compare(
 
     Parameters
     ----------
-    runs
+    runs : dict of str to Run, or list of Run
         Runs by their labels, or runs that are labelled by their titles.
-    column
+    column : str
         The column.
+    ax : Axes, optional
+        Where to draw; by default a new figure.
+    size : str or (float, float)
+        Of a new figure: ``"single"``, ``"double"`` or (width, height) in inches.
+
+    Returns
+    -------
+    Axes
+        The Axes.
     """
     named = dict(runs) if isinstance(runs, Mapping) else {run.title: run for run in runs}
     if not named:
@@ -106,7 +136,7 @@ def compare(
 
 
 def shade_contact(run: Run, ax: Axes) -> None:
-    """Shades the contact episodes."""
+    """Shade the contact episodes."""
     for start, end in run.episodes:
         ax.axvspan(start, end, color=CONTACT, alpha=0.15, lw=0, zorder=0)
 

@@ -26,9 +26,6 @@ pub(crate) enum Exit {
     Interrupted = 130,
 }
 
-/// What to do about a record that cannot be used.
-const AGAIN: &str = "run the case again, or continue with carom resume";
-
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
@@ -65,27 +62,14 @@ impl From<std::io::Error> for Failure {
 
 impl From<RecordError> for Failure {
     fn from(error: RecordError) -> Self {
-        let what = error.to_string();
-        let help = match &error {
-            RecordError::Io { .. } => return Self::System { what },
-            // They say what to try.
-            RecordError::Corrupt { .. } | RecordError::Busy { .. } | RecordError::Exists { .. } => {
-                String::new()
-            }
+        let what = match &error {
+            RecordError::Io { .. } => return Self::System { what: error.to_string() },
             RecordError::NotARun { path } if StudyManifest::is_in(path) => {
-                let what = format!("{} is the directory of a study, not of a run", path.display());
-                let help =
-                    format!("give that of one of its runs: they are in {}", path.join("arms").display());
-                return Self::Argument { what, help };
+                format!("{} is the directory of a study, not of a run", path.display())
             }
-            RecordError::NotARun { .. } => {
-                "give a directory that `carom run` created, for example runs/impact".to_owned()
-            }
-            RecordError::NotAStudy { .. } => {
-                "give a directory that `carom study` created, for example runs/fair".to_owned()
-            }
-            RecordError::Width { .. } | RecordError::Field { .. } => AGAIN.to_owned(),
+            _ => error.to_string(),
         };
+        let help = error.cure().unwrap_or_default();
         Self::Argument { what, help }
     }
 }
@@ -129,22 +113,10 @@ impl From<StudyError> for Failure {
                 }
                 other => other,
             },
-            error @ StudyError::Timed { .. } => Self::Argument {
-                what: error.to_string(),
-                help: "run it with `carom study` on one machine, or give the arms their steps".to_owned(),
-            },
-            error @ StudyError::Damaged { .. } => {
-                let StudyError::Damaged { place, .. } = &error else { unreachable!("the same error") };
-                let help = format!("remove {} and compute the arm again", place.display());
+            error => {
+                let help = error.cure().unwrap_or_default();
                 Self::Argument { what: error.to_string(), help }
             }
-            error @ StudyError::NoRun { .. } => {
-                Self::Argument { what: error.to_string(), help: "give one of these numbers".to_owned() }
-            }
-            error @ (StudyError::Incompatible { .. } | StudyError::Exists { .. }) => Self::Argument {
-                what: error.to_string(),
-                help: "run the study again, into another directory".to_owned(),
-            },
         }
     }
 }

@@ -108,7 +108,7 @@ fn conclude(
 }
 
 /// Progress of a study.
-struct Seen {
+pub(super) struct Seen {
     names: Vec<String>,
     steps: Vec<u64>,
     /// Steps done, by arm.
@@ -122,7 +122,7 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(manifest: &StudyManifest, json: bool) -> Self {
+    pub(super) fn new(manifest: &StudyManifest, json: bool) -> Self {
         Self {
             names: manifest.runs().map(|a| a.name.clone()).collect(),
             steps: manifest.runs().map(|a| a.steps).collect(),
@@ -135,7 +135,7 @@ impl Seen {
         }
     }
 
-    fn event(&mut self, event: &Event) {
+    pub(super) fn event(&mut self, event: &Event) {
         let line = match event {
             Event::AlreadyDone(i) => {
                 self.done[*i] = self.steps[*i];

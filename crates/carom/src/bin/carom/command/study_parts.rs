@@ -11,6 +11,8 @@ use crate::live::{Live, stop_on_signal};
 use crate::simulation::seen;
 use crate::{console, directory, out, study_summary};
 
+use super::study::Seen;
+
 /// Steps of a study that is computed by separate processes, also on several machines
 #[derive(clap::Subcommand)]
 pub(super) enum StudyCommand {
@@ -20,7 +22,9 @@ Then compute every run, in any order and on any machine that shares the director
   sbatch DIR/slurm.sh                           with --slurm
   seq N | parallel carom study arm DIR          with GNU parallel, for N runs
 and write the tables and the page with:
-  carom study collect DIR")]
+  carom study collect DIR
+A design of matched cost needs times: with --settle they are measured on this machine, and the other
+runs are refused on machines of another type.")]
     Plan {
         /// The study file, or - for standard input
         study: PathBuf,
@@ -30,6 +34,9 @@ and write the tables and the page with:
         /// Also write DIR/slurm.sh, a job array for Slurm
         #[arg(long)]
         slurm: bool,
+        /// Find the steps of matched cost now, by timing runs on this machine one after the other
+        #[arg(long)]
+        settle: bool,
     },
     /// Compute one run of a planned study, or continue it; nothing is done if it has ended
     Arm {
@@ -54,23 +61,40 @@ and write the tables and the page with:
 impl StudyCommand {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         match self {
-            Self::Plan { study, out, slurm } => plan(study, out, *slurm),
+            Self::Plan { study, out, slurm, settle } => plan(study, out, *slurm, *settle),
             Self::Arm { directory, number } => arm(directory, *number),
             Self::Collect { directory, no_report } => collect(directory, !no_report),
         }
     }
 }
 
-fn plan(study: &Path, directory: &Path, slurm: bool) -> Result<Exit, Failure> {
+fn plan(study: &Path, directory: &Path, slurm: bool, settle: bool) -> Result<Exit, Failure> {
     let plan = super::plan(&super::document(study, &[])?, study)?;
     let directory = directory::given(directory, "name another directory")?;
-    carom_study::plan(&plan, &directory)?;
+    let timed = plan.manifest.arms.iter().any(|arm| plan.manifest.by_cost(arm));
+    if settle && timed {
+        let stop = stop_on_signal()?;
+        let mut seen = Seen::new(&plan.manifest, false);
+        let settled = carom_study::plan_timed(&plan, &directory, &mut |e| seen.event(e), &stop);
+        drop(seen);
+        if !settled? {
+            console::say(format_args!(
+                "stopped by Ctrl-C; continue with: carom resume {}",
+                directory.display()
+            ));
+            return Ok(Exit::Interrupted);
+        }
+    } else {
+        carom_study::plan(&plan, &directory)?;
+    }
     let count = plan.manifest.runs().count();
     if slurm {
         let path = directory.join("slurm.sh");
         let failed = |e| Failure::System { what: format!("cannot write {}: {e}", path.display()) };
         let whole = std::path::absolute(&*directory).map_err(failed)?;
-        std::fs::write(&path, script(&plan.manifest.title, &whole, count)).map_err(failed)?;
+        let machine = timed.then(|| plan.manifest.machine.kind());
+        std::fs::write(&path, script(&plan.manifest.title, &whole, count, machine.as_deref()))
+            .map_err(failed)?;
     }
     if !console::is_quiet() {
         out::line(&format!("{count} runs in {}; each is computed by:", directory.display()))?;
@@ -82,16 +106,25 @@ fn plan(study: &Path, directory: &Path, slurm: bool) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// A job array. A run that was killed continues when its task is started again.
-fn script(title: &str, directory: &Path, count: usize) -> String {
+/// A job array. A run that was killed continues when its task is started again. `machine`: the type
+/// of node whose times are compared.
+fn script(title: &str, directory: &Path, count: usize, machine: Option<&str>) -> String {
     let place = directory.display().to_string().replace('\'', "'\\''");
     let title = title.replace(|c: char| !c.is_alphanumeric(), "-");
+    let timed = machine.map_or_else(String::new, |kind| {
+        format!(
+            "#SBATCH --exclusive\n\
+             # Times are compared: all nodes must be of this type, see --constraint and --nodelist of sbatch.\n\
+             # {kind}\n"
+        )
+    });
     format!(
         "#!/bin/sh\n\
          #SBATCH --job-name={title}\n\
          #SBATCH --array=1-{count}\n\
          #SBATCH --cpus-per-task=1\n\
          #SBATCH --requeue\n\
+         {timed}\
          # Afterwards: carom study collect '{place}'\n\
          exec carom study arm '{place}' \"$SLURM_ARRAY_TASK_ID\"\n"
     )
