@@ -41,6 +41,8 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
             @if key.ends_with("cells") { " (step: 1/cells)" }
             @if !group.common.is_empty() { ", " code { (group.common) } }
         }
+        details {
+        summary { (metrics.len()) " metrics" }
         table.metrics {
             thead {
                 tr {
@@ -59,6 +61,7 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
                     }
                 }
             }
+        }
         }
     }
 }

@@ -95,7 +95,9 @@ fn header(run: &Run) -> Markup {
             (row("Record", html! {
                 (rows) " rows, up to t = " (number(last)) " " (Label(run.history.unit("time")))
             }))
-            @if let Some(time) = integration(&m.case) { (row("Time integration", time)) }
+            @if let Some(time) = integration(&m.case, run.history.unit("time")) {
+                (row("Time integration", time))
+            }
             (row("Machine", html! {
                 (machine.cpus) " cores, " (machine.os) " " (machine.arch) "; threads: " (m.threads)
             }))
@@ -111,7 +113,7 @@ fn row(name: &str, value: impl Render) -> Markup {
 }
 
 /// The scheme with its parameters, and the time step.
-fn integration(case: &Value) -> Option<String> {
+fn integration(case: &Value, unit: &str) -> Option<String> {
     let part = |(k, v): (&String, &Value)| match v.as_str() {
         Some(text) if k == "kind" => text.to_string(),
         Some(text) => format!("{k} {text}"),
@@ -119,7 +121,7 @@ fn integration(case: &Value) -> Option<String> {
     };
     let scheme: Vec<String> = case.pointer("/time/scheme")?.as_object()?.iter().map(part).collect();
     let step = case.pointer("/time/step").and_then(Value::as_f64).map_or(String::new(), number);
-    Some(format!("{}; Δt = {step}", scheme.join(", ")))
+    Some(format!("{}; Δt = {step} {unit}", scheme.join(", ")))
 }
 
 fn results(run: &Run) -> Markup {

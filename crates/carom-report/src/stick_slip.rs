@@ -7,8 +7,7 @@ use std::fmt::Write as _;
 use carom_record::{ContactRow, Run};
 
 use crate::axis::{Axis, range};
-use crate::chart::{open, write_text};
-use crate::labels::with_unit;
+use crate::chart::{open_chart, write_text};
 use crate::palette::LINES;
 
 const WIDTH: f64 = 720.0;
@@ -35,7 +34,7 @@ pub(crate) fn figure(run: &Run) -> Option<(String, String)> {
     let x_axis = Axis::new((first, last), 8.0, true);
     let plot = WIDTH - LEFT - RIGHT;
     let height = contacts.len() as f64 * (HEIGHT + 44.0) + 52.0;
-    let mut out = open("Stick and slip", WIDTH, height);
+    let mut out = open_chart("Stick and slip", WIDTH, height);
     for (i, (label, colour)) in STATES.iter().enumerate() {
         let x = LEFT + 150.0 * i as f64;
         let _ = writeln!(out, "<rect x=\"{x:.1}\" y=\"6\" width=\"16\" height=\"11\" fill=\"{colour}\"/>");
@@ -50,7 +49,7 @@ pub(crate) fn figure(run: &Run) -> Option<(String, String)> {
                 let x = LEFT + plot * x_axis.position(*value);
                 write_text(&mut out, x, top + HEIGHT + 19.0, "text-anchor=\"middle\"", label);
             }
-            let label = with_unit("time t", run.history.unit("time"));
+            let label = x_axis.label("time t", run.history.unit("time"));
             write_text(&mut out, LEFT + 0.5 * plot, top + HEIGHT + 40.0, "text-anchor=\"middle\"", &label);
         }
     }
@@ -111,7 +110,7 @@ fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &
     );
     let length = run.fields.first().and_then(|entry| run.field(entry).ok());
     let unit = length.and_then(|set| set.array("displacement").map(|array| array.unit.clone()));
-    let label = with_unit("arc length s", &unit.unwrap_or_default());
+    let label = y_axis.label("arc length s", &unit.unwrap_or_default());
     let (x, y) = (16.0, top + 0.5 * HEIGHT);
     write_text(out, x, y, &format!("text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\""), &label);
 }
