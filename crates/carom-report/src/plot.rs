@@ -8,6 +8,7 @@ use crate::axis::range;
 mod curve;
 mod direct;
 mod draw;
+mod frame;
 mod legend;
 mod scale;
 

@@ -3,7 +3,10 @@
 
 use std::fmt::Write as _;
 
-use crate::plot::{APART, Pane, Plot, style};
+use crate::chart::{Chart, Panel, Series};
+use crate::labels::with_unit;
+use crate::palette::LINES;
+use crate::plot::{APART, Curve, Pane, Plot, style};
 
 /// The script; every `@WORD@` is replaced.
 const SCRIPT: &str = r##"#!/usr/bin/env python3
@@ -25,7 +28,7 @@ apart = @APART@  # dashed grey, without influence on the axes
 y_labels = @Y_LABELS@
 limits, floors, spans, fronts = @LIMITS@, @FLOORS@, @SPANS@, @FRONTS@
 marks = @MARKS@
-marked, across = @MARKED@, @ACROSS@
+marked, direct, across = @MARKED@, @DIRECT@, @ACROSS@
 
 def style(label):
     if label in apart:
@@ -33,7 +36,7 @@ def style(label):
     i = styles[label]
     if marked:
         return {"color": colors[i % 8], "marker": "os^Dv"[i % 5], "ms": 4}
-    return {"color": colors[i % 8], "ls": dashes[(i + i // 8) % 8] if label else "-"}
+    return {"color": colors[i % 8], "ls": dashes[(i + i // 8) % 8] if label and not direct else "-"}
 
 rows = -(-len(panes) // across)
 size = (7.2, @HIGH@ * rows + 0.5 + 0.1 * len(styles))
@@ -132,6 +135,7 @@ impl Plot {
             ("FLOORS", list(&|p| p.floor.as_ref().map_or("None".into(), mark))),
             ("MARKS", list(&|p| format!("[{}]", p.marks.iter().map(mark).collect::<Vec<_>>().join(", ")))),
             ("MARKED", truth(curves().any(|c| c.marked))),
+            ("DIRECT", truth(self.direct)),
             ("ACROSS", self.across.max(1).to_string()),
             (
                 "HIGH",
@@ -149,6 +153,33 @@ impl Plot {
         ]
         .iter()
         .fold(SCRIPT.to_owned(), |script, (word, value)| script.replace(&format!("@{word}@"), value))
+    }
+}
+
+/// A chart over time as a plot, for its table and script.
+pub(crate) fn of_chart(name: &str, chart: &Chart) -> Plot {
+    let curve = |(k, series): (usize, &Series)| Curve {
+        label: series.label.clone(),
+        style: LINES.iter().position(|color| *color == series.color).unwrap_or(k % LINES.len()),
+        x: series.x.to_vec(),
+        y: series.y.clone(),
+        ..Curve::default()
+    };
+    let pane = |panel: &Panel| Pane {
+        title: panel.label.clone(),
+        y_label: with_unit(&panel.label, &panel.unit),
+        curves: panel.series.iter().enumerate().map(curve).collect(),
+        ..Pane::default()
+    };
+    Plot {
+        name: name.to_owned(),
+        caption: String::new(),
+        x_label: chart.x_label.clone(),
+        log: [false, false],
+        across: 1,
+        same: false,
+        direct: true,
+        panes: chart.panels.iter().map(pane).collect(),
     }
 }
 

@@ -7,7 +7,7 @@
 use std::fmt::Write as _;
 
 use super::Curve;
-use super::draw::Frame;
+use super::frame::Frame;
 use crate::chart::write_text;
 use crate::text;
 

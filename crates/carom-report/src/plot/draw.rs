@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::frame::Frame;
 use super::scale::Scale;
 use super::{Curve, Pane, Plot, curve, direct, legend};
 use crate::chart::{open_chart, write_text};
@@ -15,26 +16,6 @@ const RIGHT: f64 = 12.0;
 const TICK: f64 = 11.0;
 const TOP: f64 = 30.0;
 const BELOW: f64 = 34.0;
-
-/// The rectangle of a pane in pixels.
-pub(super) struct Frame {
-    left: f64,
-    pub(super) top: f64,
-    wide: f64,
-    high: f64,
-    /// Room to the left of it.
-    beside: f64,
-}
-
-impl Frame {
-    pub(super) fn right(&self) -> f64 {
-        self.left + self.wide
-    }
-
-    pub(super) fn bottom(&self) -> f64 {
-        self.top + self.high
-    }
-}
 
 /// The scales of a pane.
 struct Scales {
