@@ -5,9 +5,10 @@
 
 Opens each page, plays its animation and drags its slider; a scene in space is also turned, moved,
 zoomed, cut and coloured, by mouse, touch and keys. Fails on any console message, missing part or
-external request. Needs only `chromium` (apt-get install chromium). With --screenshots, it
-writes for every page NAME.png (as opened), NAME-playing.png (after the animation was played) and
-NAME.pdf (printed), where NAME is the name of its folder.
+external request, and on text that is cut off, covered or hard to read at either of two widths and in
+either colour scheme (`page_layout.py`). Needs only `chromium` (apt-get install chromium). With
+--screenshots, it writes for every page NAME.png (as opened), NAME-playing.png (after the animation was
+played), NAME-WIDTH-SCHEME.png and NAME.pdf (printed), where NAME is the name of its folder.
 """
 
 import argparse
@@ -21,6 +22,8 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+
+from page_layout import layout
 
 OUTSIDE = re.compile(r"""(?:src|href)\s*=\s*["']?(?:https?:)?//|url\((?!#)|@import|\bfetch\(|XMLHttpRequest""")
 
@@ -306,6 +309,7 @@ def check(browser, page, screenshots):
         wrong += animation(browser)
         if to:
             picture(browser, f"{to}-playing.png")
+    wrong += layout(browser, picture, to)
     most = 8_000_000 if 'class="scene"' in text else 5_000_000
     if page.stat().st_size > most:
         wrong.append(f"{page.stat().st_size} bytes are more than {most / 1e6:.0f} MB")

@@ -22,7 +22,10 @@ from pathlib import Path
 import h5py
 import vtk
 
-UNITS = {"displacement": "m", "velocity": "m/s", "stress": "Pa", "contact_pressure": "Pa"}
+UNITS = {
+    "displacement": "m", "velocity": "m/s", "stress": "Pa", "von_mises": "Pa", "principal_stress": "Pa",
+    "contact_pressure": "Pa",
+}
 STREAM = vtk.vtkStreamingDemandDrivenPipeline
 
 

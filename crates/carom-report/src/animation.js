@@ -42,6 +42,22 @@
     return { points, triangles };
   });
 
+  // Pressure along the side: number of the node, arc length, pressure; neighbours are joined.
+  const profiles = [...root.querySelectorAll("g.profile")].map(g => {
+    const [x0, x1, s0, s1, y0, y1, p0, p1] = g.dataset.axis.split(" ").map(Number);
+    return list => {
+      let line = "", dots = "";
+      for (let i = 0; i < list.length; i += 3) {
+        const at = (x0 + (x1 - x0) * (list[i + 1] - s0) / (s1 - s0)).toFixed(1) + " " +
+          (y0 + (y1 - y0) * (list[i + 2] - p0) / (p1 - p0)).toFixed(1);
+        line += (i && list[i] === list[i - 3] + 1 ? "L" : "M") + at;
+        dots += `M${at}h0`;
+      }
+      g.children[0].setAttribute("d", line);
+      g.children[1].setAttribute("d", dots);
+    };
+  });
+
   // The picture leaves a margin for arrows around the bodies.
   const aspect = (high - low) / (right - left);
   const W = data.flat || aspect < 0.5 ? 900 : Math.min(380, Math.max(220, 440 / aspect)), pad = 18;
@@ -155,6 +171,7 @@
     });
     const f = frames[k].forces;
     for (let i = 0; i < f.length; i += 4) arrow(px(f[i]), py(f[i + 1]), f[i + 2], f[i + 3]);
+    profiles.forEach((show, i) => show(frames[k].pressure[i]));
   };
 
   // Start at the frame with the largest contact force.

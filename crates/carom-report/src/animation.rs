@@ -20,6 +20,7 @@ use crate::labels::{number, symbol, with_unit};
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::Point;
+use crate::pressure;
 use crate::sheet::{Legend, color_bar};
 use crate::text::{Label, Prose};
 
@@ -242,10 +243,13 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let coordinates = |d: usize| frames.iter().flat_map(move |(_, i)| i.points.iter().map(move |p| &p[d]));
     let forces = forces(run);
     let largest = forces.values().flatten().map(|f| f[2].hypot(f[3])).fold(0.0, f64::max);
-    let frame_of = |(entry, _): &(FieldEntry, Instant)| {
+    let shown: Vec<&FieldEntry> = frames.iter().map(|(entry, _)| entry).collect();
+    let (profiles, pressures) = pressure::profiles(run, &shown).filter(|_| !flat).unwrap_or_default();
+    let frame_of = |(k, (entry, _)): (usize, &(FieldEntry, Instant))| {
         let list: Vec<f64> = forces.get(&entry.step).into_iter().flatten().flatten().copied().collect();
         let rounded: Vec<f64> = list.iter().map(|x| format!("{x:.5e}").parse().unwrap_or(0.0)).collect();
         json!({ "time": entry.time, "step": entry.step, "file": run.field_file(entry), "forces": rounded,
+                "pressure": pressures.get(k),
                 "planes": if flat { planes(run, flat, entry.time) } else { Vec::new() },
                 "poses": surfaces.iter().map(|obstacle| obstacle.pose(run, entry.time)).collect::<Vec<_>>() })
     };
@@ -253,7 +257,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         cells.iter().flat_map(|(_, n)| n.iter().flat_map(|k| (*k as u32).to_le_bytes())).collect();
     let data = json!({
         "unit": run.history.unit("time"), "box": [x0, x1, y0, y1], "range": [range.0, range.1],
-        "points": frames[0].1.points.len(), "frames": frames.iter().map(frame_of).collect::<Vec<_>>(),
+        "points": frames[0].1.points.len(), "frames": frames.iter().enumerate().map(frame_of).collect::<Vec<_>>(),
         "degrees": cells.iter().map(|(d, _)| d.to_string()).collect::<String>(),
         "cells": STANDARD.encode(numbers),
         "x": packed(coordinates(0), (x0, x1)), "y": packed(coordinates(1), (y0, y1)),
@@ -279,7 +283,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
             div.stage {
                 canvas {}
                 div { (PreEscaped(bar)) }
-                div { (PreEscaped(histories(run, shades))) }
+                div { (PreEscaped(histories(run, shades))) (PreEscaped(profiles)) }
             }
             div.controls { (controls()) }
             figcaption {

@@ -1,5 +1,7 @@
 //! Axes with round ticks, and a power of ten factored out of numbers far from one.
 
+use crate::labels::{number, scaled, with_unit};
+
 /// Ticks of an axis from `low` to `high`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Axis {
@@ -8,7 +10,12 @@ pub(crate) struct Axis {
     pub(crate) ticks: Vec<(f64, String)>,
     /// Tick labels are in units of 10^exponent.
     pub(crate) exponent: i32,
+    /// What is subtracted from the values of the tick labels.
+    pub(crate) offset: f64,
 }
+
+/// A range smaller than this share of its values has labels with an offset.
+const NARROW: f64 = 2e-3;
 
 /// Round step (1, 2 or 5 times a power of ten) that gives about `count` intervals.
 pub(crate) fn round_step(span: f64, count: f64) -> f64 {
@@ -41,6 +48,14 @@ impl Axis {
             high = if high == 0.0 { 0.0 } else { ((high + air) / half).ceil() * half };
         }
         let size = low.abs().max(high.abs());
+        // A round number below the range, so that labels need only the digits that differ.
+        let offset = if high - low < NARROW * size {
+            let round = 10f64.powi((high - low).log10().ceil() as i32);
+            (low / round).round() * round
+        } else {
+            0.0
+        };
+        let size = (low - offset).abs().max((high - offset).abs());
         let order = size.log10().floor() as i32;
         let exponent = if (-3..4).contains(&order) { 0 } else { order.div_euclid(3) * 3 };
         let scale = 10f64.powi(exponent);
@@ -50,10 +65,21 @@ impl Axis {
         let ticks = (first..=last.min(first + 50)).map(|i| {
             let value = i as f64 * step;
             // A minus sign, not a hyphen, and no negative zero.
-            let text = format!("{:.decimals$}", value.abs() / scale);
-            (value, if value < 0.0 { format!("−{text}") } else { text })
+            let shown = if offset == 0.0 { value } else { (i as f64 - (offset / step).round()) * step };
+            let text = format!("{:.decimals$}", shown.abs() / scale);
+            (value, if shown < 0.0 { format!("−{text}") } else { text })
         });
-        Self { low, high, ticks: ticks.collect(), exponent }
+        Self { low, high, ticks: ticks.collect(), exponent, offset }
+    }
+
+    /// The label of the axis: quantity, offset and unit.
+    pub(crate) fn label(&self, quantity: &str, unit: &str) -> String {
+        let quantity = match self.offset {
+            0.0 => quantity.to_owned(),
+            offset if offset < 0.0 => format!("{quantity} + {}", number(-offset)),
+            offset => format!("{quantity} − {}", number(offset)),
+        };
+        with_unit(&quantity, &scaled(unit, self.exponent))
     }
 
     /// 0 at the low end, 1 at the high end.
@@ -83,6 +109,15 @@ mod tests {
         assert_eq!(labels((-0.7827, 0.0), false), ("−0.8 −0.6 −0.4 −0.2 0.0".into(), 0));
         assert_eq!(labels((0.0, 2.6e7), true), ("0 10 20".into(), 6));
         assert_eq!(labels((-3e-7, 3e-7), true), ("−200 0 200".into(), -9));
+    }
+
+    /// 0.060000 to 0.060008: labels are the millionths above 0.06.
+    #[test]
+    fn narrow_ranges_have_an_offset() {
+        let axis = Axis::new((0.06, 0.060008), 4.0, true);
+        assert_eq!(axis.ticks.iter().map(|t| t.1.as_str()).collect::<Vec<_>>(), ["0", "2", "4", "6", "8"]);
+        assert_eq!(axis.label("F", "N"), "F − 0.06 (µN)");
+        assert_eq!(Axis::new((-300.0, -299.9), 2.0, true).label("y", "m"), "y + 300 (m)");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::axis::{Axis, range};
-use crate::labels::with_unit;
+use crate::labels::unit_of;
 use crate::text;
 use crate::trace::path;
 
@@ -61,8 +61,17 @@ impl Default for Options<'_> {
 
 /// The opening of an SVG figure, with fonts and background so that it stands alone.
 pub(crate) fn open(title: &str, width: f64, height: f64) -> String {
+    opened("picture", title, width, height)
+}
+
+/// The opening of a line chart, which a dark page shows in light colours on dark ground.
+pub(crate) fn open_chart(title: &str, width: f64, height: f64) -> String {
+    opened("chart", title, width, height)
+}
+
+fn opened(class: &str, title: &str, width: f64, height: f64) -> String {
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 \
+        "<svg class=\"{class}\" xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 \
          0 {width:.0} {height:.0}\" \
          role=\"img\" font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\" \
          font-size=\"{FONT}\" fill=\"#222\">\n\
@@ -94,7 +103,7 @@ impl Chart<'_> {
         let rows: Vec<Vec<Vec<usize>>> = self.panels.iter().map(|p| legend_rows(p, plot)).collect();
         let tops = rows.iter().map(|r| GAP + r.len() as f64 * 18.0);
         let height = tops.zip(&self.panels).map(|(top, p)| top + p.height).sum::<f64>() + 48.0 + below;
-        let mut out = open(self.title, width, height);
+        let mut out = open_chart(self.title, width, height);
         let to_x = |x: f64| LEFT + plot * x_axis.position(x);
         let mut y0 = 0.0;
         for (i, (panel, rows)) in self.panels.iter().zip(&rows).enumerate() {
@@ -148,13 +157,16 @@ impl Chart<'_> {
                      stroke-linejoin=\"round\"/>"
                 );
             }
-            let label = with_unit(&panel.label, &scaled(&panel.unit, y_axis.exponent));
+            let label = y_axis.label(&panel.label, &panel.unit);
+            let size = FONT.min((h + 24.0) / text::width(&label).max(1e-9));
             let middle = y0 + 0.5 * h;
             write_text(
                 &mut out,
                 0.0,
                 0.0,
-                &format!("text-anchor=\"middle\" transform=\"translate(17 {middle:.1}) rotate(-90)\""),
+                &format!(
+                    "text-anchor=\"middle\" font-size=\"{size:.1}\" transform=\"translate(17 {middle:.1}) rotate(-90)\""
+                ),
                 &label,
             );
             y0 = bottom;
@@ -183,24 +195,11 @@ impl Chart<'_> {
                 y0 - 12.0
             );
         }
-        let exponent = x_axis.exponent;
-        let x_label = if exponent == 0 {
-            self.x_label.clone()
-        } else {
-            format!("{} × 10^{{{exponent}}}", self.x_label)
-        };
+        let (words, unit) = unit_of(&self.x_label);
+        let x_label = x_axis.label(words, unit);
         write_text(&mut out, LEFT + 0.5 * plot, y0 + 16.0, "text-anchor=\"middle\"", &x_label);
         out.push_str("</svg>\n");
         out
-    }
-}
-
-/// A unit preceded by the power of ten that is factored out of the ticks.
-pub(crate) fn scaled(unit: &str, exponent: i32) -> String {
-    match (exponent, unit) {
-        (0, unit) => unit.to_string(),
-        (_, "") => format!("10^{{{exponent}}}"),
-        _ => format!("10^{{{exponent}}} {unit}"),
     }
 }
 

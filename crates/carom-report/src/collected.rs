@@ -3,9 +3,11 @@
 
 use carom_record::Run;
 use carom_record::metrics::{contact_force, probe_columns};
+use carom_record::study::Study;
 use carom_record::study::checks::fingerprint;
 use carom_record::study::reference::FORCE;
 
+use crate::digits::five;
 use crate::labels::{symbol, words};
 
 /// Columns shown besides those of the probes: name, label, caption.
@@ -96,6 +98,18 @@ fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let mut keep: Vec<usize> = keep.collect();
     keep.dedup();
     (keep.iter().map(|&i| times[i]).collect(), keep.iter().map(|&i| values[i]).collect())
+}
+
+/// The unit of times, from the metrics of the arms; empty before any has finished.
+pub(crate) fn time_unit(study: &Study) -> &str {
+    let times = ["contact_start", "contact_duration", "apex_time"];
+    let metrics = study.rows.iter().flat_map(|row| &row.metrics);
+    metrics.filter(|m| times.contains(&&*m.name)).map(|m| m.unit.as_str()).next().unwrap_or_default()
+}
+
+/// A time with its unit.
+pub(crate) fn in_time(study: &Study, value: f64) -> String {
+    format!("{} {}", five(value), time_unit(study)).trim_end().to_owned()
 }
 
 /// Symbol and description of a column.

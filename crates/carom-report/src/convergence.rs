@@ -42,6 +42,8 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
             @if key.ends_with("cells") { " (step: 1/cells)" }
             @if !group.common.is_empty() { ", " code { (group.common) } }
         }
+        details {
+        summary { (metrics.len()) " metrics" }
         table.metrics {
             thead {
                 tr {
@@ -60,6 +62,7 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
                     }
                 }
             }
+        }
         }
     }
 }

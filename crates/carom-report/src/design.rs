@@ -4,7 +4,8 @@ use carom_record::study::design::Kind;
 use carom_record::study::{Arm, Study};
 use maud::{Markup, html};
 
-use crate::digits::{five, three};
+use crate::collected::in_time;
+use crate::digits::three;
 
 /// A cost is matched when it is within this fraction of the budget.
 pub(crate) const OFF_BUDGET: f64 = 0.1;
@@ -19,7 +20,8 @@ pub(crate) fn paragraphs(study: &Study) -> Markup {
             }
         };
     };
-    let levels = design.steps.iter().enumerate().map(|(i, h)| format!("level {}: Δt = {}", i + 1, five(*h)));
+    let levels =
+        design.steps.iter().enumerate().map(|(i, h)| format!("level {}: Δt = {}", i + 1, in_time(study, *h)));
     let levels = levels.collect::<Vec<_>>().join(", ");
     let matched_by_cost =
         |method: &&str| m.arms.iter().any(|arm| arm.role.method.as_deref() == Some(method) && m.by_cost(arm));

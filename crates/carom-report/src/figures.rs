@@ -6,22 +6,13 @@ use maud::Markup;
 use crate::bands::Bands;
 use crate::bodies::{self, Instant};
 use crate::chart::{Chart, Options, Panel, Series};
+use crate::figure::Figure;
 use crate::labels::{symbol, with_unit, words};
 use crate::obstacles;
-use crate::palette::{LINES, sequence};
+use crate::palette::LINES;
+use crate::redraw::of_chart;
 use crate::sheet::Legend;
-use crate::{animation, setup, space, stick_slip, stopped};
-
-/// A figure of a report.
-#[derive(Clone, Debug)]
-pub struct Figure {
-    /// File name without extension.
-    pub name: &'static str,
-    /// Caption, with `σ_{yy}` for subscripts and backticks around code.
-    pub caption: String,
-    /// The picture.
-    pub svg: String,
-}
+use crate::{animation, bars, pressure, setup, space, stick_slip, stopped};
 
 /// Everything that can be drawn from a record.
 #[derive(Clone, Debug, Default)]
@@ -41,7 +32,7 @@ pub(crate) fn all(run: &Run) -> Shown {
         return shown;
     }
     let place = stopped::picture(run);
-    shown.figures.extend(place.map(|(caption, svg)| Figure { name: "stopped", caption, svg }));
+    shown.figures.extend(place.map(|(caption, svg)| Figure::new("stopped", caption, svg)));
     shown.figures.extend(setup(run));
     let place = shown.figures.len() + 1;
     if let Some((bodies, bands)) = instants(run, &mut shown.notes) {
@@ -51,8 +42,11 @@ pub(crate) fn all(run: &Run) -> Shown {
             None => space::section(run, shades(run), place),
         };
     }
-    let map = stick_slip::figure(run).map(|(svg, caption)| Figure { name: "stick-slip", caption, svg });
-    shown.figures.extend([probes(run), force(run), map, energy(run), solver(run)].into_iter().flatten());
+    let map = stick_slip::figure(run);
+    let pressure = pressure::figure(run);
+    shown
+        .figures
+        .extend([probes(run), force(run), pressure, map, energy(run), solver(run)].into_iter().flatten());
     shown
 }
 
@@ -69,7 +63,7 @@ fn setup(run: &Run) -> Option<Figure> {
         "Initial configuration: bodies with their mesh, supports, loads, contact sides and probes.{view} \
          Data: first field file; case and sides in `manifest.json`."
     );
-    Some(Figure { name: "setup", caption, svg })
+    Some(Figure::new("setup", caption, svg))
 }
 
 /// Contact intervals to shade.
@@ -79,13 +73,21 @@ fn shades(run: &Run) -> Vec<(f64, f64)> {
     metrics::episodes(&run.history, 0.0).iter().map(|e| (t[e.start], end(e))).collect()
 }
 
-fn chart<'a>(run: &Run, title: &'a str, panels: Vec<Panel<'a>>) -> Option<String> {
+/// A chart over time with its files.
+fn chart<'a>(
+    run: &Run,
+    (name, title): (&'static str, &'a str),
+    caption: String,
+    panels: Vec<Panel<'a>>,
+) -> Option<Figure> {
     let panels: Vec<Panel> = panels.into_iter().filter(|p| !p.series.is_empty()).collect();
     let x_label = with_unit("time t", run.history.unit("time"));
     (!panels.is_empty()).then(|| {
         let tracks = if title == "Solver" { animation::tracks(run) } else { Vec::new() };
         let options = Options { tracks: &tracks, time: true, ..Options::default() };
-        Chart { title, x_label, shades: shades(run), panels }.draw(&options)
+        let chart = Chart { title, x_label, shades: shades(run), panels };
+        let plot = of_chart(name, &chart);
+        Figure::new(name, caption, chart.draw(&options)).with(plot.csv(), plot.script())
     })
 }
 
@@ -144,13 +146,13 @@ fn probes(run: &Run) -> Option<Figure> {
     };
     let mut list: Vec<String> = panels.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
-    let svg = chart(run, "Time histories at the probes", panels.into_iter().map(|(_, p)| p).collect())?;
     let caption = format!(
         "Time histories at the probes: {}. Shaded: contact. Data: `history.csv`, columns `{}`.",
         list.join(", "),
         columns.join("`, `")
     );
-    Some(Figure { name: "probes", caption, svg })
+    let panels = panels.into_iter().map(|(_, p)| p).collect();
+    chart(run, ("probes", "Time histories at the probes"), caption, panels)
 }
 
 /// Contact force and impulse against time.
@@ -180,11 +182,7 @@ fn force(run: &Run) -> Option<Figure> {
                    impulse. Shaded: contact. Single peaks of the force depend on the time step far more \
                    than the impulse does. Data: `history.csv`, columns `contact_force_…` and \
                    `contact_impulse_…`.";
-    Some(Figure {
-        name: "force",
-        caption: caption.into(),
-        svg: chart(run, "Contact force and impulse", panels)?,
-    })
+    chart(run, ("force", "Contact force and impulse"), caption.into(), panels)
 }
 
 /// The energy balance.
@@ -212,7 +210,7 @@ fn energy(run: &Run) -> Option<Figure> {
                    external work + contact work + friction work − change of the total energy; where it is negative, energy \
                    was created. Quantities that remain zero are omitted. Data: `history.csv`, columns of the \
                    same names.";
-    Some(Figure { name: "energy", caption: caption.into(), svg: chart(run, "Energy balance", panels)? })
+    chart(run, ("energy", "Energy balance"), caption.into(), panels)
 }
 
 /// Iterations, active nodes and rejections by step.
@@ -231,7 +229,7 @@ fn solver(run: &Run) -> Option<Figure> {
         "{what} Ticks: events by kind. Data: `history.csv`, columns `newton`, `active` and `rejected`; \
          `log.jsonl`."
     );
-    Some(Figure { name: "solver", caption, svg: chart(run, "Solver", panels)? })
+    chart(run, ("solver", "Solver"), caption, panels)
 }
 
 /// The field files nearest to five equidistant instants of the first contact; of the run if there
@@ -273,12 +271,12 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
         let strips: Vec<Instant> =
             sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
-        return Some((bars(run, &sets, during), Some(bodies::colors(&strips).0)));
+        return Some((bars::figure(run, &sets, during), Some(bodies::colors(&strips).0)));
     }
     if bodies::fill_space(first) {
         let length = first.array("displacement").map_or("", |a| a.unit.as_str());
         let (svg, caption) = space::instants(&sets, (unit, length), during)?;
-        return Some((Figure { name: "bodies", caption, svg }, None));
+        return Some((Figure::new("bodies", caption, svg), None));
     }
     let stress = first.array("stress")?.unit.clone();
     let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
@@ -314,55 +312,5 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
          the same scale; displacements are not magnified. Blue: compression. Red: tension.{arrow} Data: \
          stress and displacement in the field files."
     );
-    Some((Figure { name: "bodies", caption, svg }, Some(bands)))
-}
-
-/// In 1D: displacement and stress along the bars at several instants.
-fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Figure {
-    // Positions and values of a component along the bars, with a gap after each bar.
-    let along =
-        |set: &carom_record::FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
-            let values = set.array(array).filter(|a| component < a.components)?;
-            let (mut x, mut y) = (Vec::new(), Vec::new());
-            for block in &set.blocks {
-                let mut nodes = block.connectivity.clone();
-                nodes.sort_by(|&a, &b| set.points[a][0].total_cmp(&set.points[b][0]));
-                nodes.dedup();
-                x.extend(nodes.iter().map(|&k| set.points[k][0]));
-                y.extend(nodes.iter().map(|&k| values.values[values.components * k + component]));
-                x.push(set.points[*nodes.last()?][0]);
-                y.push(f64::NAN);
-            }
-            Some((x, y))
-        };
-    let lines = |array: &str, component| -> Vec<_> {
-        let line = |(t, set): &(f64, _)| along(set, array, component).map(|(x, y)| (*t, x, y));
-        sets.iter().filter_map(line).collect()
-    };
-    let (u, stress) = (lines("displacement", 0), lines("stress", 0));
-    let time = run.history.unit("time");
-    let unit =
-        |array: &str| sets.first().and_then(|s| s.1.array(array)).map(|a| a.unit.clone()).unwrap_or_default();
-    let mut panels = Vec::new();
-    for (label, array, lines) in [("u_{x}", "displacement", &u), ("σ_{xx}", "stress", &stress)] {
-        let series = lines.iter().enumerate().map(|(i, (t, x, y))| Series {
-            // Both panels share one legend.
-            label: if panels.is_empty() { format!("t = {t:.4} {time}") } else { String::new() },
-            color: sequence(i, sets.len()),
-            x,
-            y: y.clone(),
-        });
-        let series: Vec<Series> = series.collect();
-        if !series.is_empty() {
-            panels.push(panel(label, &unit(array), 200.0, series));
-        }
-    }
-    let x_label = with_unit("reference position X", &unit("displacement"));
-    let svg =
-        Chart { title: "Displacement and stress along the bars", x_label, shades: Vec::new(), panels }.svg();
-    let caption = format!(
-        "Displacement u_{{x}} and Cauchy stress σ_{{xx}} (nodal averages) along the bars at instants \
-         {during}. Data: displacement and stress in the field files."
-    );
-    Figure { name: "bodies", caption, svg }
+    Some((Figure::new("bodies", caption, svg), Some(bands)))
 }

@@ -37,6 +37,32 @@ pub(crate) fn with_unit(label: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { label.to_string() } else { format!("{label} ({unit})") }
 }
 
+/// A unit times a power of ten: with another prefix where it has one, otherwise with the power.
+pub(crate) fn scaled(unit: &str, exponent: i32) -> String {
+    match (exponent, unit) {
+        (0, unit) => unit.to_string(),
+        (_, "" | "1") => format!("10^{{{exponent}}}"),
+        _ => prefixed(unit, exponent).unwrap_or_else(|| format!("10^{{{exponent}}} {unit}")),
+    }
+}
+
+/// The unit with the prefix that stands for its own times 10^exponent: 10^{-6} MPa is Pa.
+fn prefixed(unit: &str, exponent: i32) -> Option<String> {
+    const PREFIXES: [(&str, i32); 8] =
+        [("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9), ("T", 12)];
+    let (first, rest) = unit.split_at(unit.find([' ', '/']).unwrap_or(unit.len()));
+    let base = ["Pa", "N", "J", "m", "s"].into_iter().find(|base| first.ends_with(base))?;
+    let own = PREFIXES.iter().find(|(prefix, _)| *prefix == &first[..first.len() - base.len()])?.1;
+    let (prefix, _) = PREFIXES.iter().find(|(_, power)| *power == own + exponent)?;
+    // Nobody writes kilometres and megaseconds for a body that is struck.
+    (!(matches!(base, "m" | "s") && own + exponent > 0)).then(|| format!("{prefix}{base}{rest}"))
+}
+
+/// Splits a label into text and the unit in brackets at its end.
+pub(crate) fn unit_of(label: &str) -> (&str, &str) {
+    label.strip_suffix(')').and_then(|l| l.rsplit_once(" (")).unwrap_or((label, ""))
+}
+
 /// A sentence or caption with a capital letter at its start.
 pub(crate) fn capitalised(text: &str) -> String {
     let mut chars = text.chars();
@@ -61,7 +87,24 @@ pub(crate) fn number(x: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::number;
+    use super::{number, scaled};
+
+    /// 10^-6 MPa = 1 Pa, 10^3 N = 1 kN, 10^-3 m/s = 1 mm/s.
+    #[test]
+    fn powers_of_ten_are_prefixes() {
+        for (unit, exponent, text) in [
+            ("MPa", -6, "Pa"),
+            ("N", 3, "kN"),
+            ("N s", -3, "mN s"),
+            ("m/s", -3, "mm/s"),
+            ("mm", 3, "m"),
+            ("m", 3, "10^{3} m"),
+            ("", -3, "10^{-3}"),
+            ("kg/m^3", 3, "10^{3} kg/m^3"),
+        ] {
+            assert_eq!(scaled(unit, exponent), text);
+        }
+    }
 
     #[test]
     fn numbers() {

@@ -9,6 +9,7 @@ use carom_record::study::reference::{FORCE, Reference};
 use carom_record::study::{Study, step};
 
 use crate::collected::{Column, named};
+use crate::curves;
 use crate::labels::{capitalised, file_name, with_unit};
 use crate::plot::{Curve, Pane, Plot};
 
@@ -20,10 +21,13 @@ pub(crate) fn plots(study: &Study, columns: &[Column], time: &str) -> Vec<Plot> 
     if study.manifest.goal.is_none() {
         return Vec::new();
     }
-    let mut plots: Vec<Plot> =
-        [error_cost(study), roughness_dissipation(study)].into_iter().flatten().collect();
+    let mut plots: Vec<Plot> = [error_cost(study), roughness_dissipation(study)]
+        .into_iter()
+        .flatten()
+        .map(Plot::with_styles)
+        .collect();
     plots.extend(columns.iter().filter_map(|c| multiples(study, c, time)));
-    plots.extend(theory(study));
+    plots.extend(theory(study).map(Plot::with_styles));
     plots
 }
 
@@ -45,26 +49,67 @@ pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
     found
 }
 
-/// One curve with markers per method, through the points of its arms; another one of the arms that
-/// created much energy.
-fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Vec<Curve> {
-    let curves = |(style, (name, arms)): (usize, (&str, Vec<usize>))| {
+/// Up to this number of methods all are drawn in colour; of more, only those that matter.
+const COLOURED: usize = 7;
+
+/// A pane with one curve with markers per method, through the points of its arms, and another one of
+/// the arms that created much energy; the Pareto front; and the recommended arm.
+fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Pane {
+    let shown = |arm: &usize| point(*arm).filter(|p| p.0 > 0.0 && p.1 > 0.0);
+    let methods = methods(study);
+    let points: Vec<(usize, (f64, f64))> = methods
+        .iter()
+        .flat_map(|(_, arms)| arms)
+        .filter(|arm| !study.rows[**arm].is_unsound())
+        .filter_map(|arm| Some((*arm, shown(arm)?)))
+        .collect();
+    let front = front(&points);
+    let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
+    let few = methods.len() <= COLOURED;
+    let mut curves = Vec::new();
+    for (style, (name, arms)) in methods.into_iter().enumerate() {
+        let matters = arms.iter().any(|arm| chosen == Some(*arm) || front.iter().any(|(on, _)| on == arm));
         let (unsound, sound): (Vec<usize>, Vec<usize>) =
             arms.into_iter().partition(|arm| study.rows[*arm].is_unsound());
-        [(sound, false), (unsound, true)].map(|(arms, apart)| {
-            let points = arms.into_iter().filter_map(&point).filter(|p| p.0 > 0.0 && p.1 > 0.0);
-            let (x, y) = points.unzip();
+        let quiet = !few && !matters;
+        for (arms, apart) in [(sound, false), (unsound, true)] {
+            let is_chosen = !apart && arms.iter().any(|arm| chosen == Some(*arm));
+            let (x, y): (Vec<f64>, Vec<f64>) = arms.iter().filter_map(shown).unzip();
             let label = if apart { format!("{name}, creates energy") } else { name.to_owned() };
-            Curve { label, style, x, y, marked: true, apart }
-        })
-    };
-    methods(study).into_iter().enumerate().flat_map(curves).filter(|c| !c.x.is_empty()).collect()
+            if !x.is_empty() {
+                curves.push(Curve { label, style, x, y, marked: true, apart, quiet, chosen: is_chosen });
+            }
+        }
+    }
+    Pane { curves, front: front.into_iter().map(|(_, point)| point).collect(), ..Pane::default() }
+}
+
+/// The points that no other one surpasses in both coordinates, from left to right.
+fn front(points: &[(usize, (f64, f64))]) -> Vec<(usize, (f64, f64))> {
+    let mut sorted = points.to_vec();
+    sorted.sort_by(|a, b| a.1.0.total_cmp(&b.1.0).then(a.1.1.total_cmp(&b.1.1)));
+    let mut lowest = f64::INFINITY;
+    sorted.retain(|(_, (_, y))| {
+        let better = *y < lowest;
+        lowest = lowest.min(*y);
+        better
+    });
+    sorted
 }
 
 /// What dashed grey curves of these panes are.
 fn apart(panes: &[Pane]) -> &'static str {
     if panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.apart) {
         " Grey: arms that created more energy than the default guard allows; they do not affect the axes."
+    } else {
+        ""
+    }
+}
+
+/// What grey curves of these panes are, where not all curves are coloured.
+fn quiet(panes: &[Pane]) -> &'static str {
+    if panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.quiet) {
+        " Thin: methods that are neither on the front nor recommended."
     } else {
         ""
     }
@@ -83,7 +128,7 @@ fn error_cost(study: &Study) -> Option<Plot> {
     if let Some(reference) = &study.reference {
         let columns = established(reference, is_trajectory);
         let error = |arm: usize| Some((cost(arm)?, study.compared.get(arm)?.as_ref()?.mean(&columns)?));
-        let curves = scatter(study, error);
+        let pane = scatter(study, error);
         let squares =
             columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
         let uncertainty = (squares.sum::<f64>() / columns.len().max(1) as f64).sqrt();
@@ -92,29 +137,30 @@ fn error_cost(study: &Study) -> Option<Plot> {
             floor,
             title: "displacements".into(),
             y_label: "deviation / range".into(),
-            curves,
-            ..Pane::default()
+            ..pane
         });
     }
     if let Ok(measure) = &ranking.measure
         && !matches!(ranking.goal, Goal::Trajectory | Goal::Cost)
     {
-        let curves = scatter(study, |arm| Some((cost(arm)?, ranked(study, arm)?)));
-        panes.push(Pane { title: measure.name.clone(), y_label: "error".into(), curves, ..Pane::default() });
+        let pane = scatter(study, |arm| Some((cost(arm)?, ranked(study, arm)?)));
+        panes.push(Pane { title: measure.name.clone(), y_label: "error".into(), ..pane });
     }
     panes.retain(|p| !p.curves.is_empty());
     (!panes.is_empty()).then(|| Plot {
         name: "error-cost".into(),
         caption: format!(
-            "Error against cost: one point per arm, one curve per method. The lower-left envelope is the \
-             Pareto front. Cost: processor time of the time steps without output. Zero errors are omitted \
+            "Error against cost: one point per arm, one curve per method. Broad line: Pareto front. Ring: \
+             recommended arm.{} Cost: processor time of the time steps without output. Zero errors are omitted \
              (logarithmic axes).{}",
+            quiet(&panes),
             apart(&panes)
         ),
         x_label: "processor time (s)".into(),
         log: [true, true],
-        across: panes.len(),
+        across: 1,
         same: false,
+        direct: true,
         panes,
     })
 }
@@ -135,11 +181,10 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
     };
     let high = |arm: usize| study.rows[arm].value("force_high_frequency");
     let over = if right.is_some() { "TV / TV of the reference" } else { "TV / (2 × peak mean force)" };
-    let pane = |title: &str, y_label: &str, curves: Vec<Curve>| Pane {
+    let pane = |title: &str, y_label: &str, pane: Pane| Pane {
         title: title.into(),
         y_label: y_label.into(),
-        curves,
-        ..Pane::default()
+        ..pane
     };
     let mut panes = vec![
         pane(
@@ -158,14 +203,16 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
         name: "roughness-dissipation".into(),
         caption: format!(
             "Roughness of the contact force against energy drift: one point per arm, one curve per method. \
-             Numerical damping reduces roughness at the cost of energy; methods at the lower left are smooth \
+             Broad line: Pareto front. Ring: recommended arm.{} Numerical damping reduces roughness at the cost of energy; methods at the lower left are smooth \
              without it. TV: total variation during the first contact.{}",
+            quiet(&panes),
             apart(&panes)
         ),
         x_label: "energy drift / largest energy".into(),
         log: [true, true],
-        across: panes.len(),
+        across: 1,
         same: false,
+        direct: true,
         panes,
     })
 }
@@ -180,43 +227,65 @@ fn band(reference: &Reference, column: &str) -> Option<[Vec<f64>; 3]> {
     Some([rows.clone().map(|i| x[i]).collect(), edge(-1.0), edge(1.0)])
 }
 
-/// A column of every method at its finest level, or of every arm where there are no methods, one
-/// pane each.
+/// Name of the figure with small multiples of a column.
+fn multiples_name(column: &str) -> String {
+    format!("each-{}", file_name(if column == FORCE { "contact-force" } else { column }))
+}
+
+/// Whether a column has small multiples of all arms among these figures.
+pub(crate) fn shows(plots: &[Plot], column: &str) -> bool {
+    let name = multiples_name(column);
+    plots.iter().any(|plot| plot.name == name)
+}
+
+/// A column of every method at its finest level, one pane each; during the first contact, if this is
+/// a small part of the time. Methods with the same curve share a pane.
 fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
     let band = study.reference.as_ref().and_then(|r| band(r, &column.name));
     let (label, what) = named(&column.name);
-    let mut panes = Vec::new();
-    for (style, (name, arms)) in methods(study).into_iter().enumerate().take(MULTIPLES) {
-        let Some(finest) = arms.last() else { continue };
-        let Some((_, x, y)) = column.curves.iter().find(|(arm, ..)| arm == finest) else { continue };
-        let (x, y) = (x.clone(), y.clone());
-        let curve = Curve { label: String::new(), style: style % 8, x, y, marked: false, apart: false };
-        let y_label = if panes.len() % 3 == 0 { with_unit(&label, &column.unit) } else { String::new() };
-        panes.push(Pane {
-            title: name.to_owned(),
-            y_label,
-            curves: vec![Curve { style: 1, ..curve }],
-            band: band.clone(),
-            ..Pane::default()
-        });
-    }
+    let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
+    let curve = |(name, arms): (&str, Vec<usize>)| {
+        let finest = arms.last()?;
+        let (_, x, y) = column.curves.iter().find(|(arm, ..)| arm == finest)?;
+        let chosen = arms.iter().any(|arm| chosen == Some(*arm));
+        Some(Curve { label: name.to_owned(), x: x.clone(), y: y.clone(), chosen, ..Curve::default() })
+    };
+    let found = curves::merged(methods(study).into_iter().filter_map(curve).take(MULTIPLES).collect());
     // A single pane compares nothing; the overlays show the column as well.
-    if panes.len() < 2 {
+    if found.len() < 2 {
         return None;
     }
+    let end = found.iter().filter_map(|(curve, _)| curve.x.last()).copied().fold(0.0, f64::max);
+    let span = curves::contact(study, end);
+    let names: Vec<_> = found.iter().map(|(curve, others)| (curve.label.clone(), others.clone())).collect();
+    let pane = |(k, (curve, others)): (usize, (Curve, Vec<String>))| {
+        let mark = if curve.chosen { "▸ " } else { "" };
+        let more = if others.is_empty() { String::new() } else { format!(" (+{})", others.len()) };
+        Pane {
+            title: format!("{mark}{}{more}", curve.label),
+            y_label: if k % 3 == 0 { with_unit(&label, &column.unit) } else { String::new() },
+            curves: vec![Curve { label: String::new(), style: if curve.chosen { 2 } else { 1 }, ..curve }],
+            band: band.clone(),
+            span,
+            ..Pane::default()
+        }
+    };
+    let panes: Vec<Pane> = found.into_iter().enumerate().map(pane).collect();
     let grey =
-        if band.is_some() { "Grey: the reference; the width of the band is its uncertainty. " } else { "" };
-    let name = if column.name == FORCE { "contact-force".to_owned() } else { column.name.clone() };
+        if band.is_some() { " Grey: the reference; the width of the band is its uncertainty." } else { "" };
+    let when = if span.is_some() { " during the first contact" } else { "" };
     Some(Plot {
-        name: format!("each-{}", file_name(&name)),
+        name: multiples_name(&column.name),
         caption: format!(
-            "{}, for each method at its finest level. {grey}All panels have the same axes.",
-            capitalised(&what)
+            "{}{when}, for each method at its finest level.{grey}{} All panels have the same axes.",
+            capitalised(&what),
+            curves::drawn_once(&names)
         ),
         x_label: with_unit("time t", time),
         log: [false, false],
         across: 3,
         same: true,
+        direct: false,
         panes,
     })
 }
@@ -262,33 +331,53 @@ fn theory(study: &Study) -> Option<Plot> {
             let of = table.iter().filter(|r| &r[0] == *name);
             let points = of.filter_map(|r| Some((r[1].parse::<f64>().ok()?, r[column].parse::<f64>().ok()?)));
             let (x, y) = points.unzip();
-            Curve { label: (*name).to_owned(), style, x, y, marked: false, apart: false }
+            Curve { label: (*name).to_owned(), style, x, y, ..Curve::default() }
         })
     };
-    let pane = |title: &str, y_label: &str, column: usize, limits: (f64, f64)| Pane {
-        title: title.into(),
-        y_label: y_label.into(),
-        curves: curve(column).filter(|c| !c.x.is_empty()).collect(),
-        band: None,
-        marks: marks.clone(),
-        floor: None,
-        limits: Some(limits),
+    let mut once: Vec<(String, Vec<String>)> = Vec::new();
+    let mut pane = |title: &str, y_label: &str, column: usize, limits: (f64, f64)| {
+        let found = curves::merged(curve(column).filter(|c| !c.x.is_empty()).collect());
+        let names = found.iter().filter(|(_, others)| !others.is_empty());
+        once.extend(names.map(|(curve, others)| (format!("{title}: {}", curve.label), others.clone())));
+        Pane {
+            title: title.into(),
+            y_label: y_label.into(),
+            curves: found.into_iter().map(|(curve, _)| curve).collect(),
+            marks: marks.clone(),
+            limits: Some(limits),
+            ..Pane::default()
+        }
     };
+    let panes = vec![
+        pane("spectral radius", "ρ", 2, (0.0, 1.1)),
+        pane("numerical damping ratio", "ξ", 3, (0.0, 1.0)),
+        pane("relative period error", "(T − T_{0})/T_{0}", 4, (-0.1, 1.0)),
+    ];
     Some(Plot {
         name: "theory".into(),
         caption: format!(
             "Properties of the schemes for an undamped oscillator of angular frequency ω. Vertical lines: \
              frequencies of the model at the longest time step (labelled) and at the shortest.{springs} For \
-             a node constrained by a multiplier ωΔt = ∞, where only ρ_{{∞}} matters."
+             a node constrained by a multiplier ωΔt = ∞, where only ρ_{{∞}} matters.{}",
+            curves::drawn_once(&once)
         ),
         x_label: "ωΔt".into(),
         log: [true, false],
         across: 1,
         same: false,
-        panes: vec![
-            pane("spectral radius", "ρ", 2, (0.0, 1.1)),
-            pane("numerical damping ratio", "ξ", 3, (0.0, 1.0)),
-            pane("relative period error", "(T − T_{0})/T_{0}", 4, (-0.1, 1.0)),
-        ],
+        direct: true,
+        panes,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::front;
+
+    /// By hand: (2, 2) is surpassed by (1, 1); (3, 0.5) is cheaper than (4, 0.5).
+    #[test]
+    fn the_front_is_not_surpassed() {
+        let points = [(0, (2.0, 2.0)), (1, (1.0, 1.0)), (2, (4.0, 0.5)), (3, (3.0, 0.5)), (4, (9.0, 0.1))];
+        assert_eq!(front(&points).iter().map(|point| point.0).collect::<Vec<_>>(), [1, 3, 4]);
+    }
 }

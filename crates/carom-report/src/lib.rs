@@ -6,17 +6,22 @@
 //! a run; without it, and in print, the figures remain.
 
 mod animation;
+mod arc;
 mod axis;
 mod bands;
+mod bars;
 mod bodies;
 mod by_arm;
 mod chart;
+mod claims;
 mod collected;
 mod convergence;
+mod curves;
 mod design;
 mod digits;
 mod document;
 mod ensemble;
+mod figure;
 mod figures;
 mod integrity;
 mod labels;
@@ -28,6 +33,7 @@ mod palette;
 mod pen;
 mod place;
 mod plot;
+mod pressure;
 mod publish;
 mod ranked;
 mod redraw;
@@ -49,7 +55,7 @@ use std::path::Path;
 
 use carom_record::Run;
 
-pub use figures::Figure;
+pub use figure::Figure;
 pub use overlap::overlap;
 use publish::publish;
 pub use publish::{ReportError, ReportSummary};
@@ -61,5 +67,10 @@ pub fn report(directory: &Path) -> Result<ReportSummary, ReportError> {
     let run = Run::open(directory)?;
     let figures::Shown { figures, animation, notes } = figures::all(&run);
     let page = page::page(&run, &figures, animation.as_ref(), &notes);
-    publish(directory, "report.html", &page, figures.iter().map(|f| (f.name, f.svg.as_str())), notes)
+    let summary =
+        publish(directory, "report.html", &page, figures.iter().map(|f| (f.name, f.svg.as_str())), notes)?;
+    for (figure, (ending, text)) in figures.iter().flat_map(|f| f.files.iter().map(move |file| (f, file))) {
+        publish::write(directory.join("figures").join(format!("{}.{ending}", figure.name)), text)?;
+    }
+    Ok(summary)
 }

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use carom_record::{FieldFormat, Run, Status, Warning, metrics};
+use carom_record::metrics::{self, Metric};
+use carom_record::{FieldFormat, Run, Status, Warning};
 use maud::{Markup, Render, html};
 use serde_json::Value;
 
 use crate::document::{document, figure, file, joined, minus, or_dash};
-use crate::figures::Figure;
+use crate::figure::Figure;
 use crate::labels::number;
 use crate::stopped;
 use crate::text::{Label, Prose};
@@ -27,7 +28,7 @@ const RESULTS: &str = "All values are computed from `history.csv` alone: times f
 /// The page.
 pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, notes: &[String]) -> String {
     let title = run.manifest.case.get("title").and_then(Value::as_str).unwrap_or("Carom run");
-    let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &["svg"], &f.caption, &f.svg);
+    let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &f.endings(), &f.caption, &f.svg);
     let named = |name: &'static str| figures.iter().enumerate().filter(move |(_, f)| f.name == name);
     let place = named("stopped").next().map(|(i, f)| (i + 1, f.caption.as_str(), f.svg.as_str()));
     let others = figures.iter().enumerate().filter(|(_, f)| f.name != "setup" && f.name != "stopped");
@@ -95,7 +96,9 @@ fn header(run: &Run) -> Markup {
             (row("Record", html! {
                 (rows) " rows, up to t = " (number(last)) " " (Label(run.history.unit("time")))
             }))
-            @if let Some(time) = integration(&m.case) { (row("Time integration", time)) }
+            @if let Some(time) = integration(&m.case, run.history.unit("time")) {
+                (row("Time integration", time))
+            }
             (row("Machine", html! {
                 (machine.cpus) " cores, " (machine.os) " " (machine.arch) "; threads: " (m.threads)
             }))
@@ -111,7 +114,7 @@ fn row(name: &str, value: impl Render) -> Markup {
 }
 
 /// The scheme with its parameters, and the time step.
-fn integration(case: &Value) -> Option<String> {
+fn integration(case: &Value, unit: &str) -> Option<String> {
     let part = |(k, v): (&String, &Value)| match v.as_str() {
         Some(text) if k == "kind" => text.to_string(),
         Some(text) => format!("{k} {text}"),
@@ -119,18 +122,24 @@ fn integration(case: &Value) -> Option<String> {
     };
     let scheme: Vec<String> = case.pointer("/time/scheme")?.as_object()?.iter().map(part).collect();
     let step = case.pointer("/time/step").and_then(Value::as_f64).map_or(String::new(), number);
-    Some(format!("{}; Δt = {step}", scheme.join(", ")))
+    Some(format!("{}; Δt = {step} {unit}", scheme.join(", ")))
 }
 
 fn results(run: &Run) -> Markup {
+    let known: Vec<Metric> = metrics::all(&run.history).into_iter().filter(|m| m.value.is_some()).collect();
+    let groups = metrics::TITLES
+        .map(|title| (title, known.iter().filter(|m| metrics::group(&m.name) == title).collect::<Vec<_>>()));
     html! {
         h2 { "Key results" }
-        table {
+        table.results {
             thead { tr { th { "Metric" } th.n { "Value" } th { "Unit" } th { "Definition" } } }
-            @for metric in metrics::all(&run.history) {
-                @if let Some(value) = metric.value {
+            @for (title, members) in groups.iter().filter(|(_, members)| !members.is_empty()) {
+                tr.group { th colspan="4" { (title) } }
+                @for metric in members {
                     tr {
-                        td { code { (metric.name) } } td.n { (number(value)) } td { (Label(&metric.unit)) }
+                        td { code { (metric.name) } }
+                        td.n { (or_dash(metric.value, number)) }
+                        td { @if metric.unit.is_empty() { "–" } @else { (Label(&metric.unit)) } }
                         td { (metric.definition) }
                     }
                 }

@@ -3,23 +3,16 @@
 //! Axes are linear or logarithmic; values that are not positive are omitted on a logarithmic axis.
 //! Curves with the same label have the same style in all panels and one entry in the common legend.
 
-use std::fmt::Write as _;
-
 use crate::axis::range;
-use crate::chart::{open, scaled, write_text};
-use crate::labels::with_unit;
-use crate::{text, trace};
 
 mod curve;
+mod direct;
+mod draw;
+mod frame;
 mod legend;
 mod scale;
 
 pub(crate) use curve::{APART, Curve, style};
-use scale::Scale;
-
-const WIDTH: f64 = 720.0;
-const LEFT: f64 = 62.0;
-const RIGHT: f64 = 12.0;
 
 /// One panel: axes and curves.
 #[derive(Clone, Debug, Default)]
@@ -35,6 +28,10 @@ pub(crate) struct Pane {
     pub(crate) floor: Option<(f64, String)>,
     /// Range of the vertical axis, where it is not that of the curves.
     pub(crate) limits: Option<(f64, f64)>,
+    /// The same of the horizontal axis.
+    pub(crate) span: Option<(f64, f64)>,
+    /// Points of the Pareto front, from left to right.
+    pub(crate) front: Vec<(f64, f64)>,
 }
 
 /// A figure.
@@ -48,6 +45,8 @@ pub(crate) struct Plot {
     pub(crate) across: usize,
     /// Whether all panes share one vertical axis.
     pub(crate) same: bool,
+    /// Whether labels stand beside the curves, instead of a legend below.
+    pub(crate) direct: bool,
     pub(crate) panes: Vec<Pane>,
 }
 
@@ -65,21 +64,26 @@ impl Plot {
         range(values.filter(|x| !log || **x > 0.0))
     }
 
-    fn x_range(&self) -> (f64, f64) {
-        self.shown(self.panes.iter().flat_map(Pane::setting_axes).flat_map(|c| &c.x), 0)
+    /// Panes share the horizontal axis, except those with a span of their own.
+    fn x_range(&self, pane: &Pane) -> (f64, f64) {
+        let all = self.panes.iter().filter(|pane| pane.span.is_none()).flat_map(Pane::setting_axes);
+        pane.span.unwrap_or_else(|| self.shown(all.flat_map(|c| &c.x), 0))
     }
 
     fn y_range(&self, pane: &Pane) -> (f64, f64) {
         let of = |pane: &Pane| {
+            let (from, to) = pane.span.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            let within = |(x, _): &(&f64, &f64)| (from..=to).contains(*x);
             // The middle of the band only: where the reference is most uncertain, its edges would
             // compress the curves.
-            let band =
-                pane.band.iter().flat_map(|b| b[1].iter().zip(&b[2]).map(|(low, high)| 0.5 * (low + high)));
-            let middle: Vec<f64> = band.collect();
+            let middle = |[x, low, high]: &[Vec<f64>; 3]| {
+                let middle: Vec<f64> = low.iter().zip(high).map(|(low, high)| 0.5 * (low + high)).collect();
+                x.iter().zip(&middle).filter(within).map(|(_, y)| *y).collect::<Vec<_>>()
+            };
+            let middle: Vec<f64> = pane.band.iter().flat_map(middle).collect();
             let floor = pane.floor.as_ref().map(|f| f.0);
-            pane.limits.unwrap_or_else(|| {
-                self.shown(pane.setting_axes().flat_map(|c| &c.y).chain(&middle).chain(&floor), 1)
-            })
+            let curves = pane.setting_axes().flat_map(|c| c.x.iter().zip(&c.y)).filter(within).map(|p| p.1);
+            pane.limits.unwrap_or_else(|| self.shown(curves.chain(&middle).chain(&floor), 1))
         };
         if !self.same {
             return of(pane);
@@ -88,6 +92,20 @@ impl Plot {
             .iter()
             .map(of)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (c, d)| (a.min(c), b.max(d)))
+    }
+
+    /// Gives the coloured curves the styles 0, 1, … by their labels, the same in all panes.
+    pub(crate) fn with_styles(mut self) -> Self {
+        let mut known: Vec<String> = Vec::new();
+        for curve in self.panes.iter_mut().flat_map(|pane| &mut pane.curves).filter(|c| !c.quiet && !c.apart)
+        {
+            let at = known.iter().position(|label| *label == curve.label);
+            curve.style = at.unwrap_or(known.len());
+            if at.is_none() {
+                known.push(curve.label.clone());
+            }
+        }
+        self
     }
 
     /// A curve of each distinct label.
@@ -99,168 +117,6 @@ impl Plot {
             }
         }
         found
-    }
-
-    /// The figure.
-    pub(crate) fn svg(&self) -> String {
-        const TOP: f64 = 30.0;
-        const BELOW: f64 = 34.0;
-        let across = self.across.max(1) as f64;
-        let cell = WIDTH / across;
-        let (wide, high) = (
-            cell - LEFT - RIGHT,
-            if across > 2.0 {
-                150.0
-            } else if across > 1.0 {
-                230.0
-            } else if self.panes.len() > 1 {
-                190.0
-            } else {
-                320.0
-            },
-        );
-        let rows = self.panes.len().div_ceil(self.across.max(1));
-        let legend = self.legend();
-        let lines = legend::lines(&legend, WIDTH - LEFT);
-        let height = rows as f64 * (TOP + high + BELOW) + 22.0 + legend::LINE * lines.len() as f64 + 6.0;
-        let mut out = open(&self.name, WIDTH, height);
-        let x_axis = Scale::new(self.x_range(), (wide / 58.0).max(2.0), !self.log[0], self.log[0]);
-        for (i, pane) in self.panes.iter().enumerate() {
-            let (x0, y0) = (
-                (i % self.across.max(1)) as f64 * cell + LEFT,
-                (i / self.across.max(1)) as f64 * (TOP + high + BELOW) + TOP,
-            );
-            let y_axis = Scale::new(self.y_range(pane), (high / 40.0).max(2.0), false, self.log[1]);
-            let to_x = |x: f64| x0 + wide * x_axis.position(x);
-            let to_y = |y: f64| y0 + high * (1.0 - y_axis.position(y));
-            let id = format!("{}-{i}", self.name.replace(|c: char| !c.is_alphanumeric(), "-"));
-            let _ = writeln!(
-                out,
-                "<clipPath id=\"{id}\"><rect x=\"{x0:.1}\" y=\"{y0:.1}\" width=\"{wide:.1}\" \
-                 height=\"{high:.1}\"/></clipPath>"
-            );
-            if let Some([x, low, up]) = &pane.band {
-                let upper = x.iter().zip(up).map(|(x, y)| (to_x(*x), to_y(*y)));
-                let lower = x.iter().zip(low).map(|(x, y)| (to_x(*x), to_y(*y)));
-                let _ = writeln!(
-                    out,
-                    "<path clip-path=\"url(#{id})\" d=\"{}\" fill=\"#cfcfcf\" stroke=\"#cfcfcf\" \
-                     stroke-width=\"2.5\" stroke-linejoin=\"round\"/>",
-                    trace::area(upper, lower)
-                );
-            }
-            for (value, label) in &y_axis.axis.ticks {
-                let y = y0 + high * (1.0 - y_axis.axis.position(*value));
-                let _ = writeln!(
-                    out,
-                    "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#dddddd\" stroke-width=\"0.6\"/>"
-                );
-                write_text(&mut out, x0 - 6.0, y + 4.0, "text-anchor=\"end\" font-size=\"11\"", label);
-            }
-            let bottom = y0 + high;
-            for (value, label) in &x_axis.axis.ticks {
-                let x = x0 + wide * x_axis.axis.position(*value);
-                let _ =
-                    writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v4\" stroke=\"#222\" stroke-width=\"0.8\"/>");
-                write_text(&mut out, x, bottom + 16.0, "text-anchor=\"middle\" font-size=\"11\"", label);
-            }
-            if let Some((value, word)) = &pane.floor {
-                let y = to_y(*value);
-                let _ = writeln!(
-                    out,
-                    "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#777\" stroke-width=\"0.8\" \
-                     stroke-dasharray=\"2 2\"/>"
-                );
-                let place = "text-anchor=\"end\" font-size=\"10\" fill=\"#555\"";
-                write_text(&mut out, x0 + wide - 4.0, y - 4.0, place, word);
-            }
-            marks(&mut out, pane, &to_x, (y0, bottom), (x0, x0 + wide));
-            let _ = writeln!(
-                out,
-                "<path d=\"M{x0:.1} {y0:.1}v{high:.1}h{wide:.1}\" fill=\"none\" stroke=\"#222\" \
-                 stroke-width=\"0.9\"/>"
-            );
-            // Unsound runs lie behind the others.
-            let (behind, front): (Vec<_>, Vec<_>) = pane.curves.iter().partition(|curve| curve.apart);
-            for curve in behind.into_iter().chain(front) {
-                curve::draw(&mut out, curve, &id, &to_x, &to_y);
-            }
-            let size = if across > 2.0 { 10.5 } else { 12.0 };
-            let place = format!("font-size=\"{size}\" font-weight=\"600\"");
-            write_text(&mut out, x0, y0 - 9.0, &place, &fitted(&pane.title, wide + RIGHT, size));
-            if !pane.y_label.is_empty() {
-                let label = if y_axis.axis.exponent == 0 {
-                    pane.y_label.clone()
-                } else {
-                    let (words, unit) = unit_of(&pane.y_label);
-                    with_unit(words, &scaled(unit, y_axis.axis.exponent))
-                };
-                let place = format!(
-                    "text-anchor=\"middle\" font-size=\"12\" transform=\"translate({:.1} {:.1}) \
-                     rotate(-90)\"",
-                    x0 - LEFT + 13.0,
-                    y0 + 0.5 * high
-                );
-                write_text(&mut out, 0.0, 0.0, &place, &label);
-            }
-        }
-        let end = rows as f64 * (TOP + high + BELOW);
-        let exponent = x_axis.axis.exponent;
-        let label = if exponent == 0 {
-            self.x_label.clone()
-        } else {
-            format!("{} × 10^{{{exponent}}}", self.x_label)
-        };
-        write_text(&mut out, 0.5 * WIDTH, end + 6.0, "text-anchor=\"middle\"", &label);
-        legend::draw(&mut out, &legend, &lines, LEFT, end + 24.0);
-        out.push_str("</svg>\n");
-        out
-    }
-}
-
-/// Splits a label into text and the unit in brackets at its end.
-fn unit_of(label: &str) -> (&str, &str) {
-    label.strip_suffix(')').and_then(|l| l.rsplit_once(" (")).unwrap_or((label, ""))
-}
-
-/// A title shortened to a width.
-fn fitted(title: &str, width: f64, size: f64) -> String {
-    if text::width(title) * size <= width {
-        return title.to_owned();
-    }
-    let mut cut: String = title.to_owned();
-    while !cut.is_empty() && text::width(&cut) * size > width - size {
-        cut.pop();
-    }
-    cut.trim_end().to_owned() + "…"
-}
-
-fn marks(
-    out: &mut String,
-    pane: &Pane,
-    to_x: &dyn Fn(f64) -> f64,
-    (top, bottom): (f64, f64),
-    (left, right): (f64, f64),
-) {
-    for (x, word) in &pane.marks {
-        let x = to_x(*x);
-        if !(left..=right).contains(&x) {
-            continue;
-        }
-        let _ = writeln!(
-            out,
-            "<path d=\"M{x:.1} {top:.1}V{bottom:.1}\" stroke=\"#777\" stroke-width=\"0.8\" \
-             stroke-dasharray=\"2 2\"/>"
-        );
-        if !word.is_empty() {
-            let place = format!(
-                "font-size=\"10\" fill=\"#555\" text-anchor=\"end\" transform=\"translate({:.1} {:.1}) \
-                 rotate(-90)\"",
-                x - 3.0,
-                top + 4.0
-            );
-            write_text(out, 0.0, 0.0, &place, word);
-        }
     }
 }
 
@@ -275,7 +131,7 @@ pub(crate) mod tests {
             x: vec![1e-3, 1e-2],
             y: vec![0.0, 2e-4],
             marked: true,
-            apart: false,
+            ..Curve::default()
         };
         Plot {
             name: "error-cost".into(),
@@ -284,6 +140,7 @@ pub(crate) mod tests {
             log: [true, true],
             across: 2,
             same: false,
+            direct: false,
             panes: vec![Pane {
                 title: "one".into(),
                 y_label: "E".into(),
@@ -315,8 +172,8 @@ pub(crate) mod tests {
             style: 0,
             x: vec![0.0, 1.0],
             y: vec![0.0, high],
-            marked: false,
             apart,
+            ..Curve::default()
         };
         let with = |plot: &Plot, curves: Vec<Curve>| {
             let panes = vec![Pane { curves, ..plot.panes[0].clone() }];

@@ -10,9 +10,11 @@ use carom_record::study::reference::Standing;
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
+use crate::collected::time_unit;
 use crate::design::OFF_BUDGET;
 use crate::digits::{five, three};
 use crate::document::joined;
+use crate::labels::with_unit;
 use crate::text::Label;
 
 /// Largest number of probe stresses that have a column.
@@ -33,6 +35,12 @@ struct Ranked<'a> {
 impl Ranked<'_> {
     fn column(&self, head: &str, cell: impl Fn(usize) -> Option<String>) -> Column {
         Column { head: head.to_owned(), cells: self.arms.iter().map(|arm| cell(*arm)).collect() }
+    }
+
+    /// A heading with the unit of a metric.
+    fn with_unit(&self, head: &str, metric: &str) -> String {
+        let of = self.study.metrics().into_iter().find(|m| m.name == metric);
+        with_unit(head, of.map_or("", |m| &m.unit))
     }
 
     /// The values of a metric.
@@ -67,7 +75,9 @@ impl Ranked<'_> {
 
     /// Time by which an arm lags the reference.
     fn delay(&self) -> Column {
-        self.column("Delay", |arm| Some(three(self.study.compared.get(arm)?.as_ref()?.late.as_ref()?.1)))
+        self.column(&with_unit("Delay", time_unit(self.study)), |arm| {
+            Some(three(self.study.compared.get(arm)?.as_ref()?.late.as_ref()?.1))
+        })
     }
 
     /// Counted cost and processor time relative to the budget.
@@ -146,7 +156,9 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
         .as_ref()
         .filter(|_| study.manifest.arms.iter().any(|a| study.manifest.by_cost(a)));
     let mut first = vec![
-        ranked.column("Δt", |arm| step(&study.manifest.arms[arm], "time.step").map(five)),
+        ranked.column(&with_unit("Δt", time_unit(study)), |arm| {
+            step(&study.manifest.arms[arm], "time.step").map(five)
+        }),
         ranked.column("Error", |arm| place(arm).map(|i| errors[i].clone())),
         ranked.delay(),
         ranked.metric("Steps", "steps"),
@@ -164,11 +176,11 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
         ranked.metric("By contact", "dissipated_contact"),
         ranked.excess_variation(),
         ranked.metric("High-frequency power", "force_high_frequency"),
-        ranked.metric("Chatter", "chatter"),
+        ranked.metric(&ranked.with_unit("Chatter", "chatter"), "chatter"),
     ];
     let mut third = vec![
-        ranked.metric("Max. penetration", "penetration"),
-        ranked.metric("Mean penetration", "penetration_mean"),
+        ranked.metric(&ranked.with_unit("Max. penetration", "penetration"), "penetration"),
+        ranked.metric(&ranked.with_unit("Mean penetration", "penetration"), "penetration_mean"),
         ranked.error("Error of x impulse", "impulse_x"),
         ranked.error("Error of y impulse", "impulse_y"),
         ranked.error("Error of restitution", "restitution"),

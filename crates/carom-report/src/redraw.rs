@@ -3,7 +3,10 @@
 
 use std::fmt::Write as _;
 
-use crate::plot::{APART, Pane, Plot, style};
+use crate::chart::{Chart, Panel, Series};
+use crate::labels::with_unit;
+use crate::palette::LINES;
+use crate::plot::{APART, Curve, Pane, Plot, style};
 
 /// The script; every `@WORD@` is replaced.
 const SCRIPT: &str = r##"#!/usr/bin/env python3
@@ -23,9 +26,9 @@ dashes = @DASHES@
 styles = @STYLES@
 apart = @APART@  # dashed grey, without influence on the axes
 y_labels = @Y_LABELS@
-limits, floors = @LIMITS@, @FLOORS@
+limits, floors, spans, fronts = @LIMITS@, @FLOORS@, @SPANS@, @FRONTS@
 marks = @MARKS@
-marked, across = @MARKED@, @ACROSS@
+marked, direct, across = @MARKED@, @DIRECT@, @ACROSS@
 
 def style(label):
     if label in apart:
@@ -33,12 +36,12 @@ def style(label):
     i = styles[label]
     if marked:
         return {"color": colors[i % 8], "marker": "os^Dv"[i % 5], "ms": 4}
-    return {"color": colors[i % 8], "ls": dashes[(i + i // 8) % 8] if label else "-"}
+    return {"color": colors[i % 8], "ls": dashes[(i + i // 8) % 8] if label and not direct else "-"}
 
 rows = -(-len(panes) // across)
 size = (7.2, @HIGH@ * rows + 0.5 + 0.1 * len(styles))
 figure, axes = plt.subplots(
-    rows, across, figsize=size, squeeze=False, sharex=True, sharey=@SAME@, layout="constrained"
+    rows, across, figsize=size, squeeze=False, sharex=@SHARED@, sharey=@SAME@, layout="constrained"
 )
 for k, (title, curves) in enumerate(panes.items()):
     ax = axes.flat[k]
@@ -49,6 +52,8 @@ for k, (title, curves) in enumerate(panes.items()):
         if label in apart and not apart.issuperset(curves):
             ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())
         ax.plot(*curves[label], lw=1.2, label=label, **style(label))
+    if fronts[k]:
+        ax.plot(*zip(*fronts[k]), color="#222222", alpha=0.18, lw=5, zorder=0)
     for x, word in marks[k]:
         ax.axvline(x, color="#777777", lw=0.7, ls=":")
         ax.annotate(
@@ -61,7 +66,7 @@ for k, (title, curves) in enumerate(panes.items()):
             word, (0.98, level), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=7
         )
     ax.set_title(title, fontsize=9 if across < 3 else 7.5)
-    ax.set(ylabel=y_labels[k], xscale="@X_SCALE@", yscale="@Y_SCALE@", ylim=limits[k])
+    ax.set(ylabel=y_labels[k], xscale="@X_SCALE@", yscale="@Y_SCALE@", ylim=limits[k], xlim=spans[k])
 for ax in axes.flat[len(panes):]:
     ax.set_visible(False)
 for column in range(across):
@@ -124,9 +129,13 @@ impl Plot {
             ("APART_DASHES", self::dashes(APART.1)),
             ("Y_LABELS", list(&|p| format!("{:?}", plain(&p.y_label)))),
             ("LIMITS", list(&|p| p.limits.map_or("None".into(), |l| format!("{l:?}")))),
+            ("SPANS", list(&|p| p.span.map_or("None".into(), |l| format!("{l:?}")))),
+            ("FRONTS", list(&|p| format!("{:?}", p.front))),
+            ("SHARED", truth(self.panes.iter().all(|pane| pane.span == self.panes[0].span))),
             ("FLOORS", list(&|p| p.floor.as_ref().map_or("None".into(), mark))),
             ("MARKS", list(&|p| format!("[{}]", p.marks.iter().map(mark).collect::<Vec<_>>().join(", ")))),
             ("MARKED", truth(curves().any(|c| c.marked))),
+            ("DIRECT", truth(self.direct)),
             ("ACROSS", self.across.max(1).to_string()),
             (
                 "HIGH",
@@ -144,6 +153,33 @@ impl Plot {
         ]
         .iter()
         .fold(SCRIPT.to_owned(), |script, (word, value)| script.replace(&format!("@{word}@"), value))
+    }
+}
+
+/// A chart over time as a plot, for its table and script.
+pub(crate) fn of_chart(name: &str, chart: &Chart) -> Plot {
+    let curve = |(k, series): (usize, &Series)| Curve {
+        label: series.label.clone(),
+        style: LINES.iter().position(|color| *color == series.color).unwrap_or(k % LINES.len()),
+        x: series.x.to_vec(),
+        y: series.y.clone(),
+        ..Curve::default()
+    };
+    let pane = |panel: &Panel| Pane {
+        title: panel.label.clone(),
+        y_label: with_unit(&panel.label, &panel.unit),
+        curves: panel.series.iter().enumerate().map(curve).collect(),
+        ..Pane::default()
+    };
+    Plot {
+        name: name.to_owned(),
+        caption: String::new(),
+        x_label: chart.x_label.clone(),
+        log: [false, false],
+        across: 1,
+        same: false,
+        direct: true,
+        panes: chart.panels.iter().map(pane).collect(),
     }
 }
 

@@ -20,7 +20,6 @@ use serde_json::Value;
 use crate::axis::Axis;
 use crate::bodies::{Instant, bezier, corners, edges, fill_space, places};
 use crate::chart::{open, write_text};
-use crate::labels::with_unit;
 use crate::obstacles;
 use crate::pen::{Pen, Point, open_grid};
 use crate::symbols::{arrow, direction, guides, plus, rollers, wall};
@@ -108,7 +107,7 @@ impl Setup<'_> {
                 writeln!(out, "<path d=\"M{at:.1} {bottom:.1}v5\" stroke=\"#888\" stroke-width=\"0.8\"/>");
             write_text(out, at, bottom + 19.0, "text-anchor=\"middle\"", label);
         }
-        let power = |label: &str, axis: &Axis| with_unit(label, &crate::chart::scaled(length, axis.exponent));
+        let power = |label: &str, axis: &Axis| axis.label(label, length);
         write_text(out, 0.5 * (left + right), bottom + 38.0, "text-anchor=\"middle\"", &power("x", &x));
         if self.flat {
             return;

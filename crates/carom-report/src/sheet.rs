@@ -5,13 +5,15 @@ use std::fmt::Write as _;
 
 use crate::axis::{Axis, round_step};
 use crate::bands::Bands;
-use crate::chart::{open, scaled, write_text};
-use crate::labels::with_unit;
+use crate::chart::{open, write_text};
 use crate::pen::Point;
+use crate::text;
 
 const WIDTH: f64 = 940.0;
 /// Room for the colour bar, between pictures, and for a heading.
 const BAR: f64 = 96.0;
+/// Room for the label of a colour bar.
+const ROOM: f64 = 78.0;
 const GAP: f64 = 14.0;
 const LINE: f64 = 30.0;
 
@@ -85,7 +87,7 @@ impl Sheet {
     pub(crate) fn heading(&mut self, k: usize, time: &str) {
         let [room, top] = self.corner(k);
         let left = self.picture(k).0[0].min(room + 0.5 * self.cell_width() - 50.0);
-        let letter = char::from(b'B' + (k % 25) as u8);
+        let letter = char::from(b'A' + (k % 25) as u8);
         let _ = writeln!(
             self.out,
             "<text x=\"{left:.1}\" y=\"{:.1}\"><tspan font-weight=\"bold\">({letter})</tspan> {}</text>",
@@ -153,5 +155,8 @@ pub(crate) fn color_bar(out: &mut String, legend: &Legend, x: f64, (top, bottom)
             writeln!(out, "<path d=\"M{:.1} {y:.1}h4\" stroke=\"#222\" stroke-width=\"0.8\"/>", x + width);
         write_text(out, x + width + 7.0, y + 4.3, "", tick);
     }
-    write_text(out, x - 2.0, top - 20.0, "", &with_unit(label, &scaled(unit, axis.exponent)));
+    let label = axis.label(label, unit);
+    // Smaller where it is wider than the bar with its ticks.
+    let size = ROOM.min(13.0 * text::width(&label)) / text::width(&label).max(1e-9);
+    write_text(out, x - 2.0, top - 20.0, &format!("font-size=\"{size:.1}\""), &label);
 }

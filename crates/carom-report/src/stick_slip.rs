@@ -1,14 +1,15 @@
 //! Where nodes stick and slip: a map over time and the arc length of the secondary side, a band per
 //! node, from the rows of `contact.csv`.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use carom_record::{ContactRow, Run};
 
+use crate::arc::places;
 use crate::axis::{Axis, range};
-use crate::chart::{open, write_text};
-use crate::labels::with_unit;
+use crate::chart::{open_chart, write_text};
+use crate::figure::Figure;
 use crate::palette::LINES;
 
 const WIDTH: f64 = 720.0;
@@ -20,8 +21,8 @@ const HEIGHT: f64 = 180.0;
 const STATES: [(&str, &str); 3] =
     [("sticks", LINES[6]), ("slips forward", LINES[2]), ("slips backward", LINES[3])];
 
-/// A map of each contact that has friction, and the caption.
-pub(crate) fn figure(run: &Run) -> Option<(String, String)> {
+/// A map of each contact that has friction.
+pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let mut contacts: Vec<&str> = Vec::new();
     for row in run.contact.iter().filter(|row| row.friction != "none") {
         if !contacts.contains(&row.contact.as_ref()) {
@@ -35,7 +36,7 @@ pub(crate) fn figure(run: &Run) -> Option<(String, String)> {
     let x_axis = Axis::new((first, last), 8.0, true);
     let plot = WIDTH - LEFT - RIGHT;
     let height = contacts.len() as f64 * (HEIGHT + 44.0) + 52.0;
-    let mut out = open("Stick and slip", WIDTH, height);
+    let mut out = open_chart("Stick and slip", WIDTH, height);
     for (i, (label, colour)) in STATES.iter().enumerate() {
         let x = LEFT + 150.0 * i as f64;
         let _ = writeln!(out, "<rect x=\"{x:.1}\" y=\"6\" width=\"16\" height=\"11\" fill=\"{colour}\"/>");
@@ -50,7 +51,7 @@ pub(crate) fn figure(run: &Run) -> Option<(String, String)> {
                 let x = LEFT + plot * x_axis.position(*value);
                 write_text(&mut out, x, top + HEIGHT + 19.0, "text-anchor=\"middle\"", label);
             }
-            let label = with_unit("time t", run.history.unit("time"));
+            let label = x_axis.label("time t", run.history.unit("time"));
             write_text(&mut out, LEFT + 0.5 * plot, top + HEIGHT + 40.0, "text-anchor=\"middle\"", &label);
         }
     }
@@ -58,14 +59,14 @@ pub(crate) fn figure(run: &Run) -> Option<(String, String)> {
     let caption = "Nodes in contact over time, along the secondary side in the reference configuration: where \
                    they stick and slip, at the recorded instants; nothing is drawn for open nodes. Data: \
                    `contact.csv`, columns `friction` and `traction`.";
-    Some((out, caption.into()))
+    Some(Figure::new("stick-slip", caption, out))
 }
 
 /// The map of one contact.
 fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &Axis, top: f64) {
     let plot = WIDTH - LEFT - RIGHT;
-    let bands = bands(run, name, rows);
-    let y_axis = Axis::new(range(bands.values().flatten()), 4.0, true);
+    let places = places(run, name, rows);
+    let y_axis = Axis::new(range(places.values().flat_map(|place| &place.part)), 4.0, true);
     let to_x = |t: f64| LEFT + plot * x_axis.position(t);
     let to_y = |s: f64| top + HEIGHT * (1.0 - y_axis.position(s));
     write_text(out, LEFT, top - 6.0, "font-size=\"12\"", name);
@@ -86,7 +87,7 @@ fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &
         }
     }
     for (node, spans) in &of_nodes {
-        let Some([below, above]) = bands.get(node) else { continue };
+        let Some([below, above]) = places.get(node).map(|place| &place.part) else { continue };
         let (y, h) = (to_y(*above), to_y(*below) - to_y(*above));
         for (from, to, state) in spans {
             let (x, w) = (to_x(*from), to_x(*to) - to_x(*from));
@@ -111,7 +112,7 @@ fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &
     );
     let length = run.fields.first().and_then(|entry| run.field(entry).ok());
     let unit = length.and_then(|set| set.array("displacement").map(|array| array.unit.clone()));
-    let label = with_unit("arc length s", &unit.unwrap_or_default());
+    let label = y_axis.label("arc length s", &unit.unwrap_or_default());
     let (x, y) = (16.0, top + 0.5 * HEIGHT);
     write_text(out, x, y, &format!("text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\""), &label);
 }
@@ -123,67 +124,4 @@ fn instants(run: &Run, rows: &[&ContactRow]) -> Vec<f64> {
     times.sort_by(f64::total_cmp);
     times.dedup();
     times
-}
-
-/// Interval of arc length of each node that rubs, along the secondary side in the reference
-/// configuration: half-way to its neighbours. A closed side is cut where no node rubs for longest.
-fn bands(run: &Run, name: &str, rows: &[&ContactRow]) -> BTreeMap<u64, [f64; 2]> {
-    let contacts = run.manifest.case.get("contacts").and_then(|value| value.as_array());
-    let of_name = |item: &&serde_json::Value| item.get("name").and_then(|v| v.as_str()) == Some(name);
-    let side = contacts.into_iter().flatten().find(of_name).and_then(|item| item.get("secondary")?.as_str());
-    let chains = side.and_then(|side| run.manifest.sides.get(side)).map_or(&[][..], Vec::as_slice);
-    let first = run.fields.first().and_then(|entry| run.field(entry).ok());
-    let rubbing: BTreeSet<u64> = rows.iter().map(|row| row.node).collect();
-    let (mut bands, mut end) = (BTreeMap::new(), 0.0);
-    for chain in chains {
-        let point = |node: &usize| first.as_ref().and_then(|set| set.points.get(*node).copied());
-        let points: Vec<(u64, [f64; 3])> =
-            chain.iter().filter_map(|n| Some((*n as u64, point(n)?))).collect();
-        let length = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
-        let mut order: Vec<usize> = (0..points.len()).collect();
-        let is_closed = points.len() > 2 && points[0].0 == points[points.len() - 1].0;
-        if is_closed {
-            order.pop();
-            let rubs: Vec<bool> = order.iter().map(|&i| rubbing.contains(&points[i].0)).collect();
-            order.rotate_left(cut(&rubs));
-        }
-        let mut places = Vec::new();
-        for (i, &k) in order.iter().enumerate() {
-            end += if i == 0 { 0.0 } else { length(points[order[i - 1]].1, points[k].1) };
-            places.push(end);
-        }
-        for (i, &k) in order.iter().enumerate().filter(|(_, k)| rubbing.contains(&points[**k].0)) {
-            let below = i.checked_sub(1).map_or(places[i], |j| 0.5 * (places[i] + places[j]));
-            let above = places.get(i + 1).map_or(places[i], |next| 0.5 * (places[i] + next));
-            bands.entry(points[k].0).or_insert([below, above]);
-        }
-    }
-    // Corners of the primary side, in the order in which they touch.
-    for row in rows {
-        bands.entry(row.node).or_insert_with(|| {
-            end += 1.0;
-            [end - 1.0, end]
-        });
-    }
-    bands
-}
-
-/// Where to cut a cycle: in the middle of the longest run without a rubbing node.
-fn cut(rubs: &[bool]) -> usize {
-    let n = rubs.len();
-    let run = |start: usize| (0..n).take_while(|k| !rubs[(start + k) % n]).count();
-    let longest = (0..n).max_by_key(|&start| (run(start), n - start)).unwrap_or(0);
-    (longest + run(longest) / 2) % n.max(1)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::cut;
-
-    #[test]
-    fn a_cycle_is_cut_away_from_contact() {
-        assert_eq!(cut(&[true, false, false, false, false, true]), 3);
-        assert_eq!(cut(&[false, false, true, true, false, false]), 0);
-        assert_eq!(cut(&[true, true]), 0);
-    }
 }

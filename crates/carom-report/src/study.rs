@@ -9,7 +9,7 @@ use crate::collected::{Column, Origin, collect, named};
 use crate::labels::{capitalised, file_name, with_unit};
 use crate::plot::{Curve, Pane, Plot};
 use crate::publish::{ReportError, ReportSummary, publish, write};
-use crate::{laboratory, setup, study_page};
+use crate::{curves, laboratory, setup, study_page};
 
 /// Curves in one figure; more arms need more figures.
 const MOST: usize = 8;
@@ -32,7 +32,15 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     })?;
     study.write_tables()?;
     let mut plots = laboratory::plots(&study, &columns, &time);
-    plots.extend(columns.iter().flat_map(|column| overlays(column, &study, &time)));
+    // What small multiples show already is not drawn again, unless they leave something out.
+    let drawn = |column: &&Column| laboratory::shows(&plots, &column.name);
+    let overlaid: Vec<Plot> = columns
+        .iter()
+        .flat_map(|column| {
+            overlays(column, &study, &time).into_iter().filter(move |plot| plot.direct || !drawn(&column))
+        })
+        .collect();
+    plots.extend(overlaid);
     let page = study_page::page(&study, picture.as_deref(), &plots, &origins);
     let drawn = plots.iter().map(|p| (p.name.clone(), p.svg()));
     let all: Vec<(String, String)> =
@@ -53,7 +61,8 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     Ok(summary)
 }
 
-/// A column of all arms, with up to eight curves in a figure.
+/// A column of all arms, with up to eight curves in a figure, and enlarged where there is contact.
+/// Curves that hide each other have panes of their own.
 fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
     let (label, what) = named(&column.name);
     let arms = &study.manifest.arms;
@@ -65,24 +74,30 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
         .chunk_by(|a, b| a.1.case_path == b.1.case_path)
         .flat_map(|same| same.chunks(MOST).map(|few| few.iter().map(|(i, _)| *i).collect()))
         .collect();
+    let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
     let figure = |group: usize| {
         let members = &groups[group];
         let mine = column.curves.iter().filter(|(arm, ..)| members.contains(arm));
         let curves = mine.map(|(arm, x, y)| Curve {
-            label: study.rows[*arm].name.clone(),
-            style: *arm,
+            label: curves::label(&study.rows[*arm].name),
+            style: *arm % MOST,
             x: x.clone(),
             y: y.clone(),
-            marked: false,
             apart: study.rows[*arm].is_unsound(),
+            chosen: chosen == Some(*arm),
+            ..Curve::default()
         });
-        let curves: Vec<Curve> = curves.collect();
+        let found = curves::merged(curves.collect());
+        let names: Vec<_> =
+            found.iter().map(|(curve, others)| (curve.label.clone(), others.clone())).collect();
+        let curves: Vec<Curve> = found.into_iter().map(|(curve, _)| curve).collect();
         if curves.is_empty() {
             return None;
         }
         let apart = if curves.iter().any(|curve| curve.apart) {
-            " Dashed grey: arms that failed, up to where they stopped, and arms that created more energy \
-             than the default guard allows; they do not affect the axes."
+            " Dashed grey, or in a pane of its own where it is rough: arms that failed, up to where they \
+             stopped, and arms that created more energy than the default guard allows; they do not affect \
+             the axes."
         } else {
             ""
         };
@@ -94,15 +109,60 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
             (2.., [only]) => (format!("{file}-{}", group + 1), format!(", arm {}", only + 1)),
             _ => (file, String::new()),
         };
+        let end = curves.iter().filter_map(|curve| curve.x.last()).copied().fold(0.0, f64::max);
+        let contact = curves::contact(study, end);
+        let y_label = with_unit(&label, &column.unit);
+        // A rough curve of a failed arm would cover the others.
+        let (aside, curves): (Vec<Curve>, Vec<Curve>) =
+            curves.into_iter().partition(|curve| curve.apart && curves::is_rough(curve));
+        let rough = curves.iter().filter(|curve| curves::is_rough(curve)).count() > 1;
+        let (panes, across, enlarged) = if rough {
+            (
+                multiples(curves, &y_label, contact),
+                3,
+                if contact.is_some() { " during the first contact" } else { "" },
+            )
+        } else {
+            let whole = Pane { y_label: y_label.clone(), curves: curves.clone(), ..Pane::default() };
+            let part = contact.map(|span| Pane {
+                title: "during the first contact".into(),
+                y_label,
+                curves,
+                span: Some(span),
+                ..Pane::default()
+            });
+            let whole = (!whole.curves.is_empty()).then_some(whole);
+            (whole.into_iter().chain(part).collect::<Vec<_>>(), 1, "")
+        };
+        let aside = aside.into_iter().map(|curve| Pane {
+            title: format!("{}: apart", curve.label),
+            y_label: with_unit(&label, &column.unit),
+            curves: vec![Curve { label: String::new(), ..curve }],
+            ..Pane::default()
+        });
+        let panes: Vec<Pane> = panes.into_iter().chain(aside).collect();
         Some(Plot {
             name,
-            caption: format!("{}{part}.{apart}", capitalised(&what)),
+            caption: format!("{}{enlarged}{part}.{}{apart}", capitalised(&what), curves::drawn_once(&names)),
             x_label: with_unit("time t", time),
             log: [false, false],
-            across: 1,
-            same: false,
-            panes: vec![Pane { y_label: with_unit(&label, &column.unit), curves, ..Pane::default() }],
+            across,
+            same: rough,
+            direct: !rough,
+            panes,
         })
     };
     (0..groups.len()).filter_map(figure).collect()
+}
+
+/// Panes at the same scale with a curve each, its label as the title.
+fn multiples(curves: Vec<Curve>, y_label: &str, span: Option<(f64, f64)>) -> Vec<Pane> {
+    let pane = |(k, curve): (usize, Curve)| Pane {
+        title: curve.label.clone(),
+        y_label: if k % 3 == 0 { y_label.to_owned() } else { String::new() },
+        curves: vec![Curve { label: String::new(), style: 1, ..curve }],
+        span,
+        ..Pane::default()
+    };
+    curves.into_iter().enumerate().map(pane).collect()
 }

@@ -1,17 +1,16 @@
 //! `study.html`: recommendation, arms, ranking, figures and metrics of a study as a single
 //! self-contained page.
 
-use carom_record::Status;
-use carom_record::study::ensemble::Spread;
-use carom_record::study::{Held, Row, Study, Verdict};
+use carom_record::study::{Row, Study};
+use carom_record::{Status, metrics};
 use maud::{Markup, PreEscaped, Render, html};
 
 use crate::collected::Origin;
-use crate::digits::{five, three};
+use crate::digits::five;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::plot::{APART, Plot, style};
-use crate::text::Prose;
-use crate::{by_arm, convergence, design, ensemble, integrity, verdict};
+use crate::text::{Prose, typeset};
+use crate::{by_arm, claims, convergence, design, ensemble, integrity, verdict};
 
 /// Largest number of values of a key that are listed one by one.
 const FEW: usize = 4;
@@ -25,13 +24,15 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
     let unsound = study.rows.iter().filter(|row| row.is_unsound()).count() - failed;
     let expectations = || study.rows.iter().flat_map(|row| &row.expectations).chain(&study.expectations);
     let (expected, missed) = (expectations().count(), expectations().filter(|e| !e.pass).count());
+    let all = study.rows.len();
+    let finished = study.rows.iter().filter(|row| row.status == Some(Status::Finished)).count();
     let (class, word) = match study.manifest.status {
-        Status::Finished if failed > 0 => {
-            ("failed", format!("finished; {failed} of {} arms failed", study.rows.len()))
+        Status::Finished if finished < all => {
+            let rest = if failed == all - finished { "failed" } else { "did not finish" };
+            ("failed", format!("{finished} of {all} arms finished; {} {rest}", all - finished))
         }
         Status::Finished if unsound > 0 => {
-            let of = study.rows.len();
-            ("failed", format!("finished; {unsound} of {of} arms created more than 2 % of the energy"))
+            ("failed", format!("finished; {unsound} of {all} arms created more than 2 % of the energy"))
         }
         Status::Finished if missed > 0 => {
             ("failed", format!("finished; {missed} of {expected} expectations missed"))
@@ -43,10 +44,10 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
     let body = html! {
         p { span.status.(class) { (word) } }
         (verdict::summary(study))
+        (claims::section(study))
         (setup(study, picture))
         (arms(study))
         (verdict::rankings(study))
-        (claims(study))
         (ensemble::section(study))
         (self::expectations(study))
         (warnings(study))
@@ -155,77 +156,18 @@ fn ended(study: &Study, arm: usize, row: &Row) -> Markup {
     html! {
         td.(class) {
             (word)
-            @if let Some(reason) = &row.reason { br; span.small { (reason) } }
-            @if let Some(others) = study.finished_alike(arm) { br; span.small { (others) } }
+            @if let Some(reason) = &row.reason { br; span.small.plain { (typeset(reason)) } }
+            @if let Some(others) = study.finished_alike(arm) { br; span.small.plain { (typeset(&others)) } }
         }
     }
 }
 
 /// The line of an arm in the figures.
 fn line(arm: usize, apart: bool) -> Markup {
-    let (color, dashes, _) = if apart { APART } else { style(arm) };
+    let (color, dashes) = if apart { (APART.0, APART.1) } else { (style(arm % 8).0, "") };
     html! {
         svg.line width="44" height="10" {
             path d="M1 5h42" stroke=(color) stroke-width="2" stroke-dasharray=(dashes) {}
-        }
-    }
-}
-
-fn claims(study: &Study) -> Markup {
-    let class = |v: &Verdict| match (&v.held, v.holds) {
-        (Some(held), _) if held.held == held.of => "pass",
-        (Some(held), _) if held.held == 0 => "miss",
-        (None, Some(true)) => "pass",
-        (None, Some(false)) => "miss",
-        _ => "undecided",
-    };
-    let ratio = |held: &Held| {
-        let of = |spread: &Spread| {
-            let (low, high) = spread.range();
-            format!("{} ({} to {})", three(spread.median()), three(low), three(high))
-        };
-        held.ratio.as_ref().map_or_else(String::new, of)
-    };
-    let all = study.manifest.ensemble.is_some();
-    html! {
-        @if !study.verdicts.is_empty() {
-            h2 { "Claims" }
-            table {
-                thead {
-                    tr {
-                        th { "Claim" }
-                        @if all { th { "Confirmed in" } th.n { "Left/right: median (range)" } }
-                        th.n { "Left side" } th.n { "Right side" } th { "Result" }
-                    }
-                }
-                @for v in &study.verdicts {
-                    tr {
-                        td { (v.claim.text) br; code { (v.claim.compare) } }
-                        @if all {
-                            @match &v.held {
-                                Some(held) => {
-                                    td { (held.held) " of " (held.of) } td.n { (ratio(held)) }
-                                },
-                                None => { td { "–" } td.n { "–" } },
-                            }
-                        }
-                        td.n { (or_dash(v.left, five)) }
-                        td.n { (or_dash(v.right, five)) }
-                        td.(class(v)) {
-                            @match &v.held {
-                                Some(held) => { "holds " (held.word()) },
-                                None => (v.word()),
-                            }
-                        }
-                    }
-                }
-            }
-            @if all {
-                p.small {
-                    "Confirmed in: members of the ensemble in which the comparison is true, of those in \
-                     which it can be decided. Left and right side: of the arms as given."
-                }
-            }
         }
     }
 }
@@ -334,21 +276,26 @@ fn by_arm(study: &Study) -> Option<Markup> {
 fn metrics(study: &Study) -> Markup {
     let mut shown = study.metrics();
     shown.retain(|m| study.rows.iter().any(|r| r.value(&m.name).is_some()));
+    let groups = metrics::TITLES.map(|title| {
+        (title, shown.iter().copied().filter(|m| metrics::group(&m.name) == title).collect::<Vec<_>>())
+    });
     html! {
         h2 { "Metrics" }
-        (by_arm::tables(study, &shown, |arm, metric| {
-            html! { (or_dash(study.rows[arm].value(&metric.name), five)) }
-        }))
+        @for (title, members) in groups.iter().filter(|(_, members)| !members.is_empty()) {
+            details {
+                summary { (title) " " span.small { "(" (joined(members.iter().map(|m| &m.name), ", ")) ")" } }
+                (by_arm::tables(study, members, |arm, metric| {
+                    html! { (or_dash(study.rows[arm].value(&metric.name), five)) }
+                }))
+                table {
+                    @for metric in members { tr { td { code { (metric.name) } } td { (metric.definition) } } }
+                }
+            }
+        }
         p.small {
             "Column headings are the numbers of the arms. Every value is computed from the directory of its \
              arm alone. Data in full precision: " (file("study.csv")) ", and with measured times \
              " (file("study_tidy.csv")) "."
-        }
-        details {
-            summary { "Definitions" }
-            table {
-                @for metric in &shown { tr { td { code { (metric.name) } } td { (metric.definition) } } }
-            }
         }
     }
 }

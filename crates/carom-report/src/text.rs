@@ -124,16 +124,44 @@ pub(crate) fn typeset(message: &str) -> String {
     out
 }
 
-/// Approximate width of a label in units of the font size, for the layout of legends.
+/// Width of a character in units of the font size, as in DejaVu Sans, the widest of the fonts that a
+/// figure may be shown in.
+fn advance(c: char) -> f64 {
+    match c {
+        'i' | 'j' | 'l' | 'I' | 'J' | '|' => 0.30,
+        ' ' | '.' | ',' | ':' | ';' | '\'' => 0.33,
+        'f' | 't' | 'r' | '(' | ')' | '[' | ']' | '/' | '-' | '·' => 0.40,
+        's' | 'z' | 'c' | '"' => 0.54,
+        'w' | '=' | '+' | '−' | '∞' | '<' | '>' | '≤' | '≥' | '×' | '~' | '_' => 0.84,
+        'm' | 'M' | 'W' | '%' | '…' | '@' => 0.98,
+        'A'..='Z' => 0.70,
+        _ => 0.63,
+    }
+}
+
+/// Width of a label in units of the font size, for layout.
 pub(crate) fn width(label: &str) -> f64 {
     let piece = |(level, text): (Level, String)| {
         let size = if level == Level::Base { 1.0 } else { 0.75 };
-        text.chars()
-            .map(|c| if matches!(c, 'i' | 'l' | '.' | ',' | ' ' | 't' | 'f' | '|') { 0.3 } else { 0.58 })
-            .sum::<f64>()
-            * size
+        text.chars().map(advance).sum::<f64>() * size
     };
     pieces(label).into_iter().map(piece).sum()
+}
+
+/// A label shortened to a width in units of the font size: a part of its middle is left out, since
+/// names of variants differ at either end.
+pub(crate) fn fitted(label: &str, most: f64) -> String {
+    if width(label) <= most {
+        return label.to_owned();
+    }
+    let characters: Vec<char> = label.chars().collect();
+    let cut = |kept: usize| -> String {
+        let (front, back) = (kept.div_ceil(2), kept / 2);
+        let end = &characters[characters.len() - back..];
+        characters[..front].iter().chain(&['…']).chain(end).collect()
+    };
+    let fits = |kept: &usize| width(&cut(*kept)) <= most;
+    (0..characters.len()).rev().find(fits).map_or_else(String::new, cut)
 }
 
 #[cfg(test)]
@@ -159,6 +187,13 @@ mod tests {
             text,
             "σ<tspan dy=\"0.373em\" font-size=\"75%\">yy</tspan><tspan dy=\"-0.280em\"> (Pa)</tspan>"
         );
+    }
+
+    #[test]
+    fn long_labels_lose_their_middle() {
+        assert_eq!(fitted("abc", 9.0), "abc");
+        let cut = fitted("chung-hulbert 0.6, step = 0.001875", 10.0);
+        assert!(cut.starts_with("chung-") && cut.ends_with("1875") && width(&cut) <= 10.0, "{cut}");
     }
 
     #[test]

@@ -8,8 +8,10 @@ use carom_record::study::reference::{Reference, Standing};
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
+use crate::collected::{in_time, time_unit};
 use crate::digits::{five, three};
 use crate::document::{file, joined, or_dash};
+use crate::labels::with_unit;
 use crate::laboratory::methods;
 use crate::ranked;
 use crate::text::{Label, Prose};
@@ -64,24 +66,28 @@ pub(crate) fn summary(study: &Study) -> Markup {
     let arm = &study.manifest.arms[verdict.arm];
     let sets: Vec<&String> = arm.sets_without_step().collect();
     let entry =
-        |head: &str, lines: &[String]| html! { dt { (head) } @for line in lines { dd { (Label(line)) } } };
+        |head: &str, lines: &[String]| html! { dt { (head) } @for line in lines { dd { (Prose(line)) } } };
     html! {
         section.verdict {
             h2 {
                 "Recommended: " (arm.method())
-                @if let Some(h) = step(arm, "time.step") { ", Δt = " (five(h)) }
+                @if let Some(h) = step(arm, "time.step") { ", Δt = " (Label(&in_time(study, h))) }
             }
             p { (Prose(&goal)) }
-            dl {
-                @if !sets.is_empty() {
-                    dt { "Settings" }
-                    dd { (joined(sets.iter().map(|set| html! { code { (set) } }), html! { br; })) }
+            div.beside {
+                dl {
+                    (entry("Reasons", &verdict.reasons))
+                    @if !verdict.alike.is_empty() { (entry("Tied with", &[verdict.alike.join(" · ")])) }
+                    (entry(&format!("Confidence: {}", verdict.confidence.word()), &verdict.confidence_reasons))
                 }
-                (entry("Reasons", &verdict.reasons))
-                @if !verdict.alike.is_empty() { (entry("Tied with", &[verdict.alike.join(" · ")])) }
-                (entry("Cost", &[costs(study, verdict.arm)]))
-                (entry("Side effects", &side_effects(study, verdict.arm)))
-                (entry(&format!("Confidence: {}", verdict.confidence.word()), &verdict.confidence_reasons))
+                dl {
+                    @if !sets.is_empty() {
+                        dt { "Settings" }
+                        dd { (joined(sets.iter().map(|set| html! { code { (set) } }), html! { br; })) }
+                    }
+                    (entry("Cost", &[costs(study, verdict.arm)]))
+                    (entry("Side effects", &side_effects(study, verdict.arm)))
+                }
             }
         }
     }
@@ -128,13 +134,18 @@ fn side_effects(study: &Study, arm: usize) -> Vec<String> {
         let Some(mine) = study.rows[arm].value(metric) else { continue };
         let least = same_level(study, arm).filter_map(of).fold(f64::INFINITY, f64::min);
         let shown = if right == 0.0 { mine } else { error(mine, right) };
-        lines.push(format!("{words}: {} (smallest of its level: {})", three(shown), three(least)));
+        let percent = |share: f64| format!("{} %", three(100.0 * share));
+        lines.push(format!("{words}: {} (smallest of its level: {})", percent(shown), percent(least)));
     }
     if let Some((column, late)) =
         study.compared.get(arm).and_then(Option::as_ref).and_then(|c| c.late.clone())
     {
         let direction = if late < 0.0 { "leads" } else { "lags" };
-        lines.push(format!("{column} {direction} the reference by {}", three(late.abs())));
+        lines.push(format!(
+            "{column} {direction} the reference by {} {}",
+            three(late.abs()),
+            time_unit(study)
+        ));
     }
     lines
 }
@@ -168,7 +179,7 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
     };
     let other = if design.kind == Kind::MatchedCost { "equal steps" } else { "equal cost" };
     let value = |check: &Crosscheck| match check.at {
-        "step" => format!("Δt = {}", five(check.value)),
+        "step" => format!("Δt = {}", in_time(study, check.value)),
         _ => format!("{} s of processor time", three(check.value)),
     };
     let best = |check: &Crosscheck| {
@@ -186,7 +197,7 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
             }
             @for check in &ranking.crosschecks {
                 tr {
-                    td { "Δt " (or_dash(design.steps.get(check.level).copied(), five)) }
+                    td { "Δt = " (or_dash(design.steps.get(check.level).copied(), |h| in_time(study, h))) }
                     td { (check.first) } td { (value(check)) } td { (best(check)) }
                     td {
                         @match &check.better {
@@ -245,7 +256,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                  contact changes, for extremes and variations."
             }
         }
-        details open {
+        details {
             summary { "Quantities without an established reference value (not used for ranking)" }
             table {
                 thead { tr { th { "Quantity" } th { "Reason" } } }
@@ -261,7 +272,7 @@ fn other_goals(study: &Study) -> Markup {
         h3 { "Recommendations for the other goals" }
         table {
             thead {
-                tr { th { "Goal" } th { "Recommended" } th.n { "Δt" } th { "Confidence" } th { "Ranked by" } }
+                tr { th { "Goal" } th { "Recommended" } th.n { (with_unit("Δt", time_unit(study))) } th { "Confidence" } th { "Ranked by" } }
             }
             @for ranking in &study.other_rankings {
                 tr {

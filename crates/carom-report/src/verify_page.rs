@@ -47,16 +47,24 @@ fn page(v: &Verification, directory: &Path) -> String {
         }
         @for name in v.families() {
             h2 id=(name) { (name) }
-            table {
-                thead {
-                    tr {
-                        th { "Arm" } th { "Quantity" } th { "Expected" }
-                        th.n { "Result" } th.n { "Error" } th.n { "Tolerance" } th {} th { "Source" }
-                    }
+            // What is missed is open; all the rest is a click away.
+            details open[missed(v, name) > 0] {
+                summary {
+                    (v.rows().filter(|(s, _)| s.family == name).count()) " values, " (missed(v, name)) " missed"
                 }
-                @for set_up in v.set_ups.iter().filter(|s| s.family == name) {
-                    (head(set_up, directory))
-                    @for one in &set_up.rows { (row(one)) }
+                div.scroll {
+                    table {
+                        thead {
+                            tr {
+                                th { "Arm" } th { "Quantity" } th { "Expected" }
+                                th.n { "Result" } th.n { "Error" } th.n { "Tolerance" } th {} th { "Source" }
+                            }
+                        }
+                        @for set_up in v.set_ups.iter().filter(|s| s.family == name) {
+                            (head(set_up, directory))
+                            @for one in &set_up.rows { (row(one)) }
+                        }
+                    }
                 }
             }
         }
@@ -90,6 +98,12 @@ fn summary(v: &Verification) -> Markup {
         p { span.status.(class) { (word) } }
         table.summary { @for (name, value) in lines { tr { th { (name) } td { (value) } } } }
     }
+}
+
+/// Number of missed values of a family.
+fn missed(v: &Verification, name: &str) -> usize {
+    let rows = v.rows().filter(|(set_up, _)| set_up.family == name);
+    rows.filter(|(_, row)| !row.verdict.pass).count()
 }
 
 /// The row of a family in the table of families.

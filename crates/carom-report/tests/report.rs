@@ -8,7 +8,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use carom_record::{Block, Cell, Column, FieldSet, Manifest, PointArray, RunWriter, Source};
+use carom_record::{Block, Cell, Column, ContactRow, FieldSet, Manifest, PointArray, RunWriter, Source};
 use carom_report::report;
 
 /// Number of elements of an XML text, which must be well-formed.
@@ -63,7 +63,7 @@ fn figures_and_page() {
         assert!(setup.contains(part), "{part}");
     }
     let bodies = fs::read_to_string(&summary.figures[1]).unwrap();
-    for part in ["(B)", "(F)", "t = 0.3150 s", "t = 0.5550 s", ">yy</tspan>", "0.5 m"] {
+    for part in ["(A)", "(E)", "t = 0.3150 s", "t = 0.5550 s", ">yy</tspan>", "0.5 m"] {
         assert!(bodies.contains(part), "{part}");
     }
     let page = check_page(&directory);
@@ -207,7 +207,7 @@ fn solids_are_drawn_and_have_a_scene() {
     ] {
         assert!(setup.contains(part), "{part}");
     }
-    for part in ["(F)", "t = 1.0000", ">vM</tspan>"] {
+    for part in ["(E)", "t = 1.0000", ">vM</tspan>"] {
         assert!(bodies.contains(part), "{part}");
     }
     let page = check_page(&directory);
@@ -216,4 +216,81 @@ fn solids_are_drawn_and_have_a_scene() {
     }
     report(&directory).unwrap();
     assert_eq!(fs::read_to_string(directory.join("report.html")).unwrap(), page);
+}
+
+/// A square whose top is pressed at the nodes 2 and 3, which are at 0 and 2 along it.
+fn pressed(directory: &Path) {
+    let columns = ["step", "time", "active", "total"].map(|name| Column {
+        name: name.into(),
+        unit: if name == "time" { "s".into() } else { String::new() },
+        description: String::new(),
+        integer: false,
+    });
+    let contacts = serde_json::json!([{"name": "c", "secondary": "block.top", "primary": {"plane": {"point": [0.0, 1.0], "normal": [0.0, -1.0]}}}]);
+    let case = serde_json::json!({"dimension": 2, "title": "Pressed", "contacts": contacts});
+    let mut manifest = Manifest::new("0.1.0", case, Source::default(), columns.to_vec(), 1);
+    manifest.sides.insert("block.top".into(), vec![vec![3, 2]]);
+    let mut writer = RunWriter::create(directory, &manifest, b"").unwrap();
+    for i in 0..4_u32 {
+        let t = f64::from(i) * 0.5;
+        writer.history(&[f64::from(i), t, f64::from((1..3).contains(&i)) * 2.0, t]).unwrap();
+        let points = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 1.0, 0.0]].to_vec();
+        let array = |name: &str, unit: &str, components: usize| PointArray {
+            name: name.into(),
+            unit: unit.into(),
+            components,
+            values: vec![0.0; 4 * components],
+        };
+        let block = Block {
+            body: "block".into(),
+            cell: Cell::Triangle,
+            degree: 1,
+            connectivity: vec![0, 1, 2, 0, 2, 3],
+        };
+        let arrays =
+            vec![array("displacement", "m", 3), array("stress", "Pa", 6), array("contact_pressure", "Pa", 1)];
+        for (node, x, pressure) in [(2, 2.0, 4.0), (3, 0.0, 8.0)].into_iter().filter(|_| (1..3).contains(&i))
+        {
+            let row = ContactRow {
+                step: u64::from(i),
+                time: t,
+                contact: "c".into(),
+                node,
+                point: [x, 1.0, 0.0],
+                facet: 0,
+                xi: 0.0,
+                gap: 0.0,
+                multiplier: -pressure,
+                pressure: f64::from(i) * pressure,
+                normal: [0.0, -1.0, 0.0],
+                friction: "none".into(),
+                traction: 0.0,
+                slip: 0.0,
+            };
+            writer.contact(&row).unwrap();
+        }
+        writer.fields(u64::from(i), t, &FieldSet { points, blocks: vec![block], arrays }).unwrap();
+    }
+    writer.finish(&mut manifest).unwrap();
+}
+
+#[test]
+fn pressure_is_drawn_over_time_and_arc_length() {
+    let scratch = tempfile::tempdir().unwrap();
+    let directory = scratch.path().join("run");
+    pressed(&directory);
+    let summary = report(&directory).unwrap();
+    assert!(summary.figures.iter().any(|path| path.ends_with("pressure.svg")), "{:?}", summary.figures);
+    let table = fs::read_to_string(directory.join("figures/pressure.csv")).unwrap();
+    let rows = ["c,2,2.0,0.5,4.0", "c,3,0.0,0.5,8.0", "c,2,2.0,1.0,8.0", "c,3,0.0,1.0,16.0"];
+    assert_eq!(table, format!("contact,node,s,time,pressure\n{}\n", rows.join("\n")));
+    let page = check_page(&directory);
+    // Number, arc length and pressure of the nodes in the second frame.
+    assert!(page.contains("\"pressure\":[[0.0,0.0,8.0,1.0,2.0,4.0]]") && page.contains("class=\"profile\""));
+    // Beside every chart there are its table and a script.
+    for name in ["energy", "solver", "pressure"] {
+        assert!(
+            ["csv", "py"].iter().all(|ending| directory.join(format!("figures/{name}.{ending}")).is_file())
+        );
+    }
 }

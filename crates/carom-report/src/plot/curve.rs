@@ -6,7 +6,7 @@ use crate::palette::LINES;
 use crate::trace;
 
 /// A curve.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Curve {
     pub(crate) label: String,
     /// Number of the style.
@@ -17,17 +17,28 @@ pub(crate) struct Curve {
     pub(crate) marked: bool,
     /// Whether it is of an unsound run: dashed and grey, and without influence on the axes.
     pub(crate) apart: bool,
+    /// Whether it is of less interest: thin and grey.
+    pub(crate) quiet: bool,
+    /// Whether it is that of the recommended arm.
+    pub(crate) chosen: bool,
 }
 
 impl Curve {
     /// Colour, dashes and marker number.
     pub(crate) fn style(&self) -> (&'static str, &'static str, usize) {
-        if self.apart { APART } else { style(self.style) }
+        match () {
+            () if self.apart => APART,
+            () if self.quiet => (QUIET, "", self.style % 5),
+            () => style(self.style),
+        }
     }
 }
 
 /// The style of every unsound run.
 pub(crate) const APART: (&str, &str, usize) = ("#b0b0b0", "4 3", 0);
+
+/// The colour of a curve of less interest.
+pub(crate) const QUIET: &str = "#9a9a9a";
 
 /// Colour, dashes and marker number of a style. Seven colours of Okabe and Ito and grey, with five
 /// markers, give forty different styles.
@@ -41,23 +52,31 @@ pub(super) fn draw(
     out: &mut String,
     curve: &Curve,
     id: &str,
+    direct: bool,
     to_x: &dyn Fn(f64) -> f64,
     to_y: &dyn Fn(f64) -> f64,
 ) {
     let (color, dashes, marker) = curve.style();
     let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y))).collect();
     let d = trace::path(points.iter().copied());
-    // A curve alone in its pane needs no dashes to be identified.
-    let alone = curve.label.is_empty() && !curve.apart;
-    let dashes = if curve.marked || alone { "" } else { dashes };
+    // A curve that is alone in its pane, or has its label beside it, needs no dashes to be identified.
+    let plain = curve.marked || ((curve.label.is_empty() || direct) && !curve.apart);
+    let dashes = if plain { "" } else { dashes };
+    let width = if curve.quiet || curve.apart { 0.9 } else { 1.5 };
     let _ = writeln!(
         out,
-        "<path clip-path=\"url(#{id})\" d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.4\" \
+        "<path clip-path=\"url(#{id})\" d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" \
          stroke-linejoin=\"round\" stroke-dasharray=\"{dashes}\"/>"
     );
     if curve.marked {
         for (x, y) in points.into_iter().filter(|p| p.0.is_finite() && p.1.is_finite()) {
             mark(out, marker, color, x, y);
+            if curve.chosen {
+                let _ = writeln!(
+                    out,
+                    "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"8\" fill=\"none\" stroke=\"#222\" stroke-width=\"1.6\"/>"
+                );
+            }
         }
     }
 }

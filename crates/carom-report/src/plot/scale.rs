@@ -37,7 +37,7 @@ impl Scale {
         let ticks = decades
             .flat_map(|d| factors.iter().map(move |f| tick(d, f)))
             .filter(|(x, _)| (low..=high).contains(x));
-        Self { axis: Axis { low, high, ticks: ticks.collect(), exponent: 0 }, log }
+        Self { axis: Axis { low, high, ticks: ticks.collect(), exponent: 0, offset: 0.0 }, log }
     }
 
     /// 0 at the low end, 1 at the high end; NaN for values that a logarithmic axis cannot show.

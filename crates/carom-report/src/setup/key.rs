@@ -5,12 +5,13 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use super::drawing::{PRIMARY, SECONDARY, SUPPORT, Setup};
-use super::values::{list, text, tuple, vector};
+use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORT, Setup};
+use super::values::{list, text as word, tuple, vector};
 use crate::bodies::fill_space;
 use crate::chart::write_text;
 use crate::labels::number;
 use crate::symbols::{plus, rollers, wall};
+use crate::text;
 
 impl Setup<'_> {
     /// Draws the key and returns its height.
@@ -28,24 +29,27 @@ impl Setup<'_> {
             }
             let (x, extra) =
                 (if bold { left } else { left + 30.0 }, if bold { "font-weight=\"bold\"" } else { "" });
-            write_text(out, x, y, extra, content);
+            // Smaller where it is wider than the key.
+            let width = text::width(content).max(1e-9);
+            let size = (KEY - 12.0 - (x - left)).min(13.0 * width) / width;
+            write_text(out, x, y, &format!("font-size=\"{size:.1}\" {extra}"), content);
         };
         line("", "Bodies", true);
         for (k, body) in list(self.case(), "bodies").iter().enumerate() {
-            let block = self.fields.blocks.iter().find(|b| b.body == text(body, "name"));
+            let block = self.fields.blocks.iter().find(|b| b.body == word(body, "name"));
             let nodes = block.map_or(0, |b| b.connectivity.iter().collect::<HashSet<_>>().len());
             let swatch = format!(
                 "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#222\"/>",
                 Self::color(k)
             );
             let cells = block.map_or(0, |b| b.cells().count());
-            let element = text(body, "element");
+            let element = word(body, "element");
             line(
                 &swatch,
                 &format!(
                     "{}: {}, {cells} {element} cells, {nodes} nodes",
-                    text(body, "name"),
-                    text(body, "material")
+                    word(body, "name"),
+                    word(body, "material")
                 ),
                 false,
             );
@@ -62,7 +66,7 @@ impl Setup<'_> {
         line("", "Materials", true);
         for m in list(self.case(), "materials") {
             let real = |key| m.get(key).and_then(Value::as_f64).map_or(String::new(), number);
-            line("", &format!("{}: {}", text(m, "name"), text(m, "law")), false);
+            line("", &format!("{}: {}", word(m, "name"), word(m, "law")), false);
             let (density, lambda, mu) = (real("density"), real("lambda"), real("mu"));
             line("", &format!("ρ = {density} {mass}/{length}^3"), false);
             line("", &format!("Λ = {lambda}, μ = {mu} {stress}"), false);
@@ -106,7 +110,7 @@ impl Setup<'_> {
             let shape = shape.map(|shape| if in_space && shape == "circle" { "sphere" } else { shape });
             let rigid = format!("rigid {}", shape.unwrap_or("plane"));
             let primary = side.unwrap_or(&rigid);
-            line(&bar(SECONDARY), &format!("{} (secondary)", text(contact, "secondary")), false);
+            line(&bar(SECONDARY), &format!("{} (secondary)", word(contact, "secondary")), false);
             line(&bar(PRIMARY), &format!("{primary} (primary)"), false);
         }
         for (k, probe) in list(self.case(), "probes").iter().enumerate() {
@@ -117,7 +121,7 @@ impl Setup<'_> {
             let dot = "<circle cx=\"10\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>";
             line(
                 dot,
-                &format!("{}: {} at {} {length}", text(probe, "name"), text(probe, "body"), tuple(&at)),
+                &format!("{}: {} at {} {length}", word(probe, "name"), word(probe, "body"), tuple(&at)),
                 false,
             );
         }

@@ -1,15 +1,16 @@
-//! A state as fields for viewers: displacement, velocity, stress (nodal mean within each body) and
-//! contact pressure.
+//! A state as fields for viewers: displacement, velocity, stress (nodal mean within each body) with
+//! its von Mises and principal stresses, and contact pressure.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use carom_case::Case;
 use carom_contact::{Pair, Rows};
 use carom_mechanics::State;
-use carom_mechanics::model::{Contact, Model};
+use carom_mechanics::model::{Contact, Model, von_mises};
 use carom_record::{Block, Cell, FieldSet, PointArray};
 use carom_solid::{Element, FacetShape};
 
+use super::principal::principal;
 use super::units::Labels;
 
 /// Fields of a state.
@@ -27,13 +28,23 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     };
     // The nodes that carry obstacles come last, and belong to no body.
     let nodes = model.parts.iter().filter(|part| !part.is_rigid()).map(|p| p.nodes().end).max().unwrap_or(0);
+    let stress = nodal_stress(model, state);
+    let tensors = stress
+        .as_chunks::<6>()
+        .0
+        .iter()
+        .map(|&[xx, yy, zz, xy, yz, xz]| [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
+    let mises: Vec<f64> = tensors.clone().map(|s| von_mises(&s)).collect();
+    let principal: Vec<f64> = tensors.flat_map(principal).collect();
     let mut set = FieldSet {
         points: model.reference.chunks_exact(model.dimension).map(spatial).collect(),
         blocks: blocks(model),
         arrays: vec![
             array("displacement", &label.length, 3, vectors(&moved)),
             array("velocity", &label.velocity, 3, vectors(&state.v)),
-            array("stress", &label.stress, 6, nodal_stress(model, state)),
+            array("stress", &label.stress, 6, stress),
+            array("von_mises", &label.stress, 1, mises),
+            array("principal_stress", &label.stress, 3, principal),
             array("contact_pressure", &label.stress, 1, pressures(case, model, state)),
         ],
     };

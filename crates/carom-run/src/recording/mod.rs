@@ -4,6 +4,7 @@ mod columns;
 mod fields;
 mod log;
 mod outcome;
+mod principal;
 mod rows;
 mod session;
 mod start;

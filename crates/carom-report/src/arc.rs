@@ -1,0 +1,84 @@
+//! Arc lengths of the nodes of a contact along its secondary side.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use carom_record::{ContactRow, Run};
+
+/// Where a node of a contact lies.
+#[derive(Clone, Copy)]
+pub(crate) struct Place {
+    /// Number of the node along its side.
+    pub(crate) number: usize,
+    /// Arc length of the node, and of the ends of its part of the side, half-way to its neighbours.
+    pub(crate) at: f64,
+    pub(crate) part: [f64; 2],
+    /// Whether it is a node of the secondary side.
+    pub(crate) is_secondary: bool,
+}
+
+/// The places of the nodes in contact along the secondary side in the reference configuration. A
+/// closed side is cut where no node is in contact for longest.
+pub(crate) fn places(run: &Run, name: &str, rows: &[&ContactRow]) -> BTreeMap<u64, Place> {
+    let contacts = run.manifest.case.get("contacts").and_then(|value| value.as_array());
+    let of_name = |item: &&serde_json::Value| item.get("name").and_then(|v| v.as_str()) == Some(name);
+    let side = contacts.into_iter().flatten().find(of_name).and_then(|item| item.get("secondary")?.as_str());
+    let chains = side.and_then(|side| run.manifest.sides.get(side)).map_or(&[][..], Vec::as_slice);
+    let first = run.fields.first().and_then(|entry| run.field(entry).ok());
+    let rubbing: BTreeSet<u64> = rows.iter().map(|row| row.node).collect();
+    let (mut found, mut end) = (BTreeMap::new(), 0.0);
+    let mut before = 0;
+    for chain in chains {
+        let point = |node: &usize| first.as_ref().and_then(|set| set.points.get(*node).copied());
+        let points: Vec<(u64, [f64; 3])> =
+            chain.iter().filter_map(|n| Some((*n as u64, point(n)?))).collect();
+        let length = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        let is_closed = points.len() > 2 && points[0].0 == points[points.len() - 1].0;
+        if is_closed {
+            order.pop();
+            let rubs: Vec<bool> = order.iter().map(|&i| rubbing.contains(&points[i].0)).collect();
+            order.rotate_left(cut(&rubs));
+        }
+        let mut places = Vec::new();
+        for (i, &k) in order.iter().enumerate() {
+            end += if i == 0 { 0.0 } else { length(points[order[i - 1]].1, points[k].1) };
+            places.push(end);
+        }
+        for (i, &k) in order.iter().enumerate().filter(|(_, k)| rubbing.contains(&points[**k].0)) {
+            let below = i.checked_sub(1).map_or(places[i], |j| 0.5 * (places[i] + places[j]));
+            let above = places.get(i + 1).map_or(places[i], |next| 0.5 * (places[i] + next));
+            let place = Place { number: before + i, at: places[i], part: [below, above], is_secondary: true };
+            found.entry(points[k].0).or_insert(place);
+        }
+        before += order.len() + 1;
+    }
+    // Corners of the primary side, in the order in which they touch.
+    for row in rows {
+        found.entry(row.node).or_insert_with(|| {
+            end += 1.0;
+            before += 2;
+            Place { number: before, at: end - 0.5, part: [end - 1.0, end], is_secondary: false }
+        });
+    }
+    found
+}
+
+/// Where to cut a cycle: in the middle of the longest run without a rubbing node.
+fn cut(rubs: &[bool]) -> usize {
+    let n = rubs.len();
+    let run = |start: usize| (0..n).take_while(|k| !rubs[(start + k) % n]).count();
+    let longest = (0..n).max_by_key(|&start| (run(start), n - start)).unwrap_or(0);
+    (longest + run(longest) / 2) % n.max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cut;
+
+    #[test]
+    fn a_cycle_is_cut_away_from_contact() {
+        assert_eq!(cut(&[true, false, false, false, false, true]), 3);
+        assert_eq!(cut(&[false, false, true, true, false, false]), 0);
+        assert_eq!(cut(&[true, true]), 0);
+    }
+}

@@ -1,0 +1,144 @@
+//! Curves of several arms: which are the same, which are too rough to be drawn over each other, and
+//! when there is contact.
+
+use carom_record::study::Study;
+
+use crate::axis::range;
+use crate::plot::Curve;
+
+/// Curves that differ by less than this share of the range, half a pixel of a small pane, are drawn
+/// once.
+const SAME: f64 = 3e-3;
+/// A curve whose total variation is this many times its range is rough.
+const ROUGH: f64 = 12.0;
+/// A contact that takes more than this share of the time needs no enlargement.
+const LONG: f64 = 0.5;
+
+/// Whether curves over the same time differ by no more than `SAME` at the points of either.
+fn is_same(a: &Curve, b: &Curve) -> bool {
+    let (low, high) = range(a.y.iter().chain(&b.y));
+    let ends = |curve: &Curve| Some((*curve.x.first()?, *curve.x.last()?));
+    let (Some(one), Some(other)) = (ends(a), ends(b)) else { return false };
+    let most = SAME * (high - low);
+    let near = |from: &Curve, to: &Curve| {
+        from.x.iter().zip(&from.y).all(|(x, y)| y.is_nan() || (y - between(to, *x)).abs() <= most)
+    };
+    (one.0 - other.0).abs() + (one.1 - other.1).abs() <= SAME * (one.1 - one.0) && near(a, b) && near(b, a)
+}
+
+/// The value of a curve between its points.
+fn between(curve: &Curve, x: f64) -> f64 {
+    let i = curve.x.partition_point(|at| *at < x).min(curve.x.len() - 1);
+    if i == 0 || curve.x[i] <= x {
+        return curve.y[i];
+    }
+    let share = (x - curve.x[i - 1]) / (curve.x[i] - curve.x[i - 1]);
+    curve.y[i - 1] + share * (curve.y[i] - curve.y[i - 1])
+}
+
+/// The first of every set of curves that are the same, with the labels of the others.
+pub(crate) fn merged(curves: Vec<Curve>) -> Vec<(Curve, Vec<String>)> {
+    let mut found: Vec<(Curve, Vec<String>)> = Vec::new();
+    for curve in curves {
+        let known = found.iter_mut().find(|(known, _)| known.apart == curve.apart && is_same(known, &curve));
+        match known {
+            Some((known, others)) => {
+                known.chosen |= curve.chosen;
+                known.quiet &= curve.quiet;
+                others.push(curve.label);
+            }
+            None => found.push((curve, Vec::new())),
+        }
+    }
+    found
+}
+
+/// What is said about curves that are drawn once: `Drawn once, because they differ by less than
+/// 0.3 % of the range: …`; nothing where there are none.
+pub(crate) fn drawn_once(found: &[(String, Vec<String>)]) -> String {
+    let sets = found.iter().filter(|(_, others)| !others.is_empty());
+    let sets: Vec<String> = sets.map(|(first, others)| format!("{first} = {}", others.join(" = "))).collect();
+    if sets.is_empty() {
+        return String::new();
+    }
+    format!(" Drawn once, because they differ by less than 0.3 % of the range: {}.", sets.join("; "))
+}
+
+/// Whether a curve goes up and down so often that it hides others.
+pub(crate) fn is_rough(curve: &Curve) -> bool {
+    let (low, high) = range(&curve.y);
+    let variation: f64 = curve.y.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| d.is_finite()).sum();
+    high > low && variation > ROUGH * (high - low)
+}
+
+/// The name of an arm as a label: without the tables of its keys, and without a word that says that a
+/// scheme is one.
+pub(crate) fn label(name: &str) -> String {
+    let part = |part: &str| match part.split_once('=') {
+        Some(("time.scheme", value)) => value.to_owned(),
+        Some((key, value)) if !key.contains(' ') => {
+            format!("{} = {value}", key.rsplit_once('.').map_or(key, |(_, last)| last))
+        }
+        _ => part.to_owned(),
+    };
+    name.split(", ").map(part).collect::<Vec<_>>().join(", ")
+}
+
+/// The first contact of all sound arms with a quarter of its duration on either side, unless it takes
+/// most of the time.
+pub(crate) fn contact(study: &Study, end: f64) -> Option<(f64, f64)> {
+    let of = |name: &str| -> Vec<f64> {
+        study.rows.iter().filter(|row| !row.is_unsound()).filter_map(|row| row.value(name)).collect()
+    };
+    let (first, last) = (range(&of("contact_start")).0, range(&of("contact_end")).1);
+    let room = 0.25 * (last - first);
+    let span = ((first - room).max(0.0), (last + room).min(end));
+    (span.0.is_finite() && span.1 > span.0 && span.1 - span.0 < LONG * end).then_some(span)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(label: &str, y: &[f64]) -> Curve {
+        let x = (0..y.len()).map(|i| i as f64).collect();
+        Curve { label: label.into(), x, y: y.to_vec(), ..Curve::default() }
+    }
+
+    #[test]
+    fn curves_within_half_a_pixel_are_one() {
+        let all = vec![
+            curve("a", &[0.0, 1.0, 2.0]),
+            curve("b", &[0.0, 1.0, 2.005]),
+            curve("c", &[0.0, 1.0, 2.01]),
+            curve("d", &[0.0, 1.0]),
+        ];
+        let found: Vec<(String, Vec<String>)> =
+            merged(all).into_iter().map(|(curve, others)| (curve.label, others)).collect();
+        assert_eq!(found.len(), 3);
+        assert_eq!(found[0].1, ["b"]);
+        // The same line at other points.
+        let line = |n: usize| {
+            let x: Vec<f64> = (0..=n).map(|i| i as f64 / n as f64).collect();
+            Curve { y: x.clone(), x, ..Curve::default() }
+        };
+        assert_eq!(merged(vec![line(3), line(7)]).len(), 1);
+        assert!(drawn_once(&found).contains("range: a = b."));
+    }
+
+    #[test]
+    fn labels_have_no_tables() {
+        assert_eq!(label("time.scheme=hu, time.step=0.001875"), "hu, step = 0.001875");
+        assert_eq!(label("Bathe, ρ∞ = 0.5"), "Bathe, ρ∞ = 0.5");
+    }
+
+    /// A wave of 30 periods has a variation of 60 ranges, a ramp of one.
+    #[test]
+    fn waves_are_rough() {
+        let wave: Vec<f64> =
+            (0..3000).map(|i| (f64::from(i) * std::f64::consts::TAU / 100.0).sin()).collect();
+        assert!(is_rough(&curve("", &wave)));
+        assert!(!is_rough(&curve("", &wave[..400])));
+        assert!(!is_rough(&curve("", &[0.0, 1.0, 2.0])));
+    }
+}

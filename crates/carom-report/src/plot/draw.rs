@@ -1,0 +1,218 @@
+//! Drawing of a plot: the panes with their axes and curves, and labels or a legend.
+
+use std::fmt::Write as _;
+
+use super::frame::Frame;
+use super::scale::Scale;
+use super::{Curve, Pane, Plot, curve, direct, legend};
+use crate::chart::{open_chart, write_text};
+use crate::labels::unit_of;
+use crate::{text, trace};
+
+const WIDTH: f64 = 720.0;
+const LEFT: f64 = 62.0;
+const RIGHT: f64 = 12.0;
+/// Font size of ticks.
+const TICK: f64 = 11.0;
+const TOP: f64 = 30.0;
+const BELOW: f64 = 34.0;
+
+/// The scales of a pane.
+struct Scales {
+    x: Scale,
+    y: Scale,
+}
+
+impl Plot {
+    /// The figure.
+    pub(crate) fn svg(&self) -> String {
+        let columns = self.across.max(1);
+        let across = columns as f64;
+        let labels = if self.direct { direct::room(self.legend().into_iter()) } else { 0.0 };
+        let cell = WIDTH / across;
+        let y_of = |pane: &Pane, high: f64| {
+            Scale::new(self.y_range(pane), (high / 40.0).max(2.0), false, self.log[1])
+        };
+        let most = self.panes.iter().map(|pane| pane.curves.len()).max().unwrap_or(0);
+        let high = match (columns, self.panes.len()) {
+            (3.., _) => 150.0,
+            (2, _) => 230.0,
+            (_, 2..) => 190.0,
+            _ => 320.0_f64,
+        };
+        let high = if self.direct { high.max(direct::LINE * most as f64 + 6.0) } else { high };
+        let y_scales: Vec<Scale> = self.panes.iter().map(|pane| y_of(pane, high)).collect();
+        let ticks = y_scales.iter().flat_map(|scale| &scale.axis.ticks);
+        let widest = ticks.map(|(_, label)| text::width(label) * TICK).fold(0.0, f64::max);
+        let beside = LEFT.max(widest + 32.0);
+        let wide = cell - beside - RIGHT.max(labels);
+        let rows = self.panes.len().div_ceil(columns);
+        let entries = if self.direct { Vec::new() } else { self.legend() };
+        let lines = legend::lines(&entries, WIDTH - LEFT);
+        let height = rows as f64 * (TOP + high + BELOW) + 22.0 + legend::LINE * lines.len() as f64 + 6.0;
+        let mut out = open_chart(&self.name, WIDTH, height);
+        let mut axis = None;
+        for ((i, pane), y) in self.panes.iter().enumerate().zip(y_scales) {
+            let frame = Frame {
+                left: (i % columns) as f64 * cell + beside,
+                top: (i / columns) as f64 * (TOP + high + BELOW) + TOP,
+                wide,
+                high,
+                beside,
+            };
+            let count = if self.log[0] { wide / 58.0 } else { wide / 64.0 };
+            let scales =
+                Scales { x: Scale::new(self.x_range(pane), count.max(2.0), !self.log[0], self.log[0]), y };
+            let id = format!("{}-{i}", self.name.replace(|c: char| !c.is_alphanumeric(), "-"));
+            self.pane(&mut out, pane, &frame, &scales, &id);
+            axis = Some(scales.x.axis);
+        }
+        let end = rows as f64 * (TOP + high + BELOW);
+        let (words, unit) = unit_of(&self.x_label);
+        let label = axis.map_or_else(|| self.x_label.clone(), |axis| axis.label(words, unit));
+        let middle = if columns > 1 { 0.5 * WIDTH } else { beside + 0.5 * wide };
+        write_text(&mut out, middle, end + 6.0, "text-anchor=\"middle\"", &label);
+        legend::draw(&mut out, &entries, &lines, LEFT, end + 24.0);
+        out.push_str("</svg>\n");
+        out
+    }
+
+    fn pane(&self, out: &mut String, pane: &Pane, frame: &Frame, scales: &Scales, id: &str) {
+        let Frame { left: x0, top: y0, wide, high, .. } = *frame;
+        let to_x = |x: f64| x0 + wide * scales.x.position(x);
+        let to_y = |y: f64| y0 + high * (1.0 - scales.y.position(y));
+        let _ = writeln!(
+            out,
+            "<clipPath id=\"{id}\"><rect x=\"{x0:.1}\" y=\"{y0:.1}\" width=\"{wide:.1}\" \
+             height=\"{high:.1}\"/></clipPath>"
+        );
+        if let Some([x, low, up]) = &pane.band {
+            let upper = x.iter().zip(up).map(|(x, y)| (to_x(*x), to_y(*y)));
+            let lower = x.iter().zip(low).map(|(x, y)| (to_x(*x), to_y(*y)));
+            let _ = writeln!(
+                out,
+                "<path clip-path=\"url(#{id})\" d=\"{}\" fill=\"#cfcfcf\" stroke=\"#cfcfcf\" \
+                 stroke-width=\"2.5\" stroke-linejoin=\"round\"/>",
+                trace::area(upper, lower)
+            );
+        }
+        self.axes(out, pane, frame, scales);
+        if let Some((value, word)) = &pane.floor {
+            let y = to_y(*value);
+            let _ = writeln!(
+                out,
+                "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#777\" stroke-width=\"0.8\" \
+                 stroke-dasharray=\"2 2\"/>"
+            );
+            let place = "text-anchor=\"end\" font-size=\"10\" fill=\"#555\"";
+            write_text(out, x0 + wide - 4.0, y - 4.0, place, word);
+        }
+        marks(out, pane, &to_x, frame);
+        if pane.front.len() > 1 {
+            let points = pane.front.iter().map(|(x, y)| (to_x(*x), to_y(*y)));
+            let _ = writeln!(
+                out,
+                "<path clip-path=\"url(#{id})\" d=\"{}\" fill=\"none\" stroke=\"#222\" stroke-width=\"5\" \
+                 stroke-opacity=\"0.18\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>",
+                trace::path(points)
+            );
+        }
+        let _ = writeln!(
+            out,
+            "<path d=\"M{x0:.1} {y0:.1}v{high:.1}h{wide:.1}\" fill=\"none\" stroke=\"#222\" \
+             stroke-width=\"0.9\"/>"
+        );
+        // What failed or is of less interest lies behind.
+        let mut order: Vec<&Curve> = pane.curves.iter().collect();
+        order.sort_by_key(|curve| (!curve.apart, !curve.quiet, curve.chosen));
+        for curve in &order {
+            curve::draw(out, curve, id, self.direct, &to_x, &to_y);
+        }
+        if self.direct {
+            let shown: Vec<(&Curve, (f64, f64))> = pane
+                .curves
+                .iter()
+                .filter(|curve| !curve.label.is_empty())
+                .filter_map(|curve| Some((curve, end(curve, frame, &to_x, &to_y)?)))
+                .collect();
+            let (curves, ends): (Vec<&Curve>, Vec<(f64, f64)>) = shown.into_iter().unzip();
+            direct::draw(out, &curves, &ends, frame);
+        }
+    }
+
+    /// Ticks, labels and title of a pane.
+    fn axes(&self, out: &mut String, pane: &Pane, frame: &Frame, scales: &Scales) {
+        let Frame { left: x0, top: y0, wide, high, beside } = *frame;
+        for (value, label) in &scales.y.axis.ticks {
+            let y = y0 + high * (1.0 - scales.y.axis.position(*value));
+            let _ = writeln!(
+                out,
+                "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#dddddd\" stroke-width=\"0.6\"/>"
+            );
+            write_text(out, x0 - 6.0, y + 4.0, "text-anchor=\"end\" font-size=\"11\"", label);
+        }
+        let bottom = frame.bottom();
+        for (value, label) in &scales.x.axis.ticks {
+            let x = x0 + wide * scales.x.axis.position(*value);
+            let _ = writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v4\" stroke=\"#222\" stroke-width=\"0.8\"/>");
+            write_text(out, x, bottom + 16.0, "text-anchor=\"middle\" font-size=\"11\"", label);
+        }
+        let size = if self.across > 2 { 10.5 } else { 12.0 };
+        let place = format!("font-size=\"{size}\" font-weight=\"600\"");
+        write_text(out, x0, y0 - 9.0, &place, &text::fitted(&pane.title, (wide + RIGHT) / size));
+        if !pane.y_label.is_empty() {
+            let (words, unit) = unit_of(&pane.y_label);
+            let label = scales.y.axis.label(words, unit);
+            // Smaller where it is longer than the pane is high.
+            let size = (12.0_f64).min((high + 24.0) / text::width(&label).max(1e-9));
+            let place = format!(
+                "text-anchor=\"middle\" font-size=\"{size:.1}\" transform=\"translate({:.1} {:.1}) \
+                 rotate(-90)\"",
+                x0 - beside + 13.0,
+                y0 + 0.5 * high
+            );
+            write_text(out, 0.0, 0.0, &place, &label);
+        }
+    }
+}
+
+/// Where a curve ends in its pane, in pixels.
+fn end(
+    curve: &Curve,
+    frame: &Frame,
+    to_x: &dyn Fn(f64) -> f64,
+    to_y: &dyn Fn(f64) -> f64,
+) -> Option<(f64, f64)> {
+    let points = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y)));
+    let inside = |p: &(f64, f64)| p.1.is_finite() && p.0 >= frame.left - 0.5 && p.0 <= frame.right() + 0.5;
+    let (x, y) = points.filter(inside).last()?;
+    Some((x, y.clamp(frame.top, frame.bottom())))
+}
+
+/// Vertical lines; a label that would cover the one before it is left out.
+fn marks(out: &mut String, pane: &Pane, to_x: &dyn Fn(f64) -> f64, frame: &Frame) {
+    let (top, bottom) = (frame.top, frame.bottom());
+    let mut named = f64::NEG_INFINITY;
+    let mut marks: Vec<(f64, &str)> = pane.marks.iter().map(|(x, word)| (to_x(*x), word.as_str())).collect();
+    marks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (x, word) in marks {
+        if !(frame.left..=frame.right()).contains(&x) {
+            continue;
+        }
+        let _ = writeln!(
+            out,
+            "<path d=\"M{x:.1} {top:.1}V{bottom:.1}\" stroke=\"#777\" stroke-width=\"0.8\" \
+             stroke-dasharray=\"2 2\"/>"
+        );
+        if !word.is_empty() && x > named + 13.0 {
+            named = x;
+            let place = format!(
+                "font-size=\"10\" fill=\"#555\" text-anchor=\"end\" transform=\"translate({:.1} {:.1}) \
+                 rotate(-90)\"",
+                x - 3.0,
+                top + 4.0
+            );
+            write_text(out, 0.0, 0.0, &place, word);
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! The contact pressure along the secondary side: a map over time and arc length, and the profile of an
+//! instant beside the animation. From the rows of `contact.csv`; in the plane only.
+
+use std::fmt::Write as _;
+
+use carom_record::{ContactRow, FieldEntry, Run, contact_axes};
+use serde_json::{Value, json};
+
+use crate::arc::{Place, places};
+use crate::axis::{Axis, range};
+use crate::bands::{Bands, positive_bands};
+use crate::chart::{open_chart, write_text};
+use crate::figure::Figure;
+use crate::pen::{Pen, open_grid};
+use crate::sheet::{Legend, color_bar};
+
+const WIDTH: f64 = 720.0;
+const LEFT: f64 = 74.0;
+const RIGHT: f64 = 106.0;
+const HEIGHT: f64 = 200.0;
+/// Size of the profile beside the animation.
+const SMALL: [f64; 2] = [470.0, 150.0];
+/// Instants in the map; more are thinned evenly.
+const INSTANTS: usize = 360;
+
+/// The pressures of one contact.
+struct Side<'a> {
+    name: &'a str,
+    /// Rows with the places of their nodes.
+    rows: Vec<(&'a ContactRow<'static>, Place)>,
+}
+
+/// The sides of all contacts of the plane that have had pressure.
+fn sides(run: &Run) -> Vec<Side<'_>> {
+    if contact_axes(&run.manifest.case) != 2 {
+        return Vec::new();
+    }
+    let mut names: Vec<&str> = Vec::new();
+    for row in &run.contact {
+        if !names.contains(&row.contact.as_ref()) {
+            names.push(row.contact.as_ref());
+        }
+    }
+    let side = |name| {
+        let rows: Vec<&ContactRow> = run.contact.iter().filter(|row| row.contact == name).collect();
+        let places = places(run, name, &rows);
+        let with_place = |row: &'_ ContactRow<'static>| {
+            places.get(&row.node).copied().filter(|place| place.is_secondary && row.pressure.is_finite())
+        };
+        let mine = run.contact.iter().filter(|row| row.contact == name);
+        Side { name, rows: mine.filter_map(|row| Some((row, with_place(row)?))).collect() }
+    };
+    // A profile needs a side, not a corner or the end of a bar.
+    names
+        .into_iter()
+        .map(side)
+        .filter(|side| {
+            range(side.rows.iter().flat_map(|r| &r.1.part)).1
+                > range(side.rows.iter().flat_map(|r| &r.1.part)).0
+        })
+        .collect()
+}
+
+fn units(run: &Run) -> (String, String) {
+    let first = run.fields.first().and_then(|entry| run.field(entry).ok());
+    let unit = |name: &str| {
+        first.as_ref().and_then(|set| set.array(name)).map_or_else(String::new, |array| array.unit.clone())
+    };
+    (unit("displacement"), unit("contact_pressure"))
+}
+
+/// The map of every contact.
+pub(crate) fn figure(run: &Run) -> Option<Figure> {
+    let sides = sides(run);
+    if sides.is_empty() || run.times().len() < 2 {
+        return None;
+    }
+    let (length, stress) = units(run);
+    let x_axis = Axis::new(range(run.times()), 7.0, true);
+    let plot = WIDTH - LEFT - RIGHT;
+    let step = HEIGHT + 46.0;
+    let mut out = open_chart("Contact pressure along the side", WIDTH, sides.len() as f64 * step + 34.0);
+    let stride = run.times().len().div_ceil(INSTANTS).max(1);
+    let kept: Vec<f64> = run.times().iter().copied().step_by(stride).collect();
+    let to_x = |t: f64| LEFT + plot * x_axis.position(t);
+    let mut table = String::from("contact,node,s,time,pressure\n");
+    for (k, side) in sides.iter().enumerate() {
+        let top = 26.0 + k as f64 * step;
+        let (bands, cut) = positive_bands(side.rows.iter().map(|(row, _)| row.pressure));
+        let y_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 4.0, true);
+        let to_y = |s: f64| top + HEIGHT * (1.0 - y_axis.position(s));
+        write_text(&mut out, LEFT, top - 8.0, "font-size=\"12\" font-weight=\"600\"", side.name);
+        map(&mut out, side, &kept, &bands, (&to_x, &to_y));
+        frame(&mut out, (&x_axis, &y_axis), [LEFT, plot, top, HEIGHT]);
+        let label = y_axis.label("arc length s", &length);
+        let middle = top + 0.5 * HEIGHT;
+        let turned = format!("text-anchor=\"middle\" transform=\"translate(17 {middle:.1}) rotate(-90)\"");
+        write_text(&mut out, 0.0, 0.0, &turned, &label);
+        let legend = Legend { bands: &bands, cut, label: "p", unit: &stress };
+        color_bar(&mut out, &legend, LEFT + plot + 20.0, (top - 4.0, top + HEIGHT - 8.0));
+        for (row, place) in &side.rows {
+            let _ = writeln!(
+                table,
+                "{},{},{:?},{:?},{:?}",
+                side.name, row.node, place.at, row.time, row.pressure
+            );
+        }
+    }
+    let y = sides.len() as f64 * step + 22.0;
+    let place = format!("text-anchor=\"middle\" {}", "");
+    write_text(&mut out, LEFT + 0.5 * plot, y, &place, &x_axis.label("time t", run.history.unit("time")));
+    out.push_str("</svg>\n");
+    let thinned =
+        if stride > 1 { format!(" One in {stride} recorded instants is drawn.") } else { String::new() };
+    let caption = format!(
+        "Contact pressure p over time and the arc length s of the secondary side in the reference \
+         configuration; a band per node, nothing where it is open.{thinned} Data: `contact.csv`, column \
+         `pressure`."
+    );
+    let script = include_str!("pressure.py")
+        .replace("@TIME@", run.history.unit("time"))
+        .replace("@LENGTH@", &length)
+        .replace("@STRESS@", &stress);
+    Some(Figure::new("pressure", caption, out).with(table, script))
+}
+
+/// Ticks and axes of a pane at left, width, top and height.
+fn frame(out: &mut String, (x_axis, y_axis): (&Axis, &Axis), [left, wide, top, high]: [f64; 4]) {
+    let bottom = top + high;
+    for (value, label) in &y_axis.ticks {
+        let y = bottom - high * y_axis.position(*value);
+        write_text(out, left - 8.0, y + 4.3, "text-anchor=\"end\" font-size=\"12\"", label);
+        let _ = writeln!(out, "<path d=\"M{left} {y:.1}h-4\" stroke=\"#222\" stroke-width=\"0.8\"/>");
+    }
+    for (value, label) in &x_axis.ticks {
+        let x = left + wide * x_axis.position(*value);
+        let _ = writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v5\" stroke=\"#222\" stroke-width=\"0.8\"/>");
+        write_text(out, x, bottom + 18.0, "text-anchor=\"middle\" font-size=\"12\"", label);
+    }
+    let _ = writeln!(
+        out,
+        "<path d=\"M{left} {top:.1}v{high}h{wide}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.9\"/>"
+    );
+}
+
+/// The coloured parts of a map: from each kept instant to the next one.
+fn map(
+    out: &mut String,
+    side: &Side,
+    kept: &[f64],
+    bands: &Bands,
+    (to_x, to_y): (&dyn Fn(f64) -> f64, &dyn Fn(f64) -> f64),
+) {
+    let mut rows: Vec<(usize, usize, usize, [f64; 2])> = side
+        .rows
+        .iter()
+        .filter_map(|(row, place)| {
+            let at = kept.partition_point(|t| *t < row.time);
+            let is_kept = kept.get(at).is_some_and(|t| *t == row.time);
+            is_kept.then(|| (place.number, at, bands.of(row.pressure), place.part))
+        })
+        .collect();
+    rows.sort_by_key(|row| (row.0, row.1));
+    let mut paths = vec![Pen::default(); bands.count];
+    for run in rows.chunk_by(|a, b| a.0 == b.0 && a.1 + 1 == b.1 && a.2 == b.2) {
+        let (first, last) = (run[0], run[run.len() - 1].1);
+        let end = kept.get(last + 1).or(kept.last()).copied().unwrap_or_default();
+        let [x, right] = [kept[first.1], end].map(to_x);
+        let [bottom, top] = first.3.map(to_y);
+        paths[first.2].polygon(&[[x, top], [right, top], [right, bottom], [x, bottom]]);
+    }
+    out.push_str(&open_grid());
+    for (band, pen) in paths.iter().enumerate().filter(|(_, pen)| !pen.is_empty()) {
+        let (d, color) = (pen.data(), bands.color(band));
+        let _ = writeln!(out, "<path d=\"{d}\" fill=\"{color}\" shape-rendering=\"crispEdges\"/>");
+    }
+    out.push_str("</g>\n");
+}
+
+/// The empty diagrams of the profiles for the animation, and the points of each of its frames:
+/// number, arc length and pressure of the nodes of each contact.
+pub(crate) fn profiles(run: &Run, frames: &[&FieldEntry]) -> Option<(String, Vec<Value>)> {
+    let sides = sides(run);
+    if sides.is_empty() {
+        return None;
+    }
+    let (length, stress) = units(run);
+    let mut drawn = String::new();
+    for side in &sides {
+        let [width, height] = SMALL;
+        let (wide, high) = (width - LEFT - 14.0, height - 66.0);
+        let x_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 6.0, true);
+        let most = range(side.rows.iter().map(|(row, _)| &row.pressure)).1;
+        let y_axis = Axis::new((0.0, most), 2.0, false);
+        let mut out = open_chart("Contact pressure at the instant of the animation", width, height);
+        let top = 24.0;
+        for (value, _) in &y_axis.ticks {
+            let y = top + high * (1.0 - y_axis.position(*value));
+            let _ =
+                writeln!(out, "<path d=\"M{LEFT} {y:.1}h{wide}\" stroke=\"#d8d8d8\" stroke-width=\"0.6\"/>");
+        }
+        frame(&mut out, (&x_axis, &y_axis), [LEFT, wide, top, high]);
+        write_text(&mut out, LEFT, 14.0, "font-size=\"12\"", &format!("pressure of {}", side.name));
+        let middle = top + 0.5 * high;
+        let turned = format!("text-anchor=\"middle\" transform=\"translate(17 {middle:.1}) rotate(-90)\"");
+        write_text(&mut out, 0.0, 0.0, &turned, &y_axis.label("p", &stress));
+        let label = x_axis.label("arc length s", &length);
+        write_text(&mut out, LEFT + 0.5 * wide, height - 8.0, "text-anchor=\"middle\"", &label);
+        let _ = writeln!(
+            out,
+            "<g class=\"profile\" data-axis=\"{LEFT} {} {:e} {:e} {} {top} {:e} {:e}\"><path fill=\"none\" \
+             stroke=\"#0072b2\" stroke-width=\"1.5\"/><path fill=\"none\" stroke=\"#0072b2\" stroke-width=\"5\" \
+             stroke-linecap=\"round\"/></g>",
+            LEFT + wide,
+            x_axis.low,
+            x_axis.high,
+            top + high,
+            y_axis.low,
+            y_axis.high
+        );
+        drawn.push_str(&(out + "</svg>\n"));
+    }
+    let short = |x: f64| -> f64 { format!("{x:.4e}").parse().unwrap_or(0.0) };
+    let points = |side: &Side, step: u64| -> Vec<f64> {
+        let mut points: Vec<(usize, f64, f64)> = side
+            .rows
+            .iter()
+            .filter(|(row, _)| row.step == step)
+            .map(|(row, place)| (place.number, place.at, row.pressure))
+            .collect();
+        points.sort_by_key(|point| point.0);
+        points.into_iter().flat_map(|(number, s, p)| [number as f64, short(s), short(p)]).collect()
+    };
+    let frame =
+        |entry: &&FieldEntry| json!(sides.iter().map(|side| points(side, entry.step)).collect::<Vec<_>>());
+    Some((drawn, frames.iter().map(frame).collect()))
+}
