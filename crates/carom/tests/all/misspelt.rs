@@ -70,7 +70,7 @@ fn misspelt(document: &Value) -> Vec<(String, Value)> {
     found
 }
 
-/// Checks that a file is valid and that its misspelt variants are errors, except those that `skips`;
+/// Checks that a file is valid and that its misspelt variants are errors, but for those to skip;
 /// returns their number.
 fn misspellings(
     path: &Path,
