@@ -4,8 +4,6 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::study::StudyManifest;
-
 /// An error of a run directory; `exit_code` separates system errors from all others.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
@@ -99,7 +97,8 @@ impl RecordError {
     pub fn cure(&self) -> Option<String> {
         Some(match self {
             Self::Io { .. } | Self::Corrupt { .. } | Self::Busy { .. } | Self::Exists { .. } => return None,
-            Self::NotARun { path } if StudyManifest::is_in(path) => {
+            // A study's.
+            Self::NotARun { path } if path.join("study.json").is_file() => {
                 format!("give that of one of its runs: they are in {}", path.join("arms").display())
             }
             Self::NotARun { .. } => {

@@ -15,6 +15,7 @@ pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod study;
 mod study_parts;
+mod study_progress;
 pub(crate) mod verify;
 
 use std::io::IsTerminal;

@@ -11,7 +11,7 @@ use crate::live::{Live, stop_on_signal};
 use crate::simulation::seen;
 use crate::{console, directory, out, study_summary};
 
-use super::study::Seen;
+use super::study_progress::Seen;
 
 /// Steps of a study that is computed by separate processes, also on several machines
 #[derive(clap::Subcommand)]
