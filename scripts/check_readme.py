@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Checks what README.md says a command prints: the run of its first command, except for wall times,
+the number of set-ups of `carom verify`, and that every command of the tour has its options.
+
+    scripts/check_readme.py CAROM OUTPUT_OF_VERIFY
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def block_after(text, words):
+    """The lines of the indented block that follows a sentence."""
+    lines = text[text.index(words) :].split("\n")
+    start = next(i for i, line in enumerate(lines) if line.startswith("    "))
+    end = next(i for i, line in enumerate(lines) if i > start and not line.startswith("    "))
+    return [line[4:] for line in lines[start:end]]
+
+
+def printed(carom):
+    """The output of the first command, which writes into a new folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [carom, "run", "cases/impact/impact.toml", "--out", f"{folder}/impact"]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+        return done.stdout.replace(folder, "runs").rstrip("\n").split("\n")
+
+
+def main():
+    carom, verified = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    wrong = []
+
+    def plain(lines):
+        return [re.sub(r"in [\d.]+ s of wall time", "", line) for line in lines]
+
+    said, found = plain(block_after(readme, "The first one computes")), plain(printed(carom))
+    wrong += [f"README.md prints `{a}`, the run `{b}`" for a, b in zip(said, found) if a != b]
+    if len(said) != len(found):
+        wrong.append(f"README.md prints {len(said)} lines, the run {len(found)}")
+
+    set_ups = re.search(r"(\d+) set-ups", verified.read_text(encoding="utf-8"))[1]
+    if f"Verified by {set_ups} set-ups" not in readme:
+        wrong.append(f"README.md does not say {set_ups} set-ups")
+
+    for line in block_after(readme, "## A tour"):
+        words = re.split(r"\s{2,}", line)[0].split()
+        options = subprocess.run([carom, words[1], "--help"], capture_output=True, text=True, check=True)
+        wrong += [f"`{line.strip()}`: no option {w}" for w in words if w[:2] == "--" and w not in options.stdout]
+        paths = [word for word in words if word.startswith("cases/")]
+        wrong += [f"`{line.strip()}`: no file {path}" for path in paths if not (ROOT / path).is_file()]
+    if wrong:
+        sys.exit("\n".join(wrong))
+    print(f"README.md: {len(said)} lines of output, {set_ups} set-ups and its tour are right")
+
+
+if __name__ == "__main__":
+    main()
