@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Generates the .msh files of the tests and the mesh of cases/gmsh with Gmsh.
+"""Generates the .msh files of the tests, of cases/gmsh and of an example of the book with Gmsh.
 
     pip install gmsh==4.15.2
     python3 scripts/make_gmsh_fixtures.py
@@ -82,6 +82,37 @@ def eighth(order):
         gmsh.model.mesh.optimize("HighOrderElastic")
 
 
+def tee():
+    """A quarter of a T-piece of a pipe: its volume `tee`, the cuts `plane_x` and `plane_z`, the ends
+    `end` and `branch`, and the inner surface `bore`."""
+    start("tee")
+    occ = gmsh.model.occ
+
+    def pipes(run, branch):
+        both = [(3, occ.addCylinder(-2, 0, 0, 4, 0, 0, run)), (3, occ.addCylinder(0, 0, 0, 0, 1.2, 0, branch))]
+        return occ.fuse(both[:1], both[1:])[0]
+
+    part, _ = occ.cut(pipes(0.5, 0.35), pipes(0.3, 0.2))
+    occ.intersect(part, [(3, occ.addBox(0, -1, 0, 2, 3, 1))])
+    occ.synchronize()
+    sides = {name: [] for name in ("plane_x", "plane_z", "end", "branch", "bore")}
+    for _, surface in gmsh.model.getEntities(2):
+        low, high = (gmsh.model.getBoundingBox(2, surface)[k : k + 3] for k in (0, 3))
+        where = {"plane_x": high[0] < 1e-5, "plane_z": high[2] < 1e-5, "end": low[0] > 1.9, "branch": low[1] > 1.1}
+        where["bore"] = high[2] < 0.301
+        name = next((name for name, is_here in where.items() if is_here), None)
+        if name:
+            sides[name].append(surface)
+    gmsh.model.addPhysicalGroup(3, [volume for _, volume in gmsh.model.getEntities(3)], name="tee")
+    for name, surfaces in sides.items():
+        gmsh.model.addPhysicalGroup(2, surfaces, name=name)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.22)
+    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 12)
+    gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.setOrder(2)
+    gmsh.model.mesh.optimize("HighOrderElastic")
+
+
 def write(path, version=4.1, binary=False):
     gmsh.option.setNumber("Mesh.MshFileVersion", version)
     gmsh.option.setNumber("Mesh.Binary", binary)
@@ -132,6 +163,9 @@ def main():
     impact(0.1, 0.125)
     mesh(3)
     write(ROOT / "cases/gmsh/impact.msh")
+
+    tee()
+    write(ROOT / "docs/book/examples/tee.msh")
     gmsh.finalize()
 
 
