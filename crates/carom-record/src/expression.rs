@@ -210,7 +210,7 @@ mod tests {
         parsed.value(&mut |q: &String| match q.as_str() {
             "x" => Ok(2.0),
             "[" => Ok(10.0),
-            other => Err(format!("no {other}")),
+            other => Err(format!("no {other}").into()),
         })
     }
 

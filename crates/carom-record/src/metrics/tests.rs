@@ -6,7 +6,7 @@ use crate::question::{Question, Window};
 use crate::{Column, History};
 
 fn evaluate(history: &History, what: &str) -> Result<f64, String> {
-    Question::parse(what)?.answer(history, Window::default())
+    Ok(Question::parse(what)?.answer(history, Window::default())?)
 }
 
 fn history(columns: &[(&str, Vec<f64>)]) -> History {
