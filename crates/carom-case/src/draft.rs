@@ -3,7 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use super::{BodySpec, ContactSpec, ExpectSpec, LoadSpec, MaterialSpec, ProbeSpec, SupportSpec, TimeSpec};
+use super::{
+    BodySpec, ContactSpec, ExpectSpec, LoadSpec, MaterialSpec, OverlaySpec, ProbeSpec, SupportSpec, TimeSpec,
+};
 
 /// The tables; `None` for one that could not be read.
 pub(super) struct Draft {
@@ -14,6 +16,7 @@ pub(super) struct Draft {
     pub(super) loads: Vec<Option<LoadSpec>>,
     pub(super) contacts: Vec<Option<ContactSpec>>,
     pub(super) probes: Vec<Option<ProbeSpec>>,
+    pub(super) overlays: Vec<Option<OverlaySpec>>,
     pub(super) exact: BTreeMap<String, String>,
     pub(super) expects: Vec<Option<ExpectSpec>>,
     pub(super) time: Option<TimeSpec>,

@@ -50,7 +50,7 @@ fn applied(text: &str, sets: &[String]) -> Result<DocumentMut, CaseError> {
 }
 
 /// Tables that say what is watched, not what is computed.
-const WATCHED: [&str; 4] = ["probe", "expect", "exact", "initial"];
+const WATCHED: [&str; 5] = ["probe", "overlay", "expect", "exact", "initial"];
 
 impl Excerpt {
     /// The text of the reduced case, from that of the whole one with its overrides.

@@ -20,6 +20,7 @@ mod mesh;
 mod mesh_cells;
 mod mesh_file;
 mod obstacle;
+mod overlay;
 mod overrides;
 mod place;
 mod problem;
@@ -50,7 +51,7 @@ pub use schema::{changes, expectation, schema};
 pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,
     FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind, MaterialSpec,
-    MeshSpec, NewtonSpec, ObstacleMotion, OutputSpec, Overlap, Persistency, PlaceSpec, Plane, Preset,
-    PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec, TableSpec, TangentRule,
-    TimeSpec, Units, Velocities, Volumetric,
+    MeshSpec, NewtonSpec, ObstacleMotion, OutputSpec, Overlap, OverlaySpec, Persistency, PlaceSpec, Plane,
+    Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec, TableSpec,
+    TangentRule, TimeSpec, Units, Velocities, Volumetric,
 };

@@ -15,6 +15,14 @@ const MOST_BYTES: u64 = 100_000_000;
 /// # Errors
 /// A message with the file's name and line.
 pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, String> {
+    columns(path, name, ["t", "value"])
+}
+
+/// The same of the columns with these headings.
+///
+/// # Errors
+/// A message with the file's name and line.
+pub(super) fn columns(path: &Path, name: &str, wanted: [&str; 2]) -> Result<TableSpec, String> {
     let unreadable = |error: csv::Error| {
         let line = error.position().map_or(String::new(), |p| format!(":{}", p.line()));
         match error.kind() {
@@ -46,14 +54,14 @@ pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, String> {
             format!("{name}:1: there is no column `{wanted}`; the columns are: {found}")
         })
     };
-    let columns = [column("t")?, column("value")?];
+    let columns = [column(wanted[0])?, column(wanted[1])?];
     let mut table = TableSpec { file: name.to_owned(), times: Vec::new(), values: Vec::new() };
     for record in reader.records() {
         let record = record.map_err(unreadable)?;
         let line = record.position().map_or(0, csv::Position::line);
         let number = |k: usize| {
             let text = record.get(columns[k]).unwrap_or_default();
-            let wrong = || format!("{name}:{line}: `{}` is not a finite number: {text:?}", ["t", "value"][k]);
+            let wrong = || format!("{name}:{line}: `{}` is not a finite number: {text:?}", wanted[k]);
             text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong)
         };
         let (time, value) = (number(0)?, number(1)?);

@@ -11,6 +11,7 @@ use super::draft::Draft;
 use super::expect::{self, Asked, Exact};
 use super::keys::{self, Kind};
 use super::load;
+use super::overlay;
 use super::problem::{CaseError, Problem, Problems};
 use super::refine::{self, Counts};
 use super::tables::{body, contact, initial, material, newton, output, probe, support, time};
@@ -65,6 +66,7 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
         loads: Vec::new(),
         contacts: Vec::new(),
         probes: reader.each("probe", |v, _| probe(v)),
+        overlays: Vec::new(),
         exact: reader.exact(),
         expects: Vec::new(),
         time: reader.one("time").and_then(|v| time(v, &mut problems)),
@@ -78,6 +80,7 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
         reader.each("body", |v, path| body(v, reader.dimension?, refine, folder, path, &mut problems));
     draft.contacts = reader.contacts(&draft, &mut problems);
     draft.loads = reader.each("load", |v, path| load::read(v, folder, path, &mut problems));
+    draft.overlays = reader.each("overlay", |v, path| overlay::read(v, folder, path, &mut problems));
     draft.expects = reader.each("expect", |v, path| {
         expect::one(v, path, Asked::OfARun, Exact::Of(&draft.exact), &mut problems)
     });
@@ -217,6 +220,7 @@ impl<'a> Reader<'a> {
             time,
             newton: newton(self.one("newton")?)?,
             probes: all(draft.probes)?,
+            overlays: all(draft.overlays)?,
             output: output(self.one("output")?)?,
             exact: draft.exact,
             expects: all(draft.expects)?,

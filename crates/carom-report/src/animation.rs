@@ -111,7 +111,7 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let h = &run.history;
     let series = |name: &str, label: String, k: usize| {
         let y = h.column(name)?.to_vec();
-        Some(Series { label, color: LINES[k % LINES.len()], x: run.times(), y })
+        Some(Series { label, color: LINES[k % LINES.len()], x: run.times(), y, dotted: false })
     };
     // In the plane y, as in the figures; in space the component that grows largest.
     let peak = |name: &str| h.column(name).map(|x| x.iter().fold(0.0_f64, |most, x| most.max(x.abs())));
@@ -295,7 +295,8 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                     (number(largest)) " " (Label(run.history.unit("contact_force_x"))) "."
                 }
                 (Prose(" Ticks below the histories: events in `log.jsonl`. Space: play or pause. ← and →: \
-                        previous or next frame. A click in a time history goes to that instant."))
+                        previous or next frame. A click in a time history goes to that instant; a drag across one enlarges all of them, a double \
+                        click or Esc shows the whole time."))
             }
         }
         script #animation-data type="application/json" { (PreEscaped(data)) }

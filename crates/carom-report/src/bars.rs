@@ -42,6 +42,7 @@ pub(crate) fn figure(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: 
             color: sequence(i, sets.len()),
             x,
             y: y.clone(),
+            dotted: false,
         });
         let series: Vec<Series> = series.collect();
         if !series.is_empty() {

@@ -18,6 +18,8 @@ pub(crate) struct Series<'a> {
     pub(crate) color: &'static str,
     pub(crate) x: &'a [f64],
     pub(crate) y: Vec<f64>,
+    /// Whether its points are drawn, instead of lines between them.
+    pub(crate) dotted: bool,
 }
 
 /// Curves with one vertical axis.
@@ -106,7 +108,8 @@ impl Chart<'_> {
         let mut out = open_chart(self.title, width, height);
         let to_x = |x: f64| LEFT + plot * x_axis.position(x);
         let mut y0 = 0.0;
-        for (i, (panel, rows)) in self.panels.iter().zip(&rows).enumerate() {
+        let mut bottoms = Vec::new();
+        for (panel, rows) in self.panels.iter().zip(&rows) {
             y0 += GAP;
             write_legend(&mut out, panel, rows, y0);
             y0 += rows.len() as f64 * 18.0;
@@ -117,6 +120,8 @@ impl Chart<'_> {
             let most = if whole { (high - low).max(1.0) } else { f64::INFINITY };
             let y_axis = Axis::new((low, high), (h / 42.0).max(2.0).min(most), false);
             let to_y = |y: f64| y0 + h * (1.0 - y_axis.position(y));
+            let window = window(y0 - 2.0, h + 4.0, plot);
+            out.push_str(&window);
             for (a, b) in &self.shades {
                 let (a, b) = (to_x(a.max(x_axis.low)), to_x(b.min(x_axis.high)));
                 let _ = writeln!(
@@ -125,6 +130,7 @@ impl Chart<'_> {
                     (b - a).max(0.6)
                 );
             }
+            out.push_str("</svg>\n");
             for (value, label) in &y_axis.ticks {
                 let y = to_y(*value);
                 let colour = if *value == 0.0 { "#999" } else { "#d8d8d8" };
@@ -135,28 +141,28 @@ impl Chart<'_> {
                 write_text(&mut out, LEFT - 8.0, y + 4.3, "text-anchor=\"end\"", label);
             }
             let bottom = y0 + h;
-            for (value, label) in &x_axis.ticks {
-                let x = to_x(*value);
-                let _ =
-                    writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v5\" stroke=\"#222\" stroke-width=\"0.8\"/>");
-                if i + 1 == self.panels.len() {
-                    write_text(&mut out, x, bottom + 19.0, "text-anchor=\"middle\"", label);
-                }
-            }
+            bottoms.push(bottom);
             let _ = writeln!(
                 out,
                 "<path d=\"M{LEFT} {y0:.1}v{h:.1}h{plot}\" fill=\"none\" stroke=\"#222\" \
                  stroke-width=\"0.9\"/>"
             );
+            out.push_str(&window);
             for series in &panel.series {
                 let points = series.x.iter().zip(&series.y).map(|(&x, &y)| (to_x(x), to_y(y)));
-                let (d, color) = (path(points), series.color);
+                let color = series.color;
+                if series.dotted {
+                    dots(&mut out, points, color);
+                    continue;
+                }
+                let d = path(points);
                 let _ = writeln!(
                     out,
                     "<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\" \
-                     stroke-linejoin=\"round\"/>"
+                     stroke-linejoin=\"round\" vector-effect=\"non-scaling-stroke\"/>"
                 );
             }
+            out.push_str("</svg>\n");
             let label = y_axis.label(&panel.label, &panel.unit);
             let size = FONT.min((h + 24.0) / text::width(&label).max(1e-9));
             let middle = y0 + 0.5 * h;
@@ -171,6 +177,7 @@ impl Chart<'_> {
             );
             y0 = bottom;
         }
+        ticks(&mut out, &x_axis, &bottoms, &to_x);
         y0 += 23.0;
         for track in options.tracks {
             y0 += ROW;
@@ -179,8 +186,9 @@ impl Chart<'_> {
             d.dedup();
             let _ = writeln!(
                 out,
-                "<path d=\"M{LEFT} {y0:.1}h{plot}\" stroke=\"#d8d8d8\" stroke-width=\"0.6\"/>\n<path \
-                 d=\"{}\" stroke=\"#000\" stroke-width=\"0.8\"/>",
+                "<path d=\"M{LEFT} {y0:.1}h{plot}\" stroke=\"#d8d8d8\" stroke-width=\"0.6\"/>\n{}<path \
+                 d=\"{}\" stroke=\"#000\" stroke-width=\"0.8\" vector-effect=\"non-scaling-stroke\"/></svg>",
+                window(y0 - 6.0, 12.0, plot),
                 d.concat()
             );
             write_text(&mut out, LEFT - 6.0, y0 + 3.6, "text-anchor=\"end\" font-size=\"11\"", &track.label);
@@ -191,8 +199,9 @@ impl Chart<'_> {
             let (low, high) = (x_axis.low, x_axis.high);
             let _ = writeln!(
                 out,
-                "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} 8 {:.1}\"/>",
-                y0 - 12.0
+                "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} 8 {:.1} {}\"/>",
+                y0 - 12.0,
+                x_axis.exponent
             );
         }
         let (words, unit) = unit_of(&self.x_label);
@@ -201,6 +210,46 @@ impl Chart<'_> {
         out.push_str("</svg>\n");
         out
     }
+}
+
+/// The opening of the part of a panel that zooming stretches: a window on the same coordinates.
+fn window(y: f64, height: f64, plot: f64) -> String {
+    format!(
+        "<svg class=\"window\" x=\"{LEFT}\" y=\"{y:.1}\" width=\"{plot}\" height=\"{height:.1}\" \
+         viewBox=\"{LEFT} {y:.1} {plot} {height:.1}\" preserveAspectRatio=\"none\">\n"
+    )
+}
+
+/// Ticks at the bottom of every panel, with labels at the last one; zooming replaces them.
+fn ticks(out: &mut String, axis: &Axis, bottoms: &[f64], to_x: &dyn Fn(f64) -> f64) {
+    let places: Vec<String> = bottoms.iter().map(|y| format!("{y:.1}")).collect();
+    let _ = writeln!(out, "<g class=\"ticks\" data-bottoms=\"{}\">", places.join(" "));
+    for (value, label) in &axis.ticks {
+        let x = to_x(*value);
+        let marks: String = places.iter().map(|y| format!("M{x:.1} {y}v5")).collect();
+        let _ = writeln!(out, "<path d=\"{marks}\" stroke=\"#222\" stroke-width=\"0.8\"/>");
+        if let Some(bottom) = bottoms.last() {
+            write_text(out, x, bottom + 19.0, "text-anchor=\"middle\"", label);
+        }
+    }
+    out.push_str("</g>\n");
+}
+
+/// Points that are at least two pixels apart, as circles.
+fn dots(out: &mut String, points: impl Iterator<Item = (f64, f64)>, color: &str) {
+    let mut d = String::new();
+    let mut last = (f64::NEG_INFINITY, 0.0);
+    for (x, y) in points.filter(|p| p.0.is_finite() && p.1.is_finite()) {
+        if (x - last.0).hypot(y - last.1) >= 2.0 {
+            let _ = write!(d, "M{x:.1} {y:.1}h0");
+            last = (x, y);
+        }
+    }
+    let _ = writeln!(
+        out,
+        "<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"4.4\" stroke-linecap=\"round\" \
+         vector-effect=\"non-scaling-stroke\"/>"
+    );
 }
 
 fn entry_width(series: &Series) -> f64 {
@@ -229,11 +278,16 @@ fn write_legend(out: &mut String, panel: &Panel, rows: &[Vec<usize>], top: f64) 
     for (line, row) in rows.iter().enumerate() {
         let (mut x, y) = (LEFT + 6.0, top + 18.0 * line as f64 + 5.0);
         for series in row.iter().map(|&i| &panel.series[i]) {
-            let _ = writeln!(
-                out,
-                "<path d=\"M{x:.1} {y:.1}h22\" stroke=\"{}\" stroke-width=\"2\"/>",
-                series.color
-            );
+            if series.dotted {
+                let places = [4.0, 11.0, 18.0].map(|by| (x + by, y));
+                dots(out, places.into_iter(), series.color);
+            } else {
+                let _ = writeln!(
+                    out,
+                    "<path d=\"M{x:.1} {y:.1}h22\" stroke=\"{}\" stroke-width=\"2\"/>",
+                    series.color
+                );
+            }
             write_text(out, x + 27.0, y + 4.3, "", &series.label);
             x += entry_width(series);
         }

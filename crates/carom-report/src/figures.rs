@@ -3,6 +3,7 @@
 use carom_record::{Cell, FieldEntry, Run, metrics};
 use maud::Markup;
 
+use crate::axis::range;
 use crate::bands::Bands;
 use crate::bodies::{self, Instant};
 use crate::chart::{Chart, Options, Panel, Series};
@@ -91,9 +92,42 @@ fn chart<'a>(
     })
 }
 
+/// Adds the measured data of a column to its panel, which also limits them to the time of the run.
+fn measured<'a>(overlays: &'a [Cut], column: &str, panel: &mut Vec<Series<'a>>) {
+    for overlay in overlays.iter().filter(|overlay| overlay.column == column) {
+        panel.push(Series {
+            label: format!("measured: {}", overlay.name),
+            color: [LINES[2], LINES[4], LINES[3]][panel.iter().filter(|s| s.dotted).count() % 3],
+            x: &overlay.x,
+            y: overlay.y.clone(),
+            dotted: true,
+        });
+    }
+}
+
+/// Measured data within the time of the run.
+struct Cut {
+    name: String,
+    column: String,
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+impl Cut {
+    fn all(run: &Run) -> Vec<Self> {
+        let (first, last) = range(run.times());
+        let cut = |o: metrics::Overlay| {
+            let within = o.times.iter().zip(&o.values).filter(|(t, _)| (first..=last).contains(*t));
+            let (x, y) = within.map(|(t, y)| (*t, *y)).unzip();
+            Self { name: o.name, column: o.column, x, y }
+        };
+        metrics::overlays(run).into_iter().map(cut).collect()
+    }
+}
+
 /// Curves of columns with their labels, without those that are missing or, compared with `size`,
 /// zero throughout.
-fn curves<'a>(run: &'a Run, columns: &[(&str, &str)], size: f64) -> Vec<Series<'a>> {
+fn curves<'a>(run: &'a Run, overlays: &'a [Cut], columns: &[(&str, &str)], size: f64) -> Vec<Series<'a>> {
     let found = columns.iter().enumerate().filter_map(|(i, (name, label))| {
         let y = run.column(name)?;
         let shown = size == 0.0 || y.iter().any(|y| y.abs() > 1e-9 * size);
@@ -102,10 +136,13 @@ fn curves<'a>(run: &'a Run, columns: &[(&str, &str)], size: f64) -> Vec<Series<'
             color: LINES[i % LINES.len()],
             x: run.times(),
             y: y.to_vec(),
+            dotted: false,
         };
         shown.then(|| series(y))
     });
-    found.collect()
+    let mut found: Vec<Series> = found.collect();
+    columns.iter().for_each(|(name, _)| measured(overlays, name, &mut found));
+    found
 }
 
 fn panel<'a>(label: &str, unit: &str, height: f64, series: Vec<Series<'a>>) -> Panel<'a> {
@@ -120,7 +157,7 @@ fn names<'a>(run: &'a Run, list: &str) -> Vec<&'a str> {
 
 /// Time histories of all probes, one panel per quantity.
 fn probes(run: &Run) -> Option<Figure> {
-    let probes = names(run, "probes");
+    let (probes, overlays) = (names(run, "probes"), Cut::all(run));
     let mut panels: Vec<(String, Panel)> = Vec::new();
     let mut columns: Vec<&str> = Vec::new();
     for column in &run.history.columns {
@@ -135,7 +172,9 @@ fn probes(run: &Run) -> Option<Figure> {
         });
         let color = LINES[probes.iter().position(|p| *p == probe).unwrap_or(0) % LINES.len()];
         let label = format!("{} at {probe}", symbol(quantity));
-        panels[at].1.series.push(Series { label, color, x: run.times(), y: values.to_vec() });
+        let series = &mut panels[at].1.series;
+        series.push(Series { label, color, x: run.times(), y: values.to_vec(), dotted: false });
+        measured(&overlays, &column.name, series);
     }
     // No axis of the plane is horizontal or vertical in space.
     let solid = run.manifest.case.get("dimension").and_then(serde_json::Value::as_u64) == Some(3);
@@ -147,8 +186,9 @@ fn probes(run: &Run) -> Option<Figure> {
     let mut list: Vec<String> = panels.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
     let caption = format!(
-        "Time histories at the probes: {}. Shaded: contact. Data: `history.csv`, columns `{}`.",
+        "Time histories at the probes: {}.{} Data: `history.csv`, columns `{}`.",
         list.join(", "),
+        if shades(run).is_empty() { "" } else { " Shaded: contact." },
         columns.join("`, `")
     );
     let panels = panels.into_iter().map(|(_, p)| p).collect();
@@ -164,13 +204,16 @@ fn force(run: &Run) -> Option<Figure> {
         .filter_map(|c| run.column(c))
         .flatten();
     let largest = impulse.fold(f64::MIN_POSITIVE, |m: f64, x| m.max(x.abs()));
+    let overlays = Cut::all(run);
     let forces = curves(
         run,
+        &overlays,
         &[("contact_force_x", "f_{x}"), ("contact_force_y", "f_{y}"), ("contact_force_z", "f_{z}")],
         size,
     );
     let impulses = curves(
         run,
+        &overlays,
         &[("contact_impulse_x", "P_{x}"), ("contact_impulse_y", "P_{y}"), ("contact_impulse_z", "P_{z}")],
         largest,
     );
@@ -187,7 +230,7 @@ fn force(run: &Run) -> Option<Figure> {
 
 /// The energy balance.
 fn energy(run: &Run) -> Option<Figure> {
-    let unit = run.history.unit("total");
+    let (unit, overlays) = (run.history.unit("total"), Cut::all(run));
     let size = run
         .column("total")
         .into_iter()
@@ -203,8 +246,8 @@ fn energy(run: &Run) -> Option<Figure> {
         ("friction_work", "friction work"),
     ];
     let panels = vec![
-        panel("energy", unit, 200.0, curves(run, &energies, size)),
-        panel("work, dissipation", unit, 150.0, curves(run, &works, 1e-3 * size)),
+        panel("energy", unit, 200.0, curves(run, &overlays, &energies, size)),
+        panel("work, dissipation", unit, 150.0, curves(run, &overlays, &works, 1e-3 * size)),
     ];
     let caption = "Energy balance. Top: energies. Bottom: accumulated work and dissipation, which is \
                    external work + contact work + friction work − change of the total energy; where it is negative, energy \
@@ -215,7 +258,7 @@ fn energy(run: &Run) -> Option<Figure> {
 
 /// Iterations, active nodes and rejections by step.
 fn solver(run: &Run) -> Option<Figure> {
-    let one = |name: &str, label: &str| panel(label, "", 84.0, curves(run, &[(name, "")], 0.0));
+    let one = |name: &str, label: &str| panel(label, "", 84.0, curves(run, &[], &[(name, "")], 0.0));
     let mut panels = vec![one("newton", "iterations"), one("active", "active nodes")];
     if run.column("rejected").is_some_and(|c| c.iter().any(|&x| x > 0.0)) {
         panels.push(one("rejected", "rejected"));

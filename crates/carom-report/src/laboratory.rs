@@ -77,7 +77,17 @@ fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Pane {
             let (x, y): (Vec<f64>, Vec<f64>) = arms.iter().filter_map(shown).unzip();
             let label = if apart { format!("{name}, creates energy") } else { name.to_owned() };
             if !x.is_empty() {
-                curves.push(Curve { label, style, x, y, marked: true, apart, quiet, chosen: is_chosen });
+                curves.push(Curve {
+                    label,
+                    style,
+                    x,
+                    y,
+                    marked: true,
+                    apart,
+                    quiet,
+                    chosen: is_chosen,
+                    ..Curve::default()
+                });
             }
         }
     }

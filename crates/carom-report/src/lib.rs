@@ -23,6 +23,7 @@ mod document;
 mod ensemble;
 mod figure;
 mod figures;
+mod fit;
 mod integrity;
 mod labels;
 mod laboratory;
@@ -48,6 +49,7 @@ mod symbols;
 mod text;
 mod timing;
 mod trace;
+mod trend;
 mod verdict;
 mod verify_page;
 

@@ -126,7 +126,10 @@ fn integration(case: &Value, unit: &str) -> Option<String> {
 }
 
 fn results(run: &Run) -> Markup {
-    let known: Vec<Metric> = metrics::all(&run.history).into_iter().filter(|m| m.value.is_some()).collect();
+    let overlays = metrics::overlays(run);
+    let measured = overlays.iter().flat_map(|overlay| metrics::of_measured(&run.history, overlay));
+    let all = metrics::all(&run.history).into_iter().chain(measured);
+    let known: Vec<Metric> = all.filter(|m| m.value.is_some()).collect();
     let groups = metrics::TITLES
         .map(|title| (title, known.iter().filter(|m| metrics::group(&m.name) == title).collect::<Vec<_>>()));
     html! {

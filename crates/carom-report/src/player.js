@@ -3,22 +3,65 @@
 // in every time history of the page. `draw` draws a frame.
 const player = (root, frames, unit, draw, first) => {
   const [button, slider, shown, speed] = ["button", "input", "output", "select"].map(s => root.querySelector(s));
+  // All histories show the same interval of time, at first the whole one; a drag across one enlarges it.
+  let shownFrom = null, shownTo = null;
   const axes = [...document.querySelectorAll("svg g.time")].map(axis => {
-    const [x0, x1, t0, t1, top, bottom] = axis.dataset.axis.split(" ").map(Number);
+    const [x0, x1, t0, t1, top, bottom, exponent] = axis.dataset.axis.split(" ").map(Number);
+    const range = () => shownFrom === null ? [t0, t1] : [shownFrom, shownTo];
     const line = document.createElementNS("http://www.w3.org/2000/svg", "path");
     for (const [key, value] of [["stroke", "#c0267e"], ["stroke-width", "1.2"], ["class", "cursor"]]) line.setAttribute(key, value);
     axis.append(line);
     const svg = axis.ownerSVGElement;
-    svg.addEventListener("click", event => {
+    const at = event => {
       const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
-      if (p.x >= x0 && p.x <= x1) { pause(); show(t0 + (t1 - t0) * (p.x - x0) / (x1 - x0)); }
+      const [from, to] = range();
+      return p.x >= x0 - 4 && p.x <= x1 + 4 ? from + (to - from) * (p.x - x0) / (x1 - x0) : null;
+    };
+    let begun = null;
+    svg.addEventListener("pointerdown", event => { begun = event.button === 0 ? [at(event), event.clientX] : null; });
+    svg.addEventListener("pointerup", event => {
+      if (!begun || begun[0] === null) return;
+      const [t, x] = begun, other = at(event);
+      begun = null;
+      if (Math.abs(event.clientX - x) > 8 && other !== null) zoom(Math.max(t0, Math.min(t, other)), Math.min(t1, Math.max(t, other)));
+      else { pause(); show(t); }
     });
+    svg.addEventListener("dblclick", () => zoom(null, null));
     svg.style.cursor = "crosshair";
-    return t => {
-      const x = (x0 + (x1 - x0) * (t - t0) / (t1 - t0)).toFixed(2);
-      line.setAttribute("d", `M${x} ${top}V${bottom}`);
+    svg.style.touchAction = "pan-y";
+    svg.style.userSelect = "none";
+    const ticks = svg.querySelector("g.ticks"), original = ticks.innerHTML;
+    const place = t => { const [from, to] = range(); return x0 + (x1 - x0) * (t - from) / (to - from); };
+    return {
+      move: t => {
+        const x = place(t);
+        line.setAttribute("d", x < x0 - 1 || x > x1 + 1 ? "" : `M${x.toFixed(2)} ${top}V${bottom}`);
+      },
+      rescale: () => {
+        const [from, to] = range(), width = (x1 - x0) / (t1 - t0);
+        svg.querySelectorAll("svg.window").forEach(w => {
+          const [, y, , height] = w.getAttribute("viewBox").split(" ");
+          w.setAttribute("viewBox", `${x0 + (from - t0) * width} ${y} ${(to - from) * width} ${height}`);
+        });
+        if (shownFrom === null) { ticks.innerHTML = original; return; }
+        const raw = (to - from) * 78 / (x1 - x0), power = 10 ** Math.floor(Math.log10(raw));
+        const step = [1, 2, 5, 10].map(f => f * power).find(s => s >= 0.999 * raw);
+        const decimals = Math.min(12, Math.max(0, -Math.floor(Math.log10(step / 10 ** exponent * 1.0001))));
+        const bottoms = ticks.dataset.bottoms.split(" ").map(Number), parts = [];
+        for (let i = Math.ceil(from / step - 1e-9); i <= to / step + 1e-9; i++) {
+          const x = place(i * step).toFixed(1), text = (i * step / 10 ** exponent).toFixed(decimals).replace("-", "−");
+          parts.push(`<path d="${bottoms.map(y => `M${x} ${y}v5`).join("")}" stroke="#222" stroke-width="0.8"/>`);
+          parts.push(`<text x="${x}" y="${bottoms[bottoms.length - 1] + 19}" text-anchor="middle">${text}</text>`);
+        }
+        ticks.innerHTML = parts.join("");
+      },
     };
   });
+  const zoom = (from, to) => {
+    if (from !== null && to - from < 1e-9 * (Math.abs(from) + Math.abs(to))) return;
+    [shownFrom, shownTo] = [from, to];
+    axes.forEach(axis => { axis.rescale(); axis.move(frames[frame].time); });
+  };
 
   const start = frames[0].time, end = frames[frames.length - 1].time;
   let frame = -1, now = start, playing = null;
@@ -31,7 +74,7 @@ const player = (root, frames, unit, draw, first) => {
     if (k === frame) return;
     frame = k;
     draw(k);
-    axes.forEach(move => move(frames[k].time));
+    axes.forEach(axis => axis.move(frames[k].time));
     shown.textContent = `t = ${frames[k].time.toPrecision(4)} ${unit} · step ${frames[k].step} · ${frames[k].file}`;
   };
   const pause = () => { cancelAnimationFrame(playing); playing = null; button.textContent = "▶"; };
@@ -55,6 +98,7 @@ const player = (root, frames, unit, draw, first) => {
     if (event.target.tagName === "SELECT" || (event.target.type === "range" && event.target !== slider)) return;
     const by = { ArrowLeft: -1, ArrowRight: 1, ",": -1, ".": 1 }[event.key];
     if (by) { pause(); show((frames[frame + by] || frames[frame]).time); event.preventDefault(); }
+    if (event.key === "Escape") zoom(null, null);
     if (event.key === " " && event.target !== button) { playing === null ? play() : pause(); event.preventDefault(); }
   });
   root.hidden = false;

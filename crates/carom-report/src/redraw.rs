@@ -28,14 +28,14 @@ apart = @APART@  # dashed grey, without influence on the axes
 y_labels = @Y_LABELS@
 limits, floors, spans, fronts = @LIMITS@, @FLOORS@, @SPANS@, @FRONTS@
 marks = @MARKS@
-marked, direct, across = @MARKED@, @DIRECT@, @ACROSS@
+marked, points, direct, across = @MARKED@, @POINTS@, @DIRECT@, @ACROSS@
 
 def style(label):
     if label in apart:
         return {"color": "@APART_COLOR@", "ls": @APART_DASHES@, "zorder": 1}
     i = styles[label]
     if marked:
-        return {"color": colors[i % 8], "marker": "os^Dv"[i % 5], "ms": 4}
+        return {"color": colors[i % 8], "marker": "os^Dv"[i % 5], "ms": 4, "ls": "none" if points and label else "-"}
     return {"color": colors[i % 8], "ls": dashes[(i + i // 8) % 8] if label and not direct else "-"}
 
 rows = -(-len(panes) // across)
@@ -135,6 +135,7 @@ impl Plot {
             ("FLOORS", list(&|p| p.floor.as_ref().map_or("None".into(), mark))),
             ("MARKS", list(&|p| format!("[{}]", p.marks.iter().map(mark).collect::<Vec<_>>().join(", ")))),
             ("MARKED", truth(curves().any(|c| c.marked))),
+            ("POINTS", truth(curves().any(|c| c.points))),
             ("DIRECT", truth(self.direct)),
             ("ACROSS", self.across.max(1).to_string()),
             (
@@ -163,6 +164,8 @@ pub(crate) fn of_chart(name: &str, chart: &Chart) -> Plot {
         style: LINES.iter().position(|color| *color == series.color).unwrap_or(k % LINES.len()),
         x: series.x.to_vec(),
         y: series.y.clone(),
+        marked: series.dotted,
+        points: series.dotted,
         ..Curve::default()
     };
     let pane = |panel: &Panel| Pane {

@@ -9,7 +9,7 @@ use crate::collected::{Column, Origin, collect, named};
 use crate::labels::{capitalised, file_name, with_unit};
 use crate::plot::{Curve, Pane, Plot};
 use crate::publish::{ReportError, ReportSummary, publish, write};
-use crate::{curves, laboratory, setup, study_page};
+use crate::{curves, laboratory, setup, study_page, trend};
 
 /// Curves in one figure; more arms need more figures.
 const MOST: usize = 8;
@@ -41,6 +41,7 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
         })
         .collect();
     plots.extend(overlaid);
+    plots.extend(trend::plots(&study));
     let page = study_page::page(&study, picture.as_deref(), &plots, &origins);
     let drawn = plots.iter().map(|p| (p.name.clone(), p.svg()));
     let all: Vec<(String, String)> =

@@ -10,7 +10,7 @@ use crate::digits::five;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::plot::{APART, Plot, style};
 use crate::text::{Prose, typeset};
-use crate::{by_arm, claims, convergence, design, ensemble, integrity, verdict};
+use crate::{by_arm, claims, convergence, design, ensemble, integrity, trend, verdict};
 
 /// Largest number of values of a key that are listed one by one.
 const FEW: usize = 4;
@@ -56,6 +56,7 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
             (figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &plot.svg()))
         }
         (metrics(study))
+        (trend::section(study))
         (convergence::section(study))
         (verdict::phases(study))
         (integrity::section(study, origins))

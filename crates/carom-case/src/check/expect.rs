@@ -32,6 +32,11 @@ impl Check<'_> {
         for column in draft.exact.keys().filter(|column| complete && !known.contains(column)) {
             self.no_column(joined("exact", column), column, &known);
         }
+        for (i, overlay) in draft.overlays.iter().enumerate().filter(|_| complete) {
+            if let Some(overlay) = overlay.as_ref().filter(|o| !known.contains(&o.column)) {
+                self.no_column(format!("overlay[{i}].column"), &overlay.column, &known);
+            }
+        }
         for (i, expect) in draft.expects.iter().enumerate() {
             let Some(expect) = expect else { continue };
             let path = format!("expect[{i}].what");
@@ -60,6 +65,11 @@ impl Check<'_> {
                         arms.extend(arm);
                         match name.rsplit_once(':') {
                             Some(("energy_lost", _)) => {}
+                            Some(("overlay_rms" | "overlay_peak" | "overlay_shift", of)) => {
+                                if complete {
+                                    self.measured(of, &path);
+                                }
+                            }
                             Some((column, what)) if column_metric_names().contains(&what) => {
                                 wanted.push(column.to_owned());
                             }
@@ -90,6 +100,15 @@ impl Check<'_> {
             |near| format!("did you mean `{near}`?"),
         );
         self.add(path, format!("history.csv will have no column `{column}`"), why, help);
+    }
+
+    fn measured(&mut self, name: &str, path: &str) {
+        let names: Vec<&str> = self.draft.overlays.iter().flatten().map(|o| o.name.as_str()).collect();
+        if !names.contains(&name) && self.draft.overlays.iter().all(Option::is_some) {
+            let help = suggest::help(name, names);
+            let why = "the name after the colon is that of an [[overlay]]";
+            self.add(path.to_owned(), format!("there are no measured data `{name}`"), why, help);
+        }
     }
 
     fn metric(&mut self, name: &str, columns: &[String], path: &str) {

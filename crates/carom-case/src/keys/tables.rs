@@ -58,6 +58,7 @@ pub const CASE: Table = Table {
         key("contact", Tables(&CONTACT), "A contact pair: two sides that may come into contact.").optional(),
         key("time", Kind::Table(&TIME), "Time interval, time step and time integrator."),
         key("newton", Kind::Table(&NEWTON), "Settings of Newton's method.").optional(),
+        key("overlay", Tables(&OVERLAY), "Measured data, drawn with a column of history.csv and compared with it.").optional(),
         key("probe", Tables(&PROBE), "A material point whose quantities are recorded as columns of history.csv.").optional(),
         key("output", Kind::Table(&OUTPUT), "What is written, and how often.").optional(),
         key(
@@ -241,6 +242,25 @@ const OUTPUT: Table = Table {
             .default("[]"),
         key("history_every", Count(1), "Steps between two rows of history.csv.").default("1"),
         key("checkpoint_every", Count(1), "Steps between two checkpoints.").default("50"),
+    ],
+    later: &[],
+};
+
+const OVERLAY: Table = Table {
+    name: "[[overlay]]",
+    doc: "Measured data of one column: drawn with it, and compared by the metrics `overlay_rms:NAME`, `overlay_peak:NAME` and `overlay_shift:NAME`.",
+    keys: &[
+        key("name", Name, "Name in figures and metrics.").example("\"test-3\""),
+        key("file", Text, "CSV file with a line of headings, relative to the folder of the case; its lines that begin with # are comments.")
+            .example("\"measured.csv\""),
+        key("column", Text, "The column of history.csv that was measured.").example("\"A.uy\""),
+        key("time", Text, "Heading of the times in the file.").default("\"t\""),
+        key("value", Text, "Heading of the values in the file.").default("\"value\""),
+        key("time_scale", Number(POSITIVE), "Times of the case in one unit of those of the file: 1e-3 for ms in a case in s.")
+            .default("1.0"),
+        key("scale", Number(ANY), "Values of the column in one unit of those of the file: −1e-3 for mm downwards in a case in m upwards.")
+            .default("1.0"),
+        key("source", Text, "Where the data come from.").optional().example("\"own test, 3 May\""),
     ],
     later: &[],
 };

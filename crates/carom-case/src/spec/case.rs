@@ -11,7 +11,7 @@ use super::body::{BodySpec, MaterialSpec, Plane};
 use super::contact::ContactSpec;
 use super::formula::FormulaSpec;
 use super::load::{LoadSpec, SupportSpec};
-use super::output::{OutputSpec, ProbeSpec};
+use super::output::{OutputSpec, OverlaySpec, ProbeSpec};
 use super::time::{NewtonSpec, TimeSpec};
 
 fn unrefined() -> f64 {
@@ -60,6 +60,9 @@ pub struct Case {
     pub newton: NewtonSpec,
     /// Points whose quantities are recorded as columns.
     pub probes: Vec<ProbeSpec>,
+    /// Measured data of columns.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub overlays: Vec<OverlaySpec>,
     /// What is written, and how often.
     pub output: OutputSpec,
     /// Exact solution by column, as formulas in t.

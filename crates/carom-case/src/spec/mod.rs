@@ -20,5 +20,5 @@ pub use formula::FormulaSpec;
 pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};
 pub use mesh::{MeshSpec, RefineSpec, SKIN};
 pub use obstacle::ObstacleMotion;
-pub use output::{OutputSpec, ProbeSpec, Quantity};
+pub use output::{OutputSpec, OverlaySpec, ProbeSpec, Quantity};
 pub use time::{LinearRule, NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

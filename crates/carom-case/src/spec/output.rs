@@ -16,6 +16,24 @@ pub struct ProbeSpec {
     pub record: Vec<Quantity>,
 }
 
+/// Measured data of a column, in the units of the case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OverlaySpec {
+    /// Name in figures and metrics.
+    pub name: String,
+    /// Name of the file as written.
+    pub file: String,
+    /// The column of history.csv.
+    pub column: String,
+    /// Times.
+    pub times: Vec<f64>,
+    /// Values.
+    pub values: Vec<f64>,
+    /// Where the data come from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+}
+
 /// Quantities that a probe can record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -1,6 +1,7 @@
 //! The table of metrics for the book.
 
 use super::definition::Definition;
+use super::overlay::OVERLAY;
 use super::run_table::{PRESSURE, WORK};
 use super::table::{COLUMNS, FREE, HISTORY};
 
@@ -8,7 +9,11 @@ use super::table::{COLUMNS, FREE, HISTORY};
 pub fn book_table() -> String {
     let history = HISTORY.iter().map(|x| (String::new(), &x.0));
     let columns = COLUMNS.iter().chain(&FREE).map(|x| ("COLUMN:".to_owned(), &x.0));
-    let all = history.chain(columns).chain(PRESSURE.iter().chain(&WORK).map(|x| (String::new(), &x.0)));
+    let measured = OVERLAY.iter().map(|x| (String::new(), &x.0));
+    let all = history
+        .chain(columns)
+        .chain(measured)
+        .chain(PRESSURE.iter().chain(&WORK).map(|x| (String::new(), &x.0)));
     // As Markdown would otherwise end a cell, or set text between two signs in italics.
     let escape = |text: &str| text.replace('|', "\\|").replace('_', "\\_").replace('*', "\\*");
     let row = |(before, d): (String, &Definition)| {

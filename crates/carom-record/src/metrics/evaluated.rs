@@ -5,6 +5,7 @@ use super::definition::{Definition, Metric, Unit};
 use super::episode::{default_bridge, episodes};
 use super::facts::Facts;
 use super::ledger::energy_lost_at;
+use super::overlay::{OVERLAY, Overlay, overlays};
 use super::run_table::{PRESSURE, WORK};
 use super::table::{COLUMNS, FREE, HISTORY};
 use crate::{History, Run};
@@ -53,6 +54,20 @@ pub(crate) fn of_columns(history: &History, column: &str) -> Vec<Metric> {
     COLUMNS.iter().map(metric).collect()
 }
 
+/// The metrics of measured data, named `METRIC:NAME`.
+pub fn of_measured(history: &History, overlay: &Overlay) -> Vec<Metric> {
+    let metric = |(definition, value): &(Definition, fn(&History, &Overlay) -> Option<f64>)| Metric {
+        name: format!("{}:{}", definition.name, overlay.name).into(),
+        value: value(history, overlay),
+        unit: match definition.unit {
+            Unit::Column => history.unit(&overlay.column).to_owned(),
+            other => other.label(history),
+        },
+        definition: definition.meaning,
+    };
+    OVERLAY.iter().map(metric).collect()
+}
+
 /// Names of the columns of the probes, in the order of the history.
 pub fn probe_columns(run: &Run) -> Vec<&str> {
     let probes = run.manifest.case.get("probes").and_then(|p| p.as_array());
@@ -86,6 +101,7 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
         let (name, unit) = (definition.name.into(), definition.unit.label(history));
         metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
     }
+    metrics.extend(overlays(run).iter().flat_map(|overlay| of_measured(history, overlay)));
     for column in probe_columns(run) {
         metrics.extend(of_columns(history, column));
         for (definition, value) in FREE.iter().filter_map(|(d, value)| Some((d, value(history, column)?))) {

@@ -8,7 +8,7 @@ struct Group {
     names: &'static [&'static str],
 }
 
-const GROUPS: [Group; 6] = [
+const GROUPS: [Group; 7] = [
     Group {
         title: "Contact",
         names: &[
@@ -43,16 +43,18 @@ const GROUPS: [Group; 6] = [
         ],
     },
     Group { title: "Friction", names: &["friction_lost", "slip_distance", "stick_share"] },
+    Group { title: "Measured data", names: &["overlay_rms", "overlay_peak", "overlay_shift"] },
 ];
 
 /// The headings of [`group`] in the order of pages.
-pub const TITLES: [&str; 9] = [
+pub const TITLES: [&str; 10] = [
     GROUPS[0].title,
     GROUPS[1].title,
     GROUPS[2].title,
     GROUPS[3].title,
     GROUPS[4].title,
     GROUPS[5].title,
+    GROUPS[6].title,
     "Contact pressure at rest",
     "Probes",
     "Computational work",
@@ -65,15 +67,15 @@ pub fn group(name: &str) -> &'static str {
         return group.title;
     }
     if PRESSURE.iter().any(|(definition, _)| definition.name == name) {
-        return TITLES[6];
+        return TITLES[7];
     }
-    if WORK.iter().any(|(definition, _)| definition.name == name) { TITLES[8] } else { TITLES[7] }
+    if WORK.iter().any(|(definition, _)| definition.name == name) { TITLES[9] } else { TITLES[8] }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::HISTORY;
+    use crate::metrics::{HISTORY, OVERLAY};
 
     /// Every metric of a history has a heading of its own kind; what has none is of a probe.
     #[test]
@@ -85,8 +87,11 @@ mod tests {
         assert_eq!(group("A.sigma_yy:peak_mean"), "Probes");
         assert_eq!(group("cpu_time"), "Computational work");
         let names = GROUPS.iter().flat_map(|group| group.names);
-        let known = |name: &&&str| HISTORY.iter().any(|(definition, _)| definition.name == **name);
+        let known = |name: &&&str| {
+            let history = HISTORY.iter().map(|(definition, _)| definition);
+            history.chain(OVERLAY.iter().map(|(definition, _)| definition)).any(|d| d.name == **name)
+        };
         assert!(names.clone().all(|name| known(&name)));
-        assert_eq!(names.count(), HISTORY.len());
+        assert_eq!(names.count(), HISTORY.len() + OVERLAY.len());
     }
 }

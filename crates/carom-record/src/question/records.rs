@@ -70,6 +70,9 @@ impl Records for Run {
             return value(self)
                 .ok_or_else(|| format!("{name} is defined only for static runs that end in contact").into());
         }
+        if let Some((definition, value)) = metrics::of_overlay(self, name) {
+            return value.ok_or_else(|| format!("{} is not defined for this record", definition.name));
+        }
         metric(&self.history, name)
     }
 

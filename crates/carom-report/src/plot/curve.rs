@@ -15,6 +15,8 @@ pub(crate) struct Curve {
     pub(crate) y: Vec<f64>,
     /// Whether the points have markers.
     pub(crate) marked: bool,
+    /// Whether there are no lines between them.
+    pub(crate) points: bool,
     /// Whether it is of an unsound run: dashed and grey, and without influence on the axes.
     pub(crate) apart: bool,
     /// Whether it is of less interest: thin and grey.
@@ -63,6 +65,7 @@ pub(super) fn draw(
     let plain = curve.marked || ((curve.label.is_empty() || direct) && !curve.apart);
     let dashes = if plain { "" } else { dashes };
     let width = if curve.quiet || curve.apart { 0.9 } else { 1.5 };
+    let d = if curve.points { String::new() } else { d };
     let _ = writeln!(
         out,
         "<path clip-path=\"url(#{id})\" d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" \

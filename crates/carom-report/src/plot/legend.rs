@@ -39,9 +39,10 @@ pub(super) fn draw(out: &mut String, legend: &[&Curve], lines: &[Vec<usize>], le
             let Curve { label, marked, .. } = legend[*i];
             let (color, dashes, marker) = legend[*i].style();
             let dashes = if *marked { "" } else { dashes };
+            let long = if legend[*i].points { 0 } else { 26 };
             let _ = writeln!(
                 out,
-                "<path d=\"M{x:.1} {y:.1}h26\" stroke=\"{color}\" stroke-width=\"1.8\" \
+                "<path d=\"M{x:.1} {y:.1}h{long}\" stroke=\"{color}\" stroke-width=\"1.8\" \
                  stroke-dasharray=\"{dashes}\"/>"
             );
             if *marked {

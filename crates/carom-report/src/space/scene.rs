@@ -302,7 +302,8 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
                  after a click: zoom. Touch: one finger turns, two move and zoom. Keys, after a click: arrows \
                  turn, with Shift they move; + and −: zoom; 0: reset; comma and full stop: previous and next frame. "
                 (Prose("Space: play or pause. Ticks below the histories: events in `log.jsonl`. A click in a \
-                        time history goes to that instant."))
+                        time history goes to that instant; a drag across one enlarges all of them, a double click or \
+                        Esc shows the whole time."))
             }
         }
         script #animation-data type="application/json" { (PreEscaped(data)) }
