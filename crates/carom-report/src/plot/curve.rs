@@ -7,6 +7,7 @@ use crate::trace;
 
 /// A curve.
 #[derive(Clone, Debug, Default)]
+#[allow(clippy::struct_excessive_bools)] // any of them may be set
 pub(crate) struct Curve {
     pub(crate) label: String,
     /// Number of the style.
