@@ -5,18 +5,8 @@ use carom_solid::generate::{self, Refinement};
 use carom_solid::{Element, Mesh};
 
 use crate::mesh_file;
+use crate::no_mesh::NoMesh;
 use crate::{BodySpec, MeshSpec, RefineSpec};
-
-/// Why the mesh of a body cannot be made.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct NoMesh(String);
-
-impl<T: Into<String>> From<T> for NoMesh {
-    fn from(why: T) -> Self {
-        Self(why.into())
-    }
-}
 
 impl BodySpec {
     /// The mesh in a case of this dimension.

@@ -8,7 +8,7 @@ use carom_solid::{Element, Mesh, gmsh};
 
 use super::MeshSpec;
 use super::machine::available_memory;
-use super::make::NoMesh;
+use super::no_mesh::NoMesh;
 use super::problem::Problem;
 use super::view::View;
 
