@@ -71,8 +71,8 @@ pub(crate) fn is_rough(curve: &Curve) -> bool {
     high > low && variation > ROUGH * (high - low)
 }
 
-/// The name of an arm as a label: without the tables of its keys, and without a word that says that a
-/// scheme is one.
+/// The name of an arm as a label: without the tables of its keys, and without a word that says that
+/// a scheme is one.
 pub(crate) fn label(name: &str) -> String {
     let part = |part: &str| match part.split_once('=') {
         Some(("time.scheme", value)) => value.to_owned(),
@@ -84,8 +84,8 @@ pub(crate) fn label(name: &str) -> String {
     name.split(", ").map(part).collect::<Vec<_>>().join(", ")
 }
 
-/// The first contact of all sound arms with a quarter of its duration on either side, unless it takes
-/// most of the time.
+/// The first contact of all sound arms with a quarter of its duration on either side, unless it
+/// takes most of the time.
 pub(crate) fn contact(study: &Study, end: f64) -> Option<(f64, f64)> {
     let of = |name: &str| -> Vec<f64> {
         study.rows.iter().filter(|row| !row.is_unsound()).filter_map(|row| row.value(name)).collect()

@@ -1,5 +1,5 @@
-//! A straight line through points by least squares, with 95 % confidence intervals of its slope and of
-//! its values (N. R. Draper, H. Smith, *Applied Regression Analysis*, ch. 1):
+//! A straight line through points by least squares, with 95 % confidence intervals of its slope and
+//! of its values (N. R. Draper, H. Smith, *Applied Regression Analysis*, ch. 1):
 //!
 //! ```text
 //! b = S_xy/S_xx,  s² = Σ (y − ŷ)²/(n − 2),  b ± t s/√S_xx,  ŷ(x) ± t s √(1/n + (x − x̄)²/S_xx)
@@ -61,8 +61,8 @@ impl Fit {
 mod tests {
     use super::*;
 
-    /// By hand: (0, 0), (1, 2), (2, 1): slope 1/2, mean (1, 1), residuals −1/2, 1, −1/2, so s² = 3/2 with
-    /// one degree of freedom and S_xx = 2.
+    /// By hand: (0, 0), (1, 2), (2, 1): slope 1/2, mean (1, 1), residuals −1/2, 1, −1/2, so s² =
+    /// 3/2 with one degree of freedom and S_xx = 2.
     #[test]
     fn three_points() {
         let fit = Fit::of(&[0.0, 1.0, 2.0], &[0.0, 2.0, 1.0]).unwrap();

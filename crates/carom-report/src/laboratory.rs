@@ -52,8 +52,8 @@ pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
 /// Up to this number of methods all are drawn in colour; of more, only those that matter.
 const COLOURED: usize = 7;
 
-/// A pane with one curve with markers per method, through the points of its arms, and another one of
-/// the arms that created much energy; the Pareto front; and the recommended arm.
+/// A pane with one curve with markers per method, through the points of its arms, and another one
+/// of the arms that created much energy; the Pareto front; and the recommended arm.
 fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Pane {
     let shown = |arm: &usize| point(*arm).filter(|p| p.0 > 0.0 && p.1 > 0.0);
     let methods = methods(study);
@@ -248,8 +248,8 @@ pub(crate) fn shows(plots: &[Plot], column: &str) -> bool {
     plots.iter().any(|plot| plot.name == name)
 }
 
-/// A column of every method at its finest level, one pane each; during the first contact, if this is
-/// a small part of the time. Methods with the same curve share a pane.
+/// A column of every method at its finest level, one pane each; during the first contact, if this
+/// is a small part of the time. Methods with the same curve share a pane.
 fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
     let band = study.reference.as_ref().and_then(|r| band(r, &column.name));
     let (label, what) = named(&column.name);

@@ -1,5 +1,5 @@
-//! The contact pressure along the secondary side: a map over time and arc length, and the profile of an
-//! instant beside the animation. From the rows of `contact.csv`; in the plane only.
+//! The contact pressure along the secondary side: a map over time and arc length, and the profile
+//! of an instant beside the animation. From the rows of `contact.csv`; in the plane only.
 
 use std::fmt::Write as _;
 

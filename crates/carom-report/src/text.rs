@@ -124,8 +124,8 @@ pub(crate) fn typeset(message: &str) -> String {
     out
 }
 
-/// Width of a character in units of the font size, as in DejaVu Sans, the widest of the fonts that a
-/// figure may be shown in.
+/// Width of a character in units of the font size, as in DejaVu Sans, the widest of the fonts that
+/// a figure may be shown in.
 fn advance(c: char) -> f64 {
     match c {
         'i' | 'j' | 'l' | 'I' | 'J' | '|' => 0.30,

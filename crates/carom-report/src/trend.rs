@@ -1,6 +1,6 @@
-//! Trends of a sweep: metrics against every key whose numbers differ between arms, each with a fitted
-//! line and its 95 % confidence interval. Metrics and keys that are positive and span a factor of three
-//! are fitted as a power.
+//! Trends of a sweep: metrics against every key whose numbers differ between arms, each with a
+//! fitted line and its 95 % confidence interval. Metrics and keys that are positive and span a
+//! factor of three are fitted as a power.
 
 use carom_record::metrics::Metric;
 use carom_record::study::{Refinement, Study, numeric_keys};

@@ -62,7 +62,8 @@ pub(super) fn draw(
     let (color, dashes, marker) = curve.style();
     let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y))).collect();
     let d = trace::path(points.iter().copied());
-    // A curve that is alone in its pane, or has its label beside it, needs no dashes to be identified.
+    // A curve that is alone in its pane, or has its label beside it, needs no dashes to be
+    // identified.
     let plain = curve.marked || ((curve.label.is_empty() || direct) && !curve.apart);
     let dashes = if plain { "" } else { dashes };
     let width = if curve.quiet || curve.apart { 0.9 } else { 1.5 };

@@ -1,8 +1,8 @@
 //! Labels to the right of a pane, each joined to the end of its curve.
 //!
-//! The heights of labels are those nearest to the ends of the curves, by the sum of squares, that are
-//! at least a line apart: with the k-th line subtracted, an isotonic regression, which the pooling of
-//! adjacent violators solves exactly (M. Ayer et al., Ann. Math. Statist. 26, 1955).
+//! The heights of labels are those nearest to the ends of the curves, by the sum of squares, that
+//! are at least a line apart: with the k-th line subtracted, an isotonic regression, which the
+//! pooling of adjacent violators solves exactly (M. Ayer et al., Ann. Math. Statist. 26, 1955).
 
 use std::fmt::Write as _;
 

@@ -1,5 +1,5 @@
-//! Eigenvalues of a symmetric tensor by Jacobi's rotations (C. G. J. Jacobi, J. reine angew. Math. 30,
-//! 1846; the stable formulas of G. H. Golub and C. F. Van Loan, *Matrix Computations*, § 8.5).
+//! Eigenvalues of a symmetric tensor by Jacobi's rotations (C. G. J. Jacobi, J. reine angew. Math.
+//! 30, 1846; the stable formulas of G. H. Golub and C. F. Van Loan, *Matrix Computations*, § 8.5).
 
 /// More than are ever needed: convergence is quadratic.
 const SWEEPS: usize = 12;
@@ -55,8 +55,8 @@ mod tests {
         );
     }
 
-    /// By hand: pure shear 3 on a pressure of 2; the circulant with 2 and 1 has 4, 1, 1; and the plane
-    /// stress 7, 1 with shear 4 has 4 ± 5.
+    /// By hand: pure shear 3 on a pressure of 2; the circulant with 2 and 1 has 4, 1, 1; and the
+    /// plane stress 7, 1 with shear 4 has 4 ± 5.
     #[test]
     fn simple_states() {
         near(principal([[-2.0, 0.0, 3.0], [0.0, -2.0, 0.0], [3.0, 0.0, -2.0]]), [1.0, -2.0, -5.0]);

@@ -2,8 +2,9 @@
 //! are converted.
 //!
 //! Where all three labels are decimal multiples of metre, second and kilogram and so is a derived
-//! unit of newton, pascal or joule with a prefix of steps of 1000, it has that name: with mm, ms and
-//! g forces are in N, stresses in MPa and energies in mJ. Otherwise it is composed of the labels.
+//! unit of newton, pascal or joule with a prefix of steps of 1000, it has that name: with mm, ms
+//! and g forces are in N, stresses in MPa and energies in mJ. Otherwise it is composed of the
+//! labels.
 
 use carom_case::Case;
 
