@@ -71,7 +71,7 @@ impl Records for Run {
                 .ok_or_else(|| format!("{name} is defined only for static runs that end in contact").into());
         }
         if let Some((definition, value)) = metrics::of_overlay(self, name) {
-            return value.ok_or_else(|| format!("{} is not defined for this record", definition.name));
+            return value.ok_or_else(|| format!("{} is not defined for this record", definition.name).into());
         }
         metric(&self.history, name)
     }
