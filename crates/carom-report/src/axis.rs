@@ -57,9 +57,13 @@ impl Axis {
         };
         let size = (low - offset).abs().max((high - offset).abs());
         let order = size.log10().floor() as i32;
+        let decimals = |exponent: i32| {
+            (-(step / 10f64.powi(exponent) * 1.0001).log10().floor()).clamp(0.0, 12.0) as usize
+        };
         let exponent = if (-3..4).contains(&order) { 0 } else { order.div_euclid(3) * 3 };
-        let scale = 10f64.powi(exponent);
-        let decimals = (-(step / scale * 1.0001).log10().floor()).clamp(0.0, 12.0) as usize;
+        // Labels with more than three decimals are too wide; those of a large number stay as they are.
+        let exponent = if exponent == 0 && order < 0 && decimals(0) > 3 { -3 } else { exponent };
+        let (scale, decimals) = (10f64.powi(exponent), decimals(exponent));
         let first = (low / step - 1e-9).ceil() as i64;
         let last = (high / step + 1e-9).floor() as i64;
         let ticks = (first..=last.min(first + 50)).map(|i| {
@@ -109,6 +113,7 @@ mod tests {
         assert_eq!(labels((-0.7827, 0.0), false), ("−0.8 −0.6 −0.4 −0.2 0.0".into(), 0));
         assert_eq!(labels((0.0, 2.6e7), true), ("0 10 20".into(), 6));
         assert_eq!(labels((-3e-7, 3e-7), true), ("−200 0 200".into(), -9));
+        assert_eq!(labels((-1e-3, 0.0), true), ("−1.0 −0.8 −0.6 −0.4 −0.2 0.0".into(), -3));
     }
 
     /// 0.060000 to 0.060008: labels are the millionths above 0.06.

@@ -13,7 +13,7 @@ use crate::obstacles;
 use crate::palette::LINES;
 use crate::redraw::of_chart;
 use crate::sheet::Legend;
-use crate::{animation, bars, pressure, setup, space, stick_slip, stopped};
+use crate::{animation, bars, contours, pressure, setup, space, stick_slip, stopped};
 
 /// Everything that can be drawn from a record.
 #[derive(Clone, Debug, Default)]
@@ -355,5 +355,7 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
          the same scale; displacements are not magnified. Blue: compression. Red: tension.{arrow} Data: \
          stress and displacement in the field files."
     );
-    Some((Figure::new("bodies", caption, svg), Some(bands)))
+    let figure = Figure::new("bodies", caption, svg);
+    let figure = contours::with_files(figure, &times, &list, [unit, &length, &stress]);
+    Some((figure, Some(bands)))
 }

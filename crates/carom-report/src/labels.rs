@@ -76,6 +76,8 @@ pub(crate) fn file_name(name: &str) -> String {
 
 /// A number with six digits, with an exponent when far from one.
 pub(crate) fn number(x: f64) -> String {
+    // Without the sign of a negative zero.
+    let x = x + 0.0;
     if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
         return format!("{x:.5e}").replace('-', "−");
     }
@@ -110,6 +112,7 @@ mod tests {
     fn numbers() {
         let cases = [
             (0.0, "0"),
+            (-0.0, "0"),
             (-0.7827, "−0.7827"),
             (400.0, "400"),
             (1.0 / 3.0, "0.333333"),

@@ -15,6 +15,7 @@ mod by_arm;
 mod chart;
 mod claims;
 mod collected;
+mod contours;
 mod convergence;
 mod curves;
 mod design;

@@ -59,7 +59,23 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let caption = "Nodes in contact over time, along the secondary side in the reference configuration: where \
                    they stick and slip, at the recorded instants; nothing is drawn for open nodes. Data: \
                    `contact.csv`, columns `friction` and `traction`.";
-    Some(Figure::new("stick-slip", caption, out))
+    let script = include_str!("stick_slip.py").replace("@TIME@", run.history.unit("time"));
+    Some(Figure::new("stick-slip", caption, out).with(table(run, &contacts), script))
+}
+
+/// What the maps show.
+fn table(run: &Run, contacts: &[&str]) -> String {
+    let mut out = String::from("contact,node,s,time,state,traction\n");
+    for name in contacts {
+        let rows: Vec<&ContactRow> = run.contact.iter().filter(|row| row.contact == *name).collect();
+        let places = places(run, name, &rows);
+        for row in rows {
+            let Some(place) = places.get(&row.node) else { continue };
+            let (node, state) = (row.node, &row.friction);
+            let _ = writeln!(out, "{name},{node},{:?},{:?},{state},{:?}", place.at, row.time, row.traction);
+        }
+    }
+    out
 }
 
 /// The map of one contact.
