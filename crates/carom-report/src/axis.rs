@@ -61,7 +61,8 @@ impl Axis {
             (-(step / 10f64.powi(exponent) * 1.0001).log10().floor()).clamp(0.0, 12.0) as usize
         };
         let exponent = if (-3..4).contains(&order) { 0 } else { order.div_euclid(3) * 3 };
-        // Labels with more than three decimals are too wide; those of a large number stay as they are.
+        // Labels with more than three decimals are too wide; those of a large number stay as they
+        // are.
         let exponent = if exponent == 0 && order < 0 && decimals(0) > 3 { -3 } else { exponent };
         let (scale, decimals) = (10f64.powi(exponent), decimals(exponent));
         let first = (low / step - 1e-9).ceil() as i64;

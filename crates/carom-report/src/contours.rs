@@ -1,5 +1,5 @@
-//! Files beside the figure of deformed bodies: positions and stress of the nodes at its instants, the
-//! small triangles between the nodes, and a script that draws contours.
+//! Files beside the figure of deformed bodies: positions and stress of the nodes at its instants,
+//! the small triangles between the nodes, and a script that draws contours.
 
 use std::fmt::Write as _;
 
