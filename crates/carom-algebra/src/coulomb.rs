@@ -402,11 +402,11 @@ mod tests {
     /// A body with two contacts in space, each with a tangential vector.
     fn in_space(limit: f64) -> ([f64; 36], [Kind; 6]) {
         // A = LᵀL.
-        let entry = |i: usize, j: usize| ((i * 7 + j * 3) as f64 * 0.77).sin() + if i == j { 2.0 } else { 0.0 };
+        let entry =
+            |i: usize, j: usize| ((i * 7 + j * 3) as f64 * 0.77).sin() + if i == j { 2.0 } else { 0.0 };
         let a = std::array::from_fn(|e| (0..6).map(|k| entry(k, e / 6) * entry(k, e % 6)).sum());
         let tangential = |of| Kind::Tangential { of, coefficient: 0.3, limit };
-        let kinds =
-            [Kind::Normal, Kind::Normal, tangential(0), tangential(0), tangential(1), tangential(1)];
+        let kinds = [Kind::Normal, Kind::Normal, tangential(0), tangential(0), tangential(1), tangential(1)];
         (a, kinds)
     }
 

@@ -172,9 +172,9 @@ impl Saddle {
         let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
         let mut t = MatMut::from_column_major_slice_mut(&mut self.rows, n, m);
         solve_lower_triangular_in_place(lower, t.rb_mut(), Par::Seq);
-        for r in (0..m).filter(|&r| self.yields[r] != 0.0) {
+        for r in 0..m {
             let square: f64 = (0..n).map(|j| t[(j, r)] * t[(j, r)]).sum();
-            if square > 0.0 {
+            if self.yields[r] != 0.0 && square > 0.0 {
                 let scale = (1.0 + self.yields[r] / square).sqrt().recip();
                 (0..n).for_each(|j| t[(j, r)] *= scale);
                 self.directions[r * n..(r + 1) * n].iter_mut().for_each(|slope| *slope *= scale);

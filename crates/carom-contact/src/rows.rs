@@ -114,7 +114,10 @@ impl Rows {
         for (i, factor) in factors.iter().enumerate().skip(1) {
             let row = rows.row(first + i);
             self.gaps[last] += factor * row.gap;
-            self.gradient_mut(last).iter_mut().zip(row.gradient).for_each(|(sum, slope)| *sum += factor * slope);
+            self.gradient_mut(last)
+                .iter_mut()
+                .zip(row.gradient)
+                .for_each(|(sum, slope)| *sum += factor * slope);
         }
     }
 

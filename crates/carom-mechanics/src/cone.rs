@@ -154,7 +154,8 @@ impl Closed {
         let mut matrix = Vec::new();
         self.each_slip(|row, tangent| {
             let (k, p) = self.places[row / (model.dimension - 1)];
-            let (contact, first, row) = (&model.contacts[k], self.slips.row(row - tangent), self.slips.row(row));
+            let (contact, first, row) =
+                (&model.contacts[k], self.slips.row(row - tangent), self.slips.row(row));
             if contact.friction.is_none() {
                 return 0.0;
             }

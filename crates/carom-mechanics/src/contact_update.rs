@@ -1,7 +1,9 @@
 //! Contact status of an iterate: search and hand-over of pairs, active sets, and constraints that
 //! cannot be satisfied.
 
-use carom_contact::{ActiveSet, Along, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip, Tangential};
+use carom_contact::{
+    ActiveSet, Along, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip, Tangential,
+};
 
 use crate::constraints::Constraints;
 use crate::equations::Equations;

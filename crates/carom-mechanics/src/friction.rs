@@ -339,7 +339,8 @@ impl Equations<'_> {
             .map(|tangent| self.slip_derivatives(evaluation, (contact, p), tangent - 1, rows))
             .collect();
         let size = length(slip);
-        let unit = if size > 0.0 { slip.map(|s| s / size) } else { direction };
+        // Of a slip that begins, any will do.
+        let unit = if size > 0.0 { slip.map(|s| s / size) } else { [slip[0].signum(), 0.0] };
         let aside = [-direction[1], direction[0]];
         for (a, row) in evaluation.slip_rows((contact, p)).enumerate() {
             let n = row.gradient.len();

@@ -208,8 +208,10 @@ fn strike_in_space() -> Model {
     let upper = generate::cuboid(element, [0.2, 0.15, 0.005], [0.9, 0.8, 0.505], [2, 1, 1]).unwrap();
     let lower = generate::cuboid(element, [0.0, 0.0, -0.5], [1.2, 1.0, 0.0], [2, 2, 1]).unwrap();
     let parts = parts([upper, lower], Law::NeoHookean { lambda: 200.0, mu: 15.0 }, 0.25);
-    let fixed: Vec<usize> =
-        nodes(&parts[1], "bottom").into_iter().flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2]).collect();
+    let fixed: Vec<usize> = nodes(&parts[1], "bottom")
+        .into_iter()
+        .flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2])
+        .collect();
     let strike = contact(&parts, (0, "bottom"), (1, "top"));
     let mut model = model(parts, &fixed, Motions::default(), Loads::default(), vec![strike]);
     for node in model.parts[0].nodes() {
@@ -250,7 +252,9 @@ fn the_whole_tangent_with_friction_in_space_is_the_derivative_of_the_residual() 
         let work = &mut tangent.work;
         let now = equations.evaluate(tangent.at.clone(), &mut work.spare, &mut work.timings).unwrap();
         let mut at = now.at.clone();
-        for (p, pair) in at.pairings[0].pairs.iter_mut().enumerate().filter(|(p, pair)| pair.active && p % 3 > 0) {
+        for (p, pair) in
+            at.pairings[0].pairs.iter_mut().enumerate().filter(|(p, pair)| pair.active && p % 3 > 0)
+        {
             let ([x, y], (sin, cos)) = (now.slip_of((0, p)), 0.4_f64.sin_cos());
             pair.tangential.hold = Hold::of([cos * x - sin * y, sin * x + cos * y], 0.0);
         }

@@ -332,7 +332,8 @@ impl Explicit {
                 examined.clear();
                 examined.extend(places.iter().map(named));
                 dependent = independent_rows(model, places.iter().copied(), rows).len() < places.len()
-                    || model.dimension == 3 && independent(model, acting.iter().enumerate()).len() < acting.len();
+                    || model.dimension == 3
+                        && independent(model, acting.iter().enumerate()).len() < acting.len();
             }
             if dependent {
                 proximal(&mut matrix, &mut right, impulses);

@@ -60,7 +60,8 @@ impl Rows {
 pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> ContactStates<'a> {
     let mut rows = Vec::new();
     let in_space = model.dimension == 3;
-    let mut rubbing: Vec<Vec<[f64; 3]>> = state.pairs.iter().map(|pairs| vec![[0.0; 3]; pairs.len()]).collect();
+    let mut rubbing: Vec<Vec<[f64; 3]>> =
+        state.pairs.iter().map(|pairs| vec![[0.0; 3]; pairs.len()]).collect();
     each_slip(model, state, |k, p, traction, row| {
         let along = row.normal();
         (0..3).for_each(|i| rubbing[k][p][i] -= traction * along[i]);

@@ -115,7 +115,10 @@ fn every_node_obeys_the_law_and_momentum_is_conserved() {
                     Hold::Stick => sticks += 1,
                     hold => {
                         slips += 1;
-                        assert!((q - hold.direction()[0] * cone).abs() <= 1e-9 * largest, "{scheme}: {pair:?}");
+                        assert!(
+                            (q - hold.direction()[0] * cone).abs() <= 1e-9 * largest,
+                            "{scheme}: {pair:?}"
+                        );
                     }
                 }
             }
