@@ -264,6 +264,7 @@ fn pressed(directory: &Path) {
                 pressure: f64::from(i) * pressure,
                 normal: [0.0, -1.0, 0.0],
                 friction: "none".into(),
+                rubbing: [0.0; 3],
                 traction: 0.0,
                 slip: 0.0,
             };
