@@ -226,7 +226,7 @@ fn ticks(out: &mut String, axis: &Axis, bottoms: &[f64], to_x: &dyn Fn(f64) -> f
     let _ = writeln!(out, "<g class=\"ticks\" data-bottoms=\"{}\">", places.join(" "));
     for (value, label) in &axis.ticks {
         let x = to_x(*value);
-        let marks: String = places.iter().map(|y| format!("M{x:.1} {y}v5")).collect();
+        let marks = places.iter().map(|y| format!("M{x:.1} {y}v5")).collect::<Vec<_>>().concat();
         let _ = writeln!(out, "<path d=\"{marks}\" stroke=\"#222\" stroke-width=\"0.8\"/>");
         if let Some(bottom) = bottoms.last() {
             write_text(out, x, bottom + 19.0, "text-anchor=\"middle\"", label);

@@ -111,7 +111,8 @@ impl Plot {
     /// A curve of each distinct label.
     pub(crate) fn legend(&self) -> Vec<&Curve> {
         let mut found: Vec<&Curve> = Vec::new();
-        for curve in self.panes.iter().flat_map(|p| &p.curves).filter(|c| !c.label.is_empty()) {
+        for curve in self.panes.iter().flat_map(|p| &p.curves).filter(|c| !c.label.is_empty() && !c.unlisted)
+        {
             if !found.iter().any(|known| known.label == curve.label) {
                 found.push(curve);
             }

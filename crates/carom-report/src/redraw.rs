@@ -28,14 +28,17 @@ apart = @APART@  # dashed grey, without influence on the axes
 y_labels = @Y_LABELS@
 limits, floors, spans, fronts = @LIMITS@, @FLOORS@, @SPANS@, @FRONTS@
 marks = @MARKS@
-marked, points, direct, across = @MARKED@, @POINTS@, @DIRECT@, @ACROSS@
+points = @POINTS@  # without lines between them
+marked, direct, across = @MARKED@, @DIRECT@, @ACROSS@
 
 def style(label):
     if label in apart:
         return {"color": "@APART_COLOR@", "ls": @APART_DASHES@, "zorder": 1}
     i = styles[label]
+    if label in points:
+        return {"color": colors[i % 8], "marker": "os^Dv"[i % 5], "ms": 4, "ls": "none"}
     if marked:
-        return {"color": colors[i % 8], "marker": "os^Dv"[i % 5], "ms": 4, "ls": "none" if points and label else "-"}
+        return {"color": colors[i % 8], "marker": "os^Dv"[i % 5], "ms": 4}
     return {"color": colors[i % 8], "ls": dashes[(i + i // 8) % 8] if label and not direct else "-"}
 
 rows = -(-len(panes) // across)
@@ -111,8 +114,12 @@ impl Plot {
         let mut styles: Vec<String> = curves().map(|c| format!("{:?}: {}", c.label, c.style)).collect();
         styles.sort_unstable();
         styles.dedup();
-        let mut apart: Vec<String> = curves().filter(|c| c.apart).map(|c| format!("{:?}", c.label)).collect();
-        apart.dedup();
+        let set = |of: &dyn Fn(&Curve) -> bool| {
+            let mut labels: Vec<String> =
+                curves().filter(|c| of(c)).map(|c| format!("{:?}", c.label)).collect();
+            labels.dedup();
+            if labels.is_empty() { "set()".to_owned() } else { format!("{{{}}}", labels.join(", ")) }
+        };
         let truth = |yes: bool| if yes { "True" } else { "False" }.to_owned();
         let scale = |axis: usize| if self.log[axis] { "log" } else { "linear" }.to_owned();
         let dashes: Vec<String> = (0..8).map(|i| dashes(style(i).1)).collect();
@@ -121,10 +128,7 @@ impl Plot {
             ("COLORS", format!("{:?}", [0, 1, 2, 3, 4, 5, 6, 7].map(|i| style(i).0))),
             ("DASHES", format!("[{}]", dashes.join(", "))),
             ("STYLES", format!("{{{}}}", styles.join(", "))),
-            (
-                "APART",
-                if apart.is_empty() { "set()".to_owned() } else { format!("{{{}}}", apart.join(", ")) },
-            ),
+            ("APART", set(&|c| c.apart)),
             ("APART_COLOR", APART.0.to_owned()),
             ("APART_DASHES", self::dashes(APART.1)),
             ("Y_LABELS", list(&|p| format!("{:?}", plain(&p.y_label)))),
@@ -134,9 +138,9 @@ impl Plot {
             ("SHARED", truth(self.panes.iter().all(|pane| pane.span == self.panes[0].span))),
             ("FLOORS", list(&|p| p.floor.as_ref().map_or("None".into(), mark))),
             ("MARKS", list(&|p| format!("[{}]", p.marks.iter().map(mark).collect::<Vec<_>>().join(", ")))),
-            ("MARKED", truth(curves().any(|c| c.marked))),
-            ("POINTS", truth(curves().any(|c| c.points))),
-            ("DIRECT", truth(self.direct)),
+            ("MARKED", truth(curves().any(|c| c.marked && !c.points))),
+            ("POINTS", set(&|c| c.points)),
+            ("DIRECT", truth(self.direct || curves().any(|c| c.points))),
             ("ACROSS", self.across.max(1).to_string()),
             (
                 "HIGH",

@@ -122,6 +122,7 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
         let mut pane = Pane { y_label: with_unit(&metric.name, &metric.unit), ..Pane::default() };
         let mut told = String::new();
         for (style, group) in groups.iter().enumerate() {
+            let name = if groups.len() == 1 { "arms".to_owned() } else { label(&group.common) };
             let trend = trend(study, group, &metric.name, power);
             if groups.len() == 1 {
                 told = trend.words().unwrap_or_default();
@@ -130,16 +131,23 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
                 if groups.len() == 1 {
                     pane.band = Some([x.clone(), low, high]);
                 }
-                pane.curves.push(Curve { label: String::new(), style, x, y: middle, ..Curve::default() });
+                pane.curves.push(Curve {
+                    label: format!("fit of {name}"),
+                    style,
+                    x,
+                    y: middle,
+                    unlisted: true,
+                    ..Curve::default()
+                });
             }
-            let label = if groups.len() == 1 { String::new() } else { label(&group.common) };
             pane.curves.push(Curve {
-                label,
+                label: name,
                 style,
                 x: trend.x,
                 y: trend.y,
                 marked: true,
                 points: true,
+                unlisted: groups.len() == 1,
                 ..Curve::default()
             });
         }

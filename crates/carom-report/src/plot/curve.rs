@@ -7,7 +7,7 @@ use crate::trace;
 
 /// A curve.
 #[derive(Clone, Debug, Default)]
-#[allow(clippy::struct_excessive_bools)] // any of them may be set
+#[allow(clippy::struct_excessive_bools)] // Each is independent of the others.
 pub(crate) struct Curve {
     pub(crate) label: String,
     /// Number of the style.
@@ -18,6 +18,8 @@ pub(crate) struct Curve {
     pub(crate) marked: bool,
     /// Whether there are no lines between them.
     pub(crate) points: bool,
+    /// Whether its label is for tables only.
+    pub(crate) unlisted: bool,
     /// Whether it is of an unsound run: dashed and grey, and without influence on the axes.
     pub(crate) apart: bool,
     /// Whether it is of less interest: thin and grey.
@@ -64,7 +66,7 @@ pub(super) fn draw(
     let d = trace::path(points.iter().copied());
     // A curve that is alone in its pane, or has its label beside it, needs no dashes to be
     // identified.
-    let plain = curve.marked || ((curve.label.is_empty() || direct) && !curve.apart);
+    let plain = curve.marked || ((curve.label.is_empty() || curve.unlisted || direct) && !curve.apart);
     let dashes = if plain { "" } else { dashes };
     let width = if curve.quiet || curve.apart { 0.9 } else { 1.5 };
     let d = if curve.points { String::new() } else { d };
