@@ -1,19 +1,23 @@
-//! Complementarity of normal and tangential forces with Coulomb's law in the plane:
+//! Complementarity of normal and tangential forces with Coulomb's law:
 //!
 //! ```text
 //! u = A z + b,   z = (P, Q),   0 ≤ P_i ⊥ u_i ≥ 0
-//! |Q_j| ≤ r_j,   Q_j = −r_j sign u_j where u_j ≠ 0,   r_j = min(μ_j P_j, limit_j)
+//! |Q_j| ≤ r_j,   Q_j = −r_j u_j/|u_j| where u_j ≠ 0,   r_j = min(μ_j P_j, limit_j)
 //! ```
 //!
-//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero. Rows
-//! that depend on each other come as a proximal step (`complementarity.rs`). Each tangential force
-//! belongs to one normal one. Sweeps of the nonlinear Gauss–Seidel method find which contacts are
-//! open, stick, or slip; with that the problem is linear and is solved exactly. Where its solution
-//! contradicts it, the sweeps go on.
+//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero. Rows that
+//! depend on each other come as a proximal step (`complementarity.rs`). Each tangential force belongs to
+//! one normal one; two in a row that belong to the same one are the components of a vector. Sweeps of the
+//! nonlinear Gauss–Seidel method find which contacts are open, stick, or slip; with that and the
+//! directions d of the slips the problem is linear and is solved exactly. Where its solution contradicts
+//! it, the sweeps go on. Directions of vectors follow from Newton's method: with e across d, Q = −r d + s e
+//! and
+//!
+//! ```text
+//! e·u + (d·u/r) s = 0,   δd = −e s/r
+//! ```
 
-use faer::Mat;
-use faer::linalg::solvers::Solve;
-
+use crate::coulomb_exact::{Kind, State, second, settle};
 use crate::linear::LinearError;
 
 /// Sweeps between two attempts, and attempts.
@@ -21,22 +25,10 @@ const SWEEPS: usize = 10;
 const ATTEMPTS: usize = 200;
 /// Contradiction, relative to the largest force or motion, that is round-off.
 const ROUND_OFF: f64 = 1e-11;
-
-/// Coulomb's law of an unknown: `Normal`, or `Tangential` with the index of its normal force and μ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// P ≥ 0.
-    Normal,
-    /// Q.
-    Tangential {
-        /// Index of P.
-        of: usize,
-        /// μ ≥ 0.
-        coefficient: f64,
-        /// Largest Q; may be infinite.
-        limit: f64,
-    },
-}
+/// Projections of a vector in a sweep.
+const PROJECTIONS: usize = 4;
+/// Distance from the edge of the cone, relative to its radius, at which a vector slips.
+const EDGE: f64 = 1e-12;
 
 /// r and whether it is the limit.
 fn radius(coefficient: f64, limit: f64, normal: f64) -> (f64, bool) {
@@ -50,18 +42,8 @@ fn radius(coefficient: f64, limit: f64, normal: f64) -> (f64, bool) {
     }
 }
 
-/// What an unknown does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum State {
-    Zero,
-    /// Its motion is zero.
-    Held,
-    /// −s μ P, or −s limit.
-    Slips(f64, bool),
-}
-
-/// Overwrites `z`, a first guess if it has the size, with the solution for a matrix by rows.
-/// Contacts that do not feel each other are solved apart.
+/// Overwrites `z`, a first guess if it has the size, with the solution for a matrix by rows. Contacts
+/// that do not feel each other are solved apart.
 ///
 /// # Errors
 /// If none is found, as for large μ, where there may be none.
@@ -115,44 +97,78 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
             value.clamp(-radius, radius)
         }
     };
+    let is_second = |i: usize| i > 0 && second(kinds, i - 1).is_some();
     for _ in 0..ATTEMPTS {
         for _ in 0..SWEEPS {
-            for i in 0..n {
+            for i in (0..n).filter(|&i| !is_second(i)) {
+                if let Some(other) = second(kinds, i) {
+                    sweep_vector(a, b, kinds, z, [i, other]);
+                    continue;
+                }
                 let value = z[i] - motion(z, i) / a[i * n + i];
                 z[i] = if a[i * n + i] > 0.0 { project(z, i, value) } else { 0.0 };
             }
         }
         let state = |i: usize| match kinds[i] {
+            Kind::Tangential { of, coefficient, limit } if second(kinds, i).is_some() || is_second(i) => {
+                let first = i - usize::from(is_second(i));
+                let [x, y] = [z[first], z[first + 1]];
+                let (radius, limited) = radius(coefficient, limit, z[of]);
+                let size = x.hypot(y);
+                if z[of] <= 0.0 || stiffness(a, n, [first, first + 1]) <= 0.0 {
+                    State::Zero
+                } else if size < radius * (1.0 - EDGE) {
+                    State::Held
+                } else if i > first {
+                    State::Follows
+                } else if size > 0.0 {
+                    State::Slips([-x / size, -y / size], limited)
+                } else {
+                    // Without a cone the direction has no effect.
+                    State::Slips([1.0, 0.0], limited)
+                }
+            }
             _ if a[i * n + i] <= 0.0 => State::Zero,
             Kind::Normal if z[i] > 0.0 => State::Held,
             Kind::Normal => State::Zero,
             Kind::Tangential { of, .. } if z[of] <= 0.0 => State::Zero,
             Kind::Tangential { of, coefficient, limit } => match radius(coefficient, limit, z[of]) {
                 (radius, _) if z[i].abs() < radius => State::Held,
-                (_, limited) => State::Slips(-z[i].signum(), limited),
+                (_, limited) => State::Slips([-z[i].signum(), 0.0], limited),
             },
         };
-        let states: Vec<State> = (0..n).map(state).collect();
-        let Some(exact) = solve(a, b, kinds, &states) else { continue };
+        let mut states: Vec<State> = (0..n).map(state).collect();
+        let Some(exact) = settle(a, b, kinds, &mut states, z) else { continue };
         let motions: Vec<f64> = (0..n).map(|i| motion(&exact, i)).collect();
         let size = |values: &[f64]| ROUND_OFF * values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         let (force, moved) = (size(&exact), size(b).max(size(&motions)));
+        let pair = |values: &[f64], i: usize| [values[i], second(kinds, i).map_or(0.0, |j| values[j])];
         let holds = |i: usize| match (kinds[i], states[i]) {
             (Kind::Normal, State::Held) => exact[i] >= -force,
             (Kind::Normal, _) => motions[i] >= -moved,
+            (Kind::Tangential { .. }, State::Held) if is_second(i) => true,
             (Kind::Tangential { of, coefficient, limit }, State::Held) => {
-                exact[i].abs() <= radius(coefficient, limit, exact[of]).0 + force
+                let [x, y] = pair(&exact, i);
+                x.hypot(y) <= radius(coefficient, limit, exact[of]).0 + force
             }
-            (Kind::Tangential { of, coefficient, limit }, State::Slips(sign, limited)) => {
-                radius(coefficient, limit, exact[of]).1 == limited && sign * motions[i] >= -moved
+            (Kind::Tangential { of, coefficient, limit }, State::Slips(direction, limited)) => {
+                let ([x, y], (radius, is_limit)) = (pair(&motions, i), radius(coefficient, limit, exact[of]));
+                // Without a cone the direction of a vector has no effect.
+                let forward = direction[0] * x + direction[1] * y >= -moved;
+                is_limit == limited && (forward || radius == 0.0 && second(kinds, i).is_some())
             }
-            (Kind::Tangential { .. }, State::Zero) => true,
+            (Kind::Tangential { .. }, State::Zero | State::Follows) => true,
         };
         if (0..n).all(holds) {
             *z = exact;
             // What is negative by round-off is none.
-            for i in 0..n {
+            for i in (0..n).filter(|&i| second(kinds, i).is_none() && !is_second(i)) {
                 z[i] = project(z, i, z[i]);
+            }
+            for i in 0..n {
+                if let (Kind::Tangential { of, coefficient, limit }, Some(j)) = (kinds[i], second(kinds, i)) {
+                    [z[i], z[j]] = on_disc([z[i], z[j]], radius(coefficient, limit, z[of]).0);
+                }
             }
             return Ok(());
         }
@@ -160,42 +176,33 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
     Err(LinearError::Inaccurate { size: n, residual: f64::NAN })
 }
 
-/// The solution of the linear problem for given states.
-fn solve(a: &[f64], b: &[f64], kinds: &[Kind], states: &[State]) -> Option<Vec<f64>> {
+/// The point of a disc nearest to a given one.
+fn on_disc(point: [f64; 2], radius: f64) -> [f64; 2] {
+    let size = point[0].hypot(point[1]);
+    if size > radius { point.map(|x| x * (radius / size)) } else { point }
+}
+
+/// The largest eigenvalue of a block of two unknowns.
+fn stiffness(a: &[f64], n: usize, [i, j]: [usize; 2]) -> f64 {
+    let (x, y, mixed) = (a[i * n + i], a[j * n + j], a[i * n + j]);
+    0.5 * (x + y) + (0.5 * (x - y)).hypot(mixed)
+}
+
+/// Projections of a tangential vector in a sweep.
+fn sweep_vector(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut [f64], [i, j]: [usize; 2]) {
     let n = kinds.len();
-    let held: Vec<usize> = (0..n).filter(|&i| states[i] == State::Held).collect();
-    // A slip carries its normal force with it.
-    let mut carried: Vec<Vec<(usize, f64)>> = vec![Vec::new(); n];
-    for j in 0..n {
-        if let (Kind::Tangential { of, coefficient, .. }, State::Slips(sign, false)) = (kinds[j], states[j]) {
-            carried[of].push((j, -sign * coefficient));
-        }
-    }
-    let entry = |r: usize, c: usize| {
-        let (row, column) = (held[r], held[c]);
-        let slips = carried[column].iter().map(|&(j, factor)| factor * a[row * n + j]);
-        a[row * n + column] + slips.sum::<f64>()
+    let (stiffness, Kind::Tangential { of, coefficient, limit }) = (stiffness(a, n, [i, j]), kinds[i]) else {
+        return;
     };
-    let matrix = Mat::from_fn(held.len(), held.len(), entry);
-    let fixed = |j: usize| match (kinds[j], states[j]) {
-        (Kind::Tangential { limit, .. }, State::Slips(sign, true)) => -sign * limit,
-        _ => 0.0,
-    };
-    let known = |row: usize| (0..n).map(|j| a[row * n + j] * fixed(j)).sum::<f64>();
-    let mut right = Mat::from_fn(held.len(), 1, |r, _| -b[held[r]] - known(held[r]));
-    matrix.partial_piv_lu().solve_in_place(right.as_mut());
-    let mut z = vec![0.0; n];
-    held.iter().enumerate().for_each(|(r, &i)| z[i] = right[(r, 0)]);
-    for j in 0..n {
-        match (kinds[j], states[j]) {
-            (Kind::Tangential { of, coefficient, .. }, State::Slips(sign, false)) => {
-                z[j] = -sign * coefficient * z[of];
-            }
-            (_, State::Slips(_, true)) => z[j] = fixed(j),
-            _ => {}
-        }
+    let (radius, _) = radius(coefficient, limit, z[of]);
+    if stiffness <= 0.0 || radius == 0.0 {
+        (z[i], z[j]) = (0.0, 0.0);
+        return;
     }
-    z.iter().all(|value| value.is_finite()).then_some(z)
+    for _ in 0..PROJECTIONS {
+        let [u, v] = [i, j].map(|row| b[row] + (0..n).map(|k| a[row * n + k] * z[k]).sum::<f64>());
+        [z[i], z[j]] = on_disc([z[i] - u / stiffness, z[j] - v / stiffness], radius);
+    }
 }
 
 #[cfg(test)]
@@ -235,6 +242,54 @@ mod tests {
             }
         }
         assert_eq!(seen, [true; 4]);
+    }
+
+    /// A body with two contacts in space, each with a tangential vector.
+    fn in_space(limit: f64) -> ([f64; 36], [Kind; 6]) {
+        // A = LᵀL.
+        let entry =
+            |i: usize, j: usize| ((i * 7 + j * 3) as f64 * 0.77).sin() + if i == j { 2.0 } else { 0.0 };
+        let a = std::array::from_fn(|e| (0..6).map(|k| entry(k, e / 6) * entry(k, e % 6)).sum());
+        let tangential = |of| Kind::Tangential { of, coefficient: 0.3, limit };
+        let kinds = [Kind::Normal, Kind::Normal, tangential(0), tangential(0), tangential(1), tangential(1)];
+        (a, kinds)
+    }
+
+    #[test]
+    fn vectors_obey_the_law() {
+        let mut seen = [0; 3];
+        for k in 0..400 {
+            let limit = if k % 2 == 0 { f64::INFINITY } else { 0.4 };
+            let (a, kinds) = in_space(limit);
+            let mut b: Vec<f64> =
+                (0..6).map(|i| (f64::from(k) * 1.7 + f64::from(i) * 2.3).sin() * 3.0).collect();
+            if k % 3 == 0 {
+                // That of forces within the cone, disturbed.
+                let held: [f64; 6] = [2.0, 1.5, 0.1, -0.3, 0.2, 0.25];
+                (0..6).for_each(|i| b[i] = 0.02 * b[i] - (0..6).map(|j| a[i * 6 + j] * held[j]).sum::<f64>());
+            }
+            let mut z = Vec::new();
+            coulomb(&a, &b, &kinds, &mut z).unwrap();
+            let u: Vec<f64> =
+                (0..6).map(|i| b[i] + (0..6).map(|j| a[i * 6 + j] * z[j]).sum::<f64>()).collect();
+            for i in 0..2 {
+                let (p, q, v) = (z[i], [z[2 + 2 * i], z[3 + 2 * i]], [u[2 + 2 * i], u[3 + 2 * i]]);
+                let (radius, size, rate) = ((0.3 * p).min(limit), q[0].hypot(q[1]), v[0].hypot(v[1]));
+                assert!(p >= 0.0 && u[i] >= -1e-11 && p * u[i].abs() < 1e-11, "{k}");
+                assert!(size <= radius + 1e-12, "{k}: {size} {radius}");
+                if p == 0.0 {
+                    seen[0] += 1;
+                } else if size < radius - 1e-9 {
+                    seen[1] += 1;
+                    assert!(rate < 1e-11, "{k}: {rate}");
+                } else {
+                    seen[2] += 1;
+                    let along = q[0] * v[0] + q[1] * v[1];
+                    assert!((along + size * rate).abs() < 1e-11 * (1.0 + size * rate), "{k}: {q:?} {v:?}");
+                }
+            }
+        }
+        assert!(seen.iter().all(|count| *count > 20), "{seen:?}");
     }
 
     #[test]

@@ -6,8 +6,9 @@
 //! ```
 //!
 //! Where forces act along other directions F than G (friction), U = L⁻¹Fᵀ replaces the second T of
-//! each product, and TᵀU is factored by LU with partial pivoting. Seen relative to the matrix
-//! without friction, TᵀT = K Kᵀ, it is R = K⁻¹TᵀU K⁻ᵀ, the identity for F = G.
+//! each product, and TᵀU is factored by LU with partial pivoting. Seen relative to the matrix without
+//! friction, TᵀT = K Kᵀ, it is R = K⁻¹TᵀU K⁻ᵀ, the identity for F = G. A row that yields, g x − C λ = c
+//! with C ≥ 0, adds C to the diagonals of both; it and its multiplier are scaled by σ = (1 + C/TᵀT)^−½.
 //!
 //! Both factors exist if S is positive definite and G has full rank; the matrix then has one
 //! negative eigenvalue per row of G (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). If S is
@@ -64,6 +65,9 @@ pub struct Saddle {
     skew: Option<PartialPivLu<f64>>,
     /// κ of each row.
     penalties: Vec<f64>,
+    /// C and σ of each row.
+    yields: Vec<f64>,
+    scales: Vec<f64>,
     nonzeros: Vec<usize>,
     room: Room,
     /// Factor of the whole matrix if S is not positive definite.
@@ -79,15 +83,24 @@ impl Saddle {
         self.rows.clear();
         self.rows.resize(size * count, 0.0);
         self.directions.clear();
-        self.penalties.clear();
-        self.penalties.resize(count, 0.0);
+        for list in [&mut self.penalties, &mut self.yields] {
+            list.clear();
+            list.resize(count, 0.0);
+        }
+        self.scales.clear();
+        self.scales.resize(count, 1.0);
     }
 
-    /// S += κ gᵀg for every row g of G, with `share` times the stiffness of S along g. The solution
-    /// does not change. An S that is positive definite only where G x = 0 becomes so everywhere.
+    /// C of a row, which then has a direction ([`direct`](Self::direct)).
+    pub fn yields(&mut self, row: usize, compliance: f64) {
+        self.yields[row] = compliance;
+    }
+
+    /// S += κ gᵀg for every row g of G, with `share` times the stiffness of S along g, and f −= κ C g. The
+    /// solution does not change. An S that is positive definite only where G x = 0 becomes so everywhere.
     pub fn augment(&mut self, share: f64) {
         let n = self.size.max(1);
-        for (row, penalty) in self.rows.chunks_exact(n).zip(&mut self.penalties) {
+        for (r, (row, penalty)) in self.rows.chunks_exact(n).zip(&mut self.penalties).enumerate() {
             self.nonzeros.clear();
             self.nonzeros.extend((0..n).filter(|&j| row[j] != 0.0));
             let square: f64 = self.nonzeros.iter().map(|&j| row[j] * row[j]).sum();
@@ -97,9 +110,14 @@ impl Saddle {
                 continue;
             }
             *penalty = share * along / (square * square);
+            // What yields is held by no more than 1/C.
+            *penalty /= 1.0 + *penalty * self.yields[r];
             for (k, &j) in self.nonzeros.iter().enumerate() {
                 for &i in &self.nonzeros[k..] {
                     self.stiffness[j * n + i] += *penalty * row[i] * row[j];
+                }
+                if self.yields[r] != 0.0 {
+                    self.directions[r * n + j] -= *penalty * self.yields[r] * row[j];
                 }
             }
         }
@@ -140,6 +158,7 @@ impl Saddle {
                 (true, true) => self.stiffness[i.min(j) * n + i.max(j)],
                 (false, true) => self.rows[(i - n) * n + j],
                 (true, false) if is_skew => self.directions[(j - n) * n + i],
+                (false, false) if i == j => -self.yields[i - n],
                 _ => 0.0,
             };
             let whole = Mat::from_fn(n + m, n + m, entry);
@@ -153,6 +172,16 @@ impl Saddle {
         let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
         let mut t = MatMut::from_column_major_slice_mut(&mut self.rows, n, m);
         solve_lower_triangular_in_place(lower, t.rb_mut(), Par::Seq);
+        for r in 0..m {
+            let square: f64 = (0..n).map(|j| t[(j, r)] * t[(j, r)]).sum();
+            if self.yields[r] != 0.0 && square > 0.0 {
+                let scale = (1.0 + self.yields[r] / square).sqrt().recip();
+                (0..n).for_each(|j| t[(j, r)] *= scale);
+                self.directions[r * n..(r + 1) * n].iter_mut().for_each(|slope| *slope *= scale);
+                (self.scales[r], self.yields[r]) = (scale, self.yields[r] * scale * scale);
+                self.penalties[r] /= scale * scale;
+            }
+        }
         self.small.clear();
         self.small.resize(m * m, 0.0);
         let product = MatMut::from_column_major_slice_mut(&mut self.small, m, m);
@@ -173,8 +202,10 @@ impl Saddle {
             solve_lower_triangular_in_place(lower, u.rb_mut(), Par::Seq);
             let mut product = Mat::zeros(m, m);
             matmul(product.as_mut(), Accum::Replace, t.rb().transpose(), u.rb(), 1.0, Par::Seq);
+            (0..m).for_each(|i| product[(i, i)] += self.yields[i]);
             self.skew = Some(product.partial_piv_lu());
         }
+        (0..m).for_each(|i| self.small[i * m + i] += self.yields[i]);
         let diagonal: Vec<f64> = (0..m).map(|i| self.small[i * m + i]).collect();
         let dependent = |pivot: usize| LinearError::Singular { size: n + m, pivot: n + pivot, value: 0.0 };
         cholesky(&mut self.small, m, &mut self.room).map_err(dependent)?;
@@ -235,6 +266,7 @@ impl Saddle {
             c.copy_from_slice(&both[n..]);
             return;
         }
+        c.iter_mut().zip(&self.scales).for_each(|(c, scale)| *c *= scale);
         let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
         let t = MatRef::from_column_major_slice(&self.rows, n, m);
         let small = MatRef::from_column_major_slice(&self.small, m, m);
@@ -261,6 +293,7 @@ impl Saddle {
         };
         matmul(x.rb_mut(), Accum::Add, directions, multipliers.rb(), -1.0, Par::Seq);
         solve_upper_triangular_in_place(lower.transpose(), x.rb_mut(), Par::Seq);
+        c.iter_mut().zip(&self.scales).for_each(|(c, scale)| *c *= scale);
     }
 }
 

@@ -1,18 +1,19 @@
-//! Coulomb's and Tresca's laws in the plane, with exact projection onto the cone:
+//! Coulomb's and Tresca's laws, with exact projection onto the cone:
 //!
 //! ```text
 //! |q| ≤ r,    S = 0 where |q| < r,    q = r S/|S| where S ≠ 0,    r = min(μ|λ|, limit)
 //! μ = μ_s in stick, μ_d + (μ_s − μ_d) exp(−c |Ṡ|) in slip
 //! ```
 //!
-//! S is the slip of a step and q the tangential traction: the force of the pair is λ∇g + qH with
-//! H = ∂S/∂y, and q S ≥ 0 is lost. A pair that slips has q = −sμλ, so that only the direction of
-//! its force, λ(∇g − sμH), differs from that without friction and the cone follows the pressure
-//! within Newton's method. A pair that sticks is a constraint S = 0 with the multiplier q, or a
-//! spring.
+//! S is the slip of a step and q the tangential traction, vectors of the tangent plane: the force of
+//! the pair is λ∇g + Σ q_α H_α with H_α = ∂S_α/∂y, and q·S ≥ 0 is lost. A pair that slips in the
+//! direction d has q = −μλd, so that only the direction of its force, λ(∇g − μ Σ d_α H_α), differs
+//! from that without friction and the cone follows the pressure within Newton's method. In the plane
+//! d is a sign; in space it is an unknown, whose equation is that nothing slips across it. A pair that
+//! sticks is a constraint S = 0 with the multipliers q, or a spring.
 //!
-//! States follow from the iterates by a primal–dual active set over {open, stick, slip ±}: a stick
-//! whose traction leaves the cone slips in the direction of the traction, a slip in the wrong
+//! States follow from the iterates by a primal–dual active set over {open, stick, slip}: a stick
+//! whose traction leaves the cone slips in the direction of the traction, a slip against its
 //! direction sticks. A recurring set first makes changes wait for convergence, then allows one at a
 //! time, as in `active_set.rs`.
 
@@ -25,36 +26,48 @@ use crate::active_set::Cycle;
 /// Excess of a traction over the cone, relative to the largest cone, that still sticks.
 const EDGE: f64 = 1e-10;
 
+/// Components along the tangents of a pair, of which the plane has one: the second is zero there.
+pub type Along = [f64; 2];
+
+/// |x|.
+pub fn length(x: Along) -> f64 {
+    x[0].hypot(x[1])
+}
+
+/// a·b.
+pub fn inner(a: Along, b: Along) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
 /// Whether a closed pair sticks, or in which direction it slips.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Hold {
     /// S = 0.
     #[default]
     Stick,
-    /// S ≥ 0.
-    Forward,
-    /// S ≤ 0.
-    Backward,
+    /// S = |S| d, with d of length one: a sign in the plane.
+    Slip(Along),
 }
 
 impl Hold {
-    /// The state in which a closing pair starts, from its slip in the iterate: the projection onto
-    /// the cone of a pressure that is still zero.
-    pub fn of(slip: f64, tolerance: f64) -> Self {
-        match slip {
-            s if s > tolerance => Self::Forward,
-            s if s < -tolerance => Self::Backward,
-            _ => Self::Stick,
+    /// The state in which a closing pair starts, from its slip in the iterate: the projection onto the
+    /// cone of a pressure that is still zero.
+    pub fn of(slip: Along, tolerance: f64) -> Self {
+        let size = length(slip);
+        if size > tolerance { Self::Slip(slip.map(|s| s / size)) } else { Self::Stick }
+    }
+
+    /// d; zero in stick.
+    pub fn direction(self) -> Along {
+        match self {
+            Self::Stick => [0.0; 2],
+            Self::Slip(direction) => direction,
         }
     }
 
-    /// s: the sign of the slip; 0 in stick.
-    pub fn sign(self) -> f64 {
-        match self {
-            Self::Stick => 0.0,
-            Self::Forward => 1.0,
-            Self::Backward => -1.0,
-        }
+    /// The state with directions rounded, to recognise one that was visited: in the plane exact.
+    fn rounded(self) -> [i8; 2] {
+        self.direction().map(|d| (2.0 * d).round() as i8)
     }
 }
 
@@ -63,12 +76,26 @@ impl Hold {
 pub struct Tangential {
     /// Stick or slip.
     pub hold: Hold,
+    /// In space the first tangent where the pair was last evaluated: it is projected on the present
+    /// tangent plane, and the second one is perpendicular to it. Zero before that.
+    pub tangent: [f64; 3],
     /// Traction q.
-    pub traction: f64,
+    pub traction: Along,
     /// Slip since the pair closed.
-    pub slip: f64,
+    pub slip: Along,
     /// Traction at the start of the step, from which a spring is stretched further.
-    pub before: f64,
+    pub before: Along,
+}
+
+impl Tangential {
+    /// Adds to the traction of a stick, or turns the direction of a slip by as much traction across it.
+    pub fn pull(&mut self, along: Along, traction: f64) {
+        let pulled = [0, 1].map(|i| self.traction[i] + traction * along[i]);
+        match self.hold {
+            Hold::Stick => self.traction = pulled,
+            Hold::Slip(_) => self.hold = Hold::of(pulled, 0.0),
+        }
+    }
 }
 
 /// The law of a node at an instant.
@@ -136,9 +163,9 @@ pub struct Rub {
     /// Its state.
     pub hold: Hold,
     /// Traction q.
-    pub traction: f64,
+    pub traction: Along,
     /// Slip S of the step.
-    pub slip: f64,
+    pub slip: Along,
     /// Largest traction in stick.
     pub cone: f64,
 }
@@ -154,7 +181,7 @@ enum Caution {
 /// History of the states visited in one step.
 #[derive(Clone, Debug)]
 pub struct StickSlip {
-    visited: HashSet<Vec<Option<Hold>>>,
+    visited: HashSet<Vec<Option<[i8; 2]>>>,
     caution: Caution,
     slip_tolerance: f64,
 }
@@ -180,12 +207,11 @@ impl StickSlip {
         let mut wrong: Vec<(usize, Hold, f64)> = Vec::new();
         for (p, pair) in pairs.iter().enumerate() {
             let Some(pair) = pair else { continue };
-            let backwards = -pair.hold.sign() * pair.slip;
+            let backwards = -inner(pair.hold.direction(), pair.slip);
             if pair.hold == Hold::Stick {
-                let excess = pair.traction.abs() - pair.cone;
+                let excess = length(pair.traction) - pair.cone;
                 if excess > EDGE * widest {
-                    let hold = if pair.traction > 0.0 { Hold::Forward } else { Hold::Backward };
-                    wrong.push((p, hold, excess / widest));
+                    wrong.push((p, Hold::of(pair.traction, 0.0), excess / widest));
                 }
             } else if backwards > self.slip_tolerance {
                 wrong.push((p, Hold::Stick, backwards));
@@ -194,9 +220,9 @@ impl StickSlip {
         if wrong.is_empty() {
             return Ok(Vec::new());
         }
-        let after = |wrong: &[(usize, Hold, f64)]| -> Vec<Option<Hold>> {
-            let mut states: Vec<_> = pairs.iter().map(|pair| pair.map(|pair| pair.hold)).collect();
-            wrong.iter().for_each(|&(p, hold, _)| states[p] = Some(hold));
+        let after = |wrong: &[(usize, Hold, f64)]| -> Vec<Option<[i8; 2]>> {
+            let mut states: Vec<_> = pairs.iter().map(|pair| pair.map(|pair| pair.hold.rounded())).collect();
+            wrong.iter().for_each(|&(p, hold, _)| states[p] = Some(hold.rounded()));
             states
         };
         self.visited.insert(after(&[]));
@@ -236,9 +262,12 @@ impl StickSlip {
 mod tests {
     use super::*;
 
+    const FORWARD: Hold = Hold::Slip([1.0, 0.0]);
+    const BACKWARD: Hold = Hold::Slip([-1.0, 0.0]);
+
     #[allow(clippy::unnecessary_wraps)]
     fn rub(hold: Hold, traction: f64, slip: f64) -> Option<Rub> {
-        Some(Rub { hold, traction, slip, cone: 1.0 })
+        Some(Rub { hold, traction: [traction, 0.0], slip: [slip, 0.0], cone: 1.0 })
     }
 
     #[test]
@@ -249,13 +278,28 @@ mod tests {
             rub(Hold::Stick, -1.1, 0.0),
             rub(Hold::Stick, 1.0 + 1e-11, 0.0),
             None,
-            rub(Hold::Forward, 1.0, 0.5),
-            rub(Hold::Forward, 1.0, -0.5),
-            rub(Hold::Backward, -1.0, 0.5),
-            rub(Hold::Backward, -1.0, 1e-13),
+            rub(FORWARD, 1.0, 0.5),
+            rub(FORWARD, 1.0, -0.5),
+            rub(BACKWARD, -1.0, 0.5),
+            rub(BACKWARD, -1.0, 1e-13),
         ];
         let changes = StickSlip::new(1e-12, true).changes(&pairs, false).unwrap();
-        assert_eq!(changes, [(1, Hold::Forward), (2, Hold::Backward), (6, Hold::Stick), (7, Hold::Stick)]);
+        assert_eq!(changes, [(1, FORWARD), (2, BACKWARD), (6, Hold::Stick), (7, Hold::Stick)]);
+    }
+
+    #[test]
+    fn in_space_a_stick_slips_along_its_traction() {
+        let pair = |hold, traction, slip| Some(Rub { hold, traction, slip, cone: 1.0 });
+        let oblique = Hold::Slip([0.6, -0.8]);
+        let pairs = [
+            pair(Hold::Stick, [0.9, -1.2], [0.0; 2]),
+            pair(Hold::Stick, [0.7, -0.7], [0.0; 2]),
+            pair(oblique, [0.6, -0.8], [0.8, 0.59]),
+            pair(oblique, [0.6, -0.8], [0.8, 0.61]),
+        ];
+        let changes = StickSlip::new(1e-12, true).changes(&pairs, false).unwrap();
+        let [(0, Hold::Slip(d)), (3, Hold::Stick)] = changes[..] else { panic!("{changes:?}") };
+        assert!((d[0] - 0.6).abs() < 1e-15 && (d[1] + 0.8).abs() < 1e-15, "{d:?}");
     }
 
     #[test]
@@ -284,8 +328,8 @@ mod tests {
     #[test]
     fn a_two_cycle_is_named_in_the_end() {
         let mut set = StickSlip::new(0.0, true);
-        let (stick, slip) = ([rub(Hold::Stick, 2.0, 0.0)], [rub(Hold::Forward, 1.0, -1.0)]);
-        assert_eq!(set.changes(&stick, false).unwrap(), [(0, Hold::Forward)]);
+        let (stick, slip) = ([rub(Hold::Stick, 2.0, 0.0)], [rub(FORWARD, 1.0, -1.0)]);
+        assert_eq!(set.changes(&stick, false).unwrap(), [(0, FORWARD)]);
         assert!(set.changes(&slip, false).unwrap().is_empty());
         assert_eq!(set.changes(&slip, true).unwrap(), [(0, Hold::Stick)]);
         let mut named = false;

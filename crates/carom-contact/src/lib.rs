@@ -16,7 +16,7 @@ mod skin;
 pub use active_set::{ActiveSet, Contender, Cycle};
 pub use depth::Depth;
 pub use discrete_gradient::DiscreteGradient;
-pub use friction::{Hold, Law, Radius, Rub, StickSlip, Tangential};
+pub use friction::{Along, Hold, Law, Radius, Rub, StickSlip, Tangential, inner, length};
 pub use interface::{
     Answer, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point, Unilateral,
 };

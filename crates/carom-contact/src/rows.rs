@@ -44,6 +44,11 @@ impl Rows {
         }
     }
 
+    /// Dimension of the positions.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.gaps.len()
@@ -100,6 +105,22 @@ impl Rows {
         self.starts.push(self.nodes.len());
     }
 
+    /// Adds Σ c_i times consecutive rows over the same nodes, from the row `first` of `rows` on.
+    pub fn push_combined(&mut self, rows: &Self, first: usize, factors: &[f64]) {
+        self.push_row(rows.row(first));
+        let last = self.len() - 1;
+        self.gaps[last] *= factors[0];
+        self.gradient_mut(last).iter_mut().for_each(|slope| *slope *= factors[0]);
+        for (i, factor) in factors.iter().enumerate().skip(1) {
+            let row = rows.row(first + i);
+            self.gaps[last] += factor * row.gap;
+            self.gradient_mut(last)
+                .iter_mut()
+                .zip(row.gradient)
+                .for_each(|(sum, slope)| *sum += factor * slope);
+        }
+    }
+
     /// A row.
     pub fn row(&self, row: usize) -> Row<'_> {
         let range = self.starts[row]..self.starts[row + 1];
@@ -112,9 +133,9 @@ impl Rows {
         }
     }
 
-    /// Marks the last row as that of a node of the primary side against the secondary one.
-    pub(crate) fn reverse_last(&mut self) {
-        self.reversed.last_mut().into_iter().for_each(|reversed| *reversed = true);
+    /// Marks the rows from `first` on as those of a node of the primary side against the secondary one.
+    pub(crate) fn reverse_from(&mut self, first: usize) {
+        self.reversed[first..].fill(true);
     }
 
     /// All rows in order.
@@ -158,11 +179,17 @@ impl Row<'_> {
         }
     }
 
+    /// The gradient of the first node, padded with zeros to space.
+    pub fn first(&self) -> [f64; 3] {
+        let d = self.dimension();
+        std::array::from_fn(|i| if i < d { self.gradient[i] } else { 0.0 })
+    }
+
     /// The primary's outward unit normal, padded with zeros to space: ∂g/∂y of the first node, with
     /// the other sign if that belongs to the primary.
     pub fn normal(&self) -> [f64; 3] {
-        let (d, sign) = (self.dimension(), if self.reversed { -1.0 } else { 1.0 });
-        std::array::from_fn(|i| if i < d { sign * self.gradient[i] } else { 0.0 })
+        let sign = if self.reversed { -1.0 } else { 1.0 };
+        self.first().map(|slope| sign * slope)
     }
 }
 

@@ -1,19 +1,22 @@
 //! Velocities and accelerations of a state with closed pairs, under Coulomb's law:
 //!
 //! ```text
-//! M x + Gᵀp + Hᵀq = f,   G x = c,   H x = b in stick,   q = −sμp in slip,   |q| ≤ −μp,   s (H x − b) ≥ 0
+//! M x + Gᵀp + Hᵀq = f,   G x = c,   H x = b in stick,   q = −μp d in slip,   |q| ≤ −μp,   d·(H x − b) ≥ 0
 //! ```
 //!
-//! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations
-//! it is the rate of change of the slip rate, which decides for pairs that have none; others slip
-//! in their direction. All rows are equalities, as without friction: a closed gap stays closed
+//! d is the direction of H x − b, in the plane its sign. In space it follows from Newton's method on its
+//! angle, with a row across d for each slip as in a step (`friction.rs`).
+//!
+//! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations it
+//! is the rate of change of the slip rate, which decides for pairs that have none; others slip in
+//! their direction. All rows are equalities, as without friction: a closed gap stays closed
 //! (`persistency.rs`), and one whose p pulls goes on to stick, or to slip with q = −sμp. So the
 //! solution depends continuously on μ, and tangential impulses that slip are μ times the normal
 //! ones.
 
-use carom_contact::{Hold, Law, Rows, Rub, StickSlip, Tangential};
+use carom_contact::{Along, Hold, Law, Row, Rows, Rub, StickSlip, Tangential, inner, length};
 
-use crate::constraints::{Constraints, independent};
+use crate::constraints::{Constraints, DEPENDENT, independent_above, slip_remainder};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
@@ -26,6 +29,8 @@ const CHANGES: usize = 200;
 pub(crate) const AT_REST: f64 = 1e-10;
 /// Rate, as a fraction of the largest one in a solve, that is round-off.
 const ROUND_OFF: f64 = 1e-12;
+/// Change of a direction that is round-off.
+const TURN: f64 = 1e-13;
 
 /// The closed pairs of a state whose gaps are constraints.
 pub(crate) struct Closed {
@@ -33,7 +38,7 @@ pub(crate) struct Closed {
     pub places: Vec<(usize, usize)>,
     /// Rows of their gaps, a constraint each.
     pub normals: Constraints,
-    /// H of each that has friction.
+    /// H of each, a row per tangent, if it has friction.
     slips: Rows,
     /// The law of each that has friction.
     laws: Vec<Option<Law>>,
@@ -43,7 +48,7 @@ pub(crate) struct Closed {
 pub(crate) struct Right<'a> {
     pub forces: &'a [f64],
     pub gaps: &'a [f64],
-    pub slips: &'a [f64],
+    pub slips: &'a [Along],
 }
 
 /// Its solution.
@@ -52,7 +57,9 @@ pub(crate) struct Motion {
     pub x: Vec<f64>,
     /// p and q of each pair.
     pub normal: Vec<f64>,
-    pub tangential: Vec<f64>,
+    pub tangential: Vec<Along>,
+    /// Traction across the direction of each slip, which is to vanish.
+    turns: Vec<f64>,
 }
 
 /// The state of a pair in a solve.
@@ -63,6 +70,37 @@ struct Way {
     slip: [f64; 2],
     /// Whether it may stick.
     is_free: bool,
+    /// |H x − b|/|q| of a slip whose direction is an unknown.
+    turns: Option<f64>,
+}
+
+impl Way {
+    /// Turns the direction of a slip in space by what acts across it, and makes it an unknown of the next
+    /// solve; returns whether that changes anything. `rate`: H x − b.
+    fn turn(&mut self, motion: &Motion, pair: usize, rate: Along) -> bool {
+        let Hold::Slip(direction) = self.hold else { return false };
+        let traction = inner(motion.tangential[pair], direction);
+        if !self.is_free || traction <= 0.0 {
+            return self.turns.take().is_some();
+        }
+        let turn = motion.turns[pair] / traction;
+        let [along, other] = direction;
+        self.hold = Hold::of([along - turn * other, other + turn * along], 0.0);
+        let is_new = self.turns.is_none();
+        self.turns = Some((inner(rate, direction) / traction).max(0.0));
+        is_new || turn.abs() > TURN
+    }
+
+    /// The components of the rows by which friction holds a pair, and whether they are of a slip.
+    fn held(&self, tangents: usize) -> impl Iterator<Item = (Along, bool)> + use<> {
+        let rows = match (self.hold, self.turns) {
+            (Hold::Stick, _) => [([1.0, 0.0], false), ([0.0, 1.0], false)].into_iter().take(tangents),
+            (Hold::Slip([along, other]), turns) => {
+                [([-other, along], true); 2].into_iter().take(usize::from(turns.is_some()))
+            }
+        };
+        rows
+    }
 }
 
 impl Closed {
@@ -81,7 +119,7 @@ impl Closed {
             let contact = &model.contacts[k];
             laws.push(of_contacts[k].get(state.pairs[k][p].node).copied());
             if contact.friction.is_none() {
-                slips.push_open();
+                (1..model.dimension).for_each(|_| slips.push_open());
                 continue;
             }
             let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
@@ -96,38 +134,59 @@ impl Closed {
     }
 
     /// H x of each pair; 0 without friction.
-    pub(crate) fn slip_rates(&self, x: &[f64]) -> Vec<f64> {
-        self.slips.iter().map(|row| row.along(x)).collect()
+    pub(crate) fn slip_rates(&self, x: &[f64]) -> Vec<Along> {
+        self.each_slip(|row, _| self.slips.row(row).along(x))
+    }
+
+    /// A value of each row H, by pairs; `of` is called with the row and its tangent.
+    fn each_slip(&self, mut of: impl FnMut(usize, usize) -> f64) -> Vec<Along> {
+        let tangents = self.slips.dimension() - 1;
+        let pair = |i: usize| {
+            let mut values = [0.0; 2];
+            let rows = values.iter_mut().take(tangents).enumerate();
+            rows.for_each(|(tangent, value)| *value = of(i * tangents + tangent, tangent));
+            values
+        };
+        (0..self.places.len()).map(pair).collect()
     }
 
     /// v·∂H/∂y·v of each pair.
-    pub(crate) fn slip_curvatures(&self, model: &Model, state: &State) -> Vec<f64> {
+    pub(crate) fn slip_curvatures(&self, model: &Model, state: &State) -> Vec<Along> {
         let mut matrix = Vec::new();
-        let curvature = |(i, &(k, p)): (usize, &(usize, usize))| {
-            let contact = &model.contacts[k];
+        self.each_slip(|row, tangent| {
+            let (k, p) = self.places[row / (model.dimension - 1)];
+            let (contact, first, row) =
+                (&model.contacts[k], self.slips.row(row - tangent), self.slips.row(row));
             if contact.friction.is_none() {
                 return 0.0;
             }
-            let along: Vec<f64> = self.slips.row(i).entries().map(|(dof, _)| state.v[dof]).collect();
+            let mut pair = state.pairs[k][p];
+            pair.tangential.tangent = first.first();
+            let along: Vec<f64> = row.entries().map(|(dof, _)| state.v[dof]).collect();
             matrix.clear();
             matrix.resize(along.len().pow(2), 0.0);
-            contact.kinematics.slip_derivative_into(&state.pairs[k][p], &state.y, &mut matrix);
+            contact.kinematics.slip_derivative_into(&pair, &state.y, tangent, &mut matrix);
             let rows = along.iter().zip(matrix.chunks_exact(along.len()));
             rows.map(|(v, row)| v * row.iter().zip(&along).map(|(c, w)| c * w).sum::<f64>()).sum()
-        };
-        self.places.iter().enumerate().map(curvature).collect()
+        })
     }
 
     /// Impulse of a motion on the secondary side of each pair, with its contact.
     pub(crate) fn impulses<'a>(&'a self, motion: &'a Motion) -> impl Iterator<Item = (usize, [f64; 3])> + 'a {
         self.places.iter().enumerate().map(|(i, &(k, _))| {
             let mut impulse = self.normals.rows.row(i).normal().map(|n| -motion.normal[i] * n);
-            if motion.tangential[i] != 0.0 {
-                let along = self.slips.row(i).normal();
-                (0..3).for_each(|j| impulse[j] -= motion.tangential[i] * along[j]);
+            for (row, q) in self.slip_rows(i).zip(motion.tangential[i]).filter(|(_, q)| *q != 0.0) {
+                let along = row.normal();
+                (0..3).for_each(|j| impulse[j] -= q * along[j]);
             }
             (k, impulse)
         })
+    }
+
+    /// H of a pair, a row per tangent.
+    fn slip_rows(&self, pair: usize) -> impl Iterator<Item = Row<'_>> {
+        let tangents = self.slips.dimension() - 1;
+        (pair * tangents..(pair + 1) * tangents).map(|row| self.slips.row(row))
     }
 
     /// The change of velocity for an impulse: stick and slip follow from the slip rates after it. A
@@ -167,7 +226,7 @@ impl Closed {
     /// The ways of the pairs of a state.
     fn ways(&self, state: &State) -> Vec<Way> {
         let hold = |&(k, p): &(usize, usize)| state.pairs[k][p].tangential.hold;
-        let way = |place| Way { hold: hold(place), slip: [0.0; 2], is_free: true };
+        let way = |place| Way { hold: hold(place), slip: [0.0; 2], is_free: true, turns: None };
         self.places.iter().map(way).collect()
     }
 
@@ -182,7 +241,7 @@ impl Closed {
     ) -> Result<Motion, Rejected> {
         let before = self.slip_rates(&state.v);
         let slip = |i: usize, law: &Law, pressure: f64| {
-            let rate = before[i].abs();
+            let rate = length(before[i]);
             let radius = law.slip(pressure, rate);
             let is_limited = law.limit.is_finite() && radius.by_pressure == 0.0;
             if is_limited { [0.0, radius.value] } else { [law.coefficient(rate).0, 0.0] }
@@ -195,7 +254,7 @@ impl Closed {
         for _ in 0..CHANGES {
             let motion = self.solve_for(model, right, system, &ways)?;
             let rates = self.slip_rates(&motion.x);
-            let all = rates.iter().chain(right.slips).chain(right.gaps);
+            let all = rates.iter().chain(right.slips).flatten().chain(right.gaps);
             let none = ROUND_OFF * all.fold(0.0_f64, |most, rate| most.max(rate.abs()));
             let mut changed = false;
             for (i, law) in laws.iter().enumerate() {
@@ -209,14 +268,18 @@ impl Closed {
                 }
                 let cone = law.grip(-p);
                 // What is no slip to round-off has no direction.
-                let rate = rates[i] - right.slips[i];
-                let slip = if way.is_free && rate.abs() > none { rate } else { way.hold.sign() };
+                let rate = [0, 1].map(|a| rates[i][a] - right.slips[i][a]);
+                let slip = if way.is_free && length(rate) > none { rate } else { way.hold.direction() };
                 Some(Rub { hold: way.hold, traction: motion.tangential[i], slip, cone })
             };
             let rubs: Vec<Option<Rub>> = (0..ways.len()).map(rub).collect();
             let changes = set.changes(&rubs, true).map_err(|_| Rejected::NoFrictionBalance)?;
+            for (i, way) in ways.iter_mut().enumerate().filter(|_| model.dimension == 3) {
+                let rate = [0, 1].map(|a| rates[i][a] - right.slips[i][a]);
+                changed |= way.turn(&motion, i, rate);
+            }
             for &(i, hold) in &changes {
-                ways[i].hold = hold;
+                (ways[i].hold, ways[i].turns) = (hold, None);
             }
             if changes.is_empty() && !changed {
                 for ((&(k, p), way), traction) in self.places.iter().zip(&ways).zip(&motion.tangential) {
@@ -242,31 +305,60 @@ impl Closed {
         let mut forces = right.forces.to_vec();
         let rubs: Vec<usize> = (0..ways.len()).filter(|&i| self.laws[i].is_some()).collect();
         rows.is_skew = !rubs.is_empty();
+        let d = model.dimension;
         for &i in &rubs {
-            let [factor, traction] = ways[i].slip.map(|part| ways[i].hold.sign() * part);
-            self.slips.row(i).add_to(-traction, &mut forces);
-            let direction = rows.directions.gradient_mut(i).iter_mut().zip(self.slips.row(i).gradient);
-            direction.for_each(|(along, h)| *along -= factor * h);
+            let direction = ways[i].hold.direction();
+            for (row, d) in self.slip_rows(i).zip(direction) {
+                let [factor, traction] = ways[i].slip.map(|part| d * part);
+                row.add_to(-traction, &mut forces);
+                let along = rows.directions.gradient_mut(i).iter_mut().zip(row.gradient);
+                along.for_each(|(along, h)| *along -= factor * h);
+            }
         }
-        let normals = self.normals.rows.iter().map(|row| (None, row));
-        let sticks = rubs.iter().filter(|i| ways[**i].hold == Hold::Stick);
-        let tangents = sticks.map(|&i| (Some(i), self.slips.row(i)));
-        let sticking: Vec<usize> =
-            independent(model, normals.chain(tangents)).into_iter().flatten().collect();
-        for &i in &sticking {
-            rows.push_plain(self.places[i], self.slips.row(i), true);
-            targets.push(right.slips[i]);
+        let (mut held, mut names) = (Rows::new(d), Vec::new());
+        for &i in &rubs {
+            for (along, turns) in ways[i].held(d - 1) {
+                names.push((i, along, turns));
+                held.push_combined(&self.slips, i * (d - 1), &along[..d - 1]);
+            }
+        }
+        let normals = self.normals.rows.iter().map(|row| (None, row, DEPENDENT));
+        let least = slip_remainder(model);
+        let tangents = held.iter().enumerate().map(|(name, row)| (Some(name), row, least));
+        let holding: Vec<usize> =
+            independent_above(model, normals.chain(tangents)).into_iter().flatten().collect();
+        for &name in &holding {
+            let (i, along, turns) = names[name];
+            rows.push_plain(self.places[i], held.row(name), Some(along));
+            targets.push(inner(along, right.slips[i]));
+            if turns && let Some(compliance) = ways[i].turns {
+                let last = rows.yields.len() - 1;
+                rows.yields[last] = compliance;
+            }
         }
         system.mass_with(model, &rows)?;
         let (mut x, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
         system.solve(model, [&forces, &targets], &mut x, &mut multipliers)?;
-        let stick_multipliers = multipliers.split_off(ways.len());
-        let mut motion = Motion { x, normal: multipliers, tangential: vec![0.0; ways.len()] };
+        let forces_held = multipliers.split_off(ways.len());
+        let mut motion = Motion {
+            x,
+            normal: multipliers,
+            tangential: vec![[0.0; 2]; ways.len()],
+            turns: vec![0.0; ways.len()],
+        };
         for &i in &rubs {
             let [coefficient, traction] = ways[i].slip;
-            motion.tangential[i] = ways[i].hold.sign() * (traction - coefficient * motion.normal[i]);
+            let size = traction - coefficient * motion.normal[i];
+            motion.tangential[i] = ways[i].hold.direction().map(|d| d * size);
         }
-        sticking.iter().zip(stick_multipliers).for_each(|(&i, q)| motion.tangential[i] = q);
+        for (&name, q) in holding.iter().zip(forces_held) {
+            let (i, along, turns) = names[name];
+            if turns {
+                motion.turns[i] = q;
+            } else {
+                (0..2).for_each(|a| motion.tangential[i][a] += q * along[a]);
+            }
+        }
         Ok(motion)
     }
 }

@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_contact::{Direction, DiscreteGradient, Hold, Pair, Row, Rows};
+use carom_contact::{Along, Direction, DiscreteGradient, Hold, Pair, Row, Rows, inner, length};
 
 use crate::balance::contact_weights;
 use crate::equations::Equations;
@@ -19,13 +19,18 @@ use crate::model::Model;
 /// others.
 pub(crate) const DEPENDENT: f64 = 1e-8;
 
+/// The same for a slip in space.
+const HELD: f64 = 1e-3;
+/// Largest gap per unit of a multiplier: of a slip whose traction is round-off.
+const LOOSE: f64 = 1e100;
+
 /// Rows of a linear system.
 #[derive(Clone, Debug)]
 pub(crate) struct Constraints {
     /// Contact and pair of each row.
     pub places: Vec<(usize, usize)>,
-    /// Whether each row is a slip that is prevented; otherwise it is a gap.
-    pub slips: Vec<bool>,
+    /// The components of each row that is a slip which is prevented; others are gaps.
+    pub slips: Vec<Option<Along>>,
     /// Gradients of the gaps.
     pub rows: Rows,
     /// Directions of the forces.
@@ -36,6 +41,8 @@ pub(crate) struct Constraints {
     pub weights: Vec<f64>,
     /// Gap per unit of multiplier.
     pub compliances: Vec<f64>,
+    /// Gap per unit of a multiplier that is an unknown: of the direction of a slip.
+    pub yields: Vec<f64>,
     /// Gap still to be closed.
     pub open: Vec<f64>,
     /// λ times the derivative of the direction over the nodes of each row, row-major: λ∇²g, or not
@@ -54,6 +61,7 @@ impl Constraints {
             is_skew: false,
             weights: Vec::new(),
             compliances: Vec::new(),
+            yields: Vec::new(),
             open: Vec::new(),
             curvatures: Vec::new(),
         }
@@ -66,18 +74,19 @@ impl Constraints {
         rows: impl IntoIterator<Item = ((usize, usize), Row<'a>)>,
     ) -> Self {
         let mut plain = Self::none(dimension);
-        rows.into_iter().for_each(|(place, row)| plain.push_plain(place, row, false));
+        rows.into_iter().for_each(|(place, row)| plain.push_plain(place, row, None));
         plain
     }
 
-    /// Adds such a row; `is_slip`: a slip that is prevented.
-    pub(crate) fn push_plain(&mut self, place: (usize, usize), row: Row, is_slip: bool) {
+    /// Adds such a row; `slip`: the components of a slip that is prevented.
+    pub(crate) fn push_plain(&mut self, place: (usize, usize), row: Row, slip: Option<Along>) {
         self.places.push(place);
-        self.slips.push(is_slip);
+        self.slips.push(slip);
         self.rows.push_row(row);
         self.directions.push_row(row);
         self.weights.push(1.0);
         self.compliances.push(0.0);
+        self.yields.push(0.0);
         self.open.push(0.0);
     }
 
@@ -88,19 +97,21 @@ impl Constraints {
         let (mut rows, mut gradient) = (Rows::new(model.dimension), DiscreteGradient::default());
         // Springs may depend on each other: each adds its stiffness.
         let is_spring = |&(k, _): &(usize, usize)| !model.contacts[k].interface.is_constraint();
-        let constrained = evaluation.pressing().filter(|place| !is_spring(place));
-        let gaps = constrained.map(|(k, p)| ((k, p, false), evaluation.rows[k].row(p)));
+        let gaps = evaluation.pressing().filter(|place| !is_spring(place));
+        let gaps = gaps.map(|(k, p)| ((k, p, 0), evaluation.rows[k].row(p), DEPENDENT));
         // The slip of a pair after all gaps: what depends on both keeps its gap.
-        let sticking = evaluation.sticking().filter(|place| !is_spring(place));
-        let slips = sticking.map(|(k, p)| ((k, p, true), evaluation.slips[k].row(p)));
-        let mut places = independent(model, gaps.chain(slips));
-        places.extend(evaluation.pressing().filter(is_spring).map(|(k, p)| (k, p, false)));
-        places.extend(evaluation.sticking().filter(is_spring).map(|(k, p)| (k, p, true)));
+        let held = Held::of(equations, evaluation);
+        let least = slip_remainder(model);
+        let slips = held.iter().filter(|((k, p, _), _)| !is_spring(&(*k, *p)));
+        let slips = slips.map(|(name, row)| (name, row, least));
+        let mut places = independent_above(model, gaps.chain(slips));
+        places.extend(evaluation.pressing().filter(is_spring).map(|(k, p)| (k, p, 0)));
+        places.extend(held.names.iter().map(|(name, _)| *name).filter(|&(k, p, _)| is_spring(&(k, p))));
         places.sort_unstable();
-        for (k, p, is_slip) in places {
+        for (k, p, number) in places {
             let place = (k, p);
-            if is_slip {
-                constraints.push_slip(equations, evaluation, place, &mut rows);
+            if number > 0 {
+                constraints.push_slip(equations, evaluation, held.find((k, p, number)), place, &mut rows);
                 continue;
             }
             let contact = &model.contacts[k];
@@ -114,38 +125,51 @@ impl Constraints {
                 constraints.is_skew = true;
             }
             constraints.places.push(place);
-            constraints.slips.push(false);
+            constraints.slips.push(None);
             constraints.rows.push_row(evaluation.rows[k].row(p));
             constraints.directions.push_row(evaluation.directions(k).row(p));
             constraints.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
             constraints.compliances.push(answer.compliance);
+            constraints.yields.push(0.0);
             constraints.open.push(answer.open);
             constraints.curvatures.push(curvature);
         }
         constraints
     }
 
-    /// Adds the row S = 0 of a pair that sticks.
+    /// Adds the row of a slip that is prevented: of a pair that sticks, or across the direction of a slip.
     fn push_slip(
         &mut self,
         equations: &Equations,
         evaluation: &Evaluation,
+        (along, slip): (Along, Row),
         (k, p): (usize, usize),
         rows: &mut Rows,
     ) {
         let contact = &equations.model.contacts[k];
-        let (slip, pair) = (evaluation.slips[k].row(p), &evaluation.at.pairings[k].pairs[p]);
+        let pair = &evaluation.at.pairings[k].pairs[p];
         let (traction, spring) = (pair.tangential.traction, equations.stick_spring(k, pair));
-        let (mut curvature, gradient) = equations.slip_derivatives(evaluation, (k, p), rows);
-        curvature.iter_mut().for_each(|c| *c *= traction);
+        let mut curvature = vec![0.0; slip.gradient.len().pow(2)];
+        self.rows.push_row(slip);
+        self.directions.push_row(slip);
+        let gradient = self.rows.gradient_mut(self.rows.len() - 1);
+        gradient.fill(0.0);
+        for tangent in (0..2).filter(|&tangent| along[tangent] != 0.0) {
+            let (turned, slope) = equations.slip_derivatives(evaluation, (k, p), tangent, rows);
+            gradient.iter_mut().zip(&slope).for_each(|(sum, slope)| *sum += along[tangent] * slope);
+            // The force of a slip is that of its gap.
+            if pair.tangential.hold == Hold::Stick {
+                let force = along[tangent] * traction[tangent];
+                curvature.iter_mut().zip(&turned).for_each(|(sum, h)| *sum += force * h);
+            }
+        }
         self.is_skew = true;
         self.places.push((k, p));
-        self.slips.push(true);
-        self.rows.push_row(slip);
-        self.rows.gradient_mut(self.rows.len() - 1).copy_from_slice(&gradient);
-        self.directions.push_row(slip);
+        self.slips.push(Some(along));
         self.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
         self.compliances.push(spring.map_or(0.0, f64::recip));
+        let forward = inner(pair.tangential.hold.direction(), evaluation.slip_of((k, p)));
+        self.yields.push(if forward > 0.0 { (forward / length(traction)).min(LOOSE) } else { 0.0 });
         self.open.push(if spring.is_some() { 0.0 } else { slip.gap });
         self.curvatures.push(curvature);
     }
@@ -156,8 +180,12 @@ impl Constraints {
         let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
         let gaps = evaluation.pressing().map(of_pair).fold(0.0, f64::max);
         let rows = Self::of(equations, evaluation);
-        let slips = rows.slips.iter().zip(&rows.open).filter(|(is_slip, _)| **is_slip);
-        slips.map(|(_, open)| open.abs()).fold(gaps, f64::max)
+        let weight = |&(k, p): &(usize, usize)| {
+            let pair = &evaluation.at.pairings[k].pairs[p];
+            equations.weight_of_slip(pair, evaluation.slip_of((k, p)))
+        };
+        let slips = rows.places.iter().zip(rows.slips.iter().zip(&rows.open)).filter(|row| row.1.0.is_some());
+        slips.map(|(place, (_, open))| weight(place) * open.abs()).fold(gaps, f64::max)
     }
 
     /// Number of rows.
@@ -276,18 +304,42 @@ impl Evaluation {
         })
     }
 
-    /// Contact and pair of those that stick.
-    pub(crate) fn sticking(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let sticks = |pair: &Pair| pair.tangential.hold == Hold::Stick;
-        self.pressing()
-            .filter(move |&(k, p)| !self.slips[k].is_empty() && sticks(&self.at.pairings[k].pairs[p]))
-    }
-
     /// The rows H of those that slip.
     pub(crate) fn slipping(&self) -> impl Iterator<Item = Row<'_>> {
         let slips = |pair: &Pair| pair.tangential.hold != Hold::Stick;
         let places = self.pressing().filter(move |&(k, p)| slips(&self.at.pairings[k].pairs[p]));
-        places.filter(|&(k, _)| !self.slips[k].is_empty()).map(|(k, p)| self.slips[k].row(p))
+        places.filter(|&(k, _)| !self.slips[k].is_empty()).flat_map(|place| self.slip_rows(place))
+    }
+}
+
+/// The slips that friction prevents.
+struct Held {
+    /// Contact, pair and number in it, from 1 on, of each; and its components. Ascending.
+    names: Vec<((usize, usize, usize), Along)>,
+    rows: Rows,
+}
+
+impl Held {
+    fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
+        let d = equations.model.dimension;
+        let mut held = Self { names: Vec::new(), rows: Rows::new(d) };
+        for (k, p) in evaluation.pressing() {
+            let pair = &evaluation.at.pairings[k].pairs[p];
+            for (number, along) in equations.held(k, pair).enumerate() {
+                held.names.push(((k, p, number + 1), along));
+                held.rows.push_combined(&evaluation.slips[k], p * (d - 1), &along[..d - 1]);
+            }
+        }
+        held
+    }
+
+    fn iter(&self) -> impl Iterator<Item = ((usize, usize, usize), Row<'_>)> {
+        self.names.iter().map(|(name, _)| *name).zip(self.rows.iter())
+    }
+
+    fn find(&self, name: (usize, usize, usize)) -> (Along, Row<'_>) {
+        let place = self.names.partition_point(|(other, _)| *other < name);
+        (self.names[place].1, self.rows.row(place))
     }
 }
 
@@ -300,12 +352,26 @@ pub(crate) fn independent_rows(
     independent(model, places.map(|(k, p)| ((k, p), rows[k].row(p))))
 }
 
+/// Remainder of the row of a slip below which it depends on the others. In space supports may hold a node
+/// and its facet along one tangent, and the row then has only what turns the facet, times the gap.
+pub(crate) fn slip_remainder(model: &Model) -> f64 {
+    if model.dimension == 3 { HELD } else { DEPENDENT }
+}
+
 /// The names of those rows that are linearly independent of the earlier ones on the free dofs.
 pub(crate) fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, Row<'a>)>) -> Vec<T> {
+    independent_above(model, rows.map(|(name, row)| (name, row, DEPENDENT)))
+}
+
+/// The same with a remainder for each row below which it depends on the others.
+pub(crate) fn independent_above<'a, T>(
+    model: &Model,
+    rows: impl Iterator<Item = (T, Row<'a>, f64)>,
+) -> Vec<T> {
     let mut accepted: Vec<Vec<(usize, f64)>> = Vec::new();
     // The accepted row whose pivot is this dof.
     let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
-    let mut independent = |row: Row| {
+    let mut independent = |row: Row, least: f64| {
         let mut row: Vec<(usize, f64)> = row.entries().filter(|(dof, _)| !model.fixed[*dof]).collect();
         let mut from = 0;
         // An accepted row contains pivots of later ones only: in ascending order each occurs once.
@@ -326,7 +392,7 @@ pub(crate) fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, R
         let largest = row
             .iter()
             .fold((0, 0.0_f64), |most, &(dof, x)| if x.abs() > most.1.abs() { (dof, x) } else { most });
-        if largest.1.abs() <= DEPENDENT {
+        if largest.1.abs() <= least {
             return false;
         }
         row.iter_mut().for_each(|(_, x)| *x /= largest.1);
@@ -334,5 +400,5 @@ pub(crate) fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, R
         accepted.push(row);
         true
     };
-    rows.filter_map(|(name, row)| independent(row).then_some(name)).collect()
+    rows.filter_map(|(name, row, least)| independent(row, least).then_some(name)).collect()
 }

@@ -1,7 +1,9 @@
 //! Contact status of an iterate: search and hand-over of pairs, active sets, and constraints that
 //! cannot be satisfied.
 
-use carom_contact::{ActiveSet, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip, Tangential};
+use carom_contact::{
+    ActiveSet, Along, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip, Tangential,
+};
 
 use crate::constraints::Constraints;
 use crate::equations::Equations;
@@ -174,9 +176,9 @@ impl ContactUpdate {
             for p in changes {
                 (pairs[p].active, pairs[p].lambda, changed) = (!pairs[p].active, 0.0, true);
                 if contact.friction.is_some() {
-                    let slip = equations.slip(k, &pairs[p], &evaluation.middle, increment);
+                    let slip = equations.slip(k, &mut pairs[p], &evaluation.middle, increment);
                     pairs[p].tangential.hold = Hold::of(slip, GAP_TOLERANCE * model.scale);
-                    pairs[p].tangential.traction = 0.0;
+                    pairs[p].tangential.traction = [0.0; 2];
                 }
             }
         }
@@ -196,14 +198,16 @@ impl ContactUpdate {
             if contact.friction.is_none() {
                 continue;
             }
+            let slips: Vec<Along> =
+                (0..evaluation.rows[k].len()).map(|p| evaluation.slip_of((k, p))).collect();
             let pairs = &mut evaluation.at.pairings[k].pairs;
-            let rub = |(pair, row): (&Pair, Row)| {
+            let rub = |(pair, slip): (&Pair, Along)| {
                 let Tangential { hold, traction, .. } = pair.tangential;
                 // One that has just closed has no pressure yet.
                 let cone = equations.laws[k][pair.node].grip(-pair.lambda);
-                (pair.active && pair.lambda != 0.0).then_some(Rub { hold, traction, slip: row.gap, cone })
+                (pair.active && pair.lambda != 0.0).then_some(Rub { hold, traction, slip, cone })
             };
-            let rubs: Vec<Option<Rub>> = pairs.iter().zip(evaluation.slips[k].iter()).map(rub).collect();
+            let rubs: Vec<Option<Rub>> = pairs.iter().zip(slips).map(rub).collect();
             let changes =
                 self.holds[k].changes(&rubs, settled).map_err(|cycle| Rejected::StickSlipCycle {
                     contact: contact.name.clone(),

@@ -1,6 +1,6 @@
 //! An iterate of a stage, and what was computed there.
 
-use carom_contact::{Answer, DiscreteGradient, Pairing, Rows};
+use carom_contact::{Along, Answer, DiscreteGradient, Pairing, Rows};
 
 use crate::balance::Forces;
 use crate::state::State;
@@ -43,12 +43,13 @@ pub(crate) struct Evaluation {
     /// Directions of the contact forces where they are not the gradients of these rows, a row per
     /// pair: discrete gradients, or turned by friction; empty for other contacts.
     pub turned: Vec<Rows>,
-    /// H at the middle of the step, with the slip S as gap, a row per pair; empty without friction.
+    /// H at the middle of the step, with the slip S as gaps, a row per pair and tangent; empty without
+    /// friction.
     pub slips: Vec<Rows>,
     /// y_½ = y_s + d/2; empty without friction.
     pub middle: Vec<f64>,
     /// Traction of each active pair of a contact beyond what acts along its direction.
-    pub rests: Vec<Vec<f64>>,
+    pub rests: Vec<Vec<Along>>,
     /// Energy of tangential springs, a part of `springs`.
     pub stick_springs: f64,
     /// The interface's response to each row.
@@ -78,10 +79,10 @@ pub(crate) struct Measure {
     pub residual: f64,
     /// Sum of the norms of its terms.
     pub forces: f64,
-    /// Largest |g| of the active constraints, and |S| of those that stick.
+    /// Largest |g| of the active constraints, and slip that friction prevents.
     pub gap: f64,
-    /// Whether any sticks.
-    pub sticks: bool,
+    /// Whether it prevents any.
+    pub held: bool,
 }
 
 /// Unused evaluations, whose memory is reused.

@@ -1,9 +1,9 @@
-//! Friction in a stage and in a state. With y_½ = (y_s + y)/2, the row H of
-//! [`Kinematics::slip`](carom_contact::Kinematics::slip) and the states of
-//! `carom_contact::StickSlip`:
+//! Friction in a stage and in a state. With y_½ = (y_s + y)/2, the rows H of
+//! [`Kinematics::slip`](carom_contact::Kinematics::slip), one per tangent, and the states of
+//! `carom_contact::StickSlip`
 //!
 //! ```text
-//! S = H(y_½)·(Δy − Δy_free),   force  λ∇g + qH(y_½),   ∂S/∂y = H + ½ ∂H/∂yᵀ (Δy − Δy_free)
+//! S = H(y_½)·(Δy − Δy_free),   force  λ∇g + Σ q_α H_α(y_½),   ∂S/∂y = H + ½ ∂H/∂yᵀ (Δy − Δy_free)
 //! ```
 //!
 //! Δy_free = 0, except for a pair that was open at the step's start: what slips before it touches
@@ -12,21 +12,37 @@
 //! that conserves acts over the whole step, and so does its S: its work −qS is never positive. Ṡ is
 //! this velocity, or S over the time in which it slips; in load steps, the time of their formulas.
 //!
-//! A pair that slips has q = s r(λ, Ṡ) and is the normal row with the direction ∇g − s ∂r/∂|λ| H;
-//! one that sticks is a row of its own with the multiplier q, S = 0 or, on a spring,
-//! S = (q − q_s)/k. A spring that slipped in the last step goes on to do so while its stick would
-//! exceed r, whatever a stick could hold.
+//! A pair that slips has q = r(λ, Ṡ) d and is the normal row with the direction ∇g − ∂r/∂|λ| Σ d_α H_α;
+//! one that sticks has rows of its own with the multipliers q, S = 0 or, on a spring, S = (q − q_s)/k. A
+//! spring that slipped in the last step goes on to do so while its stick would exceed r, whatever a
+//! stick could hold.
+//!
+//! In the plane d = ±1 is a state. In space it is an unknown, with the unit vector e across it and the
+//! row that nothing slips across it,
+//!
+//! ```text
+//! e·S = 0,   δd = e δθ,   δq = r δθ:      e·∂S/∂y δy − (d·S/r) δq = −e·S,     force  δq Σ e_α H_α
+//! ```
+//!
+//! which goes on to hold as a stick across d where nothing slips along it. A slip without traction, as in
+//! the iterate in which a pair closes, has the direction of S; on a spring it has that of q_s + kS.
 //!
 //! Between steps q acts along H(y_s): in the averaged forces of the next step and in what is
 //! recorded.
 
-use carom_contact::{ContactError, Hold, Law, Pair, Radius, Row, Rows, Tangential};
+use carom_contact::{Along, ContactError, Hold, Law, Pair, Radius, Row, Rows, Tangential, inner, length};
 
 use crate::balance::contact_weights;
+use crate::contact_update::GAP_TOLERANCE;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
 use crate::model::{Contact, Model, NoValue};
 use crate::state::State;
+
+/// Angle by which a slip may miss its direction, unless it is shorter than ROUND_OFF / ANGLE times the
+/// tolerance of gaps.
+const ANGLE: f64 = 1e-10;
+const ROUND_OFF: f64 = 1e-2;
 
 impl Model {
     /// Whether a contact has friction.
@@ -48,7 +64,8 @@ impl Model {
         let of = |(contact, pairs): (&Contact, &'a [Pair])| {
             let springs = contact.friction.as_ref().map_or(&[][..], |friction| &friction.springs);
             let closed = pairs.iter().filter(|pair| pair.active && !springs.is_empty());
-            closed.map(|pair| 0.5 * pair.tangential.traction.powi(2) / springs[pair.node]).sum::<f64>()
+            let square = |pair: &Pair| inner(pair.tangential.traction, pair.tangential.traction);
+            closed.map(|pair| 0.5 * square(pair) / springs[pair.node]).sum::<f64>()
         };
         self.contacts.iter().zip(pairs).map(of).sum()
     }
@@ -66,12 +83,40 @@ pub(crate) enum Counted {
 /// A closed pair that rubs.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Rubbing {
-    /// s, 0 in stick.
-    pub sign: f64,
+    /// d; zero in stick.
+    pub direction: Along,
     /// The traction of a slip.
     pub radius: Radius,
     /// Factor between S and the rate of slip.
     pub rate: f64,
+    /// Traction per slip across d, on a spring.
+    pub across: f64,
+}
+
+/// The rows of a pair, one per tangent, in the rows of all.
+pub(crate) fn rows_of(slips: &Rows, pair: usize) -> std::ops::Range<usize> {
+    let tangents = slips.dimension() - 1;
+    pair * tangents..(pair + 1) * tangents
+}
+
+/// S of a pair.
+fn slip_of(slips: &Rows, pair: usize) -> Along {
+    let mut slip = [0.0; 2];
+    slip.iter_mut().zip(rows_of(slips, pair)).for_each(|(s, row)| *s = slips.row(row).gap);
+    slip
+}
+
+impl Evaluation {
+    /// S of a pair with friction.
+    pub(crate) fn slip_of(&self, (contact, pair): (usize, usize)) -> Along {
+        slip_of(&self.slips[contact], pair)
+    }
+
+    /// The rows H of a pair with friction, one per tangent.
+    pub(crate) fn slip_rows(&self, (contact, pair): (usize, usize)) -> impl Iterator<Item = Row<'_>> {
+        let slips = &self.slips[contact];
+        rows_of(slips, pair).map(|row| slips.row(row))
+    }
 }
 
 impl Equations<'_> {
@@ -80,12 +125,12 @@ impl Equations<'_> {
         self.model.contacts[contact].friction.as_ref()?.springs.get(pair.node).copied()
     }
 
-    /// Adds the row H of a closed pair at y_½, with S as its gap, and returns what counts in it.
-    /// `gap`: that of the pair.
+    /// Adds the rows H of a closed pair at y_½, with S as their gaps, and returns what counts in it; the
+    /// pair keeps the tangent there. `gap`: that of the pair.
     pub(crate) fn slip_into(
         &self,
         contact: usize,
-        pair: &Pair,
+        pair: &mut Pair,
         gap: f64,
         middle: &[f64],
         increment: &[f64],
@@ -96,42 +141,71 @@ impl Equations<'_> {
         kinematics.measure(&mut at_middle, middle, slips)?;
         slips.pop();
         let part = self.part(contact, pair, gap, slips);
+        let first = slips.len();
         kinematics.slip(&at_middle, middle, slips)?;
-        let row = slips.row(slips.len() - 1);
-        let counted = |(dof, slope): (usize, f64)| slope * self.counted(dof, part, increment);
-        let slip = row.entries().map(counted).sum();
-        *slips.gap_mut(slips.len() - 1) = slip;
+        for row in first..slips.len() {
+            let counted = |(dof, slope): (usize, f64)| slope * self.counted(dof, part, increment);
+            let slip = slips.row(row).entries().map(counted).sum();
+            *slips.gap_mut(row) = slip;
+        }
+        pair.tangential.tangent = slips.row(first).first();
         Ok(part)
     }
 
     /// S of a pair that closes in an iterate; 0 if it has none.
-    pub(crate) fn slip(&self, contact: usize, pair: &Pair, middle: &[f64], increment: &[f64]) -> f64 {
+    pub(crate) fn slip(&self, contact: usize, pair: &mut Pair, middle: &[f64], increment: &[f64]) -> Along {
         let mut rows = Rows::new(self.model.dimension);
-        self.slip_into(contact, pair, 0.0, middle, increment, &mut rows).map_or(0.0, |_| rows.row(0).gap)
+        self.slip_into(contact, pair, 0.0, middle, increment, &mut rows)
+            .map_or([0.0; 2], |_| slip_of(&rows, 0))
     }
 
     /// Sets the traction of a closed pair from its slip.
-    fn rub(&self, contact: usize, pair: &mut Pair, slip: f64, part: Counted) -> Rubbing {
+    pub(crate) fn rub(&self, contact: usize, pair: &mut Pair, slip: Along, part: Counted) -> Rubbing {
         let (law, pressure) = (self.laws[contact][pair.node], (-pair.lambda).max(0.0));
         let rate = self.rate(part);
-        let radius = law.slip(pressure, slip.abs() * rate);
+        let radius = law.slip(pressure, length(slip) * rate);
+        let mut across = 0.0;
         if let Some(stiffness) = self.stick_spring(contact, pair) {
             let start = self.state.closed(contact, pair.node).map(|old| old.tangential);
-            let trial = start.map_or(0.0, |_| pair.tangential.before) + stiffness * slip;
-            let slipped = start.map_or(0.0, |start| start.hold.sign()) * trial > 0.0;
+            let before = start.map_or([0.0; 2], |_| pair.tangential.before);
+            let trial = [0, 1].map(|i| before[i] + stiffness * slip[i]);
+            let slipped = start.is_some_and(|start| inner(start.hold.direction(), trial) > 0.0);
             let edge = if slipped { radius.value } else { law.grip(pressure) };
-            pair.tangential.hold = if trial.abs() <= edge { Hold::Stick } else { Hold::of(trial, 0.0) };
+            let size = length(trial);
+            pair.tangential.hold = if size <= edge { Hold::Stick } else { Hold::of(trial, 0.0) };
             pair.tangential.traction = trial;
+            across = if size <= edge { 0.0 } else { stiffness * radius.value / size };
+        } else if self.model.dimension == 3
+            && radius.value == 0.0
+            && pair.tangential.hold != Hold::Stick
+            && slip != [0.0; 2]
+        {
+            pair.tangential.hold = Hold::of(slip, 0.0);
         }
-        let sign = pair.tangential.hold.sign();
-        if sign != 0.0 {
-            pair.tangential.traction = sign * radius.value;
+        let direction = pair.tangential.hold.direction();
+        if pair.tangential.hold != Hold::Stick {
+            pair.tangential.traction = direction.map(|d| d * radius.value);
         }
-        Rubbing { sign, radius, rate }
+        Rubbing { direction, radius, rate, across }
     }
 
-    /// Adds the friction of a pair with this gap: the row of its slip, the direction of its force,
-    /// and what acts beyond that.
+    /// The components of the rows by which friction holds a closed pair: every tangent of one that
+    /// sticks, and in space what is across the direction of a slip with a traction.
+    pub(crate) fn held(&self, contact: usize, pair: &Pair) -> impl Iterator<Item = Along> {
+        let tangents = self.model.dimension - 1;
+        let is_spring = self.stick_spring(contact, pair).is_some();
+        let rows = match pair.tangential.hold {
+            Hold::Stick => [[1.0, 0.0], [0.0, 1.0]].into_iter().take(tangents),
+            Hold::Slip([along, other]) => {
+                let turns = tangents == 2 && !is_spring && pair.tangential.traction != [0.0; 2];
+                [[-other, along], [0.0; 2]].into_iter().take(usize::from(turns))
+            }
+        };
+        rows.filter(move |_| self.model.contacts[contact].friction.is_some())
+    }
+
+    /// Adds the friction of a pair with this gap: the rows of its slip, the direction of its force, and
+    /// what acts beyond that.
     pub(crate) fn add_friction(
         &self,
         contact: usize,
@@ -142,8 +216,9 @@ impl Equations<'_> {
         let weight = contact_weights(&self.stage, self.model.contacts[contact].at_the_end).0;
         let Evaluation { at, middle, rows, turned, slips, rests, forces, measure, .. } = evaluation;
         let (rows, turned, slips) = (&rows[contact], &mut turned[contact], &mut slips[contact]);
+        let p = rows.len() - 1;
         if !pair.active {
-            slips.push_open();
+            rows_of(slips, p).for_each(|_| slips.push_open());
             if turned.len() < rows.len() {
                 turned.push_open();
             }
@@ -151,31 +226,41 @@ impl Equations<'_> {
         }
         // Not there yet unless it is a discrete gradient.
         if turned.len() < rows.len() {
-            turned.push_row(rows.row(rows.len() - 1));
+            turned.push_row(rows.row(p));
         }
         let part = self.slip_into(contact, pair, gap, middle, &at.increment, slips)?;
-        let slip = slips.row(slips.len() - 1);
-        let Rubbing { sign, radius, .. } = self.rub(contact, pair, slip.gap, part);
-        let turn = sign * radius.by_pressure;
-        let direction = turned.gradient_mut(rows.len() - 1).iter_mut().zip(slip.gradient);
-        direction.for_each(|(along, h)| *along -= turn * h);
-        let rest = pair.tangential.traction + turn * pair.lambda;
+        let slip = slip_of(slips, p);
+        let Rubbing { direction, radius, .. } = self.rub(contact, pair, slip, part);
+        let traction = pair.tangential.traction;
+        let mut rest = [0.0; 2];
+        for (i, row) in rows_of(slips, p).map(|row| slips.row(row)).enumerate() {
+            let turn = direction[i] * radius.by_pressure;
+            let along = turned.gradient_mut(p).iter_mut().zip(row.gradient);
+            along.for_each(|(along, h)| *along -= turn * h);
+            rest[i] = traction[i] + turn * pair.lambda;
+            row.add_to(weight * rest[i], &mut forces.contact);
+            row.add_to(weight * traction[i], &mut forces.friction);
+        }
         rests[contact].push(rest);
-        slip.add_to(weight * rest, &mut forces.contact);
-        slip.add_to(weight * pair.tangential.traction, &mut forces.friction);
-        match self.stick_spring(contact, pair) {
-            Some(stiffness) => {
-                evaluation.stick_springs += 0.5 * pair.tangential.traction.powi(2) / stiffness;
-            }
-            None if sign == 0.0 => {
-                (measure.gap, measure.sticks) = (measure.gap.max(slip.gap.abs()), true);
-            }
-            None => {}
+        if let Some(stiffness) = self.stick_spring(contact, pair) {
+            evaluation.stick_springs += 0.5 * inner(traction, traction) / stiffness;
+            return Ok(());
+        }
+        for held in self.held(contact, pair) {
+            let missed = self.weight_of_slip(pair, slip) * inner(held, slip).abs();
+            (measure.gap, measure.held) = (measure.gap.max(missed), true);
         }
         Ok(())
     }
 
-    fn part(&self, contact: usize, pair: &Pair, gap: f64, rows: &mut Rows) -> Counted {
+    /// Factor of a slip that is prevented, as a gap: of one across a slip, its angle counts too.
+    pub(crate) fn weight_of_slip(&self, pair: &Pair, slip: Along) -> f64 {
+        let gap = GAP_TOLERANCE * self.model.scale;
+        let turns = pair.tangential.hold != Hold::Stick;
+        if turns { (gap / (ANGLE * length(slip) + ROUND_OFF * gap)).max(1.0) } else { 1.0 }
+    }
+
+    pub(crate) fn part(&self, contact: usize, pair: &Pair, gap: f64, rows: &mut Rows) -> Counted {
         if !self.closes(contact, pair) || self.model.contacts[contact].conserves() {
             return Counted::Share(1.0);
         }
@@ -196,7 +281,7 @@ impl Equations<'_> {
     }
 
     /// A component of Δy − Δy_free.
-    fn counted(&self, dof: usize, part: Counted, increment: &[f64]) -> f64 {
+    pub(crate) fn counted(&self, dof: usize, part: Counted, increment: &[f64]) -> f64 {
         let velocity = &self.stage.velocity;
         match part {
             Counted::Share(share) => share * increment[dof],
@@ -216,66 +301,11 @@ impl Equations<'_> {
     fn closes(&self, contact: usize, pair: &Pair) -> bool {
         !self.stage.is_static() && self.state.closed(contact, pair.node).is_none()
     }
-
-    /// ∂H/∂y of a pair at y_½ halved, the derivative of its row by the end of the step, row-major;
-    /// and ∂S/∂y.
-    pub(crate) fn slip_derivatives(
-        &self,
-        evaluation: &Evaluation,
-        (contact, p): (usize, usize),
-        rows: &mut Rows,
-    ) -> (Vec<f64>, Vec<f64>) {
-        let kinematics = &self.model.contacts[contact].kinematics;
-        let (row, pair) = (evaluation.slips[contact].row(p), &evaluation.at.pairings[contact].pairs[p]);
-        let mut matrix = vec![0.0; row.gradient.len().pow(2)];
-        rows.clear();
-        let part = self.part(contact, pair, evaluation.rows[contact].row(p).gap, rows);
-        let share = if let Counted::Share(share) = part { share } else { 1.0 };
-        let mut gradient: Vec<f64> = row.gradient.iter().map(|h| share * h).collect();
-        let mut at_middle = *pair;
-        // It was measured in the evaluation.
-        if kinematics.measure(&mut at_middle, &evaluation.middle, rows).is_err() {
-            return (matrix, gradient);
-        }
-        kinematics.slip_derivative_into(&at_middle, &evaluation.middle, &mut matrix);
-        matrix.iter_mut().for_each(|entry| *entry *= 0.5);
-        let counted = row.entries().map(|(dof, _)| self.counted(dof, part, &evaluation.at.increment));
-        for (turned, moved) in matrix.chunks_exact(gradient.len()).zip(counted) {
-            gradient.iter_mut().zip(turned).for_each(|(slope, h)| *slope += h * moved);
-        }
-        (matrix, gradient)
-    }
-
-    /// Adds the derivative of the force s r H of a slipping pair, beyond that of r by λ, over the
-    /// nodes of its row.
-    pub(crate) fn slip_curvature_into(
-        &self,
-        evaluation: &Evaluation,
-        (contact, p): (usize, usize),
-        rows: &mut Rows,
-        curvature: &mut [f64],
-    ) {
-        let slip = evaluation.slips[contact].row(p);
-        let mut pair = evaluation.at.pairings[contact].pairs[p];
-        let part = self.part(contact, &pair, evaluation.rows[contact].row(p).gap, rows);
-        let Rubbing { sign, radius, rate } = self.rub(contact, &mut pair, slip.gap, part);
-        if sign == 0.0 {
-            return;
-        }
-        let (turned, gradient) = self.slip_derivatives(evaluation, (contact, p), rows);
-        let by_slip = radius.by_rate * rate * slip.gap.signum() * sign;
-        for (i, row) in curvature.chunks_exact_mut(gradient.len()).enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                *entry += sign * radius.value * turned[i * gradient.len() + j]
-                    + by_slip * slip.gradient[i] * gradient[j];
-            }
-        }
-    }
 }
 
-/// Calls `visit(contact, pair, H)` for the closed pairs of a state that have friction, with H at
-/// its positions.
-pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usize, Row)) {
+/// Calls `visit(contact, pair, q, H)` for every tangent of the closed pairs of a state that have
+/// friction, with the traction along it and H at the positions of the state.
+pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usize, f64, Row)) {
     let mut rows = Rows::new(model.dimension);
     let rubs = |(_, contact): &(usize, &Contact)| contact.friction.is_some();
     for (k, contact) in model.contacts.iter().enumerate().filter(rubs) {
@@ -285,21 +315,27 @@ pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usiz
             if contact.kinematics.measure(&mut at, &state.y, &mut rows).is_ok()
                 && contact.kinematics.slip(&at, &state.y, &mut rows).is_ok()
             {
-                visit(k, p, rows.row(1));
+                let along = rows.iter().skip(1).zip(pair.tangential.traction);
+                along.for_each(|(row, traction)| visit(k, p, traction, row));
             }
         }
     }
 }
 
-/// Force on a secondary side of the tractions that are not in the direction of λ:
-/// −Σ (q + s ∂r/∂|λ| λ) ∂S/∂y_N over the closed pairs.
+/// Force on a secondary side of the tractions that are not in the direction of λ: −Σ (q + d ∂r/∂|λ| λ)
+/// ∂S/∂y_N over the closed pairs.
 pub(crate) fn secondary_friction(evaluation: &Evaluation, contact: usize) -> [f64; 3] {
     let mut force = [0.0; 3];
-    let pairs = evaluation.at.pairings[contact].pairs.iter();
-    let closed = pairs.zip(evaluation.slips[contact].iter()).filter(|(pair, _)| pair.active);
-    for ((_, row), rest) in closed.zip(&evaluation.rests[contact]) {
-        let along = row.normal();
-        (0..3).for_each(|i| force[i] -= rest * along[i]);
+    if evaluation.slips[contact].is_empty() {
+        return force;
+    }
+    let pairs = evaluation.at.pairings[contact].pairs.iter().enumerate();
+    let closed = pairs.filter(|(_, pair)| pair.active);
+    for ((p, _), rest) in closed.zip(&evaluation.rests[contact]) {
+        for (row, rest) in evaluation.slip_rows((contact, p)).zip(rest) {
+            let along = row.normal();
+            (0..3).for_each(|i| force[i] -= rest * along[i]);
+        }
     }
     force
 }
@@ -311,16 +347,17 @@ pub(crate) fn take_slips(equations: &Equations, solved: &Evaluation, state: &mut
         if contact.friction.is_none() {
             continue;
         }
-        let of_contact = solved.slips[k].iter().zip(solved.rows[k].iter());
-        for (pair, (slip, gap)) in state.pairs[k].iter_mut().zip(of_contact) {
+        for (p, (pair, gap)) in state.pairs[k].iter_mut().zip(solved.rows[k].iter()).enumerate() {
             if pair.active {
                 // On a spring, S is no more than what follows the touch.
                 let touches = equations.closes(k, pair) && equations.stick_spring(k, pair).is_none();
-                pair.tangential.slip += if touches {
-                    equations.since_touch(k, pair, gap, &mut rows) * slip.along(&solved.at.increment)
-                } else {
-                    slip.gap
-                };
+                for (i, slip) in solved.slip_rows((k, p)).enumerate() {
+                    pair.tangential.slip[i] += if touches {
+                        equations.since_touch(k, pair, gap, &mut rows) * slip.along(&solved.at.increment)
+                    } else {
+                        slip.gap
+                    };
+                }
                 pair.tangential.before = pair.tangential.traction;
             } else {
                 pair.tangential = Tangential::default();
@@ -336,6 +373,6 @@ pub(crate) fn book_states(model: &Model, state: &mut State, dt: f64) {
     for pair in rubs.flat_map(|(_, pairs)| pairs).filter(|pair| pair.active) {
         rubbed.closed += dt;
         rubbed.stuck += if pair.tangential.hold == Hold::Stick { dt } else { 0.0 };
-        rubbed.farthest = rubbed.farthest.max(pair.tangential.slip.abs());
+        rubbed.farthest = rubbed.farthest.max(length(pair.tangential.slip));
     }
 }

@@ -316,8 +316,8 @@ pub(crate) fn book_contact_forces(model: &Model, state: &mut State) {
     }
     if model.has_friction() {
         let mut friction = vec![[0.0; 3]; model.contacts.len()];
-        each_slip(model, state, |k, p, row| {
-            let (traction, along) = (state.pairs[k][p].tangential.traction, row.normal());
+        each_slip(model, state, |k, _, traction, row| {
+            let along = row.normal();
             (0..3).for_each(|i| friction[k][i] -= traction * along[i]);
         });
         for (force, friction) in state.contact_forces.iter_mut().zip(friction) {

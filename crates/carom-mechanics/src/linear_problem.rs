@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! [ K  Fᵀ ] [Δy]   [−r]       K = w.mass a' M + w.internal K_int − w.external K_ext + Σ w.contact λ∇F   at the iterate
-//! [ G  −C ] [Δλ] = [−c]       G = ∇g,   F: direction of the forces, G itself, a discrete gradient of g, or ∇g − sμH of a slip
+//! [ G  −C ] [Δλ] = [−c]       G = ∇g,   F: direction of the forces, G itself, a discrete gradient of g, or ∇g − μ Σ d_α H_α of a slip
 //! ```
 //!
 //! Each correction is the factor's solution for the current residual. Mixed (`mixing.rs`) they are
@@ -66,6 +66,7 @@ pub(crate) struct LinearProblem {
     /// Size of the last correction, if comparable with the next.
     comparable: Option<f64>,
     rows: Vec<(usize, usize)>,
+    /// Whether each row is one of friction.
     slips: Vec<bool>,
 }
 
@@ -93,10 +94,12 @@ impl LinearProblem {
         depth: usize,
         timings: &mut Timings,
     ) -> Result<Correction, Rejected> {
-        if goal.fresh || self.rows != rows.places || self.slips != rows.slips {
+        let is_slip = || rows.slips.iter().map(Option::is_some);
+        if goal.fresh || self.rows != rows.places || !is_slip().eq(self.slips.iter().copied()) {
             self.restart();
             self.rows.clone_from(&rows.places);
-            self.slips.clone_from(&rows.slips);
+            self.slips.clear();
+            self.slips.extend(is_slip());
         }
         self.begin(equations, now, rows, timings)?;
         let mut total = Correction::default();
@@ -201,6 +204,9 @@ impl LinearProblem {
             let approach = row.along(&self.increment);
             let multiplier = if rows.compliances[r] == 0.0 {
                 self.gaps[r] -= weight * approach;
+                if rows.yields[r] != 0.0 {
+                    self.gaps[r] += weight * rows.yields[r] * self.multipliers[r];
+                }
                 self.multipliers[r]
             } else {
                 approach / rows.compliances[r]

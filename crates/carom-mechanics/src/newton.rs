@@ -102,7 +102,7 @@ pub(crate) fn solve_stage(
         let settled = step * if is_static { 1.0 } else { ratio.min(1.0) } <= tolerance * model.scale
             && now.measure.residual <= enough
             && (now.measure.gap <= GAP_TOLERANCE * model.scale
-                || now.measure.sticks && Constraints::gap(equations, &now) <= GAP_TOLERANCE * model.scale)
+                || now.measure.held && Constraints::gap(equations, &now) <= GAP_TOLERANCE * model.scale)
             && (is_static || are_balanced(equations, &now));
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
         work.trace.push(iterate(equations, &now, iteration, step, changed), &now.y);
@@ -239,10 +239,12 @@ fn advance(
         if length == 1.0 {
             equations.arrive(&mut at.increment);
         }
-        for ((&(k, p), is_slip), change) in rows.places.iter().zip(&rows.slips).zip(&correction.multipliers) {
+        for ((&(k, p), along), change) in rows.places.iter().zip(&rows.slips).zip(&correction.multipliers) {
             let pair = &mut at.pairings[k].pairs[p];
-            let multiplier = if *is_slip { &mut pair.tangential.traction } else { &mut pair.lambda };
-            *multiplier += length * change;
+            match along {
+                None => pair.lambda += length * change,
+                Some(along) => pair.tangential.pull(*along, length * change),
+            }
         }
         equations.evaluate(at, &mut work.spare, &mut work.timings)
     };

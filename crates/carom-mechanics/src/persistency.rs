@@ -11,7 +11,7 @@
 //! (`cone.rs`). With a restitution, energy is returned (`restitution.rs`) before the accelerations
 //! are solved for.
 
-use carom_contact::{Row, Rows};
+use carom_contact::{Along, Row, Rows, inner};
 
 use crate::active_rows::{measure_all, pressing};
 use crate::cone::{Closed, Right};
@@ -46,7 +46,7 @@ pub(crate) fn project(
 
     let closing: Vec<f64> = rows.rows.iter().map(|row| -row.along(&state.v)).collect();
     let slips = closed.slip_rates(&state.v);
-    let stopping: Vec<f64> = slips.iter().map(|rate| -rate).collect();
+    let stopping: Vec<Along> = slips.iter().map(|rate| rate.map(|rate| -rate)).collect();
     let right = Right { forces: &vec![0.0; dofs], gaps: &closing, slips: &stopping };
     let jump = closed.impulse(model, state, &right, system)?;
     for i in (0..dofs).filter(|&i| !model.massless[i]) {
@@ -56,8 +56,9 @@ pub(crate) fn project(
         (0..3).for_each(|i| state.impulses[k][i] += impulse[i]);
     }
     let after = closed.slip_rates(&state.v);
-    let rates = slips.iter().zip(&after).map(|(before, after)| 0.5 * (before + after));
-    let mut rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| rate * q).sum::<f64>();
+    let mean = |(before, after): (&Along, &Along)| [0, 1].map(|i| 0.5 * (before[i] + after[i]));
+    let rates = slips.iter().zip(&after).map(mean);
+    let mut rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| inner(rate, *q)).sum::<f64>();
 
     let before = state.ledger.kinetic;
     take(model, state, before - model.kinetic(&state.v) + rubbed);
@@ -82,7 +83,8 @@ pub(crate) fn accelerate(
     system: &mut System,
 ) -> Result<(), Rejected> {
     let (forces, bending) = drive(model, state, gaps, closed);
-    let turning: Vec<f64> = closed.slip_curvatures(model, state).iter().map(|c| -c).collect();
+    let turning: Vec<Along> =
+        closed.slip_curvatures(model, state).iter().map(|bent| bent.map(|b| -b)).collect();
     let right = Right { forces: &forces, gaps: &bending, slips: &turning };
     let motion = closed.accelerate(model, state, &right, system)?;
     for &i in &model.free {
@@ -109,9 +111,9 @@ fn drive(model: &Model, state: &State, gaps: &[Rows], closed: &Closed) -> (Vec<f
     for (k, p) in pressing(state).filter(|&place| others(place)) {
         gaps[k].row(p).add_to(state.pairs[k][p].lambda, &mut carried);
     }
-    each_slip(model, state, |k, p, row| {
+    each_slip(model, state, |k, p, traction, row| {
         if others((k, p)) {
-            row.add_to(state.pairs[k][p].tangential.traction, &mut carried);
+            row.add_to(traction, &mut carried);
         }
     });
     let force = |i: usize| model.gravity[i] + state.f_external[i] - state.f_internal[i] - carried[i];
@@ -138,9 +140,9 @@ pub(crate) fn averaged_contact_into(model: &Model, state: &mut State, rows: &[Ro
     state.f_friction.clear();
     if model.has_friction() {
         let mut friction = vec![0.0; model.dofs()];
-        each_slip(model, state, |k, p, row| {
+        each_slip(model, state, |k, _, traction, row| {
             if !model.contacts[k].at_the_end {
-                row.add_to(state.pairs[k][p].tangential.traction, &mut friction);
+                row.add_to(traction, &mut friction);
             }
         });
         state.f_contact.iter_mut().zip(&friction).for_each(|(force, part)| *force += part);

@@ -14,7 +14,7 @@
 //! law for the impulse (`cone.rs`): what it takes is not owed. Which nodes stick depends on f,
 //! which is iterated.
 
-use carom_contact::{Hold, Row, Tangential};
+use carom_contact::{Along, Hold, Row, Tangential, inner};
 
 use crate::active_rows::{measure, pressing};
 use crate::cone::{Closed, Right};
@@ -126,8 +126,10 @@ fn settle(
     let sticks = |&(k, p): &(usize, usize)| {
         state.pairs[k][p].active && state.pairs[k][p].tangential.hold == Hold::Stick
     };
-    let stop = |(place, rate): (&(usize, usize), &f64)| if sticks(place) { 0.0 } else { -rate };
-    let stopping: Vec<f64> = closed.places.iter().zip(&slips).map(stop).collect();
+    let stop = |(place, rate): (&(usize, usize), &Along)| {
+        if sticks(place) { [0.0; 2] } else { rate.map(|rate| -rate) }
+    };
+    let stopping: Vec<Along> = closed.places.iter().zip(&slips).map(stop).collect();
     // Stick, slip and tractions of the state are not those of these impulses.
     let of_state = |&(k, p): &(usize, usize)| state.pairs[k][p].tangential;
     let tangentials: Vec<Tangential> = closed.places.iter().map(of_state).collect();
@@ -153,7 +155,11 @@ fn settle(
         let share = factor / reach;
         let rates = closed.slip_rates(&motion.x);
         let works = motion.tangential.iter().zip(slips.iter().zip(&rates));
-        let rubbed = -works.map(|(q, (rate, change))| share * q * (rate + 0.5 * share * change)).sum::<f64>();
+        let work = |(q, (rate, change)): (&Along, (&Along, &Along))| {
+            let rates = [0, 1].map(|i| rate[i] + 0.5 * share * change[i]);
+            inner(q.map(|q| share * q), rates)
+        };
+        let rubbed = -works.map(work).sum::<f64>();
         for i in (0..forces.len()).filter(|&i| !model.massless[i]) {
             state.v[i] += share * motion.x[i];
         }

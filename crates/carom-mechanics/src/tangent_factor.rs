@@ -177,6 +177,10 @@ impl TangentFactor {
                     saddle.add_direction(row, a, slope);
                 }
             });
+            let yields = rows.yields.iter().zip(&rows.weights).zip(&self.places);
+            for ((compliance, weight), row) in yields.filter(|((compliance, _), _)| **compliance != 0.0) {
+                row.iter().for_each(|&row| saddle.yields(row, weight * compliance));
+            }
         }
         let mut add = |a: usize, b: usize, value: f64| {
             if let (Some(a), Some(b)) = (place(a), place(b)) {

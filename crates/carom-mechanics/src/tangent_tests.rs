@@ -1,6 +1,6 @@
 //! The matrix-free tangent of Newton's linear problem against differences of the whole residual.
 
-use carom_contact::{ConservingUnilateral, Hold};
+use carom_contact::{Along, ConservingUnilateral, Hold, inner};
 use carom_formula::Formula;
 use carom_solid::{Element, Law, generate};
 use carom_time::schemes::energy_momentum::EnergyMomentum;
@@ -64,13 +64,21 @@ impl<'a> Tangent<'a> {
         let (free, mut at) = (&equations.model.free, at.clone());
         let (dofs, multipliers) = u.split_at(free.len());
         free.iter().zip(dofs).for_each(|(&dof, u)| at.increment[dof] += e * u);
-        for ((&(k, p), is_slip), u) in rows.places.iter().zip(&rows.slips).zip(multipliers) {
+        for ((&(k, p), slip), u) in rows.places.iter().zip(&rows.slips).zip(multipliers) {
             let pair = &mut at.pairings[k].pairs[p];
-            *(if *is_slip { &mut pair.tangential.traction } else { &mut pair.lambda }) += e * u;
+            match slip {
+                None => pair.lambda += e * u,
+                Some(along) => pair.tangential.pull(*along, e * u),
+            }
         }
         let now = equations.evaluate(at, &mut work.spare, &mut work.timings).unwrap();
-        let gap = |(&(k, p), is_slip): (&(usize, usize), &bool)| {
-            if *is_slip { now.slips[k].row(p).gap } else { now.rows[k].row(p).gap }
+        // The direction across a slip turns with it.
+        let gap = |(&(k, p), slip): (&(usize, usize), &Option<Along>)| {
+            let across = match now.at.pairings[k].pairs[p].tangential.hold {
+                Hold::Slip([x, y]) => slip.map(|_| [-y, x]),
+                Hold::Stick => *slip,
+            };
+            across.map_or(now.rows[k].row(p).gap, |along| inner(along, now.slip_of((k, p))))
         };
         let gaps = rows.places.iter().zip(&rows.slips).map(gap);
         let gaps = gaps.zip(&rows.weights).map(|(gap, weight)| weight * gap);
@@ -171,10 +179,10 @@ fn the_whole_tangent_with_friction_is_the_derivative_of_the_residual() {
             sim.advance(&mut GridReport::default()).unwrap();
         }
         let mut state = sim.state().clone();
-        let holds = [Hold::Stick, Hold::Forward, Hold::Backward, Hold::Stick];
+        let holds = [Hold::Stick, Hold::Slip([1.0, 0.0]), Hold::Slip([-1.0, 0.0]), Hold::Stick];
         let closed = state.pairs[0].iter_mut().filter(|pair| pair.active);
         for (pair, hold) in closed.zip(holds.iter().cycle()) {
-            (pair.tangential.hold, pair.tangential.traction) = (*hold, 0.1 * pair.lambda);
+            (pair.tangential.hold, pair.tangential.traction) = (*hold, [0.1 * pair.lambda, 0.0]);
         }
         let at = Iterate::at_start(&state);
         // These two were open, and would fly through the other side.
@@ -184,12 +192,81 @@ fn the_whole_tangent_with_friction_is_the_derivative_of_the_residual() {
         closed.take(2).for_each(|pair| pair.active = false);
         let equations = equations(sim.model(), &state, &scheme, sim.dt(), state.time + sim.dt());
         let mut tangent = Tangent::from(&equations, at, 1e-3);
-        let (sticks, rows) = (tangent.rows.slips.iter().filter(|slip| **slip).count(), tangent.rows.len());
+        let (sticks, rows) = (tangent.rows.slips.iter().flatten().count(), tangent.rows.len());
         assert!(sticks >= 2 && rows - sticks > sticks, "{sticks} {rows}");
         let u = tangent.direction(0.1);
         let ku = tangent.product(&u);
         for (i, (numeric, k)) in tangent.derivative(&u, 2.5e-5).iter().zip(&ku).enumerate() {
             assert!((numeric - k).abs() < 1e-6 * largest(&ku), "{i}: {numeric} {k}");
+        }
+    }
+}
+
+/// A block of tetrahedra that strikes another one obliquely, with curved facets.
+fn strike_in_space() -> Model {
+    let element = Element::Tet10;
+    let upper = generate::cuboid(element, [0.2, 0.15, 0.005], [0.9, 0.8, 0.505], [2, 1, 1]).unwrap();
+    let lower = generate::cuboid(element, [0.0, 0.0, -0.5], [1.2, 1.0, 0.0], [2, 2, 1]).unwrap();
+    let parts = parts([upper, lower], Law::NeoHookean { lambda: 200.0, mu: 15.0 }, 0.25);
+    let fixed: Vec<usize> = nodes(&parts[1], "bottom")
+        .into_iter()
+        .flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2])
+        .collect();
+    let strike = contact(&parts, (0, "bottom"), (1, "top"));
+    let mut model = model(parts, &fixed, Motions::default(), Loads::default(), vec![strike]);
+    for node in model.parts[0].nodes() {
+        model.initial_velocity[3 * node..3 * node + 3].copy_from_slice(&[0.7, -0.4, -3.0]);
+    }
+    model
+}
+
+/// With nodes that stick and others that slip in any direction, also one that differs from that of their
+/// slip: the direction is an unknown. The rate changes the coefficient.
+#[test]
+fn the_whole_tangent_with_friction_in_space_is_the_derivative_of_the_residual() {
+    let mut conserving = strike_in_space();
+    conserving.contacts[0].interface = Box::new(ConservingUnilateral);
+    let chung_hulbert = Scheme::chung_hulbert(0.6).unwrap();
+    let cases: [(Model, Box<dyn Kernel>); 3] = [
+        (strike_in_space(), Box::new(chung_hulbert)),
+        (strike_in_space(), Box::new(Scheme::hht(0.2).unwrap())),
+        (conserving, Box::new(EnergyMomentum)),
+    ];
+    for (mut model, scheme) in cases {
+        let mut friction = Friction::coulomb(0.4, 64);
+        (friction.slip, friction.decay) = (Some(0.2), 0.3);
+        model.contacts[0].friction = Some(friction);
+        let mut sim = simulation(model, chung_hulbert, 2e-3);
+        while sim.state().time < 0.02 {
+            sim.advance(&mut GridReport::default()).unwrap();
+        }
+        let state = sim.state();
+        let equations = equations(sim.model(), state, scheme.as_ref(), sim.dt(), state.time + sim.dt());
+        let mut at = Iterate::at_start(state);
+        for pair in at.pairings[0].pairs.iter_mut().filter(|pair| pair.active) {
+            pair.tangential.tangent = [0.6, 0.8, 0.0];
+            (pair.tangential.hold, pair.tangential.traction) =
+                (Hold::Stick, [0.1 * pair.lambda, 0.03 * pair.lambda]);
+        }
+        let mut tangent = Tangent::from(&equations, at, 1e-3);
+        let work = &mut tangent.work;
+        let now = equations.evaluate(tangent.at.clone(), &mut work.spare, &mut work.timings).unwrap();
+        let mut at = now.at.clone();
+        for (p, pair) in
+            at.pairings[0].pairs.iter_mut().enumerate().filter(|(p, pair)| pair.active && p % 3 > 0)
+        {
+            let ([x, y], (sin, cos)) = (now.slip_of((0, p)), 0.4_f64.sin_cos());
+            pair.tangential.hold = Hold::of([cos * x - sin * y, sin * x + cos * y], 0.0);
+        }
+        let mut tangent = Tangent::from(&equations, at, 1e-3);
+        let slips = tangent.rows.slips.iter().flatten();
+        let (sticks, rows) = (slips.clone().filter(|along| along.contains(&1.0)).count(), tangent.rows.len());
+        assert!(sticks > 2 && slips.count() > sticks + 1 && tangent.rows.yields.iter().any(|c| *c > 0.0));
+        assert!(rows > 12, "{rows}");
+        let u = tangent.direction(0.1);
+        let ku = tangent.product(&u);
+        for (i, (numeric, k)) in tangent.derivative(&u, 2.5e-5).iter().zip(&ku).enumerate() {
+            assert!((numeric - k).abs() < 1e-6 * largest(&ku), "{i}: {numeric} {k} of {}", largest(&ku));
         }
     }
 }

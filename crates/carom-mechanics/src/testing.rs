@@ -1,6 +1,6 @@
-//! Small plane models from plain numbers, for unit tests.
+//! Small models from plain numbers, for unit tests.
 
-use carom_contact::{Detection, NodeToFacet, Surface, Unilateral};
+use carom_contact::{Boundary, Detection, Kinematics, NodeToFacet, NodeToPatch, Surface, Unilateral};
 use carom_solid::{Law, LoadedSide, Mesh, body};
 use carom_time::Kernel;
 
@@ -33,7 +33,7 @@ pub(crate) fn loaded(part: &BodyInstance, side: &str) -> LoadedSide {
     LoadedSide::new(mesh, &mesh.sides[side], part.first_node, 1.0)
 }
 
-/// Contact of a side of one body with a side of another, by multipliers.
+/// Contact of a side of one body with a side of another, by multipliers, in the plane or in space.
 pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary: (usize, &str)) -> Contact {
     let facets = |(k, side): (usize, &str)| -> Vec<Vec<usize>> {
         let of =
@@ -44,10 +44,15 @@ pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary:
     let (secondary_nodes, target) = (nodes(&parts[secondary.0], secondary.1), facets(primary));
     let mut surface = [&secondary_nodes[..], &nodes(&parts[primary.0], primary.1)].concat();
     surface.sort_unstable();
-    let target = Surface::new(shape(primary.0), &target, &vec![1.0; target.len()]);
+    let kinematics: Box<dyn Kinematics> = if parts[0].body.mesh().dimension() == 3 {
+        Box::new(NodeToPatch::new(secondary_nodes, Boundary::new(shape(primary.0), &target, &[], 0)))
+    } else {
+        let target = Surface::new(shape(primary.0), &target, &vec![1.0; target.len()]);
+        Box::new(NodeToFacet::new(secondary_nodes, target, Detection::ClosestPoint))
+    };
     Contact {
         name: "strike".to_owned(),
-        kinematics: Box::new(NodeToFacet::new(secondary_nodes, target, Detection::ClosestPoint)),
+        kinematics,
         interface: Box::new(Unilateral),
         primary_part: Some(primary.0),
         itself: false,
@@ -72,7 +77,8 @@ pub(crate) fn model(
     loads: Loads,
     contacts: Vec<Contact>,
 ) -> Model {
-    let mass = Mass::assemble(2, &parts, &vec![false; parts.len()]);
+    let dimension = parts[0].body.mesh().dimension();
+    let mass = Mass::assemble(dimension, &parts, &vec![false; parts.len()]);
     for part in &mut parts {
         part.total_mass = part.nodes().flat_map(|node| mass.row(node)).map(|(_, mass)| mass).sum();
     }
@@ -84,13 +90,13 @@ pub(crate) fn model(
     let mut unknown = vec![usize::MAX; dofs];
     free.iter().enumerate().for_each(|(place, &dof)| unknown[dof] = place);
     Model {
-        dimension: 2,
+        dimension,
         initial_position: reference.clone(),
         initial_velocity: vec![0.0; dofs],
         fixed: constrained,
         free,
         unknown,
-        massless: (0..dofs).map(|dof| mass.is_massless(dof / 2)).collect(),
+        massless: (0..dofs).map(|dof| mass.is_massless(dof / dimension)).collect(),
         mass,
         gravity: vec![0.0; dofs],
         loads,

@@ -59,6 +59,9 @@ fn column(name: &str) -> PyResult<(Unit, Values)> {
         "friction" => (Unit::None, Text(|row| &row.friction)),
         "traction" => (Unit::Force, Real(|row| row.traction)),
         "slip" => (Unit::Length, Real(|row| row.slip)),
+        "friction_x" => (Unit::Force, Real(|row| row.rubbing[0])),
+        "friction_y" => (Unit::Force, Real(|row| row.rubbing[1])),
+        "friction_z" => (Unit::Force, Real(|row| row.rubbing[2])),
         other => return Err(PyRuntimeError::new_err(format!("the column {other} has no type"))),
     })
 }

@@ -39,21 +39,26 @@ pub struct ContactRow<'a> {
     /// `stick` or `slip`; `none` without friction.
     pub friction: Cow<'a, str>,
     /// Tangential traction: the force on the node is −traction · J normal, with J a quarter turn
-    /// counter-clockwise; on a facet of a body, along its tangent with the same sense as its nodes.
+    /// counter-clockwise; on a facet of a body, along its tangent with the same sense as its nodes. In
+    /// space the length of `rubbing`.
     pub traction: f64,
-    /// Slip since the node came into contact, in the direction of the traction.
+    /// Slip since the node came into contact, in the direction of the traction; in space its length.
     pub slip: f64,
+    /// Force of friction on the node, in space.
+    pub rubbing: [f64; 3],
 }
 
 /// Header of `contact.csv` for this number of axes.
 pub fn contact_columns(axes: usize) -> Vec<&'static str> {
     let (places, normals) = (&["x", "y", "z"][..axes], &["normal_x", "normal_y", "normal_z"][..axes]);
+    let rubbing = &["friction_x", "friction_y", "friction_z"][..if axes == 3 { 3 } else { 0 }];
     [
         &["step", "time", "contact", "node"][..],
         places,
         &["facet", "xi", "gap", "multiplier", "pressure"],
         normals,
         &["friction", "traction", "slip"],
+        rubbing,
     ]
     .concat()
 }
@@ -141,6 +146,9 @@ impl Table {
         self.text(&row.friction)?;
         self.number(row.traction)?;
         self.number(row.slip)?;
+        if axes == 3 {
+            row.rubbing.iter().try_for_each(|force| self.number(*force))?;
+        }
         self.end_row()
     }
 

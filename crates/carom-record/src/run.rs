@@ -207,6 +207,7 @@ fn contact(lines: &Lines, axes: usize) -> Result<Vec<ContactRow<'static>>, Recor
             friction: record.get(after + 5 + axes).unwrap_or_default().to_string().into(),
             traction: real(after + 6 + axes)?,
             slip: real(after + 7 + axes)?,
+            rubbing: if axes == 3 { vector(after + 8 + axes)? } else { [0.0; 3] },
         });
         Ok(())
     })?;

@@ -66,6 +66,7 @@ fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordError> {
             friction: "none".into(),
             traction: 0.0,
             slip: 0.0,
+            rubbing: [0.0; 3],
         };
         writer.contact(&row)?;
     }
@@ -332,6 +333,7 @@ fn what_is_written_is_read_back() {
         friction: "none".into(),
         traction: 0.0,
         slip: 0.0,
+        rubbing: [0.0; 3],
     };
     writer.contact(&row).unwrap();
     let event = Event::new(3, 0.1, "cycle", "line\nbreak").with("nodes", vec![1, 2]);

@@ -106,12 +106,6 @@ impl Check<'_> {
             return;
         }
         let later = "it is planned for a later version of Carom";
-        if contact.friction.exists() {
-            let key = if contact.friction.mu.is_some() { "mu" } else { "shear" };
-            let what = format!("`{key}` cannot be used in dimension 3");
-            let why = format!("friction with two tangential directions is not implemented: {later}");
-            self.add_unique(contact.path(key), what, why, "leave it out, or compute a plane section");
-        }
         if contact.detection == Detection::Trajectory {
             let what = "detection = \"trajectory\" cannot be used in dimension 3";
             let why = "it is the method of the paper, for the plane";

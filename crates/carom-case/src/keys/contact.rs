@@ -88,8 +88,8 @@ pub(super) const CONTACT: Table = Table {
             Formula(IN_SPACE_AND_TIME),
             "Coefficient of Coulomb friction μ, for the slip of the secondary side on the primary one: a node sticks while its tangential force is \
              less than μ times its normal force, and otherwise slips against exactly this force. A number, or a formula of the node's reference \
-             position and time. 0: no friction. Default: no friction, or that of `shear`. Dimension 2; rigid obstacles that do not turn, and \
-             sides of bodies.",
+             position and time. 0: no friction. Default: no friction, or that of `shear`. Dimension 2, and with multipliers dimension 3; rigid \
+             obstacles that do not turn, and sides of bodies.",
         )
         .optional()
         .example("0.3"),

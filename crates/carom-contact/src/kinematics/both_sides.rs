@@ -187,7 +187,7 @@ impl<K: OneWay> Kinematics for BothSides<K> {
         direction.measure(&mut local, y, rows)?;
         (pair.xi, pair.eta) = (local.xi, local.eta);
         if is_reverse {
-            rows.reverse_last();
+            rows.reverse_from(rows.len() - 1);
         }
         Ok(())
     }
@@ -199,15 +199,16 @@ impl<K: OneWay> Kinematics for BothSides<K> {
 
     fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let (direction, node) = self.direction(pair.node);
+        let first = rows.len();
         direction.slip(&Pair { node, ..*pair }, y, rows)?;
         if node != pair.node {
-            rows.reverse_last();
+            rows.reverse_from(first);
         }
         Ok(())
     }
 
-    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], matrix: &mut [f64]) {
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]) {
         let (direction, node) = self.direction(pair.node);
-        direction.slip_derivative_into(&Pair { node, ..*pair }, y, matrix);
+        direction.slip_derivative_into(&Pair { node, ..*pair }, y, tangent, matrix);
     }
 }

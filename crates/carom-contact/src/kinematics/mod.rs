@@ -17,6 +17,7 @@ mod projection;
 mod space;
 mod surface;
 mod swept;
+mod tangents;
 mod trajectory;
 
 pub use both_sides::BothSides;
@@ -111,18 +112,20 @@ pub trait Kinematics: Send + Sync {
     /// entries of `curvature`, row-major.
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]);
 
-    /// Adds the row H of the slip of a pair measured at `y`, over the nodes of its gap: H·Δy is the
-    /// tangential motion of the first node relative to the other side, which turns with it. A slip
-    /// from y₀ to y₁ is H·(y₁ − y₀) at their midpoint, where every finite rigid motion of the pair
-    /// is an infinitesimal one: the slip is exactly zero. Plane only.
+    /// Adds the rows H_α of the slip of a pair measured at `y`, over the nodes of its gap, one per
+    /// tangent: H_α·Δy is the tangential motion of the first node relative to the other side, which
+    /// turns with it. A slip from y₀ to y₁ is H·(y₁ − y₀) at their midpoint, where every finite rigid
+    /// motion of the pair is an infinitesimal one: the slip is exactly zero. The first node's part of
+    /// a row is the tangent; the plane has one, space two (`tangents.rs`).
     ///
     /// # Errors
     /// If there is no unique closest point; no row is added.
     fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError>;
 
-    /// ∂H/∂y of a pair measured at `y`: overwrites the first `(n·D)²` entries of `matrix`,
-    /// row-major, not symmetric.
-    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], matrix: &mut [f64]);
+    /// ∂H_α/∂y of a pair measured at `y`, with tangents that turn with the normal only: overwrites the
+    /// first `(n·D)²` entries of `matrix`, row-major, not symmetric. In space `pair` has the tangent of
+    /// these positions.
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]);
 }
 
 /// If gaps cost nothing, every node is tracked in every step.

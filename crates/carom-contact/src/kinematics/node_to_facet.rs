@@ -427,7 +427,7 @@ impl Kinematics for NodeToFacet {
         Ok(())
     }
 
-    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], matrix: &mut [f64]) {
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: usize, matrix: &mut [f64]) {
         let facet = self.primary.facet(pair.facet);
         self.gap_of(pair, self.places(y)).slip_derivative_into(facet.nodes.len(), matrix);
     }

@@ -7,15 +7,18 @@
 //! ∂²g/∂x² = R H Rᵀ = ∂²g/∂c² = −∂²g/∂x∂c     ∂²g/∂x∂θ = R (Jn − H Js) = −∂²g/∂c∂θ     ∂²g/∂θ² = Js·H Js − n·s
 //! ```
 //!
-//! The slip of an obstacle that does not turn has the row ∂S/∂x = τ = Jn = −∂S/∂c, with
-//! ∂τ/∂x = −h n τᵀ where H = h (1 − n nᵀ).
+//! The slip of an obstacle that does not turn has the rows ∂S/∂x = τ = −∂S/∂c of every tangent, in the
+//! plane τ = Jn, with ∂τ/∂x = −h n τᵀ where H = h (1 − n nᵀ).
 //!
 //! The angle is the first component of a node of its own, as the arc θℓ, a length like every other
 //! unknown; the force on it is moment/ℓ. So motion of an obstacle is motion of nodes: supports
 //! prescribe it, masses make it free, and reactions and works are theirs.
 
+use carom_algebra::Vector;
+
 use super::obstacle::{AtCorner, Near, Obstacle, Point};
 use super::passed::{Passed, SHARE, share};
+use super::tangents::tangents;
 use super::{Kinematics, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
@@ -109,6 +112,14 @@ impl NodeToObstacle {
         let nearest = line.nearest(at);
         let is_inside = |piece: usize| line.near(piece, at).is_some_and(|near| near.gap < 0.0);
         if is_inside(nearest) && is_inside(pair.facet) { pair.facet } else { nearest }
+    }
+
+    /// A tangent of a pair.
+    fn tangent(&self, pair: &Pair, normal: Point, tangent: usize) -> Point {
+        if self.dimension == 2 {
+            return turned(normal);
+        }
+        tangents(Vector(normal), pair.tangential.tangent)[tangent].0
     }
 
     fn near(&self, piece: usize, at: Point, node: usize) -> Result<Near, ContactError> {
@@ -251,24 +262,27 @@ impl Kinematics for NodeToObstacle {
 
     fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
-        let along = turned(self.near(pair.facet, self.local(node, y).at, node)?.normal);
-        match &self.carrier {
-            None => rows.push(0.0, [(node, along)]),
-            Some(Carrier { node: carrier, .. }) => {
-                rows.push(0.0, [(node, along), (*carrier, along.map(|x| -x))]);
+        let normal = self.near(pair.facet, self.local(node, y).at, node)?.normal;
+        for tangent in 0..self.dimension - 1 {
+            let along = self.tangent(pair, normal, tangent);
+            match &self.carrier {
+                None => rows.push(0.0, [(node, along)]),
+                Some(Carrier { node: carrier, .. }) => {
+                    rows.push(0.0, [(node, along), (*carrier, along.map(|x| -x))]);
+                }
             }
         }
         Ok(())
     }
 
-    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], matrix: &mut [f64]) {
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]) {
         let (d, blocks) = (self.dimension, self.stencil());
         let size = d * blocks;
         let matrix = &mut matrix[..size * size];
         matrix.fill(0.0);
         let at = self.local(self.secondary[pair.node], y).at;
         let Some(Near { normal, bend, .. }) = self.shape.near(pair.facet, at) else { return };
-        let along = turned(normal);
+        let along = self.tangent(pair, normal, tangent);
         let sign = |block: usize| if block == 0 { 1.0 } else { -1.0 };
         for (p, q) in (0..blocks).flat_map(|p| (0..blocks).map(move |q| (p, q))) {
             for (i, k) in (0..d).flat_map(|i| (0..d).map(move |k| (i, k))) {

@@ -7,5 +7,6 @@ mod discrete_gradient;
 mod kinks;
 mod obstacles;
 mod slip;
+mod slip_in_space;
 mod space;
 mod update_facets;

@@ -97,7 +97,7 @@ fn the_derivative_of_the_row_is_that_of_differences() {
             let contact = contact.as_ref();
             let n = contact.stencil() * 2;
             let mut matrix = vec![0.0; n * n];
-            contact.slip_derivative_into(&slip(contact, y).0, y, &mut matrix);
+            contact.slip_derivative_into(&slip(contact, y).0, y, 0, &mut matrix);
             let error = jacobian_error(y, 1e-3, |y| slip(contact, y).1, &matrix);
             assert!(error < 1e-8, "{k} {height}: {error:e}");
         }

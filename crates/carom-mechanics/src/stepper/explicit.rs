@@ -34,11 +34,11 @@ use carom_algebra::{Kind, complementarity, coulomb, proximal};
 use carom_contact::{Pair, Pairing, Rows, Tangential};
 
 use super::forward::Forward;
-use super::rubbing::{hold, kind};
+use super::rubbing::{hold, kind, tangents};
 use super::scratch::Scratch;
 use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, moves, overconstrained};
 use super::{Accepted, StepReport, Stepper, difference};
-use crate::constraints::independent_rows;
+use crate::constraints::{independent, independent_rows};
 use crate::contact_update::{GAP_TOLERANCE, search};
 use crate::friction::{book_states, each_slip};
 use crate::ledger::book_contact_forces;
@@ -213,9 +213,7 @@ impl Explicit {
         }
         if model.has_friction() {
             let mut friction = vec![0.0; state.a.len()];
-            each_slip(model, state, |k, p, row| {
-                row.add_to(state.pairs[k][p].tangential.traction, &mut friction);
-            });
+            each_slip(model, state, |_, _, traction, row| row.add_to(traction, &mut friction));
             state.f_contact.iter_mut().zip(&friction).for_each(|(force, part)| *force += part);
             state.f_friction = friction;
         }
@@ -304,15 +302,17 @@ impl Explicit {
             places.iter().for_each(|&(k, p)| acting.push_row(rows[k].row(p)));
             kinds.clear();
             kinds.resize(places.len(), Kind::Normal);
-            let of = |pair: &Pair| [-pair.lambda, -pair.tangential.traction];
             impulses.clear();
-            impulses.extend(places.iter().map(|&(k, p)| of(&pairings[k].pairs[p])[0]));
+            impulses.extend(places.iter().map(|&(k, p)| -pairings[k].pairs[p].lambda));
             for (i, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
                 let Some(law) = laws[k].get(pairings[k].pairs[p].node) else { continue };
-                let pair = &pairings[k].pairs[p];
+                let (first, pair) = (acting.len(), &mut pairings[k].pairs[p]);
                 slip_into(model, state, (k, pair), acting)?;
-                kinds.push(kind(law, i, state, (k, pair), acting.row(acting.len() - 1), before));
-                impulses.push(of(&pairings[k].pairs[p])[1]);
+                let kind = kind(law, i, state, (k, pair), (acting, first), before);
+                for traction in &pair.tangential.traction[..acting.len() - first] {
+                    kinds.push(kind);
+                    impulses.push(-traction);
+                }
             }
             let (mut matrix, mut right) = self.matrix(acting);
             for (i, &(k, p)) in places.iter().enumerate() {
@@ -331,7 +331,9 @@ impl Explicit {
             if !places.iter().map(named).eq(examined.iter().copied()) {
                 examined.clear();
                 examined.extend(places.iter().map(named));
-                dependent = independent_rows(model, places.iter().copied(), rows).len() < places.len();
+                dependent = independent_rows(model, places.iter().copied(), rows).len() < places.len()
+                    || model.dimension == 3
+                        && independent(model, acting.iter().enumerate()).len() < acting.len();
             }
             if dependent {
                 proximal(&mut matrix, &mut right, impulses);
@@ -342,35 +344,28 @@ impl Explicit {
                 complementarity(&matrix, &right, impulses)?;
             }
             for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
-                (pair.lambda, pair.tangential.traction) = (0.0, 0.0);
+                (pair.lambda, pair.tangential.traction) = (0.0, [0.0; 2]);
             }
             at.fill(0.0);
             for (row, force) in acting.iter().zip(impulses.iter()) {
                 row.add_to(*force, at);
             }
-            for (i, (kind, force)) in kinds.iter().zip(impulses.iter()).enumerate() {
-                match kind {
-                    Kind::Normal => {
-                        let (k, p) = places[i];
-                        pairings[k].pairs[p].lambda = -force;
-                    }
-                    Kind::Tangential { of, .. } => {
-                        let (k, p) = places[*of];
-                        pairings[k].pairs[p].tangential.traction = -force;
-                    }
-                }
+            for (&(k, p), force) in places.iter().zip(impulses.iter()) {
+                pairings[k].pairs[p].lambda = -force;
+            }
+            for (i, of, tangent) in tangents(kinds) {
+                let (k, p) = places[of];
+                pairings[k].pairs[p].tangential.traction[tangent] = -impulses[i];
             }
             for i in 0..free.len() {
                 velocity[i] = free[i] + dt * self.inverse_mass[i] * at[i];
             }
         }
-        for (i, kind) in kinds.iter().enumerate() {
-            if let Kind::Tangential { of, .. } = *kind {
-                let (k, p) = places[of];
-                let tangential = &mut pairings[k].pairs[p].tangential;
-                tangential.hold = hold(*kind, impulses[of], impulses[i]);
-                tangential.slip += dt * acting.row(i).along(velocity);
-            }
+        for (i, of, tangent) in tangents(kinds) {
+            let (k, p) = places[of];
+            let tangential = &mut pairings[k].pairs[p].tangential;
+            tangential.hold = hold(kinds[i], impulses[of], tangential.traction.map(|q| -q));
+            tangential.slip[tangent] += dt * acting.row(i).along(velocity);
         }
         for (contact, pairing) in model.contacts.iter().zip(pairings) {
             for pair in &mut pairing.pairs {
@@ -405,18 +400,21 @@ impl Explicit {
     }
 }
 
-/// Adds H at y_n of a pair.
+/// Adds H at y_n of a pair, which keeps the tangent there.
 fn slip_into(
     model: &Model,
     state: &State,
-    (k, pair): (usize, &Pair),
+    (k, pair): (usize, &mut Pair),
     rows: &mut Rows,
 ) -> Result<(), Rejected> {
     let (contact, mut at) = (&model.contacts[k], *pair);
     let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
     contact.kinematics.measure(&mut at, &state.y, rows).map_err(failed)?;
     rows.pop();
-    contact.kinematics.slip(&at, &state.y, rows).map_err(failed)
+    let first = rows.len();
+    contact.kinematics.slip(&at, &state.y, rows).map_err(failed)?;
+    pair.tangential.tangent = rows.row(first).first();
+    Ok(())
 }
 
 /// Contact, node and facet of the pairs with a force.

@@ -12,9 +12,9 @@ use carom_algebra::{Kind, LinearError, complementarity, coulomb, proximal};
 use carom_contact::{Law, Pairing, Rows, Tangential};
 use carom_time::ImpulseShares;
 
-use super::rubbing::{hold, kind};
+use super::rubbing::{hold, kind, tangents};
 use super::watch::{active, measure_into, moves, overconstrained};
-use crate::constraints::{Constraints, independent_rows};
+use crate::constraints::{Constraints, independent, independent_rows};
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
 use crate::model::Model;
@@ -94,16 +94,22 @@ impl Impulses {
         let mut restitution: Vec<f64> = places.iter().map(|&(k, _)| model.contacts[k].restitution).collect();
         let laws = model.friction_laws(state.time + dt)?;
         for (of, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
-            let (contact, pair) = (&model.contacts[k], &pairings[k].pairs[p]);
+            let (contact, pair) = (&model.contacts[k], &mut pairings[k].pairs[p]);
             let Some(law) = laws[k].get(pair.node) else { continue };
             let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
-            let mut slip = Rows::new(model.dimension);
-            contact.kinematics.slip(pair, predicted, &mut slip).map_err(failed)?;
-            rows.push_plain((k, p), slip.row(0), true);
+            let mut slips = Rows::new(model.dimension);
+            contact.kinematics.slip(pair, predicted, &mut slips).map_err(failed)?;
+            pair.tangential.tangent = slips.row(0).first();
             let law = Law { limit: dt * law.limit, ..*law };
-            kinds.push(kind(&law, of, state, (k, pair), slip.row(0), &state.v));
-            restitution.push(0.0);
+            let kind = kind(&law, of, state, (k, pair), (&slips, 0), &state.v);
+            for (slip, along) in slips.iter().zip([[1.0, 0.0], [0.0, 1.0]]) {
+                rows.push_plain((k, p), slip, Some(along));
+                kinds.push(kind);
+                restitution.push(0.0);
+            }
         }
+        let dependent = dependent
+            || model.dimension == 3 && independent(model, rows.rows.iter().enumerate()).len() < rows.len();
         let mut released = Vec::new();
         if !rows.is_empty() && (shares.velocity != 0.0 || shares.acceleration != 0.0) {
             work.system.mass_with(model, &Constraints::none(model.dimension))?;
@@ -154,7 +160,7 @@ impl Impulses {
         if self.dependent {
             proximal(&mut matrix, &mut right, &self.values);
         }
-        if self.rows.slips.contains(&true) {
+        if self.rows.slips.iter().any(Option::is_some) {
             for i in 0..count {
                 (0..i).for_each(|j| matrix[j * count + i] = matrix[i * count + j]);
             }
@@ -177,7 +183,7 @@ impl Impulses {
     /// pairs: work ½(Gv⁻ + Gv⁺)·P.
     pub(super) fn record(&self, dt: f64, next: &mut State, pairings: &mut [Pairing]) {
         for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
-            (pair.lambda, pair.tangential.traction) = (0.0, 0.0);
+            (pair.lambda, pair.tangential.traction) = (0.0, [0.0; 2]);
         }
         next.contact_forces.fill([0.0; 3]);
         for (r, (row, impulse)) in self.rows.rows.iter().zip(&self.values).enumerate() {
@@ -187,21 +193,24 @@ impl Impulses {
                 next.impulses[self.rows.places[r].0][i] += impulse * normal[i];
             }
             let work = 0.5 * impulse * (self.before[r] + row.along(&next.v));
-            let is_slip = self.rows.slips[r];
+            let is_slip = self.rows.slips[r].is_some();
             *(if is_slip { &mut next.ledger.friction_work } else { &mut next.ledger.contact_work }) += work;
-            let (k, p) = self.rows.places[r];
-            let pair = &mut pairings[k].pairs[p];
-            match self.kinds[r] {
-                Kind::Normal => pair.lambda = -impulse / dt,
-                kind @ Kind::Tangential { of, .. } => {
-                    pair.tangential = Tangential {
-                        hold: hold(kind, self.values[of], *impulse),
-                        traction: -impulse / dt,
-                        slip: pair.tangential.slip + dt * row.along(&next.v),
-                        ..Tangential::default()
-                    };
-                }
+            if !is_slip {
+                let (k, p) = self.rows.places[r];
+                pairings[k].pairs[p].lambda = -impulse / dt;
             }
+        }
+        for (r, of, tangent) in tangents(&self.kinds) {
+            let (k, p) = self.rows.places[r];
+            let tangential = &mut pairings[k].pairs[p].tangential;
+            let before = *tangential;
+            *tangential = Tangential { tangent: before.tangent, slip: before.slip, ..Tangential::default() };
+            let mut impulse = [0.0; 2];
+            // The row before is that of the other tangent.
+            impulse[..=tangent].copy_from_slice(&self.values[r - tangent..=r]);
+            tangential.hold = hold(self.kinds[r], self.values[of], impulse);
+            tangential.traction = impulse.map(|impulse| -impulse / dt);
+            tangential.slip[tangent] += dt * self.rows.rows.row(r).along(&next.v);
         }
     }
 }

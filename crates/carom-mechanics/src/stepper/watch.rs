@@ -24,7 +24,7 @@ pub(super) fn carry_into(
         pairing.pairs.clone_from(pairs);
         pairing.pairs.retain_mut(|pair| {
             let carried = pair.active || gap_at(contact, pair, &state.y, &mut row) < 0.0;
-            (pair.active, pair.lambda, pair.tangential.traction) = (false, 0.0, 0.0);
+            (pair.active, pair.lambda, pair.tangential.traction) = (false, 0.0, [0.0; 2]);
             carried
         });
         *pairing = watch(std::mem::take(&mut pairing.pairs));

@@ -356,6 +356,6 @@ fn reactions(model: &Model, state: &State) -> Vec<f64> {
             }
         }
     }
-    each_slip(model, state, |k, p, row| row.add_to(state.pairs[k][p].tangential.traction, &mut force));
+    each_slip(model, state, |_, _, traction, row| row.add_to(traction, &mut force));
     force
 }

@@ -1,9 +1,9 @@
 //! The rows of a state, as a run records them.
 
 use carom_case::Case;
-use carom_contact::Hold;
+use carom_contact::{Hold, Tangential, length};
 use carom_mechanics::model::Model;
-use carom_mechanics::{GridReport, Simulation, State, penetration};
+use carom_mechanics::{GridReport, Simulation, State, each_slip, penetration};
 use carom_record::{Column, ContactRow};
 
 use super::columns::{Since, center_weights, columns, row};
@@ -59,7 +59,14 @@ impl Rows {
 /// The active contact nodes of a state.
 pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> ContactStates<'a> {
     let mut rows = Vec::new();
-    for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
+    let in_space = model.dimension == 3;
+    let mut rubbing: Vec<Vec<[f64; 3]>> =
+        state.pairs.iter().map(|pairs| vec![[0.0; 3]; pairs.len()]).collect();
+    each_slip(model, state, |k, p, traction, row| {
+        let along = row.normal();
+        (0..3).for_each(|i| rubbing[k][p][i] -= traction * along[i]);
+    });
+    for ((contact, pairs), rubbing) in model.contacts.iter().zip(&state.pairs).zip(rubbing) {
         if pairs.iter().all(|p| !p.active) {
             continue;
         }
@@ -67,7 +74,8 @@ pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> 
         // In a dent, a node has several pairs.
         let mut of_node = vec![0.0; weights.len()];
         pairs.iter().filter(|p| p.active).for_each(|pair| of_node[pair.node] += pair.lambda);
-        for pair in pairs.iter().filter(|p| p.active) {
+        for (pair, rubbing) in pairs.iter().zip(rubbing).filter(|(pair, _)| pair.active) {
+            let Tangential { traction, slip, .. } = pair.tangential;
             let node = contact.kinematics.secondary()[pair.node];
             let y = &state.y[node * model.dimension..(node + 1) * model.dimension];
             let (gap, normal) = gap_of(contact, pair, state);
@@ -86,11 +94,12 @@ pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> 
                 friction: match (&contact.friction, pair.tangential.hold) {
                     (None, _) => "none",
                     (_, Hold::Stick) => "stick",
-                    (_, Hold::Forward | Hold::Backward) => "slip",
+                    (_, Hold::Slip(_)) => "slip",
                 }
                 .into(),
-                traction: pair.tangential.traction,
-                slip: pair.tangential.slip,
+                traction: if in_space { length(traction) } else { traction[0] },
+                slip: if in_space { length(slip) } else { slip[0] },
+                rubbing,
             });
         }
     }

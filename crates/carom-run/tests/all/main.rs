@@ -26,6 +26,7 @@ mod reversal;
 mod self_contact;
 mod space;
 mod space_contact;
+mod space_friction;
 mod statics;
 mod substeps;
 mod tangent;

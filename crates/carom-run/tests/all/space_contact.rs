@@ -5,7 +5,7 @@ use super::common::{finish, on_threads, simulation};
 use super::space::apart;
 use carom_run::Simulation;
 
-const IMPACT: &str = r#"
+pub(crate) const IMPACT: &str = r#"
 dimension = 2
 material = [{ name = "rubber", law = "neo-hookean", density = 0.25, lambda = 200.0, mu = 15.0 }]
 body = [
@@ -31,7 +31,7 @@ const SLABS: [&str; 7] = [
 
 const SIDES: &str = "contact=[{ name = \"strike\", secondary = \"upper.front\", primary = \"lower.back\" }]";
 
-fn slab(sets: &[&str]) -> Vec<String> {
+pub(crate) fn slab(sets: &[&str]) -> Vec<String> {
     SLABS.iter().chain([&SIDES]).chain(sets).map(ToString::to_string).collect()
 }
 
@@ -54,7 +54,7 @@ fn an_impact_of_slabs_is_that_of_the_plane() {
     }
 }
 
-const BALL: &str = r#"
+pub(crate) const BALL: &str = r#"
 dimension = 3
 material = [{ name = "rubber", law = "neo-hookean", density = 0.25, lambda = 200.0, mu = 15.0 }]
 body = [
@@ -68,7 +68,7 @@ newton = { tolerance = 1e-12 }
 "#;
 
 /// Momentum and moment of momentum.
-fn momenta(sim: &Simulation) -> [f64; 6] {
+pub(crate) fn momenta(sim: &Simulation) -> [f64; 6] {
     let (y, v) = (&sim.state().y, &sim.state().v);
     let mut p = vec![0.0; v.len()];
     sim.model().mass.multiply_into(v, &mut p);

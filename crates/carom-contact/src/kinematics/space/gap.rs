@@ -8,6 +8,15 @@
 //! ```
 //!
 //! In the plane this is the formula of `kinematics/gap.rs`. A > 0 at a unique closest point.
+//!
+//! The slip along a unit tangent e has the row, with e = Σ c_β τ_β,
+//!
+//! ```text
+//! H = (e; −φᵃ e + g s_a n),   s_a = Σ c_β φᵃ,_β            A ∂ξ/∂y = (H·τ_α) of all tangents
+//! ∂e = Σ c_β (n·∂τ_β) n,   ∂n = −Σ τ^β (n·∂τ_β),   ∂c_β = −τ^β·Σ c_γ ∂τ_γ,   τ^α = m⁻¹_αβ τ_β
+//! ```
+//!
+//! so that rigid motions have none, and its force neither a resultant nor a moment.
 
 use carom_algebra::{Mat, Vector};
 use carom_solid::FacetFunctions;
@@ -73,6 +82,75 @@ impl PatchGap {
                 for (i, k) in (0..9).map(|e| (e / 3, e % 3)) {
                     curvature[(3 * p + i) * size + 3 * q + k] = block.0[i][k];
                 }
+            }
+        }
+    }
+
+    /// n.
+    pub(crate) fn normal(&self) -> Vector<3> {
+        self.at.normal
+    }
+
+    /// c of a tangent.
+    fn components(&self, along: Vector<3>) -> Vector<2> {
+        self.at.metric().inverse().apply(&Vector(self.at.tangents.map(|t| t.dot(&along))))
+    }
+
+    /// H of a tangent, of the node and of `count` nodes of the facet.
+    pub(crate) fn slip(&self, along: Vector<3>, count: usize) -> impl Iterator<Item = Vector<3>> {
+        let (n, c, slopes) = (self.at.normal, self.components(along), &self.functions.slopes);
+        let of_facet = move |k: usize| {
+            let turned = self.distance * (c[0] * slopes[0][k] + c[1] * slopes[1][k]);
+            along * -self.functions.values[k] + n * turned
+        };
+        std::iter::once(along).chain((0..count).map(of_facet))
+    }
+
+    /// ∂H/∂y of a tangent, of the node and of `count` nodes of the facet, whose functions have these
+    /// second derivatives by ξξ, ξη and ηη: overwrites the first (3 + 3 `count`)² entries, row-major.
+    pub(crate) fn slip_derivative_into<T: AsRef<[f64]>>(
+        &self,
+        along: Vector<3>,
+        second: &[T; 3],
+        count: usize,
+        matrix: &mut [f64],
+    ) {
+        let PatchPoint { tangents: t, normal: n, second: bent, .. } = self.at;
+        let (gap, size, c) = (self.distance, 3 * (1 + count), self.components(along));
+        let (inverse, lifted) = (self.a.inverse(), self.at.metric().inverse());
+        let dual: [Vector<3>; 2] = std::array::from_fn(|i| t[0] * lifted.0[i][0] + t[1] * lifted.0[i][1]);
+        // φ, its slopes and its second derivatives; those of the node itself are −1 and 0.
+        let phi = |p: usize| if p == 0 { -1.0 } else { self.functions.values[p - 1] };
+        let slope =
+            |p: usize| Vector(if p == 0 { [0.0; 2] } else { self.functions.slopes.map(|s| s[p - 1]) });
+        let curved = |p: usize| -> Mat<2> {
+            let [a, b, d] = std::array::from_fn(|i| if p == 0 { 0.0 } else { second[i].as_ref()[p - 1] });
+            Mat([[a, b], [b, d]])
+        };
+        for (q, k) in (0..=count).flat_map(|q| (0..3).map(move |k| (q, k))) {
+            // Changes of ξ, of the tangents, of the direction and of the gap with one component of one
+            // node.
+            let driven = Vector(t.map(|t| -phi(q) * t[k])) + slope(q) * (gap * n[k]);
+            let xi = inverse.apply(&driven);
+            let stretched = [0, 1].map(|i| {
+                let mut change = bent[i] * xi[0] + bent[i + 1] * xi[1];
+                change.0[k] += slope(q)[i];
+                change
+            });
+            let tilts = stretched.map(|change| n.dot(&change));
+            let along_changed = n * (c[0] * tilts[0] + c[1] * tilts[1]);
+            let normal_changed = dual[0] * -tilts[0] + dual[1] * -tilts[1];
+            let pulled = stretched[0] * c[0] + stretched[1] * c[1];
+            let c_changed = Vector(dual.map(|dual| -dual.dot(&pulled)));
+            let opening = -phi(q) * n[k];
+            for p in 0..=count {
+                let share = slope(p).dot(&c);
+                let share_changed = curved(p).apply(&xi).dot(&c) + slope(p).dot(&c_changed);
+                let changed = along * -slope(p).dot(&xi)
+                    + along_changed * -phi(p)
+                    + n * (opening * share + gap * share_changed)
+                    + normal_changed * (gap * share);
+                (0..3).for_each(|i| matrix[(3 * p + i) * size + 3 * q + k] = changed[i]);
             }
         }
     }

@@ -10,3 +10,4 @@ mod patch;
 
 pub use boundary::{Boundary, ClosedSurface};
 pub use node_to_patch::NodeToPatch;
+pub(super) use patch::cross;

@@ -21,6 +21,7 @@ use carom_solid::{Bounds, Hull, Tree};
 use super::boundary::Boundary;
 use super::gap::PatchGap;
 use super::patch::{Feature, place};
+use crate::kinematics::tangents::tangents;
 use crate::kinematics::{Kinematics, OneWay};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
@@ -370,11 +371,26 @@ impl Kinematics for NodeToPatch {
         PatchGap::new(patch, y, from, [pair.xi, pair.eta]).curvature_into(patch.nodes.len(), curvature);
     }
 
-    fn slip(&self, pair: &Pair, _: &[f64], _: &mut Rows) -> Result<(), ContactError> {
-        Err(ContactError::Lost { node: self.secondary[pair.node], facet: pair.facet, xi: pair.xi })
+    fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        let (node, patch) = (self.secondary[pair.node], self.primary.patch(pair.facet));
+        let gap = PatchGap::new(patch, y, place(y, node), [pair.xi, pair.eta]);
+        let a = gap.regularity();
+        if a <= 0.0 || !a.is_finite() {
+            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a });
+        }
+        for along in tangents(gap.normal(), pair.tangential.tangent) {
+            let nodes = std::iter::once(&node).chain(patch.nodes);
+            let slopes = gap.slip(along, patch.nodes.len());
+            rows.push(0.0, nodes.zip(slopes).map(|(&n, slope)| (n, slope.0)));
+        }
+        Ok(())
     }
 
-    fn slip_derivative_into(&self, _: &Pair, _: &[f64], matrix: &mut [f64]) {
-        matrix.fill(0.0);
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]) {
+        let (patch, from) = (self.primary.patch(pair.facet), place(y, self.secondary[pair.node]));
+        let gap = PatchGap::new(patch, y, from, [pair.xi, pair.eta]);
+        let along = tangents(gap.normal(), pair.tangential.tangent)[tangent];
+        let second = patch.shape.second([pair.xi, pair.eta]);
+        gap.slip_derivative_into(along, &second, patch.nodes.len(), matrix);
     }
 }
