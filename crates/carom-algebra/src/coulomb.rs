@@ -5,21 +5,19 @@
 //! |Q_j| ≤ r_j,   Q_j = −r_j u_j/|u_j| where u_j ≠ 0,   r_j = min(μ_j P_j, limit_j)
 //! ```
 //!
-//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero. Rows
-//! that depend on each other come as a proximal step (`complementarity.rs`). Each tangential force
-//! belongs to one normal one; two in a row that belong to the same one are the components of a
-//! vector. Sweeps of the nonlinear Gauss–Seidel method find which contacts are open, stick, or
-//! slip; with that and the directions d of the slips the problem is linear and is solved exactly.
-//! Where its solution contradicts it, the sweeps go on. Directions of vectors follow from Newton's
-//! method: with e across d, Q = −r d + s e and
+//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero. Rows that
+//! depend on each other come as a proximal step (`complementarity.rs`). Each tangential force belongs to
+//! one normal one; two in a row that belong to the same one are the components of a vector. Sweeps of the
+//! nonlinear Gauss–Seidel method find which contacts are open, stick, or slip; with that and the
+//! directions d of the slips the problem is linear and is solved exactly. Where its solution contradicts
+//! it, the sweeps go on. Directions of vectors follow from Newton's method: with e across d, Q = −r d + s e
+//! and
 //!
 //! ```text
 //! e·u + (d·u/r) s = 0,   δd = −e s/r
 //! ```
 
-use faer::Mat;
-use faer::linalg::solvers::Solve;
-
+use crate::coulomb_exact::{Kind, State, second, settle};
 use crate::linear::LinearError;
 
 /// Sweeps between two attempts, and attempts.
@@ -31,25 +29,6 @@ const ROUND_OFF: f64 = 1e-11;
 const PROJECTIONS: usize = 4;
 /// Distance from the edge of the cone, relative to its radius, at which a vector slips.
 const EDGE: f64 = 1e-12;
-/// Corrections of directions, and one that is round-off.
-const CORRECTIONS: usize = 40;
-const TURN: f64 = 1e-13;
-
-/// Coulomb's law of an unknown: `Normal`, or `Tangential` with the index of its normal force and μ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// P ≥ 0.
-    Normal,
-    /// Q.
-    Tangential {
-        /// Index of P.
-        of: usize,
-        /// μ ≥ 0.
-        coefficient: f64,
-        /// Largest Q; may be infinite.
-        limit: f64,
-    },
-}
 
 /// r and whether it is the limit.
 fn radius(coefficient: f64, limit: f64, normal: f64) -> (f64, bool) {
@@ -63,33 +42,8 @@ fn radius(coefficient: f64, limit: f64, normal: f64) -> (f64, bool) {
     }
 }
 
-/// What an unknown does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum State {
-    Zero,
-    /// Its motion is zero.
-    Held,
-    /// −μ P d, or −limit d; of a vector, in the state of its first component.
-    Slips([f64; 2], bool),
-    /// The second component of a vector that slips.
-    Follows,
-}
-
-/// What a direction is worth: |u|/r, by the first component of a vector that slips.
-type Compliances = [f64];
-
-/// The second component of the vector whose first one this is.
-fn second(kinds: &[Kind], i: usize) -> Option<usize> {
-    let of = |i: usize| match kinds.get(i) {
-        Some(Kind::Tangential { of, .. }) => Some(*of),
-        _ => None,
-    };
-    let is_first = of(i).is_some() && (i == 0 || of(i - 1) != of(i));
-    (is_first && of(i) == of(i + 1)).then_some(i + 1)
-}
-
-/// Overwrites `z`, a first guess if it has the size, with the solution for a matrix by rows.
-/// Contacts that do not feel each other are solved apart.
+/// Overwrites `z`, a first guess if it has the size, with the solution for a matrix by rows. Contacts
+/// that do not feel each other are solved apart.
 ///
 /// # Errors
 /// If none is found, as for large μ, where there may be none.
@@ -249,115 +203,6 @@ fn sweep_vector(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut [f64], [i, j]: [us
         let [u, v] = [i, j].map(|row| b[row] + (0..n).map(|k| a[row * n + k] * z[k]).sum::<f64>());
         [z[i], z[j]] = on_disc([z[i] - u / stiffness, z[j] - v / stiffness], radius);
     }
-}
-
-/// The solution for given states, with the directions of vectors that slip, which are corrected.
-fn settle(a: &[f64], b: &[f64], kinds: &[Kind], states: &mut [State], z: &[f64]) -> Option<Vec<f64>> {
-    let n = kinds.len();
-    let mut worth = vec![0.0; n];
-    let mut now = z.to_vec();
-    for _ in 0..CORRECTIONS {
-        for i in 0..n {
-            let (Some(j), State::Slips(direction, limited)) = (second(kinds, i), states[i]) else { continue };
-            let Kind::Tangential { of, coefficient, limit } = kinds[i] else { continue };
-            let [u, v] = [i, j].map(|row| b[row] + (0..n).map(|k| a[row * n + k] * now[k]).sum::<f64>());
-            let radius = if limited { limit } else { coefficient * now[of] };
-            let along = direction[0] * u + direction[1] * v;
-            worth[i] = if radius > 0.0 { along.max(0.0) / radius } else { f64::INFINITY };
-        }
-        let (exact, turns) = solve(a, b, kinds, states, &worth)?;
-        let mut largest = 0.0_f64;
-        for (i, turn) in turns {
-            if let State::Slips([x, y], limited) = states[i] {
-                let Kind::Tangential { of, coefficient, limit } = kinds[i] else { continue };
-                let radius = if limited { limit } else { coefficient * exact[of] };
-                let turn = if radius > 0.0 { turn / radius } else { return None };
-                largest = largest.max(turn.abs());
-                let turned = [x + y * turn, y - x * turn];
-                let size = turned[0].hypot(turned[1]);
-                states[i] = State::Slips(turned.map(|x| x / size), limited);
-            }
-        }
-        if largest <= TURN {
-            return Some(exact);
-        }
-        now = exact;
-    }
-    None
-}
-
-/// The solution of the linear problem for given states, and the forces s across the directions of
-/// vectors that slip.
-#[allow(clippy::type_complexity)]
-fn solve(
-    a: &[f64],
-    b: &[f64],
-    kinds: &[Kind],
-    states: &[State],
-    worth: &Compliances,
-) -> Option<(Vec<f64>, Vec<(usize, f64)>)> {
-    let n = kinds.len();
-    // The forces and the motions of the unknowns: those that are held, and those across a slip.
-    let (mut forces, mut motions) = (Vec::new(), Vec::new());
-    let (mut names, mut diagonal) = (Vec::new(), Vec::new());
-    for i in 0..n {
-        match (states[i], second(kinds, i)) {
-            (State::Held, _) => {
-                forces.push(vec![(i, 1.0)]);
-                motions.push(vec![(i, 1.0)]);
-                names.push((i, false));
-                diagonal.push(0.0);
-            }
-            (State::Slips([x, y], _), Some(j)) if worth[i].is_finite() => {
-                forces.push(vec![(i, -y), (j, x)]);
-                motions.push(vec![(i, -y), (j, x)]);
-                names.push((i, true));
-                diagonal.push(worth[i]);
-            }
-            _ => {}
-        }
-    }
-    // A slip carries its normal force with it.
-    let slip = |j: usize| match (kinds[j], states[j]) {
-        (Kind::Tangential { of, coefficient, limit }, State::Slips(direction, limited)) => {
-            let components = [Some(j), second(kinds, j)].into_iter().flatten().zip(direction);
-            Some((of, components, if limited { (0.0, limit) } else { (coefficient, 0.0) }))
-        }
-        _ => None,
-    };
-    let mut fixed = vec![0.0; n];
-    for (of, components, (coefficient, limit)) in (0..n).filter_map(slip) {
-        let normal = names.iter().position(|&(i, across)| i == of && !across);
-        for (k, direction) in components {
-            if let Some(column) = normal.filter(|_| coefficient != 0.0) {
-                forces[column].push((k, -direction * coefficient));
-            }
-            if limit != 0.0 {
-                fixed[k] = -direction * limit;
-            }
-        }
-    }
-    let size = names.len();
-    let along = |motion: &[(usize, f64)], of: &dyn Fn(usize) -> f64| -> f64 {
-        motion.iter().map(|&(row, factor)| factor * of(row)).sum()
-    };
-    let mut matrix = Mat::from_fn(size, size, |r, c| {
-        let moved = |row: usize| forces[c].iter().map(|&(j, factor)| factor * a[row * n + j]).sum::<f64>();
-        along(&motions[r], &moved)
-    });
-    (0..size).for_each(|i| matrix[(i, i)] += diagonal[i]);
-    let known = |row: usize| b[row] + (0..n).map(|j| a[row * n + j] * fixed[j]).sum::<f64>();
-    let mut right = Mat::from_fn(size, 1, |r, _| -along(&motions[r], &known));
-    matrix.partial_piv_lu().solve_in_place(right.as_mut());
-    let (mut z, mut turns) = (fixed, Vec::new());
-    for (r, &(i, across)) in names.iter().enumerate() {
-        if across {
-            turns.push((i, right[(r, 0)]));
-        } else {
-            forces[r].iter().for_each(|&(j, factor)| z[j] = factor * right[(r, 0)]);
-        }
-    }
-    z.iter().all(|value| value.is_finite()).then_some((z, turns))
 }
 
 #[cfg(test)]

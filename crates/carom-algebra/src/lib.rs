@@ -3,6 +3,7 @@
 mod complementarity;
 mod condensed;
 mod coulomb;
+mod coulomb_exact;
 mod difference;
 mod elimination;
 mod forest;
@@ -22,7 +23,8 @@ mod threads;
 
 pub use complementarity::{complementarity, proximal};
 pub use condensed::Condensed;
-pub use coulomb::{Kind, coulomb};
+pub use coulomb::coulomb;
+pub use coulomb_exact::Kind;
 pub use difference::jacobian_error;
 pub use elimination::Elimination;
 pub use linear::LinearError;

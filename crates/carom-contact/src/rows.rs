@@ -133,8 +133,7 @@ impl Rows {
         }
     }
 
-    /// Marks the rows from `first` on as those of a node of the primary side against the secondary
-    /// one.
+    /// Marks the rows from `first` on as those of a node of the primary side against the secondary one.
     pub(crate) fn reverse_from(&mut self, first: usize) {
         self.reversed[first..].fill(true);
     }

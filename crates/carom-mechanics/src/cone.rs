@@ -4,19 +4,19 @@
 //! M x + Gᵀp + Hᵀq = f,   G x = c,   H x = b in stick,   q = −μp d in slip,   |q| ≤ −μp,   d·(H x − b) ≥ 0
 //! ```
 //!
-//! d is the direction of H x − b, in the plane its sign. In space it follows from Newton's method
-//! on its angle, with a row across d for each slip as in a step (`friction.rs`).
+//! d is the direction of H x − b, in the plane its sign. In space it follows from Newton's method on its
+//! angle, with a row across d for each slip as in a step (`friction.rs`).
 //!
-//! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations
-//! it is the rate of change of the slip rate, which decides for pairs that have none; others slip
-//! in their direction. All rows are equalities, as without friction: a closed gap stays closed
+//! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations it
+//! is the rate of change of the slip rate, which decides for pairs that have none; others slip in
+//! their direction. All rows are equalities, as without friction: a closed gap stays closed
 //! (`persistency.rs`), and one whose p pulls goes on to stick, or to slip with q = −sμp. So the
 //! solution depends continuously on μ, and tangential impulses that slip are μ times the normal
 //! ones.
 
 use carom_contact::{Along, Hold, Law, Row, Rows, Rub, StickSlip, Tangential, inner, length};
 
-use crate::constraints::{Constraints, independent};
+use crate::constraints::{Constraints, DEPENDENT, independent_above, slip_remainder};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
@@ -75,8 +75,8 @@ struct Way {
 }
 
 impl Way {
-    /// Turns the direction of a slip in space by what acts across it, and makes it an unknown of
-    /// the next solve; returns whether that changes anything. `rate`: H x − b.
+    /// Turns the direction of a slip in space by what acts across it, and makes it an unknown of the next
+    /// solve; returns whether that changes anything. `rate`: H x − b.
     fn turn(&mut self, motion: &Motion, pair: usize, rate: Along) -> bool {
         let Hold::Slip(direction) = self.hold else { return false };
         let traction = inner(motion.tangential[pair], direction);
@@ -322,9 +322,11 @@ impl Closed {
                 held.push_combined(&self.slips, i * (d - 1), &along[..d - 1]);
             }
         }
-        let normals = self.normals.rows.iter().map(|row| (None, row));
-        let tangents = held.iter().enumerate().map(|(name, row)| (Some(name), row));
-        let holding: Vec<usize> = independent(model, normals.chain(tangents)).into_iter().flatten().collect();
+        let normals = self.normals.rows.iter().map(|row| (None, row, DEPENDENT));
+        let least = slip_remainder(model);
+        let tangents = held.iter().enumerate().map(|(name, row)| (Some(name), row, least));
+        let holding: Vec<usize> =
+            independent_above(model, normals.chain(tangents)).into_iter().flatten().collect();
         for &name in &holding {
             let (i, along, turns) = names[name];
             rows.push_plain(self.places[i], held.row(name), Some(along));
@@ -337,7 +339,7 @@ impl Closed {
         system.mass_with(model, &rows)?;
         let (mut x, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
         system.solve(model, [&forces, &targets], &mut x, &mut multipliers)?;
-        let stick_multipliers = multipliers.split_off(ways.len());
+        let forces_held = multipliers.split_off(ways.len());
         let mut motion = Motion {
             x,
             normal: multipliers,
@@ -349,7 +351,7 @@ impl Closed {
             let size = traction - coefficient * motion.normal[i];
             motion.tangential[i] = ways[i].hold.direction().map(|d| d * size);
         }
-        for (&name, q) in holding.iter().zip(stick_multipliers) {
+        for (&name, q) in holding.iter().zip(forces_held) {
             let (i, along, turns) = names[name];
             if turns {
                 motion.turns[i] = q;

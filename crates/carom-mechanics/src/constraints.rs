@@ -19,6 +19,8 @@ use crate::model::Model;
 /// others.
 pub(crate) const DEPENDENT: f64 = 1e-8;
 
+/// The same for a slip in space.
+const HELD: f64 = 1e-3;
 /// Largest gap per unit of a multiplier: of a slip whose traction is round-off.
 const LOOSE: f64 = 1e100;
 
@@ -96,11 +98,13 @@ impl Constraints {
         // Springs may depend on each other: each adds its stiffness.
         let is_spring = |&(k, _): &(usize, usize)| !model.contacts[k].interface.is_constraint();
         let gaps = evaluation.pressing().filter(|place| !is_spring(place));
-        let gaps = gaps.map(|(k, p)| ((k, p, 0), evaluation.rows[k].row(p)));
+        let gaps = gaps.map(|(k, p)| ((k, p, 0), evaluation.rows[k].row(p), DEPENDENT));
         // The slip of a pair after all gaps: what depends on both keeps its gap.
         let held = Held::of(equations, evaluation);
+        let least = slip_remainder(model);
         let slips = held.iter().filter(|((k, p, _), _)| !is_spring(&(*k, *p)));
-        let mut places = independent(model, gaps.chain(slips));
+        let slips = slips.map(|(name, row)| (name, row, least));
+        let mut places = independent_above(model, gaps.chain(slips));
         places.extend(evaluation.pressing().filter(is_spring).map(|(k, p)| (k, p, 0)));
         places.extend(held.names.iter().map(|(name, _)| *name).filter(|&(k, p, _)| is_spring(&(k, p))));
         places.sort_unstable();
@@ -133,8 +137,7 @@ impl Constraints {
         constraints
     }
 
-    /// Adds the row of a slip that is prevented: of a pair that sticks, or across the direction of
-    /// a slip.
+    /// Adds the row of a slip that is prevented: of a pair that sticks, or across the direction of a slip.
     fn push_slip(
         &mut self,
         equations: &Equations,
@@ -177,8 +180,12 @@ impl Constraints {
         let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
         let gaps = evaluation.pressing().map(of_pair).fold(0.0, f64::max);
         let rows = Self::of(equations, evaluation);
-        let slips = rows.slips.iter().zip(&rows.open).filter(|(slip, _)| slip.is_some());
-        slips.map(|(_, open)| open.abs()).fold(gaps, f64::max)
+        let weight = |&(k, p): &(usize, usize)| {
+            let pair = &evaluation.at.pairings[k].pairs[p];
+            equations.weight_of_slip(pair, evaluation.slip_of((k, p)))
+        };
+        let slips = rows.places.iter().zip(rows.slips.iter().zip(&rows.open)).filter(|row| row.1.0.is_some());
+        slips.map(|(place, (_, open))| weight(place) * open.abs()).fold(gaps, f64::max)
     }
 
     /// Number of rows.
@@ -345,12 +352,26 @@ pub(crate) fn independent_rows(
     independent(model, places.map(|(k, p)| ((k, p), rows[k].row(p))))
 }
 
+/// Remainder of the row of a slip below which it depends on the others. In space supports may hold a node
+/// and its facet along one tangent, and the row then has only what turns the facet, times the gap.
+pub(crate) fn slip_remainder(model: &Model) -> f64 {
+    if model.dimension == 3 { HELD } else { DEPENDENT }
+}
+
 /// The names of those rows that are linearly independent of the earlier ones on the free dofs.
 pub(crate) fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, Row<'a>)>) -> Vec<T> {
+    independent_above(model, rows.map(|(name, row)| (name, row, DEPENDENT)))
+}
+
+/// The same with a remainder for each row below which it depends on the others.
+pub(crate) fn independent_above<'a, T>(
+    model: &Model,
+    rows: impl Iterator<Item = (T, Row<'a>, f64)>,
+) -> Vec<T> {
     let mut accepted: Vec<Vec<(usize, f64)>> = Vec::new();
     // The accepted row whose pivot is this dof.
     let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
-    let mut independent = |row: Row| {
+    let mut independent = |row: Row, least: f64| {
         let mut row: Vec<(usize, f64)> = row.entries().filter(|(dof, _)| !model.fixed[*dof]).collect();
         let mut from = 0;
         // An accepted row contains pivots of later ones only: in ascending order each occurs once.
@@ -371,7 +392,7 @@ pub(crate) fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, R
         let largest = row
             .iter()
             .fold((0, 0.0_f64), |most, &(dof, x)| if x.abs() > most.1.abs() { (dof, x) } else { most });
-        if largest.1.abs() <= DEPENDENT {
+        if largest.1.abs() <= least {
             return false;
         }
         row.iter_mut().for_each(|(_, x)| *x /= largest.1);
@@ -379,5 +400,5 @@ pub(crate) fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, R
         accepted.push(row);
         true
     };
-    rows.filter_map(|(name, row)| independent(row).then_some(name)).collect()
+    rows.filter_map(|(name, row, least)| independent(row, least).then_some(name)).collect()
 }

@@ -12,21 +12,20 @@
 //! that conserves acts over the whole step, and so does its S: its work −qS is never positive. Ṡ is
 //! this velocity, or S over the time in which it slips; in load steps, the time of their formulas.
 //!
-//! A pair that slips has q = r(λ, Ṡ) d and is the normal row with the direction ∇g − ∂r/∂|λ| Σ d_α
-//! H_α; one that sticks has rows of its own with the multipliers q, S = 0 or, on a spring, S = (q −
-//! q_s)/k. A spring that slipped in the last step goes on to do so while its stick would exceed r,
-//! whatever a stick could hold.
+//! A pair that slips has q = r(λ, Ṡ) d and is the normal row with the direction ∇g − ∂r/∂|λ| Σ d_α H_α;
+//! one that sticks has rows of its own with the multipliers q, S = 0 or, on a spring, S = (q − q_s)/k. A
+//! spring that slipped in the last step goes on to do so while its stick would exceed r, whatever a
+//! stick could hold.
 //!
-//! In the plane d = ±1 is a state. In space it is an unknown, with the unit vector e across it and
-//! the row that nothing slips across it,
+//! In the plane d = ±1 is a state. In space it is an unknown, with the unit vector e across it and the
+//! row that nothing slips across it,
 //!
 //! ```text
 //! e·S = 0,   δd = e δθ,   δq = r δθ:      e·∂S/∂y δy − (d·S/r) δq = −e·S,     force  δq Σ e_α H_α
 //! ```
 //!
-//! which goes on to hold as a stick across d where nothing slips along it. A slip without traction,
-//! as in the iterate in which a pair closes, has the direction of S; on a spring it has that of q_s
-//! + kS.
+//! which goes on to hold as a stick across d where nothing slips along it. A slip without traction, as in
+//! the iterate in which a pair closes, has the direction of S; on a spring it has that of q_s + kS.
 //!
 //! Between steps q acts along H(y_s): in the averaged forces of the next step and in what is
 //! recorded.
@@ -34,10 +33,16 @@
 use carom_contact::{Along, ContactError, Hold, Law, Pair, Radius, Row, Rows, Tangential, inner, length};
 
 use crate::balance::contact_weights;
+use crate::contact_update::GAP_TOLERANCE;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
 use crate::model::{Contact, Model, NoValue};
 use crate::state::State;
+
+/// Angle by which a slip may miss its direction, unless it is shorter than ROUND_OFF / ANGLE times the
+/// tolerance of gaps.
+const ANGLE: f64 = 1e-10;
+const ROUND_OFF: f64 = 1e-2;
 
 impl Model {
     /// Whether a contact has friction.
@@ -89,7 +94,7 @@ pub(crate) struct Rubbing {
 }
 
 /// The rows of a pair, one per tangent, in the rows of all.
-fn rows_of(slips: &Rows, pair: usize) -> std::ops::Range<usize> {
+pub(crate) fn rows_of(slips: &Rows, pair: usize) -> std::ops::Range<usize> {
     let tangents = slips.dimension() - 1;
     pair * tangents..(pair + 1) * tangents
 }
@@ -120,8 +125,8 @@ impl Equations<'_> {
         self.model.contacts[contact].friction.as_ref()?.springs.get(pair.node).copied()
     }
 
-    /// Adds the rows H of a closed pair at y_½, with S as their gaps, and returns what counts in
-    /// it; the pair keeps the tangent there. `gap`: that of the pair.
+    /// Adds the rows H of a closed pair at y_½, with S as their gaps, and returns what counts in it; the
+    /// pair keeps the tangent there. `gap`: that of the pair.
     pub(crate) fn slip_into(
         &self,
         contact: usize,
@@ -155,7 +160,7 @@ impl Equations<'_> {
     }
 
     /// Sets the traction of a closed pair from its slip.
-    fn rub(&self, contact: usize, pair: &mut Pair, slip: Along, part: Counted) -> Rubbing {
+    pub(crate) fn rub(&self, contact: usize, pair: &mut Pair, slip: Along, part: Counted) -> Rubbing {
         let (law, pressure) = (self.laws[contact][pair.node], (-pair.lambda).max(0.0));
         let rate = self.rate(part);
         let radius = law.slip(pressure, length(slip) * rate);
@@ -199,8 +204,8 @@ impl Equations<'_> {
         rows.filter(move |_| self.model.contacts[contact].friction.is_some())
     }
 
-    /// Adds the friction of a pair with this gap: the rows of its slip, the direction of its force,
-    /// and what acts beyond that.
+    /// Adds the friction of a pair with this gap: the rows of its slip, the direction of its force, and
+    /// what acts beyond that.
     pub(crate) fn add_friction(
         &self,
         contact: usize,
@@ -242,12 +247,20 @@ impl Equations<'_> {
             return Ok(());
         }
         for held in self.held(contact, pair) {
-            (measure.gap, measure.held) = (measure.gap.max(inner(held, slip).abs()), true);
+            let missed = self.weight_of_slip(pair, slip) * inner(held, slip).abs();
+            (measure.gap, measure.held) = (measure.gap.max(missed), true);
         }
         Ok(())
     }
 
-    fn part(&self, contact: usize, pair: &Pair, gap: f64, rows: &mut Rows) -> Counted {
+    /// Factor of a slip that is prevented, as a gap: of one across a slip, its angle counts too.
+    pub(crate) fn weight_of_slip(&self, pair: &Pair, slip: Along) -> f64 {
+        let gap = GAP_TOLERANCE * self.model.scale;
+        let turns = pair.tangential.hold != Hold::Stick;
+        if turns { (gap / (ANGLE * length(slip) + ROUND_OFF * gap)).max(1.0) } else { 1.0 }
+    }
+
+    pub(crate) fn part(&self, contact: usize, pair: &Pair, gap: f64, rows: &mut Rows) -> Counted {
         if !self.closes(contact, pair) || self.model.contacts[contact].conserves() {
             return Counted::Share(1.0);
         }
@@ -268,7 +281,7 @@ impl Equations<'_> {
     }
 
     /// A component of Δy − Δy_free.
-    fn counted(&self, dof: usize, part: Counted, increment: &[f64]) -> f64 {
+    pub(crate) fn counted(&self, dof: usize, part: Counted, increment: &[f64]) -> f64 {
         let velocity = &self.stage.velocity;
         match part {
             Counted::Share(share) => share * increment[dof],
@@ -287,76 +300,6 @@ impl Equations<'_> {
     /// Whether a pair was open at the step's start.
     fn closes(&self, contact: usize, pair: &Pair) -> bool {
         !self.stage.is_static() && self.state.closed(contact, pair.node).is_none()
-    }
-
-    /// ∂H/∂y of a tangent of a pair at y_½ halved, the derivative of its row by the end of the
-    /// step, row-major; and ∂S/∂y.
-    pub(crate) fn slip_derivatives(
-        &self,
-        evaluation: &Evaluation,
-        (contact, p): (usize, usize),
-        tangent: usize,
-        rows: &mut Rows,
-    ) -> (Vec<f64>, Vec<f64>) {
-        let kinematics = &self.model.contacts[contact].kinematics;
-        let (slips, pair) = (&evaluation.slips[contact], &evaluation.at.pairings[contact].pairs[p]);
-        let row = slips.row(rows_of(slips, p).start + tangent);
-        let mut matrix = vec![0.0; row.gradient.len().pow(2)];
-        rows.clear();
-        let part = self.part(contact, pair, evaluation.rows[contact].row(p).gap, rows);
-        let share = if let Counted::Share(share) = part { share } else { 1.0 };
-        let mut gradient: Vec<f64> = row.gradient.iter().map(|h| share * h).collect();
-        let mut at_middle = *pair;
-        // It was measured in the evaluation.
-        if kinematics.measure(&mut at_middle, &evaluation.middle, rows).is_err() {
-            return (matrix, gradient);
-        }
-        kinematics.slip_derivative_into(&at_middle, &evaluation.middle, tangent, &mut matrix);
-        matrix.iter_mut().for_each(|entry| *entry *= 0.5);
-        let counted = row.entries().map(|(dof, _)| self.counted(dof, part, &evaluation.at.increment));
-        for (turned, moved) in matrix.chunks_exact(gradient.len()).zip(counted) {
-            gradient.iter_mut().zip(turned).for_each(|(slope, h)| *slope += h * moved);
-        }
-        (matrix, gradient)
-    }
-
-    /// Adds the derivative of the force r Σ d_α H_α of a slipping pair, beyond those of r by λ and
-    /// of an unknown d, over the nodes of its row.
-    pub(crate) fn slip_curvature_into(
-        &self,
-        evaluation: &Evaluation,
-        (contact, p): (usize, usize),
-        rows: &mut Rows,
-        curvature: &mut [f64],
-    ) {
-        let slip = evaluation.slip_of((contact, p));
-        let mut pair = evaluation.at.pairings[contact].pairs[p];
-        let part = self.part(contact, &pair, evaluation.rows[contact].row(p).gap, rows);
-        let Rubbing { direction, radius, rate, across } = self.rub(contact, &mut pair, slip, part);
-        if direction == [0.0; 2] {
-            return;
-        }
-        let derivatives: Vec<_> = (1..self.model.dimension)
-            .map(|tangent| self.slip_derivatives(evaluation, (contact, p), tangent - 1, rows))
-            .collect();
-        let size = length(slip);
-        // Of a slip that begins, any will do.
-        let unit = if size > 0.0 { slip.map(|s| s / size) } else { [slip[0].signum(), 0.0] };
-        let aside = [-direction[1], direction[0]];
-        for (a, row) in evaluation.slip_rows((contact, p)).enumerate() {
-            let n = row.gradient.len();
-            for (i, entries) in curvature.chunks_exact_mut(n).enumerate() {
-                for (j, entry) in entries.iter_mut().enumerate() {
-                    let mut change = direction[a] * radius.value * derivatives[a].0[i * n + j];
-                    for (b, (_, gradient)) in derivatives.iter().enumerate() {
-                        let by_slip =
-                            radius.by_rate * rate * unit[b] * direction[a] + across * aside[a] * aside[b];
-                        change += by_slip * row.gradient[i] * gradient[j];
-                    }
-                    *entry += change;
-                }
-            }
-        }
     }
 }
 
@@ -379,8 +322,8 @@ pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usiz
     }
 }
 
-/// Force on a secondary side of the tractions that are not in the direction of λ: −Σ (q + d ∂r/∂|λ|
-/// λ) ∂S/∂y_N over the closed pairs.
+/// Force on a secondary side of the tractions that are not in the direction of λ: −Σ (q + d ∂r/∂|λ| λ)
+/// ∂S/∂y_N over the closed pairs.
 pub(crate) fn secondary_friction(evaluation: &Evaluation, contact: usize) -> [f64; 3] {
     let mut force = [0.0; 3];
     if evaluation.slips[contact].is_empty() {

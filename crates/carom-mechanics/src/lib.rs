@@ -18,6 +18,7 @@ mod evaluation;
 mod factor;
 pub mod frequencies;
 mod friction;
+mod friction_tangent;
 mod grid;
 mod grid_report;
 mod iterative;

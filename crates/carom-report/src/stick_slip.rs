@@ -21,7 +21,7 @@ const HEIGHT: f64 = 180.0;
 const STATES: [(&str, &str); 3] =
     [("sticks", LINES[6]), ("slips forward", LINES[2]), ("slips backward", LINES[3])];
 
-/// A map of each contact that has friction, and the caption. A side in space has no arc length.
+/// A map of each contact that has friction. A side in space has no arc length.
 pub(crate) fn figure(run: &Run) -> Option<Figure> {
     if run.manifest.case.get("dimension").and_then(serde_json::Value::as_u64) == Some(3) {
         return None;
