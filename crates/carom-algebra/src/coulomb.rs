@@ -5,13 +5,13 @@
 //! |Q_j| ≤ r_j,   Q_j = −r_j u_j/|u_j| where u_j ≠ 0,   r_j = min(μ_j P_j, limit_j)
 //! ```
 //!
-//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero. Rows that
-//! depend on each other come as a proximal step (`complementarity.rs`). Each tangential force belongs to
-//! one normal one; two in a row that belong to the same one are the components of a vector. Sweeps of the
-//! nonlinear Gauss–Seidel method find which contacts are open, stick, or slip; with that and the
-//! directions d of the slips the problem is linear and is solved exactly. Where its solution contradicts
-//! it, the sweeps go on. Directions of vectors follow from Newton's method: with e across d, Q = −r d + s e
-//! and
+//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero. Rows
+//! that depend on each other come as a proximal step (`complementarity.rs`). Each tangential force
+//! belongs to one normal one; two in a row that belong to the same one are the components of a
+//! vector. Sweeps of the nonlinear Gauss–Seidel method find which contacts are open, stick, or
+//! slip; with that and the directions d of the slips the problem is linear and is solved exactly.
+//! Where its solution contradicts it, the sweeps go on. Directions of vectors follow from Newton's
+//! method: with e across d, Q = −r d + s e and
 //!
 //! ```text
 //! e·u + (d·u/r) s = 0,   δd = −e s/r
@@ -42,8 +42,8 @@ fn radius(coefficient: f64, limit: f64, normal: f64) -> (f64, bool) {
     }
 }
 
-/// Overwrites `z`, a first guess if it has the size, with the solution for a matrix by rows. Contacts
-/// that do not feel each other are solved apart.
+/// Overwrites `z`, a first guess if it has the size, with the solution for a matrix by rows.
+/// Contacts that do not feel each other are solved apart.
 ///
 /// # Errors
 /// If none is found, as for large μ, where there may be none.

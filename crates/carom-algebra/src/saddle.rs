@@ -6,9 +6,10 @@
 //! ```
 //!
 //! Where forces act along other directions F than G (friction), U = L⁻¹Fᵀ replaces the second T of
-//! each product, and TᵀU is factored by LU with partial pivoting. Seen relative to the matrix without
-//! friction, TᵀT = K Kᵀ, it is R = K⁻¹TᵀU K⁻ᵀ, the identity for F = G. A row that yields, g x − C λ = c
-//! with C ≥ 0, adds C to the diagonals of both; it and its multiplier are scaled by σ = (1 + C/TᵀT)^−½.
+//! each product, and TᵀU is factored by LU with partial pivoting. Seen relative to the matrix
+//! without friction, TᵀT = K Kᵀ, it is R = K⁻¹TᵀU K⁻ᵀ, the identity for F = G. A row that yields, g
+//! x − C λ = c with C ≥ 0, adds C to the diagonals of both; it and its multiplier are scaled by σ =
+//! (1 + C/TᵀT)^−½.
 //!
 //! Both factors exist if S is positive definite and G has full rank; the matrix then has one
 //! negative eigenvalue per row of G (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). If S is
@@ -96,8 +97,9 @@ impl Saddle {
         self.yields[row] = compliance;
     }
 
-    /// S += κ gᵀg for every row g of G, with `share` times the stiffness of S along g, and f −= κ C g. The
-    /// solution does not change. An S that is positive definite only where G x = 0 becomes so everywhere.
+    /// S += κ gᵀg for every row g of G, with `share` times the stiffness of S along g, and f −= κ C
+    /// g. The solution does not change. An S that is positive definite only where G x = 0 becomes
+    /// so everywhere.
     pub fn augment(&mut self, share: f64) {
         let n = self.size.max(1);
         for (r, (row, penalty)) in self.rows.chunks_exact(n).zip(&mut self.penalties).enumerate() {

@@ -5,12 +5,12 @@
 //! μ = μ_s in stick, μ_d + (μ_s − μ_d) exp(−c |Ṡ|) in slip
 //! ```
 //!
-//! S is the slip of a step and q the tangential traction, vectors of the tangent plane: the force of
-//! the pair is λ∇g + Σ q_α H_α with H_α = ∂S_α/∂y, and q·S ≥ 0 is lost. A pair that slips in the
+//! S is the slip of a step and q the tangential traction, vectors of the tangent plane: the force
+//! of the pair is λ∇g + Σ q_α H_α with H_α = ∂S_α/∂y, and q·S ≥ 0 is lost. A pair that slips in the
 //! direction d has q = −μλd, so that only the direction of its force, λ(∇g − μ Σ d_α H_α), differs
-//! from that without friction and the cone follows the pressure within Newton's method. In the plane
-//! d is a sign; in space it is an unknown, whose equation is that nothing slips across it. A pair that
-//! sticks is a constraint S = 0 with the multipliers q, or a spring.
+//! from that without friction and the cone follows the pressure within Newton's method. In the
+//! plane d is a sign; in space it is an unknown, whose equation is that nothing slips across it. A
+//! pair that sticks is a constraint S = 0 with the multipliers q, or a spring.
 //!
 //! States follow from the iterates by a primal–dual active set over {open, stick, slip}: a stick
 //! whose traction leaves the cone slips in the direction of the traction, a slip against its
@@ -50,8 +50,8 @@ pub enum Hold {
 }
 
 impl Hold {
-    /// The state in which a closing pair starts, from its slip in the iterate: the projection onto the
-    /// cone of a pressure that is still zero.
+    /// The state in which a closing pair starts, from its slip in the iterate: the projection onto
+    /// the cone of a pressure that is still zero.
     pub fn of(slip: Along, tolerance: f64) -> Self {
         let size = length(slip);
         if size > tolerance { Self::Slip(slip.map(|s| s / size)) } else { Self::Stick }
@@ -88,7 +88,8 @@ pub struct Tangential {
 }
 
 impl Tangential {
-    /// Adds to the traction of a stick, or turns the direction of a slip by as much traction across it.
+    /// Adds to the traction of a stick, or turns the direction of a slip by as much traction across
+    /// it.
     pub fn pull(&mut self, along: Along, traction: f64) {
         let pulled = [0, 1].map(|i| self.traction[i] + traction * along[i]);
         match self.hold {

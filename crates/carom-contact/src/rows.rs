@@ -133,7 +133,8 @@ impl Rows {
         }
     }
 
-    /// Marks the rows from `first` on as those of a node of the primary side against the secondary one.
+    /// Marks the rows from `first` on as those of a node of the primary side against the secondary
+    /// one.
     pub(crate) fn reverse_from(&mut self, first: usize) {
         self.reversed[first..].fill(true);
     }

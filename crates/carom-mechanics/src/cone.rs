@@ -4,12 +4,12 @@
 //! M x + Gᵀp + Hᵀq = f,   G x = c,   H x = b in stick,   q = −μp d in slip,   |q| ≤ −μp,   d·(H x − b) ≥ 0
 //! ```
 //!
-//! d is the direction of H x − b, in the plane its sign. In space it follows from Newton's method on its
-//! angle, with a row across d for each slip as in a step (`friction.rs`).
+//! d is the direction of H x − b, in the plane its sign. In space it follows from Newton's method
+//! on its angle, with a row across d for each slip as in a step (`friction.rs`).
 //!
-//! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations it
-//! is the rate of change of the slip rate, which decides for pairs that have none; others slip in
-//! their direction. All rows are equalities, as without friction: a closed gap stays closed
+//! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations
+//! it is the rate of change of the slip rate, which decides for pairs that have none; others slip
+//! in their direction. All rows are equalities, as without friction: a closed gap stays closed
 //! (`persistency.rs`), and one whose p pulls goes on to stick, or to slip with q = −sμp. So the
 //! solution depends continuously on μ, and tangential impulses that slip are μ times the normal
 //! ones.
@@ -75,8 +75,8 @@ struct Way {
 }
 
 impl Way {
-    /// Turns the direction of a slip in space by what acts across it, and makes it an unknown of the next
-    /// solve; returns whether that changes anything. `rate`: H x − b.
+    /// Turns the direction of a slip in space by what acts across it, and makes it an unknown of
+    /// the next solve; returns whether that changes anything. `rate`: H x − b.
     fn turn(&mut self, motion: &Motion, pair: usize, rate: Along) -> bool {
         let Hold::Slip(direction) = self.hold else { return false };
         let traction = inner(motion.tangential[pair], direction);

@@ -137,7 +137,8 @@ impl Constraints {
         constraints
     }
 
-    /// Adds the row of a slip that is prevented: of a pair that sticks, or across the direction of a slip.
+    /// Adds the row of a slip that is prevented: of a pair that sticks, or across the direction of
+    /// a slip.
     fn push_slip(
         &mut self,
         equations: &Equations,
@@ -352,8 +353,9 @@ pub(crate) fn independent_rows(
     independent(model, places.map(|(k, p)| ((k, p), rows[k].row(p))))
 }
 
-/// Remainder of the row of a slip below which it depends on the others. In space supports may hold a node
-/// and its facet along one tangent, and the row then has only what turns the facet, times the gap.
+/// Remainder of the row of a slip below which it depends on the others. In space supports may hold
+/// a node and its facet along one tangent, and the row then has only what turns the facet, times
+/// the gap.
 pub(crate) fn slip_remainder(model: &Model) -> f64 {
     if model.dimension == 3 { HELD } else { DEPENDENT }
 }

@@ -12,20 +12,21 @@
 //! that conserves acts over the whole step, and so does its S: its work −qS is never positive. Ṡ is
 //! this velocity, or S over the time in which it slips; in load steps, the time of their formulas.
 //!
-//! A pair that slips has q = r(λ, Ṡ) d and is the normal row with the direction ∇g − ∂r/∂|λ| Σ d_α H_α;
-//! one that sticks has rows of its own with the multipliers q, S = 0 or, on a spring, S = (q − q_s)/k. A
-//! spring that slipped in the last step goes on to do so while its stick would exceed r, whatever a
-//! stick could hold.
+//! A pair that slips has q = r(λ, Ṡ) d and is the normal row with the direction ∇g − ∂r/∂|λ| Σ d_α
+//! H_α; one that sticks has rows of its own with the multipliers q, S = 0 or, on a spring, S = (q −
+//! q_s)/k. A spring that slipped in the last step goes on to do so while its stick would exceed r,
+//! whatever a stick could hold.
 //!
-//! In the plane d = ±1 is a state. In space it is an unknown, with the unit vector e across it and the
-//! row that nothing slips across it,
+//! In the plane d = ±1 is a state. In space it is an unknown, with the unit vector e across it and
+//! the row that nothing slips across it,
 //!
 //! ```text
 //! e·S = 0,   δd = e δθ,   δq = r δθ:      e·∂S/∂y δy − (d·S/r) δq = −e·S,     force  δq Σ e_α H_α
 //! ```
 //!
-//! which goes on to hold as a stick across d where nothing slips along it. A slip without traction, as in
-//! the iterate in which a pair closes, has the direction of S; on a spring it has that of q_s + kS.
+//! which goes on to hold as a stick across d where nothing slips along it. A slip without traction,
+//! as in the iterate in which a pair closes, has the direction of S; on a spring it has that of q_s
+//! + kS.
 //!
 //! Between steps q acts along H(y_s): in the averaged forces of the next step and in what is
 //! recorded.
@@ -39,8 +40,8 @@ use crate::evaluation::Evaluation;
 use crate::model::{Contact, Model, NoValue};
 use crate::state::State;
 
-/// Angle by which a slip may miss its direction, unless it is shorter than ROUND_OFF / ANGLE times the
-/// tolerance of gaps.
+/// Angle by which a slip may miss its direction, unless it is shorter than ROUND_OFF / ANGLE times
+/// the tolerance of gaps.
 const ANGLE: f64 = 1e-10;
 const ROUND_OFF: f64 = 1e-2;
 
@@ -125,8 +126,8 @@ impl Equations<'_> {
         self.model.contacts[contact].friction.as_ref()?.springs.get(pair.node).copied()
     }
 
-    /// Adds the rows H of a closed pair at y_½, with S as their gaps, and returns what counts in it; the
-    /// pair keeps the tangent there. `gap`: that of the pair.
+    /// Adds the rows H of a closed pair at y_½, with S as their gaps, and returns what counts in
+    /// it; the pair keeps the tangent there. `gap`: that of the pair.
     pub(crate) fn slip_into(
         &self,
         contact: usize,
@@ -204,8 +205,8 @@ impl Equations<'_> {
         rows.filter(move |_| self.model.contacts[contact].friction.is_some())
     }
 
-    /// Adds the friction of a pair with this gap: the rows of its slip, the direction of its force, and
-    /// what acts beyond that.
+    /// Adds the friction of a pair with this gap: the rows of its slip, the direction of its force,
+    /// and what acts beyond that.
     pub(crate) fn add_friction(
         &self,
         contact: usize,
@@ -322,8 +323,8 @@ pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usiz
     }
 }
 
-/// Force on a secondary side of the tractions that are not in the direction of λ: −Σ (q + d ∂r/∂|λ| λ)
-/// ∂S/∂y_N over the closed pairs.
+/// Force on a secondary side of the tractions that are not in the direction of λ: −Σ (q + d ∂r/∂|λ|
+/// λ) ∂S/∂y_N over the closed pairs.
 pub(crate) fn secondary_friction(evaluation: &Evaluation, contact: usize) -> [f64; 3] {
     let mut force = [0.0; 3];
     if evaluation.slips[contact].is_empty() {

@@ -7,8 +7,8 @@ use crate::evaluation::Evaluation;
 use crate::friction::{Counted, Rubbing, rows_of};
 
 impl Equations<'_> {
-    /// ∂H/∂y of a tangent of a pair at y_½ halved, the derivative of its row by the end of the step,
-    /// row-major; and ∂S/∂y.
+    /// ∂H/∂y of a tangent of a pair at y_½ halved, the derivative of its row by the end of the
+    /// step, row-major; and ∂S/∂y.
     pub(crate) fn slip_derivatives(
         &self,
         evaluation: &Evaluation,
@@ -38,8 +38,8 @@ impl Equations<'_> {
         (matrix, gradient)
     }
 
-    /// Adds the derivative of the force r Σ d_α H_α of a slipping pair, beyond those of r by λ and of an
-    /// unknown d, over the nodes of its row.
+    /// Adds the derivative of the force r Σ d_α H_α of a slipping pair, beyond those of r by λ and
+    /// of an unknown d, over the nodes of its row.
     pub(crate) fn slip_curvature_into(
         &self,
         evaluation: &Evaluation,

@@ -220,8 +220,8 @@ fn strike_in_space() -> Model {
     model
 }
 
-/// With nodes that stick and others that slip in any direction, also one that differs from that of their
-/// slip: the direction is an unknown. The rate changes the coefficient.
+/// With nodes that stick and others that slip in any direction, also one that differs from that of
+/// their slip: the direction is an unknown. The rate changes the coefficient.
 #[test]
 fn the_whole_tangent_with_friction_in_space_is_the_derivative_of_the_residual() {
     let mut conserving = strike_in_space();

@@ -39,10 +39,11 @@ pub struct ContactRow<'a> {
     /// `stick` or `slip`; `none` without friction.
     pub friction: Cow<'a, str>,
     /// Tangential traction: the force on the node is −traction · J normal, with J a quarter turn
-    /// counter-clockwise; on a facet of a body, along its tangent with the same sense as its nodes. In
-    /// space the length of `rubbing`.
+    /// counter-clockwise; on a facet of a body, along its tangent with the same sense as its nodes.
+    /// In space the length of `rubbing`.
     pub traction: f64,
-    /// Slip since the node came into contact, in the direction of the traction; in space its length.
+    /// Slip since the node came into contact, in the direction of the traction; in space its
+    /// length.
     pub slip: f64,
     /// Force of friction on the node, in space.
     pub rubbing: [f64; 3],

@@ -114,17 +114,17 @@ pub trait Kinematics: Send + Sync {
 
     /// Adds the rows H_α of the slip of a pair measured at `y`, over the nodes of its gap, one per
     /// tangent: H_α·Δy is the tangential motion of the first node relative to the other side, which
-    /// turns with it. A slip from y₀ to y₁ is H·(y₁ − y₀) at their midpoint, where every finite rigid
-    /// motion of the pair is an infinitesimal one: the slip is exactly zero. The first node's part of
-    /// a row is the tangent; the plane has one, space two (`tangents.rs`).
+    /// turns with it. A slip from y₀ to y₁ is H·(y₁ − y₀) at their midpoint, where every finite
+    /// rigid motion of the pair is an infinitesimal one: the slip is exactly zero. The first node's
+    /// part of a row is the tangent; the plane has one, space two (`tangents.rs`).
     ///
     /// # Errors
     /// If there is no unique closest point; no row is added.
     fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError>;
 
-    /// ∂H_α/∂y of a pair measured at `y`, with tangents that turn with the normal only: overwrites the
-    /// first `(n·D)²` entries of `matrix`, row-major, not symmetric. In space `pair` has the tangent of
-    /// these positions.
+    /// ∂H_α/∂y of a pair measured at `y`, with tangents that turn with the normal only: overwrites
+    /// the first `(n·D)²` entries of `matrix`, row-major, not symmetric. In space `pair` has the
+    /// tangent of these positions.
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]);
 }
 

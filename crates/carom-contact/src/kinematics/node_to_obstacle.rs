@@ -7,8 +7,8 @@
 //! ∂²g/∂x² = R H Rᵀ = ∂²g/∂c² = −∂²g/∂x∂c     ∂²g/∂x∂θ = R (Jn − H Js) = −∂²g/∂c∂θ     ∂²g/∂θ² = Js·H Js − n·s
 //! ```
 //!
-//! The slip of an obstacle that does not turn has the rows ∂S/∂x = τ = −∂S/∂c of every tangent, in the
-//! plane τ = Jn, with ∂τ/∂x = −h n τᵀ where H = h (1 − n nᵀ).
+//! The slip of an obstacle that does not turn has the rows ∂S/∂x = τ = −∂S/∂c of every tangent, in
+//! the plane τ = Jn, with ∂τ/∂x = −h n τᵀ where H = h (1 − n nᵀ).
 //!
 //! The angle is the first component of a node of its own, as the arc θℓ, a length like every other
 //! unknown; the force on it is moment/ℓ. So motion of an obstacle is motion of nodes: supports

@@ -1,6 +1,7 @@
-//! The tangents of a pair in space: the first one is the last one of the pair, projected on the tangent
-//! plane, and the second one is perpendicular to it. Any two would do, since the law is that of a
-//! circular cone; but the components of what a pair keeps from step to step refer to them.
+//! The tangents of a pair in space: the first one is the last one of the pair, projected on the
+//! tangent plane, and the second one is perpendicular to it. Any two would do, since the law is
+//! that of a circular cone; but the components of what a pair keeps from step to step refer to
+//! them.
 //!
 //! As long as the first one lies in the tangent plane, the derivative of a projected tangent is
 //! ∂e = −(e·∂n) n: both turn with the normal and not about it.

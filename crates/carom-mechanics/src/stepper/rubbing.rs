@@ -12,8 +12,8 @@ use crate::sums::max_abs;
 /// Distance from the edge of the cone, relative to its radius, at which a node slips.
 const EDGE: f64 = 1e-12;
 
-/// The law of the tangential forces of a pair in a step from a state; `of` is the index of its normal
-/// force, `slips` has its H from the row `first` on, `v` the velocities at the start.
+/// The law of the tangential forces of a pair in a step from a state; `of` is the index of its
+/// normal force, `slips` has its H from the row `first` on, `v` the velocities at the start.
 pub(super) fn kind(
     law: &Law,
     of: usize,

@@ -1,5 +1,5 @@
-//! Friction in space: the plane is a slice of it, no direction is special, forces and moments balance,
-//! the law holds at every node, and runs resume with the same bits.
+//! Friction in space: the plane is a slice of it, no direction is special, forces and moments
+//! balance, the law holds at every node, and runs resume with the same bits.
 
 use carom_contact::{Hold, inner, length};
 use carom_run::{GridReport, Simulation};
@@ -20,7 +20,8 @@ const SCHEMES: [&str; 8] = [
     "{ kind = \"moreau-jean\", theta = 0.5 }",
 ];
 
-/// Settings of a scheme: the discrete gradient has its law, explicit schemes lumped masses and short steps.
+/// Settings of a scheme: the discrete gradient has its law, explicit schemes lumped masses and
+/// short steps.
 fn of(scheme: &str, mu: &str) -> Vec<String> {
     let mut sets = vec![format!("time.scheme={scheme}"), format!("contact.strike.mu={mu}")];
     if scheme.contains("energy") {

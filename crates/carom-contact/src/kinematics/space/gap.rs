@@ -106,8 +106,9 @@ impl PatchGap {
         std::iter::once(along).chain((0..count).map(of_facet))
     }
 
-    /// ∂H/∂y of a tangent, of the node and of `count` nodes of the facet, whose functions have these
-    /// second derivatives by ξξ, ξη and ηη: overwrites the first (3 + 3 `count`)² entries, row-major.
+    /// ∂H/∂y of a tangent, of the node and of `count` nodes of the facet, whose functions have
+    /// these second derivatives by ξξ, ξη and ηη: overwrites the first (3 + 3 `count`)² entries,
+    /// row-major.
     pub(crate) fn slip_derivative_into<T: AsRef<[f64]>>(
         &self,
         along: Vector<3>,
@@ -128,8 +129,8 @@ impl PatchGap {
             Mat([[a, b], [b, d]])
         };
         for (q, k) in (0..=count).flat_map(|q| (0..3).map(move |k| (q, k))) {
-            // Changes of ξ, of the tangents, of the direction and of the gap with one component of one
-            // node.
+            // Changes of ξ, of the tangents, of the direction and of the gap with one component of
+            // one node.
             let driven = Vector(t.map(|t| -phi(q) * t[k])) + slope(q) * (gap * n[k]);
             let xi = inverse.apply(&driven);
             let stretched = [0, 1].map(|i| {
