@@ -93,13 +93,12 @@ impl Way {
 
     /// The components of the rows by which friction holds a pair, and whether they are of a slip.
     fn held(&self, tangents: usize) -> impl Iterator<Item = (Along, bool)> + use<> {
-        let rows = match (self.hold, self.turns) {
+        match (self.hold, self.turns) {
             (Hold::Stick, _) => [([1.0, 0.0], false), ([0.0, 1.0], false)].into_iter().take(tangents),
             (Hold::Slip([along, other]), turns) => {
                 [([-other, along], true); 2].into_iter().take(usize::from(turns.is_some()))
             }
-        };
-        rows
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use carom_contact::{
 };
 use carom_solid::FacetShape;
 
-pub const SHAPES: [FacetShape; 5] =
+pub(crate) const SHAPES: [FacetShape; 5] =
     [FacetShape::T3, FacetShape::T6, FacetShape::T10, FacetShape::Q4, FacetShape::Q9];
 
 /// Places of the nodes of a facet in its plane: corners, then edge by edge, then the interior.
@@ -34,7 +34,7 @@ fn lattice(shape: FacetShape) -> Vec<[f64; 2]> {
 }
 
 /// A curved facet (nodes 1 …) and a node (0) near it, inside or outside.
-pub fn scene(shape: FacetShape, height: f64) -> (NodeToPatch, Vec<f64>) {
+pub(crate) fn scene(shape: FacetShape, height: f64) -> (NodeToPatch, Vec<f64>) {
     let mut y = vec![0.31, 0.27, height];
     for [x, z] in lattice(shape) {
         y.extend([x + 0.05 * z * z, z - 0.07 * x * z, 0.15 * (2.0 * x + z).sin() - 0.1 * x * z]);

@@ -113,7 +113,7 @@ fn every_node_obeys_the_law_and_momentum_is_conserved() {
                 assert!(q.abs() <= cone + 1e-9 * largest, "{scheme}: {pair:?}");
                 match pair.tangential.hold {
                     Hold::Stick => sticks += 1,
-                    hold => {
+                    hold @ Hold::Slip(_) => {
                         slips += 1;
                         assert!(
                             (q - hold.direction()[0] * cone).abs() <= 1e-9 * largest,

@@ -117,7 +117,7 @@ fn every_node_obeys_the_law_and_both_momenta_are_conserved() {
                 assert!(length(q) <= cone + 1e-9 * largest, "{scheme}: {pair:?}");
                 match pair.tangential.hold {
                     Hold::Stick => sticks += 1,
-                    hold => {
+                    hold @ Hold::Slip(_) => {
                         slips += 1;
                         let along = inner(q, hold.direction());
                         assert!((along - cone).abs() <= 1e-9 * largest, "{scheme}: {pair:?}");
