@@ -60,7 +60,7 @@ impl Axis {
         let decimals = |exponent: i32| {
             (-(step / 10f64.powi(exponent) * 1.0001).log10().floor()).clamp(0.0, 12.0) as usize
         };
-        let exponent = if (-3..4).contains(&order) { 0 } else { order.div_euclid(3) * 3 };
+        let exponent = if (-2..4).contains(&order) { 0 } else { order.div_euclid(3) * 3 };
         // Labels with more than three decimals are too wide; those of a large number stay as they
         // are.
         let exponent = if exponent == 0 && order < 0 && decimals(0) > 3 { -3 } else { exponent };

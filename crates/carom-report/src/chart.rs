@@ -171,7 +171,7 @@ impl Chart<'_> {
                 0.0,
                 0.0,
                 &format!(
-                    "text-anchor=\"middle\" font-size=\"{size:.1}\" transform=\"translate(17 {middle:.1}) rotate(-90)\""
+                    "text-anchor=\"middle\" font-size=\"{size:.1}\" transform=\"translate(14 {middle:.1}) rotate(-90)\""
                 ),
                 &label,
             );

@@ -163,8 +163,10 @@ impl Plot {
 
 /// A chart over time as a plot, for its table and script.
 pub(crate) fn of_chart(name: &str, chart: &Chart) -> Plot {
+    // Tables have names without the signs of subscripts.
+    let bare = |label: &str| label.replace("_{", "_").replace('}', "");
     let curve = |(k, series): (usize, &Series)| Curve {
-        label: series.label.clone(),
+        label: bare(&series.label),
         style: LINES.iter().position(|color| *color == series.color).unwrap_or(k % LINES.len()),
         x: series.x.to_vec(),
         y: series.y.clone(),
@@ -173,7 +175,7 @@ pub(crate) fn of_chart(name: &str, chart: &Chart) -> Plot {
         ..Curve::default()
     };
     let pane = |panel: &Panel| Pane {
-        title: panel.label.clone(),
+        title: bare(&panel.label),
         y_label: with_unit(&panel.label, &panel.unit),
         curves: panel.series.iter().enumerate().map(curve).collect(),
         ..Pane::default()
