@@ -38,10 +38,10 @@ struct Swelling {
 }
 
 impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> MeanDilatation<D, N, S, L> {
-    /// As [`Solid::new`].
+    /// Body of a mesh, a law, a density ≥ 0 and a thickness > 0.
     ///
     /// # Errors
-    /// As there.
+    /// If a number is out of range, or the reference shape of a cell is degenerate or inverted.
     pub fn new(mesh: Mesh, law: L, density: f64, thickness: f64) -> Result<Self, SolidError> {
         let solid = Solid::new(mesh, Box::new(law.without_volumetric()), density, thickness)?;
         Ok(Self { solid, measure: law.measure(), law })
