@@ -76,9 +76,9 @@ impl Hold {
 pub struct Tangential {
     /// Stick or slip.
     pub hold: Hold,
-    /// In space the first tangent where the pair was last evaluated: it is projected on the present
-    /// tangent plane, and the second one is perpendicular to it. Zero before that.
-    pub tangent: [f64; 3],
+    /// In space the tangents where the pair was last evaluated, which turn with the normal. Zero
+    /// before that.
+    pub tangents: [[f64; 3]; 2],
     /// Traction q.
     pub traction: Along,
     /// Slip since the pair closed.

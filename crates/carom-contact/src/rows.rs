@@ -121,6 +121,17 @@ impl Rows {
         }
     }
 
+    /// The gradients of the first node in the rows from `first` on, padded with zeros: of the rows
+    /// of a slip, the tangents.
+    pub fn tangents(&self, first: usize) -> [[f64; 3]; 2] {
+        let mut tangents = [[0.0; 3]; 2];
+        tangents
+            .iter_mut()
+            .zip(first..self.len())
+            .for_each(|(tangent, row)| *tangent = self.row(row).first());
+        tangents
+    }
+
     /// A row.
     pub fn row(&self, row: usize) -> Row<'_> {
         let range = self.starts[row]..self.starts[row + 1];

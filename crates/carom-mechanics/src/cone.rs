@@ -154,13 +154,13 @@ impl Closed {
         let mut matrix = Vec::new();
         self.each_slip(|row, tangent| {
             let (k, p) = self.places[row / (model.dimension - 1)];
-            let (contact, first, row) =
-                (&model.contacts[k], self.slips.row(row - tangent), self.slips.row(row));
+            let contact = &model.contacts[k];
             if contact.friction.is_none() {
                 return 0.0;
             }
             let mut pair = state.pairs[k][p];
-            pair.tangential.tangent = first.first();
+            pair.tangential.tangents = self.slips.tangents(row - tangent);
+            let row = self.slips.row(row);
             let along: Vec<f64> = row.entries().map(|(dof, _)| state.v[dof]).collect();
             matrix.clear();
             matrix.resize(along.len().pow(2), 0.0);

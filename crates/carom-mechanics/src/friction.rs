@@ -127,7 +127,7 @@ impl Equations<'_> {
     }
 
     /// Adds the rows H of a closed pair at y_½, with S as their gaps, and returns what counts in
-    /// it; the pair keeps the tangent there. `gap`: that of the pair.
+    /// it; the pair keeps the tangents there. `gap`: that of the pair.
     pub(crate) fn slip_into(
         &self,
         contact: usize,
@@ -149,7 +149,7 @@ impl Equations<'_> {
             let slip = slips.row(row).entries().map(counted).sum();
             *slips.gap_mut(row) = slip;
         }
-        pair.tangential.tangent = slips.row(first).first();
+        pair.tangential.tangents = slips.tangents(first);
         Ok(part)
     }
 

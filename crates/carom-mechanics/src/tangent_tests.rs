@@ -244,7 +244,7 @@ fn the_whole_tangent_with_friction_in_space_is_the_derivative_of_the_residual() 
         let equations = equations(sim.model(), state, scheme.as_ref(), sim.dt(), state.time + sim.dt());
         let mut at = Iterate::at_start(state);
         for pair in at.pairings[0].pairs.iter_mut().filter(|pair| pair.active) {
-            pair.tangential.tangent = [0.6, 0.8, 0.0];
+            pair.tangential.tangents = [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0]];
             (pair.tangential.hold, pair.tangential.traction) =
                 (Hold::Stick, [0.1 * pair.lambda, 0.03 * pair.lambda]);
         }

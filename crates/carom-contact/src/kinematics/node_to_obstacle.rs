@@ -119,7 +119,7 @@ impl NodeToObstacle {
         if self.dimension == 2 {
             return turned(normal);
         }
-        tangents(Vector(normal), pair.tangential.tangent)[tangent].0
+        tangents(Vector(normal), pair.tangential.tangents)[tangent].0
     }
 
     fn near(&self, piece: usize, at: Point, node: usize) -> Result<Near, ContactError> {

@@ -1,26 +1,32 @@
-//! The tangents of a pair in space: the first one is the last one of the pair, projected on the
-//! tangent plane, and the second one is perpendicular to it. Any two would do, since the law is
-//! that of a circular cone; but the components of what a pair keeps from step to step refer to
-//! them.
+//! The tangents of a pair in space: the last ones of the pair, turned with the normal by the
+//! smallest rotation,
 //!
-//! As long as the first one lies in the tangent plane, the derivative of a projected tangent is
-//! ∂e = −(e·∂n) n: both turn with the normal and not about it.
+//! ```text
+//! e ← e − (e·n)/(1 + n₀·n) (n₀ + n)
+//! ```
+//!
+//! A vector is so carried from one tangent plane to the next without regard to its components. At
+//! the last normal ∂e = −(e·∂n) n.
 
 use carom_algebra::Vector;
 
 use super::space::cross;
 
-/// Length of the projection of a unit vector below which another one is taken.
-const SHORT: f64 = 0.1;
+/// 1 + n₀·n below which other tangents are taken.
+const TURNED: f64 = 0.1;
 
-/// The tangents at a normal, from the last first one, which may be zero.
-pub(super) fn tangents(normal: Vector<3>, last: [f64; 3]) -> [Vector<3>; 2] {
-    let projected = |x: Vector<3>| x + normal * -normal.dot(&x);
-    let mut first = projected(Vector(last));
-    if first.norm() < SHORT {
+/// The tangents at a normal, from the last ones, which may be zero.
+pub(super) fn tangents(normal: Vector<3>, last: [[f64; 3]; 2]) -> [Vector<3>; 2] {
+    let [first, second] = last.map(Vector);
+    let before = cross(first, second);
+    let turn = 1.0 + before.dot(&normal);
+    let first = if before.norm() > 0.5 && turn > TURNED {
+        first + (before + normal) * (-first.dot(&normal) / turn)
+    } else {
         let axis = (1..3).fold(0, |least, i| if normal[i].abs() < normal[least].abs() { i } else { least });
-        first = projected(Vector(std::array::from_fn(|i| f64::from(u8::from(i == axis)))));
-    }
+        Vector(std::array::from_fn(|i| f64::from(u8::from(i == axis))))
+    };
+    let first = first + normal * -normal.dot(&first);
     let first = first * first.norm().recip();
     [first, cross(normal, first)]
 }

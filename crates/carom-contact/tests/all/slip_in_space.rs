@@ -25,14 +25,17 @@ fn scenes(height: f64) -> Vec<(Box<dyn Kinematics>, Vec<f64>, bool)> {
     scenes
 }
 
+/// Tangents of another normal.
+const START: [[f64; 3]; 2] = [[0.6, 0.8, 0.0], [0.0, 0.0, 1.0]];
+
 /// The pair at its contact point with its tangent there, and both H over all dofs.
-fn slip(contact: &dyn Kinematics, y: &[f64], tangent: [f64; 3]) -> (Pair, [Vec<f64>; 2]) {
+fn slip(contact: &dyn Kinematics, y: &[f64], tangents: [[f64; 3]; 2]) -> (Pair, [Vec<f64>; 2]) {
     let (mut rows, mut pair) = (Rows::new(3), Pair { active: true, ..Pair::open(0, 0, 0.2) });
     contact.measure(&mut pair, y, &mut rows).unwrap();
-    pair.tangential.tangent = tangent;
+    pair.tangential.tangents = tangents;
     rows.clear();
     contact.slip(&pair, y, &mut rows).unwrap();
-    pair.tangential.tangent = rows.row(0).first();
+    pair.tangential.tangents = rows.tangents(0);
     let full = [0, 1].map(|row| {
         let mut full = vec![0.0; y.len()];
         rows.row(row).add_to(1.0, &mut full);
@@ -68,7 +71,7 @@ fn finite_rigid_motions_have_no_slip() {
             let (middle, change): (Vec<f64>, Vec<f64>) =
                 start.iter().zip(&end).map(|(a, b)| (0.5 * (a + b), b - a)).unzip();
             let size: f64 = change.iter().map(|x| x.abs()).sum();
-            for row in slip(contact.as_ref(), &middle, [0.3, 0.4, -0.2]).1 {
+            for row in slip(contact.as_ref(), &middle, START).1 {
                 let slipped = dot(&row, &change);
                 assert!(slipped.abs() < 1e-14 * size, "{k} {angle}: {slipped:e}");
             }
@@ -79,7 +82,7 @@ fn finite_rigid_motions_have_no_slip() {
 #[test]
 fn friction_has_neither_a_resultant_nor_a_moment_and_unit_forces_on_the_node() {
     for (k, (contact, y, turns)) in [0.35, 0.12].into_iter().flat_map(scenes).enumerate() {
-        let (pair, rows) = slip(contact.as_ref(), &y, [0.3, 0.4, -0.2]);
+        let (pair, rows) = slip(contact.as_ref(), &y, START);
         let mut gap = Rows::new(3);
         contact.measure(&mut pair.clone(), &y, &mut gap).unwrap();
         let normal = gap.row(0).first();
@@ -104,12 +107,12 @@ fn friction_has_neither_a_resultant_nor_a_moment_and_unit_forces_on_the_node() {
 fn the_derivatives_of_the_rows_are_those_of_differences() {
     for (k, (contact, y, _)) in [0.35, 0.12].into_iter().flat_map(scenes).enumerate() {
         let contact = contact.as_ref();
-        let pair = slip(contact, &y, [0.3, 0.4, -0.2]).0;
+        let pair = slip(contact, &y, START).0;
         for tangent in 0..2 {
             let mut matrix = vec![0.0; y.len() * y.len()];
             contact.slip_derivative_into(&pair, &y, tangent, &mut matrix);
             let row = |y: &[f64]| {
-                let [first, second] = slip(contact, y, pair.tangential.tangent).1;
+                let [first, second] = slip(contact, y, pair.tangential.tangents).1;
                 if tangent == 0 { first } else { second }
             };
             let error = jacobian_error(&y, 1e-3, row, &matrix);
@@ -118,7 +121,7 @@ fn the_derivatives_of_the_rows_are_those_of_differences() {
     }
 }
 
-/// A tangent that is nearly the normal is replaced.
+/// Those of the opposite normal are replaced.
 #[test]
 fn any_tangent_is_a_start() {
     for (contact, y, _) in scenes(0.35) {
@@ -127,10 +130,29 @@ fn any_tangent_is_a_start() {
             contact.measure(&mut pair, &y, &mut rows).unwrap();
             rows.row(0).first()
         };
-        for start in [[0.0; 3], normal, [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]] {
+        let [first, second] = slip(contact.as_ref(), &y, START).0.tangential.tangents;
+        for start in [[[0.0; 3]; 2], [first, second], [second, first], START] {
             let [first, second] = slip(contact.as_ref(), &y, start).1;
             assert!((dot(&first[..3], &first[..3]) - 1.0).abs() < 1e-14);
             assert!(dot(&first[..3], &second[..3]).abs() < 1e-14 && dot(&first[..3], &normal).abs() < 1e-14);
+        }
+    }
+}
+
+/// A vector of the tangent plane goes from one to another in the same way whatever its components.
+#[test]
+fn what_a_normal_carries_does_not_depend_on_the_tangents() {
+    for (contact, y, turns) in scenes(0.35).into_iter().filter(|scene| scene.2) {
+        let end = moved(&y, [1.0, 2.0, -0.5], 0.8);
+        let start = slip(contact.as_ref(), &y, START).0.tangential.tangents;
+        let (s, c) = 0.7_f64.sin_cos();
+        let other: [[f64; 3]; 2] = [
+            std::array::from_fn(|i| c * start[0][i] + s * start[1][i]),
+            std::array::from_fn(|i| c * start[1][i] - s * start[0][i]),
+        ];
+        let [one, two] = [start, other].map(|last| slip(contact.as_ref(), &end, last).0.tangential.tangents);
+        for i in 0..3 {
+            assert!((c * one[0][i] + s * one[1][i] - two[0][i]).abs() < 1e-14 && turns);
         }
     }
 }

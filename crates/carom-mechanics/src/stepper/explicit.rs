@@ -413,7 +413,7 @@ fn slip_into(
     rows.pop();
     let first = rows.len();
     contact.kinematics.slip(&at, &state.y, rows).map_err(failed)?;
-    pair.tangential.tangent = rows.row(first).first();
+    pair.tangential.tangents = rows.tangents(first);
     Ok(())
 }
 

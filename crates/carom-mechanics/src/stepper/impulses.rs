@@ -99,7 +99,7 @@ impl Impulses {
             let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
             let mut slips = Rows::new(model.dimension);
             contact.kinematics.slip(pair, predicted, &mut slips).map_err(failed)?;
-            pair.tangential.tangent = slips.row(0).first();
+            pair.tangential.tangents = slips.tangents(0);
             let law = Law { limit: dt * law.limit, ..*law };
             let kind = kind(&law, of, state, (k, pair), (&slips, 0), &state.v);
             for (slip, along) in slips.iter().zip([[1.0, 0.0], [0.0, 1.0]]) {
@@ -204,7 +204,8 @@ impl Impulses {
             let (k, p) = self.rows.places[r];
             let tangential = &mut pairings[k].pairs[p].tangential;
             let before = *tangential;
-            *tangential = Tangential { tangent: before.tangent, slip: before.slip, ..Tangential::default() };
+            *tangential =
+                Tangential { tangents: before.tangents, slip: before.slip, ..Tangential::default() };
             let mut impulse = [0.0; 2];
             // The row before is that of the other tangent.
             impulse[..=tangent].copy_from_slice(&self.values[r - tangent..=r]);

@@ -1,7 +1,7 @@
 //! Friction in space: the plane is a slice of it, no direction is special, forces and moments
 //! balance, the law holds at every node, and runs resume with the same bits.
 
-use carom_contact::{Hold, inner, length};
+use carom_contact::{Hold, Pair, inner, length};
 use carom_run::{GridReport, Simulation};
 
 use super::common::{case as case_of, finish, simulation};
@@ -37,22 +37,23 @@ fn of(scheme: &str, mu: &str) -> Vec<String> {
     sets
 }
 
+/// Not with a discrete gradient: it is corrected along the motion of all nodes of a facet, of which
+/// a slab has more, and other nodes stick.
 #[test]
 fn an_impact_of_slabs_with_friction_is_that_of_the_plane() {
-    for scheme in [SCHEMES[0], SCHEMES[3], SCHEMES[5]] {
-        let bound = if scheme.contains("energy") { 1e-4 } else { 1e-8 };
-        let (mu, sets) = (of(scheme, "0.3").pop().unwrap(), of(scheme, "0.3"));
+    for scheme in [SCHEMES[0], SCHEMES[2], SCHEMES[3]] {
+        let bound = 1e-8;
+        let sets = of(scheme, "0.3");
         let plane = finish(simulation(IMPACT, &sets));
         let sets: Vec<&str> = sets.iter().map(String::as_str).filter(|set| !set.contains("mu=")).collect();
         let mut slabs = slab(&sets);
         slabs.push("contact.strike.mu=0.3".into());
         let space = finish(simulation(IMPACT, &slabs));
         let slips = |sim: &Simulation, stick: bool| {
-            let counts =
-                |pair: &&carom_contact::Pair| pair.active && (pair.tangential.hold == Hold::Stick) == stick;
+            let counts = |pair: &&Pair| pair.active && (pair.tangential.hold == Hold::Stick) == stick;
             sim.state().pairs[0].iter().filter(counts).count()
         };
-        assert!(slips(&plane, true) + slips(&plane, false) > 2, "{scheme} {mu}");
+        assert!(slips(&plane, true) + slips(&plane, false) > 2, "{scheme}");
         let worst = apart(&plane, &space);
         assert!(worst < bound, "{scheme}: {worst:e}");
         let [a, b] = [&plane, &space].map(|sim| sim.state().ledger.friction_work);

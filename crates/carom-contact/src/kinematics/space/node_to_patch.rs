@@ -378,7 +378,7 @@ impl Kinematics for NodeToPatch {
         if a <= 0.0 || !a.is_finite() {
             return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a });
         }
-        for along in tangents(gap.normal(), pair.tangential.tangent) {
+        for along in tangents(gap.normal(), pair.tangential.tangents) {
             let nodes = std::iter::once(&node).chain(patch.nodes);
             let slopes = gap.slip(along, patch.nodes.len());
             rows.push(0.0, nodes.zip(slopes).map(|(&n, slope)| (n, slope.0)));
@@ -389,7 +389,7 @@ impl Kinematics for NodeToPatch {
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]) {
         let (patch, from) = (self.primary.patch(pair.facet), place(y, self.secondary[pair.node]));
         let gap = PatchGap::new(patch, y, from, [pair.xi, pair.eta]);
-        let along = tangents(gap.normal(), pair.tangential.tangent)[tangent];
+        let along = tangents(gap.normal(), pair.tangential.tangents)[tangent];
         let second = patch.shape.second([pair.xi, pair.eta]);
         gap.slip_derivative_into(along, &second, patch.nodes.len(), matrix);
     }
