@@ -235,9 +235,9 @@ def test_pressures_have_a_unit_without_a_probe_of_stress(bar: carom.Case) -> Non
     case = bar_dict() | {"units": {"length": "mm", "time": "ms", "mass": "g"}}
     del case["probe"]
     run = carom.Case.from_dict(case).set("time.end", 0.1).run(progress=False)
-    # Force over length squared.
-    assert run.contact.units["multiplier"] == "g mm/ms^2"
-    assert run.contact.units["pressure"] == "g/(mm ms^2)"
+    # g mm/ms² is N, and force over length squared MPa.
+    assert run.contact.units["multiplier"] == "N"
+    assert run.contact.units["pressure"] == "MPa"
     assert bar.set("probe", []).set("time.end", 0.1).run(progress=False).contact.units["pressure"] == "Pa"
     for table in (run.contact, carom.Simulation(carom.Case.from_dict(case)).contacts):
         assert not any(values.flags.writeable for values in table.values())
