@@ -78,9 +78,11 @@ impl Unit {
 fn stress_of(force: &str, length: &str, time: &str) -> String {
     let mass = force.strip_suffix(&format!(" {length}/{time}^2"));
     match mass {
-        _ if force == "N" => "Pa".to_owned(),
+        _ if (force, length) == ("N", "m") => "Pa".to_owned(),
+        _ if (force, length) == ("N", "mm") => "MPa".to_owned(),
         Some(mass) => format!("{mass}/({length} {time}^2)"),
-        None => String::new(),
+        None if force.is_empty() => String::new(),
+        None => format!("{force}/{length}^2"),
     }
 }
 
