@@ -17,6 +17,11 @@ impl<'a> Places<'a> {
         Self { y, dimension }
     }
 
+    /// The positions as given.
+    pub(crate) fn flat(&self) -> &'a [f64] {
+        self.y
+    }
+
     /// Coordinates of a node, one per dimension.
     #[inline]
     pub(crate) fn coordinates(&self, node: usize) -> &'a [f64] {

@@ -3,6 +3,7 @@
 //!
 //! Positions are flat over all nodes, `dimension` components each.
 
+mod apart;
 mod both_sides;
 mod candidate;
 mod facing;

@@ -78,7 +78,7 @@ impl NodeToFacet {
     /// from the secondary.
     pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
         let swept = SweptTest::new(primary.shape());
-        let tools = Tools { search: Search::new(&primary), swept, turns: Turns::default() };
+        let tools = Tools { search: Search::new(&primary, &secondary), swept, turns: Turns::default() };
         Self {
             secondary,
             primary,

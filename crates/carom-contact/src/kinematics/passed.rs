@@ -58,6 +58,9 @@ impl Paths<'_> {
             return None;
         }
         let [start, end] = [before, now].map(|y| Places::new(y, 2));
+        if search.is_apart(0.0, start, end) {
+            return None;
+        }
         let path = |node: usize| end.at(node) - start.at(node);
         // Squares, relative to one node, so that bodies that fly together do not count as moving.
         let moved = |node: &usize| square(path(*node) - path(first));

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use carom_solid::{Bounds, FacetShape, Hull, Tree};
 
+use super::apart::Apart;
 use super::projection::Facet;
 use crate::places::Places;
 
@@ -161,12 +162,21 @@ pub(crate) struct Search {
     hull: Hull,
     tree: Option<Tree>,
     found: Vec<usize>,
+    apart: Apart,
 }
 
 impl Search {
-    /// For the facets of a surface.
-    pub(crate) fn new(surface: &Surface) -> Self {
-        Self { hull: Hull::line(surface.shape.nodes(), 1.0), tree: None, found: Vec::new() }
+    /// For the facets of a surface and the nodes that are searched for.
+    pub(crate) fn new(surface: &Surface, nodes: &[usize]) -> Self {
+        let hull = Hull::line(surface.shape.nodes(), 1.0);
+        let both = surface.nodes.iter().chain(nodes).copied();
+        let apart = Apart::new(both, surface.shape.dimension(), hull.weight());
+        Self { hull, tree: None, found: Vec::new(), apart }
+    }
+
+    /// Whether [`Self::update`] would find no node near, known without it.
+    pub(crate) fn is_apart(&self, margin: f64, before: Places, now: Places) -> bool {
+        self.apart.holds(margin, [before.flat(), now.flat()])
     }
 
     /// Updates to the motion from `before` to `now`, with a `margin` around facets relative to
@@ -179,6 +189,9 @@ impl Search {
         before: Places,
         now: Places,
     ) -> bool {
+        if self.is_apart(margin, before, now) {
+            return false;
+        }
         let hull = &self.hull;
         let swept = |facet: usize| {
             let nodes = surface.facet(facet).nodes;
@@ -190,12 +203,17 @@ impl Search {
             Some(tree) => _ = tree.update(swept),
             None => self.tree = Some(Tree::new(surface.all(), swept)),
         }
-        let mut all = Bounds::EMPTY;
+        let (mut all, mut longest) = (Bounds::EMPTY, 0.0_f64);
         for &node in nodes {
-            all.add(before.coordinates(node));
-            all.add(now.coordinates(node));
+            let (from, to) = (before.coordinates(node), now.coordinates(node));
+            all.add(from);
+            all.add(to);
+            longest = from.iter().zip(to).fold(longest, |most, (from, to)| most.max((to - from).abs()));
         }
-        self.tree.as_ref().is_some_and(|tree| tree.bounds().meets(&all.grown(PATH_MARGIN * all.size())))
+        let all = all.grown(PATH_MARGIN * longest);
+        let facets = self.tree.as_ref().map_or(Bounds::EMPTY, Tree::bounds);
+        self.apart.searched([&facets, &all], [margin, PATH_MARGIN], now.flat());
+        facets.meets(&all)
     }
 
     /// Finds the facets whose path is near a node's path, ascending.

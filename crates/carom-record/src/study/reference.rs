@@ -3,14 +3,16 @@
 //! ```text
 //! computed    runs at decreasing steps, and on finer meshes where `mesh` of [fine] says so; each level
 //!             is run with every member of the study's ensemble. Value: the median of the members at the
-//!             finest level. Uncertainty: that of the refinement (convergence.rs), plus the largest
-//!             distance of a member from the median, plus a step for an instant (half a step if members
-//!             differ in phase), plus 5/4 of what averaging over a short time changes, for extremes and
-//!             variations (metrics/averaged.rs)
+//!             finest level. Uncertainty: that of the refinement (convergence.rs) of a member, the median
+//!             over the members, plus the largest distance of a member from the median, plus a step for
+//!             an instant (half a step if members differ in phase), plus 5/4 of what averaging over a
+//!             short time changes, for extremes and variations (metrics/averaged.rs)
 //! an arm      the same with the arms that differ from it only in the step; with a single run nothing is known
 //! exact       the formulas of [exact], and the metrics that can be computed from these columns; uncertainty 0
 //! ideal       the values for elastic bodies: no change or dissipation of energy, no penetration
 //! ```
+//!
+//! The medians of levels whose members scatter may converge with an order that no member has.
 //!
 //! A value is established if its uncertainty is less than half of it. A column is established in
 //! the same way, with the root mean square deviation between levels in the place of differences.
@@ -213,6 +215,7 @@ impl Reference {
         let levels = levels.ok_or("a run of the reference has no value")?;
         let medians: Vec<f64> = levels.iter().map(Spread::median).collect();
         let found = converged(&self.sizes(), &medians).ok_or("a single run gives no error estimate")?;
+        let refined = self.refined_members(name).map_or(found.uncertainty, |of_members| of_members.median());
         let (value, spread) = levels.last().map_or((0.0, 0.0), |s| (s.median(), s.half_width()));
         // A recorded instant is late by up to a step; the median of n phases by (n + 1)/2n of one,
         // which is at most half a step more than the spread of the phases, (n − 1)/2n.
@@ -223,8 +226,20 @@ impl Reference {
             self.averaged.iter().find(|metric| metric.name == name).and_then(|metric| metric.value);
         let smoothed = single.zip(averaged).map_or(0.0, |(one, other)| SAFE * (one - other).abs());
         let between = self.levels.last().map_or(1.0, Level::between_phases);
-        let uncertainty = found.uncertainty + between * spread + instant + smoothed;
+        let uncertainty = refined + between * spread + instant + smoothed;
         Ok(Estimate { value, uncertainty, order: found.order, spread })
+    }
+
+    /// Uncertainties of the refinement of each member alone; none where a member has no value at a
+    /// level.
+    fn refined_members(&self, name: &str) -> Option<Spread> {
+        let sizes = self.sizes();
+        let members = 0..self.levels.last()?.members.len();
+        let of = |k: usize| {
+            let values = self.levels.iter().map(|level| level.members.get(k)?.value(name));
+            Some(converged(&sizes, &values.collect::<Option<Vec<f64>>>()?)?.uncertainty)
+        };
+        Spread::of(members.map(of).collect::<Option<Vec<f64>>>()?)
     }
 
     /// Reference value of a metric.
@@ -349,6 +364,22 @@ mod tests {
         assert!(matches!(of(&[3.0]).metric("m"), Standing::Not(_)));
         let single = Reference::of_levels(String::new(), vec![level(1.0, &[1.0])]);
         assert!(matches!(single.metric("m"), Standing::Not(_)) && !single.has_ensemble());
+    }
+
+    /// By hand: the medians 1.4, 1.2, 1.1 are those of the first member and would be uncertain by
+    /// 0.125. The second does not converge and is uncertain by 3 · 0.2, the third by 1.25 · 0.2/1.5.
+    #[test]
+    fn every_member_is_refined_alone() {
+        let level = |step: f64, values: [f64; 3]| Level {
+            step,
+            mesh: 1.0,
+            phases: 1,
+            members: values.iter().map(|v| with("m", *v)).collect(),
+        };
+        let levels = [(4.0, [1.4, 1.3, 1.8]), (2.0, [1.2, 1.2, 1.3]), (1.0, [1.1; 3])];
+        let levels = levels.map(|(step, values)| level(step, values)).into();
+        let found = Reference::of_levels(String::new(), levels).estimate("m").unwrap();
+        assert!((found.uncertainty - 0.25 / 1.5).abs() < 1e-9, "{found:?}");
     }
 
     /// By hand: instants 1.4, 1.2, 1.1 at the steps 4, 2, 1 are uncertain by 0.125 as above, and

@@ -76,6 +76,14 @@ impl Hull {
         &self.weights[point * self.nodes..(point + 1) * self.nodes]
     }
 
+    /// The largest sum of absolute weights of a control point: it moves by at most this times the
+    /// largest motion of a node.
+    #[must_use]
+    pub fn weight(&self) -> f64 {
+        let rows = self.weights.chunks_exact(self.nodes);
+        rows.map(|row| row.iter().map(|weight| weight.abs()).sum()).fold(0.0, f64::max)
+    }
+
     /// Box around the control points, and hence around the whole line or cell, from the positions
     /// of its nodes. The caller adds a margin for round-off.
     #[must_use]

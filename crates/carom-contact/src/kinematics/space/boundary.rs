@@ -70,6 +70,11 @@ impl Boundary {
         self.side
     }
 
+    /// Nodes of all its facets, facet by facet.
+    pub(crate) fn nodes(&self) -> &[usize] {
+        &self.nodes
+    }
+
     /// Number of facets with those of the rest of the boundary.
     pub(crate) fn all(&self) -> usize {
         self.neighbours.len()

@@ -21,6 +21,7 @@ use carom_solid::{Bounds, Hull, Tree};
 use super::boundary::Boundary;
 use super::gap::PatchGap;
 use super::patch::{Feature, place};
+use crate::kinematics::apart::Apart;
 use crate::kinematics::tangents::tangents;
 use crate::kinematics::{Kinematics, OneWay};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
@@ -50,8 +51,15 @@ pub struct NodeToPatch {
     allowed: Vec<f64>,
     /// Depth that each node keeps; empty if none does.
     kept: Vec<f64>,
-    /// Boxes of the facets' paths; a cache.
-    tree: Mutex<Tree>,
+    tools: Mutex<Tools>,
+}
+
+/// Reused memory; results do not depend on its content.
+#[derive(Debug)]
+struct Tools {
+    /// Boxes of the facets' paths.
+    tree: Tree,
+    apart: Apart,
 }
 
 /// Where a pair belongs.
@@ -65,14 +73,11 @@ enum Next {
 impl NodeToPatch {
     /// Secondary nodes and primary boundary in global node numbers.
     pub fn new(secondary: Vec<usize>, primary: Boundary) -> Self {
-        Self {
-            secondary,
-            hull: primary.hull(),
-            primary,
-            allowed: Vec::new(),
-            kept: Vec::new(),
-            tree: Mutex::new(Tree::default()),
-        }
+        let hull = primary.hull();
+        let both = primary.nodes().iter().chain(&secondary).copied();
+        let apart = Apart::new(both, 3, hull.weight());
+        let tools = Mutex::new(Tools { tree: Tree::default(), apart });
+        Self { secondary, primary, hull, allowed: Vec::new(), kept: Vec::new(), tools }
     }
 
     /// The same with a depth for each node that it may have without contact.
@@ -282,7 +287,11 @@ impl Kinematics for NodeToPatch {
             pairs.append(&mut dents);
             pairs.sort_by_key(|pair| pair.node);
         }
-        let mut tree = self.tree.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
+        let Tools { tree, apart } = &mut *tools;
+        if apart.holds(*margin, [before, now]) {
+            return changed;
+        }
         let swept = |facet: usize| {
             let [old, new] = [before, now].map(|y| self.primary.bounds(&self.hull, facet, y));
             let bounds = old.union(&new);
@@ -293,6 +302,9 @@ impl Kinematics for NodeToPatch {
         } else {
             tree.update(swept);
         }
+        let ends = |&node: &usize| [place(before, node).0, place(now, node).0];
+        let paths: Bounds = self.secondary.iter().flat_map(ends).collect();
+        apart.searched([&tree.bounds(), &paths.grown(NOISE * paths.size())], [*margin, NOISE], now);
         let (known, mut next, mut near) = (pairs.len(), 0, Vec::new());
         for (k, &node) in self.secondary.iter().enumerate() {
             let first = next;

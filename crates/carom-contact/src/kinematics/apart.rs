@@ -1,0 +1,104 @@
+//! Two sets of nodes far from each other. Until they have moved by what lies between them, no path
+//! of the one comes near a facet of the other, and a search would find nothing. A cache: it never
+//! changes a result.
+//!
+//! ```text
+//! δ = largest change of a coordinate since the last search, at the start and at the end of a step
+//! box of a facet's path, grown by m of its size    within the last one grown by A (1 + 2m) δ
+//! box of the nodes' paths, grown by n of its size    within the last one grown by (1 + 2n) δ
+//! ```
+//!
+//! A bounds the sum of the weights of a facet's nodes in the points around it (`Hull::weight`).
+
+use carom_solid::Bounds;
+
+/// Slack for round-off, relative to the clearance.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Nodes of both sets, and how far they may move.
+#[derive(Clone, Debug)]
+pub(crate) struct Apart {
+    nodes: Vec<usize>,
+    dimension: usize,
+    /// A.
+    weight: f64,
+    /// Their coordinates at the last search.
+    places: Vec<f64>,
+    /// Largest δ with nothing near; ≤ 0 if there was something.
+    clearance: f64,
+    /// m of the last search.
+    margin: f64,
+}
+
+impl Apart {
+    /// Of the nodes of both sets, with A.
+    pub(crate) fn new(nodes: impl IntoIterator<Item = usize>, dimension: usize, weight: f64) -> Self {
+        let mut nodes: Vec<usize> = nodes.into_iter().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        Self { nodes, dimension, weight, places: Vec::new(), clearance: 0.0, margin: 0.0 }
+    }
+
+    /// Whether nothing is near in a motion between these positions, flat over all nodes, with this
+    /// margin around facets.
+    pub(crate) fn holds(&self, margin: f64, [before, now]: [&[f64]; 2]) -> bool {
+        if self.clearance <= 0.0 || margin > self.margin {
+            return false;
+        }
+        let mut within = true;
+        for (&node, at) in self.nodes.iter().zip(self.places.chunks_exact(self.dimension)) {
+            for (i, at) in at.iter().enumerate() {
+                let dof = node * self.dimension + i;
+                // A NaN is not within.
+                within &=
+                    (before[dof] - at).abs() <= self.clearance && (now[dof] - at).abs() <= self.clearance;
+            }
+        }
+        within
+    }
+
+    /// After a search up to these positions with boxes of facets and of nodes, grown by m and n of
+    /// their sizes.
+    pub(crate) fn searched(&mut self, [facets, nodes]: [&Bounds; 2], [m, n]: [f64; 2], now: &[f64]) {
+        let (low, high) = (facets.low(), facets.high());
+        let between = |i: usize| (nodes.low()[i] - high[i]).max(low[i] - nodes.high()[i]);
+        let between = (0..self.dimension).map(between).fold(0.0, f64::max);
+        let growth = self.weight * (1.0 + 2.0 * m) + 1.0 + 2.0 * n;
+        let far = between + facets.size() + nodes.size();
+        self.clearance = ((between - ROUND_OFF * far) / growth).max(0.0);
+        self.margin = m;
+        self.places.clear();
+        if self.clearance > 0.0 {
+            let of_node = |&node: &usize| &now[node * self.dimension..(node + 1) * self.dimension];
+            self.places.extend(self.nodes.iter().flat_map(of_node));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nodes 0 and 2 beside a facet at the origin: boxes 3 apart, A = 1, no margins. Both may move
+    /// by 1.5.
+    #[test]
+    fn holds_until_the_boxes_may_meet() {
+        let mut apart = Apart::new([2, 0, 2], 2, 1.0);
+        let (facet, node) = (Bounds::of(&[0.0, 0.0]), Bounds::of(&[3.0, 1.0]));
+        let y = [0.0, 0.0, 9.0, 9.0, 3.0, 1.0];
+        assert!(!apart.holds(0.0, [&y, &y]));
+        apart.searched([&facet, &node], [0.0; 2], &y);
+        let with = |dof: usize, x: f64| {
+            let mut moved = y;
+            moved[dof] += x;
+            moved
+        };
+        assert!(apart.holds(0.0, [&with(4, -1.49), &with(0, 1.49)]));
+        assert!(!apart.holds(0.0, [&with(4, -1.51), &y]) && !apart.holds(0.0, [&y, &with(1, 1.51)]));
+        // Node 1 belongs to neither; a wider margin was not searched.
+        assert!(apart.holds(0.0, [&y, &with(3, 5.0)]) && !apart.holds(0.1, [&y, &y]));
+        assert!(!apart.holds(0.0, [&y, &with(4, f64::NAN)]));
+        apart.searched([&facet, &Bounds::of(&[0.0, 0.0])], [0.0; 2], &y);
+        assert!(!apart.holds(0.0, [&y, &y]));
+    }
+}
