@@ -367,7 +367,8 @@ mod tests {
     }
 
     /// By hand: the medians 1.4, 1.2, 1.1 are those of the first member and would be uncertain by
-    /// 0.125. The second does not converge and is uncertain by 3 · 0.2, the third by 1.25 · 0.2/1.5.
+    /// 0.125. The second does not converge and is uncertain by 3 · 0.2, the third by
+    /// 1.25 · 0.2/1.5.
     #[test]
     fn every_member_is_refined_alone() {
         let level = |step: f64, values: [f64; 3]| Level {
