@@ -125,15 +125,45 @@ impl Skin {
             })
         };
         (0..self.surface.all()).any(|a| {
-            let nodes = self.surface.facet(a).nodes;
-            let bounds = self.hull.bounds(|k| y.coordinates(nodes[k]));
-            let others = self.tree.meeting(&bounds).filter(|&b| b > a);
-            others
-                .filter(|&b| !self.surface.facet(b).nodes.iter().any(|node| nodes.contains(node)))
-                .any(|b| !known(a, b) && crossing(a, b))
+            let bounds = self.bounds(a, y);
+            self.apart_from(a, &bounds).any(|b| b > a && !known(a, b) && crossing(a, b))
         })
     }
+
+    /// How far a coordinate of a node may change, apart from a motion of all nodes together, before
+    /// two facets that do not meet at a joint can cross; 0 where two are near at the positions of
+    /// the last update.
+    pub fn clearance_to_itself(&self, y: &[f64]) -> f64 {
+        let y = Places::new(y, 2);
+        let mut least = f64::INFINITY;
+        for a in 0..self.surface.all() {
+            let bounds = self.bounds(a, y);
+            let around = NEAR * bounds.size();
+            if self.apart_from(a, &bounds.grown(around)).next().is_some() {
+                return 0.0;
+            }
+            least = least.min(around);
+        }
+        // Either box grows.
+        least / (2.0 * self.hull.weight())
+    }
+
+    /// Box around a facet.
+    fn bounds(&self, facet: usize, y: Places) -> Bounds {
+        let nodes = self.surface.facet(facet).nodes;
+        self.hull.bounds(|k| y.coordinates(nodes[k]))
+    }
+
+    /// The facets that do not meet this one at a joint and whose boxes meet another box.
+    fn apart_from(&self, facet: usize, bounds: &Bounds) -> impl Iterator<Item = usize> {
+        let nodes = self.surface.facet(facet).nodes;
+        let joined = |b: usize| self.surface.facet(b).nodes.iter().any(|node| nodes.contains(node));
+        self.tree.meeting(bounds).filter(move |&b| !joined(b))
+    }
 }
+
+/// Distance up to which a facet is near another one, over its size.
+const NEAR: f64 = 0.25;
 
 /// Chords of a curved facet.
 pub(crate) const CHORDS: usize = 4;
@@ -160,6 +190,19 @@ mod tests {
         let mut skin = Skin::new(Surface::new(FacetShape::L2, &facets, &[1.0; 6]));
         skin.update(&y);
         (skin, y)
+    }
+
+    #[test]
+    fn a_boundary_stays_clear_of_itself_for_a_quarter_of_a_facet() {
+        let (mut skin, mut y) = bracket();
+        skin.update(&y);
+        // The shortest facets are 1 long; two may approach each other.
+        assert_eq!(skin.clearance_to_itself(&y), 0.125);
+        // The arm to the right is bent down to 0.2 above the lower side, which is 2 long.
+        (y[5], y[7]) = (0.2, 0.2);
+        skin.update(&y);
+        assert_eq!(skin.clearance_to_itself(&y), 0.0);
+        assert!(!skin.crosses_itself(&y, |_, _| false));
     }
 
     #[test]

@@ -8,6 +8,7 @@ use carom_contact::Skin;
 use crate::model::{BodyInstance, Model};
 use crate::penetration::Penetration;
 use crate::skins::{part_of, plane_skin, skin, skin_facets};
+use crate::valid_cells::Checked;
 use crate::watched::{Watched, Way, lengths};
 
 /// Allowed depth of bodies without a contact, over the length of a facet.
@@ -17,9 +18,18 @@ const UNDECLARED: f64 = 0.01;
 #[derive(Debug)]
 pub(crate) struct Undeclared {
     between: Penetration,
-    /// The bodies that may cross themselves, each with the contact of each facet with its own body,
-    /// once they have been asked for.
-    own: Option<Vec<(usize, Skin, Vec<Option<usize>>)>>,
+    /// The bodies that may cross themselves, once they have been asked for.
+    own: Option<Vec<Own>>,
+}
+
+/// A body that may cross itself.
+#[derive(Debug)]
+struct Own {
+    body: usize,
+    skin: Skin,
+    /// The contact of each facet with its own body.
+    declared: Vec<Option<usize>>,
+    checked: Checked,
 }
 
 impl Undeclared {
@@ -71,17 +81,23 @@ impl Undeclared {
 
     fn crossing_themselves(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize)> {
         let skins = self.own.get_or_insert_with(|| own(model));
-        let crosses = |(body, skin, declared): &mut (usize, Skin, Vec<Option<usize>>)| {
+        let crosses = |Own { body, skin, declared, checked }: &mut Own| {
+            let now = model.parts[*body].of(y);
+            if checked.holds(now, model.dimension) {
+                return None;
+            }
             skin.update(y);
             let known = |a: usize, b: usize| declared[a].is_some() && declared[a] == declared[b];
-            skin.crosses_itself(y, known).then_some((*body, *body))
+            let crosses = skin.crosses_itself(y, known);
+            checked.set(now, if crosses { 0.0 } else { skin.clearance_to_itself(y) });
+            crosses.then_some((*body, *body))
         };
         skins.iter_mut().filter_map(crosses).collect()
     }
 }
 
 /// The bodies of which not the whole boundary is in one contact with itself.
-fn own(model: &Model) -> Vec<(usize, Skin, Vec<Option<usize>>)> {
+fn own(model: &Model) -> Vec<Own> {
     let mut contact_of: HashMap<&[usize], usize> = HashMap::new();
     for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.itself) {
         for facet in contact.facets.iter().flat_map(|(_, facets)| facets) {
@@ -92,7 +108,11 @@ fn own(model: &Model) -> Vec<(usize, Skin, Vec<Option<usize>>)> {
         let of = |facet: &Vec<usize>| contact_of.get(facet.as_slice()).copied();
         let declared: Vec<Option<usize>> = skin_facets(part).iter().map(of).collect();
         let in_one = declared.iter().all(|contact| contact.is_some() && *contact == declared[0]);
-        if in_one { None } else { Some((body, plane_skin(part)?, declared)) }
+        if in_one {
+            None
+        } else {
+            Some(Own { body, skin: plane_skin(part)?, declared, checked: Checked::default() })
+        }
     });
     skins.collect()
 }

@@ -19,11 +19,25 @@ pub(crate) struct ValidCells {
     checked: Vec<Checked>,
 }
 
-/// A body whose cells were valid.
-#[derive(Debug)]
-struct Checked {
+/// A body that passed a check, and the distance that its nodes may move before it can fail.
+#[derive(Debug, Default)]
+pub(crate) struct Checked {
     y: Vec<f64>,
     margin: f64,
+}
+
+impl Checked {
+    /// At positions `y` of the body.
+    pub(crate) fn set(&mut self, y: &[f64], margin: f64) {
+        self.y.clear();
+        self.y.extend_from_slice(y);
+        self.margin = margin;
+    }
+
+    /// Whether the body would pass at positions `now`.
+    pub(crate) fn holds(&self, now: &[f64], dimension: usize) -> bool {
+        is_within(&self.y, now, dimension, self.margin)
+    }
 }
 
 impl ValidCells {
@@ -32,15 +46,14 @@ impl ValidCells {
     /// # Errors
     /// The first cell that is not certified valid.
     pub(crate) fn check(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
-        self.checked.resize_with(model.parts.len(), || Checked { y: Vec::new(), margin: 0.0 });
+        self.checked.resize_with(model.parts.len(), Checked::default);
         for (part, checked) in model.parts.iter().zip(&mut self.checked) {
             let (now, dimension) = (part.of(y), part.body.mesh().dimension());
-            if is_within(&checked.y, now, dimension, checked.margin) {
+            if checked.holds(now, dimension) {
                 continue;
             }
-            checked.y.clear();
-            checked.margin = margin(model, part, now)?;
-            checked.y.extend_from_slice(now);
+            checked.margin = 0.0;
+            checked.set(now, margin(model, part, now)?);
         }
         Ok(())
     }
