@@ -6,22 +6,31 @@
 //! and g forces are in N, stresses in MPa and energies in mJ. Otherwise it is composed of the
 //! labels.
 
-use carom_case::Case;
-
 /// Labels of all kinds of columns.
 #[derive(Clone, Debug)]
-pub(super) struct Labels {
-    pub(super) time: String,
-    pub(super) length: String,
-    pub(super) velocity: String,
-    pub(super) acceleration: String,
-    pub(super) force: String,
-    pub(super) moment: String,
-    pub(super) momentum: String,
-    pub(super) angular_momentum: String,
-    pub(super) energy: String,
-    pub(super) stress: String,
-    pub(super) none: String,
+pub struct Labels {
+    /// Of time.
+    pub time: String,
+    /// Of length.
+    pub length: String,
+    /// Of velocity.
+    pub velocity: String,
+    /// Of acceleration.
+    pub acceleration: String,
+    /// Of force.
+    pub force: String,
+    /// Of moment.
+    pub moment: String,
+    /// Of momentum.
+    pub momentum: String,
+    /// Of angular momentum.
+    pub angular_momentum: String,
+    /// Of energy.
+    pub energy: String,
+    /// Of stress.
+    pub stress: String,
+    /// Of what has no unit.
+    pub none: String,
 }
 
 /// Units with their powers of ten.
@@ -54,11 +63,8 @@ fn named(unit: &str, power: i32) -> Option<String> {
 }
 
 impl Labels {
-    pub(super) fn of(case: &Case) -> Self {
-        Self::from(&case.units.length, &case.units.time, &case.units.mass)
-    }
-
-    fn from(l: &str, t: &str, m: &str) -> Self {
+    /// From those of length, time and mass.
+    pub fn of(l: &str, t: &str, m: &str) -> Self {
         let powers = power(l, LENGTHS).zip(power(t, TIMES)).zip(power(m, MASSES));
         // A product of powers of mass, length and time.
         let name = |unit: &str, [mass, length, time]: [i32; 3]| {
@@ -86,6 +92,19 @@ impl Labels {
     }
 }
 
+/// The label of stress that belongs to those of force, length and time.
+pub(crate) fn stress(force: &str, length: &str, time: &str) -> String {
+    if force.is_empty() {
+        return String::new();
+    }
+    if let Some(mass) = force.strip_suffix(&format!(" {length}/{time}^2")) {
+        return Labels::of(length, time, mass).stress;
+    }
+    let newtons = force.strip_suffix('N').and_then(|prefix| power(prefix, PREFIXES));
+    let named = newtons.zip(power(length, LENGTHS)).and_then(|(n, l)| named("Pa", n - 2 * l));
+    named.unwrap_or_else(|| format!("{force}/{length}^2"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,7 +114,7 @@ mod tests {
     #[test]
     fn derived_units_have_their_names() {
         let of = |l: &str, t: &str, m: &str| {
-            let labels = Labels::from(l, t, m);
+            let labels = Labels::of(l, t, m);
             [labels.force, labels.stress, labels.energy, labels.momentum]
         };
         assert_eq!(of("m", "s", "kg"), ["N", "Pa", "J", "N s"]);
@@ -106,5 +125,23 @@ mod tests {
         // 1e-5 N has no prefix (it is the dyne); the others are composed too where they have none.
         assert_eq!(of("cm", "s", "g"), ["g cm/s^2", "g/(cm s^2)", "g cm^2/s^2", "g cm/s"]);
         assert_eq!(of("in", "s", "lb")[1], "lb/(in s^2)");
+    }
+
+    /// One run has one unit of stress, wherever the label comes from. Where only the force has a
+    /// name the mass is not known: stresses of 1e15 Pa and more.
+    #[test]
+    fn stress_belongs_to_force_and_length() {
+        let names = |of: Powers| of.iter().map(|(name, _)| *name).chain(["in"]).collect::<Vec<_>>();
+        for l in names(LENGTHS) {
+            for t in names(TIMES) {
+                for m in names(MASSES) {
+                    let labels = Labels::of(l, t, m);
+                    let found = stress(&labels.force, l, t);
+                    assert!(found == labels.stress || found.ends_with(&format!("N/{l}^2")), "{labels:?}");
+                }
+            }
+        }
+        assert_eq!(stress("mN", "mm", "s"), "kPa");
+        assert_eq!((stress("", "m", "s"), stress("lbf", "in", "s")), (String::new(), "lbf/in^2".to_owned()));
     }
 }
