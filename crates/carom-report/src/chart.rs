@@ -199,9 +199,10 @@ impl Chart<'_> {
             let (low, high) = (x_axis.low, x_axis.high);
             let _ = writeln!(
                 out,
-                "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} 8 {:.1} {}\"/>",
+                "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} 8 {:.1} {} {:e}\"/>",
                 y0 - 12.0,
-                x_axis.exponent
+                x_axis.exponent,
+                x_axis.offset
             );
         }
         let (words, unit) = unit_of(&self.x_label);
