@@ -101,6 +101,7 @@ fn measured<'a>(overlays: &'a [Cut], column: &str, panel: &mut Vec<Series<'a>>) 
             x: &overlay.x,
             y: overlay.y.clone(),
             dotted: true,
+            unlisted: false,
         });
     }
 }
@@ -137,6 +138,7 @@ fn curves<'a>(run: &'a Run, overlays: &'a [Cut], columns: &[(&str, &str)], size:
             x: run.times(),
             y: y.to_vec(),
             dotted: false,
+            unlisted: false,
         };
         shown.then(|| series(y))
     });
@@ -173,8 +175,15 @@ fn probes(run: &Run) -> Option<Figure> {
         let color = LINES[probes.iter().position(|p| *p == probe).unwrap_or(0) % LINES.len()];
         let label = format!("{} at {probe}", symbol(quantity));
         let series = &mut panels[at].1.series;
-        series.push(Series { label, color, x: run.times(), y: values.to_vec(), dotted: false });
-        measured(&overlays, &column.name, series);
+        series.push(Series {
+            label,
+            color,
+            x: run.times(),
+            y: values.to_vec(),
+            dotted: false,
+            unlisted: false,
+        });
+        add_measured(&overlays, &column.name, series);
     }
     // No axis of the plane is horizontal or vertical in space.
     let solid = run.manifest.case.get("dimension").and_then(serde_json::Value::as_u64) == Some(3);
