@@ -182,18 +182,26 @@ def animation(browser):
     browser.click("#history", 0.5)
     differs(dragged, shown(), "a click on a time history")
 
-    # A drag across a history enlarges it, and a double click shows all of it again.
+    # A drag across a history enlarges it; a double click, or Esc wherever the focus is, shows all
+    # of it again.
     ticks = "document.querySelector('#history g.ticks').textContent"
     whole = browser.value(ticks)
-    x, y, width, height = browser.place("#history")
-    browser.mouse("mousePressed", x + 0.4 * width, y + height / 2)
-    browser.mouse("mouseMoved", x + 0.5 * width, y + height / 2)
-    browser.mouse("mouseReleased", x + 0.6 * width, y + height / 2)
-    if browser.value(ticks) == whole:
-        wrong.append("a drag across a time history does not enlarge it")
-    browser.value("document.querySelector('#history').dispatchEvent(new MouseEvent('dblclick', { bubbles: true }))")
-    if browser.value(ticks) != whole:
-        wrong.append("a double click does not show the whole time again")
+
+    def escape():
+        browser.value("document.activeElement.blur()")
+        browser("Input.dispatchKeyEvent", type="keyDown", key="Escape")
+
+    double = "document.querySelector('#history').dispatchEvent(new MouseEvent('dblclick', { bubbles: true }))"
+    for name, back in (("a double click", lambda: browser.value(double)), ("Esc", escape)):
+        x, y, width, height = browser.place("#history")
+        browser.mouse("mousePressed", x + 0.4 * width, y + height / 2)
+        browser.mouse("mouseMoved", x + 0.5 * width, y + height / 2)
+        browser.mouse("mouseReleased", x + 0.6 * width, y + height / 2)
+        if browser.value(ticks) == whole:
+            wrong.append("a drag across a time history does not enlarge it")
+        back()
+        if browser.value(ticks) != whole:
+            wrong.append(f"{name} does not show the whole time again")
     return wrong
 
 

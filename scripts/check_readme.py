@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Checks what README.md says a command prints: the run of its first command, except for wall times,
-the number of set-ups of `carom verify`, and that every command of the tour has its options.
+the numbers of set-ups of `carom verify`, of planted faults and of methods of the laboratory, and that
+every command of the tour has its options.
 
     scripts/check_readme.py CAROM OUTPUT_OF_VERIFY
 """
 
+import json
 import pathlib
 import re
 import subprocess
@@ -48,6 +50,14 @@ def main():
     if f"Verified by {set_ups} set-ups" not in readme:
         wrong.append(f"README.md does not say {set_ups} set-ups")
 
+    faults = len(json.loads((ROOT / "scripts/faults.json").read_text(encoding="utf-8")))
+    if not re.search(rf"\b{faults}\s+faults are planted", readme):
+        wrong.append(f"README.md does not say {faults} faults")
+    laboratory = (ROOT / "cases/paper/laboratory.toml").read_text(encoding="utf-8")
+    methods = len(re.findall(r"^\[\[arm\]\]", laboratory, re.MULTILINE))
+    if not re.search(rf"\blaboratory\.toml +.*\b{methods} methods", readme):
+        wrong.append(f"README.md does not say {methods} methods")
+
     for line in block_after(readme, "## A tour"):
         words = re.split(r"\s{2,}", line)[0].split()
         options = subprocess.run([carom, words[1], "--help"], capture_output=True, text=True, check=True)
@@ -56,7 +66,10 @@ def main():
         wrong += [f"`{line.strip()}`: no file {path}" for path in paths if not (ROOT / path).is_file()]
     if wrong:
         sys.exit("\n".join(wrong))
-    print(f"README.md: {len(said)} lines of output, {set_ups} set-ups and its tour are right")
+    print(
+        f"README.md: {len(said)} lines of output, {set_ups} set-ups, {faults} faults, {methods} methods and "
+        "its tour are right"
+    )
 
 
 if __name__ == "__main__":

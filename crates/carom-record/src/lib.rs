@@ -30,6 +30,7 @@ mod run;
 mod stop;
 mod stream;
 pub mod study;
+pub mod units;
 pub mod verification;
 mod vtkhdf;
 mod vtu;

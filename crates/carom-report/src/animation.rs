@@ -111,7 +111,14 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let h = &run.history;
     let series = |name: &str, label: String, k: usize| {
         let y = h.column(name)?.to_vec();
-        Some(Series { label, color: LINES[k % LINES.len()], x: run.times(), y, dotted: false })
+        Some(Series {
+            label,
+            color: LINES[k % LINES.len()],
+            x: run.times(),
+            y,
+            dotted: false,
+            unlisted: false,
+        })
     };
     // In the plane y, as in the figures; in space the component that grows largest.
     let peak = |name: &str| h.column(name).map(|x| x.iter().fold(0.0_f64, |most, x| most.max(x.abs())));

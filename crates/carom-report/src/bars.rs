@@ -37,12 +37,13 @@ pub(crate) fn figure(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: 
     let mut panels = Vec::new();
     for (label, array, lines) in [("u_{x}", "displacement", &u), ("σ_{xx}", "stress", &stress)] {
         let series = lines.iter().enumerate().map(|(i, (t, x, y))| Series {
-            // Both panels share one legend.
-            label: if panels.is_empty() { format!("t = {t:.4} {time}") } else { String::new() },
+            label: format!("t = {t:.4} {time}"),
             color: sequence(i, sets.len()),
             x,
             y: y.clone(),
             dotted: false,
+            // Both panels share one legend.
+            unlisted: !panels.is_empty(),
         });
         let series: Vec<Series> = series.collect();
         if !series.is_empty() {

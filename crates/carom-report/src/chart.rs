@@ -20,6 +20,8 @@ pub(crate) struct Series<'a> {
     pub(crate) y: Vec<f64>,
     /// Whether its points are drawn, instead of lines between them.
     pub(crate) dotted: bool,
+    /// Whether its label is for tables only.
+    pub(crate) unlisted: bool,
 }
 
 /// Curves with one vertical axis.
@@ -199,9 +201,10 @@ impl Chart<'_> {
             let (low, high) = (x_axis.low, x_axis.high);
             let _ = writeln!(
                 out,
-                "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} 8 {:.1} {}\"/>",
+                "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} 8 {:.1} {} {:e}\"/>",
                 y0 - 12.0,
-                x_axis.exponent
+                x_axis.exponent,
+                x_axis.offset
             );
         }
         let (words, unit) = unit_of(&self.x_label);
@@ -256,11 +259,11 @@ fn entry_width(series: &Series) -> f64 {
     46.0 + text::width(&series.label) * FONT
 }
 
-/// Entries of the legend by line; curves without a label have none.
+/// Entries of the legend by line; curves without a label, or with one for tables only, have none.
 fn legend_rows(panel: &Panel, width: f64) -> Vec<Vec<usize>> {
     let mut rows: Vec<Vec<usize>> = Vec::new();
     let mut used = f64::INFINITY;
-    for (i, series) in panel.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty()) {
+    for (i, series) in panel.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty() && !s.unlisted) {
         let needed = entry_width(series);
         if used + needed > width {
             rows.push(Vec::new());

@@ -1,4 +1,5 @@
-//! The claims of a study: each with the ratio of its two sides, its interval and whether it holds.
+//! The claims of a study: each with the ratio of its two sides, its interval and whether it is
+//! confirmed.
 
 use carom_record::study::{Held, Study, Verdict};
 use maud::{Markup, html};
@@ -34,12 +35,12 @@ pub(crate) fn section(study: &Study) -> Markup {
     let all = study.manifest.ensemble.is_some();
     let confirmed = study.verdicts.iter().filter(|v| class(v) == "pass").count();
     let result = |v: &Verdict| match &v.held {
-        Some(held @ Held { held: k, of, .. }) => format!("holds {} ({k} of {of})", held.word()),
+        Some(held @ Held { held: k, of, .. }) => format!("confirmed {} ({k} of {of})", held.word()),
         None => v.word().to_owned(),
     };
     html! {
         h2 { "Claims" }
-        p { (confirmed) " of " (study.verdicts.len()) " hold" @if all { " in all members of the ensemble" } "." }
+        p { (confirmed) " of " (study.verdicts.len()) " confirmed" @if all { " in all members of the ensemble" } "." }
         div.scroll {
             table {
                 thead { tr { th { "Claim" } th { "Result" } th.n { "Left / right" } } }

@@ -24,7 +24,7 @@ for ax, (time, points) in zip(axes.flat, instants.items()):
     x, y, value = zip(*points)
     levels = [most * (k / 12 - 1) for k in range(25)]
     drawn = ax.tricontourf(x, y, triangles, value, levels=levels, cmap="RdBu_r")
-    ax.set(title=f"t = {float(time):.4g} @TIME@", aspect="equal", xlabel="x (@LENGTH@)")
-axes.flat[0].set_ylabel("y (@LENGTH@)")
-figure.colorbar(drawn, ax=axes, label="σ_yy (@STRESS@)")
+    ax.set(title=f"t = {float(time):.4g} " + @TIME@, aspect="equal", xlabel=@X@)
+axes.flat[0].set_ylabel(@Y@)
+figure.colorbar(drawn, ax=axes, label=@STRESS@)
 figure.savefig(here / "bodies-redrawn.pdf")

@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 
 use crate::bodies::{Instant, triangles};
 use crate::figure::Figure;
+use crate::labels::with_unit;
+use crate::redraw::filled;
 
 /// Largest number of rows; the nodes of larger bodies are in the field files only.
 const MOST: usize = 40_000;
@@ -58,10 +60,13 @@ pub(crate) fn with_files(
             let _ = writeln!(cells, "{a},{b},{c}");
         }
     }
-    let script = include_str!("contours.py")
-        .replace("@TIME@", time)
-        .replace("@LENGTH@", length)
-        .replace("@STRESS@", stress);
+    let labels = [
+        ("@TIME@", time.to_owned()),
+        ("@X@", with_unit("x", length)),
+        ("@Y@", with_unit("y", length)),
+        ("@STRESS@", with_unit("σ_{yy}", stress)),
+    ];
+    let script = filled(include_str!("contours.py"), &labels);
     let mut figure = figure.with(table, script);
     figure.files.push(("triangles.csv", cells));
     figure

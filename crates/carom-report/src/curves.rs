@@ -71,17 +71,43 @@ pub(crate) fn is_rough(curve: &Curve) -> bool {
     high > low && variation > ROUGH * (high - low)
 }
 
-/// The name of an arm as a label: without the tables of its keys, and without a word that says that
-/// a scheme is one.
-pub(crate) fn label(name: &str) -> String {
-    let part = |part: &str| match part.split_once('=') {
-        Some(("time.scheme", value)) => value.to_owned(),
-        Some((key, value)) if !key.contains(' ') => {
-            format!("{} = {value}", key.rsplit_once('.').map_or(key, |(_, last)| last))
-        }
-        _ => part.to_owned(),
-    };
-    name.split(", ").map(part).collect::<Vec<_>>().join(", ")
+/// The keys in the names of arms.
+pub(crate) struct Keys<'a>(Vec<&'a str>);
+
+/// The key and the value of a part of a name.
+fn setting(part: &str) -> Option<(&str, &str)> {
+    part.split_once('=').filter(|(key, _)| !key.contains(' '))
+}
+
+impl<'a> Keys<'a> {
+    pub(crate) fn of(names: impl Iterator<Item = &'a str>) -> Self {
+        let mut keys: Vec<&str> =
+            names.flat_map(|name| name.split(", ")).filter_map(setting).map(|s| s.0).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        Self(keys)
+    }
+
+    /// The last part of a key, with as many parts before it as distinguish it from the other keys.
+    fn short<'b>(&self, key: &'b str) -> &'b str {
+        let mut ends = key.rmatch_indices('.').map(|(at, _)| &key[at + 1..]);
+        let is_another = |other: &str, end: &str| {
+            let rest = other.strip_suffix(end).filter(|_| other != key);
+            rest.is_some_and(|rest| rest.is_empty() || rest.ends_with('.'))
+        };
+        ends.find(|end| !self.0.iter().any(|other| is_another(other, end))).unwrap_or(key)
+    }
+
+    /// The name of an arm as a label: without the tables of its keys, and without a word that says
+    /// that a scheme is one.
+    pub(crate) fn label(&self, name: &str) -> String {
+        let part = |part: &str| match setting(part) {
+            Some(("time.scheme", value)) => value.to_owned(),
+            Some((key, value)) => format!("{} = {value}", self.short(key)),
+            _ => part.to_owned(),
+        };
+        name.split(", ").map(part).collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// The first contact of all sound arms with a quarter of its duration on either side, unless it
@@ -128,8 +154,18 @@ mod tests {
 
     #[test]
     fn labels_have_no_tables() {
+        let label = |name| Keys::of([name].into_iter()).label(name);
         assert_eq!(label("time.scheme=hu, time.step=0.001875"), "hu, step = 0.001875");
         assert_eq!(label("Bathe, ρ∞ = 0.5"), "Bathe, ρ∞ = 0.5");
+    }
+
+    #[test]
+    fn labels_of_different_keys_differ() {
+        let names = ["body.a.young=1", "body.b.young=1, time.step=1e-3", "material.a.young=1", "young=1"];
+        let keys = Keys::of(names.into_iter());
+        let labels: Vec<String> = names.iter().map(|name| keys.label(name)).collect();
+        let wanted = ["body.a.young = 1", "b.young = 1, step = 1e-3", "material.a.young = 1", "young = 1"];
+        assert_eq!(labels, wanted);
     }
 
     /// A wave of 30 periods has a variation of 60 ranges, a ramp of one.

@@ -45,9 +45,11 @@ pub(crate) fn all(run: &Run) -> Shown {
     }
     let map = stick_slip::figure(run);
     let pressure = pressure::figure(run);
-    shown
-        .figures
-        .extend([probes(run), force(run), pressure, map, energy(run), solver(run)].into_iter().flatten());
+    shown.figures.extend(
+        [probes(run), force(run), pressure, map, energy(run), measured(run), solver(run)]
+            .into_iter()
+            .flatten(),
+    );
     shown
 }
 
@@ -93,7 +95,7 @@ fn chart<'a>(
 }
 
 /// Adds the measured data of a column to its panel, which also limits them to the time of the run.
-fn measured<'a>(overlays: &'a [Cut], column: &str, panel: &mut Vec<Series<'a>>) {
+fn add_measured<'a>(overlays: &'a [Cut], column: &str, panel: &mut Vec<Series<'a>>) {
     for overlay in overlays.iter().filter(|overlay| overlay.column == column) {
         panel.push(Series {
             label: format!("measured: {}", overlay.name),
@@ -101,6 +103,7 @@ fn measured<'a>(overlays: &'a [Cut], column: &str, panel: &mut Vec<Series<'a>>) 
             x: &overlay.x,
             y: overlay.y.clone(),
             dotted: true,
+            unlisted: false,
         });
     }
 }
@@ -137,11 +140,12 @@ fn curves<'a>(run: &'a Run, overlays: &'a [Cut], columns: &[(&str, &str)], size:
             x: run.times(),
             y: y.to_vec(),
             dotted: false,
+            unlisted: false,
         };
         shown.then(|| series(y))
     });
     let mut found: Vec<Series> = found.collect();
-    columns.iter().for_each(|(name, _)| measured(overlays, name, &mut found));
+    columns.iter().for_each(|(name, _)| add_measured(overlays, name, &mut found));
     found
 }
 
@@ -173,8 +177,15 @@ fn probes(run: &Run) -> Option<Figure> {
         let color = LINES[probes.iter().position(|p| *p == probe).unwrap_or(0) % LINES.len()];
         let label = format!("{} at {probe}", symbol(quantity));
         let series = &mut panels[at].1.series;
-        series.push(Series { label, color, x: run.times(), y: values.to_vec(), dotted: false });
-        measured(&overlays, &column.name, series);
+        series.push(Series {
+            label,
+            color,
+            x: run.times(),
+            y: values.to_vec(),
+            dotted: false,
+            unlisted: false,
+        });
+        add_measured(&overlays, &column.name, series);
     }
     // No axis of the plane is horizontal or vertical in space.
     let solid = run.manifest.case.get("dimension").and_then(serde_json::Value::as_u64) == Some(3);
@@ -195,6 +206,20 @@ fn probes(run: &Run) -> Option<Figure> {
     chart(run, ("probes", "Time histories at the probes"), caption, panels)
 }
 
+/// Columns of figures, with their labels.
+const FORCES: [(&str, &str); 3] =
+    [("contact_force_x", "f_{x}"), ("contact_force_y", "f_{y}"), ("contact_force_z", "f_{z}")];
+const IMPULSES: [(&str, &str); 3] =
+    [("contact_impulse_x", "P_{x}"), ("contact_impulse_y", "P_{y}"), ("contact_impulse_z", "P_{z}")];
+const ENERGIES: [(&str, &str); 4] =
+    [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
+const WORKS: [(&str, &str); 4] = [
+    ("dissipation", "dissipation"),
+    ("external_work", "external work"),
+    ("contact_work", "contact work"),
+    ("friction_work", "friction work"),
+];
+
 /// Contact force and impulse against time.
 fn force(run: &Run) -> Option<Figure> {
     let h = &run.history;
@@ -205,18 +230,8 @@ fn force(run: &Run) -> Option<Figure> {
         .flatten();
     let largest = impulse.fold(f64::MIN_POSITIVE, |m: f64, x| m.max(x.abs()));
     let overlays = Cut::all(run);
-    let forces = curves(
-        run,
-        &overlays,
-        &[("contact_force_x", "f_{x}"), ("contact_force_y", "f_{y}"), ("contact_force_z", "f_{z}")],
-        size,
-    );
-    let impulses = curves(
-        run,
-        &overlays,
-        &[("contact_impulse_x", "P_{x}"), ("contact_impulse_y", "P_{y}"), ("contact_impulse_z", "P_{z}")],
-        largest,
-    );
+    let (forces, impulses) =
+        (curves(run, &overlays, &FORCES, size), curves(run, &overlays, &IMPULSES, largest));
     let panels = vec![
         panel("contact force f", h.unit("contact_force_x"), 200.0, forces),
         panel("impulse P", h.unit("contact_impulse_x"), 130.0, impulses),
@@ -237,23 +252,37 @@ fn energy(run: &Run) -> Option<Figure> {
         .chain(run.column("kinetic"))
         .flatten()
         .fold(0.0, |m: f64, x| m.max(x.abs()));
-    let energies =
-        [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
-    let works = [
-        ("dissipation", "dissipation"),
-        ("external_work", "external work"),
-        ("contact_work", "contact work"),
-        ("friction_work", "friction work"),
-    ];
     let panels = vec![
-        panel("energy", unit, 200.0, curves(run, &overlays, &energies, size)),
-        panel("work, dissipation", unit, 150.0, curves(run, &overlays, &works, 1e-3 * size)),
+        panel("energy", unit, 200.0, curves(run, &overlays, &ENERGIES, size)),
+        panel("work, dissipation", unit, 150.0, curves(run, &overlays, &WORKS, 1e-3 * size)),
     ];
     let caption = "Energy balance. Top: energies. Bottom: accumulated work and dissipation, which is \
                    external work + contact work + friction work − change of the total energy; where it is negative, energy \
                    was created. Quantities that remain zero are omitted. Data: `history.csv`, columns of the \
                    same names.";
     chart(run, ("energy", "Energy balance"), caption.into(), panels)
+}
+
+/// Measured data of columns that no other figure shows, with these columns.
+fn measured(run: &Run) -> Option<Figure> {
+    let (probes, overlays) = (names(run, "probes"), Cut::all(run));
+    let lists = [&FORCES[..], &IMPULSES, &ENERGIES, &WORKS];
+    let is_shown = |column: &str| {
+        column.rsplit_once('.').is_some_and(|(probe, _)| probes.contains(&probe))
+            || lists.iter().any(|list| list.iter().any(|(name, _)| *name == column))
+    };
+    let mut columns: Vec<&str> =
+        overlays.iter().map(|overlay| overlay.column.as_str()).filter(|column| !is_shown(column)).collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let of = |column: &&str| {
+        panel(column, run.history.unit(column), 190.0, curves(run, &overlays, &[(column, "computed")], 0.0))
+    };
+    let caption = format!(
+        "Measured data and the columns that they belong to. Data: `history.csv`, columns `{}`.",
+        columns.join("`, `")
+    );
+    chart(run, ("measured", "Measured data"), caption, columns.iter().map(of).collect())
 }
 
 /// Iterations, active nodes and rejections by step.

@@ -12,8 +12,19 @@ const STUDENT: [f64; 30] = [
     12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131,
     2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042,
 ];
-/// The same of the normal distribution, for more.
-const NORMAL: f64 = 1.960;
+
+/// The same quantile for any number of degrees of freedom: of the table, or of the expansion about
+/// the normal distribution (M. Abramowitz, I. Stegun, *Handbook of Mathematical Functions*,
+/// 26.7.5).
+fn student(degrees: usize) -> f64 {
+    const Z: f64 = 1.959_963_985;
+    if let Some(t) = degrees.checked_sub(1).and_then(|k| STUDENT.get(k)) {
+        return *t;
+    }
+    let v = degrees as f64;
+    let odd = |a: f64, b: f64, c: f64| a * Z.powi(5) + b * Z.powi(3) + c * Z;
+    Z + odd(0.0, 1.0, 1.0) / (4.0 * v) + odd(5.0, 16.0, 3.0) / (96.0 * v * v)
+}
 
 /// A fitted line.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +57,7 @@ impl Fit {
         }
         let slope = sum(&|x, y| x * y) / width;
         let rest = sum(&|x, y| (y - slope * x).powi(2)) / (n - 2) as f64;
-        let spread = STUDENT.get(n - 3).copied().unwrap_or(NORMAL) * rest.sqrt();
+        let spread = student(n - 2) * rest.sqrt();
         Some(Self { slope, uncertainty: spread / width.sqrt(), middle, count: n as f64, width, spread })
     }
 
@@ -60,6 +71,16 @@ impl Fit {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// NIST/SEMATECH e-Handbook of Statistical Methods, table 1.3.6.7.2.
+    #[test]
+    fn quantiles() {
+        for (degrees, t) in
+            [(1, 12.706), (30, 2.042), (31, 2.040), (40, 2.021), (60, 2.000), (100, 1.984), (100_000, 1.960)]
+        {
+            assert!((student(degrees) - t).abs() < 6e-4, "{degrees}: {}", student(degrees));
+        }
+    }
 
     /// By hand: (0, 0), (1, 2), (2, 1): slope 1/2, mean (1, 1), residuals −1/2, 1, −1/2, so s² =
     /// 3/2 with one degree of freedom and S_xx = 2.

@@ -11,7 +11,7 @@ use carom_record::study::{Study, step};
 use crate::collected::{Column, named};
 use crate::curves;
 use crate::labels::{capitalised, file_name, with_unit};
-use crate::plot::{Curve, Pane, Plot};
+use crate::plot::{Band, Curve, Pane, Plot};
 
 /// Largest number of small multiples in one figure.
 const MULTIPLES: usize = 24;
@@ -55,13 +55,13 @@ const COLOURED: usize = 7;
 /// A pane with one curve with markers per method, through the points of its arms, and another one
 /// of the arms that created much energy; the Pareto front; and the recommended arm.
 fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Pane {
-    let shown = |arm: &usize| point(*arm).filter(|p| p.0 > 0.0 && p.1 > 0.0);
+    let shown = |arm: &usize| Some((*arm, point(*arm).filter(|p| p.0 > 0.0 && p.1 > 0.0)?));
     let methods = methods(study);
     let points: Vec<(usize, (f64, f64))> = methods
         .iter()
         .flat_map(|(_, arms)| arms)
         .filter(|arm| !study.rows[**arm].is_unsound())
-        .filter_map(|arm| Some((*arm, shown(arm)?)))
+        .filter_map(shown)
         .collect();
     let front = front(&points);
     let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
@@ -73,8 +73,9 @@ fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Pane {
             arms.into_iter().partition(|arm| study.rows[*arm].is_unsound());
         let quiet = !few && !matters;
         for (arms, apart) in [(sound, false), (unsound, true)] {
-            let is_chosen = !apart && arms.iter().any(|arm| chosen == Some(*arm));
-            let (x, y): (Vec<f64>, Vec<f64>) = arms.iter().filter_map(shown).unzip();
+            let is_chosen = |arm: &usize| !apart && chosen == Some(*arm);
+            let points: Vec<(usize, (f64, f64))> = arms.iter().filter_map(shown).collect();
+            let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|(_, point)| *point).unzip();
             let label = if apart { format!("{name}, creates energy") } else { name.to_owned() };
             if !x.is_empty() {
                 curves.push(Curve {
@@ -85,7 +86,8 @@ fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Pane {
                     marked: true,
                     apart,
                     quiet,
-                    chosen: is_chosen,
+                    chosen: arms.iter().any(is_chosen),
+                    ring: points.iter().position(|(arm, _)| is_chosen(arm)),
                     ..Curve::default()
                 });
             }
@@ -94,15 +96,17 @@ fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Pane {
     Pane { curves, front: front.into_iter().map(|(_, point)| point).collect(), ..Pane::default() }
 }
 
-/// The points that no other one surpasses in both coordinates, from left to right.
+/// The points that no other one surpasses, from left to right; of equal points, all.
 fn front(points: &[(usize, (f64, f64))]) -> Vec<(usize, (f64, f64))> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a.1.0.total_cmp(&b.1.0).then(a.1.1.total_cmp(&b.1.1)));
-    let mut lowest = f64::INFINITY;
-    sorted.retain(|(_, (_, y))| {
-        let better = *y < lowest;
-        lowest = lowest.min(*y);
-        better
+    let mut last = (f64::NEG_INFINITY, f64::INFINITY);
+    sorted.retain(|(_, point)| {
+        let on = point.1 < last.1 || *point == last;
+        if on {
+            last = *point;
+        }
+        on
     });
     sorted
 }
@@ -161,8 +165,8 @@ fn error_cost(study: &Study) -> Option<Plot> {
         name: "error-cost".into(),
         caption: format!(
             "Error against cost: one point per arm, one curve per method. Broad line: Pareto front. Ring: \
-             recommended arm.{} Cost: processor time of the time steps without output. Zero errors are omitted \
-             (logarithmic axes).{}",
+             recommended arm.{} Cost: processor time of the time steps without output. Arms with a zero are \
+             omitted (logarithmic axes).{}",
             quiet(&panes),
             apart(&panes)
         ),
@@ -191,22 +195,13 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
     };
     let high = |arm: usize| study.rows[arm].value("force_high_frequency");
     let over = if right.is_some() { "TV / TV of the reference" } else { "TV / (2 × peak mean force)" };
-    let pane = |title: &str, y_label: &str, pane: Pane| Pane {
-        title: title.into(),
-        y_label: y_label.into(),
-        ..pane
-    };
+    let varied = scatter(study, |a| Some((lost(a)?, variation(a)?)));
+    let high = scatter(study, |a| Some((lost(a)?, high(a)?)));
+    let titled =
+        |title: &str, y_label: &str, pane| Pane { title: title.into(), y_label: y_label.into(), ..pane };
     let mut panes = vec![
-        pane(
-            "total variation of the contact force",
-            over,
-            scatter(study, |a| Some((lost(a)?, variation(a)?))),
-        ),
-        pane(
-            "power above 16 cycles per contact",
-            "share of power",
-            scatter(study, |a| Some((lost(a)?, high(a)?))),
-        ),
+        titled("total variation of the contact force", over, varied),
+        titled("power above 16 cycles per contact", "share of power", high),
     ];
     panes.retain(|p| !p.curves.is_empty());
     (!panes.is_empty()).then(|| Plot {
@@ -214,7 +209,8 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
         caption: format!(
             "Roughness of the contact force against energy drift: one point per arm, one curve per method. \
              Broad line: Pareto front. Ring: recommended arm.{} Numerical damping reduces roughness at the cost of energy; methods at the lower left are smooth \
-             without it. TV: total variation during the first contact.{}",
+             without it. TV: total variation during the first contact. Arms with a zero are omitted \
+             (logarithmic axes).{}",
             quiet(&panes),
             apart(&panes)
         ),
@@ -228,13 +224,14 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
 }
 
 /// The band of a column: the reference ± its uncertainty.
-fn band(reference: &Reference, column: &str) -> Option<[Vec<f64>; 3]> {
+fn band(reference: &Reference, column: &str) -> Option<Band> {
     let (x, y) = reference.column(column)?;
     let off = reference.band(column);
     let every = x.len().div_ceil(1200).max(1);
     let rows = (0..x.len()).step_by(every);
     let edge = |sign: f64| rows.clone().map(|i| y[i] + sign * off[i]).collect();
-    Some([rows.clone().map(|i| x[i]).collect(), edge(-1.0), edge(1.0)])
+    let x = rows.clone().map(|i| x[i]).collect();
+    Some(Band { name: "reference", x, low: edge(-1.0), high: edge(1.0) })
 }
 
 /// Name of the figure with small multiples of a column.
@@ -272,9 +269,10 @@ fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
         let mark = if curve.chosen { "▸ " } else { "" };
         let more = if others.is_empty() { String::new() } else { format!(" (+{})", others.len()) };
         Pane {
+            name: curve.label.clone(),
             title: format!("{mark}{}{more}", curve.label),
             y_label: if k % 3 == 0 { with_unit(&label, &column.unit) } else { String::new() },
-            curves: vec![Curve { label: String::new(), style: if curve.chosen { 2 } else { 1 }, ..curve }],
+            curves: vec![Curve { unlisted: true, style: if curve.chosen { 2 } else { 1 }, ..curve }],
             band: band.clone(),
             span,
             ..Pane::default()
@@ -389,5 +387,8 @@ mod tests {
     fn the_front_is_not_surpassed() {
         let points = [(0, (2.0, 2.0)), (1, (1.0, 1.0)), (2, (4.0, 0.5)), (3, (3.0, 0.5)), (4, (9.0, 0.1))];
         assert_eq!(front(&points).iter().map(|point| point.0).collect::<Vec<_>>(), [1, 3, 4]);
+        // Equal points are both on it; one that is as good in one coordinate only is not.
+        let ties = [(0, (1.0, 2.0)), (1, (1.0, 2.0)), (2, (1.0, 3.0)), (3, (2.0, 2.0)), (4, (2.0, 1.0))];
+        assert_eq!(front(&ties).iter().map(|point| point.0).collect::<Vec<_>>(), [0, 1, 4]);
     }
 }

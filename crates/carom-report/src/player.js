@@ -6,7 +6,7 @@ const player = (root, frames, unit, draw, first) => {
   // All histories show the same interval of time, at first the whole one; a drag across one enlarges it.
   let shownFrom = null, shownTo = null;
   const axes = [...document.querySelectorAll("svg g.time")].map(axis => {
-    const [x0, x1, t0, t1, top, bottom, exponent] = axis.dataset.axis.split(" ").map(Number);
+    const [x0, x1, t0, t1, top, bottom, exponent, offset] = axis.dataset.axis.split(" ").map(Number);
     const range = () => shownFrom === null ? [t0, t1] : [shownFrom, shownTo];
     const line = document.createElementNS("http://www.w3.org/2000/svg", "path");
     for (const [key, value] of [["stroke", "#c0267e"], ["stroke-width", "1.2"], ["class", "cursor"]]) line.setAttribute(key, value);
@@ -49,7 +49,7 @@ const player = (root, frames, unit, draw, first) => {
         const decimals = Math.min(12, Math.max(0, -Math.floor(Math.log10(step / 10 ** exponent * 1.0001))));
         const bottoms = ticks.dataset.bottoms.split(" ").map(Number), parts = [];
         for (let i = Math.ceil(from / step - 1e-9); i <= to / step + 1e-9; i++) {
-          const x = place(i * step).toFixed(1), text = (i * step / 10 ** exponent).toFixed(decimals).replace("-", "−");
+          const x = place(i * step).toFixed(1), text = ((i * step - offset) / 10 ** exponent).toFixed(decimals).replace("-", "−");
           parts.push(`<path d="${bottoms.map(y => `M${x} ${y}v5`).join("")}" stroke="#222" stroke-width="0.8"/>`);
           parts.push(`<text x="${x}" y="${bottoms[bottoms.length - 1] + 19}" text-anchor="middle">${text}</text>`);
         }
@@ -98,9 +98,9 @@ const player = (root, frames, unit, draw, first) => {
     if (event.target.tagName === "SELECT" || (event.target.type === "range" && event.target !== slider)) return;
     const by = { ArrowLeft: -1, ArrowRight: 1, ",": -1, ".": 1 }[event.key];
     if (by) { pause(); show((frames[frame + by] || frames[frame]).time); event.preventDefault(); }
-    if (event.key === "Escape") zoom(null, null);
     if (event.key === " " && event.target !== button) { playing === null ? play() : pause(); event.preventDefault(); }
   });
+  document.addEventListener("keydown", event => { if (event.key === "Escape") zoom(null, null); });
   root.hidden = false;
   show(first);
 };

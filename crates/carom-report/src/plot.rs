@@ -14,14 +14,25 @@ mod scale;
 
 pub(crate) use curve::{APART, Curve, style};
 
+/// A grey band behind the curves.
+#[derive(Clone, Debug)]
+pub(crate) struct Band {
+    /// What it is, in tables.
+    pub(crate) name: &'static str,
+    pub(crate) x: Vec<f64>,
+    pub(crate) low: Vec<f64>,
+    pub(crate) high: Vec<f64>,
+}
+
 /// One panel: axes and curves.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pane {
+    /// Name in tables, where it is not the title; no two panes of a figure have the same.
+    pub(crate) name: String,
     pub(crate) title: String,
     pub(crate) y_label: String,
     pub(crate) curves: Vec<Curve>,
-    /// Grey band behind the curves: x, lower and upper edge.
-    pub(crate) band: Option<[Vec<f64>; 3]>,
+    pub(crate) band: Option<Band>,
     /// Vertical lines with labels.
     pub(crate) marks: Vec<(f64, String)>,
     /// A horizontal line with a label.
@@ -51,6 +62,11 @@ pub(crate) struct Plot {
 }
 
 impl Pane {
+    /// Its name in tables.
+    pub(crate) fn name(&self) -> &str {
+        if self.name.is_empty() { &self.title } else { &self.name }
+    }
+
     /// The curves that set the axes: those of unsound runs do only where there is no other.
     fn setting_axes(&self) -> impl Iterator<Item = &Curve> {
         let all_apart = self.curves.iter().all(|curve| curve.apart);
@@ -76,7 +92,7 @@ impl Plot {
             let within = |(x, _): &(&f64, &f64)| (from..=to).contains(*x);
             // The middle of the band only: where the reference is most uncertain, its edges would
             // compress the curves.
-            let middle = |[x, low, high]: &[Vec<f64>; 3]| {
+            let middle = |Band { x, low, high, .. }: &Band| {
                 let middle: Vec<f64> = low.iter().zip(high).map(|(low, high)| 0.5 * (low + high)).collect();
                 x.iter().zip(&middle).filter(within).map(|(_, y)| *y).collect::<Vec<_>>()
             };
@@ -157,6 +173,15 @@ pub(crate) mod tests {
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
         // One marker in the pane, one in the legend.
         assert_eq!(svg.matches("z\" fill=").count(), 2);
+    }
+
+    #[test]
+    fn the_ring_is_around_one_point() {
+        let mut plot = plot();
+        plot.log = [false, false];
+        let curve = &mut plot.panes[0].curves[0];
+        (curve.chosen, curve.ring) = (true, Some(1));
+        assert_eq!(plot.svg().matches("r=\"8\"").count(), 1);
     }
 
     #[test]

@@ -15,6 +15,6 @@ figure, axes = plt.subplots(
 for ax, (contact, rows) in zip(axes.flat, contacts.items()):
     time, s, pressure = zip(*rows)
     points = ax.scatter(time, s, c=pressure, cmap="YlOrRd", marker="s", s=6, vmin=0)
-    figure.colorbar(points, ax=ax, label="p (@STRESS@)")
-    ax.set(title=contact, xlabel="time t (@TIME@)", ylabel="arc length s (@LENGTH@)")
+    figure.colorbar(points, ax=ax, label=@P@)
+    ax.set(title=contact, xlabel=@T@, ylabel=@S@)
 figure.savefig(here / "pressure-redrawn.pdf")

@@ -11,7 +11,9 @@ use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
 use crate::chart::{open_chart, write_text};
 use crate::figure::Figure;
+use crate::labels::with_unit;
 use crate::pen::{Pen, open_grid};
+use crate::redraw::filled;
 use crate::sheet::{Legend, color_bar};
 
 const WIDTH: f64 = 720.0;
@@ -107,8 +109,8 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         }
     }
     let y = sides.len() as f64 * step + 22.0;
-    let place = format!("text-anchor=\"middle\" {}", "");
-    write_text(&mut out, LEFT + 0.5 * plot, y, &place, &x_axis.label("time t", run.history.unit("time")));
+    let label = x_axis.label("time t", run.history.unit("time"));
+    write_text(&mut out, LEFT + 0.5 * plot, y, "text-anchor=\"middle\"", &label);
     out.push_str("</svg>\n");
     let thinned =
         if stride > 1 { format!(" One in {stride} recorded instants is drawn.") } else { String::new() };
@@ -117,10 +119,12 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
          configuration; a band per node, nothing where it is open.{thinned} Data: `contact.csv`, column \
          `pressure`."
     );
-    let script = include_str!("pressure.py")
-        .replace("@TIME@", run.history.unit("time"))
-        .replace("@LENGTH@", &length)
-        .replace("@STRESS@", &stress);
+    let labels = [
+        ("@P@", with_unit("p", &stress)),
+        ("@T@", with_unit("time t", run.history.unit("time"))),
+        ("@S@", with_unit("arc length s", &length)),
+    ];
+    let script = filled(include_str!("pressure.py"), &labels);
     Some(Figure::new("pressure", caption, out).with(table, script))
 }
 

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use crate::chart::{Chart, Panel, Series};
 use crate::labels::with_unit;
 use crate::palette::LINES;
-use crate::plot::{APART, Curve, Pane, Plot, style};
+use crate::plot::{APART, Band, Curve, Pane, Plot, style};
 
 /// The script; every `@WORD@` is replaced.
 const SCRIPT: &str = r##"#!/usr/bin/env python3
@@ -24,8 +24,12 @@ with open(here / "@NAME@.csv", encoding="utf-8", newline="") as file:
 colors = @COLORS@
 dashes = @DASHES@
 styles = @STYLES@
+own = @OWN@  # colours of curves with one of their own
 apart = @APART@  # dashed grey, without influence on the axes
+unlisted = @UNLISTED@  # not in the legend
+titles = @TITLES@
 y_labels = @Y_LABELS@
+bands = @BANDS@
 limits, floors, spans, fronts = @LIMITS@, @FLOORS@, @SPANS@, @FRONTS@
 marks = @MARKS@
 points = @POINTS@  # without lines between them
@@ -35,26 +39,27 @@ def style(label):
     if label in apart:
         return {"color": "@APART_COLOR@", "ls": @APART_DASHES@, "zorder": 1}
     i = styles[label]
+    color = own.get(label, colors[i % 8])
     if label in points:
-        return {"color": colors[i % 8], "marker": "os^Dv"[i % 5], "ms": 4, "ls": "none"}
+        return {"color": color, "marker": "os^Dv"[i % 5], "ms": 4, "ls": "none"}
     if marked:
-        return {"color": colors[i % 8], "marker": "os^Dv"[i % 5], "ms": 4}
-    return {"color": colors[i % 8], "ls": dashes[(i + i // 8) % 8] if label and not direct else "-"}
+        return {"color": color, "marker": "os^Dv"[i % 5], "ms": 4}
+    return {"color": color, "ls": dashes[(i + i // 8) % 8] if label and not direct else "-"}
 
 rows = -(-len(panes) // across)
 size = (7.2, @HIGH@ * rows + 0.5 + 0.1 * len(styles))
 figure, axes = plt.subplots(
     rows, across, figsize=size, squeeze=False, sharex=@SHARED@, sharey=@SAME@, layout="constrained"
 )
-for k, (title, curves) in enumerate(panes.items()):
+for k, curves in enumerate(panes.values()):
     ax = axes.flat[k]
-    low, high = curves.pop("reference, low", None), curves.pop("reference, high", None)
-    if low:
+    if bands[k]:
+        low, high = (curves.pop(f"{bands[k]}, {edge}") for edge in ("low", "high"))
         ax.fill_between(low[0], low[1], high[1], color="#cfcfcf")
     for label in sorted(curves, key=lambda label: label in apart):
         if label in apart and not apart.issuperset(curves):
             ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())
-        ax.plot(*curves[label], lw=1.2, label=label, **style(label))
+        ax.plot(*curves[label], lw=1.2, label=None if label in unlisted else label, **style(label))
     if fronts[k]:
         ax.plot(*zip(*fronts[k]), color="#222222", alpha=0.18, lw=5, zorder=0)
     for x, word in marks[k]:
@@ -68,14 +73,14 @@ for k, (title, curves) in enumerate(panes.items()):
         ax.annotate(
             word, (0.98, level), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=7
         )
-    ax.set_title(title, fontsize=9 if across < 3 else 7.5)
+    ax.set_title(titles[k], fontsize=9 if across < 3 else 7.5)
     ax.set(ylabel=y_labels[k], xscale="@X_SCALE@", yscale="@Y_SCALE@", ylim=limits[k], xlim=spans[k])
 for ax in axes.flat[len(panes):]:
     ax.set_visible(False)
-for column in range(across):
-    last = [ax for ax in axes[:, column] if ax.get_visible()][-1]
-    last.set_xlabel(@X_LABEL@)
-    last.tick_params(labelbottom=True)
+for column in axes.T:
+    for ax in [ax for ax in column if ax.get_visible()][-1:]:
+        ax.set_xlabel(@X_LABEL@)
+        ax.tick_params(labelbottom=True)
 handles = {l: h for ax in axes.flat for h, l in zip(*ax.get_legend_handles_labels())}
 if handles:
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=2, fontsize=8)
@@ -83,20 +88,20 @@ figure.savefig(here / "@NAME@-redrawn.pdf")
 "##;
 
 impl Plot {
-    /// The table with columns `pane,curve,x,y`; the edges of a band are the curves `reference, low`
-    /// and `reference, high`.
+    /// The table with columns `pane,curve,x,y`; the edges of a band are the curves `NAME, low` and
+    /// `NAME, high`.
     pub(crate) fn csv(&self) -> String {
         let mut out = String::from("pane,curve,x,y\n");
         let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
         for pane in &self.panes {
             let mut rows = |label: &str, x: &[f64], y: &[f64]| {
                 for (x, y) in x.iter().zip(y) {
-                    let _ = writeln!(out, "{},{},{x:?},{y:?}", quoted(&pane.title), quoted(label));
+                    let _ = writeln!(out, "{},{},{x:?},{y:?}", quoted(pane.name()), quoted(label));
                 }
             };
-            if let Some([x, low, high]) = &pane.band {
-                rows("reference, low", x, low);
-                rows("reference, high", x, high);
+            if let Some(Band { name, x, low, high }) = &pane.band {
+                rows(&format!("{name}, low"), x, low);
+                rows(&format!("{name}, high"), x, high);
             }
             pane.curves.iter().for_each(|c| rows(&c.label, &c.x, &c.y));
         }
@@ -109,17 +114,20 @@ impl Plot {
             let each: Vec<String> = self.panes.iter().map(of).collect();
             format!("[{}]", each.join(", "))
         };
-        let mark = |m: &(f64, String)| format!("({:?}, {:?})", m.0, plain(&m.1));
+        let mark = |m: &(f64, String)| format!("({:?}, {})", m.0, string(&plain(&m.1)));
         let curves = || self.panes.iter().flat_map(|p| &p.curves);
-        let mut styles: Vec<String> = curves().map(|c| format!("{:?}: {}", c.label, c.style)).collect();
-        styles.sort_unstable();
-        styles.dedup();
-        let set = |of: &dyn Fn(&Curve) -> bool| {
-            let mut labels: Vec<String> =
-                curves().filter(|c| of(c)).map(|c| format!("{:?}", c.label)).collect();
-            labels.dedup();
-            if labels.is_empty() { "set()".to_owned() } else { format!("{{{}}}", labels.join(", ")) }
+        let braced = |mut items: Vec<String>| {
+            items.sort_unstable();
+            items.dedup();
+            format!("{{{}}}", items.join(", "))
         };
+        let styles = curves().map(|c| format!("{}: {}", string(&c.label), c.style)).collect();
+        let own = curves().filter_map(|c| Some(format!("{}: {}", string(&c.label), string(c.color?))));
+        let set = |of: &dyn Fn(&Curve) -> bool| {
+            let labels: Vec<String> = curves().filter(|c| of(c)).map(|c| string(&c.label)).collect();
+            if labels.is_empty() { "set()".to_owned() } else { braced(labels) }
+        };
+        let listed: Vec<&str> = curves().filter(|c| !c.unlisted).map(|c| c.label.as_str()).collect();
         let truth = |yes: bool| if yes { "True" } else { "False" }.to_owned();
         let scale = |axis: usize| if self.log[axis] { "log" } else { "linear" }.to_owned();
         let dashes: Vec<String> = (0..8).map(|i| dashes(style(i).1)).collect();
@@ -127,11 +135,15 @@ impl Plot {
             ("NAME", self.name.clone()),
             ("COLORS", format!("{:?}", [0, 1, 2, 3, 4, 5, 6, 7].map(|i| style(i).0))),
             ("DASHES", format!("[{}]", dashes.join(", "))),
-            ("STYLES", format!("{{{}}}", styles.join(", "))),
+            ("STYLES", braced(styles)),
+            ("OWN", braced(own.collect())),
             ("APART", set(&|c| c.apart)),
             ("APART_COLOR", APART.0.to_owned()),
             ("APART_DASHES", self::dashes(APART.1)),
-            ("Y_LABELS", list(&|p| format!("{:?}", plain(&p.y_label)))),
+            ("UNLISTED", set(&|c| !listed.contains(&c.label.as_str()))),
+            ("TITLES", list(&|p| string(&plain(&p.title)))),
+            ("Y_LABELS", list(&|p| string(&plain(&p.y_label)))),
+            ("BANDS", list(&|p| p.band.as_ref().map_or("None".into(), |band| string(band.name)))),
             ("LIMITS", list(&|p| p.limits.map_or("None".into(), |l| format!("{l:?}")))),
             ("SPANS", list(&|p| p.span.map_or("None".into(), |l| format!("{l:?}")))),
             ("FRONTS", list(&|p| format!("{:?}", p.front))),
@@ -154,7 +166,7 @@ impl Plot {
             ("SAME", truth(self.same)),
             ("X_SCALE", scale(0)),
             ("Y_SCALE", scale(1)),
-            ("X_LABEL", format!("{:?}", plain(&self.x_label))),
+            ("X_LABEL", string(&plain(&self.x_label))),
         ]
         .iter()
         .fold(SCRIPT.to_owned(), |script, (word, value)| script.replace(&format!("@{word}@"), value))
@@ -165,17 +177,23 @@ impl Plot {
 pub(crate) fn of_chart(name: &str, chart: &Chart) -> Plot {
     // Tables have names without the signs of subscripts.
     let bare = |label: &str| label.replace("_{", "_").replace('}', "");
-    let curve = |(k, series): (usize, &Series)| Curve {
-        label: bare(&series.label),
-        style: LINES.iter().position(|color| *color == series.color).unwrap_or(k % LINES.len()),
-        x: series.x.to_vec(),
-        y: series.y.clone(),
-        marked: series.dotted,
-        points: series.dotted,
-        ..Curve::default()
+    let curve = |(k, series): (usize, &Series)| {
+        let known = LINES.iter().position(|color| *color == series.color);
+        Curve {
+            label: bare(&series.label),
+            style: known.unwrap_or(k % LINES.len()),
+            color: known.is_none().then_some(series.color),
+            x: series.x.to_vec(),
+            y: series.y.clone(),
+            marked: series.dotted,
+            points: series.dotted,
+            unlisted: series.unlisted,
+            ..Curve::default()
+        }
     };
     let pane = |panel: &Panel| Pane {
-        title: bare(&panel.label),
+        name: bare(&panel.label),
+        title: panel.label.clone(),
         y_label: with_unit(&panel.label, &panel.unit),
         curves: panel.series.iter().enumerate().map(curve).collect(),
         ..Pane::default()
@@ -195,6 +213,18 @@ pub(crate) fn of_chart(name: &str, chart: &Chart) -> Plot {
 /// Dashes in the notation of matplotlib; `"-"` for none.
 fn dashes(svg: &str) -> String {
     if svg.is_empty() { "\"-\"".to_owned() } else { format!("(0, ({}))", svg.replace(' ', ", ")) }
+}
+
+/// A script with labels in the places of their words.
+pub(crate) fn filled(script: &str, labels: &[(&str, String)]) -> String {
+    labels
+        .iter()
+        .fold(script.to_owned(), |script, (word, label)| script.replace(word, &string(&plain(label))))
+}
+
+/// A string of Python: JSON's are.
+fn string(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
 }
 
 /// A label with subscripts and superscripts in the notation of matplotlib.
@@ -225,6 +255,40 @@ mod tests {
             plot().csv(),
             "pane,curve,x,y\n\"one\",\"Hu, \"\"a\"\"\",0.001,0.0\n\"one\",\"Hu, \"\"a\"\"\",0.01,0.0002\n"
         );
+    }
+
+    /// The second panel of a chart has no legend, but its curves have names, and their own colours.
+    #[test]
+    fn curves_of_every_panel_have_names() {
+        use crate::chart::{Chart, Panel, Series};
+        let series = |unlisted| Series {
+            label: "t = 1 s".into(),
+            color: "#00224e",
+            x: &[0.0, 1.0],
+            y: vec![0.0, 1.0],
+            dotted: false,
+            unlisted,
+        };
+        let panel = |label: &str, unlisted| Panel {
+            label: label.into(),
+            unit: String::new(),
+            height: 100.0,
+            series: vec![series(unlisted)],
+        };
+        let panels = vec![panel("u_{x}", false), panel("v_{x}", true)];
+        let chart = Chart { title: "", x_label: String::new(), shades: Vec::new(), panels };
+        let plot = super::of_chart("bodies", &chart);
+        assert!(plot.csv().contains("\"v_x\",\"t = 1 s\",1.0,1.0"));
+        let script = plot.script();
+        assert!(script.contains(r##"own = {"t = 1 s": "#00224e"}"##) && script.contains("unlisted = set()"));
+        assert_eq!(chart.svg().matches("t = 1 s").count(), 1);
+    }
+
+    /// Units are any text.
+    #[test]
+    fn labels_are_strings() {
+        let labels = [("@S@", "s (\"\\ kg/m^{2})".to_owned())];
+        assert_eq!(super::filled("ylabel=@S@", &labels), r#"ylabel="s (\"\\ kg/m$^{\\mathrm{2}}$)""#);
     }
 
     #[test]

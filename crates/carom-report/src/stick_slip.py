@@ -18,6 +18,6 @@ figure, axes = plt.subplots(
 for ax, (contact, states) in zip(axes.flat, contacts.items()):
     for state, (times, places) in states.items():
         ax.scatter(times, places, color=colors[state], marker="s", s=5, label=state)
-    ax.set(title=contact, xlabel="time t (@TIME@)", ylabel="arc length s")
+    ax.set(title=contact, xlabel=@T@, ylabel=@S@)
     ax.legend(fontsize=8)
 figure.savefig(here / "stick-slip-redrawn.pdf")

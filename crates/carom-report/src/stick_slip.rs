@@ -10,7 +10,9 @@ use crate::arc::places;
 use crate::axis::{Axis, range};
 use crate::chart::{open_chart, write_text};
 use crate::figure::Figure;
+use crate::labels::with_unit;
 use crate::palette::LINES;
+use crate::redraw::filled;
 
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 74.0;
@@ -62,7 +64,11 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let caption = "Nodes in contact over time, along the secondary side in the reference configuration: where \
                    they stick and slip, at the recorded instants; nothing is drawn for open nodes. Data: \
                    `contact.csv`, columns `friction` and `traction`.";
-    let script = include_str!("stick_slip.py").replace("@TIME@", run.history.unit("time"));
+    let labels = [
+        ("@T@", with_unit("time t", run.history.unit("time"))),
+        ("@S@", with_unit("arc length s", &length(run))),
+    ];
+    let script = filled(include_str!("stick_slip.py"), &labels);
     Some(Figure::new("stick-slip", caption, out).with(table(run, &contacts), script))
 }
 
@@ -129,11 +135,15 @@ fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &
         out,
         "<path d=\"M{LEFT} {top:.1}v{HEIGHT}h{plot}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.9\"/>"
     );
-    let length = run.fields.first().and_then(|entry| run.field(entry).ok());
-    let unit = length.and_then(|set| set.array("displacement").map(|array| array.unit.clone()));
-    let label = y_axis.label("arc length s", &unit.unwrap_or_default());
+    let label = y_axis.label("arc length s", &length(run));
     let (x, y) = (16.0, top + 0.5 * HEIGHT);
     write_text(out, x, y, &format!("text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\""), &label);
+}
+
+/// The unit of length.
+fn length(run: &Run) -> String {
+    let first = run.fields.first().and_then(|entry| run.field(entry).ok());
+    first.and_then(|set| set.array("displacement").map(|array| array.unit.clone())).unwrap_or_default()
 }
 
 /// Recorded instants, from which a state lasts until the next one.

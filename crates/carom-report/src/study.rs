@@ -6,6 +6,7 @@ use std::path::Path;
 use carom_record::study::Study;
 
 use crate::collected::{Column, Origin, collect, named};
+use crate::curves::Keys;
 use crate::labels::{capitalised, file_name, with_unit};
 use crate::plot::{Curve, Pane, Plot};
 use crate::publish::{ReportError, ReportSummary, publish, write};
@@ -75,12 +76,13 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
         .chunk_by(|a, b| a.1.case_path == b.1.case_path)
         .flat_map(|same| same.chunks(MOST).map(|few| few.iter().map(|(i, _)| *i).collect()))
         .collect();
+    let keys = Keys::of(study.rows.iter().map(|row| row.name.as_str()));
     let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
     let figure = |group: usize| {
         let members = &groups[group];
         let mine = column.curves.iter().filter(|(arm, ..)| members.contains(arm));
         let curves = mine.map(|(arm, x, y)| Curve {
-            label: curves::label(&study.rows[*arm].name),
+            label: keys.label(&study.rows[*arm].name),
             style: *arm % MOST,
             x: x.clone(),
             y: y.clone(),
@@ -96,9 +98,9 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
             return None;
         }
         let apart = if curves.iter().any(|curve| curve.apart) {
-            " Dashed grey, or in a pane of its own where it is rough: arms that failed, up to where they \
-             stopped, and arms that created more energy than the default guard allows; they do not affect \
-             the axes."
+            " Dashed grey: arms that failed, up to where they stopped, and arms that created more energy \
+             than the default guard allows. They do not affect the axes, and rough ones have panes of their \
+             own."
         } else {
             ""
         };
@@ -124,7 +126,12 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
                 if contact.is_some() { " during the first contact" } else { "" },
             )
         } else {
-            let whole = Pane { y_label: y_label.clone(), curves: curves.clone(), ..Pane::default() };
+            let whole = Pane {
+                name: "whole time".into(),
+                y_label: y_label.clone(),
+                curves: curves.clone(),
+                ..Pane::default()
+            };
             let part = contact.map(|span| Pane {
                 title: "during the first contact".into(),
                 y_label,
@@ -138,7 +145,7 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
         let aside = aside.into_iter().map(|curve| Pane {
             title: format!("{}: apart", curve.label),
             y_label: with_unit(&label, &column.unit),
-            curves: vec![Curve { label: String::new(), ..curve }],
+            curves: vec![Curve { unlisted: true, ..curve }],
             ..Pane::default()
         });
         let panes: Vec<Pane> = panes.into_iter().chain(aside).collect();
@@ -161,7 +168,7 @@ fn multiples(curves: Vec<Curve>, y_label: &str, span: Option<(f64, f64)>) -> Vec
     let pane = |(k, curve): (usize, Curve)| Pane {
         title: curve.label.clone(),
         y_label: if k % 3 == 0 { y_label.to_owned() } else { String::new() },
-        curves: vec![Curve { label: String::new(), style: 1, ..curve }],
+        curves: vec![Curve { unlisted: true, style: 1, ..curve }],
         span,
         ..Pane::default()
     };

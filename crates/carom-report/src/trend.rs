@@ -1,17 +1,17 @@
 //! Trends of a sweep: metrics against every key whose numbers differ between arms, each with a
 //! fitted line and its 95 % confidence interval. Metrics and keys that are positive and span a
-//! factor of three are fitted as a power.
+//! factor of three are fitted as a power. Arms that failed or created energy are left out.
 
 use carom_record::metrics::Metric;
-use carom_record::study::{Refinement, Study, numeric_keys};
+use carom_record::study::{Refinement, Study, varied_keys};
 use maud::{Markup, html};
 
 use crate::collected::time_unit;
-use crate::curves::label;
+use crate::curves::Keys;
 use crate::digits::three;
 use crate::fit::Fit;
 use crate::labels::{file_name, with_unit};
-use crate::plot::{Curve, Pane, Plot};
+use crate::plot::{Band, Curve, Pane, Plot};
 use crate::text::Label;
 
 /// Fewest values of a key.
@@ -30,13 +30,15 @@ const FIRST: [&str; 7] = [
     "peak_mean_force",
     "energy_lost",
 ];
+/// Keys whose values are times.
+const TIMES: [&str; 2] = ["time.end", "time.step"];
 
 /// A metric against a key in a group of arms.
 struct Trend {
     x: Vec<f64>,
     y: Vec<f64>,
     fit: Option<Fit>,
-    /// Whether x and y, or x alone, are logarithms in the fit.
+    /// Whether the fit is of the logarithms of both.
     power: bool,
 }
 
@@ -45,24 +47,36 @@ fn spans(values: &[f64]) -> bool {
     low > 0.0 && high / low >= WIDE
 }
 
-fn trend(study: &Study, group: &Refinement, metric: &str, power: bool) -> Trend {
+/// Values of a key and of a metric in the sound arms of a group.
+fn points(study: &Study, group: &Refinement, metric: &str) -> (Vec<f64>, Vec<f64>) {
     let value = |(arm, x): (&usize, &f64)| {
         let row = &study.rows[*arm];
-        Some((*x, row.value(metric).filter(|_| !row.is_unsound())?))
+        Some((*x, row.value(metric).filter(|y| y.is_finite() && !row.is_unsound())?))
     };
-    let (x, y): (Vec<f64>, Vec<f64>) = group.arms.iter().zip(&group.steps).filter_map(value).unzip();
+    group.arms.iter().zip(&group.steps).filter_map(value).unzip()
+}
+
+/// Whether a metric is fitted as a power of the key: if both span the factor in every group that
+/// can be fitted.
+fn power(study: &Study, groups: &[Refinement], metric: &str) -> bool {
+    let of = |group| points(study, group, metric);
+    groups.iter().map(of).filter(|(x, _)| x.len() >= LEAST).all(|(x, y)| spans(&x) && spans(&y))
+}
+
+fn trend(study: &Study, group: &Refinement, metric: &str, power: bool) -> Trend {
+    let (x, y) = points(study, group, metric);
     let log = |v: &[f64]| v.iter().map(|v| v.ln()).collect::<Vec<_>>();
     let fit = if power { Fit::of(&log(&x), &log(&y)) } else { Fit::of(&x, &y) };
     Trend { x, y, fit, power }
 }
 
 impl Trend {
-    /// The fitted line at twenty points: x, lower edge, value, upper edge.
-    fn line(&self) -> Option<[Vec<f64>; 4]> {
+    /// The fitted line and its interval at points that are equidistant on an axis.
+    fn line(&self, log: bool) -> Option<(Vec<f64>, Band)> {
         let fit = self.fit?;
         let (low, high) = crate::axis::range(&self.x);
-        let places = (0..=20).map(|k| f64::from(k) / 20.0);
-        let x = places.map(|s| if self.power { low * (high / low).powf(s) } else { low + s * (high - low) });
+        let places = (0..=40).map(|k| f64::from(k) / 40.0);
+        let x = places.map(|s| if log { low * (high / low).powf(s) } else { low + s * (high - low) });
         let x: Vec<f64> = x.collect();
         let edge = |sign: f64| {
             let at = |x: &f64| {
@@ -72,7 +86,8 @@ impl Trend {
             };
             x.iter().map(at).collect::<Vec<f64>>()
         };
-        Some([x.clone(), edge(-1.0), edge(0.0), edge(1.0)])
+        let band = Band { name: "95 % interval of the fit", low: edge(-1.0), high: edge(1.0), x: x.clone() };
+        Some((edge(0.0), band))
     }
 
     fn words(&self) -> Option<String> {
@@ -84,9 +99,8 @@ impl Trend {
 
 /// Metrics that vary, those of [`FIRST`] first.
 fn metrics<'a>(study: &'a Study, groups: &[Refinement]) -> Vec<&'a Metric> {
-    let arms = || groups.iter().flat_map(|group| &group.arms);
     let known = |name: &str| {
-        let values: Vec<f64> = arms().filter_map(|arm| study.rows[*arm].value(name)).collect();
+        let values: Vec<f64> = groups.iter().flat_map(|group| points(study, group, name).1).collect();
         let (low, high) = crate::axis::range(&values);
         values.len() >= LEAST && high - low > 1e-9 * high.abs().max(low.abs())
     };
@@ -96,74 +110,74 @@ fn metrics<'a>(study: &'a Study, groups: &[Refinement]) -> Vec<&'a Metric> {
     };
     let mut found: Vec<_> = study.metrics().into_iter().filter(|m| !m.is_work() && known(&m.name)).collect();
     found.sort_by_key(|m| rank(&m.name));
-    found.truncate(MOST);
     found
 }
 
-/// Name of a key in labels: its last part; `1/cells` where its values count cells.
-fn axis(key: &str) -> String {
+/// The label of a key with its unit: its last part; `1/cells` where its values count cells.
+fn axis(study: &Study, key: &str) -> String {
     let last = key.rsplit_once('.').map_or(key, |(_, last)| last);
-    if last == "cells" { "1/cells".to_owned() } else { last.to_owned() }
+    match last {
+        "cells" => "1/cells".to_owned(),
+        _ if TIMES.contains(&key) => with_unit(last, time_unit(study)),
+        _ => last.to_owned(),
+    }
 }
 
 /// A figure for every key.
 pub(crate) fn plots(study: &Study) -> Vec<Plot> {
-    numeric_keys(&study.manifest, LEAST).iter().filter_map(|(key, groups)| plot(study, key, groups)).collect()
+    varied_keys(&study.manifest, LEAST).iter().filter_map(|(key, groups)| plot(study, key, groups)).collect()
 }
 
 fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
     let all: Vec<f64> = groups.iter().flat_map(|group| group.steps.iter().copied()).collect();
-    let wide = spans(&all);
+    let (wide, single) = (spans(&all), groups.len() == 1);
+    let keys = Keys::of(groups.iter().map(|group| group.common.as_str()));
     let pane = |metric: &&Metric| {
-        let values = |group: &Refinement| -> Vec<f64> {
-            group.arms.iter().filter_map(|arm| study.rows[*arm].value(&metric.name)).collect()
-        };
-        let power = wide && groups.iter().all(|group| spans(&values(group)));
-        let mut pane = Pane { y_label: with_unit(&metric.name, &metric.unit), ..Pane::default() };
-        let mut told = String::new();
+        let power = power(study, groups, &metric.name);
+        // The title differs between panes only by numbers.
+        let name = metric.name.clone().into_owned();
+        let mut pane = Pane { y_label: with_unit(&name, &metric.unit), name, ..Pane::default() };
         for (style, group) in groups.iter().enumerate() {
-            let name = if groups.len() == 1 { "arms".to_owned() } else { label(&group.common) };
+            let label = if single { "arms".to_owned() } else { keys.label(&group.common) };
             let trend = trend(study, group, &metric.name, power);
-            if groups.len() == 1 {
-                told = trend.words().unwrap_or_default();
+            if single {
+                pane.title = trend.words().unwrap_or_default();
             }
-            if let Some([x, low, middle, high]) = trend.line() {
-                if groups.len() == 1 {
-                    pane.band = Some([x.clone(), low, high]);
-                }
-                pane.curves.push(Curve {
-                    label: format!("fit of {name}"),
-                    style,
-                    x,
-                    y: middle,
-                    unlisted: true,
-                    ..Curve::default()
-                });
+            if let Some((y, band)) = trend.line(wide) {
+                let label = format!("fit of {label}");
+                let x = band.x.clone();
+                pane.curves.push(Curve { label, style, x, y, unlisted: true, ..Curve::default() });
+                pane.band = single.then_some(band);
             }
             pane.curves.push(Curve {
-                label: name,
+                label,
                 style,
                 x: trend.x,
                 y: trend.y,
                 marked: true,
                 points: true,
-                unlisted: groups.len() == 1,
+                unlisted: single,
                 ..Curve::default()
             });
         }
-        pane.title = told;
         pane
     };
     let metrics = metrics(study, groups);
-    let panes: Vec<Pane> = metrics.iter().map(pane).collect();
+    let panes: Vec<Pane> = metrics.iter().take(MOST).map(pane).collect();
+    let which = if metrics.len() > MOST {
+        format!("The first {MOST} of {} metrics that vary,", metrics.len())
+    } else {
+        "Metrics".to_owned()
+    };
     (!panes.is_empty()).then(|| Plot {
         name: format!("trend-{}", file_name(key)),
         caption: format!(
-            "Metrics against `{key}`. Lines: least squares{}.{} Arms that failed or created energy are left out.",
-            if wide { ", of logarithms where a metric spans a factor of three" } else { "" },
-            if groups.len() == 1 { " Grey: 95 % confidence interval of the line." } else { "" }
+            "{which} against `{key}`. Lines: least squares{}.{} Arms that failed or created energy are left \
+             out.",
+            if wide { ", of logarithms where a metric spans a factor of three too" } else { "" },
+            if single { " Grey: 95 % confidence interval of the line." } else { "" }
         ),
-        x_label: if key.starts_with("time.") { with_unit(&axis(key), time_unit(study)) } else { axis(key) },
+        x_label: axis(study, key),
         log: [wide, false],
         across: 3,
         same: false,
@@ -174,23 +188,23 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
 
 /// Slopes and exponents with their intervals.
 pub(crate) fn section(study: &Study) -> Markup {
-    let keys = numeric_keys(&study.manifest, LEAST);
+    let found = varied_keys(&study.manifest, LEAST);
     html! {
-        @if !keys.is_empty() {
+        @if !found.is_empty() {
             h2 { "Trends" }
-            @for (key, groups) in &keys {
+            @for (key, groups) in &found {
+                @let keys = Keys::of(groups.iter().map(|group| group.common.as_str()));
                 details {
                     summary { "Slopes and exponents in " code { (key) } }
                     table.metrics {
                         thead { tr { th { "Metric" } th { "Unit" } th { "Arms" } th { "95 % interval" } } }
                         @for metric in metrics(study, groups) {
+                            @let power = power(study, groups, &metric.name);
                             @for group in groups {
-                                @let values: Vec<f64> = group.arms.iter().filter_map(|arm| study.rows[*arm].value(&metric.name)).collect();
-                                @let power = spans(&group.steps) && spans(&values);
                                 @if let Some(words) = trend(study, group, &metric.name, power).words() {
                                     tr {
                                         td { code { (metric.name) } } td { (Label(&metric.unit)) }
-                                        td { (label(&group.common)) } td { (words) }
+                                        td { (keys.label(&group.common)) } td { (words) }
                                     }
                                 }
                             }
@@ -200,9 +214,154 @@ pub(crate) fn section(study: &Study) -> Markup {
             }
             p.small {
                 "Exponent: of the power of the key that fits best, where metric and key are positive and span a \
-                 factor of three; slope: of a straight line, in the unit of the metric per unit of the key. \
-                 Interval: that of least squares, as if the deviations were accidental."
+                 factor of three in all groups of arms; slope: of a straight line, in the unit of the metric per \
+                 unit of the key. Interval: that of least squares, as if the deviations were accidental."
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use carom_record::Status;
+    use carom_record::study::{Row, StudyManifest};
+    use serde_json::json;
+
+    /// A study of arms with these changes, and with values of metrics.
+    fn study(arms: &[(&str, Vec<(&'static str, f64)>)]) -> Study {
+        let arm = |(sets, _): &(&str, _)| {
+            let sets: Vec<&str> = sets.split(", ").collect();
+            json!({ "name": sets.join(", "), "directory": "", "sets": sets, "steps": 1, "case": {} })
+        };
+        let manifest: StudyManifest = serde_json::from_value(json!({
+            "status": "finished", "title": "", "version": "", "input_hash": "", "created": "",
+            "machine": { "cpus": 1, "os": "", "arch": "" }, "reference": null, "claims": [],
+            "arms": arms.iter().map(arm).collect::<Vec<_>>(),
+            "source": { "study": "", "case_path": "", "case": "" },
+        }))
+        .unwrap();
+        let metric = |(name, value): &(&'static str, f64)| Metric {
+            name: (*name).into(),
+            value: Some(*value),
+            unit: if *name == "contact_duration" { "ms".into() } else { String::new() },
+            definition: "",
+        };
+        let rows = arms.iter().map(|(name, metrics)| Row {
+            name: (*name).to_owned(),
+            status: Some(Status::Finished),
+            reason: None,
+            metrics: metrics.iter().map(metric).collect(),
+            expectations: Vec::new(),
+            contact: true,
+            warnings: Vec::new(),
+        });
+        Study {
+            directory: std::path::PathBuf::new(),
+            rows: rows.collect(),
+            manifest,
+            members: Vec::new(),
+            verdicts: Vec::new(),
+            expectations: Vec::new(),
+            reference: None,
+            compared: Vec::new(),
+            phase_orders: Vec::new(),
+            ranking: None,
+            other_rankings: Vec::new(),
+            checks: None,
+        }
+    }
+
+    fn names(plot: &Plot) -> Vec<&str> {
+        plot.panes.iter().map(Pane::name).collect()
+    }
+
+    /// Two groups have no slope in a title, and two metrics may have the same one.
+    #[test]
+    fn panes_are_named_by_metrics() {
+        let arm =
+            |x: f64| vec![("restitution", 1.0 - x), ("energy_lost", 2.0 - x), ("contact_duration", x * x)];
+        let keys = ["time.step=1, a.b=0", "time.step=2, a.b=0", "time.step=4, a.b=0"];
+        let one: Vec<_> = keys.iter().zip([1.0, 2.0, 4.0]).map(|(key, x)| (*key, arm(x))).collect();
+        let more = ["time.step=1, a.b=7", "time.step=2, a.b=7", "time.step=4, a.b=7"];
+        let two: Vec<_> = more.iter().zip([1.0, 2.0, 4.0]).map(|(key, x)| (*key, arm(x))).collect();
+        for arms in [one.clone(), [one, two].concat()] {
+            let plots = plots(&study(&arms));
+            assert_eq!(plots.len(), 1);
+            assert_eq!(names(&plots[0]), ["restitution", "contact_duration", "energy_lost"]);
+            // The exponent of x² is 2; of 1 − x, which has no logarithm, the slope is −1.
+            let words = if arms.len() == 3 { ["slope −1 ±", "exponent 2 ±"] } else { ["", ""] };
+            for (pane, words) in plots[0].panes.iter().zip(words) {
+                assert!(pane.title.starts_with(words), "{}", pane.title);
+            }
+            let table = plots[0].csv();
+            assert!(
+                table.contains("\"contact_duration\",\"95 % interval of the fit, low\"") == (arms.len() == 3)
+            );
+            assert_eq!(plots[0].x_label, "step (ms)");
+        }
+    }
+
+    /// ρ∞ is not a time, may be zero, and a velocity may be negative; the components of an array
+    /// are no number.
+    #[test]
+    fn keys_are_finite_numbers() {
+        let keys = ["time.scheme.rho_inf=0", "time.scheme.rho_inf=0.5", "time.scheme.rho_inf=1"];
+        let arms: Vec<_> =
+            keys.iter().zip([1.0, 2.0, 4.0]).map(|(key, y)| (*key, vec![("contact_duration", y)])).collect();
+        let plots_of = |arms: &[_]| plots(&study(arms));
+        let plot = plots_of(&arms).swap_remove(0);
+        assert_eq!(
+            (plot.x_label.as_str(), plot.panes[0].curves[1].x.as_slice()),
+            ("rho_inf", &[1.0, 0.5, 0.0][..])
+        );
+        let keys = ["a.v=-2", "a.v=-1", "a.v=3"];
+        let arms: Vec<_> = keys.iter().zip([1.0, 2.0, 4.0]).map(|(key, y)| (*key, vec![("r", y)])).collect();
+        assert_eq!(plots_of(&arms)[0].panes[0].curves[1].x, [3.0, -1.0, -2.0]);
+        let keys = ["a.v=[1, 0]", "a.v=[2, 0]", "a.v=[3, 0]"];
+        let arms: Vec<_> = keys.iter().zip([1.0, 2.0, 4.0]).map(|(key, y)| (*key, vec![("r", y)])).collect();
+        assert!(plots_of(&arms).is_empty());
+    }
+
+    /// A metric that spans the factor in one group only is a line in both, in figure and table;
+    /// arms that created energy do not count.
+    #[test]
+    fn figure_and_table_fit_the_same() {
+        let arm = |y: f64, created: f64| vec![("r", y), ("energy_created", created)];
+        let arms = vec![
+            ("h=1, g=0", arm(1.0, 0.0)),
+            ("h=2, g=0", arm(2.0, 0.0)),
+            ("h=4, g=0", arm(4.0, 0.0)),
+            ("h=1, g=1", arm(1.0, 0.0)),
+            ("h=2, g=1", arm(1.5, 0.0)),
+            ("h=4, g=1", arm(2.5, 0.0)),
+            ("h=8, g=1", arm(9.0, 1.0)),
+        ];
+        let study = study(&arms);
+        let table = section(&study).into_string();
+        assert!(
+            table.contains("slope 1 ±") && table.contains("slope 0.5 ±") && !table.contains("exponent "),
+            "{table}"
+        );
+        let plot = plots(&study).swap_remove(0);
+        let fit = &plot.panes[0].curves[0];
+        let middle = fit.x.iter().zip(&fit.y).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        assert!(middle < 1e-9 && plot.panes[0].curves[3].x == [4.0, 2.0, 1.0], "{:?}", plot.panes[0]);
+    }
+
+    #[test]
+    fn the_caption_says_what_is_left_out() {
+        const NAMES: [&str; 10] = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j"];
+        let arm = |y: f64| NAMES.map(|name| (name, y)).to_vec();
+        let arms = [("k=1", arm(1.0)), ("k=2", arm(2.0)), ("k=3", arm(2.5))];
+        let study = study(&arms);
+        let plot = plots(&study).swap_remove(0);
+        assert_eq!(plot.panes.len(), 9);
+        assert!(
+            plot.caption.starts_with("The first 9 of 10 metrics that vary, against `k`"),
+            "{}",
+            plot.caption
+        );
+        assert_eq!(section(&study).into_string().matches("slope ").count(), 10);
     }
 }

@@ -40,8 +40,8 @@ pub enum StudyError {
     },
     /// The steps of some arms depend on measured times, which differ between machines.
     #[error(
-        "arm \"{arm}\" has a step of matched cost, which is found from times measured on one machine, and those \
-         of the other runs are compared with them: processes elsewhere must have a machine of the same type"
+        "arm \"{arm}\" has a step of matched cost, which is found from times measured on one machine. The times \
+         of the other runs are compared with them, so that processes elsewhere need a machine of the same type"
     )]
     Timed {
         /// The arm.
@@ -81,9 +81,9 @@ impl StudyError {
             Self::Arm { .. } => return None,
             Self::Damaged { place, .. } => format!("remove {} and compute the arm again", place.display()),
             Self::Timed { .. } => {
-                "plan it with --settle on a machine of the type that computes the runs, which \
-                                   finds these steps there and then, compute it in one process, or give the \
-                                   arms their steps"
+                "plan it with `carom study plan --settle` on a machine of the type that computes the runs, \
+                 which finds these steps there and then, compute it in one process (in Python without \
+                 `client`), or give the arms their steps"
                     .to_owned()
             }
             Self::OtherMachine { .. } => {

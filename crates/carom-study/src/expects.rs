@@ -39,6 +39,7 @@ fn series(series: &Series, arms: &[(&str, &Case)]) -> Result<(), Reason> {
 fn metric(name: &str, arm: Option<&str>, arms: &[(&str, &Case)]) -> Result<(), Reason> {
     match name.rsplit_once(':') {
         Some(("energy_lost", _)) => arms_of(arm, arms).map(drop),
+        Some(("overlay_rms" | "overlay_peak" | "overlay_shift", of)) => measured(of, arm, arms),
         Some((of, what)) if column_metric_names().contains(&what) => {
             column(&Asked { column: of.to_owned(), arm: arm.map(str::to_owned) }, arms)
         }
@@ -47,6 +48,21 @@ fn metric(name: &str, arm: Option<&str>, arms: &[(&str, &Case)]) -> Result<(), R
             Err(format!("there is no metric `{name}`; the metrics are: {}", metric_names().join(", ")).into())
         }
     }
+}
+
+/// Whether the cases of the arms have measured data of this name.
+fn measured(name: &str, arm: Option<&str>, arms: &[(&str, &Case)]) -> Result<(), Reason> {
+    for (arm, case) in arms_of(arm, arms)? {
+        let names: Vec<&str> = case.overlays.iter().map(|overlay| overlay.name.as_str()).collect();
+        if !names.contains(&name) {
+            let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            return Err(format!(
+                "the case of arm \"{arm}\" has no measured data `{name}`; its tables [[overlay]] are: {known}"
+            )
+            .into());
+        }
+    }
+    Ok(())
 }
 
 fn column(asked: &Asked, arms: &[(&str, &Case)]) -> Result<(), Reason> {

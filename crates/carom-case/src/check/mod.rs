@@ -24,7 +24,7 @@ use super::tree::{Node, Table};
 pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Problem>) {
     let mut check = Check { document, draft, problems };
     check.dimension();
-    for list in ["material", "body", "support", "load", "contact", "probe"] {
+    for list in ["material", "body", "support", "load", "contact", "probe", "overlay"] {
         check.unique_names(list);
     }
     check.bodies();

@@ -27,6 +27,18 @@ fn texts_that_are_not_cases() {
     assert!(message("a = 1\n\u{0}").contains("this is not TOML"));
 }
 
+#[test]
+fn names_of_measured_data_are_unique() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("case.toml");
+    std::fs::write(folder.path().join("m.csv"), "t,value\n0,0\n0.5,1\n").unwrap();
+    let overlay = "\n[[overlay]]\nname = \"camera\"\nfile = \"m.csv\"\ncolumn = \"A.uy\"\n";
+    std::fs::write(&path, format!("{IMPACT}{overlay}{overlay}")).unwrap();
+    let document = Document::open(&path, &[]).unwrap();
+    let message = document.diagnose_all(&read(&document).unwrap_err()).to_string();
+    assert!(message.contains("two tables [[overlay]] are named `camera`"), "{message}");
+}
+
 /// Errors in tables of loads are reported at the key that names the table, with file and line.
 #[test]
 fn tables_of_loads() {

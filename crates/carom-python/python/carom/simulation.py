@@ -128,7 +128,7 @@ class Simulation:
 
     @property
     def y(self) -> Floats:
-        """Positions, shape (nodes, dimension), in units of length; the next step keeps them."""
+        """Positions, shape (nodes, dimension), in units of length; the array is a copy."""
         return self._core.y
 
     @property

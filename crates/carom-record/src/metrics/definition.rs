@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::History;
+use crate::{History, units};
 
 /// Definition of a metric.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +51,7 @@ impl Unit {
                 let stress = |name: &str| name.contains(".sigma_") || name.ends_with(".von_mises");
                 let recorded = history.columns.iter().find(|c| stress(&c.name)).map(|c| c.unit.clone());
                 let derived =
-                    || stress_of(history.unit("contact_force_x"), history.unit("penetration"), time);
+                    || units::stress(history.unit("contact_force_x"), history.unit("penetration"), time);
                 recorded.unwrap_or_else(derived)
             }
             Self::Second => "s".to_owned(),
@@ -71,18 +71,6 @@ impl Unit {
             Self::Second => "s",
             Self::Column => "the column's",
         }
-    }
-}
-
-/// The label of stress where no column is one: from those of force, length and time.
-fn stress_of(force: &str, length: &str, time: &str) -> String {
-    let mass = force.strip_suffix(&format!(" {length}/{time}^2"));
-    match mass {
-        _ if (force, length) == ("N", "m") => "Pa".to_owned(),
-        _ if (force, length) == ("N", "mm") => "MPa".to_owned(),
-        Some(mass) => format!("{mass}/({length} {time}^2)"),
-        None if force.is_empty() => String::new(),
-        None => format!("{force}/{length}^2"),
     }
 }
 

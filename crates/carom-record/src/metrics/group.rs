@@ -1,4 +1,4 @@
-//! What metrics tell about: the headings under which pages list them.
+//! Subjects of metrics: the headings under which pages list them.
 
 use super::run_table::{PRESSURE, WORK};
 

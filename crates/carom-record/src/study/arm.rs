@@ -51,16 +51,40 @@ pub fn sets_step(set: &str) -> bool {
 /// The step of an arm: the value it sets for the key, or that of its case; 1/n for a number of
 /// cells.
 pub fn step(arm: &Arm, key: &str) -> Option<f64> {
-    let set = arm.sets.iter().rev().find_map(|set| set.strip_prefix(key)?.trim_start().strip_prefix('='));
-    let value = match set {
-        Some(text) => {
-            let first = text.trim().trim_start_matches('[').split([',', ']']).next()?;
-            first.trim().replace('_', "").parse().ok()?
-        }
-        None => key.split('.').try_fold(&arm.case, |node, part| node.get(part))?.as_f64()?,
+    let value = match set(arm, key) {
+        Some(text) => number(text.trim_start_matches('[').split([',', ']']).next()?)?,
+        None => of_case(arm, key)?,
     };
-    let counts = key.ends_with("cells");
+    let counts = counts_cells(key);
     (value > 0.0 && f64::is_finite(value)).then(|| if counts { 1.0 / value } else { value })
+}
+
+/// The number of an arm for a key, of any sign: the value it sets, or that of its case. Of arrays
+/// only numbers of cells are numbers, 1/n of the first direction.
+pub(super) fn scalar(arm: &Arm, key: &str) -> Option<f64> {
+    if counts_cells(key) {
+        return step(arm, key);
+    }
+    let value = set(arm, key).map_or_else(|| of_case(arm, key), number)?;
+    value.is_finite().then_some(value)
+}
+
+fn counts_cells(key: &str) -> bool {
+    key.ends_with("cells")
+}
+
+/// What an arm sets for a key.
+fn set<'a>(arm: &'a Arm, key: &str) -> Option<&'a str> {
+    let sets = |set: &'a String| set.strip_prefix(key)?.trim_start().strip_prefix('=').map(str::trim);
+    arm.sets.iter().rev().find_map(sets)
+}
+
+fn of_case(arm: &Arm, key: &str) -> Option<f64> {
+    key.split('.').try_fold(&arm.case, |node, part| node.get(part))?.as_f64()
+}
+
+fn number(text: &str) -> Option<f64> {
+    text.trim().replace('_', "").parse().ok()
 }
 
 #[cfg(test)]
@@ -71,5 +95,24 @@ mod tests {
     fn only_the_step_is_the_step() {
         assert!(sets_step("time.step=1") && sets_step(" time.step = 1e-3"));
         assert!(!sets_step("time.stepper=1") && !sets_step("title=time.step"));
+    }
+
+    #[test]
+    fn numbers_have_any_sign_and_are_no_arrays() {
+        let arm = |set: &str| Arm {
+            name: String::new(),
+            directory: String::new(),
+            sets: vec![set.to_owned()],
+            steps: 1,
+            role: Role::default(),
+            case_path: None,
+            case: serde_json::json!({ "friction": -0.5 }),
+        };
+        assert_eq!(scalar(&arm("a.v=-2"), "a.v"), Some(-2.0));
+        assert_eq!(scalar(&arm("a.v = 0"), "a.v"), Some(0.0));
+        assert_eq!(scalar(&arm("a.v=1_000"), "friction"), Some(-0.5));
+        assert_eq!(scalar(&arm("a.v=[0, -2]"), "a.v"), None);
+        assert_eq!(scalar(&arm("a.v=inf"), "a.v"), None);
+        assert_eq!(scalar(&arm("a.mesh.cells=[8, 4]"), "a.mesh.cells"), Some(0.125));
     }
 }

@@ -46,7 +46,7 @@ use compared::{Compared, PhaseOrders, orders_by_phase};
 use design::Goal;
 use ensemble::{Ensemble, Spread};
 pub use manifest::{StudyManifest, StudySource};
-pub use orders::{Refinement, numeric_keys, refinements};
+pub use orders::{Refinement, numeric_keys, refinements, varied_keys};
 use ranking::Ranking;
 use reference::{Reference, Trajectory};
 pub use row::Row;

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use super::arm::step;
+use super::arm::{Arm, scalar, step};
 use super::arms::ArmRecords;
 use super::manifest::StudyManifest;
 use crate::Reason;
@@ -43,12 +43,22 @@ fn has_words(name: &str, text: &str) -> bool {
 /// `name`: one group of all arms whose names contain it, with any other changes. The reference is
 /// not included, but the three runs of a computed reference are a group of their own.
 pub fn refinements(manifest: &StudyManifest, key: &str, name: Option<&str>) -> Vec<Refinement> {
+    groups(manifest, key, name, step)
+}
+
+/// The same of the values that a function gives for a key.
+fn groups(
+    manifest: &StudyManifest,
+    key: &str,
+    name: Option<&str>,
+    value: fn(&Arm, &str) -> Option<f64>,
+) -> Vec<Refinement> {
     let mut groups: Vec<Refinement> = Vec::new();
     for (i, arm) in manifest.arms.iter().enumerate() {
         let reference =
             if arm.role.fine { name.is_some() } else { manifest.reference.as_ref() == Some(&arm.name) };
         let Some(step) =
-            step(arm, key).filter(|_| !reference && name.is_none_or(|n| has_words(&arm.name, n)))
+            value(arm, key).filter(|_| !reference && name.is_none_or(|n| has_words(&arm.name, n)))
         else {
             continue;
         };
@@ -222,8 +232,21 @@ fn observed(
     }
 }
 
-/// Keys in which arms differ only by numbers, with their groups of at least `least` arms.
+/// Keys in which arms differ only by steps, with their groups of at least `least` arms.
 pub fn numeric_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, Vec<Refinement>> {
+    keys(manifest, least, step)
+}
+
+/// Keys in which arms differ only by numbers of any sign, which [`Refinement::steps`] are.
+pub fn varied_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, Vec<Refinement>> {
+    keys(manifest, least, scalar)
+}
+
+fn keys(
+    manifest: &StudyManifest,
+    least: usize,
+    value: fn(&Arm, &str) -> Option<f64>,
+) -> BTreeMap<String, Vec<Refinement>> {
     let keys = manifest
         .arms
         .iter()
@@ -232,7 +255,7 @@ pub fn numeric_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, 
     let mut found = BTreeMap::new();
     for key in keys {
         found.entry(key).or_insert_with_key(|key| {
-            let mut groups = refinements(manifest, key, None);
+            let mut groups = groups(manifest, key, None, value);
             groups.retain(|g| g.arms.len() >= least && g.steps.windows(2).all(|h| h[0] > h[1]));
             groups
         });
@@ -244,7 +267,6 @@ pub fn numeric_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::Arm;
     use crate::study::design::Role;
 
     fn arm(sets: &[&str]) -> Arm {

@@ -18,14 +18,18 @@ pub(crate) struct Curve {
     pub(crate) marked: bool,
     /// Whether there are no lines between them.
     pub(crate) points: bool,
+    /// Its colour, where it is not that of the style.
+    pub(crate) color: Option<&'static str>,
     /// Whether its label is for tables only.
     pub(crate) unlisted: bool,
     /// Whether it is of an unsound run: dashed and grey, and without influence on the axes.
     pub(crate) apart: bool,
     /// Whether it is of less interest: thin and grey.
     pub(crate) quiet: bool,
-    /// Whether it is that of the recommended arm.
+    /// Whether it is that of the recommended arm or method.
     pub(crate) chosen: bool,
+    /// The point of the recommended arm.
+    pub(crate) ring: Option<usize>,
 }
 
 impl Curve {
@@ -34,7 +38,10 @@ impl Curve {
         match () {
             () if self.apart => APART,
             () if self.quiet => (QUIET, "", self.style % 5),
-            () => style(self.style),
+            () => {
+                let (color, dashes, marker) = style(self.style);
+                (self.color.unwrap_or(color), dashes, marker)
+            }
         }
     }
 }
@@ -76,9 +83,10 @@ pub(super) fn draw(
          stroke-linejoin=\"round\" stroke-dasharray=\"{dashes}\"/>"
     );
     if curve.marked {
-        for (x, y) in points.into_iter().filter(|p| p.0.is_finite() && p.1.is_finite()) {
+        let finite = |p: &(usize, (f64, f64))| p.1.0.is_finite() && p.1.1.is_finite();
+        for (k, (x, y)) in points.into_iter().enumerate().filter(finite) {
             mark(out, marker, color, x, y);
-            if curve.chosen {
+            if curve.ring == Some(k) {
                 let _ = writeln!(
                     out,
                     "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"8\" fill=\"none\" stroke=\"#222\" stroke-width=\"1.6\"/>"

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::frame::Frame;
 use super::scale::Scale;
-use super::{Curve, Pane, Plot, curve, direct, legend};
+use super::{Band, Curve, Pane, Plot, curve, direct, legend};
 use crate::chart::{open_chart, write_text};
 use crate::labels::unit_of;
 use crate::{text, trace};
@@ -86,7 +86,7 @@ impl Plot {
             "<clipPath id=\"{id}\"><rect x=\"{x0:.1}\" y=\"{y0:.1}\" width=\"{wide:.1}\" \
              height=\"{high:.1}\"/></clipPath>"
         );
-        if let Some([x, low, up]) = &pane.band {
+        if let Some(Band { x, low, high: up, .. }) = &pane.band {
             let upper = x.iter().zip(up).map(|(x, y)| (to_x(*x), to_y(*y)));
             let lower = x.iter().zip(low).map(|(x, y)| (to_x(*x), to_y(*y)));
             let _ = writeln!(
@@ -132,7 +132,7 @@ impl Plot {
             let shown: Vec<(&Curve, (f64, f64))> = pane
                 .curves
                 .iter()
-                .filter(|curve| !curve.label.is_empty())
+                .filter(|curve| !curve.label.is_empty() && !curve.unlisted)
                 .filter_map(|curve| Some((curve, end(curve, frame, &to_x, &to_y)?)))
                 .collect();
             let (curves, ends): (Vec<&Curve>, Vec<(f64, f64)>) = shown.into_iter().unzip();

@@ -5,16 +5,17 @@ use carom_contact::{Hold, Pair, Rows};
 use carom_mechanics::model::{BodyInstance, Model, Quantity};
 use carom_mechanics::{Depths, GridReport, State, each_slip};
 use carom_record::Column;
+use carom_record::units::Labels;
 
 use serde::{Deserialize, Serialize};
 
-use super::units::Labels;
+use super::units::labels;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Names, units and meanings of the columns of a case.
 pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
-    let label = Labels::of(case);
+    let label = labels(case);
     let mut columns = Vec::new();
     let mut add = |name: String, unit: &str, description: &str, integer: bool| {
         columns.push(Column { name, unit: unit.into(), description: description.into(), integer });

@@ -100,6 +100,22 @@ tolerance = 0
     assert_eq!(study.manifest.source.others.keys().collect::<Vec<_>>(), ["fixed.toml"]);
 }
 
+/// Free flight is t − t²; data that are 0.01 lower at all times differ by it.
+#[test]
+fn differences_from_measured_data() {
+    let overlay = "[[overlay]]\nname = \"camera\"\nfile = \"m.csv\"\ncolumn = \"A.ux\"\n";
+    let measured = format!("{FALL}{overlay}");
+    let study = "case = \"measured.toml\"\n[[arm]]\nname = \"a\"\n[[expect]]\nwhat = \
+                 'overlay_rms:camera of \"a\"'\nvalue = 0.01\ntolerance = 1e-9\n";
+    let (folder, path) = common::folder(&[("measured.toml", &measured)], study);
+    let points = [0.1, 0.2, 0.3].map(|t: f64| format!("{t},{}\n", t - t * t - 0.01)).concat();
+    fs::write(folder.path().join("m.csv"), format!("t,value\n{points}")).unwrap();
+    let plan = Plan::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    let out = folder.path().join("out");
+    let study = start(&plan, &out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
+    assert!(study.expectations[0].pass, "{:?}", study.expectations);
+}
+
 /// The trapezoidal rule has order 2, Newmark's method with γ = 0.6 has order 1: for a column and
 /// for a number, with respect to a fine arm and among the arms.
 #[test]
@@ -273,6 +289,8 @@ fn wrong_expectations_are_shown_where_they_stand() {
             .what
             .contains("no column")
     );
+    let found = of("what = 'overlay_rms:camera of \"a\"'\nat_most = 1");
+    assert!(found.what.contains("arm \"a\" has no measured data `camera`"), "{found:?}");
     let found = wrong("[[arm]]\nname = \"a\"\ncase = \"none.toml\"\n");
     assert_eq!((found.line, found.column), (3, 8), "{found:?}");
 }

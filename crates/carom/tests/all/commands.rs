@@ -216,6 +216,10 @@ fn check_prints_the_case() {
     {
         assert!(output.contains(part), "{part:?} not in\n{output}");
     }
+    assert!(output.contains("a pressure wave takes"), "{output}");
+    let scheme = "time.scheme={ kind = \"static\" }";
+    let output = text(&place.carom(&["check", "case.toml", "--set", scheme]).stdout);
+    assert!(output.contains("400 steps") && !output.contains("wave"), "{output}");
     let done = place.carom(&["check", "case.toml", "--json", "--set", "preset=paper"]);
     let output: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
     assert_eq!(output["case"]["contacts"][0]["persistency"], "none");

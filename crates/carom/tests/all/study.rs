@@ -1,6 +1,7 @@
 //! Studies in parts, as processes: what is missing, damaged or wrong, and what the messages advise.
 
 use std::fs::{self, File};
+use std::process::{Command, Stdio};
 
 use super::common::{Place, text};
 
@@ -67,6 +68,29 @@ fn a_directory_that_is_no_study_is_a_wrong_argument() {
             assert!(stderr.contains(told) && stderr.contains("that `carom study` created"), "{stderr}");
         }
     }
+}
+
+/// Steps that are not found yet cannot be found by the processes that compute single runs.
+#[cfg(unix)]
+#[test]
+fn interrupted_planning_says_how_to_go_on() {
+    let study = "case = \"bar.toml\"\ndesign = \"matched-cost\"\nset = { \"time.step\" = 1e-6 }\n[[arm]]\nname = \
+                 \"a\"\n[[arm]]\nname = \"b\"\nset = { \"time.scheme\" = { kind = \"hu\" } }\n";
+    let place = place("planning", study);
+    let mut command = place.command(&["study", "plan", "s.toml", "--out", "st", "--settle"]);
+    let child = command.stderr(Stdio::piped()).spawn().unwrap();
+    while !place.0.join("st/study.json").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let kill = format!("kill -INT {}", child.id());
+    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    let done = child.wait_with_output().unwrap();
+    let told = text(&done.stderr);
+    assert_eq!(done.status.code(), Some(130), "{told}");
+    assert!(
+        told.contains("remove st and plan the study again") && told.contains("on this machine"),
+        "{told}"
+    );
 }
 
 #[test]

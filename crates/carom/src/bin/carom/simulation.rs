@@ -100,8 +100,8 @@ pub(crate) struct Expectation {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Facts {
     pub(crate) bodies: Vec<BodyFacts>,
-    /// Steps in which a pressure wave crosses the smallest body.
-    pub(crate) transit_steps: f64,
+    /// Steps in which a pressure wave crosses the smallest body; none in statics.
+    pub(crate) transit_steps: Option<f64>,
     /// 2/ω_max, for explicit schemes.
     pub(crate) stable_step: Option<f64>,
     /// Doubts about the case.
@@ -343,5 +343,6 @@ fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
             scaled_jacobian: mesh.scaled_jacobian(),
         });
     }
-    Ok(Facts { bodies, transit_steps: transit, stable_step, warnings: carom::warnings(case, &model) })
+    let transit_steps = (transit.is_finite() && !case.time.scheme.is_static()).then_some(transit);
+    Ok(Facts { bodies, transit_steps, stable_step, warnings: carom::warnings(case, &model) })
 }

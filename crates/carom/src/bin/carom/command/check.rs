@@ -203,8 +203,9 @@ fn table(case: &Case, facts: &Facts) -> String {
     lines.push(format!("  scheme   {}", scheme_text(&case.time.scheme)));
     let steps = case.time.steps();
     lines.push(format!("  time     {steps} steps of {} to {}", short(case.time.step), short(case.time.end)));
-    let transit = short(facts.transit_steps);
-    lines.push(format!("           a pressure wave takes {transit} steps to cross the smallest body"));
+    if let Some(transit) = facts.transit_steps.map(short) {
+        lines.push(format!("           a pressure wave takes {transit} steps to cross the smallest body"));
+    }
     if let Some(stable) = facts.stable_step {
         lines.push(format!(
             "           the longest stable step is {}; at most {} of it is accepted",

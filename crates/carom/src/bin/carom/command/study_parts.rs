@@ -78,9 +78,10 @@ fn plan(study: &Path, directory: &Path, slurm: bool, settle: bool) -> Result<Exi
         let settled = carom_study::plan_timed(&plan, &directory, &mut |e| seen.event(e), &stop);
         drop(seen);
         if !settled? {
+            let place = directory.display();
             console::say(format_args!(
-                "stopped by Ctrl-C; continue with: carom resume {}",
-                directory.display()
+                "stopped by Ctrl-C before the steps were found; remove {place} and plan the study again, or \
+                 compute all of it on this machine with: carom resume {place}"
             ));
             return Ok(Exit::Interrupted);
         }
