@@ -100,6 +100,11 @@ fn solve(
     // The forces and the motions of the unknowns: those that are held, and those across a slip.
     let (mut forces, mut motions) = (Vec::new(), Vec::new());
     let (mut names, mut diagonal) = (Vec::new(), Vec::new());
+    // What moves nothing across the direction does not turn it.
+    let is_turned = |i: usize, j: usize, [x, y]: [f64; 2]| {
+        let moved = y * y * a[i * n + i] - 2.0 * x * y * a[i * n + j] + x * x * a[j * n + j];
+        moved + worth[i] > 0.0
+    };
     for i in 0..n {
         match (states[i], second(kinds, i)) {
             (State::Held, _) => {
@@ -108,7 +113,7 @@ fn solve(
                 names.push((i, false));
                 diagonal.push(0.0);
             }
-            (State::Slips([x, y], _), Some(j)) if worth[i].is_finite() => {
+            (State::Slips([x, y], _), Some(j)) if worth[i].is_finite() && is_turned(i, j, [x, y]) => {
                 forces.push(vec![(i, -y), (j, x)]);
                 motions.push(vec![(i, -y), (j, x)]);
                 names.push((i, true));
