@@ -16,7 +16,8 @@
 
 use carom_contact::{Along, Hold, Law, Row, Rows, Rub, StickSlip, Tangential, inner, length};
 
-use crate::constraints::{Constraints, DEPENDENT, independent_above, slip_remainder};
+use crate::constraints::Constraints;
+use crate::independent::{DEPENDENT, independent_above, slip_remainder};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;

@@ -14,9 +14,10 @@ use carom_time::ImpulseShares;
 
 use super::rubbing::{hold, kind, tangents};
 use super::watch::{active, measure_into, moves, overconstrained};
-use crate::constraints::{Constraints, independent, independent_rows};
+use crate::constraints::Constraints;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
+use crate::independent::{independent, independent_rows};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
