@@ -39,6 +39,9 @@ pub(crate) struct Constraints {
     pub yields: Vec<f64>,
     /// Gap still to be closed.
     pub open: Vec<f64>,
+    /// Contact, pair and components of slips of sticks that depend on these rows, and have no
+    /// traction.
+    pub dropped: Vec<((usize, usize), Along)>,
     /// λ times the derivative of the direction over the nodes of each row, row-major: λ∇²g, or not
     /// symmetric for a discrete gradient. Empty if not requested.
     pub curvatures: Vec<Vec<f64>>,
@@ -57,6 +60,7 @@ impl Constraints {
             compliances: Vec::new(),
             yields: Vec::new(),
             open: Vec::new(),
+            dropped: Vec::new(),
             curvatures: Vec::new(),
         }
     }
@@ -92,6 +96,7 @@ impl Constraints {
         let mut derivatives = SlipDerivatives::new(model.dimension);
         let held = Held::of(equations, evaluation);
         let places = held.kept(equations, evaluation);
+        constraints.dropped = held.dropped(evaluation, &places);
         for (k, p, number) in places {
             let place = (k, p);
             if number > 0 {

@@ -1,6 +1,6 @@
 //! The slips that friction prevents in a stage, and those among them that are rows of its system.
 
-use carom_contact::{Along, Row, Rows};
+use carom_contact::{Along, Hold, Row, Rows};
 
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
@@ -56,5 +56,14 @@ impl Held {
         kept.extend(self.names.iter().map(|(name, _)| *name).filter(|&(k, ..)| is_spring(k)));
         kept.sort_unstable();
         kept
+    }
+
+    /// Contact, pair and components of the slips of sticks that are not among these.
+    pub(crate) fn dropped(&self, evaluation: &Evaluation, kept: &[Name]) -> Vec<((usize, usize), Along)> {
+        let sticks = |&&((k, p, _), _): &&(Name, Along)| {
+            evaluation.at.pairings[k].pairs[p].tangential.hold == Hold::Stick
+        };
+        let dropped = self.names.iter().filter(sticks).filter(|(name, _)| kept.binary_search(name).is_err());
+        dropped.map(|&((k, p, _), along)| ((k, p), along)).collect()
     }
 }
