@@ -160,7 +160,7 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
                 let ([x, y], (radius, is_limit)) = (pair(&motions, i), radius(coefficient, limit, exact[of]));
                 // Without a cone the direction of a vector has no effect.
                 let forward = direction[0] * x + direction[1] * y >= -moved;
-                is_limit == limited && (forward || radius == 0.0 && second(kinds, i).is_some())
+                is_limit == limited && (forward || radius <= force && second(kinds, i).is_some())
             }
             (Kind::Tangential { .. }, State::Zero | State::Follows) => true,
         };
@@ -337,6 +337,26 @@ mod tests {
             without(a, &[3]);
             b[3] = 0.5 * b[3] + 0.1;
         });
+    }
+
+    /// The second one is about to open, and its force is the round-off of the first one's.
+    #[test]
+    fn vectors_settle_beside_one_without_a_force() {
+        let (a, kinds) = in_space(f64::INFINITY);
+        for k in 0..400 {
+            let wave = |i: usize| (f64::from(k) * 1.7 + i as f64 * 2.3).sin();
+            let (p, v) = ([2.0, 1e-16 * f64::from(k % 7)], [[wave(0), wave(1)], [wave(2), wave(3)]]);
+            let q = |i: usize| v[i].map(|v_a| -0.3 * p[i] * v_a / v[i][0].hypot(v[i][1]));
+            let z = [p[0], p[1], q(0)[0], q(0)[1], q(1)[0], q(1)[1]];
+            let u = [0.0, 0.0, v[0][0], v[0][1], v[1][0], v[1][1]];
+            let b: Vec<f64> =
+                (0..6).map(|i| u[i] - (0..6).map(|j| a[i * 6 + j] * z[j]).sum::<f64>()).collect();
+            let mut found = Vec::new();
+            coulomb(&a, &b, &kinds, &mut found).unwrap();
+            for i in 0..6 {
+                assert!((found[i] - z[i]).abs() < 1e-11, "{k}: {found:?} {z:?}");
+            }
+        }
     }
 
     #[test]
