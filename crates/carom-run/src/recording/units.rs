@@ -55,10 +55,10 @@ fn named(unit: &str, power: i32) -> Option<String> {
 
 impl Labels {
     pub(super) fn of(case: &Case) -> Self {
-        Self::from(&case.units.length, &case.units.time, &case.units.mass)
+        Self::of_units(&case.units.length, &case.units.time, &case.units.mass)
     }
 
-    fn from(l: &str, t: &str, m: &str) -> Self {
+    fn of_units(l: &str, t: &str, m: &str) -> Self {
         let powers = power(l, LENGTHS).zip(power(t, TIMES)).zip(power(m, MASSES));
         // A product of powers of mass, length and time.
         let name = |unit: &str, [mass, length, time]: [i32; 3]| {
@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn derived_units_have_their_names() {
         let of = |l: &str, t: &str, m: &str| {
-            let labels = Labels::from(l, t, m);
+            let labels = Labels::of_units(l, t, m);
             [labels.force, labels.stress, labels.energy, labels.momentum]
         };
         assert_eq!(of("m", "s", "kg"), ["N", "Pa", "J", "N s"]);
