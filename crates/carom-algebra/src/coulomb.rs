@@ -5,8 +5,9 @@
 //! |Q_j| ≤ r_j,   Q_j = −r_j u_j/|u_j| where u_j ≠ 0,   r_j = min(μ_j P_j, limit_j)
 //! ```
 //!
-//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero. Rows
-//! that depend on each other come as a proximal step (`complementarity.rs`). Each tangential force
+//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero, also
+//! as a component of a vector, unless that component has a motion of its own, b_i ≠ 0. Rows that
+//! depend on each other come as a proximal step (`complementarity.rs`). Each tangential force
 //! belongs to one normal one; two in a row that belong to the same one are the components of a
 //! vector. Sweeps of the nonlinear Gauss–Seidel method find which contacts are open, stick, or
 //! slip; with that and the directions d of the slips the problem is linear and is solved exactly.
@@ -115,10 +116,11 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
                 let [x, y] = [z[first], z[first + 1]];
                 let (radius, limited) = radius(coefficient, limit, z[of]);
                 let size = x.hypot(y);
+                let is_driven = [first, first + 1].iter().any(|&k| a[k * n + k] <= 0.0 && b[k] != 0.0);
                 if z[of] <= 0.0 || stiffness(a, n, [first, first + 1]) <= 0.0 {
                     State::Zero
-                } else if size < radius * (1.0 - EDGE) {
-                    State::Held
+                } else if size < radius * (1.0 - EDGE) && !is_driven {
+                    if a[i * n + i] > 0.0 { State::Held } else { State::Zero }
                 } else if i > first {
                     State::Follows
                 } else if size > 0.0 {
@@ -142,11 +144,14 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
         let motions: Vec<f64> = (0..n).map(|i| motion(&exact, i)).collect();
         let size = |values: &[f64]| ROUND_OFF * values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         let (force, moved) = (size(&exact), size(b).max(size(&motions)));
-        let pair = |values: &[f64], i: usize| [values[i], second(kinds, i).map_or(0.0, |j| values[j])];
+        let pair = |values: &[f64], i: usize| match second(kinds, i) {
+            Some(j) => [values[i], values[j]],
+            None if is_second(i) => [values[i - 1], values[i]],
+            None => [values[i], 0.0],
+        };
         let holds = |i: usize| match (kinds[i], states[i]) {
             (Kind::Normal, State::Held) => exact[i] >= -force,
             (Kind::Normal, _) => motions[i] >= -moved,
-            (Kind::Tangential { .. }, State::Held) if is_second(i) => true,
             (Kind::Tangential { of, coefficient, limit }, State::Held) => {
                 let [x, y] = pair(&exact, i);
                 x.hypot(y) <= radius(coefficient, limit, exact[of]).0 + force
@@ -155,7 +160,7 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
                 let ([x, y], (radius, is_limit)) = (pair(&motions, i), radius(coefficient, limit, exact[of]));
                 // Without a cone the direction of a vector has no effect.
                 let forward = direction[0] * x + direction[1] * y >= -moved;
-                is_limit == limited && (forward || radius == 0.0 && second(kinds, i).is_some())
+                is_limit == limited && (forward || radius <= force && second(kinds, i).is_some())
             }
             (Kind::Tangential { .. }, State::Zero | State::Follows) => true,
         };
@@ -199,9 +204,11 @@ fn sweep_vector(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut [f64], [i, j]: [us
         (z[i], z[j]) = (0.0, 0.0);
         return;
     }
+    let moves = [i, j].map(|row| a[row * n + row] > 0.0 || b[row] != 0.0);
     for _ in 0..PROJECTIONS {
         let [u, v] = [i, j].map(|row| b[row] + (0..n).map(|k| a[row * n + k] * z[k]).sum::<f64>());
-        [z[i], z[j]] = on_disc([z[i] - u / stiffness, z[j] - v / stiffness], radius);
+        let pulled = |row: usize, u: f64, moves: bool| if moves { z[row] - u / stiffness } else { 0.0 };
+        [z[i], z[j]] = on_disc([pulled(i, u, moves[0]), pulled(j, v, moves[1])], radius);
     }
 }
 
@@ -255,12 +262,29 @@ mod tests {
         (a, kinds)
     }
 
-    #[test]
-    fn vectors_obey_the_law() {
+    /// Whether it is open, sticks, or slips, of a contact whose forces and motions obey the law.
+    fn checked(k: i32, limit: f64, [p, u]: [f64; 2], q: [f64; 2], v: [f64; 2]) -> usize {
+        let (radius, size, rate) = ((0.3 * p).min(limit), q[0].hypot(q[1]), v[0].hypot(v[1]));
+        assert!(p >= 0.0 && u >= -1e-11 && p * u.abs() < 1e-11, "{k}");
+        assert!(size <= radius + 1e-12, "{k}: {size} {radius}");
+        if p == 0.0 {
+            return 0;
+        }
+        if size < radius - 1e-9 {
+            assert!(rate < 1e-11, "{k}: {rate}");
+            return 1;
+        }
+        let along = q[0] * v[0] + q[1] * v[1];
+        assert!((along + size * rate).abs() < 1e-11 * (1.0 + size * rate), "{k}: {q:?} {v:?}");
+        2
+    }
+
+    /// Solutions for many right-hand sides, if given after a change of A and of them.
+    fn vectors(change: impl Fn(&mut [f64; 36], &mut [f64])) {
         let mut seen = [0; 3];
         for k in 0..400 {
             let limit = if k % 2 == 0 { f64::INFINITY } else { 0.4 };
-            let (a, kinds) = in_space(limit);
+            let (mut a, kinds) = in_space(limit);
             let mut b: Vec<f64> =
                 (0..6).map(|i| (f64::from(k) * 1.7 + f64::from(i) * 2.3).sin() * 3.0).collect();
             if k % 3 == 0 {
@@ -268,28 +292,71 @@ mod tests {
                 let held: [f64; 6] = [2.0, 1.5, 0.1, -0.3, 0.2, 0.25];
                 (0..6).for_each(|i| b[i] = 0.02 * b[i] - (0..6).map(|j| a[i * 6 + j] * held[j]).sum::<f64>());
             }
+            change(&mut a, &mut b);
             let mut z = Vec::new();
             coulomb(&a, &b, &kinds, &mut z).unwrap();
             let u: Vec<f64> =
                 (0..6).map(|i| b[i] + (0..6).map(|j| a[i * 6 + j] * z[j]).sum::<f64>()).collect();
             for i in 0..2 {
-                let (p, q, v) = (z[i], [z[2 + 2 * i], z[3 + 2 * i]], [u[2 + 2 * i], u[3 + 2 * i]]);
-                let (radius, size, rate) = ((0.3 * p).min(limit), q[0].hypot(q[1]), v[0].hypot(v[1]));
-                assert!(p >= 0.0 && u[i] >= -1e-11 && p * u[i].abs() < 1e-11, "{k}");
-                assert!(size <= radius + 1e-12, "{k}: {size} {radius}");
-                if p == 0.0 {
-                    seen[0] += 1;
-                } else if size < radius - 1e-9 {
-                    seen[1] += 1;
-                    assert!(rate < 1e-11, "{k}: {rate}");
-                } else {
-                    seen[2] += 1;
-                    let along = q[0] * v[0] + q[1] * v[1];
-                    assert!((along + size * rate).abs() < 1e-11 * (1.0 + size * rate), "{k}: {q:?} {v:?}");
-                }
+                let [q, v] = [&z, &u].map(|values| [values[2 + 2 * i], values[3 + 2 * i]]);
+                seen[checked(k, limit, [z[i], u[i]], q, v)] += 1;
+            }
+            for i in (0..6).filter(|i| a[i * 7] == 0.0 && b[*i] == 0.0) {
+                assert_eq!(z[i], 0.0, "{k}");
             }
         }
         assert!(seen.iter().all(|count| *count > 20), "{seen:?}");
+    }
+
+    #[test]
+    fn vectors_obey_the_law() {
+        vectors(|_, _| {});
+    }
+
+    /// Rows and columns of tangents along which supports hold a node.
+    fn without(a: &mut [f64; 36], rows: &[usize]) {
+        for &row in rows {
+            (0..6).for_each(|i| (a[row * 6 + i], a[i * 6 + row]) = (0.0, 0.0));
+        }
+    }
+
+    #[test]
+    fn vectors_of_which_a_component_moves_nothing_obey_the_law() {
+        for rows in [&[2][..], &[3], &[2, 5]] {
+            vectors(|a, b| {
+                without(a, rows);
+                rows.iter().for_each(|&row| b[row] = 0.0);
+            });
+        }
+    }
+
+    /// What supports move never sticks.
+    #[test]
+    fn vectors_obey_the_law_where_supports_move_a_component() {
+        vectors(|a, b| {
+            without(a, &[3]);
+            b[3] = 0.5 * b[3] + 0.1;
+        });
+    }
+
+    /// The second one is about to open, and its force is the round-off of the first one's.
+    #[test]
+    fn vectors_settle_beside_one_without_a_force() {
+        let (a, kinds) = in_space(f64::INFINITY);
+        for k in 0..400 {
+            let wave = |i: usize| (f64::from(k) * 1.7 + i as f64 * 2.3).sin();
+            let (p, v) = ([2.0, 1e-16 * f64::from(k % 7)], [[wave(0), wave(1)], [wave(2), wave(3)]]);
+            let q = |i: usize| v[i].map(|v_a| -0.3 * p[i] * v_a / v[i][0].hypot(v[i][1]));
+            let z = [p[0], p[1], q(0)[0], q(0)[1], q(1)[0], q(1)[1]];
+            let u = [0.0, 0.0, v[0][0], v[0][1], v[1][0], v[1][1]];
+            let b: Vec<f64> =
+                (0..6).map(|i| u[i] - (0..6).map(|j| a[i * 6 + j] * z[j]).sum::<f64>()).collect();
+            let mut found = Vec::new();
+            coulomb(&a, &b, &kinds, &mut found).unwrap();
+            for i in 0..6 {
+                assert!((found[i] - z[i]).abs() < 1e-11, "{k}: {found:?} {z:?}");
+            }
+        }
     }
 
     #[test]

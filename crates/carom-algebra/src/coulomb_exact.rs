@@ -3,7 +3,8 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-/// Corrections of directions, and one that is round-off.
+/// Corrections of directions, and a force across one, relative to the largest of those that slip,
+/// that is round-off.
 const CORRECTIONS: usize = 40;
 const TURN: f64 = 1e-13;
 
@@ -66,20 +67,23 @@ pub(crate) fn settle(
             worth[i] = if radius > 0.0 { along.max(0.0) / radius } else { f64::INFINITY };
         }
         let (exact, turns) = solve(a, b, kinds, states, &worth)?;
-        let mut largest = 0.0_f64;
-        for (i, turn) in turns {
+        let radius = |i: usize| match (kinds[i], states[i]) {
+            (Kind::Tangential { limit, .. }, State::Slips(_, true)) => limit,
+            (Kind::Tangential { of, coefficient, .. }, _) => coefficient * exact[of],
+            _ => 0.0,
+        };
+        let turns: Vec<_> = turns.into_iter().map(|(i, across)| (i, across, radius(i))).collect();
+        let widest = turns.iter().map(|turn| turn.2).fold(0.0, f64::max);
+        if turns.iter().all(|(_, across, _)| across.abs() <= TURN * widest) {
+            return Some(exact);
+        }
+        for (i, across, radius) in turns {
             if let State::Slips([x, y], limited) = states[i] {
-                let Kind::Tangential { of, coefficient, limit } = kinds[i] else { continue };
-                let radius = if limited { limit } else { coefficient * exact[of] };
-                let turn = if radius > 0.0 { turn / radius } else { return None };
-                largest = largest.max(turn.abs());
+                let turn = if radius > 0.0 { across / radius } else { return None };
                 let turned = [x + y * turn, y - x * turn];
                 let size = turned[0].hypot(turned[1]);
                 states[i] = State::Slips(turned.map(|x| x / size), limited);
             }
-        }
-        if largest <= TURN {
-            return Some(exact);
         }
         now = exact;
     }
@@ -100,6 +104,11 @@ fn solve(
     // The forces and the motions of the unknowns: those that are held, and those across a slip.
     let (mut forces, mut motions) = (Vec::new(), Vec::new());
     let (mut names, mut diagonal) = (Vec::new(), Vec::new());
+    // What moves nothing across the direction does not turn it.
+    let is_turned = |i: usize, j: usize, [x, y]: [f64; 2]| {
+        let moved = y * y * a[i * n + i] - 2.0 * x * y * a[i * n + j] + x * x * a[j * n + j];
+        moved + worth[i] > 0.0
+    };
     for i in 0..n {
         match (states[i], second(kinds, i)) {
             (State::Held, _) => {
@@ -108,7 +117,7 @@ fn solve(
                 names.push((i, false));
                 diagonal.push(0.0);
             }
-            (State::Slips([x, y], _), Some(j)) if worth[i].is_finite() => {
+            (State::Slips([x, y], _), Some(j)) if worth[i].is_finite() && is_turned(i, j, [x, y]) => {
                 forces.push(vec![(i, -y), (j, x)]);
                 motions.push(vec![(i, -y), (j, x)]);
                 names.push((i, true));

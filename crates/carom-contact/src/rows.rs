@@ -121,15 +121,10 @@ impl Rows {
         }
     }
 
-    /// The gradients of the first node in the rows from `first` on, padded with zeros: of the rows
-    /// of a slip, the tangents.
+    /// The tangents of a slip in space, whose rows are those from `first` on: their gradients of the
+    /// first node. Zero in the plane, where the normal gives the tangent.
     pub fn tangents(&self, first: usize) -> [[f64; 3]; 2] {
-        let mut tangents = [[0.0; 3]; 2];
-        tangents
-            .iter_mut()
-            .zip(first..self.len())
-            .for_each(|(tangent, row)| *tangent = self.row(row).first());
-        tangents
+        if self.dimension == 3 { [first, first + 1].map(|row| self.row(row).first()) } else { [[0.0; 3]; 2] }
     }
 
     /// A row.

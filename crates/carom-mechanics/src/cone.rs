@@ -16,7 +16,8 @@
 
 use carom_contact::{Along, Hold, Law, Row, Rows, Rub, StickSlip, Tangential, inner, length};
 
-use crate::constraints::{Constraints, DEPENDENT, independent_above, slip_remainder};
+use crate::constraints::Constraints;
+use crate::independent::{DEPENDENT, independent_above, slip_remainder};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
@@ -29,7 +30,7 @@ const CHANGES: usize = 200;
 pub(crate) const AT_REST: f64 = 1e-10;
 /// Rate, as a fraction of the largest one in a solve, that is round-off.
 const ROUND_OFF: f64 = 1e-12;
-/// Change of a direction that is round-off.
+/// Traction across a direction, relative to the largest one of a slip, that is round-off.
 const TURN: f64 = 1e-13;
 
 /// The closed pairs of a state whose gaps are constraints.
@@ -76,8 +77,9 @@ struct Way {
 
 impl Way {
     /// Turns the direction of a slip in space by what acts across it, and makes it an unknown of
-    /// the next solve; returns whether that changes anything. `rate`: H x − b.
-    fn turn(&mut self, motion: &Motion, pair: usize, rate: Along) -> bool {
+    /// the next solve; returns whether that changes anything. `rate`: H x − b, `widest`: the
+    /// largest traction.
+    fn turn(&mut self, motion: &Motion, pair: usize, rate: Along, widest: f64) -> bool {
         let Hold::Slip(direction) = self.hold else { return false };
         let traction = inner(motion.tangential[pair], direction);
         if !self.is_free || traction <= 0.0 {
@@ -88,7 +90,7 @@ impl Way {
         self.hold = Hold::of([along - turn * other, other + turn * along], 0.0);
         let is_new = self.turns.is_none();
         self.turns = Some((inner(rate, direction) / traction).max(0.0));
-        is_new || turn.abs() > TURN
+        is_new || motion.turns[pair].abs() > TURN * widest
     }
 
     /// The components of the rows by which friction holds a pair, and whether they are of a slip.
@@ -273,9 +275,10 @@ impl Closed {
             };
             let rubs: Vec<Option<Rub>> = (0..ways.len()).map(rub).collect();
             let changes = set.changes(&rubs, true).map_err(|_| Rejected::NoFrictionBalance)?;
+            let widest = motion.tangential.iter().map(|q| length(*q)).fold(0.0, f64::max);
             for (i, way) in ways.iter_mut().enumerate().filter(|_| model.dimension == 3) {
                 let rate = [0, 1].map(|a| rates[i][a] - right.slips[i][a]);
-                changed |= way.turn(&motion, i, rate);
+                changed |= way.turn(&motion, i, rate, widest);
             }
             for &(i, hold) in &changes {
                 (ways[i].hold, ways[i].turns) = (hold, None);

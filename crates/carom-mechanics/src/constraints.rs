@@ -6,21 +6,15 @@
 //! node in two contacts with one facet keeps one of them, for any contacts and nodes (Gaussian
 //! elimination of the sparse rows).
 
-use std::collections::BTreeMap;
-
 use carom_contact::{Along, Direction, DiscreteGradient, Hold, Pair, Row, Rows, inner, length};
 
 use crate::balance::contact_weights;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
+use crate::held::Held;
 use crate::model::Model;
+use crate::slip_derivatives::SlipDerivatives;
 
-/// Remainder after elimination (gradients are of order one) below which a row depends on the
-/// others.
-pub(crate) const DEPENDENT: f64 = 1e-8;
-
-/// The same for a slip in space.
-const HELD: f64 = 1e-3;
 /// Largest gap per unit of a multiplier: of a slip whose traction is round-off.
 const LOOSE: f64 = 1e100;
 
@@ -45,6 +39,9 @@ pub(crate) struct Constraints {
     pub yields: Vec<f64>,
     /// Gap still to be closed.
     pub open: Vec<f64>,
+    /// Contact, pair and components of slips of sticks that depend on these rows, and have no
+    /// traction.
+    pub dropped: Vec<((usize, usize), Along)>,
     /// λ times the derivative of the direction over the nodes of each row, row-major: λ∇²g, or not
     /// symmetric for a discrete gradient. Empty if not requested.
     pub curvatures: Vec<Vec<f64>>,
@@ -63,6 +60,7 @@ impl Constraints {
             compliances: Vec::new(),
             yields: Vec::new(),
             open: Vec::new(),
+            dropped: Vec::new(),
             curvatures: Vec::new(),
         }
     }
@@ -95,23 +93,15 @@ impl Constraints {
         let model = equations.model;
         let mut constraints = Self::none(model.dimension);
         let (mut rows, mut gradient) = (Rows::new(model.dimension), DiscreteGradient::default());
-        // Springs may depend on each other: each adds its stiffness.
-        let is_spring = |&(k, _): &(usize, usize)| !model.contacts[k].interface.is_constraint();
-        let gaps = evaluation.pressing().filter(|place| !is_spring(place));
-        let gaps = gaps.map(|(k, p)| ((k, p, 0), evaluation.rows[k].row(p), DEPENDENT));
-        // The slip of a pair after all gaps: what depends on both keeps its gap.
+        let mut derivatives = SlipDerivatives::new(model.dimension);
         let held = Held::of(equations, evaluation);
-        let least = slip_remainder(model);
-        let slips = held.iter().filter(|((k, p, _), _)| !is_spring(&(*k, *p)));
-        let slips = slips.map(|(name, row)| (name, row, least));
-        let mut places = independent_above(model, gaps.chain(slips));
-        places.extend(evaluation.pressing().filter(is_spring).map(|(k, p)| (k, p, 0)));
-        places.extend(held.names.iter().map(|(name, _)| *name).filter(|&(k, p, _)| is_spring(&(k, p))));
-        places.sort_unstable();
+        let places = held.kept(equations, evaluation);
+        constraints.dropped = held.dropped(evaluation, &places);
         for (k, p, number) in places {
             let place = (k, p);
             if number > 0 {
-                constraints.push_slip(equations, evaluation, held.find((k, p, number)), place, &mut rows);
+                let slip = held.find((k, p, number));
+                constraints.push_slip(equations, evaluation, slip, place, &mut derivatives);
                 continue;
             }
             let contact = &model.contacts[k];
@@ -121,7 +111,7 @@ impl Constraints {
             let hold = evaluation.at.pairings[k].pairs[p].tangential.hold;
             curvature.iter_mut().for_each(|c| *c *= answer.lambda);
             if contact.friction.is_some() && hold != Hold::Stick {
-                equations.slip_curvature_into(evaluation, place, &mut rows, &mut curvature);
+                equations.slip_curvature_into(evaluation, place, &mut derivatives, &mut curvature);
                 constraints.is_skew = true;
             }
             constraints.places.push(place);
@@ -145,10 +135,11 @@ impl Constraints {
         evaluation: &Evaluation,
         (along, slip): (Along, Row),
         (k, p): (usize, usize),
-        rows: &mut Rows,
+        derivatives: &mut SlipDerivatives,
     ) {
         let contact = &equations.model.contacts[k];
         let pair = &evaluation.at.pairings[k].pairs[p];
+        equations.slip_derivatives_into(evaluation, (k, p), derivatives);
         let (traction, spring) = (pair.tangential.traction, equations.stick_spring(k, pair));
         let mut curvature = vec![0.0; slip.gradient.len().pow(2)];
         self.rows.push_row(slip);
@@ -156,12 +147,12 @@ impl Constraints {
         let gradient = self.rows.gradient_mut(self.rows.len() - 1);
         gradient.fill(0.0);
         for tangent in (0..2).filter(|&tangent| along[tangent] != 0.0) {
-            let (turned, slope) = equations.slip_derivatives(evaluation, (k, p), tangent, rows);
-            gradient.iter_mut().zip(&slope).for_each(|(sum, slope)| *sum += along[tangent] * slope);
+            let (turned, slope) = (&derivatives.turned[tangent], &derivatives.slopes[tangent]);
+            gradient.iter_mut().zip(slope).for_each(|(sum, slope)| *sum += along[tangent] * slope);
             // The force of a slip is that of its gap.
             if pair.tangential.hold == Hold::Stick {
                 let force = along[tangent] * traction[tangent];
-                curvature.iter_mut().zip(&turned).for_each(|(sum, h)| *sum += force * h);
+                curvature.iter_mut().zip(turned).for_each(|(sum, h)| *sum += force * h);
             }
         }
         self.is_skew = true;
@@ -180,13 +171,14 @@ impl Constraints {
     pub(crate) fn gap(equations: &Equations, evaluation: &Evaluation) -> f64 {
         let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
         let gaps = evaluation.pressing().map(of_pair).fold(0.0, f64::max);
-        let rows = Self::of(equations, evaluation);
-        let weight = |&(k, p): &(usize, usize)| {
+        let held = Held::of(equations, evaluation);
+        let open = |(k, p, number): (usize, usize, usize)| {
             let pair = &evaluation.at.pairings[k].pairs[p];
-            equations.weight_of_slip(pair, evaluation.slip_of((k, p)))
+            let is_spring = number == 0 || equations.stick_spring(k, pair).is_some();
+            let weight = equations.weight_of_slip(pair, evaluation.slip_of((k, p)));
+            if is_spring { 0.0 } else { weight * held.find((k, p, number)).1.gap.abs() }
         };
-        let slips = rows.places.iter().zip(rows.slips.iter().zip(&rows.open)).filter(|row| row.1.0.is_some());
-        slips.map(|(place, (_, open))| weight(place) * open.abs()).fold(gaps, f64::max)
+        held.kept(equations, evaluation).into_iter().map(open).fold(gaps, f64::max)
     }
 
     /// Number of rows.
@@ -311,96 +303,4 @@ impl Evaluation {
         let places = self.pressing().filter(move |&(k, p)| slips(&self.at.pairings[k].pairs[p]));
         places.filter(|&(k, _)| !self.slips[k].is_empty()).flat_map(|place| self.slip_rows(place))
     }
-}
-
-/// The slips that friction prevents.
-struct Held {
-    /// Contact, pair and number in it, from 1 on, of each; and its components. Ascending.
-    names: Vec<((usize, usize, usize), Along)>,
-    rows: Rows,
-}
-
-impl Held {
-    fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
-        let d = equations.model.dimension;
-        let mut held = Self { names: Vec::new(), rows: Rows::new(d) };
-        for (k, p) in evaluation.pressing() {
-            let pair = &evaluation.at.pairings[k].pairs[p];
-            for (number, along) in equations.held(k, pair).enumerate() {
-                held.names.push(((k, p, number + 1), along));
-                held.rows.push_combined(&evaluation.slips[k], p * (d - 1), &along[..d - 1]);
-            }
-        }
-        held
-    }
-
-    fn iter(&self) -> impl Iterator<Item = ((usize, usize, usize), Row<'_>)> {
-        self.names.iter().map(|(name, _)| *name).zip(self.rows.iter())
-    }
-
-    fn find(&self, name: (usize, usize, usize)) -> (Along, Row<'_>) {
-        let place = self.names.partition_point(|(other, _)| *other < name);
-        (self.names[place].1, self.rows.row(place))
-    }
-}
-
-/// The places whose rows are linearly independent on the free dofs.
-pub(crate) fn independent_rows(
-    model: &Model,
-    places: impl Iterator<Item = (usize, usize)>,
-    rows: &[Rows],
-) -> Vec<(usize, usize)> {
-    independent(model, places.map(|(k, p)| ((k, p), rows[k].row(p))))
-}
-
-/// Remainder of the row of a slip below which it depends on the others. In space supports may hold
-/// a node and its facet along one tangent, and the row then has only what turns the facet, times
-/// the gap.
-pub(crate) fn slip_remainder(model: &Model) -> f64 {
-    if model.dimension == 3 { HELD } else { DEPENDENT }
-}
-
-/// The names of those rows that are linearly independent of the earlier ones on the free dofs.
-pub(crate) fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, Row<'a>)>) -> Vec<T> {
-    independent_above(model, rows.map(|(name, row)| (name, row, DEPENDENT)))
-}
-
-/// The same with a remainder for each row below which it depends on the others.
-pub(crate) fn independent_above<'a, T>(
-    model: &Model,
-    rows: impl Iterator<Item = (T, Row<'a>, f64)>,
-) -> Vec<T> {
-    let mut accepted: Vec<Vec<(usize, f64)>> = Vec::new();
-    // The accepted row whose pivot is this dof.
-    let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
-    let mut independent = |row: Row, least: f64| {
-        let mut row: Vec<(usize, f64)> = row.entries().filter(|(dof, _)| !model.fixed[*dof]).collect();
-        let mut from = 0;
-        // An accepted row contains pivots of later ones only: in ascending order each occurs once.
-        while let Some((r, factor)) = row
-            .iter()
-            .filter_map(|(dof, value)| Some((*pivots.get(dof)?, *value)))
-            .filter(|(r, value)| *r >= from && *value != 0.0)
-            .min_by_key(|(r, _)| *r)
-        {
-            for &(dof, value) in &accepted[r] {
-                match row.iter_mut().find(|(d, _)| *d == dof) {
-                    Some((_, x)) => *x -= factor * value,
-                    None => row.push((dof, -factor * value)),
-                }
-            }
-            from = r + 1;
-        }
-        let largest = row
-            .iter()
-            .fold((0, 0.0_f64), |most, &(dof, x)| if x.abs() > most.1.abs() { (dof, x) } else { most });
-        if largest.1.abs() <= least {
-            return false;
-        }
-        row.iter_mut().for_each(|(_, x)| *x /= largest.1);
-        pivots.insert(largest.0, accepted.len());
-        accepted.push(row);
-        true
-    };
-    rows.filter_map(|(name, row, least)| independent(row, least).then_some(name)).collect()
 }

@@ -1,6 +1,8 @@
 //! Contact status of an iterate: search and hand-over of pairs, active sets, and constraints that
 //! cannot be satisfied.
 
+use std::collections::BTreeSet;
+
 use carom_contact::{
     ActiveSet, Along, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip, Tangential,
 };
@@ -251,8 +253,10 @@ fn update_facets(model: &Model, evaluation: &mut Evaluation, found: &mut Events)
 /// Reports an active constraint without a row: supports prevent it from being satisfied.
 pub(crate) fn check_satisfiable(equations: &Equations, evaluation: &Evaluation) -> Result<(), Rejected> {
     let model = equations.model;
-    let rows = Constraints::of(equations, evaluation).places;
-    for (k, p) in evaluation.pressing().filter(|place| !rows.contains(place)) {
+    let rows = Constraints::of(equations, evaluation);
+    let gaps = rows.places.iter().zip(&rows.slips).filter(|(_, slip)| slip.is_none());
+    let gaps: BTreeSet<_> = gaps.map(|(place, _)| *place).collect();
+    for (k, p) in evaluation.pressing().filter(|place| !gaps.contains(place)) {
         let (contact, depth) = (&model.contacts[k], -evaluation.rows[k].row(p).gap);
         if contact.interface.is_constraint() && depth > GAP_TOLERANCE * model.scale {
             let node = contact.kinematics.secondary()[evaluation.at.pairings[k].pairs[p].node];

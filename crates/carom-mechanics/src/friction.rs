@@ -25,8 +25,7 @@
 //! ```
 //!
 //! which goes on to hold as a stick across d where nothing slips along it. A slip without traction,
-//! as in the iterate in which a pair closes, has the direction of S; on a spring it has that of q_s
-//! + kS.
+//! as in the iterate in which a pair closes, has the direction of S. Springs are of the plane only.
 //!
 //! Between steps q acts along H(y_s): in the averaged forces of the next step and in what is
 //! recorded.
@@ -90,8 +89,6 @@ pub(crate) struct Rubbing {
     pub radius: Radius,
     /// Factor between S and the rate of slip.
     pub rate: f64,
-    /// Traction per slip across d, on a spring.
-    pub across: f64,
 }
 
 /// The rows of a pair, one per tangent, in the rows of all.
@@ -165,17 +162,14 @@ impl Equations<'_> {
         let (law, pressure) = (self.laws[contact][pair.node], (-pair.lambda).max(0.0));
         let rate = self.rate(part);
         let radius = law.slip(pressure, length(slip) * rate);
-        let mut across = 0.0;
         if let Some(stiffness) = self.stick_spring(contact, pair) {
             let start = self.state.closed(contact, pair.node).map(|old| old.tangential);
             let before = start.map_or([0.0; 2], |_| pair.tangential.before);
             let trial = [0, 1].map(|i| before[i] + stiffness * slip[i]);
             let slipped = start.is_some_and(|start| inner(start.hold.direction(), trial) > 0.0);
             let edge = if slipped { radius.value } else { law.grip(pressure) };
-            let size = length(trial);
-            pair.tangential.hold = if size <= edge { Hold::Stick } else { Hold::of(trial, 0.0) };
+            pair.tangential.hold = if length(trial) <= edge { Hold::Stick } else { Hold::of(trial, 0.0) };
             pair.tangential.traction = trial;
-            across = if size <= edge { 0.0 } else { stiffness * radius.value / size };
         } else if self.model.dimension == 3
             && radius.value == 0.0
             && pair.tangential.hold != Hold::Stick
@@ -187,18 +181,17 @@ impl Equations<'_> {
         if pair.tangential.hold != Hold::Stick {
             pair.tangential.traction = direction.map(|d| d * radius.value);
         }
-        Rubbing { direction, radius, rate, across }
+        Rubbing { direction, radius, rate }
     }
 
     /// The components of the rows by which friction holds a closed pair: every tangent of one that
     /// sticks, and in space what is across the direction of a slip with a traction.
     pub(crate) fn held(&self, contact: usize, pair: &Pair) -> impl Iterator<Item = Along> {
         let tangents = self.model.dimension - 1;
-        let is_spring = self.stick_spring(contact, pair).is_some();
         let rows = match pair.tangential.hold {
             Hold::Stick => [[1.0, 0.0], [0.0, 1.0]].into_iter().take(tangents),
             Hold::Slip([along, other]) => {
-                let turns = tangents == 2 && !is_spring && pair.tangential.traction != [0.0; 2];
+                let turns = tangents == 2 && pair.tangential.traction != [0.0; 2];
                 [[-other, along], [0.0; 2]].into_iter().take(usize::from(turns))
             }
         };

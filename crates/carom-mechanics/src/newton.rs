@@ -7,6 +7,8 @@
 //! (`resultants.rs`); |g| ≤ 1e-12·L on every active constraint; no pair penetrates, pulls, or has
 //! slid off its facet. Nothing less is accepted.
 
+use carom_contact::inner;
+
 use crate::constraints::Constraints;
 use crate::contact_update::{
     ContactUpdate, Events, GAP_TOLERANCE, activate_initial, check_satisfiable, search,
@@ -245,6 +247,11 @@ fn advance(
                 None => pair.lambda += length * change,
                 Some(along) => pair.tangential.pull(*along, length * change),
             }
+        }
+        for &((k, p), along) in &rows.dropped {
+            // Other rows hold it.
+            let tangential = &mut at.pairings[k].pairs[p].tangential;
+            tangential.pull(along, -inner(along, tangential.traction));
         }
         equations.evaluate(at, &mut work.spare, &mut work.timings)
     };

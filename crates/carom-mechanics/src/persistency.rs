@@ -15,8 +15,8 @@ use carom_contact::{Along, Row, Rows, inner};
 
 use crate::active_rows::{measure_all, pressing};
 use crate::cone::{Closed, Right};
-use crate::constraints::independent_rows;
 use crate::friction::each_slip;
+use crate::independent::independent_rows;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
 use crate::rejected::Rejected;

@@ -18,7 +18,7 @@ use carom_contact::{Along, Hold, Row, Tangential, inner};
 
 use crate::active_rows::{measure, pressing};
 use crate::cone::{Closed, Right};
-use crate::constraints::independent_rows;
+use crate::independent::independent_rows;
 use crate::ledger::book_kinetic;
 use crate::model::Model;
 use crate::rejected::Rejected;

@@ -14,7 +14,7 @@ use carom_contact::{Pair, Point, Rows};
 
 use crate::active_rows::{measure_all, pressing};
 use crate::cone::Closed;
-use crate::constraints::independent_rows;
+use crate::independent::independent_rows;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::{LoadsAt, Model};
 use crate::persistency::{self, averaged_contact_into};

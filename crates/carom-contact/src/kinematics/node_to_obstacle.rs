@@ -114,12 +114,12 @@ impl NodeToObstacle {
         if is_inside(nearest) && is_inside(pair.facet) { pair.facet } else { nearest }
     }
 
-    /// A tangent of a pair.
-    fn tangent(&self, pair: &Pair, normal: Point, tangent: usize) -> Point {
+    /// The tangents of a pair, of which the plane has one.
+    fn tangents(&self, pair: &Pair, normal: Point) -> [Point; 2] {
         if self.dimension == 2 {
-            return turned(normal);
+            return [turned(normal), [0.0; 3]];
         }
-        tangents(Vector(normal), pair.tangential.tangents)[tangent].0
+        tangents(Vector(normal), pair.tangential.tangents).map(|tangent| tangent.0)
     }
 
     fn near(&self, piece: usize, at: Point, node: usize) -> Result<Near, ContactError> {
@@ -263,8 +263,7 @@ impl Kinematics for NodeToObstacle {
     fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
         let normal = self.near(pair.facet, self.local(node, y).at, node)?.normal;
-        for tangent in 0..self.dimension - 1 {
-            let along = self.tangent(pair, normal, tangent);
+        for along in self.tangents(pair, normal).into_iter().take(self.dimension - 1) {
             match &self.carrier {
                 None => rows.push(0.0, [(node, along)]),
                 Some(Carrier { node: carrier, .. }) => {
@@ -282,7 +281,7 @@ impl Kinematics for NodeToObstacle {
         matrix.fill(0.0);
         let at = self.local(self.secondary[pair.node], y).at;
         let Some(Near { normal, bend, .. }) = self.shape.near(pair.facet, at) else { return };
-        let along = self.tangent(pair, normal, tangent);
+        let along = self.tangents(pair, normal)[tangent];
         let sign = |block: usize| if block == 0 { 1.0 } else { -1.0 };
         for (p, q) in (0..blocks).flat_map(|p| (0..blocks).map(move |q| (p, q))) {
             for (i, k) in (0..d).flat_map(|i| (0..d).map(move |k| (i, k))) {

@@ -31,16 +31,16 @@
 //! force at t_n then acts over a whole step.
 
 use carom_algebra::{Kind, complementarity, coulomb, proximal};
-use carom_contact::{Pair, Pairing, Rows, Tangential};
+use carom_contact::{Pair, Pairing, Rows, Tangential, inner};
 
 use super::forward::Forward;
-use super::rubbing::{hold, kind, tangents};
+use super::rubbing::{combined, hold, kind, loose};
 use super::scratch::Scratch;
 use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, moves, overconstrained};
 use super::{Accepted, StepReport, Stepper, difference};
-use crate::constraints::{independent, independent_rows};
 use crate::contact_update::{GAP_TOLERANCE, search};
 use crate::friction::{book_states, each_slip};
+use crate::independent::{independent, independent_rows};
 use crate::ledger::book_contact_forces;
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -240,9 +240,13 @@ impl Explicit {
         report: &mut StepReport,
     ) -> Result<bool, Rejected> {
         let tolerance = GAP_TOLERANCE * model.scale;
-        let Scratch { free, at, pairings, rows, impulses, places, loaded, acting, kinds, .. } = scratch;
+        let Scratch {
+            free, at, pairings, rows, impulses, places, loaded, acting, slips, along, kinds, ..
+        } = scratch;
         let laws = model.friction_laws(state.time)?;
+        places.clear();
         acting.clear();
+        along.clear();
         kinds.clear();
         free.clear();
         free.extend(before.iter().zip(&state.a).map(|(v, a)| v + dt * a));
@@ -304,14 +308,18 @@ impl Explicit {
             kinds.resize(places.len(), Kind::Normal);
             impulses.clear();
             impulses.extend(places.iter().map(|&(k, p)| -pairings[k].pairs[p].lambda));
+            along.clear();
             for (i, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
                 let Some(law) = laws[k].get(pairings[k].pairs[p].node) else { continue };
-                let (first, pair) = (acting.len(), &mut pairings[k].pairs[p]);
-                slip_into(model, state, (k, pair), acting)?;
-                let kind = kind(law, i, state, (k, pair), (acting, first), before);
-                for traction in &pair.tangential.traction[..acting.len() - first] {
+                let pair = &mut pairings[k].pairs[p];
+                slips.clear();
+                slip_into(model, state, (k, pair), slips)?;
+                let kind = kind(law, i, state, (k, pair), slips, before);
+                for part in loose(model, slips, free) {
+                    acting.push_combined(slips, 0, &part[..slips.len()]);
+                    along.push(part);
                     kinds.push(kind);
-                    impulses.push(-traction);
+                    impulses.push(-inner(part, pair.tangential.traction));
                 }
             }
             let (mut matrix, mut right) = self.matrix(acting);
@@ -353,19 +361,27 @@ impl Explicit {
             for (&(k, p), force) in places.iter().zip(impulses.iter()) {
                 pairings[k].pairs[p].lambda = -force;
             }
-            for (i, of, tangent) in tangents(kinds) {
+            for (of, force) in combined(kinds, along, &impulses[places.len()..]) {
                 let (k, p) = places[of];
-                pairings[k].pairs[p].tangential.traction[tangent] = -impulses[i];
+                let traction = &mut pairings[k].pairs[p].tangential.traction;
+                (0..2).for_each(|a| traction[a] -= force[a]);
             }
             for i in 0..free.len() {
                 velocity[i] = free[i] + dt * self.inverse_mass[i] * at[i];
             }
         }
-        for (i, of, tangent) in tangents(kinds) {
-            let (k, p) = places[of];
+        // The last search may have added and removed pairs, but none with a force.
+        let pressing: Vec<_> = pressing(pairings).collect();
+        let mut pressing = pressing.into_iter();
+        let now = |force: &f64| if *force > 0.0 { pressing.next() } else { None };
+        let now: Vec<_> = impulses[..places.len()].iter().map(now).collect();
+        let slipped: Vec<f64> =
+            acting.iter().skip(places.len()).map(|row| dt * row.along(velocity)).collect();
+        for ((of, slip), kind) in combined(kinds, along, &slipped).zip(&kinds[places.len()..]) {
+            let Some((k, p)) = now[of] else { continue };
             let tangential = &mut pairings[k].pairs[p].tangential;
-            tangential.hold = hold(kinds[i], impulses[of], tangential.traction.map(|q| -q));
-            tangential.slip[tangent] += dt * acting.row(i).along(velocity);
+            tangential.hold = hold(*kind, impulses[of], tangential.traction.map(|q| -q));
+            (0..2).for_each(|a| tangential.slip[a] += slip[a]);
         }
         for (contact, pairing) in model.contacts.iter().zip(pairings) {
             for pair in &mut pairing.pairs {
@@ -400,7 +416,7 @@ impl Explicit {
     }
 }
 
-/// Adds H at y_n of a pair, which keeps the tangent there.
+/// Adds H at y_n of a pair, which keeps the tangents there.
 fn slip_into(
     model: &Model,
     state: &State,
@@ -417,10 +433,15 @@ fn slip_into(
     Ok(())
 }
 
+/// Contact and index of the pairs with a force.
+fn pressing(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize)> {
+    pairings.iter().enumerate().flat_map(|(k, pairing)| {
+        let loaded = pairing.pairs.iter().enumerate().filter(|(_, pair)| pair.lambda < 0.0);
+        loaded.map(move |(p, _)| (k, p))
+    })
+}
+
 /// Contact, node and facet of the pairs with a force.
 fn forces(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize, usize)> {
-    pairings.iter().enumerate().flat_map(|(k, pairing)| {
-        let loaded = pairing.pairs.iter().filter(|pair| pair.lambda < 0.0);
-        loaded.map(move |pair| (k, pair.node, pair.facet))
-    })
+    pressing(pairings).map(|(k, p)| (k, pairings[k].pairs[p].node, pairings[k].pairs[p].facet))
 }

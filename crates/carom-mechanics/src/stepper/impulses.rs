@@ -9,14 +9,15 @@
 //! H v; e acts on normal rates alone, which can create energy.
 
 use carom_algebra::{Kind, LinearError, complementarity, coulomb, proximal};
-use carom_contact::{Law, Pairing, Rows, Tangential};
+use carom_contact::{Along, Law, Pairing, Rows, Tangential};
 use carom_time::ImpulseShares;
 
-use super::rubbing::{hold, kind, tangents};
+use super::rubbing::{combined, hold, kind, loose};
 use super::watch::{active, measure_into, moves, overconstrained};
-use crate::constraints::{Constraints, independent, independent_rows};
+use crate::constraints::Constraints;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
+use crate::independent::{independent, independent_rows};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
@@ -76,13 +77,13 @@ impl Impulses {
                 pair.rests &= pair.active;
             }
         }
+        let path: Vec<f64> = predicted.iter().zip(&state.y).map(|(to, from)| to - from).collect();
         let (places, stuck): (Vec<_>, Vec<_>) =
             active(pairings).partition(|&(k, p)| moves(model, measured[k].row(p)));
         for (k, p) in stuck {
             // No impulse changes its velocity.
             let row = measured[k].row(p);
-            let path = |dof: usize| predicted[dof] - state.y[dof];
-            let sinks = -row.entries().map(|(dof, slope)| slope * path(dof)).sum::<f64>();
+            let sinks = -row.along(&path);
             if sinks > TIE * model.scale {
                 return Err(overconstrained(&model.contacts[k], &pairings[k].pairs[p], row.gap));
             }
@@ -93,6 +94,7 @@ impl Impulses {
         let mut kinds = vec![Kind::Normal; places.len()];
         let mut restitution: Vec<f64> = places.iter().map(|&(k, _)| model.contacts[k].restitution).collect();
         let laws = model.friction_laws(state.time + dt)?;
+        let mut combination = Rows::new(model.dimension);
         for (of, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
             let (contact, pair) = (&model.contacts[k], &mut pairings[k].pairs[p]);
             let Some(law) = laws[k].get(pair.node) else { continue };
@@ -101,9 +103,11 @@ impl Impulses {
             contact.kinematics.slip(pair, predicted, &mut slips).map_err(failed)?;
             pair.tangential.tangents = slips.tangents(0);
             let law = Law { limit: dt * law.limit, ..*law };
-            let kind = kind(&law, of, state, (k, pair), (&slips, 0), &state.v);
-            for (slip, along) in slips.iter().zip([[1.0, 0.0], [0.0, 1.0]]) {
-                rows.push_plain((k, p), slip, Some(along));
+            let kind = kind(&law, of, state, (k, pair), &slips, &state.v);
+            for along in loose(model, &slips, &path) {
+                combination.clear();
+                combination.push_combined(&slips, 0, &along[..slips.len()]);
+                rows.push_plain((k, p), combination.row(0), Some(along));
                 kinds.push(kind);
                 restitution.push(0.0);
             }
@@ -183,7 +187,8 @@ impl Impulses {
     /// pairs: work ½(Gv⁻ + Gv⁺)·P.
     pub(super) fn record(&self, dt: f64, next: &mut State, pairings: &mut [Pairing]) {
         for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
-            (pair.lambda, pair.tangential.traction) = (0.0, [0.0; 2]);
+            let Tangential { tangents, slip, .. } = pair.tangential;
+            (pair.lambda, pair.tangential) = (0.0, Tangential { tangents, slip, ..Tangential::default() });
         }
         next.contact_forces.fill([0.0; 3]);
         for (r, (row, impulse)) in self.rows.rows.iter().zip(&self.values).enumerate() {
@@ -200,18 +205,19 @@ impl Impulses {
                 pairings[k].pairs[p].lambda = -impulse / dt;
             }
         }
-        for (r, of, tangent) in tangents(&self.kinds) {
-            let (k, p) = self.rows.places[r];
+        let along: Vec<Along> = self.rows.slips.iter().copied().flatten().collect();
+        let first = self.values.len() - along.len();
+        let mut rubbed = vec![[0.0; 2]; first];
+        for (of, impulse) in combined(&self.kinds, &along, &self.values[first..]) {
+            (0..2).for_each(|a| rubbed[of][a] += impulse[a]);
+        }
+        let slips: Vec<f64> = self.rows.rows.iter().skip(first).map(|row| dt * row.along(&next.v)).collect();
+        for ((of, slip), kind) in combined(&self.kinds, &along, &slips).zip(&self.kinds[first..]) {
+            let (k, p) = self.rows.places[of];
             let tangential = &mut pairings[k].pairs[p].tangential;
-            let before = *tangential;
-            *tangential =
-                Tangential { tangents: before.tangents, slip: before.slip, ..Tangential::default() };
-            let mut impulse = [0.0; 2];
-            // The row before is that of the other tangent.
-            impulse[..=tangent].copy_from_slice(&self.values[r - tangent..=r]);
-            tangential.hold = hold(self.kinds[r], self.values[of], impulse);
-            tangential.traction = impulse.map(|impulse| -impulse / dt);
-            tangential.slip[tangent] += dt * self.rows.rows.row(r).along(&next.v);
+            tangential.hold = hold(*kind, self.values[of], rubbed[of]);
+            tangential.traction = rubbed[of].map(|impulse| -impulse / dt);
+            (0..2).for_each(|a| tangential.slip[a] += slip[a]);
         }
     }
 }

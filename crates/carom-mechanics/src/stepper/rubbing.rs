@@ -3,9 +3,11 @@
 //! touches while it moves along the other side slips from the start.
 
 use carom_algebra::Kind;
-use carom_contact::{Along, Hold, Law, Pair, Rows, length};
+use carom_contact::{Along, Hold, Law, Pair, Row, Rows, length};
 
 use crate::cone::AT_REST;
+use crate::independent::slip_remainder;
+use crate::model::Model;
 use crate::state::State;
 use crate::sums::max_abs;
 
@@ -13,17 +15,17 @@ use crate::sums::max_abs;
 const EDGE: f64 = 1e-12;
 
 /// The law of the tangential forces of a pair in a step from a state; `of` is the index of its
-/// normal force, `slips` has its H from the row `first` on, `v` the velocities at the start.
+/// normal force, `slips` has its H, `v` the velocities at the start.
 pub(super) fn kind(
     law: &Law,
     of: usize,
     state: &State,
     (contact, pair): (usize, &Pair),
-    (slips, first): (&Rows, usize),
+    slips: &Rows,
     v: &[f64],
 ) -> Kind {
     let mut rate = [0.0; 2];
-    rate.iter_mut().zip(slips.iter().skip(first)).for_each(|(rate, row)| *rate = row.along(v));
+    rate.iter_mut().zip(slips.iter()).for_each(|(rate, row)| *rate = row.along(v));
     let touches = state.closed(contact, pair.node).is_none();
     let hold = if touches { Hold::of(rate, AT_REST * max_abs(v)) } else { pair.tangential.hold };
     let coefficient = if hold == Hold::Stick { law.stick } else { law.coefficient(length(rate)).0 };
@@ -38,11 +40,45 @@ pub(super) fn hold(kind: Kind, normal: f64, tangential: Along) -> Hold {
     if sticks { Hold::Stick } else { Hold::of(tangential.map(|q| -q), 0.0) }
 }
 
-/// The normal force of every tangential one, and its tangent.
-pub(super) fn tangents(kinds: &[Kind]) -> impl Iterator<Item = (usize, usize, usize)> + '_ {
-    let of = |i: usize| if let Kind::Tangential { of, .. } = kinds[i] { Some(of) } else { None };
-    (0..kinds.len()).filter_map(move |i| {
-        let normal = of(i)?;
-        Some((i, normal, usize::from(i > 0 && of(i - 1) == Some(normal))))
-    })
+/// The components along its tangents of the slips of a pair on which its friction acts. In space
+/// supports may hold its nodes along a tangent: then what is left of that row only turns the facet,
+/// times the gap, and its force would be part of the cone without any other effect. `x`: a motion;
+/// where supports move the nodes along that tangent, they slip.
+pub(super) fn loose(model: &Model, slips: &Rows, x: &[f64]) -> impl Iterator<Item = Along> + use<> {
+    let tangents = [[1.0, 0.0], [0.0, 1.0]];
+    if slips.len() < 2 {
+        return tangents.into_iter().take(slips.len());
+    }
+    let [first, second] = [slips.row(0), slips.row(1)];
+    let product = |[i, j]: [Row; 2]| -> f64 {
+        let both = i.entries().zip(j.gradient).filter(|((dof, _), _)| !model.fixed[*dof]);
+        both.map(|((_, a), b)| a * b).sum()
+    };
+    let [a, b, mixed] = [[first, first], [second, second], [first, second]].map(product);
+    let most = 0.5 * (a + b) + (0.5 * (a - b)).hypot(mixed);
+    let least = slip_remainder(model).powi(2);
+    let rest = AT_REST * max_abs(x);
+    let rests = |[i, j]: Along| (i * first.along(x) + j * second.along(x)).abs() <= rest;
+    if most <= least {
+        let all_rest = tangents.into_iter().all(rests);
+        return tangents.into_iter().take(if all_rest { 0 } else { 2 });
+    }
+    let [i, j] = if a >= b { [most - b, mixed] } else { [mixed, most - a] };
+    let [i, j] = [i, j].map(|part| part / i.hypot(j));
+    if a + b - most <= least && rests([-j, i]) {
+        return [[i, j], [0.0; 2]].into_iter().take(1);
+    }
+    tangents.into_iter().take(2)
+}
+
+/// Values of the rows of slips, along these components, as vectors; with the index of their normal
+/// force.
+pub(super) fn combined<'a>(
+    kinds: &'a [Kind],
+    along: &'a [Along],
+    values: &'a [f64],
+) -> impl Iterator<Item = (usize, Along)> + 'a {
+    let of = |kind: &Kind| if let Kind::Tangential { of, .. } = *kind { Some(of) } else { None };
+    let rows = kinds.iter().filter_map(of).zip(along).zip(values);
+    rows.map(|((of, along), value)| (of, along.map(|part| value * part)))
 }

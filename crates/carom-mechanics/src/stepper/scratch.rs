@@ -1,7 +1,7 @@
 //! Buffers of the explicit stepper.
 
 use carom_algebra::Kind;
-use carom_contact::{Pairing, Rows};
+use carom_contact::{Along, Pairing, Rows};
 
 use crate::model::LoadsAt;
 
@@ -19,6 +19,10 @@ pub(crate) struct Scratch {
     pub places: Vec<(usize, usize)>,
     /// Rows that the impulses act along: the gaps of these places, then slips.
     pub acting: Rows,
+    /// H of a pair.
+    pub slips: Rows,
+    /// The components of the rows of slips.
+    pub along: Vec<Along>,
     pub kinds: Vec<Kind>,
     /// Contact, node and facet of the forces before a search.
     pub loaded: Vec<(usize, usize, usize)>,
@@ -36,6 +40,8 @@ impl Scratch {
             impulses: Vec::new(),
             places: Vec::new(),
             acting: Rows::new(dimension),
+            slips: Rows::new(dimension),
+            along: Vec::new(),
             kinds: Vec::new(),
             loaded: Vec::new(),
             loads: LoadsAt::default(),

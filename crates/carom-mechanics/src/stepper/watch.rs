@@ -4,7 +4,7 @@
 
 use carom_contact::{Pair, Pairing, Row, Rows};
 
-use crate::constraints::DEPENDENT;
+use crate::independent::DEPENDENT;
 use crate::model::{Contact, Model};
 use crate::penetration::has_gaps;
 use crate::rejected::Rejected;

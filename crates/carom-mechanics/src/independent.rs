@@ -1,0 +1,75 @@
+//! Rows that are linearly independent on the free dofs, by Gaussian elimination of the sparse rows.
+
+use std::collections::BTreeMap;
+
+use carom_contact::{Row, Rows};
+
+use crate::model::Model;
+
+/// Remainder after elimination (gradients are of order one) below which a row depends on the
+/// others.
+pub(crate) const DEPENDENT: f64 = 1e-8;
+
+/// The same for a slip in space.
+const HELD: f64 = 1e-3;
+
+/// The places whose rows are linearly independent on the free dofs.
+pub(crate) fn independent_rows(
+    model: &Model,
+    places: impl Iterator<Item = (usize, usize)>,
+    rows: &[Rows],
+) -> Vec<(usize, usize)> {
+    independent(model, places.map(|(k, p)| ((k, p), rows[k].row(p))))
+}
+
+/// Remainder of the row of a slip below which it depends on the others. In space supports may hold
+/// a node and its facet along one tangent, and the row then has only what turns the facet, times
+/// the gap.
+pub(crate) fn slip_remainder(model: &Model) -> f64 {
+    if model.dimension == 3 { HELD } else { DEPENDENT }
+}
+
+/// The names of those rows that are linearly independent of the earlier ones on the free dofs.
+pub(crate) fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, Row<'a>)>) -> Vec<T> {
+    independent_above(model, rows.map(|(name, row)| (name, row, DEPENDENT)))
+}
+
+/// The same with a remainder for each row below which it depends on the others.
+pub(crate) fn independent_above<'a, T>(
+    model: &Model,
+    rows: impl Iterator<Item = (T, Row<'a>, f64)>,
+) -> Vec<T> {
+    let mut accepted: Vec<Vec<(usize, f64)>> = Vec::new();
+    // The accepted row whose pivot is this dof.
+    let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut independent = |row: Row, least: f64| {
+        let mut row: Vec<(usize, f64)> = row.entries().filter(|(dof, _)| !model.fixed[*dof]).collect();
+        let mut from = 0;
+        // An accepted row contains pivots of later ones only: in ascending order each occurs once.
+        while let Some((r, factor)) = row
+            .iter()
+            .filter_map(|(dof, value)| Some((*pivots.get(dof)?, *value)))
+            .filter(|(r, value)| *r >= from && *value != 0.0)
+            .min_by_key(|(r, _)| *r)
+        {
+            for &(dof, value) in &accepted[r] {
+                match row.iter_mut().find(|(d, _)| *d == dof) {
+                    Some((_, x)) => *x -= factor * value,
+                    None => row.push((dof, -factor * value)),
+                }
+            }
+            from = r + 1;
+        }
+        let largest = row
+            .iter()
+            .fold((0, 0.0_f64), |most, &(dof, x)| if x.abs() > most.1.abs() { (dof, x) } else { most });
+        if largest.1.abs() <= least {
+            return false;
+        }
+        row.iter_mut().for_each(|(_, x)| *x /= largest.1);
+        pivots.insert(largest.0, accepted.len());
+        accepted.push(row);
+        true
+    };
+    rows.filter_map(|(name, row, least)| independent(row, least).then_some(name)).collect()
+}
