@@ -7,14 +7,16 @@ use maud::{Markup, html};
 
 use crate::text::Label;
 
-/// Arms in one table; more arms need more tables.
-const ACROSS: usize = 8;
-
-/// The tables; `cell` is given the number of an arm.
-pub(crate) fn tables(study: &Study, metrics: &[&Metric], cell: impl Fn(usize, &Metric) -> Markup) -> Markup {
+/// The tables, each of at most `across` arms; `cell` is given the number of an arm.
+pub(crate) fn tables(
+    study: &Study,
+    metrics: &[&Metric],
+    across: usize,
+    cell: impl Fn(usize, &Metric) -> Markup,
+) -> Markup {
     let arms: Vec<usize> = (0..study.rows.len()).collect();
     html! {
-        @for part in arms.chunks(ACROSS) {
+        @for part in arms.chunks(across) {
             table.metrics {
                 thead { tr { th { "Metric" } th { "Unit" } @for arm in part { th.n { (arm + 1) } } } }
                 @for metric in metrics {

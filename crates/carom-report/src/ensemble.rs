@@ -23,7 +23,8 @@ pub(crate) fn section(study: &Study) -> Markup {
         }
         details {
             summary { (metrics.len()) " metrics of " (study.rows.len()) " arms" }
-            (by_arm::tables(study, &metrics, |arm, metric| cell(study, arm, &metric.name)))
+            // Four medians with their ranges are as wide as the page.
+            (by_arm::tables(study, &metrics, 4, |arm, metric| cell(study, arm, &metric.name)))
             p.small { "Data in full precision: " (file("ensemble.csv")) "." }
         }
     }

@@ -236,7 +236,7 @@ fn warnings(study: &Study) -> Markup {
     }
 }
 
-/// Largest number of columns of the table of expectations by arm.
+/// Largest number of columns of tables by arm.
 const COLUMNS: usize = 8;
 
 /// Expectations by arm, one row per arm and one column per quantity, result above expected value;
@@ -285,7 +285,7 @@ fn metrics(study: &Study) -> Markup {
         @for (title, members) in groups.iter().filter(|(_, members)| !members.is_empty()) {
             details {
                 summary { (title) " " span.small { "(" (joined(members.iter().map(|m| &m.name), ", ")) ")" } }
-                (by_arm::tables(study, members, |arm, metric| {
+                (by_arm::tables(study, members, COLUMNS, |arm, metric| {
                     html! { (or_dash(study.rows[arm].value(&metric.name), five)) }
                 }))
                 table {

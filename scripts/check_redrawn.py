@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the scripts that redraw figures, and compares what they draw with their tables.
 
-    python3 scripts/check_figures.py CAROM
+    python3 scripts/check_redrawn.py CAROM
 
 Of a run in the plane, one with friction, one of bars with measured data, and a study of two groups of
 arms: every `figures/*.py` must run, write its PDF, and have a pane with a title for each one that its
