@@ -139,6 +139,12 @@ TIME = "parseFloat(document.querySelector('#animation output').textContent.match
 FORWARD = "document.querySelector('#animation button').textContent"
 
 
+def pick(browser, selector, value):
+    """Chooses from a list of the animation."""
+    browser.value(f"""(e => {{ e.value = {json.dumps(value)}; e.dispatchEvent(new Event("change")); }})(
+        document.querySelector("#animation {selector}"))""")
+
+
 def animation(browser):
     """Plays the animation, drags its slider and clicks a history; returns the errors found."""
     wrong = []
@@ -181,6 +187,15 @@ def animation(browser):
     browser.value("document.querySelector('g.time').ownerSVGElement.id = 'history'")
     browser.click("#history", 0.5)
     differs(dragged, shown(), "a click on a time history")
+
+    # Other colours, with their colour bar; those of a scene are tried with it.
+    if browser.value("!!document.querySelector('#animation .quantity') && !document.querySelector('#animation .scene')"):
+        before = shown()
+        pick(browser, ".quantity", "1")
+        if shown()[1] == before[1]:
+            wrong.append("the choice of colours does not change the picture")
+        if browser.value("[...document.querySelectorAll('#animation .bar')].map(bar => +bar.hidden).join('')") != "10":
+            wrong.append("the colour bar is not that of the chosen colours")
 
     # A drag across a history enlarges it; a double click, or Esc wherever the focus is, shows all
     # of it again.
@@ -257,10 +272,6 @@ def scene(browser):
         for kind in ("keyDown", "keyUp"):
             browser("Input.dispatchKeyEvent", type=kind, key=name)
 
-    def pick(selector, value):
-        browser.value(f"""(e => {{ e.value = {json.dumps(value)}; e.dispatchEvent(new Event("change")); }})(
-            document.querySelector("#animation {selector}"))""")
-
     def swipe():
         touch("touchStart", middle)
         touch("touchMove", (middle[0] + 40, middle[1] + 25))
@@ -285,8 +296,8 @@ def scene(browser):
         ("a finger", swipe),
         ("two fingers", spread),
         *[(f"the key {name}", lambda name=name: key(name)) for name in ("ArrowLeft", "ArrowUp", "+", "-", ".")],
-        *[(f"the colours of {k}", lambda k=k: pick(".quantity", k)) for k in "120"],
-        *[(f"a cut at {axis}", lambda axis=axis: pick(".cut", axis)) for axis in ("x", "−y", "")],
+        *[(f"the colours of {k}", lambda k=k: pick(browser, ".quantity", k)) for k in "120"],
+        *[(f"a cut at {axis}", lambda axis=axis: pick(browser, ".cut", axis)) for axis in ("x", "−y", "")],
     ]
     before = first
     for name, step in steps:

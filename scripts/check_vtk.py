@@ -24,7 +24,7 @@ import vtk
 
 UNITS = {
     "displacement": "m", "velocity": "m/s", "stress": "Pa", "von_mises": "Pa", "principal_stress": "Pa",
-    "contact_pressure": "Pa",
+    "principal_log_strain": None, "contact_pressure": "Pa",
 }
 STREAM = vtk.vtkStreamingDemandDrivenPipeline
 
@@ -61,7 +61,8 @@ def vtkhdf(run, step_size):
     reader.SetFileName(str(path))
     reader.UpdateInformation()
     with h5py.File(path) as file:
-        units = {name: array.attrs["units"].decode() for name, array in file["VTKHDF/PointData"].items()}
+        arrays = file["VTKHDF/PointData"].items()
+        units = {name: array.attrs["units"].decode() if "units" in array.attrs else None for name, array in arrays}
     assert units == UNITS, units
     times, grids = list(reader.GetOutputInformation(0).Get(STREAM.TIME_STEPS())), []
     assert len(times) == reader.GetNumberOfSteps()

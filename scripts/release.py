@@ -40,7 +40,7 @@ def build(triple: str) -> pathlib.Path:
     flags = f"{os.environ.get('RUSTFLAGS', '')} -C target-feature=+crt-static".strip()
     # Assertions are for developers; a release does without them.
     profile = {"CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS": "false", "CARGO_PROFILE_RELEASE_LTO": "thin"}
-    command = ["cargo", "build", "--release", "--locked", "--target", triple, "--bin", "carom", "--features", "carom/parquet"]
+    command = ["cargo", "build", "--release", "--locked", "--target", triple, "--bin", "carom", "--features", "carom/parquet,carom/figures"]
     subprocess.run(command, check=True, cwd=ROOT, env={**os.environ, **profile, "RUSTFLAGS": flags})
     target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     name = "carom.exe" if "windows" in triple else "carom"

@@ -45,10 +45,11 @@ pub use excerpt::{Excerpt, merged};
 pub use expect::{Asked, read_expects};
 pub use load::load_variables;
 pub use no_mesh::NoMesh;
+pub use overlay::read_overlays;
 pub use problem::{CaseError, Diagnostic, Problem, Problems};
 pub use read::read;
 pub use read_scheme::read_scheme;
-pub use schema::{changes, expectation, schema};
+pub use schema::{changes, expectation, measured, schema};
 pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,
     FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind, MaterialSpec,

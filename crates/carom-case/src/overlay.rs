@@ -2,10 +2,25 @@
 
 use std::path::Path;
 
-use super::OverlaySpec;
-use super::load_table;
+use super::document::Document;
+use super::keys::OVERLAY;
 use super::problem::Problem;
+use super::tree::Node;
 use super::view::View;
+use super::{OverlaySpec, Preset, conform, load_table};
+
+/// The measured data of a study file, whose files start at `folder`.
+pub fn read_overlays(document: &Document, folder: &Path, problems: &mut Vec<Problem>) -> Vec<OverlaySpec> {
+    let list = document.at("overlay").and_then(Node::list).unwrap_or_default();
+    let mut found = Vec::new();
+    for (i, table) in list.iter().enumerate().filter_map(|(i, node)| Some((i, node.table()?))) {
+        let path = format!("overlay[{i}]");
+        problems.extend(conform::table(table, &OVERLAY, &path));
+        let view = View { table, keys: OVERLAY.keys, preset: Preset::Default };
+        found.extend(read(view, folder, &path, problems));
+    }
+    found
+}
 
 /// Reads an `[[overlay]]`.
 pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Problem>) -> Option<OverlaySpec> {
@@ -26,7 +41,7 @@ pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Proble
         }),
         Err(why) => {
             let what = format!("the measured data \"{file}\" cannot be used");
-            let help = "the first line of the file has the headings that `time` and `value` name; its path is relative to the folder of the case";
+            let help = "the first line of the file has the headings that `time` and `value` name; its path is relative to the folder of this file";
             problems.push(Problem::new(format!("{path}.file"), what, why, help));
             None
         }

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::keys::{CASE, Default, EXPECT, Key, Kind, Range, Table, Variants};
+use super::keys::{CASE, Default, EXPECT, Key, Kind, OVERLAY, Range, Table, Variants};
 
 /// The schema of a case file.
 pub fn schema() -> Value {
@@ -54,6 +54,11 @@ fn paths(spec: &Table, before: &str, found: &mut Vec<(String, Value)>) {
 /// The schema of one expectation, of a case, an arm or a study.
 pub fn expectation() -> Value {
     Value::Object(table(&EXPECT, None))
+}
+
+/// The schema of measured data of a column, of a case or a study.
+pub fn measured() -> Value {
+    Value::Object(table(&OVERLAY, None))
 }
 
 fn table(spec: &Table, tag: Option<(&str, &str, &str)>) -> Map<String, Value> {

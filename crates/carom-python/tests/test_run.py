@@ -122,6 +122,20 @@ def test_fields_are_curved_cells(disc_run: carom.Run) -> None:
     assert grid.point_data["stress"].shape == (grid.n_points, 6)
 
 
+def test_principal_values_are_eigenvalues(disc_run: carom.Run) -> None:
+    """Principal stresses by LAPACK; strains are zero before contact, where the disc only falls."""
+    fields = disc_run.fields.at(0.15)
+    xx, yy, zz, xy, yz, xz = fields.arrays["stress"].T
+    tensors = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1)
+    expected = np.linalg.eigvalsh(tensors)
+    for k in (1, 2, 3):
+        values, unit = fields.quantity(f"principal_stress_{k}")
+        assert np.allclose(values, expected[:, 3 - k], atol=1e-12 * np.abs(tensors).max()) and unit == "Pa"
+    largest, unit = fields.quantity("principal_log_strain_1")
+    assert unit == "" and largest.max() > 0.01
+    assert np.abs(disc_run.fields.at(0.0).arrays["principal_log_strain"]).max() < 1e-12
+
+
 def test_a_run_without_fields_says_what_to_do(bar: carom.Case) -> None:
     run = bar.set("output.fields_every", 0).run(progress=False)
     with pytest.raises(KeyError, match="output.fields_every"):

@@ -34,7 +34,7 @@ pub use compare::{deviation, phase_shift};
 pub use definition::{Definition, Metric, Unit};
 pub use episode::{Episode, default_bridge, episodes, first_episode};
 pub(crate) use evaluated::of_columns;
-pub use evaluated::{all, of_column, of_measured, of_run, probe_columns};
+pub use evaluated::{all, of_column, of_measured, of_run, of_run_beside, probe_columns};
 pub use facts::{Facts, contact_force};
 pub use force::high_frequency;
 pub use group::{TITLES, group};

@@ -6,9 +6,10 @@
   const [left, right, low, high] = data.box;
   const unpack = (text, from, to) => Float32Array.from(new Int16Array(bytes(text)),
     i => i === -32768 ? NaN : from + (to - from) * (i + 32767) / 65534);
-  const X = unpack(data.x, left, right), Y = unpack(data.y, low, high), S = unpack(data.s, ...data.range);
-  const frames = data.frames, colors = data.bands.colors, width = (data.bands.high - data.bands.low) / colors.length;
-  const band = s => Math.min(colors.length - 1, Math.max(0, Math.floor((s - data.bands.low) / width)));
+  const X = unpack(data.x, left, right), Y = unpack(data.y, low, high), frames = data.frames;
+  const quantities = data.quantities.map(q => ({ ...q, values: unpack(q.values, ...q.range), width: (q.high - q.low) / q.colors.length }));
+  let shown = quantities[0], frame = 0;
+  const band = s => Math.min(shown.colors.length - 1, Math.max(0, Math.floor((s - shown.low) / shown.width)));
 
   // Cells, and the shape functions of each degree at the points of a subdivision.
   const numbers = new Uint32Array(bytes(data.cells));
@@ -95,7 +96,8 @@
     g.lineWidth = 1.1; g.strokeStyle = g.fillStyle = "#000"; g.stroke(); g.fill();
   };
   const draw = k => {
-    const base = k * data.points, paths = colors.map(() => new Path2D());
+    frame = k;
+    const base = k * data.points, S = shown.values, paths = shown.colors.map(() => new Path2D());
     const fill = (b, polygon) => {
       polygon.forEach((p, i) => i ? paths[b].lineTo(p[0], p[1]) : paths[b].moveTo(p[0], p[1]));
       paths[b].closePath();
@@ -116,8 +118,8 @@
         const first = Math.min(...of), last = Math.max(...of);
         for (let b = first; b <= last; b++) {
           let polygon = corners;
-          if (b > first) polygon = clip(polygon, data.bands.low + b * width, 1);
-          if (b < last) polygon = clip(polygon, data.bands.low + (b + 1) * width, -1);
+          if (b > first) polygon = clip(polygon, shown.low + b * shown.width, 1);
+          if (b < last) polygon = clip(polygon, shown.low + (b + 1) * shown.width, -1);
           if (polygon.length > 2) fill(b, polygon);
         }
       }
@@ -126,7 +128,7 @@
     g.fillStyle = "#fff"; g.fillRect(0, 0, W, H);
     g.lineJoin = "round";
     paths.forEach((path, b) => {
-      g.fillStyle = g.strokeStyle = colors[b];
+      g.fillStyle = g.strokeStyle = shown.colors[b];
       g.fill(path); g.lineWidth = 0.6; g.stroke(path);
     });
     g.strokeStyle = "#000"; g.lineWidth = 1.1; g.beginPath();
@@ -177,5 +179,6 @@
   // Start at the frame with the largest contact force.
   const force = f => f.forces.reduce((s, v, i) => i % 4 > 1 ? s + Math.abs(v) : s, 0);
   const first = frames.reduce((a, b) => force(b) > force(a) ? b : a);
+  coloured(root, k => { shown = quantities[k]; draw(frame); });
   player(root, frames, data.unit, draw, first.time);
 })();

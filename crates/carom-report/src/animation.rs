@@ -3,7 +3,7 @@
 //!
 //! The frames are the field files; nothing is interpolated. Positions and stresses are stored as
 //! 16-bit integers over their range (a 65 000th of the width of the picture), the mesh only once;
-//! `animation.js` draws them with the colours of the figure `bodies`.
+//! `animation.js` draws them with the colours of the figure `bodies`, or of the von Mises stress.
 
 use std::collections::HashMap;
 
@@ -13,20 +13,21 @@ use carom_record::{Block, Cell, FieldEntry, FieldSet, Run};
 use maud::{Markup, PreEscaped, html};
 use serde_json::json;
 
-use crate::bands::{Bands, color_bands};
+use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::bodies::{Instant, frame, triangles};
-use crate::chart::{Chart, Options, Panel, Series, Track, open};
+use crate::chart::{Chart, Options, Panel, Series, Track};
 use crate::labels::{number, symbol, with_unit};
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::Point;
 use crate::pressure;
-use crate::sheet::{Legend, color_bar};
+use crate::quantity::{Quantity, bars, choice, stresses};
+use crate::sheet::Legend;
 use crate::text::{Label, Prose};
 
 /// Largest number of bytes of positions and stresses in the page; field files are skipped evenly to
 /// stay below.
-const BUDGET: usize = 2_400_000;
+const BUDGET: usize = 3_200_000;
 const FRAMES: usize = 300;
 /// Play, pause, slider and cursors, for all animations.
 pub(crate) const PLAYER: &str = include_str!("player.js");
@@ -187,9 +188,10 @@ fn planes(run: &Run, flat: bool, time: f64) -> Vec<[Point; 2]> {
     contacts.filter_map(at).collect()
 }
 
-/// Field files that are used as frames.
-fn chosen(run: &Run, points: usize) -> Vec<&FieldEntry> {
-    let most = (BUDGET / (8 * points.max(1))).clamp(2, FRAMES);
+/// Field files that are used as frames, of which each has so many numbers.
+fn chosen(run: &Run, numbers: usize) -> Vec<&FieldEntry> {
+    // Two bytes are 8/3 characters in base 64.
+    let most = (3 * BUDGET / (8 * numbers.max(1))).clamp(2, FRAMES);
     let stride = run.fields.len().div_ceil(most).max(1);
     let last = run.fields.len().saturating_sub(1);
     run.fields.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, e)| e).collect()
@@ -216,9 +218,15 @@ pub(crate) fn controls() -> Markup {
 pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<Markup> {
     let first = run.field(run.fields.first()?).ok()?;
     let flat = first.blocks.iter().all(|b| b.cell == Cell::Curve);
-    let entries = chosen(run, if flat { 2 * first.points.len() } else { first.points.len() });
-    let read = |entry: &FieldEntry| Some((entry.clone(), instant(&run.field(entry).ok()?, String::new())?));
-    let frames: Vec<(FieldEntry, Instant)> = entries.iter().filter_map(|e| read(e)).collect();
+    // A node of a bar is two points with a stress; one of the plane has two stresses.
+    let entries = chosen(run, if flat { 6 } else { 4 } * first.points.len());
+    let read = |entry: &FieldEntry| {
+        let fields = run.field(entry).ok()?;
+        let [mises, _] = stresses(&fields)?;
+        Some(((entry.clone(), instant(&fields, String::new())?), mises))
+    };
+    let (frames, mises): (Vec<(FieldEntry, Instant)>, Vec<Vec<f64>>) =
+        entries.iter().filter_map(|e| read(e)).unzip();
     let of_cell = |(degree, nodes): &(usize, Vec<usize>)| {
         let degree = *degree;
         triangles(nodes).into_iter().map(move |half| (degree, half))
@@ -247,6 +255,25 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let own = color_bands(values.iter().copied()).0;
     let bands = if flat { &own } else { bands };
     let cut = [range.0 < bands.low, range.1 > bands.high];
+    let unit = first.array("stress").map_or("", |a| a.unit.as_str());
+    let label = if flat { "σ_{xx}" } else { "σ_{yy}" };
+    let along = Quantity {
+        name: if flat { "axial stress" } else { "vertical stress" },
+        legend: Legend { bands, cut, label, unit },
+    };
+    let (of_mises, beyond) = positive_bands_of(mises.iter().map(|values| values.iter().copied()));
+    let mises = mises.concat();
+    let legend = Legend { bands: &of_mises, cut: beyond, label: "σ_{vM}", unit };
+    // In a bar it is the absolute value of the axial stress but for a factor.
+    let others = (!flat).then_some(Quantity { name: "von Mises stress", legend });
+    let quantities: Vec<Quantity> = std::iter::once(along).chain(others).collect();
+    let data_of = |(quantity, values): (&Quantity, &Vec<f64>)| {
+        let mut data = quantity.data();
+        let range = crate::axis::range(values);
+        data["range"] = json!([range.0, range.1]);
+        data["values"] = json!(packed(values.iter(), range));
+        data
+    };
     let coordinates = |d: usize| frames.iter().flat_map(move |(_, i)| i.points.iter().map(move |p| &p[d]));
     let forces = forces(run);
     let largest = forces.values().flatten().map(|f| f[2].hypot(f[3])).fold(0.0, f64::max);
@@ -263,21 +290,14 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let numbers: Vec<u8> =
         cells.iter().flat_map(|(_, n)| n.iter().flat_map(|k| (*k as u32).to_le_bytes())).collect();
     let data = json!({
-        "unit": run.history.unit("time"), "box": [x0, x1, y0, y1], "range": [range.0, range.1],
+        "unit": run.history.unit("time"), "box": [x0, x1, y0, y1],
         "points": frames[0].1.points.len(), "frames": frames.iter().enumerate().map(frame_of).collect::<Vec<_>>(),
         "degrees": cells.iter().map(|(d, _)| d.to_string()).collect::<String>(),
         "cells": STANDARD.encode(numbers),
         "x": packed(coordinates(0), (x0, x1)), "y": packed(coordinates(1), (y0, y1)),
-        "s": packed(values.iter(), range),
-        "bands": { "low": bands.low, "high": bands.high,
-                   "colors": (0..bands.count).map(|b| bands.color(b)).collect::<Vec<_>>() },
+        "quantities": quantities.iter().zip([&values, &mises]).map(data_of).collect::<Vec<_>>(),
         "largest": largest, "planes": fixed, "walls": walls, "flat": flat,
     });
-    let unit = first.array("stress").map_or("", |a| a.unit.as_str());
-    let label = if flat { "σ_{xx}" } else { "σ_{yy}" };
-    let mut bar = open("Colour bar of the animation", 92.0, 330.0);
-    color_bar(&mut bar, &Legend { bands, cut, label, unit }, 8.0, (8.0, 312.0));
-    bar.push_str("</svg>\n");
     let every = if entries.len() < run.fields.len() {
         format!("{} of the {} recorded instants", entries.len(), run.fields.len())
     } else {
@@ -289,13 +309,19 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         figure.animation #animation hidden {
             div.stage {
                 canvas {}
-                div { (PreEscaped(bar)) }
+                (bars(&quantities))
                 div { (PreEscaped(histories(run, shades))) (PreEscaped(profiles)) }
             }
-            div.controls { (controls()) }
+            div.controls {
+                (controls())
+                @if quantities.len() > 1 { (choice(&quantities)) }
+            }
             figcaption {
                 b { "Animation." } " " (Label(label))
-                @if flat { " in colour" } @else { " in the colours of figure " (figure) }
+                @if flat { " in colour" } @else {
+                    " in the colours of figure " (figure) ", or " (Label("σ_{vM}"))
+                    " (of nodal averages of the Cauchy stress)"
+                }
                 "; frames are " (every) ", without interpolation."
                 @if largest > 0.0 {
                     (Prose(" Arrows: contact forces −λn on the secondary nodes (`contact.csv`), at most "))

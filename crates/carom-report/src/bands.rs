@@ -92,14 +92,27 @@ pub(crate) fn color_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2
 /// Colour bands from zero for values that are not negative: all but the largest 0.5 %, and whether
 /// values lie above them.
 pub(crate) fn positive_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2]) {
-    let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
-    values.sort_unstable_by(f64::total_cmp);
-    let last = values.len().saturating_sub(1);
-    let value = |k: usize| values.get(k).copied().unwrap_or(0.0);
-    let high = Some(value(last - last / 200)).filter(|high| *high > 0.0).unwrap_or(1.0);
+    positive_bands_of(std::iter::once(values))
+}
+
+/// The same for the values at several instants: all but the largest 0.5 % at each of them. In all
+/// instants together those of a short impact would be few.
+pub(crate) fn positive_bands_of(
+    instants: impl Iterator<Item = impl Iterator<Item = f64>>,
+) -> (Bands, [bool; 2]) {
+    let (mut high, mut most) = (0.0_f64, 0.0_f64);
+    for values in instants {
+        let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
+        values.sort_unstable_by(f64::total_cmp);
+        if let Some(last) = values.len().checked_sub(1) {
+            high = high.max(values[last - last / 200]);
+            most = most.max(values[last]);
+        }
+    }
+    let high = if high > 0.0 { high } else { 1.0 };
     let step = round_step(high, 16.0);
     let count = (high / step * (1.0 - 1e-12)).ceil();
-    (Bands { low: 0.0, high: count * step, count: count as usize }, [false, value(last) > count * step])
+    (Bands { low: 0.0, high: count * step, count: count as usize }, [false, most > count * step])
 }
 
 /// The parts of a triangle by band: convex polygons.
@@ -194,5 +207,10 @@ mod tests {
         assert!(color_bands(std::iter::empty()).0.count > 1);
         let (bands, cut) = positive_bands((0..1000).map(f64::from).chain([5000.0]));
         assert_eq!((bands.low, bands.high, bands.count, cut), (0.0, 1000.0, 10, [false, true]));
+        // A short peak among many instants at rest.
+        let instants =
+            (0..1000).map(|k| (0..10).map(move |i| if k == 7 { 100.0 * f64::from(i) } else { 0.0 }));
+        let (bands, cut) = positive_bands_of(instants);
+        assert_eq!((bands.high, cut), (900.0, [false, false]));
     }
 }

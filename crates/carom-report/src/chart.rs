@@ -238,8 +238,8 @@ fn ticks(out: &mut String, axis: &Axis, bottoms: &[f64], to_x: &dyn Fn(f64) -> f
     out.push_str("</g>\n");
 }
 
-/// Points that are at least two pixels apart, as circles.
-fn dots(out: &mut String, points: impl Iterator<Item = (f64, f64)>, color: &str) {
+/// Points that are at least two pixels apart, as circles with a white edge.
+pub(crate) fn dots(out: &mut String, points: impl Iterator<Item = (f64, f64)>, color: &str) {
     let mut d = String::new();
     let mut last = (f64::NEG_INFINITY, 0.0);
     for (x, y) in points.filter(|p| p.0.is_finite() && p.1.is_finite()) {
@@ -248,11 +248,13 @@ fn dots(out: &mut String, points: impl Iterator<Item = (f64, f64)>, color: &str)
             last = (x, y);
         }
     }
-    let _ = writeln!(
-        out,
-        "<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"4.4\" stroke-linecap=\"round\" \
-         vector-effect=\"non-scaling-stroke\"/>"
-    );
+    for (color, width) in [("#fff", 6.4), (color, 4.4)] {
+        let _ = writeln!(
+            out,
+            "<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" \
+             stroke-linecap=\"round\" vector-effect=\"non-scaling-stroke\"/>"
+        );
+    }
 }
 
 fn entry_width(series: &Series) -> f64 {

@@ -2,13 +2,14 @@
 //! each record.
 
 use carom_record::Run;
-use carom_record::metrics::{contact_force, probe_columns};
+use carom_record::metrics::{Overlay, contact_force, probe_columns};
 use carom_record::study::Study;
 use carom_record::study::checks::fingerprint;
 use carom_record::study::reference::FORCE;
 
 use crate::digits::five;
 use crate::labels::{symbol, words};
+use crate::plot::Curve;
 
 /// Columns shown besides those of the probes: name, label, caption.
 const OTHERS: [(&str, &str, &str); 5] = [
@@ -52,8 +53,58 @@ impl Origin {
     }
 }
 
-/// Adds the columns of an arm.
-pub(crate) fn collect(columns: &mut Vec<Column>, arm: usize, run: &Run) {
+/// The measured data of a study and of the cases of its arms.
+pub(crate) struct Measured(pub(crate) Vec<Overlay>);
+
+impl Measured {
+    /// Adds the data that are not known yet.
+    pub(crate) fn add(&mut self, found: Vec<Overlay>) {
+        for overlay in found {
+            if !self.0.contains(&overlay) {
+                self.0.push(overlay);
+            }
+        }
+    }
+
+    fn of<'a>(&'a self, column: &'a str) -> impl Iterator<Item = &'a Overlay> {
+        self.0.iter().filter(move |overlay| overlay.column == column)
+    }
+
+    /// The points of a column up to the end of the arms; `unlisted` as of the curves.
+    pub(crate) fn points(&self, column: &str, end: f64, unlisted: bool) -> Vec<Curve> {
+        let points = |(k, overlay): (usize, &Overlay)| {
+            let (x, y) = overlay.within(0.0, end);
+            // Black, then colours that are far from those of most arms.
+            let style = [0, 4, 5][k % 3];
+            Curve { label: measured_label(overlay), style, x, y, points: true, unlisted, ..Curve::default() }
+        };
+        self.of(column).enumerate().map(points).filter(|curve| !curve.x.is_empty()).collect()
+    }
+
+    /// What the caption of a column says about them.
+    pub(crate) fn words(&self, column: &str) -> String {
+        let one = |overlay: &Overlay| {
+            let source = overlay.source.as_ref().map_or_else(String::new, |source| format!(" ({source})"));
+            format!("\u{201c}{}\u{201d}{source}", overlay.name)
+        };
+        let all: Vec<String> = self.of(column).map(one).collect();
+        if all.is_empty() {
+            return String::new();
+        }
+        format!(
+            " Points: measured data {}; metrics `overlay_…` are the differences from them.",
+            all.join(", ")
+        )
+    }
+}
+
+/// The label of measured data beside curves.
+pub(crate) fn measured_label(overlay: &Overlay) -> String {
+    format!("measured: {}", overlay.name)
+}
+
+/// Adds the columns of an arm, measured ones included.
+pub(crate) fn collect(columns: &mut Vec<Column>, measured: &Measured, arm: usize, run: &Run) {
     let force = contact_force(&run.history);
     if force.iter().any(|f| *f > 0.0) {
         let (x, y) = thinned(run.times(), &force);
@@ -62,7 +113,13 @@ pub(crate) fn collect(columns: &mut Vec<Column>, arm: usize, run: &Run) {
     }
     let nonzero = |name: &&str| run.column(name).is_some_and(|c| c.iter().any(|x| *x != 0.0));
     let others = OTHERS[1..].iter().map(|other| other.0).filter(nonzero);
-    for name in probe_columns(run).into_iter().chain(others) {
+    let mut names: Vec<&str> = probe_columns(run).into_iter().chain(others).collect();
+    for overlay in &measured.0 {
+        if !names.contains(&overlay.column.as_str()) {
+            names.push(&overlay.column);
+        }
+    }
+    for name in names {
         let Some(values) = run.column(name) else { continue };
         let (x, y) = thinned(run.times(), values);
         put(columns, name, run.history.unit(name), (arm, x, y));

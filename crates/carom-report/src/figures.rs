@@ -7,6 +7,7 @@ use crate::axis::range;
 use crate::bands::Bands;
 use crate::bodies::{self, Instant};
 use crate::chart::{Chart, Options, Panel, Series};
+use crate::collected::measured_label;
 use crate::figure::Figure;
 use crate::labels::{symbol, with_unit, words};
 use crate::obstacles;
@@ -98,7 +99,7 @@ fn chart<'a>(
 fn add_measured<'a>(overlays: &'a [Cut], column: &str, panel: &mut Vec<Series<'a>>) {
     for overlay in overlays.iter().filter(|overlay| overlay.column == column) {
         panel.push(Series {
-            label: format!("measured: {}", overlay.name),
+            label: overlay.label.clone(),
             color: [LINES[2], LINES[4], LINES[3]][panel.iter().filter(|s| s.dotted).count() % 3],
             x: &overlay.x,
             y: overlay.y.clone(),
@@ -110,7 +111,7 @@ fn add_measured<'a>(overlays: &'a [Cut], column: &str, panel: &mut Vec<Series<'a
 
 /// Measured data within the time of the run.
 struct Cut {
-    name: String,
+    label: String,
     column: String,
     x: Vec<f64>,
     y: Vec<f64>,
@@ -119,12 +120,11 @@ struct Cut {
 impl Cut {
     fn all(run: &Run) -> Vec<Self> {
         let (first, last) = range(run.times());
-        let cut = |o: metrics::Overlay| {
-            let within = o.times.iter().zip(&o.values).filter(|(t, _)| (first..=last).contains(*t));
-            let (x, y) = within.map(|(t, y)| (*t, *y)).unzip();
-            Self { name: o.name, column: o.column, x, y }
+        let cut = |o: &metrics::Overlay| {
+            let (x, y) = o.within(first, last);
+            Self { label: measured_label(o), column: o.column.clone(), x, y }
         };
-        metrics::overlays(run).into_iter().map(cut).collect()
+        metrics::overlays(run).iter().map(cut).collect()
     }
 }
 

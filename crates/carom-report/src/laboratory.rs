@@ -8,7 +8,7 @@ use carom_record::study::design::Goal;
 use carom_record::study::reference::{FORCE, Reference};
 use carom_record::study::{Study, step};
 
-use crate::collected::{Column, named};
+use crate::collected::{Column, Measured, named};
 use crate::curves;
 use crate::labels::{capitalised, file_name, with_unit};
 use crate::plot::{Band, Curve, Pane, Plot};
@@ -17,7 +17,7 @@ use crate::plot::{Band, Curve, Pane, Plot};
 const MULTIPLES: usize = 24;
 
 /// The figures of a study with a goal; none for a study without.
-pub(crate) fn plots(study: &Study, columns: &[Column], time: &str) -> Vec<Plot> {
+pub(crate) fn plots(study: &Study, columns: &[Column], measured: &Measured, time: &str) -> Vec<Plot> {
     if study.manifest.goal.is_none() {
         return Vec::new();
     }
@@ -26,7 +26,7 @@ pub(crate) fn plots(study: &Study, columns: &[Column], time: &str) -> Vec<Plot> 
         .flatten()
         .map(Plot::with_styles)
         .collect();
-    plots.extend(columns.iter().filter_map(|c| multiples(study, c, time)));
+    plots.extend(columns.iter().filter_map(|c| multiples(study, c, measured, time)));
     plots.extend(theory(study).map(Plot::with_styles));
     plots
 }
@@ -247,7 +247,7 @@ pub(crate) fn shows(plots: &[Plot], column: &str) -> bool {
 
 /// A column of every method at its finest level, one pane each; during the first contact, if this
 /// is a small part of the time. Methods with the same curve share a pane.
-fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
+fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) -> Option<Plot> {
     let band = study.reference.as_ref().and_then(|r| band(r, &column.name));
     let (label, what) = named(&column.name);
     let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
@@ -265,14 +265,19 @@ fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
     let end = found.iter().filter_map(|(curve, _)| curve.x.last()).copied().fold(0.0, f64::max);
     let span = curves::contact(study, end);
     let names: Vec<_> = found.iter().map(|(curve, others)| (curve.label.clone(), others.clone())).collect();
+    let points = measured.points(&column.name, end, true);
     let pane = |(k, (curve, others)): (usize, (Curve, Vec<String>))| {
         let mark = if curve.chosen { "▸ " } else { "" };
         let more = if others.is_empty() { String::new() } else { format!(" (+{})", others.len()) };
+        let title = format!("{mark}{}{more}", curve.label);
+        let name = curve.label.clone();
+        let curve = Curve { unlisted: true, style: if curve.chosen { 2 } else { 1 }, ..curve };
+        let curves = std::iter::once(curve).chain(points.iter().cloned()).collect();
         Pane {
-            name: curve.label.clone(),
-            title: format!("{mark}{}{more}", curve.label),
+            name,
+            title,
             y_label: if k % 3 == 0 { with_unit(&label, &column.unit) } else { String::new() },
-            curves: vec![Curve { unlisted: true, style: if curve.chosen { 2 } else { 1 }, ..curve }],
+            curves,
             band: band.clone(),
             span,
             ..Pane::default()
@@ -285,9 +290,10 @@ fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
     Some(Plot {
         name: multiples_name(&column.name),
         caption: format!(
-            "{}{when}, for each method at its finest level.{grey}{} All panels have the same axes.",
+            "{}{when}, for each method at its finest level.{grey}{}{} All panels have the same axes.",
             capitalised(&what),
-            curves::drawn_once(&names)
+            curves::drawn_once(&names),
+            measured.words(&column.name)
         ),
         x_label: with_unit("time t", time),
         log: [false, false],

@@ -37,6 +37,7 @@ mod place;
 mod plot;
 mod pressure;
 mod publish;
+mod quantity;
 mod ranked;
 mod redraw;
 mod setup;

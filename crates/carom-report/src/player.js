@@ -1,6 +1,16 @@
 "use strict";
-// What the animations in the plane and in space share: play and pause, the slider, keys, and a cursor
-// in every time history of the page. `draw` draws a frame.
+// What the animations in the plane and in space share: the choice of what is coloured, with its colour
+// bar; `changed` is called with its number.
+const coloured = (root, changed) => {
+  const list = root.querySelector(".quantity");
+  list?.addEventListener("change", () => {
+    root.querySelectorAll(".bar").forEach((bar, k) => { bar.hidden = k !== +list.value; });
+    changed(+list.value);
+  });
+};
+
+// Play and pause, the slider, keys, and a cursor in every time history of the page. `draw` draws a
+// frame.
 const player = (root, frames, unit, draw, first) => {
   const [button, slider, shown, speed] = ["button", "input", "output", "select"].map(s => root.querySelector(s));
   // All histories show the same interval of time, at first the whole one; a drag across one enlarges it.

@@ -1,11 +1,12 @@
 //! The report of a study: its tables, its page and, for every probe column, figures with the curves
-//! of all arms.
+//! of all arms and the data measured.
 
 use std::path::Path;
 
-use carom_record::study::Study;
+use carom_record::metrics;
+use carom_record::study::{Study, StudyManifest};
 
-use crate::collected::{Column, Origin, collect, named};
+use crate::collected::{Column, Measured, Origin, collect, named};
 use crate::curves::Keys;
 use crate::labels::{capitalised, file_name, with_unit};
 use crate::plot::{Curve, Pane, Plot};
@@ -25,20 +26,24 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     let mut time = String::new();
     let mut origins = Vec::new();
     let mut picture = None;
+    let mut measured = Measured(StudyManifest::read(directory)?.overlays);
     let study = Study::open(directory, &mut |arm, run| {
         run.history.unit("time").clone_into(&mut time);
         picture = picture.take().or_else(|| setup::figure(run, &run.field(run.fields.first()?).ok()?));
-        collect(&mut columns, arm, run);
+        measured.add(metrics::overlays(run));
+        collect(&mut columns, &measured, arm, run);
         origins.push(Origin::of(arm, run));
     })?;
     study.write_tables()?;
-    let mut plots = laboratory::plots(&study, &columns, &time);
+    let mut plots = laboratory::plots(&study, &columns, &measured, &time);
     // What small multiples show already is not drawn again, unless they leave something out.
     let drawn = |column: &&Column| laboratory::shows(&plots, &column.name);
     let overlaid: Vec<Plot> = columns
         .iter()
         .flat_map(|column| {
-            overlays(column, &study, &time).into_iter().filter(move |plot| plot.direct || !drawn(&column))
+            overlays(column, &study, &measured, &time)
+                .into_iter()
+                .filter(move |plot| plot.direct || !drawn(&column))
         })
         .collect();
     plots.extend(overlaid);
@@ -65,7 +70,7 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
 
 /// A column of all arms, with up to eight curves in a figure, and enlarged where there is contact.
 /// Curves that hide each other have panes of their own.
-fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
+fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> Vec<Plot> {
     let (label, what) = named(&column.name);
     let arms = &study.manifest.arms;
     // Arms of the same case are grouped.
@@ -148,10 +153,20 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
             curves: vec![Curve { unlisted: true, ..curve }],
             ..Pane::default()
         });
-        let panes: Vec<Pane> = panes.into_iter().chain(aside).collect();
+        let points = measured.points(&column.name, end, rough);
+        let with_points = |mut pane: Pane| {
+            pane.curves.extend(points.iter().cloned());
+            pane
+        };
+        let panes: Vec<Pane> = panes.into_iter().chain(aside).map(with_points).collect();
         Some(Plot {
             name,
-            caption: format!("{}{enlarged}{part}.{}{apart}", capitalised(&what), curves::drawn_once(&names)),
+            caption: format!(
+                "{}{enlarged}{part}.{}{apart}{}",
+                capitalised(&what),
+                curves::drawn_once(&names),
+                measured.words(&column.name)
+            ),
             x_label: with_unit("time t", time),
             log: [false, false],
             across,

@@ -82,6 +82,11 @@ fn figures_and_page() {
         assert!(page.contains(part), "{part}");
     }
     assert!(page.contains("id=\"animation\" hidden") && page.contains("fields/00000168.vtu"));
+    // Vertical and von Mises stress, each with its bar.
+    assert_eq!(
+        (page.matches("class=\"bar\"").count(), page.matches("<option value=\"1\">von Mises").count()),
+        (2, 1)
+    );
     // A second report from the same record is identical.
     report(&directory).unwrap();
     assert_eq!(fs::read_to_string(directory.join("report.html")).unwrap(), page);

@@ -20,6 +20,8 @@ pub struct PointState {
     pub det_f: f64,
     /// Cauchy stress, 3 × 3 including the out-of-plane component.
     pub cauchy: [[f64; 3]; 3],
+    /// Green–Lagrange strain E = (FᵀF − I)/2, 3 × 3 including the out-of-plane component.
+    pub strain: [[f64; 3]; 3],
 }
 
 /// A deformable body: a mesh with one material. Node numbers are the body's own; D stands for the
@@ -97,7 +99,7 @@ pub trait Body: Send + Sync {
     /// J where it is not certified to be positive.
     fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted>;
 
-    /// Stress at a point of a cell given in reference coordinates.
+    /// Stress and strain at a point of a cell given in reference coordinates.
     fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted>;
 
     /// Shape functions of a cell at reference coordinates (`N`).

@@ -1,13 +1,16 @@
 //! The study file as written: its keys, their types, and where each of them stands. A path names a
 //! place as in [`carom_run::case::Problem`]: `arm[0].set."time.step"`.
 
+use std::path::Path;
+
 use carom_record::Expect;
+use carom_record::metrics::Overlay;
 use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ensemble::Ensemble;
-use carom_run::case::{Asked, Document, Problem, read_expects};
+use carom_run::case::{Asked, Document, OverlaySpec, Problem, read_expects, read_overlays};
 use toml_edit::{Item, TableLike, Value};
 
-pub(crate) const KEYS: [&str; 15] = [
+pub(crate) const KEYS: [&str; 16] = [
     "title",
     "case",
     "set",
@@ -21,6 +24,7 @@ pub(crate) const KEYS: [&str; 15] = [
     "ensemble",
     "arm",
     "grid",
+    "overlay",
     "claim",
     "expect",
 ];
@@ -61,6 +65,8 @@ pub(crate) struct StudyFile {
     pub(crate) arms: Vec<ArmEntry>,
     /// Keys with their values.
     pub(crate) grid: Vec<(String, Vec<Value>)>,
+    /// Measured data.
+    pub(crate) overlays: Vec<Overlay>,
     pub(crate) claims: Vec<carom_record::study::Claim>,
     /// Expectations of the study as a whole.
     pub(crate) expects: Vec<Expect>,
@@ -79,8 +85,8 @@ pub(crate) struct ArmEntry {
     pub(crate) by_cost: bool,
 }
 
-/// Reads the keys of a study file.
-pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFile {
+/// Reads the keys of a study file; the paths of its measured data start at `folder`.
+pub(crate) fn read(document: &Document, folder: &Path, problems: &mut Vec<Problem>) -> StudyFile {
     let mut file = StudyFile::default();
     // `Document` has parsed the same text already.
     let Ok(parsed) = toml_edit::Document::parse(document.text()) else { return file };
@@ -149,6 +155,12 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
         Some(None) => problems.push(not("grid", "a table", "[grid]")),
         None => {}
     }
+    tables(root, "overlay", problems);
+    let measured = |spec: OverlaySpec| {
+        let OverlaySpec { name, column, times, values, source, .. } = spec;
+        Overlay { name, column, times, values, source }
+    };
+    file.overlays = read_overlays(document, folder, problems).into_iter().map(measured).collect();
     tables(root, "expect", problems);
     file.expects = read_expects(document, "expect", Asked::OfArms, problems);
     for (i, table) in tables(root, "claim", problems).into_iter().enumerate() {

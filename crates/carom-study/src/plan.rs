@@ -65,7 +65,7 @@ impl Plan {
     /// As [`Self::of`].
     pub fn with_case(study: &Document, folder: &Path, case: Option<&Document>) -> Result<Self, CaseError> {
         let mut problems = Vec::new();
-        let file = file::read(study, &mut problems);
+        let file = file::read(study, folder, &mut problems);
         let drafts = arms::all(&file);
         // Parts that could not be read would give misleading errors about unknown names.
         if problems.is_empty() {
@@ -78,7 +78,8 @@ impl Plan {
         let mut checked = Checked { study, found: Vec::new() };
         let planned = checked.arms(&file, drafts, &bases)?;
         let known: Vec<(&str, &Case)> = planned.iter().map(|p| (p.draft.name.as_str(), &p.case)).collect();
-        expects::check(&file.expects, &known, &mut problems);
+        expects::overlays(&file.overlays, &known, &mut problems);
+        expects::check(&file.expects, &file.overlays, &known, &mut problems);
         checked.found.extend(diagnostics(study.diagnose_all(&problems))?);
         checked.end()?;
         let members = checked.members(&file, &planned)?;
@@ -277,6 +278,7 @@ fn manifest(
         arms: planned.iter().enumerate().map(arm).collect(),
         ensemble: file.ensemble,
         members,
+        overlays: file.overlays,
         claims: file.claims,
         expects: file.expects,
         source,

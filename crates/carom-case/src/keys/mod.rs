@@ -10,7 +10,7 @@ mod tables;
 
 pub use schemes::schemes;
 pub use shapes::shapes;
-pub use tables::{CASE, EXPECT};
+pub use tables::{CASE, EXPECT, OVERLAY};
 
 /// A table of the case file: its keys, and those planned for later versions.
 #[derive(Debug)]

@@ -246,12 +246,13 @@ const OUTPUT: Table = Table {
     later: &[],
 };
 
-const OVERLAY: Table = Table {
+/// Measured data of a column, of a case or a study.
+pub const OVERLAY: Table = Table {
     name: "[[overlay]]",
     doc: "Measured data of one column: drawn with it, and compared by the metrics `overlay_rms:NAME`, `overlay_peak:NAME` and `overlay_shift:NAME`.",
     keys: &[
         key("name", Name, "Name in figures and metrics.").example("\"test-3\""),
-        key("file", Text, "CSV file with a line of headings, relative to the folder of the case; its lines that begin with # are comments.")
+        key("file", Text, "CSV file with a line of headings, relative to the folder of the case or study; its lines that begin with # are comments.")
             .example("\"measured.csv\""),
         key("column", Text, "The column of history.csv that was measured.").example("\"A.uy\""),
         key("time", Text, "Heading of the times in the file.").default("\"t\""),

@@ -51,7 +51,9 @@ class FieldSet:
     blocks : list of Block
         Cells, one block per body.
     arrays : dict of str to ndarray, shape (points, components)
-        ``displacement``, ``velocity``, ``stress`` (XX YY ZZ XY YZ XZ), ``contact_pressure``.
+        ``displacement``, ``velocity``, ``stress`` (Cauchy, XX YY ZZ XY YZ XZ), ``von_mises``,
+        ``principal_stress`` (descending), ``principal_log_strain`` (logarithmic, ln λ of the
+        principal stretches, descending; no unit), ``contact_pressure``.
     units : dict of str to str
         Their unit labels.
     """
@@ -73,7 +75,8 @@ class FieldSet:
         Parameters
         ----------
         name : str
-            ``sigma_xx`` …, ``von_mises``, ``contact_pressure``, ``ux``, ``vy``, …
+            ``sigma_xx`` …, ``von_mises``, ``principal_stress_1`` (the largest) to ``_3``,
+            ``principal_log_strain_1`` to ``_3``, ``contact_pressure``, ``ux``, ``vy``, …
 
         Returns
         -------
@@ -87,6 +90,9 @@ class FieldSet:
         components = ["xx", "yy", "zz", "xy", "yz", "xz"]
         if name.startswith("sigma_") and name[6:] in components:
             return stress[:, components.index(name[6:])], self.units["stress"]
+        principal, _, number = name.rpartition("_")
+        if principal.startswith("principal_") and principal in self.arrays and number in ("1", "2", "3"):
+            return self.arrays[principal][:, int(number) - 1], self.units[principal]
         if name == "von_mises":
             xx, yy, zz, xy, yz, xz = stress.T
             normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
@@ -98,7 +104,7 @@ class FieldSet:
             return self.arrays[name][:, 0], self.units[name]
         raise ValueError(
             f"no field is named {name!r}; try sigma_xx, sigma_yy, sigma_xy, von_mises, "
-            "contact_pressure, ux, uy, vx or vy"
+            "principal_stress_1, principal_log_strain_1, contact_pressure, ux, uy, vx or vy"
         )
 
     def grid(self) -> Any:

@@ -80,9 +80,14 @@ pub fn probe_columns(run: &Run) -> Vec<&str> {
 const IMPACTS: usize = 9;
 
 /// All metrics that a study tabulates: [`all`], the energy lost in each of the first impacts if
-/// there are several, the pressure at the end of a static run, the columns of the probes, and the
-/// work.
+/// there are several, the pressure at the end of a static run, differences from measured data, the
+/// columns of the probes, and the work.
 pub fn of_run(run: &Run) -> Vec<Metric> {
+    of_run_beside(run, &[])
+}
+
+/// [`of_run`] with differences from these measured data too, of columns that the run has.
+pub fn of_run_beside(run: &Run, measured: &[Overlay]) -> Vec<Metric> {
     let history = &run.history;
     let mut metrics = all(history);
     let impacts = episodes(history, default_bridge(history)).len().min(IMPACTS);
@@ -101,7 +106,8 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
         let (name, unit) = (definition.name.into(), definition.unit.label(history));
         metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
     }
-    metrics.extend(overlays(run).iter().flat_map(|overlay| of_measured(history, overlay)));
+    let measured = measured.iter().filter(|overlay| history.column(&overlay.column).is_some());
+    metrics.extend(overlays(run).iter().chain(measured).flat_map(|overlay| of_measured(history, overlay)));
     for column in probe_columns(run) {
         metrics.extend(of_columns(history, column));
         for (definition, value) in FREE.iter().filter_map(|(d, value)| Some((d, value(history, column)?))) {

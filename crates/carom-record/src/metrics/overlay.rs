@@ -7,7 +7,7 @@
 //! overlay_shift      the τ that minimises Σ (c(t_i + τ) − m_i)², by the Gauss–Newton method; positive: c is late
 //! ```
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::compare::phase_shift;
 use super::definition::{Definition, OWN, Unit, d};
@@ -15,7 +15,7 @@ use super::samples::at;
 use crate::{History, Run};
 
 /// Measured data, in the units of the case.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Overlay {
     /// Its name in figures and metrics.
     pub name: String,
@@ -25,6 +25,17 @@ pub struct Overlay {
     pub times: Vec<f64>,
     /// Values.
     pub values: Vec<f64>,
+    /// Where they come from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+}
+
+impl Overlay {
+    /// The points between two times.
+    pub fn within(&self, first: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
+        let points = self.times.iter().zip(&self.values).filter(|(t, _)| (first..=last).contains(*t));
+        points.map(|(t, y)| (*t, *y)).unzip()
+    }
 }
 
 /// The measured data of a run, from its manifest.
@@ -122,7 +133,7 @@ mod tests {
 
     fn overlay(points: &[(f64, f64)]) -> Overlay {
         let (times, values) = points.iter().copied().unzip();
-        Overlay { name: "test".into(), column: "u".into(), times, values }
+        Overlay { name: "test".into(), column: "u".into(), times, values, source: None }
     }
 
     /// By hand: c = 2t at 1, 2, 3 is 2, 4, 6; measured 2, 5, 8 give differences 0, −1, −2, so

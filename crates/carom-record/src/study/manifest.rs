@@ -9,6 +9,7 @@ use super::arm::Arm;
 use super::claim::Claim;
 use super::design::{Design, Goal, Kind};
 use super::ensemble::Ensemble;
+use crate::metrics::Overlay;
 use crate::{Expect, Machine, Manifest, RecordError, Run, Source, Status, files};
 
 /// The files a study was made from.
@@ -59,6 +60,9 @@ pub struct StudyManifest {
     /// The members of all arms, except for the arms themselves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub members: Vec<Arm>,
+    /// Measured data with which all arms are compared.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub overlays: Vec<Overlay>,
     /// Claims to be decided.
     pub claims: Vec<Claim>,
     /// Expected values.

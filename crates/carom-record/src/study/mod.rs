@@ -131,7 +131,7 @@ impl Study {
                     visit(i, &run);
                 }
                 if status == Some(Status::Finished) {
-                    metrics = metrics::of_run(&run);
+                    metrics = metrics::of_run_beside(&run, &manifest.overlays);
                     comparison =
                         reference.as_ref().map(|r| Compared::of(&Trajectory::of(&run, &[]), r, contact));
                 }

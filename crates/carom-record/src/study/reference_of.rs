@@ -70,7 +70,7 @@ impl StudyManifest {
                     if members.is_empty() && Some(&i) == arms.last() {
                         averaged = metrics::of_averages(&run);
                     }
-                    members.push(Trajectory::of(&run, &metrics::of_run(&run)));
+                    members.push(Trajectory::of(&run, &metrics::of_run_beside(&run, &self.overlays)));
                     if !phases.contains(&phase) {
                         phases.push(phase);
                     }

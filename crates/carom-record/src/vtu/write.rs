@@ -102,6 +102,7 @@ impl FieldSet {
             let mut attributes =
                 format!("Name=\"{}\" NumberOfComponents=\"{}\"", escape(&array.name), array.components);
             let names: &[&str] = match array.components {
+                3 if array.name.starts_with("principal") => &["1", "2", "3"],
                 3 => &["X", "Y", "Z"],
                 6 => &["XX", "YY", "ZZ", "XY", "YZ", "XZ"],
                 _ => &[],

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::chart::dots;
 use crate::palette::LINES;
 use crate::trace;
 
@@ -16,7 +17,7 @@ pub(crate) struct Curve {
     pub(crate) y: Vec<f64>,
     /// Whether the points have markers.
     pub(crate) marked: bool,
-    /// Whether there are no lines between them.
+    /// Whether there are no lines between them; without markers they are dots.
     pub(crate) points: bool,
     /// Its colour, where it is not that of the style.
     pub(crate) color: Option<&'static str>,
@@ -70,6 +71,12 @@ pub(super) fn draw(
 ) {
     let (color, dashes, marker) = curve.style();
     let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y))).collect();
+    if curve.points && !curve.marked {
+        let _ = writeln!(out, "<g clip-path=\"url(#{id})\">");
+        dots(out, points.into_iter(), color);
+        out.push_str("</g>\n");
+        return;
+    }
     let d = trace::path(points.iter().copied());
     // A curve that is alone in its pane, or has its label beside it, needs no dashes to be
     // identified.

@@ -122,9 +122,9 @@ impl Plot {
             "<path d=\"M{x0:.1} {y0:.1}v{high:.1}h{wide:.1}\" fill=\"none\" stroke=\"#222\" \
              stroke-width=\"0.9\"/>"
         );
-        // What failed or is of less interest lies behind.
+        // What failed or is of less interest lies behind, points before all.
         let mut order: Vec<&Curve> = pane.curves.iter().collect();
-        order.sort_by_key(|curve| (!curve.apart, !curve.quiet, curve.chosen));
+        order.sort_by_key(|curve| (curve.points, !curve.apart, !curve.quiet, curve.chosen));
         for curve in &order {
             curve::draw(out, curve, id, self.direct, &to_x, &to_y);
         }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::curve::{Curve, mark};
-use crate::chart::write_text;
+use crate::chart::{dots, write_text};
 use crate::text;
 
 /// Height of a line.
@@ -36,10 +36,10 @@ pub(super) fn draw(out: &mut String, legend: &[&Curve], lines: &[Vec<usize>], le
     for (row, line) in lines.iter().enumerate() {
         let (mut x, y) = (left, top + LINE * row as f64);
         for i in line {
-            let Curve { label, marked, .. } = legend[*i];
+            let Curve { label, marked, points, .. } = legend[*i];
             let (color, dashes, marker) = legend[*i].style();
             let dashes = if *marked { "" } else { dashes };
-            let long = if legend[*i].points { 0 } else { 26 };
+            let long = if *points { 0 } else { 26 };
             let _ = writeln!(
                 out,
                 "<path d=\"M{x:.1} {y:.1}h{long}\" stroke=\"{color}\" stroke-width=\"1.8\" \
@@ -47,6 +47,9 @@ pub(super) fn draw(out: &mut String, legend: &[&Curve], lines: &[Vec<usize>], le
             );
             if *marked {
                 mark(out, marker, color, x + 13.0, y);
+            }
+            if *points && !*marked {
+                dots(out, [4.0, 13.0, 22.0].map(|by| (x + by, y)).into_iter(), color);
             }
             write_text(out, x + 32.0, y + 4.0, "font-size=\"12\"", label);
             x += entry(label);

@@ -4,10 +4,11 @@ use carom_record::FieldSet;
 
 use super::painter::{Paint, Piece, paint, pieces};
 use super::raster::image;
-use super::skin::{Facet, Place, places, skin, stresses};
+use super::skin::{Facet, Place, places, skin};
 use super::view::View;
 use crate::bands::{Bands, positive_bands};
 use crate::pen::Point;
+use crate::quantity::stresses;
 use crate::sheet::{Legend, Sheet};
 
 /// Largest number of triangles of a figure that are drawn one by one.

@@ -141,7 +141,6 @@
     const texels = Uint8Array.from(colors.flatMap(c => [1, 3, 5].map(k => parseInt(c.slice(k, k + 2), 16)).concat(255)));
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, colors.length, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, texels);
     gl.uniform1i(at.count, colors.length);
-    root.querySelectorAll(".bar").forEach((bar, k) => { bar.hidden = k !== quantity; });
   };
 
   // Turned by angles about the axes of the page; rows stay orthonormal.
@@ -190,8 +189,8 @@
     else return;
     event.preventDefault(); event.stopPropagation();
   });
-  const [colored, plane, depth, reset] = [".quantity", ".cut", ".depth", ".home"].map(s => root.querySelector(s));
-  colored.addEventListener("change", () => { quantity = +colored.value; paint(); fill(frame); });
+  const [plane, depth, reset] = [".cut", ".depth", ".home"].map(s => root.querySelector(s));
+  coloured(root, k => { quantity = k; paint(); fill(frame); });
   reset.addEventListener("click", () => { home(); redraw(); });
   const cutting = () => {
     const d = "xyz".indexOf(plane.value.slice(-1)), sign = plane.value.length > 1 ? -1 : 1;

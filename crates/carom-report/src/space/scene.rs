@@ -11,12 +11,12 @@ use carom_record::{FieldEntry, Run};
 use maud::{Markup, PreEscaped, html};
 use serde_json::json;
 
-use super::skin::{Facet, Place, skin, stresses};
+use super::skin::{Facet, Place, skin};
 use super::view::View;
 use crate::animation::{PLAYER, controls, histories};
-use crate::bands::{Bands, color_bands, positive_bands};
-use crate::chart::open;
-use crate::sheet::{Legend, color_bar};
+use crate::bands::{Bands, color_bands, positive_bands_of};
+use crate::quantity::{Quantity, bars, choice, stresses};
+use crate::sheet::Legend;
 use crate::text::{Label, Prose};
 
 /// Largest number of bytes of the scene in the page, in base 64; frames are left out evenly to stay
@@ -102,9 +102,9 @@ impl Scene {
         let moved = || frames.iter().flat_map(|f| &f.moved);
         let largest = moved().flatten().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
         let bands = [
-            positive_bands(frames.iter().flat_map(|f| f.mises.iter().copied())),
+            positive_bands_of(frames.iter().map(|f| f.mises.iter().copied())),
             color_bands(frames.iter().flat_map(|f| f.pressure.iter().copied())),
-            positive_bands(moved().map(length)),
+            positive_bands_of(frames.iter().map(|f| f.moved.iter().map(length))),
         ];
         Self { surface, places, frames, largest, bands }
     }
@@ -234,10 +234,15 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
         ("pressure", "p", &stress),
         ("displacement", "|u|", &length),
     ];
-    let quantity = |(bands, _): &(Bands, _)| {
-        let colors: Vec<String> = (0..bands.count).map(|b| bands.color(b)).collect();
-        json!({ "low": bands.low, "high": bands.high, "colors": colors })
-    };
+    let quantities: Vec<Quantity> = scene
+        .bands
+        .iter()
+        .zip(&kinds)
+        .map(|((bands, cut), (name, label, unit))| Quantity {
+            name,
+            legend: Legend { bands, cut: *cut, label, unit },
+        })
+        .collect();
     let entry = |k: &usize| {
         json!({ "time": entries[*k].time, "step": entries[*k].step,
                                     "file": run.field_file(entries[*k]) })
@@ -248,14 +253,9 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
         "triangles": scene.surface.triangles.len(), "edges": scene.surface.edges.len(),
         "low": low, "high": high, "largest": scene.largest, "levels": LEVELS,
         "view": View::axonometric().axes, "first": entries[start].time,
-        "quantities": scene.bands.iter().map(quantity).collect::<Vec<_>>(),
+        "quantities": quantities.iter().map(Quantity::data).collect::<Vec<_>>(),
         "frames": chosen.iter().map(entry).collect::<Vec<_>>(), "packed": packed,
     });
-    let bar = |((bands, cut), (_, label, unit)): (&(Bands, [bool; 2]), &(&str, &str, &String))| {
-        let mut out = open("Colour bar of the scene", 92.0, 330.0);
-        color_bar(&mut out, &Legend { bands, cut: *cut, label, unit }, 8.0, (8.0, 312.0));
-        out + "</svg>\n"
-    };
     let every = if chosen.len() < run.fields.len() {
         format!("{} of the {} recorded instants", chosen.len(), run.fields.len())
     } else {
@@ -270,19 +270,12 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
                     canvas tabindex="0" aria-label="the deformed bodies; arrow keys turn them" {}
                     canvas.axes aria-hidden="true" {}
                 }
-                @for (k, bar) in scene.bands.iter().zip(&kinds).map(bar).enumerate() {
-                    div.bar hidden[k > 0] { (PreEscaped(bar)) }
-                }
+                (bars(&quantities))
                 div { (PreEscaped(histories(run, shades))) }
             }
             div.controls { (controls()) }
             div.controls {
-                label {
-                    "colours "
-                    select.quantity {
-                        @for (k, (name, ..)) in kinds.iter().enumerate() { option value=(k) { (name) } }
-                    }
-                }
+                (choice(&quantities))
                 label {
                     "cut "
                     select.cut {

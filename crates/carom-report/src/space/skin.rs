@@ -120,18 +120,6 @@ pub(crate) fn places(fields: &FieldSet) -> Vec<Place> {
     fields.points.iter().enumerate().map(moved).collect()
 }
 
-/// The equivalent stress of von Mises, √(3/2 s:s), of each point, and the pressure −tr σ/3.
-pub(crate) fn stresses(fields: &FieldSet) -> Option<[Vec<f64>; 2]> {
-    let stress = fields.array("stress").filter(|a| a.components == 6)?;
-    let points = stress.values.as_chunks::<6>().0;
-    let mises = |[xx, yy, zz, xy, yz, xz]: &[f64; 6]| {
-        let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
-        (0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
-    };
-    let pressure = |s: &[f64; 6]| -(s[0] + s[1] + s[2]) / 3.0;
-    Some([points.iter().map(mises).collect(), points.iter().map(pressure).collect()])
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
@@ -255,15 +243,5 @@ pub(super) mod tests {
         // The halves of a face of nine nodes share its diagonal.
         let [(first, _), (second, _)] = HALVES;
         assert_eq!([first[2], first[5], first[0]], [second[1], second[3], second[0]]);
-    }
-
-    #[test]
-    fn von_mises_of_simple_states() {
-        let mut fields = solid(1, 1, |p| p);
-        fields.arrays[1].values[..6].copy_from_slice(&[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        fields.arrays[1].values[6..12].copy_from_slice(&[-2.0, -2.0, -2.0, 0.0, 3.0, 0.0]);
-        let [mises, pressure] = stresses(&fields).unwrap();
-        assert_eq!((mises[0], pressure[0]), (5.0, -5.0 / 3.0));
-        assert!((mises[1] - 27f64.sqrt()).abs() < 1e-14 && pressure[1] == 2.0);
     }
 }

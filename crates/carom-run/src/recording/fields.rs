@@ -1,5 +1,9 @@
 //! A state as fields for viewers: displacement, velocity, stress (nodal mean within each body) with
-//! its von Mises and principal stresses, and contact pressure.
+//! its von Mises and principal stresses, principal strains, and contact pressure.
+//!
+//! Principal strains are logarithmic (H. Hencky, Z. techn. Phys. 9, 1928): ln λᵢ with the principal
+//! stretches λᵢ, the same in the reference and the current configuration, of nodal means of the
+//! Green–Lagrange strain, 2E = FᵀF − I, whose principal values are λᵢ² − 1.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -10,7 +14,7 @@ use carom_mechanics::model::{Contact, Model, von_mises};
 use carom_record::{Block, Cell, FieldSet, PointArray};
 use carom_solid::{Element, FacetShape};
 
-use super::principal::principal;
+use super::principal::{logarithmic, principal};
 use super::units::labels;
 
 /// Fields of a state.
@@ -28,23 +32,20 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     };
     // The nodes that carry obstacles come last, and belong to no body.
     let nodes = model.parts.iter().filter(|part| !part.is_rigid()).map(|p| p.nodes().end).max().unwrap_or(0);
-    let stress = nodal_stress(model, state);
-    let tensors = stress
-        .as_chunks::<6>()
-        .0
-        .iter()
-        .map(|&[xx, yy, zz, xy, yz, xz]| [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
-    let mises: Vec<f64> = tensors.clone().map(|s| von_mises(&s)).collect();
-    let principal: Vec<f64> = tensors.flat_map(principal).collect();
+    let (stress, strain) = nodal_means(model, state);
+    let mises: Vec<f64> = stress.iter().map(|s| von_mises(&tensor(s))).collect();
+    let principal_stress: Vec<f64> = stress.iter().flat_map(|s| principal(tensor(s))).collect();
+    let principal_strain: Vec<f64> = strain.iter().flat_map(|e| logarithmic(principal(tensor(e)))).collect();
     let mut set = FieldSet {
         points: model.reference.chunks_exact(model.dimension).map(spatial).collect(),
         blocks: blocks(model),
         arrays: vec![
             array("displacement", &label.length, 3, vectors(&moved)),
             array("velocity", &label.velocity, 3, vectors(&state.v)),
-            array("stress", &label.stress, 6, stress),
+            array("stress", &label.stress, 6, stress.into_flattened()),
             array("von_mises", &label.stress, 1, mises),
-            array("principal_stress", &label.stress, 3, principal),
+            array("principal_stress", &label.stress, 3, principal_stress),
+            array("principal_log_strain", "", 3, principal_strain),
             array("contact_pressure", &label.stress, 1, pressures(case, model, state)),
         ],
     };
@@ -91,29 +92,42 @@ fn cell(element: Element) -> Cell {
     }
 }
 
-/// Cauchy stress XX YY ZZ XY YZ XZ at the nodes, mean over the cells of a node where it exists; NaN
-/// if it exists in none (J ≤ 0).
-fn nodal_stress(model: &Model, state: &State) -> Vec<f64> {
+/// Components XX YY ZZ XY YZ XZ of a symmetric tensor.
+type Components = [f64; 6];
+
+fn components(s: &[[f64; 3]; 3]) -> Components {
+    [s[0][0], s[1][1], s[2][2], s[0][1], s[1][2], s[0][2]]
+}
+
+fn tensor(&[xx, yy, zz, xy, yz, xz]: &Components) -> [[f64; 3]; 3] {
+    [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+}
+
+/// Cauchy stress and Green–Lagrange strain at the nodes, mean over the cells of a node where they
+/// exist; NaN if they exist in none (J ≤ 0).
+fn nodal_means(model: &Model, state: &State) -> (Vec<Components>, Vec<Components>) {
     let nodes = model.mass.nodes();
-    let (mut sum, mut count) = (vec![[0.0; 6]; nodes], vec![0.0_f64; nodes]);
+    let mut means = [vec![[0.0; 6]; nodes], vec![[0.0; 6]; nodes]];
+    let mut count = vec![0.0_f64; nodes];
     for part in &model.parts {
         let mesh = part.body.mesh();
         let y = part.of(&state.y);
         let places = part.body.reference_nodes();
         for cell in 0..mesh.cell_count() {
             for (&node, xi) in mesh.cell(cell).iter().zip(&places) {
-                if let Ok(point) = part.body.point(cell, xi, y) {
-                    let s = point.cauchy;
-                    let components = [s[0][0], s[1][1], s[2][2], s[0][1], s[1][2], s[0][2]];
-                    for (total, c) in sum[part.first_node + node].iter_mut().zip(components) {
-                        *total += c;
-                    }
-                    count[part.first_node + node] += 1.0;
+                let node = part.first_node + node;
+                let Ok(point) = part.body.point(cell, xi, y) else { continue };
+                count[node] += 1.0;
+                for (mean, value) in means.iter_mut().zip([point.cauchy, point.strain]) {
+                    mean[node].iter_mut().zip(components(&value)).for_each(|(sum, c)| *sum += c);
                 }
             }
         }
     }
-    sum.iter().zip(&count).flat_map(|(s, n)| s.map(|x| x / n)).collect()
+    for mean in &mut means {
+        mean.iter_mut().zip(&count).for_each(|(sum, n)| sum.iter_mut().for_each(|x| *x /= n));
+    }
+    means.into()
 }
 
 fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {

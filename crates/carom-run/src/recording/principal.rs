@@ -22,6 +22,12 @@ pub(super) fn principal(mut a: [[f64; 3]; 3]) -> [f64; 3] {
     values
 }
 
+/// Principal logarithmic (Hencky) strains ln λᵢ from the principal Green–Lagrange strains
+/// Eᵢ = (λᵢ² − 1)/2, in their order; NaN where a stretch is zero.
+pub(super) fn logarithmic(green: [f64; 3]) -> [f64; 3] {
+    green.map(|e| Some(0.5 * (2.0 * e).ln_1p()).filter(|x| x.is_finite()).unwrap_or(f64::NAN))
+}
+
 /// The rotation in the plane p, q after which its off-diagonal component is zero.
 fn rotate(a: &mut [[f64; 3]; 3], p: usize, q: usize) {
     let off = a[p][q];

@@ -74,6 +74,14 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Cauchy normal stress in the directions in which the body does not extend.
     fn lateral(&self, point: &Self::Point) -> f64;
 
+    /// F − 1 in the directions in which the body does not extend.
+    ///
+    /// # Errors
+    /// If there is none at H.
+    fn lateral_excess(&self, _: &Mat<D>) -> Result<f64, NotPositive> {
+        Ok(0.0)
+    }
+
     /// Determinant J of the three-dimensional deformation gradient, positive or not.
     fn volume_ratio(&self, h: &Mat<D>) -> f64 {
         1.0 + excess_det(h)

@@ -103,6 +103,10 @@ impl<L: Thickness> Material<2> for PlaneStress<L> {
         0.0
     }
 
+    fn lateral_excess(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
+        self.0.excess_stretch(h)
+    }
+
     fn volume_ratio(&self, h: &Mat<2>) -> f64 {
         let plane = 1.0 + excess_det(h);
         self.0.excess_stretch(h).map_or(plane, |across| plane * (1.0 + across))

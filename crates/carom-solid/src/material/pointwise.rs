@@ -55,6 +55,9 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
     /// [`Material::cauchy`] and [`Material::lateral`].
     fn cauchy_at(&self, h: &Mat<D>) -> Result<Stress<D>, NotPositive>;
 
+    /// [`Material::lateral_excess`].
+    fn lateral_excess_at(&self, h: &Mat<D>) -> Result<f64, NotPositive>;
+
     /// [`Material::volume_ratio`].
     fn volume_ratio_at(&self, h: &Mat<D>) -> f64;
 
@@ -142,6 +145,10 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
     fn cauchy_at(&self, h: &Mat<D>) -> Result<Stress<D>, NotPositive> {
         let point = self.at(h)?;
         Ok(Stress { within: self.cauchy(&point), lateral: self.lateral(&point) })
+    }
+
+    fn lateral_excess_at(&self, h: &Mat<D>) -> Result<f64, NotPositive> {
+        self.lateral_excess(h)
     }
 
     fn volume_ratio_at(&self, h: &Mat<D>) -> f64 {

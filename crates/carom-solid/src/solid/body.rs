@@ -180,15 +180,25 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let h = gradient(&self.displacements(cell, y), &g);
         let Stress { within, lateral } =
             law.cauchy_at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-        let cauchy = std::array::from_fn(|i| {
-            std::array::from_fn(|j| match (i < D && j < D, i == j) {
-                (true, _) => within.0[i][j],
-                (false, true) => lateral,
-                (false, false) => 0.0,
-            })
-        });
-        Ok(PointState { det_f: law.volume_ratio_at(&h), cauchy })
+        let across = law.lateral_excess_at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
+        let strain = (h + h.transposed() + h.transposed() * h) * 0.5;
+        Ok(PointState {
+            det_f: law.volume_ratio_at(&h),
+            cauchy: in_space(&within, lateral),
+            strain: in_space(&strain, across + 0.5 * across * across),
+        })
     }
+}
+
+/// The components within the dimensions of a body, and the normal one in the others.
+fn in_space<const D: usize>(within: &Mat<D>, lateral: f64) -> [[f64; 3]; 3] {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| match (i < D && j < D, i == j) {
+            (true, _) => within.0[i][j],
+            (false, true) => lateral,
+            (false, false) => 0.0,
+        })
+    })
 }
 
 /// [`Body::stress_divergence`] of a law.

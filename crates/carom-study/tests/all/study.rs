@@ -199,6 +199,48 @@ fn wrong_study_files() {
     assert!(message.contains("study.toml:1:8") && message.contains("none.toml"), "{message}");
 }
 
+const OVERLAY: &str = "[[overlay]]\nname = \"gauge\"\nfile = \"gauge.csv\"\ncolumn = \"A.ux\"\n";
+
+fn measured(study: &str) -> (tempfile::TempDir, PathBuf) {
+    let (folder, path) = folder(study);
+    fs::write(folder.path().join("gauge.csv"), "t,value\n0,0\n0.02,-0.02\n0.04,-0.04\n9,5\n").unwrap();
+    (folder, path)
+}
+
+/// Before it strikes, the bar moves with its velocity: the data are met. They are in the study, and
+/// not in the cases of its arms.
+#[test]
+fn measured_data_are_compared_with_every_arm() {
+    let arms =
+        "[[arm]]\nname = \"a\"\n[[arm]]\nname = \"b\"\nset = { \"time.scheme\" = { kind = \"hu\" } }\n";
+    let expect = "[[expect]]\nwhat = 'overlay_rms:gauge of \"b\"'\nat_most = 1e-12\n";
+    let (folder, path) = measured(&format!("{arms}{OVERLAY}{expect}"));
+    let plan = Plan::read(&path).unwrap();
+    let directory = folder.path().join("out");
+    let study = start(&plan, &directory, 1, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
+    for row in &study.rows {
+        let value = |name: &str| row.value(name).unwrap();
+        assert!(value("overlay_rms:gauge") < 1e-12 && value("overlay_peak:gauge").abs() < 1e-12);
+    }
+    assert!(study.expectations.len() == 1 && study.expectations[0].pass);
+}
+
+#[test]
+fn wrong_measured_data_are_reported() {
+    let first = |study: &str| common::wrong(measured(study))[0].clone();
+    let arm = "[[arm]]\nname = \"a\"\n";
+    let found = first(&format!("{arm}{}", OVERLAY.replace("A.ux", "A.uy")));
+    assert!(found.line == 7 && found.what.contains("no column `A.uy`"), "{found:?}");
+    assert!(first(&format!("{arm}{OVERLAY}{OVERLAY}")).what.contains("two [[overlay]]"));
+    assert!(
+        first(&format!("{arm}{}", OVERLAY.replace("gauge.csv", "none.csv"))).what.contains("cannot be used")
+    );
+    let found = first(&format!("{arm}{}", OVERLAY.replace("file", "flie")));
+    assert!(found.help.contains("`file`"), "{found:?}");
+    let expect = "[[expect]]\nwhat = 'overlay_rms:gouge of \"a\"'\nat_most = 1\n";
+    assert!(first(&format!("{arm}{OVERLAY}{expect}")).what.contains("no measured data `gouge`"));
+}
+
 /// Every method at every step, and a reference of three runs whose steps double; the finest step is
 /// at most an eighth of the smallest one: 0.4/0.005 · 8 = 640 steps.
 #[test]

@@ -12,6 +12,7 @@ mod mesh;
 mod misspelt;
 mod new;
 #[cfg(unix)]
+mod report;
 mod resume;
 mod schemes;
 mod stopped;

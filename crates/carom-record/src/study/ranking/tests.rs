@@ -58,6 +58,7 @@ fn study(runs: &[Made]) -> (StudyManifest, Vec<Row>) {
         design: Some(Design { kind: Kind::MatchedStep, cost_of: runs[0].0.into(), steps }),
         goal: None,
         accuracy: Some(0.05),
+        overlays: Vec::new(),
         arms: runs.iter().map(arm).collect(),
         ensemble: None,
         members: Vec::new(),

@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use carom::case::{Case, Document};
 use carom::recording::{self, RunError};
 use carom_record::Warning;
+use carom_report::ReportSummary;
 use serde::Serialize;
 
 use crate::exit::Failure;
@@ -164,8 +165,8 @@ pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> 
 }
 
 /// Makes the figures and the page of a run directory from its records.
-pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
-    Ok(carom_report::report(directory)?.page)
+pub(crate) fn report(directory: &Path) -> Result<ReportSummary, Failure> {
+    Ok(carom_report::report(directory)?)
 }
 
 pub(crate) fn seen(progress: &recording::Progress) -> Progress {
@@ -240,7 +241,11 @@ fn profile(manifest: &carom_record::Manifest) -> Vec<(String, f64)> {
 fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, Failure> {
     let made = done.directory.join("report.html");
     let current = done.wall == 0.0 && made.exists();
-    if options.report && !current { report(&done.directory).map(Some) } else { Ok(current.then_some(made)) }
+    if options.report && !current {
+        report(&done.directory).map(|made| Some(made.page))
+    } else {
+        Ok(current.then_some(made))
+    }
 }
 
 /// What to try after a stop: what was tried with success, or else the first advice.

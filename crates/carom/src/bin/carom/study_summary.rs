@@ -1,11 +1,11 @@
 //! The tables of a study on standard output, and its page.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use carom_record::Status;
 use carom_record::study::ranking::Ranking;
 use carom_record::study::{Study, StudyManifest};
-use carom_report::ReportError;
+use carom_report::{ReportError, ReportSummary};
 use carom_study::Outcome;
 use serde_json::json;
 
@@ -19,7 +19,7 @@ const SHOWN: [&str; 6] =
     ["contact_duration", "impulse_y", "restitution", "energy_lost", "newton_iterations", "wall_time"];
 
 /// Rebuilds tables, figures and page of a study, and the pages of its arms.
-pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
+pub(crate) fn report(directory: &Path) -> Result<ReportSummary, Failure> {
     let manifest = StudyManifest::read(directory)?;
     for arm in &manifest.arms {
         let arm = directory.join(&arm.directory);
@@ -31,12 +31,12 @@ pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
             }
         }
     }
-    Ok(carom_report::study(directory)?.page)
+    Ok(carom_report::study(directory)?)
 }
 
 /// Prints the tables of a study, and makes its page.
 pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool, json: bool) -> Result<(), Failure> {
-    let page = if page { Some(report(directory)?) } else { None };
+    let page = if page { Some(report(directory)?.page) } else { None };
     if json {
         let study = &outcome.study;
         let claims = study
