@@ -121,8 +121,8 @@ impl Rows {
         }
     }
 
-    /// The tangents of a slip in space, whose rows are those from `first` on: their gradients of the
-    /// first node. Zero in the plane, where the normal gives the tangent.
+    /// The tangents of a slip in space, whose rows are those from `first` on: their gradients of
+    /// the first node. Zero in the plane, where the normal gives the tangent.
     pub fn tangents(&self, first: usize) -> [[f64; 3]; 2] {
         if self.dimension == 3 { [first, first + 1].map(|row| self.row(row).first()) } else { [[0.0; 3]; 2] }
     }
