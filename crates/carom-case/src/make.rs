@@ -17,16 +17,14 @@ impl BodySpec {
         let mut mesh = match self.mesh {
             MeshSpec::File { ref file, ref surface, ref hash, parts, slits, .. } => {
                 let mesh = mesh_file::mesh(file, dimension, surface, slits, hash)?;
-                mesh.subdivided(parts).ok_or("its cells cannot be divided")?
+                mesh.subdivided(parts).ok_or(NoMesh::Indivisible)?
             }
             MeshSpec::Interval { .. } if dimension != 1 => {
-                return Err("shape \"interval\" needs dimension = 1".into());
+                return Err(NoMesh::Dimension(1));
             }
-            MeshSpec::Interval { min, max, cells } => {
-                message(generate::interval(self.element, min, max, cells))?
-            }
+            MeshSpec::Interval { min, max, cells } => generate::interval(self.element, min, max, cells)?,
             MeshSpec::Box { min, max, cells, symmetry } if dimension == 3 => {
-                let mut mesh = message(generate::cuboid(self.element, min, max, cells))?;
+                let mut mesh = generate::cuboid(self.element, min, max, cells)?;
                 let cuts = ["left", "front", "bottom"].into_iter().zip(["plane_x", "plane_y", "plane_z"]);
                 for ((side, plane), _) in cuts.zip(symmetry).filter(|(_, cut)| *cut) {
                     let facets = mesh.sides.remove(side).unwrap_or_default();
@@ -35,29 +33,28 @@ impl BodySpec {
                 mesh
             }
             MeshSpec::Ball { radius, center, size, symmetry } if dimension == 3 => {
-                message(generate::ball(self.element, radius, center, size, symmetry))?
+                generate::ball(self.element, radius, center, size, symmetry)?
             }
             MeshSpec::Cylinder { radius, height, center, axis, size, symmetry } if dimension == 3 => {
                 let cylinder =
                     |frame| generate::cylinder(self.element, radius, height, &frame, size, symmetry);
-                message(generate::Frame::along(axis, center).and_then(cylinder))?
+                generate::Frame::along(axis, center).and_then(cylinder)?
             }
             MeshSpec::Tube { inner, outer, height, center, axis, size, symmetry } if dimension == 3 => {
                 let tube =
                     |frame| generate::tube(self.element, [inner, outer], height, &frame, size, symmetry);
-                message(generate::Frame::along(axis, center).and_then(tube))?
+                generate::Frame::along(axis, center).and_then(tube)?
             }
             MeshSpec::Extrusion { ref of, height, layers } if dimension == 3 => {
-                let element = generate::plane_of(self.element)
-                    .ok_or_else(|| format!("an extrusion has no cells {:?}", self.element))?;
-                message(generate::extrusion(&plane_mesh(of, element)?, height, layers))?
+                let element = generate::plane_of(self.element).ok_or(NoMesh::Extrusion(self.element))?;
+                generate::extrusion(&plane_mesh(of, element)?, height, layers)?
             }
             MeshSpec::Box { .. }
             | MeshSpec::Ball { .. }
             | MeshSpec::Cylinder { .. }
             | MeshSpec::Tube { .. }
-            | MeshSpec::Extrusion { .. } => return Err("this shape needs dimension = 3".into()),
-            _ if dimension != 2 => return Err("this shape needs dimension = 2".into()),
+            | MeshSpec::Extrusion { .. } => return Err(NoMesh::Dimension(3)),
+            _ if dimension != 2 => return Err(NoMesh::Dimension(2)),
             ref shape => plane_mesh(shape, self.element)?,
         };
         if let Some(place) = &self.place {
@@ -67,25 +64,17 @@ impl BodySpec {
     }
 }
 
-fn message(made: Result<Mesh, generate::MeshError>) -> Result<Mesh, NoMesh> {
-    Ok(made.map_err(|error| error.to_string())?)
-}
-
 /// The mesh of a shape of the plane.
 fn plane_mesh(shape: &MeshSpec, element: Element) -> Result<Mesh, NoMesh> {
-    match *shape {
-        MeshSpec::Rectangle { min, max, cells } => message(generate::rectangle(element, min, max, cells)),
-        MeshSpec::Disc { radius, center, size } => message(generate::disc(element, radius, center, size)),
-        MeshSpec::HalfDisc { radius, center, size } => {
-            message(generate::half_disc(element, radius, center, size))
-        }
-        MeshSpec::Ring { inner, outer, center, size } => {
-            message(generate::ring(element, inner, outer, center, size))
-        }
+    Ok(match *shape {
+        MeshSpec::Rectangle { min, max, cells } => generate::rectangle(element, min, max, cells),
+        MeshSpec::Disc { radius, center, size } => generate::disc(element, radius, center, size),
+        MeshSpec::HalfDisc { radius, center, size } => generate::half_disc(element, radius, center, size),
+        MeshSpec::Ring { inner, outer, center, size } => generate::ring(element, inner, outer, center, size),
         MeshSpec::Polygon { ref points, size, ref refine } => {
             let place = |r: &RefineSpec| Refinement { near: r.near, radius: r.radius, size: r.size };
-            message(generate::polygon(element, points, size, &refine.iter().map(place).collect::<Vec<_>>()))
+            generate::polygon(element, points, size, &refine.iter().map(place).collect::<Vec<_>>())
         }
-        _ => Err("this shape is not plane".into()),
-    }
+        _ => return Err(NoMesh::NotPlane),
+    }?)
 }

@@ -130,28 +130,28 @@ fn bytes(file: &Path) -> Result<Vec<u8>, String> {
 /// The mesh of a resolved case, if its file is still the one the case was resolved with.
 ///
 /// # Errors
-/// A message with the file's name.
+/// Why it cannot be read, or is not a mesh.
 pub(crate) fn mesh(
     file: &Path,
     dimension: usize,
     surface: &str,
     slits: bool,
     hash: &str,
-) -> Result<Mesh, String> {
+) -> Result<Mesh, NoMesh> {
     let bytes = unchanged(file, hash)?;
-    let message = |e: gmsh::MshError| format!("{}: {e}; {}", file.display(), e.why());
-    gmsh::read(&bytes).and_then(|f| group(f, dimension, surface, slits)).map_err(message)
+    let none = |error: gmsh::MshError| NoMesh::File { file: file.to_owned(), error };
+    gmsh::read(&bytes).and_then(|f| group(f, dimension, surface, slits)).map_err(none)
 }
 
-fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, String> {
-    let bytes = bytes(file)?;
+fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, NoMesh> {
+    let bytes = bytes(file).map_err(NoMesh::Unreadable)?;
     if blake3::hash(&bytes).to_hex().as_str() == hash {
         return Ok(bytes);
     }
     let file = file.display();
-    Err(format!(
+    Err(NoMesh::Unreadable(format!(
         "the mesh file {file} has changed since the run began (BLAKE3 was {hash}): restore the file, or run the case again"
-    ))
+    )))
 }
 
 impl MeshSpec {
@@ -162,7 +162,7 @@ impl MeshSpec {
     /// A message with the file's name.
     pub fn verify(&self) -> Result<(), NoMesh> {
         match self {
-            Self::File { file, hash, .. } => Ok(unchanged(file, hash).map(|_| ())?),
+            Self::File { file, hash, .. } => unchanged(file, hash).map(|_| ()),
             _ => Ok(()),
         }
     }

@@ -50,6 +50,7 @@ fn column(name: &str) -> PyResult<(Unit, Values)> {
         "z" => (Unit::Length, Real(|row| row.point[2])),
         "facet" => (Unit::None, Integer(|row| row.facet)),
         "xi" => (Unit::None, Real(|row| row.xi)),
+        "eta" => (Unit::None, Real(|row| row.eta)),
         "gap" => (Unit::Length, Real(|row| row.gap)),
         "multiplier" => (Unit::Force, Real(|row| row.multiplier)),
         "pressure" => (Unit::Stress, Real(|row| row.pressure)),

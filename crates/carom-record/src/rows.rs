@@ -20,32 +20,34 @@ pub struct ContactRow<'a> {
     pub time: f64,
     /// Name of the contact.
     pub contact: Cow<'a, str>,
-    /// Node of the secondary side.
+    /// Node of the secondary side, or one of the primary side that is paired with a facet of the
+    /// secondary one.
     pub node: u64,
     /// Its current position.
     pub point: [f64; 3],
-    /// Facet of the primary side that it is paired with.
+    /// Facet of the other side that it is paired with.
     pub facet: u64,
-    /// Coordinate of the closest point on that facet, −1 … 1.
+    /// Coordinate of the closest point on that facet, −1 … 1; on a triangle 0 … 1.
     pub xi: f64,
+    /// Its second coordinate, in space.
+    pub eta: f64,
     /// Gap, negative for penetration.
     pub gap: f64,
     /// Multiplier, negative for compression.
     pub multiplier: f64,
     /// −multiplier / consistent weight of the node.
     pub pressure: f64,
-    /// Outward unit normal of the primary: the force on the node is −multiplier · normal.
+    /// Outward unit normal of the primary: the force on the secondary side is −multiplier · normal.
     pub normal: [f64; 3],
     /// `stick` or `slip`; `none` without friction.
     pub friction: Cow<'a, str>,
-    /// Tangential traction: the force on the node is −traction · J normal, with J a quarter turn
-    /// counter-clockwise; on a facet of a body, along its tangent with the same sense as its nodes.
-    /// In space the length of `rubbing`.
+    /// Tangential traction: the force on the secondary side is −traction · J normal, with J a
+    /// quarter turn counter-clockwise. In space the length of `rubbing`.
     pub traction: f64,
     /// Slip since the node came into contact, in the direction of the traction; in space its
     /// length.
     pub slip: f64,
-    /// Force of friction on the node, in space.
+    /// Force of friction on the secondary side, in space.
     pub rubbing: [f64; 3],
 }
 
@@ -56,7 +58,9 @@ pub fn contact_columns(axes: usize) -> Vec<&'static str> {
     [
         &["step", "time", "contact", "node"][..],
         places,
-        &["facet", "xi", "gap", "multiplier", "pressure"],
+        &["facet", "xi"],
+        &["eta"][..usize::from(axes == 3)],
+        &["gap", "multiplier", "pressure"],
         normals,
         &["friction", "traction", "slip"],
         rubbing,
@@ -142,7 +146,11 @@ impl Table {
         self.integer(row.node)?;
         row.point[..axes].iter().try_for_each(|x| self.number(*x))?;
         self.integer(row.facet)?;
-        [row.xi, row.gap, row.multiplier, row.pressure].iter().try_for_each(|x| self.number(*x))?;
+        self.number(row.xi)?;
+        if axes == 3 {
+            self.number(row.eta)?;
+        }
+        [row.gap, row.multiplier, row.pressure].iter().try_for_each(|x| self.number(*x))?;
         row.normal[..axes].iter().try_for_each(|x| self.number(*x))?;
         self.text(&row.friction)?;
         self.number(row.traction)?;

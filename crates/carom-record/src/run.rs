@@ -191,23 +191,25 @@ fn contact(lines: &Lines, axes: usize) -> Result<Vec<ContactRow<'static>>, Recor
             let mut vector = [0.0; 3];
             (0..axes).try_for_each(|i| real(first + i).map(|x| vector[i] = x)).map(|()| vector)
         };
-        let after = 4 + axes;
+        let facet = 4 + axes;
+        let after = facet + if axes == 3 { 3 } else { 2 };
         list.push(ContactRow {
             step: count(0)?,
             time: real(1)?,
             contact: record.get(2).unwrap_or_default().to_string().into(),
             node: count(3)?,
             point: vector(4)?,
-            facet: count(after)?,
-            xi: real(after + 1)?,
-            gap: real(after + 2)?,
-            multiplier: real(after + 3)?,
-            pressure: real(after + 4)?,
-            normal: vector(after + 5)?,
-            friction: record.get(after + 5 + axes).unwrap_or_default().to_string().into(),
-            traction: real(after + 6 + axes)?,
-            slip: real(after + 7 + axes)?,
-            rubbing: if axes == 3 { vector(after + 8 + axes)? } else { [0.0; 3] },
+            facet: count(facet)?,
+            xi: real(facet + 1)?,
+            eta: if axes == 3 { real(facet + 2)? } else { 0.0 },
+            gap: real(after)?,
+            multiplier: real(after + 1)?,
+            pressure: real(after + 2)?,
+            normal: vector(after + 3)?,
+            friction: record.get(after + 3 + axes).unwrap_or_default().to_string().into(),
+            traction: real(after + 4 + axes)?,
+            slip: real(after + 5 + axes)?,
+            rubbing: if axes == 3 { vector(after + 6 + axes)? } else { [0.0; 3] },
         });
         Ok(())
     })?;

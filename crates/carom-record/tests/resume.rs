@@ -59,6 +59,7 @@ fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordError> {
             point: [1.0, 2.0, 0.0],
             facet: 7,
             xi,
+            eta: 0.0,
             gap,
             multiplier,
             pressure: f64::NAN,
@@ -326,6 +327,7 @@ fn what_is_written_is_read_back() {
         point: [0.1, -2e-9, 0.0],
         facet: 1,
         xi: -0.99,
+        eta: 0.0,
         gap: 1e-18,
         multiplier: -7.5,
         pressure: 75.0,
@@ -354,6 +356,41 @@ fn what_is_written_is_read_back() {
     assert_eq!(run.log, [event]);
     assert_eq!((run.fields[0].step, run.fields[0].time), (2, 0.2));
     assert_eq!(run.field(&run.fields[0]).unwrap(), fields(2));
+}
+
+#[test]
+fn rows_of_contact_in_space_are_read_back() {
+    let scratch = scratch();
+    let directory = scratch.path().join("run");
+    let mut of_space = manifest();
+    of_space.case = serde_json::json!({"dimension": 3});
+    let mut writer = RunWriter::create(&directory, &of_space, b"").unwrap();
+    let row = ContactRow {
+        step: 1,
+        time: 0.1,
+        contact: "c".into(),
+        node: 5,
+        point: [0.1, 0.2, 0.3],
+        facet: 1,
+        xi: 0.25,
+        eta: -0.5,
+        gap: 1e-18,
+        multiplier: -7.5,
+        pressure: 75.0,
+        normal: [0.6, 0.0, 0.8],
+        friction: "slip".into(),
+        traction: 5.0,
+        slip: 0.7,
+        rubbing: [4.0, 0.0, -3.0],
+    };
+    writer.history(&[0.0, 0.1, 0.0]).unwrap();
+    writer.contact(&row).unwrap();
+    writer.finish(&mut Manifest { status: Status::Finished, ..of_space }).unwrap();
+    let header = fs::read_to_string(directory.join("contact.csv")).unwrap();
+    let columns = "step,time,contact,node,x,y,z,facet,xi,eta,gap,multiplier,pressure,normal_x,normal_y,\
+        normal_z,friction,traction,slip,friction_x,friction_y,friction_z\n";
+    assert!(header.starts_with(columns), "{header}");
+    assert_eq!(Run::open(&directory).unwrap().contact, [row]);
 }
 
 /// A row or a byte that is lost or changed after the end of a run is noticed; while a run is being

@@ -264,6 +264,7 @@ fn pressed(directory: &Path) {
                 point: [x, 1.0, 0.0],
                 facet: 0,
                 xi: 0.0,
+                eta: 0.0,
                 gap: 0.0,
                 multiplier: -pressure,
                 pressure: f64::from(i) * pressure,

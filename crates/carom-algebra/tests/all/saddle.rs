@@ -88,6 +88,79 @@ fn forces_may_act_along_other_directions() {
     }
 }
 
+/// The solution of a dense system by rows, by elimination with partial pivoting.
+fn dense(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
+    let n = b.len();
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs())).unwrap();
+        a.swap(k, pivot);
+        b.swap(k, pivot);
+        for i in k + 1..n {
+            let factor = a[i][k] / a[k][k];
+            (k..n).for_each(|j| a[i][j] -= factor * a[k][j]);
+            b[i] -= factor * b[k];
+        }
+    }
+    for k in (0..n).rev() {
+        b[k] = (b[k] - (k + 1..n).map(|j| a[k][j] * b[j]).sum::<f64>()) / a[k][k];
+    }
+    b
+}
+
+/// g x − C λ = c, with S positive definite, only on the kernel, or not at all.
+#[test]
+fn rows_that_yield_have_the_solution_of_the_dense_matrix() {
+    let (n, m) = (6, 3);
+    let row = |r: usize, j: usize| ((r * 5 + j).pow(2) as f64 * 1.3).sin();
+    let direction = |r: usize, j: usize| row(r, j) - 0.4 * ((r * 7 + 3 * j) as f64).cos();
+    let mut seen = [0, 0];
+    for (push, share) in [(0.0, 0.0), (0.0, 10.0), (-30.0, 10.0), (-30.0, 0.0)] {
+        for compliances in [[0.0, 0.2, 0.0], [1e-6, 0.0, 30.0], [0.0, 1e100, 0.0], [1e100, 3.0, 1e100]] {
+            let entry = |i: usize, j: usize| match (i, j) {
+                (2, 2) => 4.0 + push,
+                _ if i == j => 4.0,
+                _ => 1.0 / (1.0 + (i as f64 - j as f64).abs()),
+            };
+            let stiffness: Vec<f64> = (0..n * n).map(|k| entry(k % n, k / n)).collect();
+            let mut saddle = Saddle::default();
+            saddle.begin(&stiffness, n, m);
+            saddle.direct();
+            for r in 0..m {
+                (0..n).for_each(|j| saddle.add_row(r, j, row(r, j)));
+                (0..n).for_each(|j| saddle.add_direction(r, j, direction(r, j)));
+                saddle.yields(r, compliances[r]);
+            }
+            saddle.augment(share);
+            seen[usize::from(saddle.factor().unwrap())] += 1;
+            let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
+            let c = [0.3, -0.1, 0.7];
+            let (mut x, mut multipliers) = (b.clone(), c.to_vec());
+            saddle.solve(&mut x, &mut multipliers);
+            let whole = |i: usize, j: usize| match (i < n, j < n) {
+                (true, true) => entry(i, j),
+                (true, false) => direction(j - n, i),
+                (false, true) => row(i - n, j),
+                (false, false) => {
+                    if i == j {
+                        -compliances[i - n]
+                    } else {
+                        0.0
+                    }
+                }
+            };
+            let matrix = (0..n + m).map(|i| (0..n + m).map(|j| whole(i, j)).collect()).collect();
+            let expected = dense(matrix, [&b[..], &c].concat());
+            for (i, (found, expected)) in x.iter().chain(&multipliers).zip(expected).enumerate() {
+                // The multipliers of what yields are as small as 1/C.
+                let size = if i < n { 1.0 } else { expected.abs() };
+                let case = format!("{push} {share} {compliances:?} {i}: {found:e} {expected:e}");
+                assert!((found - expected).abs() < 1e-10 * size, "{case}");
+            }
+        }
+    }
+    assert!(seen[0] > 3 && seen[1] > 3, "{seen:?}");
+}
+
 /// Nodes on two springs each, K_tt = 3 and K_nt = −1, that slide forward with the coefficients μ:
 /// the slip u of one with a load f obeys (K_tt + μ K_nt) u = f_t + μ f_n, which says nothing for
 /// μ = 3 and has, for more, solutions beside those that stick (p > 0 and f_t < μ|f_n|) or lift off.

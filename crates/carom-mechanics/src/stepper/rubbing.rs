@@ -9,7 +9,7 @@ use crate::cone::AT_REST;
 use crate::independent::slip_remainder;
 use crate::model::Model;
 use crate::state::State;
-use crate::sums::max_abs;
+use crate::sums::{dot, max_abs};
 
 /// Distance from the edge of the cone, relative to its radius, at which a node slips.
 const EDGE: f64 = 1e-12;
@@ -41,24 +41,42 @@ pub(super) fn hold(kind: Kind, normal: f64, tangential: Along) -> Hold {
 }
 
 /// The components along its tangents of the slips of a pair on which its friction acts. In space
-/// supports may hold its nodes along a tangent: then what is left of that row only turns the facet,
-/// times the gap, and its force would be part of the cone without any other effect. `x`: a motion;
-/// where supports move the nodes along that tangent, they slip.
+/// supports may hold its nodes along a tangent: what is left of that row, along the normal, only
+/// turns the facet, times the gap, and its force would take part of the cone without any other
+/// effect. `x`: a motion; where supports move the nodes along that tangent, they slip.
 pub(super) fn loose(model: &Model, slips: &Rows, x: &[f64]) -> impl Iterator<Item = Along> + use<> {
     let tangents = [[1.0, 0.0], [0.0, 1.0]];
     if slips.len() < 2 {
         return tangents.into_iter().take(slips.len());
     }
     let [first, second] = [slips.row(0), slips.row(1)];
-    let product = |[i, j]: [Row; 2]| -> f64 {
-        let both = i.entries().zip(j.gradient).filter(|((dof, _), _)| !model.fixed[*dof]);
-        both.map(|((_, a), b)| a * b).sum()
+    let (e, t) = (first.first(), second.first());
+    let normal: [f64; 3] = std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        e[j] * t[k] - e[k] * t[j]
+    });
+    // The parts along the facet on free dofs, and the motion of the others along them.
+    let part = |row: Row| -> (Vec<f64>, f64) {
+        let (mut free, mut moved) = (Vec::new(), 0.0);
+        for (node, h) in row.nodes.iter().zip(row.gradient.as_chunks::<3>().0) {
+            let across: f64 = h.iter().zip(normal).map(|(h, n)| h * n).sum();
+            for (i, dof) in (3 * node..).take(3).enumerate() {
+                let along = h[i] - across * normal[i];
+                if model.fixed[dof] {
+                    moved += along * x[dof];
+                } else {
+                    free.push(along);
+                }
+            }
+        }
+        (free, moved)
     };
-    let [a, b, mixed] = [[first, first], [second, second], [first, second]].map(product);
+    let ((e, e_moved), (t, t_moved)) = (part(first), part(second));
+    let [a, b, mixed] = [dot(&e, &e), dot(&t, &t), dot(&e, &t)];
     let most = 0.5 * (a + b) + (0.5 * (a - b)).hypot(mixed);
     let least = slip_remainder(model).powi(2);
     let rest = AT_REST * max_abs(x);
-    let rests = |[i, j]: Along| (i * first.along(x) + j * second.along(x)).abs() <= rest;
+    let rests = |[i, j]: Along| (i * e_moved + j * t_moved).abs() <= rest;
     if most <= least {
         let all_rest = tangents.into_iter().all(rests);
         return tangents.into_iter().take(if all_rest { 0 } else { 2 });

@@ -16,7 +16,7 @@ use carom_case::{Case, FormulaSpec, MassKind, Problem, SKIN, Volumetric};
 use carom_mechanics::model::{
     BodyInstance, Mass, Model, Probe, Quantity, Support, free_motions, redistribute, value,
 };
-use carom_solid::{Constitutive, Law, SolidError, mean_dilatation_body};
+use carom_solid::{Constitutive, Law, mean_dilatation_body};
 
 use side::side;
 
@@ -242,9 +242,9 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
             (2, carom_case::Plane::Stress) => law.plane_stress_body(mesh, material.density, case.thickness),
             _ => law.body(mesh, material.density, case.thickness),
         };
-        let made = spec.make_mesh(case.dimension).and_then(|mesh| {
-            body(with_skin(case, &spec.name, mesh)).map_err(|e: SolidError| e.to_string().into())
-        });
+        let made = spec.make_mesh(case.dimension).map_err(|error| error.to_string());
+        let made =
+            made.and_then(|mesh| body(with_skin(case, &spec.name, mesh)).map_err(|error| error.to_string()));
         match made {
             Ok(body) => {
                 let nodes = body.mesh().nodes.len();
@@ -254,7 +254,7 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
             Err(why) => problems.push(Problem::new(
                 format!("body[{k}].mesh"),
                 format!("the mesh of body \"{}\" cannot be generated", spec.name),
-                why.to_string(),
+                why,
                 "change the values of `mesh`",
             )),
         }

@@ -191,7 +191,7 @@ pub(crate) fn consistent_weights<'a>(
     secondary.iter().map(|node| weights[node]).collect()
 }
 
-/// Gap of a pair in a state and the unit normal ∂g/∂y of its secondary node; NaN if undefined.
+/// Gap of a pair in a state and the outward unit normal of the primary; NaN if undefined.
 pub(super) fn gap_of(contact: &Contact, pair: &Pair, state: &State) -> (f64, [f64; 3]) {
     let mut rows = Rows::new(contact.facets[0].0.dimension());
     match contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows) {

@@ -1,8 +1,8 @@
 //! The rows of a state, as a run records them.
 
 use carom_case::Case;
-use carom_contact::{Hold, Tangential, length};
-use carom_mechanics::model::Model;
+use carom_contact::{Hold, Pair, Tangential, length};
+use carom_mechanics::model::{Contact, Model};
 use carom_mechanics::{GridReport, Simulation, State, each_slip, penetration};
 use carom_record::{Column, ContactRow};
 
@@ -60,12 +60,18 @@ impl Rows {
 pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> ContactStates<'a> {
     let mut rows = Vec::new();
     let in_space = model.dimension == 3;
-    let mut rubbing: Vec<Vec<[f64; 3]>> =
-        state.pairs.iter().map(|pairs| vec![[0.0; 3]; pairs.len()]).collect();
-    each_slip(model, state, |k, p, traction, row| {
-        let along = row.normal();
-        (0..3).for_each(|i| rubbing[k][p][i] -= traction * along[i]);
-    });
+    // Of each contact with friction in space: friction on the secondary side.
+    let count = |(contact, pairs): (&Contact, &Vec<Pair>)| {
+        if in_space && contact.friction.is_some() { pairs.len() } else { 0 }
+    };
+    let counts = model.contacts.iter().zip(&state.pairs).map(count);
+    let mut rubbing: Vec<Vec<[f64; 3]>> = counts.map(|count| vec![[0.0; 3]; count]).collect();
+    if rubbing.iter().any(|forces| !forces.is_empty()) {
+        each_slip(model, state, |k, p, traction, row| {
+            let along = row.normal();
+            (0..3).for_each(|i| rubbing[k][p][i] -= traction * along[i]);
+        });
+    }
     for ((contact, pairs), rubbing) in model.contacts.iter().zip(&state.pairs).zip(rubbing) {
         if pairs.iter().all(|p| !p.active) {
             continue;
@@ -74,7 +80,7 @@ pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> 
         // In a dent, a node has several pairs.
         let mut of_node = vec![0.0; weights.len()];
         pairs.iter().filter(|p| p.active).for_each(|pair| of_node[pair.node] += pair.lambda);
-        for (pair, rubbing) in pairs.iter().zip(rubbing).filter(|(pair, _)| pair.active) {
+        for (p, pair) in pairs.iter().enumerate().filter(|(_, pair)| pair.active) {
             let Tangential { traction, slip, .. } = pair.tangential;
             let node = contact.kinematics.secondary()[pair.node];
             let y = &state.y[node * model.dimension..(node + 1) * model.dimension];
@@ -87,6 +93,7 @@ pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> 
                 point: std::array::from_fn(|i| y.get(i).copied().unwrap_or(0.0)),
                 facet: pair.facet as u64,
                 xi: pair.xi,
+                eta: pair.eta,
                 gap,
                 multiplier: pair.lambda,
                 pressure: -of_node[pair.node] / weights[pair.node],
@@ -99,7 +106,7 @@ pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> 
                 .into(),
                 traction: if in_space { length(traction) } else { traction[0] },
                 slip: if in_space { length(slip) } else { slip[0] },
-                rubbing,
+                rubbing: rubbing.get(p).copied().unwrap_or_default(),
             });
         }
     }
