@@ -1,6 +1,8 @@
 //! The time loop: steps on the grid of times n·Δt, bisected after a rejection and returned to the
 //! grid, monitored by the energy guard.
 
+use std::ops::ControlFlow;
+
 use carom_contact::Passed;
 
 use crate::audit::{Doubt, audit};
@@ -32,6 +34,12 @@ pub enum Stopped {
         halvings: u32,
         /// The reason for its rejection.
         rejected: Rejected,
+    },
+    /// The caller ended it within a grid step.
+    #[error("interrupted in the step that begins at t = {time:.6}")]
+    Interrupted {
+        /// Time of the last grid time.
+        time: f64,
     },
     /// A second method contradicts the contact of a step.
     #[error("the audit of the step that ends at t = {time:.6} contradicts its contact: {doubt}")]
@@ -69,6 +77,9 @@ fn percent(fraction: f64) -> f64 {
     let percent = 100.0 * fraction;
     format!("{percent:.2e}").parse().unwrap_or(percent)
 }
+
+/// What is called between the trial steps of a grid step.
+type Watch<'a> = dyn FnMut(&Attempt) -> ControlFlow<()> + Send + 'a;
 
 /// A model with its state.
 pub struct Simulation {
@@ -233,28 +244,21 @@ impl Simulation {
     /// Why it cannot; `state` is then still that of the last grid time. The report contains the
     /// attempts.
     pub fn advance(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
-        self.advance_watched(report, &mut |_| ())
+        self.advance_watched(report, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// As [`Simulation::advance`]; `watch` is called after every rejected attempt.
+    /// As [`Simulation::advance`]; `watch` is called after every rejected attempt and every
+    /// substep, and may end the run there.
     ///
     /// # Errors
-    /// As [`Simulation::advance`].
-    pub fn advance_watched(
-        &mut self,
-        report: &mut GridReport,
-        watch: &mut (dyn FnMut(&Attempt) + Send),
-    ) -> Result<(), Stopped> {
+    /// As [`Simulation::advance`]; [`Stopped::Interrupted`] if `watch` ends it.
+    pub fn advance_watched(&mut self, report: &mut GridReport, watch: &mut Watch) -> Result<(), Stopped> {
         // On one of the threads, so that parallel calls within a step do not switch threads.
         let threads = self.model.threads.clone();
         threads.within(|| self.advance_here(report, watch))
     }
 
-    fn advance_here(
-        &mut self,
-        report: &mut GridReport,
-        watch: &mut (dyn FnMut(&Attempt) + Send),
-    ) -> Result<(), Stopped> {
+    fn advance_here(&mut self, report: &mut GridReport, watch: &mut Watch) -> Result<(), Stopped> {
         let (start, length) = (self.grid.time(self.state.step), self.grid.length(self.state.step + 1));
         // The state after the substeps so far; none before the first.
         let mut reached: Option<State> = None;
@@ -289,7 +293,12 @@ impl Simulation {
             }
             if let Some(rejected) = why {
                 report.reject(time, dt, rejected);
-                watch(&Attempt { time, dt, rejected: report.rejected - before });
+            }
+            // A whole grid step is its own end.
+            if (report.rejected > before || progress.level > 0)
+                && watch(&Attempt { time, dt, rejected: report.rejected - before }).is_break()
+            {
+                return Err(Stopped::Interrupted { time: self.state.time });
             }
             let Some(step) = taken else {
                 progress.bisect();

@@ -1,5 +1,6 @@
 //! The steps of a run in one process, with rows, fields, events and checkpoints, up to its end.
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -130,8 +131,14 @@ impl<'a> Session<'a> {
                     let Attempt { time, dt, rejected } = *attempt;
                     observe(&Progress { time, dt, rejected, bisecting: true, ..before });
                 }
+                if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });
             self.cpu += busy.seconds();
+            if let Err(Stopped::Interrupted { .. }) = advanced {
+                // The grid step is computed again when the run is resumed, and logged then.
+                end = End::Interrupted;
+                break;
+            }
             let step = self.simulation.state().step + u64::from(advanced.is_err());
             for event in &report.events {
                 self.writer.log(&entry(self.simulation.model(), step, event))?;
