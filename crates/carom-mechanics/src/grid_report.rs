@@ -18,6 +18,15 @@ pub enum LogEvent {
         /// Reason.
         rejected: Rejected,
     },
+    /// The run would have stopped, and the fallback takes the grid step.
+    Fallback {
+        /// Time at its start.
+        time: f64,
+        /// Its length.
+        dt: f64,
+        /// Why the run would have stopped.
+        reason: String,
+    },
     /// A secondary node came into contact or left it.
     ActiveSet {
         /// Time at the end of the (sub)step.
@@ -75,6 +84,8 @@ pub struct GridReport {
     pub newton: u32,
     /// Rejected steps.
     pub rejected: u32,
+    /// Grid steps that the fallback took.
+    pub fallbacks: u32,
     /// Nodes that came into contact.
     pub activations: u32,
     /// Nodes that left contact.
@@ -112,6 +123,12 @@ impl GridReport {
     pub(crate) fn reject(&mut self, time: f64, dt: f64, rejected: Rejected) {
         self.rejected += 1;
         self.events.push(LogEvent::Rejected { time, dt, rejected });
+    }
+
+    /// The fallback takes a grid step of length `dt`.
+    pub(crate) fn fall_back(&mut self, time: f64, dt: f64, reason: String) {
+        self.fallbacks += 1;
+        self.events.push(LogEvent::Fallback { time, dt, reason });
     }
 
     /// Forgets the steps since an earlier report, but not the work on them.

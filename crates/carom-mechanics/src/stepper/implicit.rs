@@ -1,9 +1,12 @@
 //! Kernels that are lists of implicit stages: guess, solve, record, and project at activation of
-//! contact.
+//! contact. And single steps of backward Euler with contact implicit in velocity (`in_velocity.rs`)
+//! in place of a step that is not accepted.
 
 use carom_contact::{Direction, Pairing, Rows};
+use carom_time::schemes::backward_euler::BackwardEuler;
 use carom_time::{Before, Kernel, Memory, Stage, Weights};
 
+use super::in_velocity::solve_in_velocity;
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::carried;
 use crate::contact_update::{GAP_TOLERANCE, search, start_step};
@@ -25,12 +28,23 @@ use crate::workspace::Workspace;
 pub struct Implicit {
     kernel: Box<dyn Kernel>,
     settings: Settings,
+    /// c of the momentum in accelerations (`carried.rs`).
+    carried: f64,
+    /// Whether contact is implicit in velocity.
+    in_velocity: bool,
 }
 
 impl Implicit {
     /// A stepper for a kernel.
     pub fn new(kernel: Box<dyn Kernel>, settings: Settings) -> Self {
-        Self { kernel, settings }
+        Self { carried: kernel.carried(), kernel, settings, in_velocity: false }
+    }
+
+    /// A stepper for steps of backward Euler with contact implicit in velocity between those of a
+    /// scheme that carries momentum in its accelerations with the factor `carried`
+    /// ([`Kernel::carried`]).
+    pub fn in_velocity(carried: f64, settings: Settings) -> Self {
+        Self { kernel: Box::new(BackwardEuler), settings, carried, in_velocity: true }
     }
 }
 
@@ -56,7 +70,7 @@ impl Stepper for Implicit {
     ) -> Result<Accepted, Rejected> {
         let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
         let mut next = work.copy(state);
-        let factor = self.kernel.carried();
+        let factor = self.carried;
         carried::change_step(&mut next, factor, dt);
         let mut report = StepReport::default();
         let mut finished: Vec<Point> = Vec::new();
@@ -77,8 +91,11 @@ impl Stepper for Implicit {
             let before = finished.last().map_or(&state.y, |point| &point.y);
             guess.predict(&next.v, &next.a, (equations.stage.end - end) * dt);
             end = equations.stage.end;
-            let (solved, effort) =
-                solve_stage(&equations, &next.frozen, before, &self.settings, guess, work)?;
+            let (solved, effort) = if self.in_velocity {
+                solve_in_velocity(&equations, dt, &self.settings, guess.pairings, work)?
+            } else {
+                solve_stage(&equations, &next.frozen, before, &self.settings, guess, work)?
+            };
             report.newton += effort.iterations;
             if effort.regularity < SINGULAR {
                 let before = report.ambiguity.unwrap_or(f64::INFINITY);
@@ -128,7 +145,9 @@ impl Stepper for Implicit {
         if self.kernel.stages() > 1 {
             ledger::keep_friction(model, &solved, &mut next);
         }
-        if factor != 0.0 {
+        if self.in_velocity {
+            carried::replace(&mut next, factor, &means.contact_forces);
+        } else if factor != 0.0 {
             let weights = [equations.stage.weights.mass, equations.stage.before.mass];
             carried::advance(&mut next, &means.contact_forces, weights);
         }

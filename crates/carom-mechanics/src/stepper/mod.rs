@@ -5,6 +5,7 @@ mod forward;
 mod implicit;
 mod impulses;
 mod impulsive;
+mod in_velocity;
 mod rubbing;
 mod scratch;
 mod watch;

@@ -44,6 +44,12 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
                 .with("dt", *dt)
                 .with("reason", rejected.kind())
         }
+        LogEvent::Fallback { time, dt, reason } => {
+            let message = format!(
+                "step of {dt:.6e} taken by the fallback, backward Euler with contact implicit in velocity; without it: {reason}"
+            );
+            Event::new(step, *time, "fallback", message).with("dt", *dt)
+        }
         LogEvent::ActiveSet { time, contact, node, active } => {
             let verb = if *active { "comes into" } else { "leaves" };
             let message = format!(

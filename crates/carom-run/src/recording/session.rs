@@ -204,7 +204,8 @@ impl<'a> Session<'a> {
     fn write_row(&mut self) -> Result<(), RunError> {
         let (model, state) = (self.simulation.model(), self.simulation.state());
         let dt = self.simulation.grid().length(state.step);
-        row(model, state, dt, &self.since, &self.weights, &mut self.values);
+        let fallbacks = self.simulation.has_fallback();
+        row(model, state, dt, (&self.since, fallbacks), &self.weights, &mut self.values);
         self.since = Since::default();
         self.writer.history(&self.values)?;
         contact_rows(self.case, model, state).iter().try_for_each(|row| self.writer.contact(row))?;
@@ -227,6 +228,9 @@ impl<'a> Session<'a> {
         add("rejected", report.rejected);
         add("activations", report.activations);
         add("releases", report.releases);
+        if self.simulation.has_fallback() {
+            add("fallbacks", report.fallbacks);
+        }
     }
 
     fn progress(&self, report: &GridReport) -> Progress {

@@ -7,6 +7,7 @@ mod bar;
 mod common;
 mod conserving_contact;
 mod energy_momentum;
+mod fallback;
 mod frequencies;
 mod friction;
 mod impact;
