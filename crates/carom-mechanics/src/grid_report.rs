@@ -37,6 +37,8 @@ pub enum LogEvent {
         node: usize,
         /// Whether it came (true) or left.
         active: bool,
+        /// When it first met the other side, if that is known.
+        met: Option<f64>,
     },
     /// A pair changed its facet or slid off the end.
     Pair {
@@ -103,9 +105,12 @@ impl GridReport {
         self.activations += step.activations.len() as u32;
         self.releases += step.releases.len() as u32;
         self.penetration = self.penetration.max(step.penetration);
-        for (list, active) in [(step.activations, true), (step.releases, false)] {
-            let event = |(contact, node)| LogEvent::ActiveSet { time, contact, node, active };
-            self.events.extend(list.into_iter().map(event));
+        let met = step.meetings.into_iter().chain(std::iter::repeat(None));
+        for ((contact, node), met) in step.activations.into_iter().zip(met) {
+            self.events.push(LogEvent::ActiveSet { time, contact, node, active: true, met });
+        }
+        for (contact, node) in step.releases {
+            self.events.push(LogEvent::ActiveSet { time, contact, node, active: false, met: None });
         }
         let pairs = step.events.into_iter();
         self.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time, contact, event }));

@@ -7,6 +7,7 @@ use carom_time::schemes::backward_euler::BackwardEuler;
 use carom_time::{Before, Kernel, Memory, Stage, Weights};
 
 use super::in_velocity::solve_in_velocity;
+use super::meetings::{Path, meetings};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::carried;
 use crate::contact_update::{GAP_TOLERANCE, search, start_step};
@@ -78,7 +79,7 @@ impl Stepper for Implicit {
         let mut guess = Iterate::at_start(state);
         start_step(model, &state.y, &mut guess.pairings);
         let shift = self.predictor_shift(model, state, dt, to, work)?;
-        let (mut end, mut last) = (0.0, None);
+        let (mut end, mut ends, mut last) = (0.0, vec![state.time], None);
         for k in 0..self.kernel.stages() {
             let mut stage = self.stage(k, dt, state, &finished);
             if let Some(shift) = &shift {
@@ -91,6 +92,7 @@ impl Stepper for Implicit {
             let before = finished.last().map_or(&state.y, |point| &point.y);
             guess.predict(&next.v, &next.a, (equations.stage.end - end) * dt);
             end = equations.stage.end;
+            ends.push(time);
             let (solved, effort) = if self.in_velocity {
                 solve_in_velocity(&equations, dt, &self.settings, guess.pairings, work)?
             } else {
@@ -169,6 +171,7 @@ impl Stepper for Implicit {
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
+        report.meetings = meetings(model, &next, &report.activations, &paths(state, &finished, &ends));
         let taken = state.ledger.contact_work - next.ledger.contact_work;
         restitution::take(model, &mut next, taken);
         if !report.activations.is_empty() {
@@ -252,6 +255,13 @@ impl Implicit {
         self.kernel.stage_into(k, dt, &Memory { states: &states, before }, &mut stage);
         stage
     }
+}
+
+/// The stages as parts of a step, from the state and the points at which they begin.
+fn paths<'a>(state: &'a State, finished: &'a [Point], ends: &[f64]) -> Vec<Path<'a>> {
+    let first: [&[f64]; 3] = [&state.y, &state.v, &state.a];
+    let starts = std::iter::once(first).chain(finished.iter().map(|p| [&p.y[..], &p.v[..], &p.a[..]]));
+    starts.zip(ends.windows(2)).map(|(start, ends)| Path { start, from: ends[0], to: ends[1] }).collect()
 }
 
 /// Contact and pair of new contacts, with the gaps at the step's start where they exist.

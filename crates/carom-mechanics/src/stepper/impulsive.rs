@@ -21,6 +21,7 @@ use carom_contact::{Pairing, Rows, Tangential};
 use carom_time::{Impulse, ImpulseShares, Memory, Stage};
 
 use super::impulses::{Impulses, TIE};
+use super::meetings::{Path, meetings};
 use super::watch::{approach, carry_into, depth, gap_at, measure_into};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::balance::residual_into;
@@ -151,6 +152,8 @@ impl Stepper for Impulsive {
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
+        let path = Path { start: [&state.y, &state.v, &state.a], from: state.time, to };
+        report.meetings = meetings(model, &next, &report.activations, &[path]);
         sinks_slowly(model, state, &next)?;
         let tie = 2.0 * TIE * model.scale;
         let fastest = approach(model, &state.v, dt).max(approach(model, &next.v, dt));

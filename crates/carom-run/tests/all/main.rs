@@ -14,6 +14,7 @@ mod impact;
 mod kernels;
 mod linear;
 mod loads;
+mod meeting;
 mod memory;
 mod momentum;
 mod nonsmooth;
