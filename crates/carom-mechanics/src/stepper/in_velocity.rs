@@ -8,9 +8,10 @@
 //!
 //! (D. E. Stewart, J. C. Trinkle, Int. J. Numer. Meth. Engng 39 (1996) 2673–2691; M. Anitescu, G.
 //! D. Hart, Int. J. Numer. Meth. Engng 60 (2004) 2335–2371). Given ŷ, pivoting finds the impulses
-//! without an active set that could cycle (`impulses.rs`). ŷ is y_n, and then the end found with the
-//! ŷ before, until no pair is added and the gaps themselves are zero, or [`PASSES`] times: an error
-//! of the linearisation is left as a penetration, which is measured and limited as in every step.
+//! without an active set that could cycle (`impulses.rs`). ŷ is y_n, and then the end found with
+//! the ŷ before, until no pair is added and the gaps themselves are zero, or [`PASSES`] times: an
+//! error of the linearisation is left as a penetration, which is measured and limited as in every
+//! step.
 
 use carom_contact::{Pairing, Rows};
 use carom_time::ImpulseShares;
