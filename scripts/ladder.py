@@ -65,9 +65,10 @@ def kind_of(message):
     return next((kind for kind, words in KINDS.items() if re.search(words, message)), "other")
 
 
-def run(carom, case, out, timeout):
+def run(carom, case, out, timeout, sets):
     """(outcome, message, wall time) of a run."""
     command = [carom, "run", case, "--out", out, "--no-report", "--threads", "1", "--color", "never", "-q"]
+    command += [word for key in sets for word in ("--set", key)]
     start = time.monotonic()
     try:
         done = subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=timeout)
@@ -80,9 +81,9 @@ def run(carom, case, out, timeout):
     return outcome, message, wall
 
 
-def judge(carom, meta, case, out, timeout, keep):
+def judge(carom, meta, case, out, timeout, keep, sets):
     """The row of results.csv of a case."""
-    outcome, message, wall = run(carom, case, out, timeout)
+    outcome, message, wall = run(carom, case, out, timeout, sets)
     row = {**meta, "case": case.stem, "outcome": outcome, "message": message, "wall": f"{wall:.2f}", "kind": ""}
     if outcome in ("stopped", "refused", "crash"):
         row["kind"] = kind_of(message)
@@ -163,6 +164,7 @@ def main():
     parser.add_argument("--keep", action="store_true", help="keep the fields of all cases")
     parser.add_argument("--cases", type=Path, help="folder of existing cases to run instead")
     parser.add_argument("--check", type=Path, metavar="RUN", help="check one record and stop")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a key of every case that is changed")
     parser.add_argument("--dry", action="store_true", help="write the cases only")
     options = parser.parse_args()
     if options.check:
@@ -191,7 +193,7 @@ def main():
     with (options.out / "results.csv").open("w", newline="") as file, ThreadPoolExecutor(options.jobs) as pool:
         writer = csv.DictWriter(file, COLUMNS, restval="")
         writer.writeheader()
-        one = lambda w: judge(options.carom, w[0], w[1], options.out / "runs" / w[1].stem, options.timeout, options.keep)
+        one = lambda w: judge(options.carom, w[0], w[1], options.out / "runs" / w[1].stem, options.timeout, options.keep, options.set)
         for row in pool.map(one, work):
             rows.append(row)
             writer.writerow({key: row.get(key, "") for key in COLUMNS})

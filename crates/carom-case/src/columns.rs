@@ -1,6 +1,6 @@
 //! The columns of history.csv, in the order that the run directory specifies.
 
-use super::{BodySpec, Case, ContactSpec, ObstacleMotion, ProbeSpec, Quantity, SupportSpec};
+use super::{BodySpec, Case, ContactSpec, Fallback, ObstacleMotion, ProbeSpec, Quantity, SupportSpec};
 
 const SCALARS: [&str; 13] = [
     "step",
@@ -17,16 +17,9 @@ const SCALARS: [&str; 13] = [
     "energy_created",
     "energy_scale",
 ];
-const COUNTS: [&str; 8] = [
-    "active",
-    "activations",
-    "releases",
-    "newton",
-    "rejected",
-    "penetration",
-    "penetration_secondary",
-    "min_det_f",
-];
+const COUNTS: [&str; 5] = ["active", "activations", "releases", "newton", "rejected"];
+
+const SMALLEST: [&str; 3] = ["penetration", "penetration_secondary", "min_det_f"];
 
 const FRICTION: [&str; 4] = ["sticking", "stick_time", "rub_time", "slip"];
 
@@ -71,6 +64,7 @@ pub fn history_columns(case: &Case) -> Vec<String> {
         &case.supports.iter().cloned().map(Some).collect::<Vec<_>>(),
         &case.probes.iter().cloned().map(Some).collect::<Vec<_>>(),
         case.manufactured.is_some(),
+        case.time.fallback,
     )
 }
 
@@ -82,6 +76,7 @@ pub(super) fn of(
     supports: &[Option<SupportSpec>],
     probes: &[Option<ProbeSpec>],
     manufactured: bool,
+    fallback: Fallback,
 ) -> Vec<String> {
     let axes = &["x", "y", "z"][..dimension.clamp(1, 3)];
     let mut columns: Vec<String> = SCALARS.iter().map(ToString::to_string).collect();
@@ -97,7 +92,9 @@ pub(super) fn of(
     vector(&mut columns, "contact_force");
     vector(&mut columns, "contact_impulse");
     vector(&mut columns, "algorithmic_impulse");
-    columns.extend(COUNTS.iter().map(ToString::to_string));
+    columns.extend(COUNTS.map(String::from));
+    columns.extend((fallback != Fallback::None).then(|| "fallbacks".to_owned()));
+    columns.extend(SMALLEST.map(String::from));
     if contacts.iter().flatten().any(|contact| contact.friction.exists()) {
         columns.extend(FRICTION.map(String::from));
     }

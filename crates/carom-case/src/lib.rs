@@ -51,9 +51,9 @@ pub use read::read;
 pub use read_scheme::read_scheme;
 pub use schema::{changes, expectation, measured, schema};
 pub use spec::{
-    ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,
-    FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind, MaterialSpec,
-    MeshSpec, NewtonSpec, ObstacleMotion, OutputSpec, Overlap, OverlaySpec, Persistency, PlaceSpec, Plane,
-    Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec, TableSpec,
-    TangentRule, TimeSpec, Units, Velocities, Volumetric,
+    ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Fallback,
+    ForceTime, FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind,
+    MaterialSpec, MeshSpec, NewtonSpec, ObstacleMotion, OutputSpec, Overlap, OverlaySpec, Persistency,
+    PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec,
+    TableSpec, TangentRule, TimeSpec, Units, Velocities, Volumetric,
 };

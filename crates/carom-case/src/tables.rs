@@ -187,6 +187,7 @@ pub(super) fn time(v: View, problems: &mut Vec<Problem>) -> Option<TimeSpec> {
         phase: v.number("phase")?,
         scheme: scheme?,
         energy_guard: v.value("energy_guard")?.number(),
+        fallback: v.choice("fallback")?,
     })
 }
 

@@ -37,8 +37,13 @@ pub(crate) fn advance(state: &mut State, means: &[[f64; 3]], weights: [f64; 2]) 
 
 /// Records a projection: accelerations satisfy the balance at the state again.
 pub(crate) fn project(state: &mut State, factor: f64) {
-    for k in 0..state.carried.forces.len() {
-        let now = state.contact_forces[k];
+    let forces = state.contact_forces.clone();
+    replace(state, factor, &forces);
+}
+
+/// Records accelerations that satisfy the balance with these contact forces.
+pub(crate) fn replace(state: &mut State, factor: f64, forces: &[[f64; 3]]) {
+    for (k, &now) in forces.iter().enumerate() {
         let old = std::mem::replace(&mut state.carried.forces[k], now);
         let change = std::array::from_fn(|i| factor * state.carried.dt * (now[i] - old[i]));
         record(state, k, change);

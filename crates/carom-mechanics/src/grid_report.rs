@@ -18,6 +18,15 @@ pub enum LogEvent {
         /// Reason.
         rejected: Rejected,
     },
+    /// The run would have stopped, and the fallback takes the grid step.
+    Fallback {
+        /// Time at its start.
+        time: f64,
+        /// Its length.
+        dt: f64,
+        /// Why the run would have stopped.
+        reason: String,
+    },
     /// A secondary node came into contact or left it.
     ActiveSet {
         /// Time at the end of the (sub)step.
@@ -28,6 +37,8 @@ pub enum LogEvent {
         node: usize,
         /// Whether it came (true) or left.
         active: bool,
+        /// When it first met the other side, if that is known.
+        met: Option<f64>,
     },
     /// A pair changed its facet or slid off the end.
     Pair {
@@ -75,6 +86,8 @@ pub struct GridReport {
     pub newton: u32,
     /// Rejected steps.
     pub rejected: u32,
+    /// Grid steps that the fallback took.
+    pub fallbacks: u32,
     /// Nodes that came into contact.
     pub activations: u32,
     /// Nodes that left contact.
@@ -92,9 +105,12 @@ impl GridReport {
         self.activations += step.activations.len() as u32;
         self.releases += step.releases.len() as u32;
         self.penetration = self.penetration.max(step.penetration);
-        for (list, active) in [(step.activations, true), (step.releases, false)] {
-            let event = |(contact, node)| LogEvent::ActiveSet { time, contact, node, active };
-            self.events.extend(list.into_iter().map(event));
+        let met = step.meetings.into_iter().chain(std::iter::repeat(None));
+        for ((contact, node), met) in step.activations.into_iter().zip(met) {
+            self.events.push(LogEvent::ActiveSet { time, contact, node, active: true, met });
+        }
+        for (contact, node) in step.releases {
+            self.events.push(LogEvent::ActiveSet { time, contact, node, active: false, met: None });
         }
         let pairs = step.events.into_iter();
         self.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time, contact, event }));
@@ -112,6 +128,12 @@ impl GridReport {
     pub(crate) fn reject(&mut self, time: f64, dt: f64, rejected: Rejected) {
         self.rejected += 1;
         self.events.push(LogEvent::Rejected { time, dt, rejected });
+    }
+
+    /// The fallback takes a grid step of length `dt`.
+    pub(crate) fn fall_back(&mut self, time: f64, dt: f64, reason: String) {
+        self.fallbacks += 1;
+        self.events.push(LogEvent::Fallback { time, dt, reason });
     }
 
     /// Forgets the steps since an earlier report, but not the work on them.

@@ -1,5 +1,8 @@
 //! The time loop: steps on the grid of times n·Δt, bisected after a rejection and returned to the
-//! grid, monitored by the energy guard.
+//! grid, monitored by the energy guard. Where the run would stop, the fallback, if there is one,
+//! takes the grid step from its start.
+
+use std::ops::ControlFlow;
 
 use carom_contact::Passed;
 
@@ -9,7 +12,7 @@ use crate::grid_report::{Attempt, GridReport, LogEvent};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::start::{Before, Inertia, start};
-use crate::state::{OtherModel, State};
+use crate::state::{FEW, OtherModel, State};
 use crate::stepper::Stepper;
 use crate::substeps::{Limits, MOST, Next, Progress, decide};
 use crate::timings::{Timings, timed};
@@ -32,6 +35,12 @@ pub enum Stopped {
         halvings: u32,
         /// The reason for its rejection.
         rejected: Rejected,
+    },
+    /// The caller ended it within a grid step.
+    #[error("interrupted in the step that begins at t = {time:.6}")]
+    Interrupted {
+        /// Time of the last grid time.
+        time: f64,
     },
     /// A second method contradicts the contact of a step.
     #[error("the audit of the step that ends at t = {time:.6} contradicts its contact: {doubt}")]
@@ -57,6 +66,17 @@ pub enum Stopped {
     },
 }
 
+impl Stopped {
+    /// Whether another method might take the step.
+    fn is_of_the_method(&self, end: f64) -> bool {
+        match self {
+            Self::NoStep { rejected, .. } => !rejected.is_final(end),
+            Self::EnergyGuard { .. } => true,
+            Self::Interrupted { .. } | Self::Audit { .. } => false,
+        }
+    }
+}
+
 fn tried(halvings: u32, dt: f64) -> String {
     match halvings {
         0 => format!("of Δt = {dt:.3e} is"),
@@ -70,6 +90,9 @@ fn percent(fraction: f64) -> f64 {
     format!("{percent:.2e}").parse().unwrap_or(percent)
 }
 
+/// What is called between the trial steps of a grid step.
+type Watch<'a> = dyn FnMut(&Attempt) -> ControlFlow<()> + Send + 'a;
+
 /// A model with its state.
 pub struct Simulation {
     model: Model,
@@ -77,6 +100,8 @@ pub struct Simulation {
     state: State,
     grid: Grid,
     stepper: Box<dyn Stepper>,
+    /// Takes grid steps that the stepper cannot take.
+    fallback: Option<Box<dyn Stepper>>,
     work: Workspace,
     /// Bisections of Δt before the run stops.
     bisections: u32,
@@ -127,7 +152,7 @@ impl Simulation {
         let model = model.on_threads(threads);
         let mut work = Workspace::new(&model, stepper.linear());
         work.system.restored.clone_from(&state.frozen.point);
-        Self { model, state, grid, stepper, work, bisections: MOST, audited: false }
+        Self { model, state, grid, stepper, fallback: None, work, bisections: MOST, audited: false }
     }
 
     /// The constant data.
@@ -149,6 +174,17 @@ impl Simulation {
     #[must_use]
     pub fn audited(self) -> Self {
         Self { audited: true, ..self }
+    }
+
+    /// Takes grid steps at which the run would stop with another stepper, from their start.
+    #[must_use]
+    pub fn with_fallback(self, fallback: Option<Box<dyn Stepper>>) -> Self {
+        Self { fallback, ..self }
+    }
+
+    /// Whether there is a fallback.
+    pub fn has_fallback(&self) -> bool {
+        self.fallback.is_some()
     }
 
     /// Stops after fewer bisections of a step than usual. What succeeds nevertheless is what would
@@ -233,42 +269,62 @@ impl Simulation {
     /// Why it cannot; `state` is then still that of the last grid time. The report contains the
     /// attempts.
     pub fn advance(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
-        self.advance_watched(report, &mut |_| ())
+        self.advance_watched(report, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// As [`Simulation::advance`]; `watch` is called after every rejected attempt.
+    /// As [`Simulation::advance`]; `watch` is called after every rejected attempt and every
+    /// substep, and may end the run there.
     ///
     /// # Errors
-    /// As [`Simulation::advance`].
-    pub fn advance_watched(
-        &mut self,
-        report: &mut GridReport,
-        watch: &mut (dyn FnMut(&Attempt) + Send),
-    ) -> Result<(), Stopped> {
+    /// As [`Simulation::advance`]; [`Stopped::Interrupted`] if `watch` ends it.
+    pub fn advance_watched(&mut self, report: &mut GridReport, watch: &mut Watch) -> Result<(), Stopped> {
         // On one of the threads, so that parallel calls within a step do not switch threads.
         let threads = self.model.threads.clone();
         threads.within(|| self.advance_here(report, watch))
     }
 
-    fn advance_here(
+    fn advance_here(&mut self, report: &mut GridReport, watch: &mut Watch) -> Result<(), Stopped> {
+        let before = self.fallback.is_some().then(|| report.clone());
+        let step = self.state.step;
+        let end = self.grid.time(step) + self.grid.length(step + 1);
+        let state = match (self.grid_step(false, report, watch), before) {
+            (Err(stopped), Some(before)) if stopped.is_of_the_method(end) => {
+                let (time, dt) = (self.state.time, self.grid.length(step + 1));
+                report.return_to(before);
+                report.fall_back(time, dt, stopped.to_string());
+                self.grid_step(true, report, watch)?
+            }
+            (stepped, _) => stepped?,
+        };
+        self.work.put(std::mem::replace(&mut self.state, state));
+        Ok(())
+    }
+
+    /// The state at the next grid time, by the stepper or the fallback.
+    fn grid_step(
         &mut self,
+        falls_back: bool,
         report: &mut GridReport,
-        watch: &mut (dyn FnMut(&Attempt) + Send),
-    ) -> Result<(), Stopped> {
+        watch: &mut Watch,
+    ) -> Result<State, Stopped> {
         let (start, length) = (self.grid.time(self.state.step), self.grid.length(self.state.step + 1));
         // The state after the substeps so far; none before the first.
         let mut reached: Option<State> = None;
-        let mut progress = Progress { level: self.state.bisection.level(), done: 0 };
+        let level = if falls_back { 0 } else { self.state.bisection.level() };
+        let mut progress = Progress { level, done: 0 };
         let (mut stored, mut bisected, before) = (None, false, report.rejected);
         let end = start + length;
-        let limits = Limits { guard: self.grid.guard, bisections: self.bisections, end };
+        let bisections =
+            if falls_back { self.bisections.min(FEW) } else { self.state.bisection.limit(self.bisections) };
+        let limits = Limits { guard: self.grid.guard, bisections, end };
         while progress.done() < 1.0 {
             let dt = length / f64::from(1_u32 << progress.level);
             let time = start + progress.done as f64 * dt;
             let to = start + (progress.done + 1) as f64 * dt;
             let from = reached.as_ref().unwrap_or(&self.state);
             self.work.trace.clear();
-            let stepped = self.stepper.step(&self.model, from, dt, to, &mut self.work);
+            let stepper = self.fallback.as_ref().filter(|_| falls_back).unwrap_or(&self.stepper);
+            let stepped = stepper.step(&self.model, from, dt, to, &mut self.work);
             let stepped = stepped.and_then(|step| {
                 let check = || nothing_passed(&self.model, &from.y, &step.state().y);
                 timed(&mut self.work.timings.contact, check)?;
@@ -289,7 +345,12 @@ impl Simulation {
             }
             if let Some(rejected) = why {
                 report.reject(time, dt, rejected);
-                watch(&Attempt { time, dt, rejected: report.rejected - before });
+            }
+            // A whole grid step is its own end.
+            if (report.rejected > before || progress.level > 0)
+                && watch(&Attempt { time, dt, rejected: report.rejected - before }).is_break()
+            {
+                return Err(Stopped::Interrupted { time: self.state.time });
             }
             let Some(step) = taken else {
                 progress.bisect();
@@ -309,8 +370,9 @@ impl Simulation {
             bisected = progress.level > 0;
             progress.advance();
         }
-        let Some(mut state) = reached else { return Ok(()) };
-        state.bisection = self.state.bisection.after(bisected);
+        let Some(mut state) = reached else { return Ok(self.state.clone()) };
+        let recently = self.state.bisection;
+        state.bisection = if falls_back { recently.after_fallback() } else { recently.after(bisected) };
         state.step += 1;
         state.time = self.grid.time(state.step);
         let Workspace { undeclared, timings, .. } = &mut self.work;
@@ -324,8 +386,7 @@ impl Simulation {
             self.work.trace.end(&state.y);
             return Err(stopped);
         }
-        self.work.put(std::mem::replace(&mut self.state, state));
-        Ok(())
+        Ok(state)
     }
 
     /// Checks the energy guard.

@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 use crate::model::Model;
 use crate::renewal::FrozenTangent;
 
+/// Bisections of a grid step that the fallback takes, and of the next one.
+pub(crate) const FEW: u32 = 4;
+
 /// Energies and works (`ledger.rs`), cumulative from the start of the run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
@@ -342,6 +345,8 @@ pub struct Bisection {
     left: u32,
     /// Their number after the next bisected step.
     next: u32,
+    /// Whether the fallback took the last grid step.
+    fell_back: bool,
 }
 
 impl Bisection {
@@ -358,8 +363,22 @@ impl Bisection {
     pub(crate) fn after(self, bisected: bool) -> Self {
         match (self.left, bisected) {
             (0, false) => Self::default(),
-            (0, true) => Self { left: self.next, next: (2 * self.next + 1).min(Self::MOST) },
-            (left, _) => Self { left: left - 1, next: self.next },
+            (0, true) => {
+                Self { left: self.next, next: (2 * self.next + 1).min(Self::MOST), fell_back: false }
+            }
+            (left, _) => Self { left: left - 1, next: self.next, fell_back: false },
         }
+    }
+
+    /// Update after a grid step that the fallback took.
+    #[must_use]
+    pub(crate) fn after_fallback(self) -> Self {
+        Self { fell_back: true, ..self.after(true) }
+    }
+
+    /// Bisections of the next grid step, of at most so many: after one that the fallback took it is
+    /// likely to take the next one, too.
+    pub(crate) fn limit(self, most: u32) -> u32 {
+        if self.fell_back { most.min(FEW) } else { most }
     }
 }

@@ -1,7 +1,7 @@
 //! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
 use carom_algebra::LinearError;
-use carom_case::{Case, ContactLaw, ContactPoint, ContactSpec, Problem, Problems, TangentRule};
+use carom_case::{Case, ContactLaw, ContactPoint, ContactSpec, Fallback, Problem, Problems, TangentRule};
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, stable_step};
 use carom_mechanics::{
@@ -127,9 +127,11 @@ impl<'a> Setup<'a> {
             (None, Some(motion)) => Some(given(motion, &model)?),
             (None, None) => overlap::relaxed(case, &model, &self.materials, self.threads)?,
         };
+        let fallback = fallback(case, &model, self.kernel.as_deref());
         let stepper = stepper(case, &model, self.kernel)?;
         let inertia = !case.time.scheme.is_static();
         Simulation::new(model, stepper, grid(case), inertia, before, self.threads)
+            .map(|simulation| simulation.with_fallback(fallback))
             .map_err(|rejected| vec![no_start(case, placed, &rejected)].into())
     }
 
@@ -140,8 +142,10 @@ impl<'a> Setup<'a> {
     /// As [`Setup::build`].
     pub fn resume(self, state: State) -> Result<Simulation, Problems> {
         let model = self.build()?;
+        let fallback = fallback(self.case, &model, self.kernel.as_deref());
         let stepper = stepper(self.case, &model, self.kernel)?;
-        Simulation::resume(model, stepper, grid(self.case), state, self.threads).map_err(|other| {
+        let resumed = Simulation::resume(model, stepper, grid(self.case), state, self.threads);
+        resumed.map(|simulation| simulation.with_fallback(fallback)).map_err(|other| {
             let why = "a run is resumed from a state of the same case";
             vec![Problem::new("", other.to_string(), why, "give a state of this case")].into()
         })
@@ -252,6 +256,16 @@ fn stepper(
         Integrator::Nonsmooth(Nonsmooth::Impulse(scheme), _) => Box::new(Impulsive::new(scheme, settings)),
         Integrator::Nonsmooth(Nonsmooth::Explicit(_), _) => Box::new(Explicit::new(model)),
     })
+}
+
+/// What takes the steps that the stepper of a case cannot take; `kernel`: in place of its scheme.
+fn fallback(case: &Case, model: &Model, kernel: Option<&dyn Kernel>) -> Option<Box<dyn Stepper>> {
+    if case.time.fallback == Fallback::None {
+        return None;
+    }
+    let of_scheme = case.time.scheme.kernel();
+    let carried = kernel.or(of_scheme.as_deref()).map_or(0.0, Kernel::carried);
+    Some(Box::new(Implicit::in_velocity(carried, settings(case, model))))
 }
 
 fn settings(case: &Case, model: &Model) -> Settings {

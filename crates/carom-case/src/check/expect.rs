@@ -5,7 +5,7 @@ use carom_record::question::{
 };
 
 use super::super::document::joined;
-use super::super::suggest;
+use super::super::{Fallback, suggest};
 use super::{Check, columns};
 
 impl Check<'_> {
@@ -27,6 +27,7 @@ impl Check<'_> {
             &draft.supports,
             &draft.probes,
             self.document.root().get("manufactured").is_some(),
+            draft.time.as_ref().map_or_else(Fallback::default, |time| time.fallback),
         );
         let end = draft.time.as_ref().map_or(f64::INFINITY, |t| t.end);
         for column in draft.exact.keys().filter(|column| complete && !known.contains(column)) {

@@ -2,6 +2,7 @@
 
 mod contact;
 mod expect;
+mod fallback;
 mod friction;
 mod linear;
 mod loads;
@@ -37,6 +38,7 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
     check.probes();
     check.time();
     check.scheme();
+    check.fallback();
     check.linear();
     check.expects();
     check.memory();

@@ -143,6 +143,14 @@ const TIME: Table = Table {
         )
         .default("0.02")
         .paper("false"),
+        key(
+            "fallback",
+            Choice(&["none", "velocity"], &[]),
+            "What takes a grid step at which the run would stop, because no substep is accepted or the energy guard stops it: nothing; or backward \
+             Euler with contact implicit in velocity, which dissipates energy in this step. Its steps are counted in the column `fallbacks`. For \
+             implicit schemes, multipliers without friction and restitution, and bodies with mass.",
+        )
+        .default("\"none\""),
     ],
     later: &[],
 };

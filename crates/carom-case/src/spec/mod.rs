@@ -21,4 +21,4 @@ pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};
 pub use mesh::{MeshSpec, RefineSpec, SKIN};
 pub use obstacle::ObstacleMotion;
 pub use output::{OutputSpec, OverlaySpec, ProbeSpec, Quantity};
-pub use time::{LinearRule, NewtonSpec, SchemeSpec, TangentRule, TimeSpec};
+pub use time::{Fallback, LinearRule, NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

@@ -19,6 +19,20 @@ pub struct TimeSpec {
     /// Fraction of the energy scale so far that may be created before the run stops; none: the
     /// energy is recorded only.
     pub energy_guard: Option<f64>,
+    /// What takes a grid step at which the run would stop.
+    #[serde(default)]
+    pub fallback: Fallback,
+}
+
+/// What takes a grid step at which the run would stop.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fallback {
+    /// Nothing.
+    #[default]
+    None,
+    /// Backward Euler with contact implicit in velocity.
+    Velocity,
 }
 
 /// A time integrator by its published name: `{ kind = "chung-hulbert", rho_inf = 0.1 }`.

@@ -168,6 +168,19 @@ impl<K: OneWay> Kinematics for BothSides<K> {
         self.each(pairing, |direction, pairing| direction.search(before, now, pairing, events))
     }
 
+    fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
+        let count = self.forward.secondary().len();
+        let of = |direction: &K, range: std::ops::Range<usize>| {
+            let own: Vec<usize> =
+                nodes.iter().filter(|n| range.contains(*n)).map(|n| n - range.start).collect();
+            if own.is_empty() { Vec::new() } else { direction.met(&own, before, now) }
+        };
+        let (mut forward, mut reverse) =
+            (of(&self.forward, 0..count).into_iter(), of(&self.reverse, count..self.all.len()).into_iter());
+        let next = |&node: &usize| if node < count { forward.next() } else { reverse.next() };
+        nodes.iter().map(next).map(Option::flatten).collect()
+    }
+
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         self.forward.passed(before, now, bounce).or_else(|| self.reverse.passed(before, now, bounce))
     }

@@ -3,6 +3,7 @@
 
 use super::facing::{Closest, REACH};
 use super::node_to_facet::{Detection, NodeToFacet, Tools};
+use super::swept::SweptTest;
 use super::trajectory::crossing;
 use crate::kinematics::Kinematics;
 use crate::places::Places;
@@ -15,6 +16,47 @@ const BEHIND: f64 = 1e-6;
 const RECAPTURED: f64 = 0.02;
 
 impl NodeToFacet {
+    /// Finds the facets that a node may meet.
+    fn find(&self, tools: &mut Tools, node: usize, before: Places, now: Places) {
+        tools.search.find(node, before, now);
+        if let Some((folds, side)) = &self.folds {
+            let Tools { search, turns, .. } = tools;
+            search.retain(|facet| folds.admits(*side, node, facet) && folds.face(turns, node, facet));
+        }
+    }
+
+    /// θ, facet and ξ of the first crossing of trajectories of a node.
+    pub(super) fn first(
+        &self,
+        tools: &mut Tools,
+        place: usize,
+        before: Places,
+        now: Places,
+    ) -> Option<(f64, usize, f64)> {
+        let node = self.secondary[place];
+        self.find(tools, node, before, now);
+        self.first_of(&mut tools.swept, tools.search.found(), node, before, now)
+    }
+
+    fn first_of(
+        &self,
+        swept: &mut SweptTest,
+        near: &[usize],
+        node: usize,
+        before: Places,
+        now: Places,
+    ) -> Option<(f64, usize, f64)> {
+        let mut first: Option<(f64, usize, f64)> = None;
+        for &facet in near {
+            if let Some(c) = crossing(swept, self.primary.facet(facet), before, now, node)
+                && first.is_none_or(|(theta, ..)| c.theta < theta)
+            {
+                first = Some((c.theta, facet, c.xi));
+            }
+        }
+        first
+    }
+
     /// Facet and ξ of possible contact of a node: the first crossing of trajectories, else the
     /// closest facet at `now` that the node was not behind before.
     pub(super) fn candidate(
@@ -25,13 +67,8 @@ impl NodeToFacet {
         now: Places,
     ) -> Option<(usize, f64, bool)> {
         let (node, allowed, slack) = (self.secondary[place], self.allowed(place), self.slack(place));
-        tools.search.find(node, before, now);
-        let Tools { search, swept, turns } = tools;
-        if let Some((folds, side)) = &self.folds {
-            let meets = |facet| folds.admits(*side, node, facet) && folds.face(turns, node, facet);
-            search.retain(meets);
-        }
-        let near = search.found();
+        self.find(tools, node, before, now);
+        let near = tools.search.found();
         let ends = |c: &Closest| self.ends_at(node, c.facet, c.xi);
         let closest = self.primary.closest_facet(near, now.at(node), now).filter(|c| !ends(c));
         if allowed > 0.0 {
@@ -42,14 +79,7 @@ impl NodeToFacet {
                 return None;
             }
         }
-        let mut first: Option<(f64, usize, f64)> = None;
-        for &facet in near {
-            if let Some(c) = crossing(swept, self.primary.facet(facet), before, now, node)
-                && first.is_none_or(|(theta, ..)| c.theta < theta)
-            {
-                first = Some((c.theta, facet, c.xi));
-            }
-        }
+        let first = self.first_of(&mut tools.swept, near, node, before, now);
         let entered_elsewhere = first.is_some_and(|(_, facet, _)| !self.primary.is_of_side(facet));
         // A node that has entered near the end of a facet may be in front of another one now.
         let still_faced = |facet: usize| {

@@ -88,6 +88,11 @@ pub trait Kinematics: Send + Sync {
         None
     }
 
+    /// For secondary nodes, given by index: the first θ, from 0 at `before` to 1 at `now`, at which
+    /// the node meets the primary side while all nodes move on straight lines; none if it does not,
+    /// or has a depth without contact.
+    fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>>;
+
     /// Hands over active pairs that have slid well past the end of their facet during the
     /// iteration: a facet's extrapolation is not the surface. Unlike [`search`](Self::search), it
     /// allows a pair to return. Returns whether there was one.
@@ -127,6 +132,11 @@ pub trait Kinematics: Send + Sync {
     /// the first `(n·D)²` entries of `matrix`, row-major, not symmetric. In space `pair` has the
     /// tangent of these positions.
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]);
+}
+
+/// θ at which a gap that is linear in θ becomes negative; none if it does not.
+fn zero(before: f64, now: f64) -> Option<f64> {
+    (now < 0.0).then(|| if before > 0.0 { before / (before - now) } else { 0.0 })
 }
 
 /// If gaps cost nothing, every node is tracked in every step.

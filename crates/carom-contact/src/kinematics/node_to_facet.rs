@@ -19,7 +19,7 @@ use super::gap::Gap;
 use super::passed::{Passed, Paths};
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
-use super::{Kinematics, watch_every_node};
+use super::{Kinematics, watch_every_node, zero};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
@@ -321,6 +321,28 @@ impl Kinematics for NodeToFacet {
             pairs.sort_by_key(|p| p.node);
         }
         changed
+    }
+
+    fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
+        let [before, now] = [before, now].map(|y| self.places(y));
+        if self.primary.shape() == FacetShape::Point {
+            let gap = |node, y| self.gap(self.secondary[node], 0, 0.0, y) + self.slack(node);
+            return nodes.iter().map(|&node| zero(gap(node, before), gap(node, now))).collect();
+        }
+        let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
+        let margin = Pairing::default().margin;
+        if !tools.search.update(&self.primary, &self.secondary, margin, before, now) {
+            return vec![None; nodes.len()];
+        }
+        if let Some((folds, _)) = &self.folds {
+            tools.turns.update(folds, &self.primary, before);
+        }
+        let mut met = |&node: &usize| {
+            let (theta, facet, _) = self.first(&mut tools, node, before, now)?;
+            let counts = self.primary.is_of_side(facet) && self.slack(node) == 0.0;
+            counts.then(|| theta.clamp(0.0, 1.0))
+        };
+        nodes.iter().map(&mut met).collect()
     }
 
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {

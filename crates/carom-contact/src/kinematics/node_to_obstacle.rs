@@ -100,7 +100,7 @@ impl NodeToObstacle {
         if self.shape.near(nearest, now).is_some_and(|near| near.gap >= 0.0) {
             return nearest;
         }
-        line.entered(before, now).unwrap_or(nearest)
+        line.entered(before, now).map_or(nearest, |(_, piece)| piece)
     }
 
     /// The piece on which a pair is measured.
@@ -194,6 +194,16 @@ impl Kinematics for NodeToObstacle {
             }
         }
         changed
+    }
+
+    fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
+        let turns = self.carrier.as_ref().is_some_and(|carrier| carrier.turn.is_some());
+        let met = |&node: &usize| {
+            let [from, to] = [before, now].map(|y| self.local(self.secondary[node], y).at);
+            // The path relative to an obstacle that turns is not straight.
+            if turns || self.kept(node) > 0.0 { None } else { self.shape.met(from, to) }
+        };
+        nodes.iter().map(met).collect()
     }
 
     /// Along straight paths relative to the obstacle, also if it turns.

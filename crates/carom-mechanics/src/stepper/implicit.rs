@@ -1,9 +1,13 @@
 //! Kernels that are lists of implicit stages: guess, solve, record, and project at activation of
-//! contact.
+//! contact. And single steps of backward Euler with contact implicit in velocity (`in_velocity.rs`)
+//! in place of a step that is not accepted.
 
 use carom_contact::{Direction, Pairing, Rows};
+use carom_time::schemes::backward_euler::BackwardEuler;
 use carom_time::{Before, Kernel, Memory, Stage, Weights};
 
+use super::in_velocity::solve_in_velocity;
+use super::meetings::{Path, meetings};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::carried;
 use crate::contact_update::{GAP_TOLERANCE, search, start_step};
@@ -25,12 +29,23 @@ use crate::workspace::Workspace;
 pub struct Implicit {
     kernel: Box<dyn Kernel>,
     settings: Settings,
+    /// c of the momentum in accelerations (`carried.rs`).
+    carried: f64,
+    /// Whether contact is implicit in velocity.
+    in_velocity: bool,
 }
 
 impl Implicit {
     /// A stepper for a kernel.
     pub fn new(kernel: Box<dyn Kernel>, settings: Settings) -> Self {
-        Self { kernel, settings }
+        Self { carried: kernel.carried(), kernel, settings, in_velocity: false }
+    }
+
+    /// A stepper for steps of backward Euler with contact implicit in velocity between those of a
+    /// scheme that carries momentum in its accelerations with the factor `carried`
+    /// ([`Kernel::carried`]).
+    pub fn in_velocity(carried: f64, settings: Settings) -> Self {
+        Self { kernel: Box::new(BackwardEuler), settings, carried, in_velocity: true }
     }
 }
 
@@ -56,7 +71,7 @@ impl Stepper for Implicit {
     ) -> Result<Accepted, Rejected> {
         let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
         let mut next = work.copy(state);
-        let factor = self.kernel.carried();
+        let factor = self.carried;
         carried::change_step(&mut next, factor, dt);
         let mut report = StepReport::default();
         let mut finished: Vec<Point> = Vec::new();
@@ -64,7 +79,7 @@ impl Stepper for Implicit {
         let mut guess = Iterate::at_start(state);
         start_step(model, &state.y, &mut guess.pairings);
         let shift = self.predictor_shift(model, state, dt, to, work)?;
-        let (mut end, mut last) = (0.0, None);
+        let (mut end, mut ends, mut last) = (0.0, vec![state.time], None);
         for k in 0..self.kernel.stages() {
             let mut stage = self.stage(k, dt, state, &finished);
             if let Some(shift) = &shift {
@@ -77,8 +92,12 @@ impl Stepper for Implicit {
             let before = finished.last().map_or(&state.y, |point| &point.y);
             guess.predict(&next.v, &next.a, (equations.stage.end - end) * dt);
             end = equations.stage.end;
-            let (solved, effort) =
-                solve_stage(&equations, &next.frozen, before, &self.settings, guess, work)?;
+            ends.push(time);
+            let (solved, effort) = if self.in_velocity {
+                solve_in_velocity(&equations, dt, &self.settings, guess.pairings, work)?
+            } else {
+                solve_stage(&equations, &next.frozen, before, &self.settings, guess, work)?
+            };
             report.newton += effort.iterations;
             if effort.regularity < SINGULAR {
                 let before = report.ambiguity.unwrap_or(f64::INFINITY);
@@ -128,7 +147,9 @@ impl Stepper for Implicit {
         if self.kernel.stages() > 1 {
             ledger::keep_friction(model, &solved, &mut next);
         }
-        if factor != 0.0 {
+        if self.in_velocity {
+            carried::replace(&mut next, factor, &means.contact_forces);
+        } else if factor != 0.0 {
             let weights = [equations.stage.weights.mass, equations.stage.before.mass];
             carried::advance(&mut next, &means.contact_forces, weights);
         }
@@ -150,6 +171,7 @@ impl Stepper for Implicit {
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
+        report.meetings = meetings(model, &next, &report.activations, &paths(state, &finished, &ends));
         let taken = state.ledger.contact_work - next.ledger.contact_work;
         restitution::take(model, &mut next, taken);
         if !report.activations.is_empty() {
@@ -233,6 +255,13 @@ impl Implicit {
         self.kernel.stage_into(k, dt, &Memory { states: &states, before }, &mut stage);
         stage
     }
+}
+
+/// The stages as parts of a step, from the state and the points at which they begin.
+fn paths<'a>(state: &'a State, finished: &'a [Point], ends: &[f64]) -> Vec<Path<'a>> {
+    let first: [&[f64]; 3] = [&state.y, &state.v, &state.a];
+    let starts = std::iter::once(first).chain(finished.iter().map(|p| [&p.y[..], &p.v[..], &p.a[..]]));
+    starts.zip(ends.windows(2)).map(|(start, ends)| Path { start, from: ends[0], to: ends[1] }).collect()
 }
 
 /// Contact and pair of new contacts, with the gaps at the step's start where they exist.

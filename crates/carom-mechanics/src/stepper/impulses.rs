@@ -59,6 +59,40 @@ impl Impulses {
         }
     }
 
+    /// Gaps that are not negative at the end of a step of backward Euler, linearised at the
+    /// positions `at`: 0 ≤ g + G (y_s + Δt v − at) ⊥ P ≥ 0, in the form above with e = 1 and what G
+    /// v lacks in place of G v_n.
+    pub(super) fn linearised(
+        model: &Model,
+        (state, dt): (&State, f64),
+        at: &[f64],
+        pairings: &[Pairing],
+        measured: &[Rows],
+    ) -> Result<Self, Rejected> {
+        let (places, stuck): (Vec<_>, Vec<_>) =
+            active(pairings).partition(|&(k, p)| moves(model, measured[k].row(p)));
+        let pair_of = |(k, p): (usize, usize)| &pairings[k].pairs[p];
+        for place in stuck {
+            let gap = measured[place.0].row(place.1).gap;
+            if gap < -TIE * model.scale {
+                return Err(overconstrained(&model.contacts[place.0], pair_of(place), gap));
+            }
+        }
+        let dependent = independent_rows(model, places.iter().copied(), measured).len() < places.len();
+        let rows =
+            Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
+        let back: Vec<f64> = state.y.iter().zip(at).map(|(y, at)| y - at).collect();
+        Ok(Self {
+            restitution: vec![1.0; places.len()],
+            kinds: vec![Kind::Normal; places.len()],
+            dependent,
+            before: rows.rows.iter().map(|row| (row.gap + row.along(&back)) / dt).collect(),
+            values: places.iter().map(|&place| -dt * pair_of(place).lambda).collect(),
+            rows,
+            released: Vec::new(),
+        })
+    }
+
     /// The contacts whose gap is closed at the predicted positions.
     pub(super) fn closed(
         model: &Model,

@@ -21,6 +21,7 @@ use carom_contact::{Pairing, Rows, Tangential};
 use carom_time::{Impulse, ImpulseShares, Memory, Stage};
 
 use super::impulses::{Impulses, TIE};
+use super::meetings::{Path, meetings};
 use super::watch::{approach, carry_into, depth, gap_at, measure_into};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::balance::residual_into;
@@ -86,8 +87,15 @@ impl Stepper for Impulsive {
         let mut impulses = Impulses::none(model.dimension);
         let mut solved = None;
         let predicted: Vec<f64> = if self.scheme.predicts_by_solving() {
-            let free =
-                self.solve(&equations, shares, increment.clone(), &mut impulses, &mut report.newton, work)?;
+            let free = solve(
+                &self.settings,
+                &equations,
+                shares,
+                increment.clone(),
+                &mut impulses,
+                &mut report.newton,
+                work,
+            )?;
             increment.clone_from(&free.at.increment);
             let predicted = free.y.clone();
             solved = Some(free);
@@ -104,7 +112,9 @@ impl Stepper for Impulsive {
         work.timings.contact += clock;
         let solved = match solved {
             Some(free) if impulses.rows.is_empty() => free,
-            _ => self.solve(&equations, shares, increment, &mut impulses, &mut report.newton, work)?,
+            _ => {
+                solve(&self.settings, &equations, shares, increment, &mut impulses, &mut report.newton, work)?
+            }
         };
 
         let mut next = work.copy(state);
@@ -142,6 +152,8 @@ impl Stepper for Impulsive {
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
+        let path = Path { start: [&state.y, &state.v, &state.a], from: state.time, to };
+        report.meetings = meetings(model, &next, &report.activations, &[path]);
         sinks_slowly(model, state, &next)?;
         let tie = 2.0 * TIE * model.scale;
         let fastest = approach(model, &state.v, dt).max(approach(model, &next.v, dt));
@@ -152,103 +164,101 @@ impl Stepper for Impulsive {
     }
 }
 
-impl Impulsive {
-    /// Newton's method on the increment and the impulses; adds to `iterations`.
-    fn solve(
-        &self,
-        equations: &Equations,
-        shares: ImpulseShares,
-        increment: Vec<f64>,
-        impulses: &mut Impulses,
-        iterations: &mut u32,
-        work: &mut Workspace,
-    ) -> Result<Evaluation, Rejected> {
-        let model = equations.model;
-        let dofs = model.dofs();
-        let none = Constraints::none(model.dimension);
-        let mut right = vec![0.0; dofs];
-        let mut correction = vec![0.0; dofs];
-        let mut columns = vec![vec![0.0; dofs]; impulses.rows.len()];
-        let mut target = impulses.values.clone();
-        let mut step = f64::INFINITY;
-        work.trace.start();
-        let mut now = evaluate(equations, shares, increment, impulses, work)?;
-        for iteration in 0.. {
-            let (size, forces) = (now.measure.residual, now.measure.forces);
-            let iterate = Iteration {
-                number: iteration as u32,
-                residual: size / forces.max(f64::MIN_POSITIVE),
-                correction: step / model.scale,
-                active: impulses.values.iter().filter(|impulse| **impulse > 0.0).count() as u32,
-                ..Iteration::default()
-            };
-            work.trace.push(iterate, &now.y);
-            if step <= self.settings.tolerance * model.scale
-                && size <= self.settings.tolerance * forces + work.system.round_off(equations)
-            {
-                return Ok(now);
+/// Newton's method on the increment and the impulses; adds to `iterations`.
+pub(super) fn solve(
+    settings: &Settings,
+    equations: &Equations,
+    shares: ImpulseShares,
+    increment: Vec<f64>,
+    impulses: &mut Impulses,
+    iterations: &mut u32,
+    work: &mut Workspace,
+) -> Result<Evaluation, Rejected> {
+    let model = equations.model;
+    let dofs = model.dofs();
+    let none = Constraints::none(model.dimension);
+    let mut right = vec![0.0; dofs];
+    let mut correction = vec![0.0; dofs];
+    let mut columns = vec![vec![0.0; dofs]; impulses.rows.len()];
+    let mut target = impulses.values.clone();
+    let mut step = f64::INFINITY;
+    work.trace.start();
+    let mut now = evaluate(equations, shares, increment, impulses, work)?;
+    for iteration in 0.. {
+        let (size, forces) = (now.measure.residual, now.measure.forces);
+        let iterate = Iteration {
+            number: iteration as u32,
+            residual: size / forces.max(f64::MIN_POSITIVE),
+            correction: step / model.scale,
+            active: impulses.values.iter().filter(|impulse| **impulse > 0.0).count() as u32,
+            ..Iteration::default()
+        };
+        work.trace.push(iterate, &now.y);
+        if step <= settings.tolerance * model.scale
+            && size <= settings.tolerance * forces + work.system.round_off(equations)
+        {
+            return Ok(now);
+        }
+        if iteration >= settings.max_iterations {
+            work.trace.blame(&now.residual, &model.free);
+            let tolerance = settings.tolerance;
+            let allowed = tolerance * forces + work.system.round_off(equations);
+            return Err(Rejected::NoConvergence {
+                iterations: iteration as u32,
+                step: [step / model.scale, tolerance],
+                residual: [size, allowed].map(|r| r / forces.max(f64::MIN_POSITIVE)),
+                gap: None,
+            });
+        }
+        *iterations += 1;
+        let Workspace { system, timings, .. } = work;
+        let point = equations.point(&now.place, &[]);
+        timed(&mut timings.factor, || -> Result<(), Rejected> {
+            system.tangent_at(model, &point, true)?;
+            Ok(system.preconditioner.prepare(model, &none).map(|_| ())?)
+        })?;
+        // −r₀: the residual without the impulses.
+        for (right, (contact, r)) in right.iter_mut().zip(now.forces.contact.iter().zip(&now.residual)) {
+            *right = contact - r;
+        }
+        timed(&mut timings.solve, || -> Result<(), Rejected> {
+            let multipliers = &mut Vec::new();
+            system.solve(model, [&right, &[]], &mut correction, multipliers)?;
+            for (row, column) in impulses.rows.rows.iter().zip(&mut columns) {
+                right.fill(0.0);
+                row.add_to(1.0, &mut right);
+                system.solve(model, [&right, &[]], column, multipliers)?;
             }
-            if iteration >= self.settings.max_iterations {
-                work.trace.blame(&now.residual, &model.free);
-                let tolerance = self.settings.tolerance;
-                let allowed = tolerance * forces + work.system.round_off(equations);
-                return Err(Rejected::NoConvergence {
-                    iterations: iteration as u32,
-                    step: [step / model.scale, tolerance],
-                    residual: [size, allowed].map(|r| r / forces.max(f64::MIN_POSITIVE)),
-                    gap: None,
-                });
+            Ok(())
+        })?;
+        impulses.solve(equations, shares, &now, &correction, &columns, &mut target)?;
+        for (column, impulse) in columns.iter().zip(&target) {
+            for (x, c) in correction.iter_mut().zip(column) {
+                *x += shares.force * impulse * c;
             }
-            *iterations += 1;
-            let Workspace { system, timings, .. } = work;
-            let point = equations.point(&now.place, &[]);
-            timed(&mut timings.factor, || -> Result<(), Rejected> {
-                system.tangent_at(model, &point, true)?;
-                Ok(system.preconditioner.prepare(model, &none).map(|_| ())?)
-            })?;
-            // −r₀: the residual without the impulses.
-            for (right, (contact, r)) in right.iter_mut().zip(now.forces.contact.iter().zip(&now.residual)) {
-                *right = contact - r;
+        }
+        step = max_abs(&correction);
+        let old = impulses.values.clone();
+        let mut length = 1.0;
+        for bisection in 0..=BISECTIONS {
+            let moved = now.at.increment.iter().zip(&correction).map(|(d, c)| d + length * c).collect();
+            for (value, (old, new)) in impulses.values.iter_mut().zip(old.iter().zip(&target)) {
+                *value = old + length * (new - old);
             }
-            timed(&mut timings.solve, || -> Result<(), Rejected> {
-                let multipliers = &mut Vec::new();
-                system.solve(model, [&right, &[]], &mut correction, multipliers)?;
-                for (row, column) in impulses.rows.rows.iter().zip(&mut columns) {
-                    right.fill(0.0);
-                    row.add_to(1.0, &mut right);
-                    system.solve(model, [&right, &[]], column, multipliers)?;
+            match evaluate(equations, shares, moved, impulses, work) {
+                Ok(next) => {
+                    work.spare.put(std::mem::replace(&mut now, next));
+                    break;
                 }
-                Ok(())
-            })?;
-            impulses.solve(equations, shares, &now, &correction, &columns, &mut target)?;
-            for (column, impulse) in columns.iter().zip(&target) {
-                for (x, c) in correction.iter_mut().zip(column) {
-                    *x += shares.force * impulse * c;
-                }
-            }
-            step = max_abs(&correction);
-            let old = impulses.values.clone();
-            let mut length = 1.0;
-            for bisection in 0..=BISECTIONS {
-                let moved = now.at.increment.iter().zip(&correction).map(|(d, c)| d + length * c).collect();
-                for (value, (old, new)) in impulses.values.iter_mut().zip(old.iter().zip(&target)) {
-                    *value = old + length * (new - old);
-                }
-                match evaluate(equations, shares, moved, impulses, work) {
-                    Ok(next) => {
-                        work.spare.put(std::mem::replace(&mut now, next));
-                        break;
-                    }
-                    Err(rejected) if bisection == BISECTIONS => return Err(rejected),
-                    Err(_) => {
-                        length *= 0.5;
-                        work.trace.shorten(length);
-                    }
+                Err(rejected) if bisection == BISECTIONS => return Err(rejected),
+                Err(_) => {
+                    length *= 0.5;
+                    work.trace.shorten(length);
                 }
             }
         }
-        Ok(now)
     }
+    Ok(now)
 }
 
 /// The law leaves the penetration of the step in which contact begins, and what facets turn: a step

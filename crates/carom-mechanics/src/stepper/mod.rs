@@ -5,6 +5,8 @@ mod forward;
 mod implicit;
 mod impulses;
 mod impulsive;
+mod in_velocity;
+mod meetings;
 mod rubbing;
 mod scratch;
 mod watch;
@@ -31,6 +33,8 @@ pub struct StepReport {
     pub newton: u32,
     /// Secondary nodes that came into contact: (contact, global node).
     pub activations: Vec<(usize, usize)>,
+    /// When each of them first met the other side, if that is known.
+    pub meetings: Vec<Option<f64>>,
     /// Secondary nodes that left contact.
     pub releases: Vec<(usize, usize)>,
     /// Hand-overs and slides off the end, with the index of their contact.

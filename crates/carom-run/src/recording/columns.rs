@@ -1,6 +1,6 @@
 //! Columns of `history.csv`: a single list of names, units and values keeps them consistent.
 
-use carom_case::Case;
+use carom_case::{Case, Fallback};
 use carom_contact::{Hold, Pair, Rows};
 use carom_mechanics::model::{BodyInstance, Model, Quantity};
 use carom_mechanics::{Depths, GridReport, State, each_slip};
@@ -93,6 +93,9 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
         ("rejected", "rejected (bisected) steps since the previous row"),
     ] {
         add(name.into(), "", what, true);
+    }
+    if case.time.fallback != Fallback::None {
+        add("fallbacks".into(), "", "grid steps that the fallback took since the previous row", true);
     }
     add(
         "penetration".into(),
@@ -232,8 +235,15 @@ pub(super) fn center_weights(model: &Model) -> Vec<f64> {
     weights
 }
 
-/// One row, in the order of [`columns`].
-pub(super) fn row(model: &Model, state: &State, dt: f64, since: &Since, weights: &[f64], row: &mut Vec<f64>) {
+/// One row, in the order of [`columns`]; `since` with whether there is a fallback.
+pub(super) fn row(
+    model: &Model,
+    state: &State,
+    dt: f64,
+    (since, falls_back): (&Since, bool),
+    weights: &[f64],
+    row: &mut Vec<f64>,
+) {
     let ledger = &state.ledger;
     let d = model.dimension;
     row.clear();
@@ -262,6 +272,7 @@ pub(super) fn row(model: &Model, state: &State, dt: f64, since: &Since, weights:
     let active = state.pairs.iter().flatten().filter(|p| p.active).count();
     row.push(active as f64);
     row.extend([since.activations, since.releases, since.newton, since.rejected].map(f64::from));
+    row.extend(falls_back.then_some(f64::from(since.fallbacks)));
     row.extend([since.penetration.all, since.penetration.constrained]);
     row.push(model.min_det_f(&state.y));
     if rubs(model) {
@@ -325,6 +336,7 @@ fn mean(part: &BodyInstance, field: &[f64], weights: &[f64], i: usize) -> f64 {
 pub(super) struct Since {
     newton: u32,
     rejected: u32,
+    fallbacks: u32,
     activations: u32,
     releases: u32,
     penetration: Depths,
@@ -335,6 +347,7 @@ impl Since {
     pub(super) fn add(&mut self, report: &GridReport) {
         self.newton += report.newton;
         self.rejected += report.rejected;
+        self.fallbacks += report.fallbacks;
         self.activations += report.activations;
         self.releases += report.releases;
         self.penetration = self.penetration.max(report.penetration);

@@ -44,16 +44,24 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
                 .with("dt", *dt)
                 .with("reason", rejected.kind())
         }
-        LogEvent::ActiveSet { time, contact, node, active } => {
-            let verb = if *active { "comes into" } else { "leaves" };
+        LogEvent::Fallback { time, dt, reason } => {
             let message = format!(
-                "node {node} of \"{}\" {verb} contact \"{}\"",
+                "step of {dt:.6e} taken by the fallback, backward Euler with contact implicit in velocity; without it: {reason}"
+            );
+            Event::new(step, *time, "fallback", message).with("dt", *dt)
+        }
+        LogEvent::ActiveSet { time, contact, node, active, met } => {
+            let verb = if *active { "comes into" } else { "leaves" };
+            let met_at = met.map_or_else(String::new, |met| format!(", which it met at t = {met:.9e}"));
+            let message = format!(
+                "node {node} of \"{}\" {verb} contact \"{}\"{met_at}",
                 body_of(*node),
                 contact_name(*contact)
             );
-            Event::new(step, *time, if *active { "activation" } else { "release" }, message)
+            let event = Event::new(step, *time, if *active { "activation" } else { "release" }, message)
                 .with("contact", contact_name(*contact))
-                .with("node", *node)
+                .with("node", *node);
+            if let Some(met) = met { event.with("met", *met) } else { event }
         }
         LogEvent::Pair { time, contact, event } => {
             let name = contact_name(*contact);

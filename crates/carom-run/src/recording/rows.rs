@@ -46,7 +46,8 @@ impl Rows {
         let state = simulation.state();
         let mut values = Vec::new();
         let dt = simulation.grid().length(state.step);
-        row(simulation.model(), state, dt, &self.since, &self.weights, &mut values);
+        let since = (&self.since, simulation.has_fallback());
+        row(simulation.model(), state, dt, since, &self.weights, &mut values);
         values
     }
 

@@ -1,5 +1,6 @@
 //! The steps of a run in one process, with rows, fields, events and checkpoints, up to its end.
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -130,8 +131,14 @@ impl<'a> Session<'a> {
                     let Attempt { time, dt, rejected } = *attempt;
                     observe(&Progress { time, dt, rejected, bisecting: true, ..before });
                 }
+                if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });
             self.cpu += busy.seconds();
+            if let Err(Stopped::Interrupted { .. }) = advanced {
+                // The grid step is computed again when the run is resumed, and logged then.
+                end = End::Interrupted;
+                break;
+            }
             let step = self.simulation.state().step + u64::from(advanced.is_err());
             for event in &report.events {
                 self.writer.log(&entry(self.simulation.model(), step, event))?;
@@ -197,7 +204,8 @@ impl<'a> Session<'a> {
     fn write_row(&mut self) -> Result<(), RunError> {
         let (model, state) = (self.simulation.model(), self.simulation.state());
         let dt = self.simulation.grid().length(state.step);
-        row(model, state, dt, &self.since, &self.weights, &mut self.values);
+        let fallbacks = self.simulation.has_fallback();
+        row(model, state, dt, (&self.since, fallbacks), &self.weights, &mut self.values);
         self.since = Since::default();
         self.writer.history(&self.values)?;
         contact_rows(self.case, model, state).iter().try_for_each(|row| self.writer.contact(row))?;
@@ -220,6 +228,9 @@ impl<'a> Session<'a> {
         add("rejected", report.rejected);
         add("activations", report.activations);
         add("releases", report.releases);
+        if self.simulation.has_fallback() {
+            add("fallbacks", report.fallbacks);
+        }
     }
 
     fn progress(&self, report: &GridReport) -> Progress {

@@ -40,7 +40,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 10] = [
+pub const WARNINGS: [Entry; 11] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of a \
@@ -98,6 +98,13 @@ pub const WARNINGS: [Entry; 10] = [
         why: "μ is so large that the same forces allow stick, slip or lift-off; which of them is found depends on the path of the iteration",
         advice: "a smaller mu, a shorter step (inertia makes it unique), or mu as a formula that grows to its value",
         rule: Rule::Record(record::ambiguous_friction),
+    },
+    Entry {
+        id: "fallback-steps",
+        why: "the scheme has no solution there that Carom accepts; the fallback is of first order, dissipates what a step does not resolve, and its \
+              contact is inelastic",
+        advice: "a shorter step, a finer mesh at the contact or a scheme with more damping; `log.jsonl` has the reason of each step",
+        rule: Rule::Record(record::fallback_steps),
     },
     Entry {
         id: "energy-created",

@@ -54,6 +54,18 @@ pub(super) fn ambiguous_friction(_: &Case, run: &Run) -> Vec<Found> {
     vec![Found { place: "the run".into(), what }]
 }
 
+/// Grid steps that the fallback took.
+pub(super) fn fallback_steps(_: &Case, run: &Run) -> Vec<Found> {
+    let mut events = run.log.iter().filter(|event| event.kind == "fallback");
+    let Some(first) = events.next() else { return Vec::new() };
+    let (time, count) = (short(first.time), 1 + events.count());
+    let what = match count {
+        1 => format!("the fallback took the grid step that begins at t = {time}"),
+        _ => format!("the fallback took {count} grid steps, the first at t = {time}"),
+    };
+    vec![Found { place: "the run".into(), what }]
+}
+
 /// More energy created than the default of `time.energy_guard` allows. Load steps create none: the
 /// difference of their works and energies is the error of a sum over few steps.
 pub(super) fn energy_created(case: &Case, run: &Run) -> Vec<Found> {

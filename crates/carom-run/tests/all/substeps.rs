@@ -1,9 +1,11 @@
 //! Steps that create energy are shortened; shortened steps keep the contact laws and resume
 //! bitwise.
 
-use carom_run::{GridReport, Rejected, Setup};
+use std::ops::ControlFlow;
 
-use super::common::{BAR, case, finish, simulation};
+use carom_run::{Attempt, GridReport, Rejected, Setup, Stopped};
+
+use super::common::{BAR, case, finish, restored, simulation};
 
 /// A stiff disc that falls on a plane; a step is 30 times as long as a wave takes to cross a cell.
 const DISC: &str = r#"
@@ -90,7 +92,7 @@ fn a_step_may_be_allowed_no_bisection_at_any_time() {
     let mut run = simulation(DISC, &[""; 0]);
     let mut stopped = 0;
     while !run.finished() {
-        let mut once = super::common::restored(simulation(DISC, &[""; 0]), run.state().clone());
+        let mut once = restored(simulation(DISC, &[""; 0]), run.state().clone());
         once.limit_bisections(0);
         stopped += u32::from(once.step().is_err());
         run.step().unwrap();
@@ -118,4 +120,35 @@ fn a_grid_step_that_is_taken_whole_after_all_is_not_remembered_as_bisected() {
         }
     }
     assert!(returned > 0);
+}
+
+/// Between any two trial steps; then the run goes on as if nothing had been.
+#[test]
+fn a_step_that_is_interrupted_leaves_the_state_of_the_last_grid_time() {
+    let mut run = simulation(DISC, &[""; 0]);
+    let mut interrupted = 0;
+    while interrupted == 0 {
+        let before = run.state().clone();
+        let mut whole = restored(simulation(DISC, &[""; 0]), before.clone());
+        let mut attempts = 0;
+        let mut count = |_: &Attempt| {
+            attempts += 1;
+            ControlFlow::Continue(())
+        };
+        whole.advance_watched(&mut GridReport::default(), &mut count).unwrap();
+        for last in 1..=attempts {
+            let mut left = last;
+            let mut stop = |_: &Attempt| {
+                left -= 1;
+                if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            let stopped = run.advance_watched(&mut GridReport::default(), &mut stop);
+            assert_eq!(stopped, Err(Stopped::Interrupted { time: before.time }));
+            assert_eq!(run.state(), &before);
+            interrupted += 1;
+        }
+        run.step().unwrap();
+        assert_eq!(run.state(), whole.state());
+    }
+    assert!(interrupted > 2, "{interrupted}");
 }

@@ -17,6 +17,7 @@ pub(super) use near::{Near, Point};
 pub(super) use polyline::AtCorner;
 pub use polyline::{Polyline, PolylineError};
 
+use super::zero;
 use near::round;
 
 /// A rigid shape. All its data are in the coordinates of the body that carries it.
@@ -64,6 +65,26 @@ impl Obstacle {
         if let Self::Polyline(line) = self { line.nearest(at) } else { 0 }
     }
 
+    /// The first θ at which a point on a straight path from `before` to `now` meets the surface;
+    /// none if it is outside at the end.
+    pub(crate) fn met(&self, before: Point, now: Point) -> Option<f64> {
+        let [from, to] = [before, now].map(|at| self.near(self.nearest(at), at));
+        let (from, to) = (from?.gap, to?.gap);
+        let linear = zero(from, to)?;
+        match self {
+            _ if from <= 0.0 => Some(0.0),
+            Self::Plane { .. } => Some(linear),
+            Self::Circle { center, radius, inside } => {
+                // |b + θ d|² = r²: into a circle at the earlier root, out of it at the later one.
+                let [arm, path] = [[before, *center], [now, before]].map(|[a, b]| minus(a, b));
+                let (a, b, c) = (dot(path, path), dot(arm, path), dot(arm, arm) - radius * radius);
+                let root = (b * b - a * c).max(0.0).sqrt();
+                Some((-b + if *inside { root } else { -root }) / a)
+            }
+            Self::Polyline(line) => line.entered(before, now).map(|(theta, _)| theta),
+        }
+    }
+
     /// A piece of the surface as a point sees it; none from the centre of a circle, where every
     /// direction is the same, if the point has to leave it.
     pub(crate) fn near(&self, piece: usize, at: Point) -> Option<Near> {
@@ -78,6 +99,14 @@ impl Obstacle {
             Self::Polyline(line) => line.near(piece, at),
         }
     }
+}
+
+fn minus(a: Point, b: Point) -> Point {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
 }
 
 fn padded(x: &[f64], factor: f64) -> Point {

@@ -241,8 +241,8 @@ impl Polyline {
         AtCorner::Stays
     }
 
-    /// The piece through which a point entered on a straight path.
-    pub(in super::super) fn entered(&self, before: Point, now: Point) -> Option<usize> {
+    /// θ and the piece at which a point entered on a straight path.
+    pub(in super::super) fn entered(&self, before: Point, now: Point) -> Option<(f64, usize)> {
         let path = minus(now, before);
         let at = |theta: f64| plus(before, theta, path);
         let mut first: Option<(f64, usize)> = None;
@@ -274,7 +274,7 @@ impl Polyline {
                 first = Some((theta, piece));
             }
         }
-        first.map(|(_, piece)| piece)
+        first
     }
 }
 

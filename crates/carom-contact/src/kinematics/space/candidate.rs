@@ -1,6 +1,8 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the nearest one that it was not behind before.
 
+use carom_solid::{Bounds, Tree};
+
 use super::crossing::crossing;
 use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
 use super::patch::place;
@@ -11,6 +13,53 @@ use crate::kinematics::Kinematics;
 const BEHIND: f64 = 0.02;
 
 impl NodeToPatch {
+    /// Finds the facets that a secondary node, given by index, may meet.
+    pub(super) fn find_into(
+        &self,
+        tree: &Tree,
+        k: usize,
+        before: &[f64],
+        now: &[f64],
+        near: &mut Vec<usize>,
+    ) {
+        let node = self.secondary[k];
+        let path: Bounds = [place(before, node).0, place(now, node).0].iter().collect();
+        tree.find_into(&path.grown(NOISE * path.size()), near);
+    }
+
+    /// Updates the boxes of the facets' paths.
+    pub(super) fn update(&self, tree: &mut Tree, margin: f64, before: &[f64], now: &[f64]) {
+        let swept = |facet: usize| {
+            let [old, new] = [before, now].map(|y| self.primary.bounds(&self.hull, facet, y));
+            let bounds = old.union(&new);
+            bounds.grown(margin * bounds.size())
+        };
+        if tree.is_empty() {
+            *tree = Tree::new(self.primary.all(), swept);
+        } else {
+            tree.update(swept);
+        }
+    }
+
+    /// θ and facet of the first crossing of trajectories of a node, of those near it.
+    pub(super) fn first(
+        &self,
+        near: &[usize],
+        node: usize,
+        before: &[f64],
+        now: &[f64],
+    ) -> Option<(f64, usize)> {
+        let mut first: Option<(f64, usize)> = None;
+        for &facet in near {
+            if let Some(theta) = crossing(self.primary.patch(facet), before, now, node)
+                && first.is_none_or(|(least, _)| theta < least)
+            {
+                first = Some((theta, facet));
+            }
+        }
+        first
+    }
+
     /// Facet and ξ of possible contact of a node without a pair.
     pub(super) fn candidate(
         &self,
@@ -22,14 +71,9 @@ impl NodeToPatch {
         let (node, slack) = (self.secondary[place_of], self.slack(place_of));
         let [start, end] = [before, now].map(|y| place(y, node));
         let mut closest: Option<(f64, usize, [f64; 2], f64)> = None;
-        let mut first: Option<(f64, usize)> = None;
+        let first = self.first(near, node, before, now);
         for &facet in near {
             let patch = self.primary.patch(facet);
-            if let Some(theta) = crossing(patch, before, now, node)
-                && first.is_none_or(|(least, _)| theta < least)
-            {
-                first = Some((theta, facet));
-            }
             let Some(xi) = patch.closest_point(now, end, REACH) else { continue };
             let gap = self.gap(facet, xi, end, now);
             let (of_side, length) = (self.primary.is_of_side(facet), patch.length(now));

@@ -46,7 +46,7 @@ pub(super) const NOISE: f64 = 1e-9;
 pub struct NodeToPatch {
     pub(super) secondary: Vec<usize>,
     pub(super) primary: Boundary,
-    hull: Hull,
+    pub(super) hull: Hull,
     /// Depth that each node may have without contact; empty if none may have any.
     allowed: Vec<f64>,
     /// Depth that each node keeps; empty if none does.
@@ -292,16 +292,7 @@ impl Kinematics for NodeToPatch {
         if apart.holds(*margin, [before, now]) {
             return changed;
         }
-        let swept = |facet: usize| {
-            let [old, new] = [before, now].map(|y| self.primary.bounds(&self.hull, facet, y));
-            let bounds = old.union(&new);
-            bounds.grown(*margin * bounds.size())
-        };
-        if tree.is_empty() {
-            *tree = Tree::new(self.primary.all(), swept);
-        } else {
-            tree.update(swept);
-        }
+        self.update(tree, *margin, before, now);
         let ends = |&node: &usize| [place(before, node).0, place(now, node).0];
         let paths: Bounds = self.secondary.iter().flat_map(ends).collect();
         apart.searched([&tree.bounds(), &paths.grown(NOISE * paths.size())], [*margin, NOISE], now);
@@ -314,8 +305,7 @@ impl Kinematics for NodeToPatch {
             if next > first {
                 continue;
             }
-            let path: Bounds = [place(before, node).0, place(now, node).0].iter().collect();
-            tree.find_into(&path.grown(NOISE * path.size()), &mut near);
+            self.find_into(tree, k, before, now, &mut near);
             if near.is_empty() {
                 continue;
             }
@@ -329,6 +319,20 @@ impl Kinematics for NodeToPatch {
         }
         pairs.sort_by_key(|pair| pair.node);
         changed
+    }
+
+    fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
+        let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
+        let Tools { tree, .. } = &mut *tools;
+        self.update(tree, Pairing::default().margin, before, now);
+        let mut near = Vec::new();
+        let mut met = |&k: &usize| {
+            self.find_into(tree, k, before, now, &mut near);
+            let first = self.first(&near, self.secondary[k], before, now);
+            let (theta, _) = first.filter(|&(_, facet)| self.primary.is_of_side(facet))?;
+            (self.slack(k) == 0.0).then(|| theta.clamp(0.0, 1.0))
+        };
+        nodes.iter().map(&mut met).collect()
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {

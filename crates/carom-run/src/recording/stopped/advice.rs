@@ -30,6 +30,11 @@ const PROJECT: Remedy = (
     "velocities that are projected where contact begins, so that this creates no energy",
 );
 const FULL: Remedy = (Some(Kind::Full), "a new tangent in every iteration");
+const FALLBACK: Remedy = (
+    Some(Kind::Fallback),
+    "the fallback: backward Euler with contact implicit in velocity takes the grid steps at which the run would \
+     stop; it dissipates energy there",
+);
 const FINER: Remedy = (None, "a finer mesh there (`refine` of a polygon, or a mesh file), or a smaller load");
 const ROUNDED: Remedy = (None, "a rounded corner there, or the other side as the primary one");
 const DEGREE: Remedy = (None, "an element of lower degree (T3) there: its cells invert later");
@@ -41,10 +46,10 @@ const GUARD_OFF: Remedy = (
 
 /// The remedies of each reason.
 const TABLE: &[(&str, &[Remedy])] = &[
-    ("inverted-cell", &[SHORTER, DAMPED, BATHE, FINER, DEGREE]),
-    ("contact-geometry", &[SHORTER, BATHE, PENALTY, FINER, ROUNDED]),
-    ("no-convergence", &[SHORTER, FULL, PENALTY, MULTIPLIER, BATHE, FINER]),
-    ("active-set-cycle", &[SHORTER, PENALTY, BATHE, FINER, ROUNDED]),
+    ("inverted-cell", &[SHORTER, DAMPED, BATHE, FALLBACK, FINER, DEGREE]),
+    ("contact-geometry", &[SHORTER, BATHE, PENALTY, FALLBACK, FINER, ROUNDED]),
+    ("no-convergence", &[SHORTER, FULL, PENALTY, MULTIPLIER, BATHE, FALLBACK, FINER]),
+    ("active-set-cycle", &[SHORTER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
     (
         "linear-solver",
         &[
@@ -75,13 +80,13 @@ const TABLE: &[(&str, &[Remedy])] = &[
     ),
     ("unconstrained-body", &[(None, "a support for the body, or a scheme with inertia")]),
     ("jump", &[(None, "a `move` that starts at the positions of its nodes")]),
-    ("penetration", &[SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FINER, ROUNDED]),
-    ("not-finite", &[SHORTER, BATHE, FINER]),
+    ("penetration", &[SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
+    ("not-finite", &[SHORTER, BATHE, FALLBACK, FINER]),
     (AUDIT, &[SHORTER, (None, "a report of this run to the authors: one of the two methods is wrong")]),
-    (GUARD, &[PROJECT, LONGER, SHORTER, BATHE, DAMPED, SOFTER, FINER, GUARD_OFF]),
+    (GUARD, &[PROJECT, LONGER, SHORTER, BATHE, DAMPED, SOFTER, FALLBACK, FINER, GUARD_OFF]),
 ];
 /// The remedies of any other reason.
-const OTHERWISE: &[Remedy] = &[SHORTER, BATHE, DAMPED, PENALTY, FINER];
+const OTHERWISE: &[Remedy] = &[SHORTER, BATHE, DAMPED, PENALTY, FALLBACK, FINER];
 
 /// What to try after a stop at a contact or in a body, or anywhere, with the changes of the case.
 pub(super) fn of(

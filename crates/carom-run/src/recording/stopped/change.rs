@@ -3,8 +3,8 @@
 //! is a run of this case.
 
 use carom_case::{
-    Case, ContactLaw, ContactPoint, ContactSpec, Detection, Document, Enforcement, Persistency, TangentRule,
-    read,
+    Case, ContactLaw, ContactPoint, ContactSpec, Detection, Document, Enforcement, Fallback, Persistency,
+    TangentRule, read,
 };
 use carom_record::Source;
 
@@ -32,6 +32,8 @@ pub(super) enum Kind {
     Full,
     /// Velocities that are compatible with contact where it begins.
     Project,
+    /// Contact implicit in velocity in the steps that are not accepted.
+    Fallback,
 }
 
 /// A changed case.
@@ -121,6 +123,9 @@ impl<'a> Original<'a> {
                         && c.persistency == Persistency::None
                 };
                 self.each(contact, unprojected, |_| vec!["persistency=project".to_owned()])
+            }
+            Kind::Fallback if implicit && case.time.fallback == Fallback::None => {
+                vec!["time.fallback=velocity".to_owned()]
             }
             _ => Vec::new(),
         };

@@ -16,7 +16,7 @@ pub(super) fn place(
 ) -> Option<StopPlace> {
     let named = match stopped {
         Stopped::NoStep { rejected, .. } => rejected.place(),
-        Stopped::EnergyGuard { .. } => Place::default(),
+        Stopped::EnergyGuard { .. } | Stopped::Interrupted { .. } => Place::default(),
         Stopped::Audit { doubt: Doubt::Deeper { node, .. } | Doubt::Passed { node, .. }, .. } => {
             Place { node: Some(*node), ..Place::default() }
         }

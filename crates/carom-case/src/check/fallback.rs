@@ -1,0 +1,68 @@
+//! Checks of the fallback: a step with contact implicit in velocity replaces one in which
+//! multipliers enforce contact at the positions of bodies with mass.
+
+use super::super::{
+    BodySpec, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Fallback, SchemeSpec,
+};
+use super::Check;
+
+impl Check<'_> {
+    pub(super) fn fallback(&mut self) {
+        let draft = self.draft;
+        let Some(time) = draft.time.as_ref().filter(|time| time.fallback == Fallback::Velocity) else {
+            return;
+        };
+        if let Some(why) = of_scheme(&time.scheme) {
+            self.refuse(format!("with scheme `{}`", time.scheme.kind), why, "leave it out");
+            return;
+        }
+        for contact in draft.contacts.iter().flatten() {
+            if let Some((what, why, help)) = of_contact(contact) {
+                self.refuse(format!("with {what} of contact `{}`", contact.name), why, help);
+            }
+        }
+        let light = |body: &&BodySpec| self.massless(body) || body.mass.is_redistributed();
+        if let Some(body) = draft.bodies.iter().flatten().find(light) {
+            let why = "the velocity of a node without mass does not follow from an impulse";
+            let help = "give the body a density > 0 and mass = \"consistent\" or \"lumped\", or leave it out";
+            self.refuse(format!("with nodes without mass in body `{}`", body.name), why, help);
+        }
+    }
+
+    fn refuse(&mut self, with: String, why: &str, help: &str) {
+        let what = format!("fallback = \"velocity\" cannot be used {with}");
+        self.add_unique("time.fallback".to_owned(), what, why, help);
+    }
+}
+
+fn of_scheme(scheme: &SchemeSpec) -> Option<&'static str> {
+    if scheme.is_static() {
+        Some("load steps have no velocities")
+    } else if scheme.nonsmooth().is_some() {
+        Some("its steps have their own contact law, without an active set that could fail")
+    } else {
+        None
+    }
+}
+
+/// What the step is not built for, why, and what to do.
+fn of_contact(contact: &ContactSpec) -> Option<(&'static str, &'static str, &'static str)> {
+    if contact.enforcement == Enforcement::Penalty {
+        let why = "the step constrains gaps, and springs let nodes penetrate: it would throw them out";
+        Some(("enforcement = \"penalty\"", why, "use enforcement = \"multiplier\", or leave it out"))
+    } else if contact.friction.exists() {
+        let why = "the step has normal impulses only, and a node that sticks would slip in it";
+        Some(("friction", why, "leave out the fallback or the friction"))
+    } else if contact.restitution != 0.0 {
+        let why = "the step is inelastic: it would lose the energy that the restitution returns";
+        Some(("a restitution", why, "leave out the fallback or the restitution"))
+    } else if contact.law == Some(ContactLaw::Predictor) {
+        let why = "the step has no predictor to project";
+        Some(("law = \"predictor\"", why, "use law = \"position\", or leave it out"))
+    } else if contact.xi == ContactPoint::Frozen || contact.detection == Detection::Trajectory {
+        let why = "the step measures gaps at closest points, and the paper's method does not";
+        Some(("detection = \"trajectory\"", why, "use detection = \"closest-point\", or leave it out"))
+    } else {
+        None
+    }
+}
