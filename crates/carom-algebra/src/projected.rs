@@ -166,6 +166,18 @@ impl ConstraintRows {
         self.compliances[row] != 0.0
     }
 
+    /// Adds Gᵀc/C of a spring: what its row contributes to the right-hand side of the balance if it
+    /// is G x − C λ = c.
+    pub fn pull(&self, row: usize, gap: f64, right: &mut [f64]) {
+        let multiplier = gap / self.compliances[row];
+        self.row(row).for_each(|(dof, slope)| right[dof] += multiplier * slope);
+    }
+
+    /// λ = (G x − c)/C of such a row.
+    pub fn pulled(&self, row: usize, gap: f64, x: &[f64]) -> f64 {
+        (self.along(row, x) - gap) / self.compliances[row]
+    }
+
     fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.starts[row]..self.starts[row + 1];
         self.dofs[range.clone()].iter().copied().zip(self.slopes[range].iter().copied())

@@ -83,7 +83,8 @@ pub struct Tangential {
     pub traction: Along,
     /// Slip since the pair closed.
     pub slip: Along,
-    /// Traction at the start of the step, from which a spring is stretched further.
+    /// Traction at the start of the step, from which a spring is stretched further; that of the
+    /// last round of an augmented Lagrangian.
     pub before: Along,
 }
 

@@ -18,7 +18,8 @@ pub use depth::Depth;
 pub use discrete_gradient::DiscreteGradient;
 pub use friction::{Along, Hold, Law, Radius, Rub, StickSlip, Tangential, inner, length};
 pub use interface::{
-    Answer, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point, Unilateral,
+    Answer, Augmented, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point,
+    Unilateral,
 };
 pub use kinematics::{
     BothSides, Boundary, Carrier, ClosedSurface, ContactPoint, Crossings, Detection, Kinematics, NodeToFacet,

@@ -24,6 +24,8 @@ pub struct Pair {
     pub rests: bool,
     /// Multiplier λ ≤ 0; zero unless active.
     pub lambda: f64,
+    /// λ̂ of an augmented Lagrangian: λ of the last round, at first that of the step's start.
+    pub multiplier: f64,
     /// Gap at the step's start for an energy-conserving penalty. It is stored, since Δg = ∇g·Δy at
     /// the midpoint holds to second order only.
     pub start: Option<f64>,
@@ -42,6 +44,7 @@ impl Pair {
             active: false,
             rests: false,
             lambda: 0.0,
+            multiplier: 0.0,
             start: None,
             tangential: Tangential::default(),
         }

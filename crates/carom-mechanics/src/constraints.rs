@@ -35,7 +35,8 @@ pub(crate) struct Constraints {
     pub weights: Vec<f64>,
     /// Gap per unit of multiplier.
     pub compliances: Vec<f64>,
-    /// Gap per unit of a multiplier that is an unknown: of the direction of a slip.
+    /// Gap per unit of a multiplier that is an unknown: of the direction of a slip, and of an
+    /// augmented Lagrangian.
     pub yields: Vec<f64>,
     /// Gap still to be closed.
     pub open: Vec<f64>,
@@ -120,7 +121,7 @@ impl Constraints {
             constraints.directions.push_row(evaluation.directions(k).row(p));
             constraints.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
             constraints.compliances.push(answer.compliance);
-            constraints.yields.push(0.0);
+            constraints.yields.push(answer.yields);
             constraints.open.push(answer.open);
             constraints.curvatures.push(curvature);
         }
@@ -161,8 +162,11 @@ impl Constraints {
         self.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
         self.compliances.push(spring.map_or(0.0, f64::recip));
         let forward = inner(pair.tangential.hold.direction(), evaluation.slip_of((k, p)));
-        self.yields.push(if forward > 0.0 { (forward / length(traction)).min(LOOSE) } else { 0.0 });
-        self.open.push(if spring.is_some() { 0.0 } else { slip.gap });
+        let stiffer = evaluation.at.stiffer;
+        let turns = if forward > 0.0 { (forward / length(traction)).min(LOOSE) } else { 0.0 };
+        self.yields.push(equations.stick_yields(k, pair, stiffer).unwrap_or(turns));
+        let open = slip.gap - equations.stretch(k, pair, along, stiffer);
+        self.open.push(if spring.is_some() { 0.0 } else { open });
         self.curvatures.push(curvature);
     }
 
@@ -176,7 +180,11 @@ impl Constraints {
             let pair = &evaluation.at.pairings[k].pairs[p];
             let is_spring = number == 0 || equations.stick_spring(k, pair).is_some();
             let weight = equations.weight_of_slip(pair, evaluation.slip_of((k, p)));
-            if is_spring { 0.0 } else { weight * held.find((k, p, number)).1.gap.abs() }
+            if is_spring {
+                return 0.0;
+            }
+            let (along, slip) = held.find((k, p, number));
+            weight * (slip.gap - equations.stretch(k, pair, along, evaluation.at.stiffer)).abs()
         };
         held.kept(equations, evaluation).into_iter().map(open).fold(gaps, f64::max)
     }

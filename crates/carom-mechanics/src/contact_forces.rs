@@ -58,7 +58,9 @@ impl Equations<'_> {
         let direction = contact.interface.direction();
         let gap = self.measure_pair(k, pair, evaluation)?;
         let start = pair.start.unwrap_or(f64::INFINITY);
-        let point = Point { node: pair.node, gap, start, lambda: pair.lambda, active: pair.active };
+        let stiffness = self.augmentation(k, pair, evaluation.at.stiffer).map_or(0.0, |springs| springs[0]);
+        let Pair { node, lambda, active, multiplier, .. } = *pair;
+        let point = Point { node, gap, start, lambda, active, multiplier, stiffness };
         let answer = contact.interface.respond(&point);
         (pair.active, pair.lambda) = (answer.active, answer.lambda);
         if direction == Direction::DiscreteGradient {

@@ -161,7 +161,7 @@ impl ContactUpdate {
                 continue;
             }
             let stiffness = *mean.get_or_insert_with(|| system.mean_stiffness(equations));
-            let Iterate { pairings, increment } = &mut evaluation.at;
+            let Iterate { pairings, increment, .. } = &mut evaluation.at;
             let pairs = &mut pairings[k].pairs;
             let contender = |(pair, row): (&Pair, Row)| {
                 // Few nodes that may be inside reach their depth: they wait for the others.
@@ -177,6 +177,7 @@ impl ContactUpdate {
             })?;
             for p in changes {
                 (pairs[p].active, pairs[p].lambda, changed) = (!pairs[p].active, 0.0, true);
+                (pairs[p].multiplier, pairs[p].tangential.before) = (0.0, [0.0; 2]);
                 if contact.friction.is_some() {
                     let slip = equations.slip(k, &mut pairs[p], &evaluation.middle, increment);
                     pairs[p].tangential.hold = Hold::of(slip, GAP_TOLERANCE * model.scale);

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use carom_contact::Law;
 use carom_time::{Internal, Stage};
 
+use crate::augmented;
 use crate::balance::{known_into, mean_acceleration, residual_into};
 use crate::evaluation::{Evaluation, Iterate, Spare};
 use crate::model::{LoadsAt, Model, Prescribed};
@@ -34,6 +35,9 @@ pub(crate) struct Equations<'a> {
     pub known: Vec<f64>,
     /// Laws of friction of the secondary nodes of each contact at the stage's end.
     pub laws: Vec<Vec<Law>>,
+    /// Stiffnesses of augmented Lagrangians at the secondary nodes of each contact, normal and
+    /// tangential.
+    pub augmented: Vec<Vec<[f64; 2]>>,
     /// Time since the step's start.
     pub duration: f64,
 }
@@ -61,6 +65,7 @@ impl<'a> Equations<'a> {
             motions: Vec::new(),
             known: Vec::new(),
             laws: model.friction_laws(to)?,
+            augmented: Vec::new(),
             duration: to - state.time,
         };
         if !model.loads.is_empty() {
@@ -68,6 +73,8 @@ impl<'a> Equations<'a> {
         }
         model.motions.at(to, &mut equations.motions)?;
         known_into(model, &equations.stage, state, &mut equations.known);
+        let factors = [equations.mass_factor(), equations.stiffness_factor()];
+        equations.augmented = augmented::springs(model, &equations.stage, factors);
         Ok(equations)
     }
 

@@ -12,13 +12,15 @@ pub(crate) struct Iterate {
     pub increment: Vec<f64>,
     /// Pairs of each contact, multipliers included.
     pub pairings: Vec<Pairing>,
+    /// Number of times that the springs of augmented Lagrangians became ten times stiffer.
+    pub stiffer: i32,
 }
 
 impl Iterate {
     /// The start of a step: no increment, the pairs of the state.
     pub(crate) fn at_start(state: &State) -> Self {
         let pairings = state.pairs.iter().cloned().map(Pairing::new).collect();
-        Self { increment: vec![0.0; state.y.len()], pairings }
+        Self { increment: vec![0.0; state.y.len()], pairings, stiffer: 0 }
     }
 }
 
@@ -104,6 +106,7 @@ impl Spare {
     pub(crate) fn copy(&mut self, of: &Iterate) -> Iterate {
         let mut iterate = self.0.last_mut().map(|spare| std::mem::take(&mut spare.at)).unwrap_or_default();
         iterate.increment.clone_from(&of.increment);
+        iterate.stiffer = of.stiffer;
         iterate.pairings.resize_with(of.pairings.len(), Pairing::default);
         iterate.pairings.iter_mut().zip(&of.pairings).for_each(|(to, from)| to.copy_from(from));
         iterate

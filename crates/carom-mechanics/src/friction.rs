@@ -241,7 +241,8 @@ impl Equations<'_> {
             return Ok(());
         }
         for held in self.held(contact, pair) {
-            let missed = self.weight_of_slip(pair, slip) * inner(held, slip).abs();
+            let open = inner(held, slip) - self.stretch(contact, pair, held, at.stiffer);
+            let missed = self.weight_of_slip(pair, slip) * open.abs();
             (measure.gap, measure.held) = (measure.gap.max(missed), true);
         }
         Ok(())

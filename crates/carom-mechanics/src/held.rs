@@ -40,20 +40,25 @@ impl Held {
         let place = self.names.partition_point(|(other, _)| *other < name);
         (self.names[place].1, self.rows.row(place))
     }
-    /// The gaps and slips that are rows, ascending. Springs may depend on each other: each adds its
-    /// stiffness.
+
+    /// The gaps and slips that are rows, ascending. Springs may depend on each other, because each
+    /// adds its stiffness, and so may rows that yield.
     pub(crate) fn kept(&self, equations: &Equations, evaluation: &Evaluation) -> Vec<Name> {
         let model = equations.model;
-        let is_spring = |k: usize| !model.contacts[k].interface.is_constraint();
-        let gaps = evaluation.pressing().filter(|&(k, _)| !is_spring(k));
-        let gaps = gaps.map(|(k, p)| ((k, p, 0), evaluation.rows[k].row(p), DEPENDENT));
+        let is_elastic = |&(k, p, number): &Name| {
+            let (contact, pair) = (&model.contacts[k], &evaluation.at.pairings[k].pairs[p]);
+            let yields = number == 0 || pair.tangential.hold == Hold::Stick;
+            !contact.interface.is_constraint() || contact.augmentation.is_some() && yields
+        };
+        let gaps = || evaluation.pressing().map(|(k, p)| ((k, p, 0), evaluation.rows[k].row(p)));
         // The slip of a pair after all gaps: what depends on both keeps its gap.
         let least = slip_remainder(model);
-        let slips = self.iter().filter(|((k, ..), _)| !is_spring(*k));
-        let slips = slips.map(|(name, row)| (name, row, least));
-        let mut kept = independent_above(model, gaps.chain(slips));
-        kept.extend(evaluation.pressing().filter(|&(k, _)| is_spring(k)).map(|(k, p)| (k, p, 0)));
-        kept.extend(self.names.iter().map(|(name, _)| *name).filter(|&(k, ..)| is_spring(k)));
+        let rows = gaps().map(|(name, row)| (name, row, DEPENDENT));
+        let rows = rows.chain(self.iter().map(|(name, row)| (name, row, least)));
+        let mut kept = independent_above(model, rows.filter(|(name, ..)| !is_elastic(name)));
+        let acts = |row: Row| row.entries().any(|(dof, slope)| slope != 0.0 && !model.fixed[dof]);
+        let elastic = gaps().chain(self.iter()).filter(|(name, _)| is_elastic(name));
+        kept.extend(elastic.filter(|(_, row)| acts(*row)).map(|(name, _)| name));
         kept.sort_unstable();
         kept
     }

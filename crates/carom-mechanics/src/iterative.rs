@@ -39,6 +39,8 @@ pub(crate) struct Iterative {
     massless: Vec<usize>,
     of_mass: bool,
     rows: ConstraintRows,
+    /// Gap per unit of multiplier of rows whose multiplier is an unknown.
+    yields: Vec<f64>,
     patches: Patches,
     method: ConjugateGradients,
     iterations: u64,
@@ -83,6 +85,7 @@ impl Iterative {
             massless: model.free.iter().copied().filter(|dof| model.massless[*dof]).collect(),
             of_mass: false,
             rows: ConstraintRows::default(),
+            yields: Vec::new(),
             patches: Patches::default(),
             method: ConjugateGradients::default(),
             iterations: 0,
@@ -140,8 +143,10 @@ impl Iterative {
             let weight = rows.weights[r];
             let entries = row.entries().filter(|(dof, _)| !model.fixed[*dof] && included(*dof));
             let entries = entries.map(|(dof, slope)| (dof, weight * slope));
-            self.rows.push(weight * rows.compliances[r], entries);
+            // A row that yields is eliminated like a spring, and its multiplier found afterwards.
+            self.rows.push(weight * (rows.compliances[r] + rows.yields[r]), entries);
         }
+        self.yields.clone_from(&rows.yields);
         self.rows.factor(&self.blocks[usize::from(self.of_mass)])
     }
 }
@@ -229,6 +234,9 @@ impl Preconditioner for Iterative {
         self.gaps.clear();
         self.gaps.extend((0..gaps.len()).map(|r| if self.rows.is_spring(r) { 0.0 } else { gaps[r] }));
         multipliers.resize(gaps.len(), 0.0);
+        for r in (0..gaps.len()).filter(|r| self.yields[*r] != 0.0) {
+            self.rows.pull(r, gaps[r], &mut self.forces);
+        }
         loop {
             let Self { matrix, patches, constrained, massless, of_mass, .. } = self;
             let product = |x: &[f64], out: &mut [f64]| {
@@ -262,6 +270,9 @@ impl Preconditioner for Iterative {
                 let (iterations, reduction) = (ended.iterations, ended.reduction);
                 return Err(LinearError::Stalled { size: model.free.len(), iterations, reduction });
             }
+            for r in (0..gaps.len()).filter(|r| self.yields[*r] != 0.0) {
+                multipliers[r] = self.rows.pulled(r, gaps[r], increment);
+            }
             return Ok(());
         }
     }
@@ -290,7 +301,8 @@ impl Patches {
     fn fill(&mut self, model: &Model, rows: &Constraints) {
         self.clear();
         for (r, row) in rows.rows.iter().enumerate() {
-            let (weight, compliance, n) = (rows.weights[r], rows.compliances[r], row.gradient.len());
+            let (weight, n) = (rows.weights[r], row.gradient.len());
+            let compliance = rows.compliances[r] + rows.yields[r];
             self.dofs.extend(row.entries().map(|(dof, _)| dof));
             self.starts.push(self.dofs.len());
             let free: Vec<bool> = row.entries().map(|(dof, _)| !model.fixed[dof]).collect();

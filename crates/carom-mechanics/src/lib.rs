@@ -4,6 +4,7 @@
 
 mod active_rows;
 mod audit;
+mod augmented;
 mod balance;
 mod carried;
 mod cells;
@@ -39,6 +40,7 @@ mod renewal;
 mod restitution;
 mod restricted;
 mod resultants;
+mod rounds;
 mod settings;
 mod simulation;
 mod skins;

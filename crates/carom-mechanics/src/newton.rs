@@ -5,10 +5,12 @@
 //! Convergence requires all of: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus round-off according to the
 //! system's diagonal), and with friction and inertia its resultants vanish
 //! (`resultants.rs`); |g| ≤ 1e-12·L on every active constraint; no pair penetrates, pulls, or has
-//! slid off its facet. Nothing less is accepted.
+//! slid off its facet. Nothing less is accepted. With an augmented Lagrangian this is a round, of
+//! which there are several (`rounds.rs`).
 
 use carom_contact::inner;
 
+use crate::augmented;
 use crate::constraints::Constraints;
 use crate::contact_update::{
     ContactUpdate, Events, GAP_TOLERANCE, activate_initial, check_satisfiable, search,
@@ -20,6 +22,7 @@ use crate::model::check_rigid_modes;
 use crate::rejected::Rejected;
 use crate::renewal::{FrozenTangent, Renewal};
 use crate::resultants::are_balanced;
+use crate::rounds::Rounds;
 use crate::settings::{Settings, Tangent};
 use crate::sums::max_abs;
 use crate::timings::timed;
@@ -62,7 +65,7 @@ pub(crate) fn solve_stage(
     frozen: &FrozenTangent,
     before: &[f64],
     settings: &Settings,
-    guess: Iterate,
+    mut guess: Iterate,
     work: &mut Workspace,
 ) -> Result<(Evaluation, Effort), Rejected> {
     let (model, state, tolerance) = (equations.model, equations.state, settings.tolerance);
@@ -75,6 +78,7 @@ pub(crate) fn solve_stage(
     let (full, is_static) = (settings.tangent == Tangent::Full, equations.stage.is_static());
     work.linear.restart();
     work.trace.start();
+    augmented::start(model, &mut guess);
     // Where contact begins, velocities and accelerations jump from node to node. Extrapolated over
     // a step, that motion distorts or inverts cells, and Newton's method starts better without a
     // predictor.
@@ -82,6 +86,7 @@ pub(crate) fn solve_stage(
     let mut fallback = Some(Iterate {
         increment: before.iter().zip(&state.y).map(|(start, old)| start - old).collect(),
         pairings: guess.pairings.clone(),
+        stiffer: 0,
     })
     .filter(|_| !is_static);
     let mut now = match begin(equations, before, guess, &mut effort.events, work) {
@@ -95,7 +100,7 @@ pub(crate) fn solve_stage(
     }
     work.restore_factor(equations, &renewal)?;
     let digits = if is_static { DIGITS } else { 1.0 };
-    let mut contact = ContactUpdate::new(model);
+    let (mut contact, mut rounds) = (ContactUpdate::new(model), Rounds::new());
     let (mut step, mut ratio, mut grown, mut iteration) = (f64::INFINITY, 1.0_f64, 0, 0);
     loop {
         // The error of an inexact linear solve shrinks with the residual, so the residual is
@@ -109,6 +114,14 @@ pub(crate) fn solve_stage(
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
         work.trace.push(iterate(equations, &now, iteration, step, changed), &now.y);
         if settled && !changed {
+            if rounds.next(equations, &mut now)? {
+                // A solve of its own, from the solution of the last one.
+                now = again(equations, now, work)?;
+                contact.restart();
+                work.linear.restart();
+                (step, ratio, grown, iteration) = (f64::INFINITY, 1.0, 0, 0);
+                continue;
+            }
             (effort.frozen, effort.regularity) = (renewal.finish(), contact.regularity);
             return Ok((now, effort));
         }

@@ -46,6 +46,7 @@ impl Rejected {
             }
             Self::Jump { node, .. } => Place { node: Some(*node), ..Place::default() },
             Self::NoConvergence { .. }
+            | Self::NoMultipliers { .. }
             | Self::Linear(_)
             | Self::NegativeMass
             | Self::NoFrictionBalance

@@ -43,6 +43,17 @@ pub enum Rejected {
         /// Largest |g|/L of an active constraint, and what is allowed; none without contact.
         gap: Option<[f64; 2]>,
     },
+    /// The multipliers of an augmented Lagrangian were not found.
+    #[error(
+        "the augmented Lagrangian did not close its contacts in {rounds} rounds: the largest gap or slip is {:.2e} L (allowed: {:.0e}); supports may prevent a node from moving out",
+        gap[0], gap[1]
+    )]
+    NoMultipliers {
+        /// Number of rounds.
+        rounds: u32,
+        /// Largest gap of a closed pair, or slip of a sticking one, over L, and what is allowed.
+        gap: [f64; 2],
+    },
     /// The active set returns to one visited before.
     #[error(
         "contact \"{contact}\": the active set does not settle: nodes {nodes:?} alternate between open \
@@ -200,7 +211,9 @@ impl Rejected {
         match self {
             Self::Inverted { .. } => "inverted-cell",
             Self::Contact { .. } => "contact-geometry",
-            Self::NoConvergence { .. } | Self::Unsettled { .. } => "no-convergence",
+            Self::NoConvergence { .. } | Self::NoMultipliers { .. } | Self::Unsettled { .. } => {
+                "no-convergence"
+            }
             Self::Cycle { .. } => "active-set-cycle",
             Self::StickSlipCycle { .. } => "stick-slip-cycle",
             Self::NoFrictionBalance => "friction-balance",

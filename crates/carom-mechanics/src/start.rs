@@ -132,6 +132,8 @@ pub(crate) fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
                 start: row.gap,
                 lambda: pair.lambda,
                 active: pair.active,
+                multiplier: 0.0,
+                stiffness: 0.0,
             };
             let answer = contact.interface.respond(&at);
             (pair.active, pair.lambda) = (answer.active, answer.lambda);

@@ -169,7 +169,7 @@ impl TangentFactor {
                 saddle.add_row(row, a, slope);
             }
         });
-        if rows.is_skew {
+        if rows.is_skew || rows.yields.iter().any(|compliance| *compliance != 0.0) {
             saddle.direct();
             rows.each_direction(model, |r, unknown, slope| {
                 let included = !(self.of_mass && model.massless[model.free[unknown]]);

@@ -59,6 +59,7 @@ pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary:
         facets: vec![(shape(secondary.0), facets(secondary))],
         depths: [0.01, 0.1],
         friction: None,
+        augmentation: None,
         predictor: false,
         surface,
         at_the_end: false,

@@ -13,6 +13,7 @@ impl Check<'_> {
         let path = |key: &str| contact.path(key);
         let (predictor, penalty) =
             (contact.law == Some(ContactLaw::Predictor), contact.enforcement == Enforcement::Penalty);
+        let multiplier = contact.enforcement == Enforcement::Multiplier;
         let tables = self.tables("contact");
         let given = |key: &str| tables.get(contact.entry).and_then(|n| n.table()?.get(key)).is_some();
         if contact.persistency == Persistency::Project && given("persistency") && (predictor || penalty) {
@@ -21,13 +22,13 @@ impl Check<'_> {
             let what = "persistency = \"project\" cannot be used here";
             self.add(path("persistency"), what, why, "leave persistency out");
         }
-        if !penalty && given("stiffness") && !self.is_misspelt("contact", contact.entry, "enforcement") {
-            let why = "a multiplier enforces the constraint exactly; only enforcement = \"penalty\" has a stiffness";
+        if multiplier && given("stiffness") && !self.is_misspelt("contact", contact.entry, "enforcement") {
+            let why = "a multiplier enforces the constraint exactly; only \"penalty\" and \"augmented\" have a stiffness";
             self.add(
                 path("stiffness"),
-                "`stiffness` is given without a penalty",
+                "`stiffness` is given without springs",
                 why,
-                "leave it out, or give enforcement = \"penalty\"",
+                "leave it out, or give enforcement = \"penalty\" or \"augmented\"",
             );
         }
         if !predictor {
@@ -38,6 +39,15 @@ impl Check<'_> {
             self.add(
                 path("law"),
                 "law = \"predictor\" cannot be used with a penalty",
+                why,
+                "use law = \"position\", or enforcement = \"multiplier\"",
+            );
+        }
+        if contact.enforcement == Enforcement::Augmented {
+            let why = "the predictor is projected in a problem of masses alone, which needs no springs";
+            self.add(
+                path("law"),
+                "law = \"predictor\" cannot be used with an augmented Lagrangian",
                 why,
                 "use law = \"position\", or enforcement = \"multiplier\"",
             );

@@ -98,9 +98,9 @@ impl Check<'_> {
         needs("mu_dynamic", mu_dynamic.is_some(), "mu", "`mu`", mu.is_some(), why);
         let why = "it is the rate of the transition from `mu` to `mu_dynamic`";
         needs("decay", decay.is_some(), "mu_dynamic", "`mu_dynamic`", mu_dynamic.is_some(), why);
-        let (penalty, why) =
-            (contact.enforcement == Enforcement::Penalty, "a multiplier enforces stick exactly");
-        needs("stick_stiffness", stick_stiffness.is_some(), "enforcement", "a penalty", penalty, why);
+        let (springs, why) =
+            (contact.enforcement != Enforcement::Multiplier, "a multiplier enforces stick exactly");
+        needs("stick_stiffness", stick_stiffness.is_some(), "enforcement", "a penalty", springs, why);
         let constant = mu.as_ref().and_then(FormulaSpec::constant);
         if let (Some(stick), Some(slip)) = (constant, *mu_dynamic)
             && slip > stick

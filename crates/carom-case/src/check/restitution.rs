@@ -1,13 +1,13 @@
 //! Checks of the restitution of a conserving scheme: it returns the energy that closing contacts
 //! take, after the projection of velocities and to the whole system at once.
 
-use super::super::{ContactLaw, ContactSpec, Enforcement, Persistency, SchemeSpec};
+use super::super::{ContactLaw, ContactSpec, Persistency, SchemeSpec};
 use super::Check;
 
 impl Check<'_> {
     pub(super) fn conserving_restitution(&mut self, spec: &SchemeSpec) {
         let contacts = &self.draft.contacts;
-        let multiplier = |contact: &&ContactSpec| contact.enforcement == Enforcement::Multiplier;
+        let multiplier = |contact: &&ContactSpec| contact.enforcement.is_exact();
         let first = contacts.iter().flatten().find(multiplier).map_or(0.0, |contact| contact.restitution);
         for contact in contacts.iter().flatten() {
             let Some((why, help)) = self.restitution_is_unusable(contact, first) else { continue };
@@ -21,7 +21,7 @@ impl Check<'_> {
     fn restitution_is_unusable(&self, contact: &ContactSpec, first: f64) -> Option<(&'static str, String)> {
         let light = |name: &str| self.body(name).is_some_and(|body| body.mass.is_redistributed());
         let massless = || contact.bodies().any(light);
-        let multiplier = contact.enforcement == Enforcement::Multiplier;
+        let multiplier = contact.enforcement.is_exact();
         let instead = |other: &str| format!("leave restitution out, or use {other}");
         if multiplier && contact.restitution != first {
             let why = "energy is returned to the whole system at once, so all contacts have one restitution";

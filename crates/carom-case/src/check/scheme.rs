@@ -112,12 +112,12 @@ impl Check<'_> {
                     "leave it out",
                 );
             }
-            if word("enforcement") == Some("penalty") {
+            if let Some(enforcement @ ("penalty" | "augmented")) = word("enforcement") {
                 let why = format!(
                     "{} has its own rule for contact, with forces or impulses instead of springs",
                     spec.kind
                 );
-                let what = "enforcement = \"penalty\" cannot be used with this scheme";
+                let what = format!("enforcement = \"{enforcement}\" cannot be used with this scheme");
                 self.add(format!("contact[{i}].enforcement"), what, why, "leave it out");
             }
             if word("persistency") == Some("project") {

@@ -28,11 +28,18 @@ pub(super) const CONTACT: Table = Table {
             .default("\"node-to-segment\""),
         key(
             "enforcement",
-            Choice(&["multiplier", "penalty"], &["augmented"]),
-            "How the constraint is enforced: exactly by a Lagrange multiplier, or by penalty springs whose energy counts as strain energy.",
+            Choice(&["multiplier", "penalty", "augmented"], &[]),
+            "How the constraint is enforced: exactly by a Lagrange multiplier; by penalty springs whose energy counts as strain energy; or by an \
+             augmented Lagrangian, springs on multipliers that are renewed in rounds until gaps of closed nodes and slips of sticking ones are below \
+             1e-10 of the size of the model.",
         )
         .default("\"multiplier\""),
-        key("stiffness", Number(POSITIVE), "Penalty stiffness, as a multiple of the reference stiffness of the secondary node.")
+        key(
+            "stiffness",
+            Number(POSITIVE),
+            "Stiffness of the springs: of a penalty, as a multiple of the reference stiffness of the secondary node; of an augmented Lagrangian, of \
+             the diagonal of the step's tangent at the node, whose value changes the number of rounds only.",
+        )
             .default("10.0"),
         key(
             "law",
@@ -88,7 +95,7 @@ pub(super) const CONTACT: Table = Table {
             Formula(IN_SPACE_AND_TIME),
             "Coefficient of Coulomb friction μ, for the slip of the secondary side on the primary one: a node sticks while its tangential force is \
              less than μ times its normal force, and otherwise slips against exactly this force. A number, or a formula of the node's reference \
-             position and time. 0: no friction. Default: no friction, or that of `shear`. Dimension 2, and with multipliers dimension 3; rigid \
+             position and time. 0: no friction. Default: no friction, or that of `shear`. Dimension 2, and without penalties dimension 3; rigid \
              obstacles that do not turn, and sides of bodies.",
         )
         .optional()
@@ -123,8 +130,8 @@ pub(super) const CONTACT: Table = Table {
         key(
             "stick_stiffness",
             Number(POSITIVE),
-            "With enforcement = \"penalty\": stiffness of the tangential spring of a node that sticks, as a multiple of its reference stiffness. Its \
-             energy counts as strain energy. Default: `stiffness`.",
+            "Stiffness of the tangential spring of a node that sticks, as `stiffness`. With enforcement = \"penalty\" its energy counts as strain \
+             energy. Default: `stiffness`.",
         )
         .optional()
         .example("10.0"),

@@ -25,7 +25,8 @@ pub struct ContactSpec {
     pub motion: ObstacleMotion,
     /// How the constraint is enforced.
     pub enforcement: Enforcement,
-    /// Penalty stiffness, as a multiple of the reference stiffness of the secondary node.
+    /// Stiffness of springs: of a penalty, as a multiple of the reference stiffness of the
+    /// secondary node; of an augmented Lagrangian, of the diagonal of the step's tangent there.
     pub stiffness: f64,
     /// When the contact force acts in a step.
     pub force: ForceTime,
@@ -139,6 +140,15 @@ pub enum Enforcement {
     Multiplier,
     /// By penalty springs of potential k/2 min(g, 0)².
     Penalty,
+    /// To a tolerance, by springs on multipliers that are renewed until gaps are closed.
+    Augmented,
+}
+
+impl Enforcement {
+    /// Whether closed gaps are zero.
+    pub fn is_exact(self) -> bool {
+        self != Self::Penalty
+    }
 }
 
 /// What a contact constrains.

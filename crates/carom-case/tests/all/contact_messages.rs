@@ -46,12 +46,16 @@ const CONTACTS: &[(&[&str], &[&str])] = &[
         &["law = \"predictor\" cannot be used with a penalty"],
     ),
     (
+        &["contact.strike.law=predictor", "contact.strike.enforcement=augmented"],
+        &["law = \"predictor\" cannot be used with an augmented Lagrangian", "masses alone"],
+    ),
+    (
         &["contact.strike.law=predictor", "contact.strike.persistency=project"],
         &["persistency = \"project\" cannot be used here", "nothing to project"],
     ),
     (
         &["contact.strike.stiffness=3.0"],
-        &["`stiffness` is given without a penalty", "only enforcement = \"penalty\" has a stiffness"],
+        &["`stiffness` is given without springs", "only \"penalty\" and \"augmented\" have a stiffness"],
     ),
     // schemes with their own contact law
     (
@@ -131,6 +135,10 @@ const CONTACTS: &[(&[&str], &[&str])] = &[
     (
         &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.enforcement=penalty"],
         &["enforcement = \"penalty\" cannot be used with this scheme"],
+    ),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.enforcement=augmented"],
+        &["enforcement = \"augmented\" cannot be used with this scheme"],
     ),
     (
         &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "body.prism.mass=redistributed"],

@@ -220,7 +220,6 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     // later versions
     (&["plane=axisymmetric"], &["`plane = \"axisymmetric\"` is not supported yet"]),
     (&["contact.strike.method=mortar"], &["`method = \"mortar\"` is not supported yet"]),
-    (&["contact.strike.enforcement=augmented"], &["use one of: multiplier, penalty"]),
     (&["time.step={ initial = 1e-3 }"], &["`step` must be a number > 0, not a table", "A later version"]),
     (&["body.prism.mesh={ file = \"a.msh\", surface = \"prism\" }"], &["the mesh \"a.msh\" cannot be read"]),
     // shapes

@@ -42,7 +42,7 @@ impl Interface for ConservingPenalty {
         let (lambda, slope) = discrete_gradient(k, at.start, at.gap - at.start);
         let energy = 0.5 * k * at.gap.min(0.0).powi(2);
         if slope > 0.0 {
-            Answer { active: true, lambda, open: 0.0, compliance: slope.recip(), energy }
+            Answer { active: true, lambda, compliance: slope.recip(), energy, ..Answer::default() }
         } else {
             Answer { energy, ..Answer::default() }
         }

@@ -3,14 +3,16 @@
 //!
 //! ```text
 //! [ K   Gᵀ ] [Δy]   [ −r ]
-//! [ G   −C ] [Δλ] = [ −c ]        c = Answer::open, C = Answer::compliance of each active pair
+//! [ G   −C ] [Δλ] = [ −c ]        c = Answer::open, C = Answer::compliance or Answer::yields of each active pair
 //! ```
 
+mod augmented;
 mod conserving_penalty;
 mod conserving_unilateral;
 mod penalty;
 mod unilateral;
 
+pub use augmented::Augmented;
 pub use conserving_penalty::ConservingPenalty;
 pub use conserving_unilateral::ConservingUnilateral;
 pub use penalty::Penalty;
@@ -29,6 +31,10 @@ pub struct Point {
     pub lambda: f64,
     /// See `lambda`.
     pub active: bool,
+    /// λ̂ and r of an augmented Lagrangian.
+    pub multiplier: f64,
+    /// See `multiplier`.
+    pub stiffness: f64,
 }
 
 /// Response of an interface.
@@ -41,8 +47,10 @@ pub struct Answer {
     /// Residual of the row: the gap of a constraint; zero if the traction already corresponds to
     /// the gap.
     pub open: f64,
-    /// ∂g/∂λ: 0 for a constraint.
+    /// ∂g/∂λ of a spring, whose traction follows from its gap: 0 for a constraint.
     pub compliance: f64,
+    /// ∂g/∂λ where λ is an unknown.
+    pub yields: f64,
     /// Stored energy.
     pub energy: f64,
 }

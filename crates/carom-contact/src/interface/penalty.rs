@@ -31,6 +31,7 @@ impl Interface for Penalty {
             open: 0.0,
             compliance: k.recip(),
             energy: 0.5 * k * at.gap * at.gap,
+            ..Answer::default()
         }
     }
 

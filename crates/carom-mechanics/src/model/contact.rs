@@ -26,6 +26,8 @@ pub struct Contact {
     pub depths: [f64; 2],
     /// Friction.
     pub friction: Option<Friction>,
+    /// Springs of its augmented Lagrangian.
+    pub augmentation: Option<Augmentation>,
     /// Whether penetration by the predictor y + Δt v is prevented too.
     pub predictor: bool,
     /// Nodes of both sides and of the carrier of a rigid primary, ascending.
@@ -39,6 +41,14 @@ pub struct Contact {
     pub within: bool,
     /// Coefficient of restitution e; 0 unless the scheme or its conserving constraint uses it.
     pub restitution: f64,
+}
+
+/// The springs of an augmented Lagrangian, as multiples of the diagonal of a step's tangent.
+pub struct Augmentation {
+    /// Normal and tangential multiple.
+    pub factors: [f64; 2],
+    /// Diagonal of the bodies' tangent in the reference configuration at each secondary node.
+    pub stiffness: Vec<f64>,
 }
 
 impl Contact {

@@ -291,7 +291,7 @@ fn evaluate(
 ) -> Result<Evaluation, Rejected> {
     let model = equations.model;
     let mut now = equations.evaluate(
-        Iterate { increment, pairings: Vec::new() },
+        Iterate { increment, ..Iterate::default() },
         &mut work.spare,
         &mut work.timings,
     )?;

@@ -8,10 +8,10 @@ use carom_case::{
     Overlap, Persistency, PrimarySpec, Problem, load_variables,
 };
 use carom_contact::{
-    BothSides, Boundary, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics,
-    NodeToFacet, NodeToObstacle, NodeToPatch, Penalty, Surface, Unilateral,
+    Augmented, BothSides, Boundary, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection,
+    Direction, Kinematics, NodeToFacet, NodeToObstacle, NodeToPatch, Penalty, Surface, Unilateral,
 };
-use carom_mechanics::model::{BodyInstance, Contact, Friction, Model};
+use carom_mechanics::model::{Augmentation, BodyInstance, Contact, Friction, Model};
 use carom_solid::FacetShape;
 
 use super::obstacles::{self, Moving};
@@ -122,7 +122,7 @@ pub(super) fn contacts(
         let follows = is_thrown && !has_mass(&secondary.nodes);
         let light = |part: usize| case.bodies[part].mass.is_redistributed();
         let projects = spec.law == Some(ContactLaw::Position)
-            && spec.enforcement == Enforcement::Multiplier
+            && spec.enforcement.is_exact()
             && !case.time.scheme.is_static()
             && !light(secondary.part)
             && !follows
@@ -155,24 +155,32 @@ pub(super) fn contacts(
                 continue;
             }
         };
+        // With the predictor law y_{n+1} − y_n is not Δt v_½, and no force conserves moment of
+        // momentum.
+        let conserving = conserves && spec.law == Some(ContactLaw::Position);
+        let augmentation = (spec.enforcement == Enforcement::Augmented).then(|| Augmentation {
+            factors: [spec.stiffness, spec.friction.stick_stiffness.unwrap_or(spec.stiffness)],
+            stiffness: kinematics.secondary().iter().map(|&node| node_stiffness(parts, node)).collect(),
+        });
         let contact = Contact {
             name: spec.name.clone(),
             interface: match spec.enforcement {
-                // With the predictor law y_{n+1} − y_n is not Δt v_½, and no force conserves moment
-                // of momentum.
-                Enforcement::Multiplier if conserves && spec.law == Some(ContactLaw::Position) => {
-                    Box::new(ConservingUnilateral)
-                }
+                Enforcement::Multiplier if conserving => Box::new(ConservingUnilateral),
                 Enforcement::Multiplier => Box::new(Unilateral),
+                Enforcement::Augmented if conserving => {
+                    Box::new(Augmented::along(Direction::DiscreteGradient))
+                }
+                Enforcement::Augmented => Box::new(Augmented::default()),
                 Enforcement::Penalty if conserves => Box::new(ConservingPenalty::new(stiffnesses())),
                 Enforcement::Penalty => Box::new(Penalty::new(stiffnesses())),
             },
             // A law on velocities lets positions drift.
-            depths: match (spec.enforcement, spec.law) {
-                (Enforcement::Multiplier, Some(ContactLaw::Position | ContactLaw::Predictor)) => [0.01, 0.1],
+            depths: match (spec.enforcement.is_exact(), spec.law) {
+                (true, Some(ContactLaw::Position | ContactLaw::Predictor)) => [0.01, 0.1],
                 _ => [0.25; 2],
             },
             friction,
+            augmentation,
             predictor: spec.law == Some(ContactLaw::Predictor),
             kinematics,
             // A mass that is thrown is a body; a prescribed obstacle is not.

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod audit;
+mod augmented;
 mod bar;
 mod common;
 mod conserving_contact;

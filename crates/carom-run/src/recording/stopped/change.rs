@@ -108,7 +108,7 @@ impl<'a> Original<'a> {
             ),
             Kind::Multiplier if implicit => self.each(
                 contact,
-                |c| plain(c) && c.enforcement == Enforcement::Penalty,
+                |c| plain(c) && c.enforcement != Enforcement::Multiplier,
                 |_| ["enforcement=multiplier", "persistency=project"].map(ToOwned::to_owned).into(),
             ),
             Kind::Stiffer => self.stiffness(contact, 10.0),
@@ -118,7 +118,7 @@ impl<'a> Original<'a> {
             }
             Kind::Project if implicit => {
                 let unprojected = |c: &ContactSpec| {
-                    c.enforcement == Enforcement::Multiplier
+                    c.enforcement.is_exact()
                         && c.law == Some(ContactLaw::Position)
                         && c.persistency == Persistency::None
                 };

@@ -1,0 +1,204 @@
+//! Augmented Lagrangians end where multipliers do, whatever their springs; and what holds for
+//! multipliers: resumed runs, momentum, the ledger, no friction for μ = 0.
+
+use carom_contact::Hold;
+use carom_run::{GridReport, Simulation};
+
+use super::common::{DISCS, case as case_of, finish, momenta, simulation};
+use super::space_contact::{self, BALL};
+
+/// One of every family of implicit schemes; undamped ones with few nodes amplify round-off.
+const SCHEMES: [&str; 5] = [
+    r#"{ kind = "chung-hulbert", rho_inf = 0.5 }"#,
+    r#"{ kind = "hht", alpha = 0.1 }"#,
+    r#"{ kind = "bathe", rho_inf = 0.0 }"#,
+    r#"{ kind = "tr-bdf2" }"#,
+    r#"{ kind = "energy-momentum" }"#,
+];
+
+fn discs(scheme: &str, enforcement: &str, mu: &str) -> Vec<String> {
+    vec![
+        format!("time.scheme={scheme}"),
+        format!("contact.strike.enforcement={enforcement}"),
+        format!("contact.strike.mu={mu}"),
+        "time.end=0.3".into(),
+    ]
+}
+
+/// Largest differences of positions and of velocities.
+fn apart(a: &Simulation, b: &Simulation) -> [f64; 2] {
+    let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    [largest(&a.state().y, &b.state().y), largest(&a.state().v, &b.state().v)]
+}
+
+/// From the same state in every step: over many steps, schemes with little damping amplify the
+/// tolerances of both.
+#[test]
+fn every_step_is_that_of_multipliers() {
+    for scheme in SCHEMES {
+        for mu in ["0.0", "0.2"] {
+            let run = |enforcement: &str| simulation(DISCS, &discs(scheme, enforcement, mu));
+            let (mut exact, mut augmented) = (run("multiplier"), run("augmented"));
+            let (mut closed, mut rubbed) = (0, 0.0);
+            while !exact.finished() {
+                augmented.restore(exact.state().clone()).unwrap();
+                exact.advance(&mut GridReport::default()).unwrap();
+                augmented.advance(&mut GridReport::default()).unwrap();
+                let [place, speed] = apart(&exact, &augmented);
+                // The tolerance of gaps is 1e-10, and that of velocities over a step 1e-7.
+                assert!(place < 1e-9 && speed < 1e-6, "{scheme} {mu}: {place:e} {speed:e}");
+                let [a, b] = [&exact, &augmented].map(|sim| sim.state());
+                assert!((a.ledger.contact_work - b.ledger.contact_work).abs() < 1e-9, "{scheme} {mu}");
+                assert!((a.ledger.friction_work - b.ledger.friction_work).abs() < 1e-9, "{scheme} {mu}");
+                assert!((a.ledger.dissipation() - b.ledger.dissipation()).abs() < 1e-9, "{scheme} {mu}");
+                assert_eq!(b.ledger.springs, 0.0);
+                closed += usize::from(b.pairs[0].iter().any(|pair| pair.active));
+                rubbed = b.ledger.friction_work;
+            }
+            assert!(closed > 10 && (rubbed < 0.0) == (mu != "0.0"), "{scheme} {mu}: {closed} {rubbed}");
+        }
+    }
+}
+
+/// Over six orders of magnitude of their stiffness, with the same nodes in the same states.
+#[test]
+fn the_springs_do_not_matter() {
+    let states = |sim: &Simulation| {
+        let pairs = sim.state().pairs[0].iter().filter(|pair| pair.active);
+        pairs.map(|pair| (pair.node, pair.tangential.hold == Hold::Stick)).collect::<Vec<_>>()
+    };
+    let mut exact = simulation(DISCS, &discs(SCHEMES[0], "multiplier", "0.2"));
+    let mut others: Vec<Simulation> = ["1e-2", "1.0", "1e2", "1e4"]
+        .iter()
+        .map(|stiffness| {
+            let mut sets = discs(SCHEMES[0], "augmented", "0.2");
+            sets.push(format!("contact.strike.stiffness={stiffness}"));
+            simulation(DISCS, &sets)
+        })
+        .collect();
+    let mut both = [false; 2];
+    while !exact.finished() {
+        exact.advance(&mut GridReport::default()).unwrap();
+        let expected = states(&exact);
+        expected.iter().for_each(|(_, sticks)| both[usize::from(*sticks)] = true);
+        for (k, other) in others.iter_mut().enumerate() {
+            other.advance(&mut GridReport::default()).unwrap();
+            assert_eq!(states(other), expected, "{k}: {}", exact.state().time);
+            let [place, _] = apart(&exact, other);
+            assert!(place < 1e-8, "{k}: {place:e}");
+        }
+    }
+    assert_eq!(both, [true; 2]);
+}
+
+#[test]
+fn a_resumed_run_ends_with_the_same_bits() {
+    for scheme in SCHEMES {
+        let sets = discs(scheme, "augmented", "0.1");
+        let mut whole = simulation(DISCS, &sets);
+        let mut checkpoint = None;
+        while !whole.finished() {
+            if checkpoint.is_none() && whole.state().pairs[0].iter().any(|pair| pair.active) {
+                checkpoint = Some(postcard::to_stdvec(whole.state()).unwrap());
+            }
+            whole.advance(&mut GridReport::default()).unwrap();
+        }
+        let state = postcard::from_bytes(&checkpoint.expect("contact")).unwrap();
+        let resumed = finish(carom_run::Setup::new(&case_of(DISCS, &sets)).resume(state).unwrap());
+        assert_eq!(resumed.state(), whole.state(), "{scheme}");
+    }
+}
+
+#[test]
+fn momentum_is_conserved() {
+    for scheme in SCHEMES {
+        let start = simulation(DISCS, &discs(scheme, "augmented", "0.2"));
+        let before = momenta(&start, &start.state().v);
+        let with = finish(start);
+        let after = momenta(&with, &with.state().v);
+        for i in 0..2 {
+            assert!((after[i] - before[i]).abs() < 1e-12, "{scheme}: {before:?} {after:?}");
+        }
+        assert!(with.state().ledger.friction_work < 0.0, "{scheme}");
+    }
+}
+
+#[test]
+fn a_coefficient_of_zero_is_no_friction() {
+    // A formula, so that friction is in the model.
+    let run = |mu: &str| simulation(DISCS, &discs(SCHEMES[0], "augmented", mu));
+    let (mut zero, mut none) = (run("\"0*t\""), run("0.0"));
+    while !none.finished() {
+        [&mut zero, &mut none].map(|sim| sim.advance(&mut GridReport::default()).unwrap());
+        let [place, speed] = apart(&zero, &none);
+        assert!(place < 1e-8 && speed < 1e-6, "{place:e} {speed:e}");
+    }
+    assert_eq!(zero.state().ledger.friction_work, 0.0);
+}
+
+/// Directions of slips are unknowns, as with multipliers.
+#[test]
+fn in_space_the_answer_is_that_of_multipliers_too() {
+    for scheme in [SCHEMES[0], SCHEMES[4]] {
+        let run = |enforcement: &str| {
+            let mut sets = vec![
+                format!("time.scheme={scheme}"),
+                "contact.strike.mu=0.2".into(),
+                format!("contact.strike.enforcement={enforcement}"),
+                "time.end=0.03".into(),
+            ];
+            if scheme.contains("energy") {
+                sets.push("material.rubber.law=\"saint-venant-kirchhoff\"".into());
+            }
+            finish(simulation(BALL, &sets))
+        };
+        let (exact, augmented) = (run("multiplier"), run("augmented"));
+        let [place, speed] = apart(&exact, &augmented);
+        assert!(place < 1e-8 && speed < 1e-6, "{scheme}: {place:e} {speed:e}");
+        let before = space_contact::momenta(&simulation(BALL, &[] as &[&str]));
+        let after = space_contact::momenta(&augmented);
+        for i in 0..3 {
+            assert!((after[i] - before[i]).abs() < 1e-11, "{scheme}: {before:?} {after:?}");
+        }
+        let [a, b] = [&exact, &augmented].map(|sim| sim.state().ledger.friction_work);
+        assert!(a < 0.0 && (a - b).abs() < 1e-8, "{scheme}: {a} {b}");
+    }
+}
+
+/// Where supports hold the nodes of both sides, there is nothing to find.
+#[test]
+fn what_cannot_close_is_said() {
+    let text = r#"
+dimension = 2
+[[material]]
+name = "rubber"
+law = "linear-elastic"
+density = 1.0
+young = 1.0
+poisson = 0.0
+[[body]]
+name = "block"
+material = "rubber"
+element = "T3"
+mesh = { shape = "rectangle", min = [0.0, 0.1], max = [1.0, 1.1], cells = [2, 2] }
+[[support]]
+on = ["block.bottom"]
+move = { x = "0", y = "-0.3*t" }
+[[contact]]
+name = "floor"
+secondary = "block.bottom"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+enforcement = "augmented"
+[time]
+end = 1.0
+step = 0.5
+scheme = { kind = "static" }
+"#;
+    let mut sim = simulation(text, &[] as &[&str]);
+    let error = loop {
+        if let Err(error) = sim.advance(&mut GridReport::default()) {
+            break error.to_string();
+        }
+    };
+    assert!(error.contains("did not close its contacts in") || error.contains("supports prevent"), "{error}");
+}
