@@ -52,7 +52,7 @@ class FieldSet:
         Cells, one block per body.
     arrays : dict of str to ndarray, shape (points, components)
         ``displacement``, ``velocity``, ``stress`` (Cauchy, XX YY ZZ XY YZ XZ), ``von_mises``,
-        ``principal_stress`` (descending), ``principal_log_strain`` (logarithmic, ln λ of the
+        ``principal_stress`` (descending, tension positive), ``principal_log_strain`` (ln λ of the
         principal stretches, descending; no unit), ``contact_pressure``.
     units : dict of str to str
         Their unit labels.
