@@ -61,7 +61,7 @@ fn the_time_of_first_contact_is_that_of_free_flight() {
         (DISC, &[corner], 0.015),
         (DISC, &[circle], 0.0525),
         (BAR, &bar, 0.02),
-        (BALL, &["time.end=0.01"], 0.01 / 3.0),
+        (BALL, &[], 0.01 / 3.0),
     ] {
         let (met, dt) = first_meeting(text, sets);
         assert!((met - exact).abs() < 1e-6 * dt, "{sets:?}: {met:.12} {exact:.12}");
