@@ -139,7 +139,7 @@ pub(crate) fn mesh(
     hash: &str,
 ) -> Result<Mesh, NoMesh> {
     let bytes = unchanged(file, hash)?;
-    let none = |error: gmsh::MshError| NoMesh::File { file: file.to_owned(), error };
+    let none = |error: gmsh::MshError| NoMesh::File { file: file.to_owned(), error: Box::new(error) };
     gmsh::read(&bytes).and_then(|f| group(f, dimension, surface, slits)).map_err(none)
 }
 

@@ -17,7 +17,7 @@ pub enum NoMesh {
         file: PathBuf,
         /// Why.
         #[source]
-        error: gmsh::MshError,
+        error: Box<gmsh::MshError>,
     },
     /// Its file cannot be used: a sentence with its name.
     #[error("{0}")]

@@ -13,23 +13,23 @@ impl Check<'_> {
             return;
         };
         if let Some(why) = of_scheme(&time.scheme) {
-            self.refuse(format!("with scheme `{}`", time.scheme.kind), why, "leave it out");
+            self.refuse(&format!("with scheme `{}`", time.scheme.kind), why, "leave it out");
             return;
         }
         for contact in draft.contacts.iter().flatten() {
             if let Some((what, why, help)) = of_contact(contact) {
-                self.refuse(format!("with {what} of contact `{}`", contact.name), why, help);
+                self.refuse(&format!("with {what} of contact `{}`", contact.name), why, help);
             }
         }
         let light = |body: &&BodySpec| self.massless(body) || body.mass.is_redistributed();
         if let Some(body) = draft.bodies.iter().flatten().find(light) {
             let why = "the velocity of a node without mass does not follow from an impulse";
             let help = "give the body a density > 0 and mass = \"consistent\" or \"lumped\", or leave it out";
-            self.refuse(format!("with nodes without mass in body `{}`", body.name), why, help);
+            self.refuse(&format!("with nodes without mass in body `{}`", body.name), why, help);
         }
     }
 
-    fn refuse(&mut self, with: String, why: &str, help: &str) {
+    fn refuse(&mut self, with: &str, why: &str, help: &str) {
         let what = format!("fallback = \"velocity\" cannot be used {with}");
         self.add_unique("time.fallback".to_owned(), what, why, help);
     }
@@ -50,6 +50,9 @@ fn of_contact(contact: &ContactSpec) -> Option<(&'static str, &'static str, &'st
     if contact.enforcement == Enforcement::Penalty {
         let why = "the step constrains gaps, and springs let nodes penetrate: it would throw them out";
         Some(("enforcement = \"penalty\"", why, "use enforcement = \"multiplier\", or leave it out"))
+    } else if contact.enforcement == Enforcement::Augmented {
+        let why = "the step finds its impulses by a complementarity problem, not in rounds";
+        Some(("enforcement = \"augmented\"", why, "use enforcement = \"multiplier\", or leave it out"))
     } else if contact.friction.exists() {
         let why = "the step has normal impulses only, and a node that sticks would slip in it";
         Some(("friction", why, "leave out the fallback or the friction"))
