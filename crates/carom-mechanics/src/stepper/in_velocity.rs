@@ -81,7 +81,7 @@ pub(super) fn solve_in_velocity(
             let pair = &mut pairings[k].pairs[p];
             (pair.active, pair.lambda) = (*impulse > 0.0, -impulse / dt);
         }
-        increment.clone_from(&now.at.increment);
+        increment = now.at.increment.to_vec();
         if let Some((before, _)) = solved.replace((now, impulses)) {
             work.spare.put(before);
         }
