@@ -69,7 +69,7 @@ pub(super) fn solve_in_velocity(
             settings,
             equations,
             shares,
-            increment,
+            std::mem::take(&mut increment),
             &mut impulses,
             &mut effort.iterations,
             work,
@@ -81,7 +81,7 @@ pub(super) fn solve_in_velocity(
             let pair = &mut pairings[k].pairs[p];
             (pair.active, pair.lambda) = (*impulse > 0.0, -impulse / dt);
         }
-        increment = now.at.increment.to_vec();
+        increment.clone_from(&now.at.increment);
         if let Some((before, _)) = solved.replace((now, impulses)) {
             work.spare.put(before);
         }
