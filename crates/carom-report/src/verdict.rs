@@ -2,6 +2,7 @@
 //! the first contact.
 
 use carom_record::Reason;
+use carom_record::metrics::Metric;
 use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ranking::{Crosscheck, Ranking, error, standing};
 use carom_record::study::reference::{Reference, Standing};
@@ -218,7 +219,9 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
 /// What the reference establishes, and what it does not.
 fn reference_values(study: &Study, reference: &Reference) -> Markup {
     let (mut not, mut yes) = (Vec::new(), Vec::new());
-    for metric in study.metrics().into_iter().filter(|m| !m.is_work()) {
+    // The impulse along z of plane cases has no value in any run.
+    let known = |m: &&Metric| study.rows.iter().any(|row| row.value(&m.name).is_some());
+    for metric in study.metrics().into_iter().filter(known).filter(|m| !m.is_work()) {
         match standing(Some(reference), &metric.name) {
             Standing::Not(why) => not.push((metric.name.to_string(), why)),
             Standing::Established { value, uncertainty } => yes.push((metric, value, uncertainty)),
@@ -250,10 +253,11 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                 }
             }
             p.small {
-                "The uncertainty is that of the refinement (grid convergence index), plus the half-width of \
-                 the ensemble, which is the largest distance of a member from the median, plus a step for \
-                 instants (half a step with several phases), plus 5/4 of what averaging over 1/16 of the \
-                 contact changes, for extremes and variations."
+                "The uncertainty is that of the refinement (grid convergence index; with an ensemble the \
+                 median over its members), plus the half-width of the ensemble, which is the largest \
+                 distance of a member from the median, plus a step for instants (half a step with several \
+                 phases), plus 5/4 of what averaging over 1/16 of the contact changes, for extremes and \
+                 variations."
             }
         }
         details {
