@@ -65,7 +65,9 @@ fn every_step_is_that_of_multipliers() {
     }
 }
 
-/// Over six orders of magnitude of their stiffness, with the same nodes in the same states.
+/// Over six orders of magnitude of their stiffness, with the same nodes in the same states. Where a
+/// step was bisected, the answer is that of shorter steps: the first round of very soft springs may
+/// cycle between stick and slip.
 #[test]
 fn the_springs_do_not_matter() {
     let states = |sim: &Simulation| {
@@ -81,21 +83,29 @@ fn the_springs_do_not_matter() {
             simulation(DISCS, &sets)
         })
         .collect();
-    let mut both = [false; 2];
+    let (mut both, mut bisected) = ([false; 2], [0; 4]);
     while !exact.finished() {
         let before = exact.state().clone();
-        exact.advance(&mut GridReport::default()).unwrap();
+        let mut report = GridReport::default();
+        exact.advance(&mut report).unwrap();
+        assert_eq!(report.rejected, 0);
         let expected = states(&exact);
         expected.iter().for_each(|(_, sticks)| both[usize::from(*sticks)] = true);
         for (k, other) in others.iter_mut().enumerate() {
             other.restore(before.clone()).unwrap();
-            other.advance(&mut GridReport::default()).unwrap();
+            let mut report = GridReport::default();
+            other.advance(&mut report).unwrap();
+            if report.rejected > 0 {
+                bisected[k] += 1;
+                continue;
+            }
             assert_eq!(states(other), expected, "{k}: {}", exact.state().time);
             let [place, _] = apart(&exact, other);
             assert!(place < 1e-9, "{k}: {place:e}");
         }
     }
     assert_eq!(both, [true; 2]);
+    assert!(bisected[0] <= 1 && bisected[1..] == [0; 3], "{bisected:?}");
 }
 
 #[test]
