@@ -124,7 +124,7 @@ impl Closed {
                 continue;
             }
             let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
-            contact.kinematics.slip(&state.pairs[k][p], &state.y, &mut slips).map_err(failed)?;
+            contact.kinematics.slip(&state.pairs[k][p], &state.y, &[], &mut slips).map_err(failed)?;
         }
         Ok(Self { places, normals, slips, laws })
     }
@@ -166,7 +166,7 @@ impl Closed {
             let along: Vec<f64> = row.entries().map(|(dof, _)| state.v[dof]).collect();
             matrix.clear();
             matrix.resize(along.len().pow(2), 0.0);
-            contact.kinematics.slip_derivative_into(&pair, &state.y, tangent, &mut matrix);
+            contact.kinematics.slip_derivative_into(&pair, &state.y, &[], tangent, &mut matrix);
             let rows = along.iter().zip(matrix.chunks_exact(along.len()));
             rows.map(|(v, row)| v * row.iter().zip(&along).map(|(c, w)| c * w).sum::<f64>()).sum()
         })

@@ -140,7 +140,7 @@ impl Equations<'_> {
         slips.pop();
         let part = self.part(contact, pair, gap, slips);
         let first = slips.len();
-        kinematics.slip(&at_middle, middle, slips)?;
+        kinematics.slip(&at_middle, middle, increment, slips)?;
         for row in first..slips.len() {
             let counted = |(dof, slope): (usize, f64)| slope * self.counted(dof, part, increment);
             let slip = slips.row(row).entries().map(counted).sum();
@@ -308,7 +308,7 @@ pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usiz
             let mut at = *pair;
             rows.clear();
             if contact.kinematics.measure(&mut at, &state.y, &mut rows).is_ok()
-                && contact.kinematics.slip(&at, &state.y, &mut rows).is_ok()
+                && contact.kinematics.slip(&at, &state.y, &[], &mut rows).is_ok()
             {
                 let along = rows.iter().skip(1).zip(pair.tangential.traction);
                 along.for_each(|(row, traction)| visit(k, p, traction, row));

@@ -36,7 +36,8 @@ impl Equations<'_> {
             if !is_there {
                 continue;
             }
-            kinematics.slip_derivative_into(&at_middle, &evaluation.middle, tangent, turned);
+            let (y, moved) = (&evaluation.middle, &evaluation.at.increment);
+            kinematics.slip_derivative_into(&at_middle, y, moved, tangent, turned);
             turned.iter_mut().for_each(|entry| *entry *= 0.5);
             let counted = row.entries().map(|(dof, _)| self.counted(dof, part, &evaluation.at.increment));
             for (turned, moved) in turned.chunks_exact(slope.len()).zip(counted) {

@@ -2,9 +2,7 @@
 //! friction that it asks for.
 
 use super::super::{ContactLaw, Detection};
-use super::super::{
-    ContactPoint, ContactSpec, Enforcement, FormulaSpec, FrictionSpec, MassKind, ObstacleMotion,
-};
+use super::super::{ContactPoint, ContactSpec, Enforcement, FormulaSpec, FrictionSpec, MassKind};
 use super::Check;
 
 impl Check<'_> {
@@ -16,7 +14,6 @@ impl Check<'_> {
         }
         let draft = self.draft;
         let scheme = draft.time.as_ref().map(|time| &time.scheme);
-        let turns = matches!(&contact.motion, ObstacleMotion::Prescribed { rotate: Some(_), .. });
         let is_light = |side: &str| {
             let name = side.split_once('.').map_or(side, |(body, _)| body);
             draft.bodies.iter().flatten().any(|body| {
@@ -49,15 +46,6 @@ impl Check<'_> {
                 spring is not implemented for it";
             refuse("with a conserving penalty", why, "use enforcement = \"multiplier\", or leave mu out");
         }
-        let moves = matches!(contact.motion, ObstacleMotion::Prescribed { .. });
-        if let Some(scheme) = scheme
-            && scheme.nonsmooth().is_some()
-            && moves
-        {
-            let why = "the slip of explicit and impulse schemes does not contain the velocity of a prescribed motion";
-            let help = "use an implicit scheme, or a body with moving supports instead of the obstacle, or leave mu out";
-            refuse(&format!("with a moving obstacle and scheme `{}`", scheme.kind), why, help);
-        }
         if contact.law == Some(ContactLaw::Predictor) {
             let why = "the projection of the predictor has no friction";
             refuse("with law = \"predictor\"", why, "use law = \"position\", or leave mu out");
@@ -65,14 +53,6 @@ impl Check<'_> {
         if contact.xi == ContactPoint::Frozen || contact.detection == Detection::Trajectory {
             let why = "the slip is that of the closest point";
             refuse("with this contact point", why, "leave xi and detection out, or leave mu out");
-        }
-        if turns {
-            let why = "the slip on an obstacle is exact only while it does not turn within a step";
-            refuse(
-                "with an obstacle that turns",
-                why,
-                "use a body instead of the obstacle, leave out `rotate`, or leave mu out",
-            );
         }
         if light {
             let why = "a node without mass would stick and slip without inertia";

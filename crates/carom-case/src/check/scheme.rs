@@ -2,7 +2,7 @@
 
 use carom_time::Nonsmooth;
 
-use super::super::{ContactLaw, MassKind, SchemeSpec};
+use super::super::{ContactLaw, MassKind, ObstacleMotion, SchemeSpec};
 use super::Check;
 
 impl Check<'_> {
@@ -11,7 +11,7 @@ impl Check<'_> {
         let Some(spec) = draft.time.as_ref().map(|time| &time.scheme) else { return };
         if let Some(scheme) = spec.nonsmooth() {
             self.masses(spec);
-            self.fixed_supports(spec);
+            self.nothing_moves(spec);
             self.rules_of_stages(spec);
             self.restitutions(spec, &scheme);
         } else if spec.conserves() {
@@ -82,17 +82,29 @@ impl Check<'_> {
         }
     }
 
-    /// These schemes have fixed supports only.
-    fn fixed_supports(&mut self, spec: &SchemeSpec) {
-        for (i, support) in self.draft.supports.iter().enumerate() {
-            if support.as_ref().is_some_and(|s| !s.moves.is_empty()) {
-                let what = format!("moving supports are not available with {}", spec.kind);
-                let why =
-                    "the work and the impulse of a moving support are implemented for implicit schemes only";
-                let help =
-                    "fix the side, apply a [[load]] instead, or use an implicit scheme such as chung-hulbert";
-                self.add(format!("support[{i}].move"), what, why, help);
-            }
+    /// These schemes have fixed supports and obstacles only.
+    fn nothing_moves(&mut self, spec: &SchemeSpec) {
+        let draft = self.draft;
+        let supports = draft.supports.iter().enumerate();
+        let moved = supports.filter(|(_, support)| support.as_ref().is_some_and(|s| !s.moves.is_empty()));
+        let supports = moved.map(|(i, _)| {
+            let help =
+                "fix the side, apply a [[load]] instead, or use an implicit scheme such as chung-hulbert";
+            ("supports", "support", format!("support[{i}].move"), help)
+        });
+        let contacts = draft.contacts.iter().flatten();
+        let moved = contacts.filter(|c| matches!(c.motion, ObstacleMotion::Prescribed { .. }));
+        let obstacles = moved.map(|contact| {
+            let help = "leave out `motion` and give the bodies the opposite velocity, or use an implicit \
+                        scheme such as chung-hulbert";
+            ("obstacles", "obstacle", contact.path("primary"), help)
+        });
+        for (many, one, path, help) in supports.chain(obstacles).collect::<Vec<_>>() {
+            let what = format!("moving {many} are not available with {}", spec.kind);
+            let why = format!(
+                "the work and the impulse of a moving {one} are implemented for implicit schemes only"
+            );
+            self.add(path, what, why, help);
         }
     }
 

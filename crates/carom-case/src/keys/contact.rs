@@ -169,7 +169,7 @@ const RIGID: Table = Table {
         key(
             "motion",
             Kind::Table(&MOTION),
-            "Prescribed motion by formulas in t. Its reaction forces are recorded under the name of the contact, and its work is external_work.",
+            "Prescribed motion by formulas in t, with implicit schemes. Its reaction forces are recorded under the name of the contact, and its work is external_work.",
         )
         .optional()
         .example("{ x = \"0.1*t\" }"),

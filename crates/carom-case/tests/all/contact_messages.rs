@@ -133,6 +133,13 @@ const CONTACTS: &[(&[&str], &[&str])] = &[
         &["moving supports are not available with moreau-jean", "chung-hulbert"],
     ),
     (
+        &[
+            "time.scheme={ kind = \"moreau-jean\", theta = 1.0 }",
+            "contact.strike.primary={ plane = { point = [0, 0], normal = [0, 1] }, motion = { y = \"t\" } }",
+        ],
+        &["moving obstacles are not available with moreau-jean", "chung-hulbert"],
+    ),
+    (
         &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.enforcement=penalty"],
         &["enforcement = \"penalty\" cannot be used with this scheme"],
     ),

@@ -210,18 +210,25 @@ impl<K: OneWay> Kinematics for BothSides<K> {
         direction.curvature_into(&Pair { node, ..*pair }, y, curvature);
     }
 
-    fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+    fn slip(&self, pair: &Pair, y: &[f64], moved: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let (direction, node) = self.direction(pair.node);
         let first = rows.len();
-        direction.slip(&Pair { node, ..*pair }, y, rows)?;
+        direction.slip(&Pair { node, ..*pair }, y, moved, rows)?;
         if node != pair.node {
             rows.reverse_from(first);
         }
         Ok(())
     }
 
-    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]) {
+    fn slip_derivative_into(
+        &self,
+        pair: &Pair,
+        y: &[f64],
+        moved: &[f64],
+        tangent: usize,
+        matrix: &mut [f64],
+    ) {
         let (direction, node) = self.direction(pair.node);
-        direction.slip_derivative_into(&Pair { node, ..*pair }, y, tangent, matrix);
+        direction.slip_derivative_into(&Pair { node, ..*pair }, y, moved, tangent, matrix);
     }
 }

@@ -121,17 +121,18 @@ pub trait Kinematics: Send + Sync {
     /// Adds the rows H_α of the slip of a pair measured at `y`, over the nodes of its gap, one per
     /// tangent: H_α·Δy is the tangential motion of the first node relative to the other side, which
     /// turns with it. A slip from y₀ to y₁ is H·(y₁ − y₀) at their midpoint, where every finite
-    /// rigid motion of the pair is an infinitesimal one: the slip is exactly zero. The first node's
-    /// part of a row is the tangent; the plane has one, space two (`tangents.rs`).
+    /// rigid motion of the pair is an infinitesimal one: the slip is exactly zero. `moved`: y₁ − y₀,
+    /// if `y` is their midpoint, and empty for the rate of slip at `y`. The first node's part of a
+    /// row is the tangent; the plane has one, space two (`tangents.rs`).
     ///
     /// # Errors
     /// If there is no unique closest point; no row is added.
-    fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError>;
+    fn slip(&self, pair: &Pair, y: &[f64], moved: &[f64], rows: &mut Rows) -> Result<(), ContactError>;
 
-    /// ∂H_α/∂y of a pair measured at `y`, with tangents that turn with the normal only: overwrites
-    /// the first `(n·D)²` entries of `matrix`, row-major, not symmetric. In space `pair` has the
-    /// tangent of these positions.
-    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]);
+    /// ∂H_α/∂y of a pair measured at `y`, with tangents that turn with the normal only and y₀ (see
+    /// [`slip`](Self::slip)) fixed: overwrites the first `(n·D)²` entries of `matrix`, row-major,
+    /// not symmetric. In space `pair` has the tangent of these positions.
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], moved: &[f64], tangent: usize, matrix: &mut [f64]);
 }
 
 /// θ at which a gap that is linear in θ becomes negative; none if it does not.

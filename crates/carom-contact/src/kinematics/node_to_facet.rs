@@ -438,7 +438,7 @@ impl Kinematics for NodeToFacet {
         );
     }
 
-    fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+    fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let (node, facet) = (self.secondary[pair.node], self.primary.facet(pair.facet));
         let gap = self.gap_of(pair, self.places(y));
         if gap.a <= 0.0 || !gap.a.is_finite() {
@@ -449,7 +449,7 @@ impl Kinematics for NodeToFacet {
         Ok(())
     }
 
-    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: usize, matrix: &mut [f64]) {
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], _: usize, matrix: &mut [f64]) {
         let facet = self.primary.facet(pair.facet);
         self.gap_of(pair, self.places(y)).slip_derivative_into(facet.nodes.len(), matrix);
     }

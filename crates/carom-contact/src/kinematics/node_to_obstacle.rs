@@ -7,8 +7,17 @@
 //! ∂²g/∂x² = R H Rᵀ = ∂²g/∂c² = −∂²g/∂x∂c     ∂²g/∂x∂θ = R (Jn − H Js) = −∂²g/∂c∂θ     ∂²g/∂θ² = Js·H Js − n·s
 //! ```
 //!
-//! The slip of an obstacle that does not turn has the rows ∂S/∂x = τ = −∂S/∂c of every tangent, in
-//! the plane τ = Jn, with ∂τ/∂x = −h n τᵀ where H = h (1 − n nᵀ).
+//! The slip has the rows ∂S/∂x = τ = −∂S/∂c of every tangent, and in the plane, with t = Jn and τ =
+//! R t,
+//!
+//! ```text
+//! ∂S/∂θ = −κ n·s,   κ = tan φ/φ,   φ = ½Δθ        dτ = −R n (h τ·(dx − dc) + (1 − h n·s) dθ),   H = h (1 − n nᵀ)
+//! d(n·s) = (h (t·s) τ + R n)·(dx − dc) + (1 − h n·s)(t·s) dθ
+//! ```
+//!
+//! A point that turns with the obstacle moves along a chord, 2 sin φ of the arm, whose middle has
+//! the arm cos φ: with κ the slip is zero for every Δθ < π, and the moment of friction, κ times its
+//! force times its arm, does the work that friction takes.
 //!
 //! The angle is the first component of a node of its own, as the arc θℓ, a length like every other
 //! unknown; the force on it is moment/ℓ. So motion of an obstacle is motion of nodes: supports
@@ -120,6 +129,20 @@ impl NodeToObstacle {
             return [turned(normal), [0.0; 3]];
         }
         tangents(Vector(normal), pair.tangential.tangents).map(|tangent| tangent.0)
+    }
+
+    /// κ = tan φ/φ and its derivative by φ, with half of the angle by which the obstacle turns.
+    fn chord(&self, moved: &[f64]) -> [f64; 2] {
+        let turn = self.carrier.as_ref().and_then(|carrier| carrier.turn);
+        let half = turn.map_or(0.0, |(angle, _, length)| {
+            0.5 * moved.get(angle * self.dimension).copied().unwrap_or(0.0) / length
+        });
+        if half.abs() < 1e-3 {
+            let square = half * half;
+            return [1.0 + square / 3.0 + square * square * 2.0 / 15.0, half * (2.0 + square * 1.6) / 3.0];
+        }
+        let tan = half.tan();
+        [tan / half, (1.0 + tan * tan) / half - tan / (half * half)]
     }
 
     fn near(&self, piece: usize, at: Point, node: usize) -> Result<Near, ContactError> {
@@ -270,34 +293,58 @@ impl Kinematics for NodeToObstacle {
         curvature[angle * size + angle] = (dot(arm_turned, bent) - dot(normal, arm)) / (length * length);
     }
 
-    fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+    fn slip(&self, pair: &Pair, y: &[f64], moved: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
-        let normal = self.near(pair.facet, self.local(node, y).at, node)?.normal;
-        for along in self.tangents(pair, normal).into_iter().take(self.dimension - 1) {
+        let Local { at, arm, turn } = self.local(node, y);
+        let normal = self.near(pair.facet, at, node)?.normal;
+        for along in self.tangents(pair, rotated(normal, turn)).into_iter().take(self.dimension - 1) {
+            let back = along.map(|x| -x);
             match &self.carrier {
                 None => rows.push(0.0, [(node, along)]),
-                Some(Carrier { node: carrier, .. }) => {
-                    rows.push(0.0, [(node, along), (*carrier, along.map(|x| -x))]);
+                Some(Carrier { node: carrier, turn: None, .. }) => {
+                    rows.push(0.0, [(node, along), (*carrier, back)]);
+                }
+                Some(Carrier { node: carrier, turn: Some((angle, _, length)), .. }) => {
+                    let moment = -self.chord(moved)[0] * dot(normal, arm) / length;
+                    rows.push(0.0, [(node, along), (*carrier, back), (*angle, [moment, 0.0, 0.0])]);
                 }
             }
         }
         Ok(())
     }
 
-    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]) {
-        let (d, blocks) = (self.dimension, self.stencil());
-        let size = d * blocks;
+    fn slip_derivative_into(
+        &self,
+        pair: &Pair,
+        y: &[f64],
+        moved: &[f64],
+        tangent: usize,
+        matrix: &mut [f64],
+    ) {
+        let (d, size) = (self.dimension, self.stencil() * self.dimension);
         let matrix = &mut matrix[..size * size];
         matrix.fill(0.0);
-        let at = self.local(self.secondary[pair.node], y).at;
+        let Local { at, arm, turn } = self.local(self.secondary[pair.node], y);
         let Some(Near { normal, bend, .. }) = self.shape.near(pair.facet, at) else { return };
-        let along = self.tangents(pair, normal)[tangent];
+        let n = rotated(normal, turn);
+        let along = self.tangents(pair, n)[tangent];
         let sign = |block: usize| if block == 0 { 1.0 } else { -1.0 };
+        let blocks = size.min(2 * d) / d;
         for (p, q) in (0..blocks).flat_map(|p| (0..blocks).map(move |q| (p, q))) {
             for (i, k) in (0..d).flat_map(|i| (0..d).map(move |k| (i, k))) {
-                matrix[(p * d + i) * size + q * d + k] = -sign(p) * sign(q) * bend * normal[i] * along[k];
+                matrix[(p * d + i) * size + q * d + k] = -sign(p) * sign(q) * bend * n[i] * along[k];
             }
         }
+        let Some((_, _, length)) = self.carrier.as_ref().and_then(|carrier| carrier.turn) else { return };
+        let [factor, slope] = self.chord(moved);
+        let [across, beside] = [normal, turned(normal)].map(|direction| dot(direction, arm));
+        let turns = 1.0 - bend * across;
+        let angle = 2 * d;
+        for (p, i) in (0..2).flat_map(|p| (0..d).map(move |i| (p, i))) {
+            matrix[(p * d + i) * size + angle] = -sign(p) * n[i] * turns / length;
+            matrix[angle * size + p * d + i] = -sign(p) * factor * (bend * beside * along[i] + n[i]) / length;
+        }
+        matrix[angle * size + angle] = -(factor * turns * beside + slope * across) / (length * length);
     }
 }
 

@@ -7,7 +7,11 @@ use carom_contact::{
 };
 use carom_solid::FacetShape;
 
-/// A contact of node 0, and positions.
+/// Radius of the arc by which the obstacles that turn are turned, and its length at rest.
+const ARC: f64 = 0.7;
+const REST: f64 = 0.2;
+
+/// A contact of node 0, and positions: three facets, three obstacles, and these turned by node 2.
 fn scenes(height: f64) -> Vec<(Box<dyn Kinematics>, Vec<f64>)> {
     let mut scenes: Vec<(Box<dyn Kinematics>, Vec<f64>)> = Vec::new();
     for shape in [FacetShape::L2, FacetShape::L3, FacetShape::L4] {
@@ -21,25 +25,29 @@ fn scenes(height: f64) -> Vec<(Box<dyn Kinematics>, Vec<f64>)> {
         let side = Surface::new(shape, &[facet], &[1.0]);
         scenes.push((Box::new(NodeToFacet::new(vec![0], side, Detection::ClosestPoint)), y));
     }
-    let carrier = Carrier { node: 1, origin: [0.1, -0.3, 0.0], turn: None };
-    for shape in [
-        Obstacle::plane(&[0.0, 0.0], &[0.6, 0.8]),
-        Obstacle::circle(&[0.1, -0.4], 0.5, false),
-        Obstacle::circle(&[0.1, -0.4], 1.5, true),
-    ] {
-        let contact = NodeToObstacle::new(vec![0], 2, shape).carried_by(carrier.clone());
-        scenes.push((Box::new(contact), vec![0.23, height, 0.1, -0.3]));
+    for turn in [None, Some((2, REST, ARC))] {
+        let carrier = Carrier { node: 1, origin: [0.1, -0.3, 0.0], turn };
+        for shape in [
+            Obstacle::plane(&[0.0, 0.0], &[0.6, 0.8]),
+            Obstacle::circle(&[0.1, -0.4], 0.5, false),
+            Obstacle::circle(&[0.1, -0.4], 1.5, true),
+        ] {
+            let contact = NodeToObstacle::new(vec![0], 2, shape).carried_by(carrier.clone());
+            let mut y = vec![0.23, height, 0.12, -0.3];
+            turn.iter().for_each(|_| y.extend([REST + 0.1, 0.0]));
+            scenes.push((Box::new(contact), y));
+        }
     }
     scenes
 }
 
-/// The pair at its contact point, and H over all dofs.
-fn slip(contact: &dyn Kinematics, y: &[f64]) -> (Pair, Vec<f64>) {
+/// The pair at its contact point, and H over all dofs at the middle of a motion.
+fn slip(contact: &dyn Kinematics, y: &[f64], moved: &[f64]) -> (Pair, Vec<f64>) {
     let (mut rows, mut pair) = (Rows::new(2), Pair { active: true, ..Pair::open(0, 0, 0.1) });
     contact.measure(&mut pair, y, &mut rows).unwrap();
     let mut row = vec![0.0; y.len()];
     rows.clear();
-    contact.slip(&pair, y, &mut rows).unwrap();
+    contact.slip(&pair, y, moved, &mut rows).unwrap();
     rows.row(0).add_to(1.0, &mut row);
     (pair, row)
 }
@@ -61,13 +69,16 @@ fn moved(y: &[f64], angle: f64, by: [f64; 2]) -> Vec<f64> {
 #[test]
 fn finite_rigid_motions_of_a_pair_have_no_slip() {
     for (k, (contact, start)) in scenes(0.35).iter().enumerate() {
-        // The obstacles of the scenes do not turn.
-        for angle in if k < 3 { [0.3, -1.1, 2.0] } else { [0.0; 3] } {
-            let end = moved(start, angle, [0.7, -2.0]);
+        let turns = k < 3 || start.len() == 6;
+        for angle in if turns { [0.3, -1.1, 2.0] } else { [0.0; 3] } {
+            let mut end = moved(start, angle, [0.7, -2.0]);
+            if k > 5 {
+                end[4..].copy_from_slice(&[start[4] + angle * ARC, 0.0]);
+            }
             let (middle, change): (Vec<f64>, Vec<f64>) =
                 start.iter().zip(&end).map(|(a, b)| (0.5 * (a + b), b - a)).unzip();
             let size: f64 = change.iter().map(|x| x.abs()).sum();
-            let slipped = dot(&slip(contact.as_ref(), &middle).1, &change);
+            let slipped = dot(&slip(contact.as_ref(), &middle, &change).1, &change);
             assert!(slipped.abs() < 1e-14 * size, "{k} {angle}: {slipped:e}");
         }
     }
@@ -77,15 +88,16 @@ fn finite_rigid_motions_of_a_pair_have_no_slip() {
 fn friction_has_neither_a_resultant_nor_a_moment_and_a_unit_force_on_the_node() {
     for height in [0.35, 0.12] {
         for (k, (contact, y)) in scenes(height).iter().enumerate() {
-            let force = slip(contact.as_ref(), y).1;
+            let mut force = slip(contact.as_ref(), y, &[]).1;
             assert!((force[0].hypot(force[1]) - 1.0).abs() < 1e-14);
+            let turning = if k > 5 { std::mem::take(&mut force[4]) * ARC } else { 0.0 };
             for i in 0..2 {
                 assert!(force.iter().skip(i).step_by(2).sum::<f64>().abs() < 1e-12, "{k}");
             }
             let moments = y.as_chunks::<2>().0.iter().zip(force.as_chunks::<2>().0);
-            let moment: f64 = moments.map(|(y, f)| y[0] * f[1] - y[1] * f[0]).sum();
+            let moment = moments.map(|(y, f)| y[0] * f[1] - y[1] * f[0]).sum::<f64>() + turning;
             // That of an obstacle which does not turn is taken by its guide.
-            assert!(k >= 3 || moment.abs() < 1e-12, "{k}: {moment:e}");
+            assert!((3..6).contains(&k) || moment.abs() < 1e-12, "{k}: {moment:e}");
         }
     }
 }
@@ -97,8 +109,12 @@ fn the_derivative_of_the_row_is_that_of_differences() {
             let contact = contact.as_ref();
             let n = contact.stencil() * 2;
             let mut matrix = vec![0.0; n * n];
-            contact.slip_derivative_into(&slip(contact, y).0, y, 0, &mut matrix);
-            let error = jacobian_error(y, 1e-3, |y| slip(contact, y).1, &matrix);
+            let start: Vec<f64> = y.iter().enumerate().map(|(i, y)| y - 0.1 * (i as f64).cos()).collect();
+            let moved =
+                |y: &[f64]| -> Vec<f64> { y.iter().zip(&start).map(|(y, s)| 2.0 * (y - s)).collect() };
+            let pair = slip(contact, y, &moved(y)).0;
+            contact.slip_derivative_into(&pair, y, &moved(y), 0, &mut matrix);
+            let error = jacobian_error(y, 1e-3, |y| slip(contact, y, &moved(y)).1, &matrix);
             assert!(error < 1e-8, "{k} {height}: {error:e}");
         }
     }
@@ -109,7 +125,7 @@ fn the_derivative_of_the_row_is_that_of_differences() {
 fn on_a_straight_facet_the_slip_is_the_motion_of_the_contact_point() {
     let (contact, y) = &scenes(0.35)[0];
     let length = (y[2] - y[4]).hypot(y[3] - y[5]);
-    let row: Vec<f64> = slip(contact.as_ref(), y).1.iter().map(|h| h / (0.5 * length)).collect();
-    let error = jacobian_error(y, 1e-4, |y| vec![slip(contact.as_ref(), y).0.xi], &row);
+    let row: Vec<f64> = slip(contact.as_ref(), y, &[]).1.iter().map(|h| h / (0.5 * length)).collect();
+    let error = jacobian_error(y, 1e-4, |y| vec![slip(contact.as_ref(), y, &[]).0.xi], &row);
     assert!(error < 1e-8, "{error:e}");
 }

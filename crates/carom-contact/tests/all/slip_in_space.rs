@@ -34,7 +34,7 @@ fn slip(contact: &dyn Kinematics, y: &[f64], tangents: [[f64; 3]; 2]) -> (Pair, 
     contact.measure(&mut pair, y, &mut rows).unwrap();
     pair.tangential.tangents = tangents;
     rows.clear();
-    contact.slip(&pair, y, &mut rows).unwrap();
+    contact.slip(&pair, y, &[], &mut rows).unwrap();
     pair.tangential.tangents = rows.tangents(0);
     let full = [0, 1].map(|row| {
         let mut full = vec![0.0; y.len()];
@@ -110,7 +110,7 @@ fn the_derivatives_of_the_rows_are_those_of_differences() {
         let pair = slip(contact, &y, START).0;
         for tangent in 0..2 {
             let mut matrix = vec![0.0; y.len() * y.len()];
-            contact.slip_derivative_into(&pair, &y, tangent, &mut matrix);
+            contact.slip_derivative_into(&pair, &y, &[], tangent, &mut matrix);
             let row = |y: &[f64]| {
                 let [first, second] = slip(contact, y, pair.tangential.tangents).1;
                 if tangent == 0 { first } else { second }

@@ -428,7 +428,7 @@ fn slip_into(
     contact.kinematics.measure(&mut at, &state.y, rows).map_err(failed)?;
     rows.pop();
     let first = rows.len();
-    contact.kinematics.slip(&at, &state.y, rows).map_err(failed)?;
+    contact.kinematics.slip(&at, &state.y, &[], rows).map_err(failed)?;
     pair.tangential.tangents = rows.tangents(first);
     Ok(())
 }

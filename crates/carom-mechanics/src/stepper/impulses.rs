@@ -134,7 +134,7 @@ impl Impulses {
             let Some(law) = laws[k].get(pair.node) else { continue };
             let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
             let mut slips = Rows::new(model.dimension);
-            contact.kinematics.slip(pair, predicted, &mut slips).map_err(failed)?;
+            contact.kinematics.slip(pair, predicted, &[], &mut slips).map_err(failed)?;
             pair.tangential.tangents = slips.tangents(0);
             let law = Law { limit: dt * law.limit, ..*law };
             let kind = kind(&law, of, state, (k, pair), &slips, &state.v);

@@ -387,7 +387,7 @@ impl Kinematics for NodeToPatch {
         PatchGap::new(patch, y, from, [pair.xi, pair.eta]).curvature_into(patch.nodes.len(), curvature);
     }
 
-    fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+    fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let (node, patch) = (self.secondary[pair.node], self.primary.patch(pair.facet));
         let gap = PatchGap::new(patch, y, place(y, node), [pair.xi, pair.eta]);
         let a = gap.regularity();
@@ -402,7 +402,7 @@ impl Kinematics for NodeToPatch {
         Ok(())
     }
 
-    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]) {
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
         let (patch, from) = (self.primary.patch(pair.facet), place(y, self.secondary[pair.node]));
         let gap = PatchGap::new(patch, y, from, [pair.xi, pair.eta]);
         let along = tangents(gap.normal(), pair.tangential.tangents)[tangent];
