@@ -24,7 +24,7 @@ pub use interface::{
 pub use kinematics::{
     BothSides, Boundary, Carrier, ClosedSurface, ContactPoint, Crossings, Detection, Kinematics, NodeToFacet,
     NodeToObstacle, NodeToPatch, Obstacle, OneWay, Passed, Polyline, PolylineError, Side, Surface, Swept,
-    SweptTest,
+    SweptPatch, SweptTest,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

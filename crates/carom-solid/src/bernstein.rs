@@ -54,12 +54,12 @@ pub(crate) struct Corner<const D: usize> {
 }
 
 /// A direction in which the domain can be halved.
-#[derive(Clone, Debug)]
-pub(crate) struct Direction {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Direction {
     /// Lines of coefficients from the start to the end.
-    pub(crate) lines: Vec<Vec<usize>>,
+    pub lines: Vec<Vec<usize>>,
     /// Corners at the start and at the end, joined by an edge.
-    pub(crate) edges: Vec<(usize, usize)>,
+    pub edges: Vec<(usize, usize)>,
 }
 
 impl<const D: usize, const N: usize> Bernstein<D, N> {
@@ -96,17 +96,6 @@ impl<const D: usize, const N: usize> Bernstein<D, N> {
             e[c] = degree;
             Corner { coefficient: index(&whole, &e), place: nodes[c] }
         };
-        let direction = |(start, end): (usize, usize)| {
-            let lines = whole.iter().filter(|e| e[end] == 0).map(|first| {
-                let along = |t: usize| {
-                    let mut e = *first;
-                    (e[start], e[end]) = (first[start] - t, t);
-                    index(&whole, &e)
-                };
-                (0..=first[start]).map(along).collect()
-            });
-            Direction { lines: lines.collect(), edges: vec![(start, end)] }
-        };
         Self {
             control,
             differences,
@@ -114,7 +103,7 @@ impl<const D: usize, const N: usize> Bernstein<D, N> {
             count: whole.len(),
             degree,
             corners: (0..=D).map(corner).collect(),
-            directions: (0..=D).flat_map(|i| (0..i).map(move |j| (i, j))).map(direction).collect(),
+            directions: directions_of_simplex::<D>(degree),
         }
     }
 
@@ -149,18 +138,6 @@ impl<const D: usize, const N: usize> Bernstein<D, N> {
             let place = Vector(std::array::from_fn(|axis| if upper(c, axis) { 1.0 } else { -1.0 }));
             Corner { coefficient: index(&whole, &e), place }
         };
-        let direction = |axis: usize| {
-            let lines = whole.iter().filter(|e| e[axis] == 0).map(|first| {
-                let along = |t: usize| {
-                    let mut e = *first;
-                    e[axis] = t;
-                    index(&whole, &e)
-                };
-                (0..=degree).map(along).collect()
-            });
-            let starts = (0..1 << D).filter(|&c| !upper(c, axis));
-            Direction { lines: lines.collect(), edges: starts.map(|c| (c, c | 1 << axis)).collect() }
-        };
         Self {
             control,
             differences,
@@ -168,9 +145,44 @@ impl<const D: usize, const N: usize> Bernstein<D, N> {
             count: whole.len(),
             degree,
             corners: (0..1 << D).map(corner).collect(),
-            directions: (0..D).map(direction).collect(),
+            directions: directions_of_box::<D>(degree),
         }
     }
+}
+
+/// The directions of a simplex, one along each edge, for polynomials of a degree.
+pub(crate) fn directions_of_simplex<const D: usize>(degree: usize) -> Vec<Direction> {
+    let whole = exponents::<D>(degree);
+    let direction = |(start, end): (usize, usize)| {
+        let lines = whole.iter().filter(|e| e[end] == 0).map(|first| {
+            let along = |t: usize| {
+                let mut e = *first;
+                (e[start], e[end]) = (first[start] - t, t);
+                index(&whole, &e)
+            };
+            (0..=first[start]).map(along).collect()
+        });
+        Direction { lines: lines.collect(), edges: vec![(start, end)] }
+    };
+    (0..=D).flat_map(|i| (0..i).map(move |j| (i, j))).map(direction).collect()
+}
+
+/// The directions of a square or cube, its axes.
+pub(crate) fn directions_of_box<const D: usize>(degree: usize) -> Vec<Direction> {
+    let whole = lattice::<D>(&[degree; D]);
+    let direction = |axis: usize| {
+        let lines = whole.iter().filter(|e| e[axis] == 0).map(|first| {
+            let along = |t: usize| {
+                let mut e = *first;
+                e[axis] = t;
+                index(&whole, &e)
+            };
+            (0..=degree).map(along).collect()
+        });
+        let starts = (0..1 << D).filter(|c| c >> axis & 1 == 0);
+        Direction { lines: lines.collect(), edges: starts.map(|c| (c, c | 1 << axis)).collect() }
+    };
+    (0..D).map(direction).collect()
 }
 
 /// The halves of coefficients at the start and at the end of a direction.

@@ -31,7 +31,7 @@ pub use one_way::OneWay;
 pub use passed::Passed;
 pub use space::{Boundary, ClosedSurface, NodeToPatch};
 pub use surface::Surface;
-pub use swept::{Crossings, Swept, SweptTest};
+pub use swept::{Crossings, PatchHit, Swept, SweptPatch, SweptTest};
 
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
@@ -121,9 +121,9 @@ pub trait Kinematics: Send + Sync {
     /// Adds the rows H_α of the slip of a pair measured at `y`, over the nodes of its gap, one per
     /// tangent: H_α·Δy is the tangential motion of the first node relative to the other side, which
     /// turns with it. A slip from y₀ to y₁ is H·(y₁ − y₀) at their midpoint, where every finite
-    /// rigid motion of the pair is an infinitesimal one: the slip is exactly zero. `moved`: y₁ − y₀,
-    /// if `y` is their midpoint, and empty for the rate of slip at `y`. The first node's part of a
-    /// row is the tangent; the plane has one, space two (`tangents.rs`).
+    /// rigid motion of the pair is an infinitesimal one: the slip is exactly zero. `moved` is
+    /// y₁ − y₀ if `y` is their midpoint, and empty for the rate of slip at `y`. The first node's
+    /// part of a row is the tangent; the plane has one, space two (`tangents.rs`).
     ///
     /// # Errors
     /// If there is no unique closest point; no row is added.

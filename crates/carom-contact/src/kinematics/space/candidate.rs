@@ -6,7 +6,7 @@ use carom_solid::{Bounds, Tree};
 use super::crossing::crossing;
 use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
 use super::patch::place;
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Kinematics, SweptPatch};
 
 /// A node this far behind a facet, relative to its length, at the start of a step has not crossed
 /// it.
@@ -44,6 +44,7 @@ impl NodeToPatch {
     /// θ and facet of the first crossing of trajectories of a node, of those near it.
     pub(super) fn first(
         &self,
+        swept: &mut SweptPatch,
         near: &[usize],
         node: usize,
         before: &[f64],
@@ -51,7 +52,7 @@ impl NodeToPatch {
     ) -> Option<(f64, usize)> {
         let mut first: Option<(f64, usize)> = None;
         for &facet in near {
-            if let Some(theta) = crossing(self.primary.patch(facet), before, now, node)
+            if let Some(theta) = crossing(swept, self.primary.patch(facet), before, now, node)
                 && first.is_none_or(|(least, _)| theta < least)
             {
                 first = Some((theta, facet));
@@ -63,6 +64,7 @@ impl NodeToPatch {
     /// Facet and ξ of possible contact of a node without a pair.
     pub(super) fn candidate(
         &self,
+        swept: &mut SweptPatch,
         near: &[usize],
         place_of: usize,
         before: &[f64],
@@ -71,7 +73,7 @@ impl NodeToPatch {
         let (node, slack) = (self.secondary[place_of], self.slack(place_of));
         let [start, end] = [before, now].map(|y| place(y, node));
         let mut closest: Option<(f64, usize, [f64; 2], f64)> = None;
-        let first = self.first(near, node, before, now);
+        let first = self.first(swept, near, node, before, now);
         for &facet in near {
             let patch = self.primary.patch(facet);
             let Some(xi) = patch.closest_point(now, end, REACH) else { continue };

@@ -1,30 +1,45 @@
 //! Crossing of straight paths in space: x(θ) = y(ξ, θ), the node and the facet both moving on
 //! straight lines from θ = 0 to θ = 1.
 //!
-//! Newton's method from the instant at which the gap vanishes if it changes linearly; unlike in the
-//! plane, no certificate says that none was missed.
+//! The certified test of `swept` isolates the first crossing from the outer to the inner side: none
+//! is missed. Newton's method polishes θ.
 
 use carom_algebra::{Mat, Vector};
+use carom_solid::Net;
 
 use super::node_to_patch::WANDER;
 use super::patch::{Patch, cross, place};
+use crate::kinematics::swept::{PatchHit, SweptPatch};
+
+/// θ and ξ beyond their ranges: a node exactly on the surface has crossed it.
+const TOLERANCE: f64 = 1e-6;
+/// A node this close to the facet, relative to its length, meets it: a node that starts behind by
+/// round-off must be detected.
+const SEPARATION: f64 = 1e-6;
+/// Distance in θ and ξ from the isolated crossing at which Newton's method found another one.
+const ASTRAY: f64 = 0.05;
 
 /// Instant θ in [0, 1] at which a node's path first meets a facet's from outside, if it does.
-pub(super) fn crossing(patch: Patch, before: &[f64], now: &[f64], node: usize) -> Option<f64> {
-    /// θ and ξ beyond their ranges: a node exactly on the surface has crossed it.
-    const TOLERANCE: f64 = 1e-6;
-    let gap_at = |y: &[f64]| {
-        let xi = patch.closest_point(y, place(y, node), 1.0)?;
-        let at = patch.at(y, xi);
-        Some(((place(y, node) - at.position).dot(&at.normal), xi))
-    };
-    let ((old, _), (new, _)) = (gap_at(before)?, gap_at(now)?);
-    let length = patch.length(now);
-    if old < -TOLERANCE * length || new >= 0.0 {
-        return None;
+pub(super) fn crossing(
+    swept: &mut SweptPatch,
+    patch: Patch,
+    before: &[f64],
+    now: &[f64],
+    node: usize,
+) -> Option<f64> {
+    let mut places = [[Vector::ZERO; Net::POINTS]; 2];
+    for (places, y) in places.iter_mut().zip([before, now]) {
+        places.iter_mut().zip(patch.nodes).for_each(|(x, &n)| *x = place(y, n));
     }
-    let mut theta = if old > 0.0 { old / (old - new) } else { 0.0 };
-    let mut xi = gap_at(if theta < 0.5 { before } else { now })?.1;
+    let path = [before, now].map(|y| place(y, node));
+    let facet = places.each_ref().map(|places| &places[..patch.nodes.len()]);
+    let hit = swept.first(path, facet, SEPARATION * patch.length(before))?;
+    Some(polished(patch, before, now, node, hit).unwrap_or(hit.theta))
+}
+
+/// Newton's method from an isolated crossing; none if it does not lead to one near it.
+fn polished(patch: Patch, before: &[f64], now: &[f64], node: usize, hit: PatchHit) -> Option<f64> {
+    let PatchHit { mut theta, mut xi } = hit;
     let lerp = |n: usize, theta: f64| place(before, n) * (1.0 - theta) + place(now, n) * theta;
     for _ in 0..20 {
         let functions = patch.shape.functions(xi);
@@ -48,7 +63,9 @@ pub(super) fn crossing(patch: Patch, before: &[f64], now: &[f64], node: usize) -
         if size <= 1e-12 {
             let inwards = relative.dot(&cross(tangents[0], tangents[1])) < 0.0;
             let valid = (-TOLERANCE..=1.0 + TOLERANCE).contains(&theta) && patch.furthest(xi).1 <= TOLERANCE;
-            return (inwards && valid).then_some(theta);
+            let moved = [theta - hit.theta, xi[0] - hit.xi[0], xi[1] - hit.xi[1]];
+            let near = moved.iter().all(|x| x.abs() < ASTRAY);
+            return (inwards && valid && near).then_some(theta);
         }
     }
     None

@@ -23,7 +23,7 @@ use super::gap::PatchGap;
 use super::patch::{Feature, place};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::tangents::tangents;
-use crate::kinematics::{Kinematics, OneWay};
+use crate::kinematics::{Kinematics, OneWay, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -60,6 +60,7 @@ struct Tools {
     /// Boxes of the facets' paths.
     tree: Tree,
     apart: Apart,
+    swept: SweptPatch,
 }
 
 /// Where a pair belongs.
@@ -76,7 +77,8 @@ impl NodeToPatch {
         let hull = primary.hull();
         let both = primary.nodes().iter().chain(&secondary).copied();
         let apart = Apart::new(both, 3, hull.weight());
-        let tools = Mutex::new(Tools { tree: Tree::default(), apart });
+        let swept = SweptPatch::new(primary.shape());
+        let tools = Mutex::new(Tools { tree: Tree::default(), apart, swept });
         Self { secondary, primary, hull, allowed: Vec::new(), kept: Vec::new(), tools }
     }
 
@@ -288,7 +290,7 @@ impl Kinematics for NodeToPatch {
             pairs.sort_by_key(|pair| pair.node);
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { tree, apart } = &mut *tools;
+        let Tools { tree, apart, swept } = &mut *tools;
         if apart.holds(*margin, [before, now]) {
             return changed;
         }
@@ -309,7 +311,7 @@ impl Kinematics for NodeToPatch {
             if near.is_empty() {
                 continue;
             }
-            let Some((facet, [xi, eta])) = self.candidate(&near, k, before, now) else { continue };
+            let Some((facet, [xi, eta])) = self.candidate(swept, &near, k, before, now) else { continue };
             let gap = self.gap(facet, [xi, eta], place(now, node), now) + self.slack(k);
             if self.allowed(k) > 0.0 && gap >= 0.0 {
                 continue;
@@ -323,12 +325,12 @@ impl Kinematics for NodeToPatch {
 
     fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { tree, .. } = &mut *tools;
+        let Tools { tree, swept, .. } = &mut *tools;
         self.update(tree, Pairing::default().margin, before, now);
         let mut near = Vec::new();
         let mut met = |&k: &usize| {
             self.find_into(tree, k, before, now, &mut near);
-            let first = self.first(&near, self.secondary[k], before, now);
+            let first = self.first(swept, &near, self.secondary[k], before, now);
             let (theta, _) = first.filter(|&(_, facet)| self.primary.is_of_side(facet))?;
             (self.slack(k) == 0.0).then(|| theta.clamp(0.0, 1.0))
         };

@@ -1,5 +1,5 @@
-//! Certified swept test of a node against a curved facet, both moving on straight lines in
-//! 0 ≤ θ ≤ 1:
+//! Certified swept tests of a node against a curved facet in the plane (`path.rs`) and in space
+//! (`patch_path.rs`), both moving on straight lines in 0 ≤ θ ≤ 1:
 //!
 //! ```text
 //! f(ξ, θ) = y_N(θ) − y_S(ξ, θ) = Σᵢ Σⱼ cᵢⱼ Bᵢ³(ξ) Bⱼ¹(θ),    f = 0 where they meet
@@ -17,13 +17,17 @@
 //! (4δ + 2·separation)/v, v the normal velocity, where v does not vanish. Only a query that
 //! exhausts its budget may be coarser.
 
+mod patch_path;
+#[cfg(test)]
+mod patch_tests;
 mod path;
 #[cfg(test)]
 mod tests;
 
 use carom_algebra::Vector;
-use carom_solid::{Earliest, FacetShape, Piece};
+use carom_solid::{Earliest, FacetShape, Net, Piece};
 
+use patch_path::PatchPath;
 use path::CurvePath;
 
 /// Result of a swept test.
@@ -103,5 +107,51 @@ impl SweptTest {
             None => Swept::Clear,
             Some(piece) => Swept::Hit { theta: piece.theta(), xi: piece.xi() },
         }
+    }
+}
+
+/// A contact in space, or a distance below the tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchHit {
+    /// A lower bound of θ of the first contact.
+    pub theta: f64,
+    /// The facet's coordinates there, within the tolerance.
+    pub xi: [f64; 2],
+}
+
+/// Swept tests with facets of one shape in space.
+#[derive(Clone, Debug)]
+pub struct SweptPatch {
+    net: Net,
+    tolerance: f64,
+    queue: Earliest<PatchPath>,
+}
+
+impl SweptPatch {
+    /// For facets of a shape, with a tolerance of 1e-5.
+    ///
+    /// # Panics
+    /// For a point or a line.
+    pub fn new(shape: FacetShape) -> Self {
+        Self { net: Net::facet(shape), tolerance: 1e-5, queue: Earliest::new(BUDGET) }
+    }
+
+    /// First contact, where the node does not move to the outer side, of a node that moves from
+    /// `node[0]` to `node[1]` with a facet whose nodes move from `facet[0]` to `facet[1]`; none is
+    /// a proof. A distance of at most `separation` is contact. The outer side sees the facet's
+    /// nodes counter-clockwise. Positions that are not finite give a hit at θ = 0.
+    pub fn first(
+        &mut self,
+        node: [Vector<3>; 2],
+        facet: [&[Vector<3>]; 2],
+        separation: f64,
+    ) -> Option<PatchHit> {
+        let path = PatchPath::new(&self.net, node, facet, separation);
+        if path.is_clear() {
+            return None;
+        }
+        let (net, end) = (&self.net, path.stop(&self.net, self.tolerance));
+        let found = self.queue.first(path, |piece| piece.only_separates(net), |piece| piece.split(net, &end));
+        found.map(|piece| PatchHit { theta: piece.theta(), xi: piece.xi() })
     }
 }

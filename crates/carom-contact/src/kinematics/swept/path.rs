@@ -25,11 +25,11 @@
 use carom_algebra::Vector;
 use carom_solid::{FacetShape, Piece};
 
-const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 /// Bound of Σ |weights| of a coefficient.
 const WEIGHTS: f64 = 6.0;
 /// Halvings of ξ, and of θ, after which a box counts as small.
-const DEEPEST: u32 = 48;
+pub(super) const DEEPEST: u32 = 48;
 
 /// Coefficients along ξ at one end of the interval of θ.
 type Curve = [Vector<2>; 4];
@@ -48,16 +48,16 @@ pub(super) struct CurvePath {
 
 /// An interval of [0, 1] after halvings, exact.
 #[derive(Clone, Copy, Debug)]
-struct Interval {
-    low: f64,
-    width: f64,
-    level: u32,
+pub(super) struct Interval {
+    pub(super) low: f64,
+    pub(super) width: f64,
+    pub(super) level: u32,
 }
 
 impl Interval {
-    const WHOLE: Self = Self { low: 0.0, width: 1.0, level: 0 };
+    pub(super) const WHOLE: Self = Self { low: 0.0, width: 1.0, level: 0 };
 
-    fn halves(self) -> [Self; 2] {
+    pub(super) fn halves(self) -> [Self; 2] {
         let (width, level) = (0.5 * self.width, self.level + 1);
         [Self { width, level, ..self }, Self { low: self.low + width, width, level }]
     }
@@ -65,8 +65,8 @@ impl Interval {
 
 /// Sizes at which boxes are not halved any more.
 pub(super) struct Stop {
-    theta: f64,
-    distance: f64,
+    pub(super) theta: f64,
+    pub(super) distance: f64,
 }
 
 impl CurvePath {
@@ -247,7 +247,7 @@ impl Piece for CurvePath {
 /// Whether all points with these coefficients, which are wrong by up to `error` per component, are
 /// farther than `separation` from zero, because they lie on one side of it in a direction.
 #[inline]
-fn excludes_zero<const D: usize>(
+pub(super) fn excludes_zero<const D: usize>(
     coefficients: &[Vector<D>],
     direction: &Vector<D>,
     separation: f64,
@@ -301,14 +301,14 @@ fn cubic(shape: FacetShape, at: impl Fn(usize) -> Vector<2>, largest: &mut f64) 
     }
 }
 
-fn mean(a: Vector<2>, b: Vector<2>) -> Vector<2> {
+pub(super) fn mean<const D: usize>(a: Vector<D>, b: Vector<D>) -> Vector<D> {
     (a + b) * 0.5
 }
 
-fn largest_of(a: Vector<2>) -> f64 {
-    a[0].abs().max(a[1].abs())
+pub(super) fn largest_of<const D: usize>(a: Vector<D>) -> f64 {
+    a.0.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
-fn sum_of<const D: usize>(a: Vector<D>) -> f64 {
+pub(super) fn sum_of<const D: usize>(a: Vector<D>) -> f64 {
     a.0.iter().map(|x| x.abs()).sum()
 }
