@@ -38,7 +38,9 @@ divided by 2π, the interior angle at x itself over 2π where nothing overlaps, 
 another part. Depth: distance to the facets that are neither the own one nor its neighbours.
 Limit 0.1 h.
 
-Inverted: the triangle of the corners of a cell has no positive area.
+Inverted: the determinant of a cell's map, relative to its corners' order, is not positive at one of
+the 153 points with coordinates k/16. (The triangle of the corners of a curved cell may turn over
+while the cell is bent, but valid.)
 
 Passing through: from one field to the next, the path of the centre of the smaller body, relative to
 the centre of the larger one, crosses the outline of the larger one, in the shape of either instant, an
@@ -95,6 +97,21 @@ def shape_matrix(p, t):
     return np.array(rows)
 
 
+def slopes(p):
+    """Derivatives of the shape functions of a triangle of degree p, nodes in VTK's order, by both
+    coordinates (2, points, nodes), at all points k/16."""
+    corners = [(p, 0, 0), (0, p, 0), (0, 0, p)]
+    between = lambda a, b: [tuple(((p - k) * i + k * j) // p for i, j in zip(a, b)) for k in range(1, p)]
+    nodes = corners + [n for e in range(3) for n in between(corners[e], corners[(e + 1) % 3])]
+    nodes += [(1, 1, 1)] if p == 3 else []
+    powers = [(i, j) for i in range(p + 1) for j in range(p + 1 - i)]
+    at_nodes = np.array([[(n[1] / p) ** i * (n[2] / p) ** j for i, j in powers] for n in nodes])
+    points = [(i / 16, j / 16) for i in range(17) for j in range(17 - i)]
+    by_x = [[i * x ** max(i - 1, 0) * y**j for i, j in powers] for x, y in points]
+    by_y = [[j * x**i * y ** max(j - 1, 0) for i, j in powers] for x, y in points]
+    return np.array([by_x, by_y]) @ np.linalg.inv(at_nodes)
+
+
 def boundary(cells):
     """Facets (F, p + 1) of triangles in VTK's node order, chained loop after loop, and the loop of each."""
     n = cells.shape[1]
@@ -126,10 +143,11 @@ class Outline:
     """Outline of one body: topology and, after `at`, the samples of one instant."""
 
     def __init__(self, cells, reference):
-        self.nodes_of_body, self.corners = np.unique(cells), cells[:, :3]
+        self.nodes_of_body, self.cells = np.unique(cells), cells
         self.facets, self.loops = boundary(cells)
         self.p = self.facets.shape[1] - 1
         self.matrix = shape_matrix(self.p, np.linspace(0, 1, PARTS + 1))
+        self.slopes = slopes(self.p)
         self.nodes, first = np.unique(self.facets, return_index=True)
         self.node_facet = first // (self.p + 1)
         self.at(reference)
@@ -149,10 +167,9 @@ class Outline:
         self.extent = float(np.linalg.norm(self.high - self.low))
 
     def inverted(self):
-        """Whether the corners of a cell are clockwise, or in a line."""
-        a, b, c = (self.position[self.corners[:, i]] for i in range(3))
-        u, v = b - a, c - a
-        return bool((u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] <= 0).any())
+        """Whether the map of a cell has a determinant that is not positive."""
+        u, v = np.einsum("dqn,cni->dcqi", self.slopes, self.position[self.cells])
+        return bool((u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0] <= 0).any())
 
     def neighbour(self):
         """Index of the next facet in the loop of each facet."""

@@ -267,6 +267,20 @@ class Records(unittest.TestCase):
         found = self.judged([[(0, 0), (0, 0)], [mirrored, (0, 0)]])
         self.assertEqual(found["wrong"], ["inverted: a cell of shot at t = 1"])
 
+    def test_a_bent_cell_is_not_inverted_although_its_corners_turn_over(self):
+        # A third of a ring, with the third corner inside of the arc and outside of its chord.
+        mid = lambda a, b: [tuple(((3 - k) * i + k * j) / 3 for i, j in zip(a, b)) for k in (1, 2)]
+        a, b, c = corners = [(0, 0), (1, 0), (0, 1)]
+        x, y = np.array([*corners, *mid(a, b), *mid(b, c), *mid(c, a), (1 / 3, 1 / 3)]).T
+        angle, radius = 2 / 3 * np.pi * (x + y / 2), 1 - 0.4 * y
+        bent = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+        self.assertLess(np.linalg.det(bent[1:3] - bent[0]), 0)
+        u, v = fc.slopes(3) @ bent
+        exact = 2 / 3 * np.pi * 0.4 * (1 - 0.4 / 3)
+        found = (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).mean()
+        self.assertLess(abs(found / exact - 1), 0.03)
+        self.assertGreater((u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).min(), 0)
+
     def test_momentum_on_a_plane_whatever_contacts_with_itself_a_body_has(self):
         plane = {"secondary": "shot.all", "primary": {"plane": {"point": [0, -9], "normal": [0, 1]}}, "enforcement": "multiplier"}
         of_itself = {"secondary": "shot.all", "primary": {"side": "shot.all"}, "enforcement": "multiplier"}
