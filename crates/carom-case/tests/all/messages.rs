@@ -210,7 +210,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["support=[{ on = [\"prism.bottom\"], fix = [\"y\"], move = { y = \"t\" } }]"],
         &["the direction y is both fixed and moved"],
     ),
-    (&["body.prism.velocity=[\"t\", 0]"], &["no variable `t`: the variables are X, Y"]),
+    (&["body.prism.velocity=[\"t\", 0]"], &["no variable `t`\n", "try: the variables are X, Y"]),
     (&["body.prism.velocity={ angular = 1.0 }"], &["the rotation has no centre", "add `about = [x, y]`"]),
     (
         &["body.prism.velocity=[1, 0]", "time.scheme={ kind = \"static\" }"],
