@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Instructions per call of the benchmarks of some crates, counted by valgrind's callgrind.
 
-    bench/instructions.py [--only NAME] CRATE…      e.g. carom-solid carom-contact carom-algebra carom
+    bench/instructions.py [--only NAME] CRATE…      e.g. carom-solid carom-contact carom-algebra carom-run
 
 The count does not depend on the load of the machine. Each benchmark runs twice under callgrind,
 with one call and with eleven. A tenth of the difference is the cost of a call, without set-up and

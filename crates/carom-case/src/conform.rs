@@ -105,7 +105,8 @@ impl Check {
             keys.iter().map(|key| format!("`{} = {}`", key.name, self.names.example(key))).collect();
         let what = format!("{} has no {}", spec.name, and(&names));
         let help = format!("add for example {}", and(&examples));
-        self.problems.push(Problem::new(path, what, meanings.join(" "), help).at_key());
+        let why = format!("they are required. {}", meanings.join(" "));
+        self.problems.push(Problem::new(path, what, why, help).at_key());
     }
 
     fn missing(&mut self, name: &str, key: &Key, table: &str, path: &str) {
@@ -116,8 +117,8 @@ impl Check {
         };
         let help = if key.example.is_empty() { help } else { format!("{help}, for example") };
         let what = format!("{table} has no `{name}`");
-        self.problems
-            .push(Problem::new(path, what, key.meaning(), help.trim_end_matches(", for example")).at_key());
+        let why = format!("`{name}` is required. {}", key.meaning());
+        self.problems.push(Problem::new(path, what, why, help.trim_end_matches(", for example")).at_key());
     }
 
     fn table(&mut self, table: &Table, spec: &keys::Table, path: &str) {
@@ -199,6 +200,9 @@ fn words(variants: &Variants) -> String {
     suggest::list(variants.tables.iter().map(|(word, _)| *word))
 }
 
+/// Words that other programs use, and the keys that they mean.
+const OTHER_WORDS: [(&str, &str); 3] = [("point", "at"), ("position", "at"), ("friction", "mu")];
+
 /// An unknown key, and the key of this table that was probably meant.
 fn unknown<'a>(word: &str, table: &Table, spec: &Spec<'a>, path: String) -> (Problem, Option<&'a str>) {
     let all = || spec.tag.into_iter().chain(spec.keys.iter().map(|k| k.name));
@@ -207,8 +211,9 @@ fn unknown<'a>(word: &str, table: &Table, spec: &Spec<'a>, path: String) -> (Pro
     let free = all().filter(|k| table.get(k).is_none() || several(k)).chain(spec.later.iter().copied());
     let mut homes = homes(word);
     homes.dedup();
-    let near =
-        suggest::nearest(word, free).or_else(|| suggest::nearest(word, all()).filter(|_| homes.is_empty()));
+    let near = suggest::nearest(word, free)
+        .or_else(|| all().find(|key| OTHER_WORDS.contains(&(word, *key)) && table.get(key).is_none()))
+        .or_else(|| suggest::nearest(word, all()).filter(|_| homes.is_empty()));
     let elsewhere = format!("`{word}` is a key of {}", homes.join(", "));
     let help = match (near, homes.is_empty()) {
         (Some(near), true) => format!("did you mean `{near}`?"),

@@ -28,6 +28,9 @@ impl Document {
             CaseError::Wrong(vec![Diagnostic::of_file(&name, what, why, help)])
         };
         let unreadable = |source: std::io::Error| match source.kind() {
+            std::io::ErrorKind::NotFound if path.is_absolute() => {
+                wrong("there is no such file", "no file or directory has this path", "check the path")
+            }
             std::io::ErrorKind::NotFound => wrong(
                 "there is no such file",
                 "a relative path starts at the working directory",

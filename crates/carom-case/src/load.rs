@@ -42,10 +42,9 @@ pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Proble
     let table = match v.text("table") {
         Some(file) => match load_table::read(&folder.join(&file), &file) {
             Ok(table) => Some(table),
-            Err(why) => {
+            Err(error) => {
                 let what = format!("the table \"{file}\" cannot be used");
-                let help = "a table is a CSV file whose first line is t,value; its path is relative to the folder of the case";
-                problems.push(Problem::new(format!("{path}.table"), what, why, help));
+                problems.push(Problem::new(format!("{path}.table"), what, error.why, error.help));
                 return None;
             }
         },

@@ -10,37 +10,59 @@ const MOST_LINES: usize = 1_000_000;
 /// Largest number of bytes: a file without line ends has no lines to count.
 const MOST_BYTES: u64 = 100_000_000;
 
+/// Why a table cannot be used, and what to try.
+#[derive(Debug)]
+pub(super) struct TableError {
+    /// With the file's name and line.
+    pub(super) why: String,
+    pub(super) help: String,
+}
+
+impl TableError {
+    fn new(why: String, help: impl Into<String>) -> Self {
+        Self { why, help: help.into() }
+    }
+
+    fn in_line(name: &str, line: u64, why: impl std::fmt::Display) -> Self {
+        Self::new(format!("{name}:{line}: {why}"), format!("correct line {line} of {name}"))
+    }
+
+    fn of_path(why: String) -> Self {
+        Self::new(why, "check the path: a relative one starts at the folder of this file")
+    }
+}
+
 /// Reads the file at `path`, called `name` in messages.
 ///
 /// # Errors
-/// A message with the file's name and line.
-pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, String> {
+/// If it is not a table of amplitudes.
+pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, TableError> {
     columns(path, name, ["t", "value"])
 }
 
 /// The same of the columns with these headings.
 ///
 /// # Errors
-/// A message with the file's name and line.
-pub(super) fn columns(path: &Path, name: &str, wanted: [&str; 2]) -> Result<TableSpec, String> {
-    let unreadable = |error: csv::Error| {
-        let line = error.position().map_or(String::new(), |p| format!(":{}", p.line()));
-        match error.kind() {
-            csv::ErrorKind::Io(io) if io.kind() == std::io::ErrorKind::NotFound => {
-                format!("there is no file {}", path.display())
-            }
-            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-                format!("{name}{line}: {len} values, but the first line has {expected_len}")
-            }
-            _ => format!("{name}{line}: {error}"),
+/// If it is not a table with these columns.
+pub(super) fn columns(path: &Path, name: &str, wanted: [&str; 2]) -> Result<TableSpec, TableError> {
+    let unreadable = |error: csv::Error| match (error.kind(), error.position().map(csv::Position::line)) {
+        (csv::ErrorKind::Io(io), _) if io.kind() == std::io::ErrorKind::NotFound => {
+            TableError::of_path(format!("there is no file {}", path.display()))
         }
+        (csv::ErrorKind::UnequalLengths { expected_len, len, .. }, Some(line)) => {
+            let why = format!("{len} values, but the first line has {expected_len}");
+            TableError::in_line(name, line, why)
+        }
+        (_, Some(line)) => TableError::in_line(name, line, error),
+        (_, None) => TableError::of_path(format!("{name}: {error}")),
     };
     let facts = std::fs::metadata(path).map_err(|error| unreadable(error.into()))?;
     if !facts.is_file() {
-        return Err(format!("{} is not a regular file", path.display()));
+        return Err(TableError::of_path(format!("{} is not a regular file", path.display())));
     }
     if facts.len() > MOST_BYTES {
-        return Err(format!("{name}: {} bytes, but a table has at most {MOST_BYTES}", facts.len()));
+        let why = format!("{name}: {} bytes, but a table has at most {MOST_BYTES}", facts.len());
+        return Err(TableError::new(why, "leave out lines or columns"));
     }
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
@@ -51,7 +73,8 @@ pub(super) fn columns(path: &Path, name: &str, wanted: [&str; 2]) -> Result<Tabl
     let column = |wanted: &str| {
         headers.iter().position(|h| h == wanted).ok_or_else(|| {
             let found = headers.iter().collect::<Vec<_>>().join(", ");
-            format!("{name}:1: there is no column `{wanted}`; the columns are: {found}")
+            let why = format!("{name}:1: there is no column `{wanted}`; the columns are: {found}");
+            TableError::new(why, format!("begin {name} with a line of headings, one of them `{wanted}`"))
         })
     };
     let columns = [column(wanted[0])?, column(wanted[1])?];
@@ -61,21 +84,25 @@ pub(super) fn columns(path: &Path, name: &str, wanted: [&str; 2]) -> Result<Tabl
         let line = record.position().map_or(0, csv::Position::line);
         let number = |k: usize| {
             let text = record.get(columns[k]).unwrap_or_default();
-            let wrong = || format!("{name}:{line}: `{}` is not a finite number: {text:?}", wanted[k]);
+            let why = || format!("`{}` is not a finite number: {text:?}", wanted[k]);
+            let wrong = || TableError::in_line(name, line, why());
             text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong)
         };
         let (time, value) = (number(0)?, number(1)?);
         if let Some(before) = table.times.last().filter(|before| **before >= time) {
-            return Err(format!("{name}:{line}: times must increase, but {time} follows {before}"));
+            let why = format!("times must increase, but {time} follows {before}");
+            return Err(TableError::in_line(name, line, why));
         }
         if table.times.len() == MOST_LINES {
-            return Err(format!("{name}:{line}: more than {MOST_LINES} lines"));
+            let why = format!("{name}:{line}: more than {MOST_LINES} lines");
+            return Err(TableError::new(why, "leave out lines"));
         }
         table.times.push(time);
         table.values.push(value);
     }
     if table.times.len() < 2 {
-        return Err(format!("{name}: at least two lines of numbers are needed, not {}", table.times.len()));
+        let why = format!("{name}: at least two lines of numbers are needed, not {}", table.times.len());
+        return Err(TableError::new(why, "add the line of another time"));
     }
     Ok(table)
 }
@@ -84,7 +111,7 @@ pub(super) fn columns(path: &Path, name: &str, wanted: [&str; 2]) -> Result<Tabl
 mod tests {
     use super::*;
 
-    fn table(text: &str) -> Result<TableSpec, String> {
+    fn table(text: &str) -> Result<TableSpec, TableError> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.csv");
         std::fs::write(&path, text).unwrap();
@@ -102,21 +129,36 @@ mod tests {
     #[test]
     fn errors_name_file_and_line() {
         for (text, message) in [
-            ("t,force\n0,1\n", "a.csv:1: there is no column `value`; the columns are: t, force"),
-            ("t,value\n0,1\n1,x\n", "a.csv:3: `value` is not a finite number: \"x\""),
-            ("t,value\n0,1\n1,nan\n", "a.csv:3: `value` is not a finite number: \"nan\""),
-            ("t,value\n0,1\n0,2\n", "a.csv:3: times must increase, but 0 follows 0"),
-            ("t,value\n0,1\n1\n", "a.csv:3: 1 values, but the first line has 2"),
-            ("t,value\n0,1\n", "a.csv: at least two lines of numbers are needed, not 1"),
+            (
+                "t,force\n0,1\n",
+                "a.csv:1: there is no column `value`; the columns are: t, force; \
+                 begin a.csv with a line of headings, one of them `value`",
+            ),
+            (
+                "t,value\n0,1\n1,x\n",
+                "a.csv:3: `value` is not a finite number: \"x\"; correct line 3 of a.csv",
+            ),
+            (
+                "t,value\n0,1\n1,nan\n",
+                "a.csv:3: `value` is not a finite number: \"nan\"; correct line 3 of a.csv",
+            ),
+            ("t,value\n0,1\n0,2\n", "a.csv:3: times must increase, but 0 follows 0; correct line 3 of a.csv"),
+            ("t,value\n0,1\n1\n", "a.csv:3: 1 values, but the first line has 2; correct line 3 of a.csv"),
+            (
+                "t,value\n0,1\n",
+                "a.csv: at least two lines of numbers are needed, not 1; add the line of another time",
+            ),
         ] {
-            assert_eq!(table(text).unwrap_err(), message);
+            let error = table(text).unwrap_err();
+            assert_eq!(format!("{}; {}", error.why, error.help), message);
         }
+        let error = read(Path::new("nowhere/b.csv"), "b.csv").unwrap_err();
         assert!(
-            read(Path::new("nowhere/b.csv"), "b.csv").unwrap_err().contains("there is no file nowhere/b.csv")
+            error.why.contains("there is no file nowhere/b.csv") && error.help.contains("check the path")
         );
         let folder = tempfile::tempdir().unwrap();
         for endless in [Path::new("/dev/zero"), folder.path()].into_iter().filter(|path| path.exists()) {
-            assert!(read(endless, "b.csv").unwrap_err().contains("is not a regular file"));
+            assert!(read(endless, "b.csv").unwrap_err().why.contains("is not a regular file"));
         }
     }
 }

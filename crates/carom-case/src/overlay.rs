@@ -39,10 +39,9 @@ pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Proble
             source: v.text("source"),
             file,
         }),
-        Err(why) => {
+        Err(error) => {
             let what = format!("the measured data \"{file}\" cannot be used");
-            let help = "the first line of the file has the headings that `time` and `value` name; its path is relative to the folder of this file";
-            problems.push(Problem::new(format!("{path}.file"), what, why, help));
+            problems.push(Problem::new(format!("{path}.file"), what, error.why, error.help));
             None
         }
     }

@@ -61,8 +61,34 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
     }
     let kind_line = format!("kind = {}", toml_edit::Value::from(kind));
     let text = std::iter::once(kind_line).chain(parameters.iter().map(line)).collect::<Vec<_>>().join("\n");
-    let document = Document::parse("arguments", &text, &[])?;
-    let mut problems = conform::variant(document.root(), keys::schemes());
-    let spec = scheme(document.root(), Preset::Default, "", &mut problems);
-    spec.filter(|_| problems.is_empty()).ok_or_else(|| document.diagnose_all(&problems))
+    let read = || {
+        let document = Document::parse("arguments", &text, &[])?;
+        let mut problems = conform::variant(document.root(), keys::schemes());
+        let spec = scheme(document.root(), Preset::Default, "", &mut problems);
+        spec.filter(|_| problems.is_empty()).ok_or_else(|| document.diagnose_all(&problems))
+    };
+    read().map_err(|error| match error {
+        CaseError::Wrong(found) => {
+            CaseError::Wrong(found.into_iter().map(|d| as_given(d, kind, parameters)).collect())
+        }
+        refused @ CaseError::Refused { .. } => refused,
+    })
+}
+
+/// A diagnostic of a line `key = value`, placed in the words as they were given.
+fn as_given(found: Diagnostic, kind: &str, parameters: &[String]) -> Diagnostic {
+    let words: Vec<&str> = std::iter::once(kind).chain(parameters.iter().map(String::as_str)).collect();
+    let Some((before, word)) = found.line.checked_sub(1).and_then(|i| Some((&words[..i], *words.get(i)?)))
+    else {
+        return found;
+    };
+    let (key, value) = word.split_once('=').map_or(("", word), |(key, value)| (key.trim_end(), value));
+    let value = if key.is_empty() { word } else { value.trim() };
+    let (start, marked) =
+        if found.column == 1 && !key.is_empty() { (0, key) } else { (word.len() - value.len(), value) };
+    let column = before.iter().map(|word| word.chars().count() + 1).sum::<usize>()
+        + word.get(..start).unwrap_or_default().chars().count()
+        + 1;
+    let length = marked.chars().count().max(1);
+    Diagnostic { line: 1, column, length, quoted: words.join(" "), ..found }
 }

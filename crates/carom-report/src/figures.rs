@@ -381,8 +381,9 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
     };
     let caption = format!(
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
-         the same scale; displacements are not magnified. Blue: compression. Red: tension.{arrow} Data: \
-         stress and displacement in the field files."
+         the same scale; displacements are not magnified. Blue: compression. Red: tension, which the von \
+         Mises stress, a colour of the animation, does not distinguish.{arrow} Data: stress and \
+         displacement in the field files."
     );
     let figure = Figure::new("bodies", caption, svg);
     let figure = contours::with_files(figure, &times, &list, [unit, &length, &stress]);

@@ -2,7 +2,7 @@
 //! assembly and factor, solve, whole steps.
 //!
 //!     cargo bench -p carom-run                    times
-//!     bench/instructions.py carom             instructions
+//!     bench/instructions.py carom-run         instructions
 
 use std::collections::BTreeSet;
 use std::hint::black_box;

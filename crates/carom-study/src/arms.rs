@@ -276,6 +276,13 @@ pub(crate) fn placed(study: &Document, draft: &Draft, found: &Diagnostic, base: 
     } else {
         format!("arm \"{}\": {}{place}", draft.name, found.why)
     };
+    let at_key = set.is_some_and(|(set, _)| set.find('=').is_some_and(|end| found.column <= end));
+    if at_key {
+        // A key of [grid] has a list of values.
+        let key = path.trim_end_matches(']').trim_end_matches(|c: char| c.is_ascii_digit());
+        let key = key.strip_suffix('[').unwrap_or(path);
+        return study.diagnose(&Problem::new(key, &found.what, why, &found.help).at_key());
+    }
     study.diagnose(&Problem::new(path, &found.what, why, &found.help))
 }
 

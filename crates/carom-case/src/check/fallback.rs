@@ -13,18 +13,18 @@ impl Check<'_> {
             return;
         };
         if let Some(why) = of_scheme(&time.scheme) {
-            self.refuse(&format!("with scheme `{}`", time.scheme.kind), why, "leave it out");
+            self.refuse(&format!("with scheme `{}`", time.scheme.kind), why, "leave out `fallback`");
             return;
         }
         for contact in draft.contacts.iter().flatten() {
-            if let Some((what, why, help)) = of_contact(contact) {
+            for (what, why, help) in of_contact(contact) {
                 self.refuse(&format!("with {what} of contact `{}`", contact.name), why, help);
             }
         }
         let light = |body: &&BodySpec| self.massless(body) || body.mass.is_redistributed();
         if let Some(body) = draft.bodies.iter().flatten().find(light) {
             let why = "the velocity of a node without mass does not follow from an impulse";
-            let help = "give the body a density > 0 and mass = \"consistent\" or \"lumped\", or leave it out";
+            let help = "give the body a density > 0 and mass = \"consistent\" or \"lumped\", or leave out `fallback`";
             self.refuse(&format!("with nodes without mass in body `{}`", body.name), why, help);
         }
     }
@@ -45,27 +45,49 @@ fn of_scheme(scheme: &SchemeSpec) -> Option<&'static str> {
     }
 }
 
-/// What the step is not built for, why, and what to do.
-fn of_contact(contact: &ContactSpec) -> Option<(&'static str, &'static str, &'static str)> {
-    if contact.enforcement == Enforcement::Penalty {
-        let why = "the step constrains gaps, and springs let nodes penetrate: it would throw them out";
-        Some(("enforcement = \"penalty\"", why, "use enforcement = \"multiplier\", or leave it out"))
-    } else if contact.enforcement == Enforcement::Augmented {
-        let why = "the step finds its impulses by a complementarity problem, not in rounds";
-        Some(("enforcement = \"augmented\"", why, "use enforcement = \"multiplier\", or leave it out"))
-    } else if contact.friction.exists() {
-        let why = "the step has normal impulses only, and a node that sticks would slip in it";
-        Some(("friction", why, "leave out the fallback or the friction"))
-    } else if contact.restitution != 0.0 {
-        let why = "the step is inelastic: it would lose the energy that the restitution returns";
-        Some(("a restitution", why, "leave out the fallback or the restitution"))
-    } else if contact.law == Some(ContactLaw::Predictor) {
-        let why = "the step has no predictor to project";
-        Some(("law = \"predictor\"", why, "use law = \"position\", or leave it out"))
-    } else if contact.xi == ContactPoint::Frozen || contact.detection == Detection::Trajectory {
-        let why = "the step measures gaps at closest points, and the paper's method does not";
-        Some(("detection = \"trajectory\"", why, "use detection = \"closest-point\", or leave it out"))
-    } else {
-        None
+/// Everything that the step is not built for, why, and what to do.
+fn of_contact(contact: &ContactSpec) -> Vec<(&'static str, &'static str, &'static str)> {
+    let mut found = Vec::new();
+    match contact.enforcement {
+        Enforcement::Multiplier => {}
+        Enforcement::Penalty => found.push((
+            "enforcement = \"penalty\"",
+            "the step constrains gaps, and springs let nodes penetrate: it would throw them out",
+            "use enforcement = \"multiplier\", or leave out `fallback`",
+        )),
+        Enforcement::Augmented => found.push((
+            "enforcement = \"augmented\"",
+            "the step finds its impulses by a complementarity problem, not in rounds",
+            "use enforcement = \"multiplier\", or leave out `fallback`",
+        )),
     }
+    if contact.friction.exists() {
+        found.push((
+            "friction",
+            "the step has normal impulses only, and a node that sticks would slip in it",
+            "leave out the friction, or `fallback`",
+        ));
+    }
+    if contact.restitution != 0.0 {
+        found.push((
+            "a restitution",
+            "the step is inelastic: it would lose the energy that the restitution returns",
+            "leave out the restitution, or `fallback`",
+        ));
+    }
+    if contact.law == Some(ContactLaw::Predictor) {
+        found.push((
+            "law = \"predictor\"",
+            "the step has no predictor to project",
+            "use law = \"position\", or leave out `fallback`",
+        ));
+    }
+    if contact.xi == ContactPoint::Frozen || contact.detection == Detection::Trajectory {
+        found.push((
+            "detection = \"trajectory\"",
+            "the step measures gaps at closest points, and the paper's method does not",
+            "use detection = \"closest-point\", or leave out `fallback`",
+        ));
+    }
+    found
 }

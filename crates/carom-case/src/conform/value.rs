@@ -7,6 +7,7 @@ use crate::keys::{self, Default, Key, Kind, Range};
 use crate::problem::Problem;
 use crate::suggest;
 use crate::tree::{Node, Value};
+use crate::view::word as word_of;
 
 impl Check {
     /// All problems of a value, and of the tables in it.
@@ -17,7 +18,8 @@ impl Check {
             | (Kind::Truth, Value::Flag(_)) => {}
             (Kind::Name, Value::Text(name)) => self.name(name, key, path),
             (Kind::Choice(now, later), Value::Text(word)) => {
-                self.choice(word, key.name, now, later, &key.meaning(), path);
+                let now = if now.contains(&word.as_str()) { now.to_vec() } else { self.of_dimension(now) };
+                self.choice(word, key.name, &now, later, &key.meaning(), path);
             }
             (Kind::Choices(words), Value::List(list)) if !list.is_empty() => {
                 for (i, node) in list.iter().enumerate() {
@@ -120,6 +122,15 @@ impl Check {
         }
     }
 
+    /// The words without cells of another dimension than that of the case.
+    fn of_dimension<'w>(&self, words: &[&'w str]) -> Vec<&'w str> {
+        let here = |word: &&&str| match (self.dimension, word_of::<carom_solid::Element>(word)) {
+            (Some(dimension), Some(element)) => element.dimension() == dimension,
+            _ => true,
+        };
+        words.iter().filter(here).copied().collect()
+    }
+
     pub(super) fn choice(
         &mut self,
         word: &str,
@@ -198,13 +209,16 @@ impl Check {
                     return;
                 }
                 if let Err(error) = carom_formula::Formula::parse(text, &variables) {
-                    let what = format!("the formula of `{}`: {}", key.name, error.message);
-                    let why = format!(
-                        "{} It is a formula in the variables {}.",
-                        key.meaning(),
-                        variables.join(", ")
+                    // `there is no function …: did you mean …?`
+                    let (wrong, help) = error.message.split_once(": ").map_or_else(
+                        || {
+                            let example = self.names.example(key);
+                            (error.message.as_str(), format!("write for example `{} = {example}`", key.name))
+                        },
+                        |(wrong, help)| (wrong, help.to_owned()),
                     );
-                    let help = format!("write for example `{} = {}`", key.name, self.names.example(key));
+                    let what = format!("the formula of `{}`: {wrong}", key.name);
+                    let why = format!("it is a formula in the variables {}", variables.join(", "));
                     self.problems.push(Problem::new(path, what, why, help).within(error.at));
                 }
             }

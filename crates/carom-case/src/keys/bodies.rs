@@ -49,7 +49,7 @@ pub(super) const BODY: Table = Table {
         key(
             "element",
             Choice(&["L2", "L3", "L4", "T3", "T6", "T10", "Q4", "Q9", "Tet4", "Tet10", "Tet20", "Hex8", "Hex27"], &[]),
-            "Cell type: L2 L3 L4 in dimension 1, T3 T6 T10 Q4 Q9 in dimension 2, Tet4 Tet10 Tet20 Hex8 Hex27 in dimension 3. Q4 and Q9 fill rectangles, Hex8 and Hex27 every shape.",
+            "Cell type: lines (L) in dimension 1, triangles (T) or quadrilaterals (Q) in dimension 2, tetrahedra (Tet) or hexahedra (Hex) in dimension 3. Q4 and Q9 fill rectangles, Hex8 and Hex27 every shape.",
         )
         .example("\"T6\""),
         key(

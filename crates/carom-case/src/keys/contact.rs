@@ -38,7 +38,7 @@ pub(super) const CONTACT: Table = Table {
             "stiffness",
             Number(POSITIVE),
             "Stiffness of the springs: of a penalty, as a multiple of the reference stiffness of the secondary node; of an augmented Lagrangian, of \
-             the diagonal of the step's tangent at the node, whose value changes the number of rounds only.",
+             the diagonal of the step's tangent at the node, which changes the number of rounds; far too soft springs may bisect a step.",
         )
             .default("10.0"),
         key(

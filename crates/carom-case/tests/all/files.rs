@@ -83,7 +83,8 @@ fn files_that_are_not_cases() {
             other => panic!("{other:?}"),
         }
     };
-    assert!(message("none.toml", None).contains("there is no such file"));
+    let none = message("none.toml", None);
+    assert!(none.contains("there is no such file") && none.ends_with("try: check the path"), "{none}");
     assert!(message("", None).contains("this is a directory"));
     assert!(message("empty.toml", Some(b"")).contains("the case is empty"));
     assert!(message("binary.toml", Some(b"\x7fELF\xff\x00")).contains("byte 5 is not valid UTF-8"));

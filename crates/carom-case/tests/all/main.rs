@@ -288,4 +288,11 @@ fn schemes_alone() {
     assert!(read("chung_hulbert", &["rho_inf=0.5"]).unwrap_err().contains("did you mean `chung-hulbert`?"));
     assert!(read("newmark", &["beta=0.25"]).unwrap_err().contains("`gamma` is missing"));
     assert!(read("hu", &["rho_inf"]).unwrap_err().contains("written KEY=VALUE"));
+    // The words are quoted as they were given.
+    let marked = |kind, parameters: &[&str]| {
+        read(kind, parameters).unwrap_err().lines().skip(1).take(2).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(marked("chung", &["rho_inf=0.5"]), "  chung rho_inf=0.5\n  ^^^^^");
+    assert_eq!(marked("hht", &["alpha=-0.05"]), "  hht alpha=-0.05\n            ^^^^^");
+    assert_eq!(marked("wbz", &["rho=0.5"]), "  wbz rho=0.5\n      ^^^");
 }

@@ -82,6 +82,16 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     ),
     (&["material.rubber.poisson=0.3"], &["not a valid pair", "0.3 for `lambda = 22.5`"]),
     (&["body.cylinder.element=T7"], &["`element` cannot be \"T7\"", "T10"]),
+    (&["body.cylinder.element=Q8"], &["Allowed values: T3, T6, T10, Q4, Q9\n", "did you mean `Q4`?"]),
+    (
+        &["probe=[{ name = \"A\", body = \"cylinder\", point = [0.0, 0.5] }]"],
+        &["unknown key `point` in [[probe]]", "did you mean `at`?"],
+    ),
+    (
+        &["probe=[{ name = \"A\", body = \"cylinder\" }]"],
+        &["[[probe]] has no `at`", "why: `at` is required. Reference position of the point."],
+    ),
+    (&["contact.strike.friction={ mu = 0.3 }"], &["unknown key `friction`", "did you mean `mu`?"]),
     (&["body.cylinder.element=L2"], &["the element L2 has dimension 1", "use T3, T6, T10, Q4 or Q9"]),
     (&["dimension=4"], &["dimension 4 is not supported", "use dimension = 1, 2 or 3"]),
     (&["dimension=two"], &["`dimension` must be an integer"]),
@@ -163,7 +173,8 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (
         &["load=[{ on = [\"prism.top\"], pressure = \"2*sun(t)\" }]"],
         &[
-            "--set:1:43: the formula of `pressure`: there is no function `sun`: did you mean `sin`?",
+            "--set:1:43: the formula of `pressure`: there is no function `sun`\n",
+            "why: it is a formula in the variables X, Y, t\ntry: did you mean `sin`?",
             "\n  load=",
             "^^^\n",
         ],
@@ -171,7 +182,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["load=[{ on = [\"prism.top\"], traction = [\"X +\", 1] }]"], &["the formula ends where a number"]),
     (
         &["load=[{ on = [\"prism.top\"], traction = [\"Z\", 1] }]"],
-        &["no variable `Z`: the variables are X, Y, t"],
+        &["no variable `Z`\n", "try: the variables are X, Y, t"],
     ),
     (
         &["load=[{ on = [\"prism.top\"], traction = [1.0] }]"],
@@ -199,7 +210,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["support=[{ on = [\"prism.bottom\"], fix = [\"y\"], move = { y = \"t\" } }]"],
         &["the direction y is both fixed and moved"],
     ),
-    (&["body.prism.velocity=[\"t\", 0]"], &["no variable `t`: the variables are X, Y"]),
+    (&["body.prism.velocity=[\"t\", 0]"], &["no variable `t`\n", "try: the variables are X, Y"]),
     (&["body.prism.velocity={ angular = 1.0 }"], &["the rotation has no centre", "add `about = [x, y]`"]),
     (
         &["body.prism.velocity=[1, 0]", "time.scheme={ kind = \"static\" }"],

@@ -128,6 +128,8 @@ pub(super) fn judge(
     let least = if errors { 2 } else { 3 };
     let groups = refinements(manifest, &order.against, order.arms.as_deref());
     let words = |group: &str| {
+        // The words that select a group may end with the comma that follows them in its names.
+        let group = group.trim_end_matches([',', ' ']);
         let place = if group.is_empty() { String::new() } else { format!(", {group}") };
         format!("order of {} in {}{place}", order.of, order.against)
     };

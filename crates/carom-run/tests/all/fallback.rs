@@ -177,4 +177,7 @@ fn what_it_is_not_built_for_is_refused() {
         );
     }
     assert_eq!(refused(&["time.scheme={ kind = \"energy-momentum\" }"]), "");
+    // All reasons at once: to follow one of them must not lead to another.
+    let said = refused(&["contact.strike.enforcement=augmented", "contact.strike.mu=0.3"]);
+    assert!(said.contains("not in rounds") && said.contains("normal impulses"), "{said}");
 }

@@ -168,6 +168,14 @@ fn wrong_arms_are_shown_in_the_study_file() {
     let found = wrong("[[arm]]\nname = \"a\"\nset = { \"time.schem\" = 1, \"body.bra.element\" = \"L3\" }\n");
     assert!(found[0].file.ends_with("study.toml"));
     assert_eq!((found[0].line, found[0].quoted.starts_with("set =")), (4, true));
+    // A key that names nothing is marked itself, not its value.
+    for (study, line, column) in [
+        ("[[arm]]\nname = \"a\"\nset = { \"body.bra.element\" = \"L3\" }\n", 4, 9),
+        ("[grid]\n\"body.bra.element\" = [\"L2\", \"L3\"]\n", 3, 1),
+    ] {
+        let found = wrong(study);
+        assert_eq!((found[0].line, found[0].column, found[0].length), (line, column, 18), "{found:?}");
+    }
     // A step that does not divide the end is reported at the arm, not in the case.
     let found = wrong("[[arm]]\nname = \"a\"\nset = { \"time.step\" = 0.03 }\n");
     assert_eq!((found.len(), found[0].line), (1, 2), "{found:?}");
@@ -232,9 +240,8 @@ fn wrong_measured_data_are_reported() {
     let found = first(&format!("{arm}{}", OVERLAY.replace("A.ux", "A.uy")));
     assert!(found.line == 7 && found.what.contains("no column `A.uy`"), "{found:?}");
     assert!(first(&format!("{arm}{OVERLAY}{OVERLAY}")).what.contains("two [[overlay]]"));
-    assert!(
-        first(&format!("{arm}{}", OVERLAY.replace("gauge.csv", "none.csv"))).what.contains("cannot be used")
-    );
+    let found = first(&format!("{arm}{}", OVERLAY.replace("gauge.csv", "none.csv")));
+    assert!(found.what.contains("cannot be used") && found.help.contains("check the path"), "{found:?}");
     let found = first(&format!("{arm}{}", OVERLAY.replace("file", "flie")));
     assert!(found.help.contains("`file`"), "{found:?}");
     let expect = "[[expect]]\nwhat = 'overlay_rms:gouge of \"a\"'\nat_most = 1\n";

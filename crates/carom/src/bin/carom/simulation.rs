@@ -95,6 +95,9 @@ pub(crate) struct Expectation {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) why: Option<String>,
     pub(crate) met: bool,
+    /// The expected value, or the bound.
+    #[serde(skip)]
+    pub(crate) value: Option<f64>,
 }
 
 /// Facts about the model of a case, for `carom check`.
@@ -220,6 +223,7 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
                 got: e.got,
                 why: e.why.clone(),
                 met: e.pass,
+                value: e.value,
             })
             .collect(),
         profile: if options.profile { profile(&run.manifest) } else { Vec::new() },

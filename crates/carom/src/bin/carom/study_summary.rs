@@ -4,14 +4,14 @@ use std::path::Path;
 
 use carom_record::Status;
 use carom_record::study::ranking::Ranking;
-use carom_record::study::{Study, StudyManifest};
+use carom_record::study::{Row, Study, StudyManifest};
 use carom_report::{ReportError, ReportSummary};
 use carom_study::Outcome;
 use serde_json::json;
 
 use crate::exit::Failure;
 use crate::shared::{of_arms, warnings};
-use crate::summary::short;
+use crate::summary::{missed, short};
 use crate::{console, out};
 
 /// Metrics of the table that is printed; all are in study.csv.
@@ -64,12 +64,18 @@ pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool, json: bool)
 
 fn text(study: &Study) -> String {
     let width = study.rows.iter().map(|r| r.name.chars().count()).max().unwrap_or(0);
-    let heads = SHOWN.iter().fold(String::new(), |row, name| row + &format!("  {name:>17}"));
+    let head = |name: &str| match study.rows.iter().find_map(|row| unit(row, name)) {
+        Some(unit) => format!("{name} [{unit}]"),
+        None => name.to_owned(),
+    };
+    let columns = SHOWN.map(|name| (name, head(name)));
+    let heads = columns.iter().fold(String::new(), |row, (_, head)| row + &format!("  {head:>17}"));
     let mut lines = vec![format!("{:width$}{heads}", "")];
     for (arm, row) in study.rows.iter().enumerate() {
         let cells: String = match row.status {
-            Some(Status::Finished) => SHOWN.iter().fold(String::new(), |line, name| {
-                line + &format!("  {:>17}", row.value(name).map_or("–".into(), short))
+            Some(Status::Finished) => columns.iter().fold(String::new(), |line, (name, head)| {
+                let width = head.chars().count().max(17);
+                line + &format!("  {:>width$}", row.value(name).map_or("–".into(), short))
             }),
             Some(Status::Failed) => {
                 let alike =
@@ -103,11 +109,18 @@ fn text(study: &Study) -> String {
     for (arm, e) in arms.chain(study.expectations.iter().map(|e| (None, e))) {
         let word = if e.pass { "met" } else { "MISSED" };
         let of = arm.map_or_else(String::new, |arm| format!(" of \"{arm}\""));
-        let got = e.got.map_or_else(|| e.why.clone().unwrap_or_default(), short);
+        let shown = |got| if e.pass { short(got) } else { missed(got, e.value) };
+        let got = e.got.map_or_else(|| e.why.clone().unwrap_or_default(), shown);
         lines.push(format!("{word:9}  {}{of}: {got}  ({})", e.what, e.expected));
     }
     lines.extend(study.ranking.iter().flat_map(|ranking| recommendation(study, ranking)));
     lines.join("\n")
+}
+
+/// The unit of a metric; none if it is a number alone.
+fn unit<'a>(row: &'a Row, name: &str) -> Option<&'a str> {
+    let metric = row.metrics.iter().find(|metric| metric.name == name)?;
+    (!metric.unit.is_empty()).then_some(metric.unit.as_str())
 }
 
 /// The recommendation of a study with a goal, as on its page.

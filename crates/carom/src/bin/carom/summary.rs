@@ -44,7 +44,9 @@ pub(crate) fn print(done: Result<Outcome, Failure>, json: bool, strict: bool) ->
 fn expectation(e: &Expectation) -> String {
     match (e.got, e.met) {
         (Some(got), true) => format!("{}: {}, as expected ({})", e.what, short(got), e.wanted),
-        (Some(got), false) => format!("{}: {}, MISSED: expected {}", e.what, short(got), e.wanted),
+        (Some(got), false) => {
+            format!("{}: {}, MISSED: expected {}", e.what, missed(got, e.value), e.wanted)
+        }
         (None, _) => {
             let why = e.why.as_deref().map_or_else(String::new, |why| format!(" ({why})"));
             format!("{}: not available{why}, expected {}", e.what, e.wanted)
@@ -95,6 +97,13 @@ pub(crate) fn short(x: f64) -> String {
     }
 }
 
+/// A number that misses an expected value, with all its digits where few do not show the miss.
+pub(crate) fn missed(got: f64, expected: Option<f64>) -> String {
+    let text = short(got);
+    let lost = (text.parse().unwrap_or(got) - got).abs();
+    if expected.is_some_and(|value| lost > 0.1 * (got - value).abs()) { format!("{got:?}") } else { text }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,6 +131,7 @@ mod tests {
                 got: Some(-0.78268),
                 why: None,
                 met: true,
+                value: Some(-0.7827),
             }],
             profile: Vec::new(),
             report: Some("runs/impact-2/report.html".into()),
@@ -148,5 +158,12 @@ mod tests {
         let numbers = [1.0, -0.097, 123456.7, 1.875e-3, 1e-5, 25.30801, 2e9];
         let expected = ["1", "-0.097", "123457", "0.001875", "1.0000e-5", "25.308", "2.0000e9"];
         assert_eq!(numbers.map(short), expected);
+    }
+
+    #[test]
+    fn a_miss_shows_in_the_digits() {
+        assert_eq!(missed(5.000000000023, Some(5.0)), "5.000000000023");
+        assert_eq!(missed(0.1 + 0.2, Some(0.4)), "0.3");
+        assert_eq!(missed(25.308012, None), "25.308");
     }
 }

@@ -15,7 +15,7 @@ use serde_json::json;
 use crate::exit::{Exit, Failure};
 use crate::live::{duration, stop_on_signal};
 use crate::study_summary::report as study_report;
-use crate::summary::short;
+use crate::summary::{missed, short};
 use crate::{console, directory, out};
 
 /// The cases as they were when the program was built.
@@ -195,7 +195,10 @@ fn table(rows: &[(&SetUp, &Row)]) -> Vec<String> {
             format!("{}/{}", set_up.family, set_up.name),
             row.quantity(),
             row.verdict.expected.clone(),
-            shown(row.verdict.got),
+            match row.verdict.got {
+                Some(got) if !row.verdict.pass => missed(got, row.verdict.value),
+                got => shown(got),
+            },
             shown(row.error()),
             shown(row.verdict.tolerance),
             if row.verdict.pass { "met" } else { "MISSED" }.to_owned(),
