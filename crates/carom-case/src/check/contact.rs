@@ -121,16 +121,15 @@ impl Check<'_> {
             let why = "it is the method of the paper, for the plane";
             self.add_unique(contact.path("detection"), what, why, "leave it out");
         }
-        if contact.between || contact.is_of_itself() {
-            let key = if contact.between { "between" } else { "primary" };
-            let why = format!("contact of a body with itself is not implemented in space: {later}");
-            let help = "give `secondary` and `primary`, sides of two bodies";
-            self.add_unique(
-                contact.path(key),
-                format!("`{key}` cannot be used in this way in dimension 3"),
-                why,
-                help,
-            );
+        if contact.is_of_itself() {
+            let (key, help) = if contact.between {
+                ("between", "add `self = false`: contact between bodies alone")
+            } else {
+                ("primary", "give a side of another body")
+            };
+            let what = "contact of a body with itself cannot be used in dimension 3";
+            let why = format!("it is not implemented in space: {later}");
+            self.add_unique(contact.path(key), what, why, help);
         }
     }
 
@@ -223,11 +222,11 @@ impl Check<'_> {
                 let why = "contacts of `between` are named NAME-BODY-BODY, and names must be unique";
                 self.add_unique(path("name"), what, why, "rename one of the tables");
             }
+            self.in_space(contact);
             // What follows from other keys is the same for all contacts of a table.
             if !earlier().any(|other| other.entry == contact.entry) {
                 self.law(contact);
                 self.frozen_point(contact);
-                self.in_space(contact);
                 self.friction(contact);
                 self.of_between(contact);
             }
