@@ -121,7 +121,7 @@ impl Check<'_> {
             let why = "it is the method of the paper, for the plane";
             self.add_unique(contact.path("detection"), what, why, "leave it out");
         }
-        if contact.is_of_itself() {
+        if contact.is_of_itself() && !self.is_misspelt("contact", contact.entry, "self") {
             let (key, help) = if contact.between {
                 ("between", "add `self = false`: contact between bodies alone")
             } else {
