@@ -58,13 +58,33 @@ fn pieces_of_one_body_move_like_bodies() {
         &(body("first", "first") + &body("second", "second")),
         r#"secondary = "second.skin", primary = "first.skin""#,
     );
-    let [one, two] = [one, two].map(|case| advanced(&case, 160));
+    same(&one, &two, 1e-12);
+}
+
+/// They also rub, because the first one contracts across.
+#[test]
+fn pieces_of_one_body_rub_like_bodies() {
+    let across = |body: String| body.replace(r#""0"]"#, r#""if(X < 0, 0.06*(0.5 - Y), 0)"]"#);
+    let one = strips(&across(body("both", "both")), r#"between = ["both"], mu = 0.2"#);
+    let two = strips(
+        &across(body("first", "first") + &body("second", "second")),
+        r#"secondary = "second.skin", primary = "first.skin", mu = 0.2"#,
+    );
+    let [a, b] = same(&one, &two, 1e-10).map(|simulation| simulation.state().ledger.friction_work);
+    assert!(a < -1e-5 && (a - b).abs() < 1e-12, "{a} {b}");
+}
+
+/// Runs both, which must end with the same positions; slips are found to 1e-10.
+fn same(one: &Case, two: &Case, tolerance: f64) -> [Simulation; 2] {
+    let both = [one, two].map(|case| advanced(case, 160));
+    let [one, two] = &both;
     let active = |simulation: &Simulation| simulation.state().pairs[0].iter().filter(|p| p.active).count();
-    assert!(active(&one) > 0 && active(&one) == active(&two));
+    assert!(active(one) > 0 && active(one) == active(two));
     let (a, b) = (&one.state().y, &two.state().y);
     assert_eq!(a.len(), b.len());
     let difference = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(difference < 1e-12, "{difference:e}");
+    assert!(difference < tolerance, "{difference:e}");
+    both
 }
 
 /// Before the ring touches itself, and after.

@@ -11,6 +11,9 @@ use crate::kinematics::{Kinematics, SweptPatch};
 /// A node this far behind a facet, relative to its length, at the start of a step has not crossed
 /// it.
 const BEHIND: f64 = 0.02;
+/// Difference in θ below which facets are reached together: where they meet, and a path lies in the
+/// neighbouring side.
+const TOGETHER: f64 = 1e-4;
 
 impl NodeToPatch {
     /// Finds the facets that a secondary node, given by index, may meet.
@@ -41,7 +44,8 @@ impl NodeToPatch {
         }
     }
 
-    /// θ and facet of the first crossing of trajectories of a node, of those near it.
+    /// θ and facet of the first crossing of trajectories of a node, of those near it; of facets that
+    /// are reached together, one of the side.
     pub(super) fn first(
         &self,
         swept: &mut SweptPatch,
@@ -50,15 +54,19 @@ impl NodeToPatch {
         before: &[f64],
         now: &[f64],
     ) -> Option<(f64, usize)> {
-        let mut first: Option<(f64, usize)> = None;
+        let mut first = [None; 2];
         for &facet in near {
+            let first = &mut first[usize::from(self.primary.is_of_side(facet))];
             if let Some(theta) = crossing(swept, self.primary.patch(facet), before, now, node)
                 && first.is_none_or(|(least, _)| theta < least)
             {
-                first = Some((theta, facet));
+                *first = Some((theta, facet));
             }
         }
-        first
+        match first {
+            [Some((other, _)), Some((side, _))] if other < side - TOGETHER => first[0],
+            [other, side] => side.or(other),
+        }
     }
 
     /// Facet and ξ of possible contact of a node without a pair.
