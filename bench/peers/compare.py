@@ -23,35 +23,20 @@ import os
 import pathlib
 import platform
 import statistics
-import subprocess
 import sys
 import tempfile
 
 import job
+from peers import DEBIAN, ROOT, VENV, install, missing, peer, timed
 
-HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
-VENV = ROOT / "target" / "peers-venv"
 CASES = {4: "disc-2k", 12: "disc-19k"}
-ONE = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-DEBIAN = "/usr/bin/python3"
-APPLICATIONS = ["", "LinearSolversApplication", "StructuralMechanicsApplication", "ConstitutiveLawsApplication", "ContactStructuralMechanicsApplication"]
-KRATOS = ["KratosMultiphysics==10.4.4", *(f"Kratos{name}==10.4.4" for name in APPLICATIONS[1:])]
-
-
-def pinned(command):
-    return ["taskset", "-c", "0", *map(str, command)]
 
 
 def carom_run(binary, rings, steps, out):
     """CPU seconds and memory in KiB of a run."""
     case = ROOT / "cases" / "perf" / f"{CASES[rings]}.toml"
     command = [binary, "run", case, "--out", out, "--no-report", "--threads", 1, "--set", f"time.end={steps * job.DT}"]
-    process = subprocess.Popen(pinned(command), stdout=subprocess.DEVNULL)
-    _, status, used = os.wait4(process.pid, 0)
-    if status:
-        sys.exit(f"carom run {case} ended with status {status}")
-    return used.ru_utime + used.ru_stime, used.ru_maxrss
+    return timed(command)
 
 
 def carom(options, rings, steps):
@@ -71,11 +56,6 @@ def carom(options, rings, steps):
     }
 
 
-def peer(python, script, rings, steps):
-    done = subprocess.run(pinned([python, HERE / script, rings, steps]), check=True, capture_output=True, env=ONE, text=True)
-    return json.loads(done.stdout.strip().splitlines()[-1])
-
-
 # Quadratic triangles need 1.5 times as many rings as cubic ones for the same nodes, linear ones 3
 # times as many.
 RUNS = {
@@ -83,19 +63,6 @@ RUNS = {
     "GetFEM": lambda _, rings, steps: peer(DEBIAN, "getfem_job.py", rings * 3 // 2, steps),
     "Kratos": lambda _, rings, steps: peer(VENV / "bin" / "python", "kratos_job.py", rings * 3, steps),
 }
-
-
-def install():
-    subprocess.run(["apt-get", "install", "-yq", "--no-install-recommends", "python3-getfem"], check=True)
-    subprocess.run([sys.executable, "-m", "venv", VENV], check=True)
-    subprocess.run([VENV / "bin" / "pip", "install", "-q", "--disable-pip-version-check", *KRATOS], check=True)
-
-
-def missing():
-    imports = "; ".join("import " + ".".join(filter(None, ["KratosMultiphysics", name])) for name in APPLICATIONS)
-    for what, python, code in (("GetFEM", DEBIAN, "import getfem"), ("Kratos", VENV / "bin" / "python", imports)):
-        if not pathlib.Path(python).exists() or subprocess.run([python, "-c", code], capture_output=True).returncode:
-            yield what
 
 
 def main():
