@@ -44,8 +44,8 @@ impl NodeToPatch {
         }
     }
 
-    /// θ and facet of the first crossing of trajectories of a node, of those near it; of facets that
-    /// are reached together, one of the side.
+    /// θ and facet of the first crossing of trajectories of a node, of those near it; of facets
+    /// that are reached together, one of the side.
     pub(super) fn first(
         &self,
         swept: &mut SweptPatch,
