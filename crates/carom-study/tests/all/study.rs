@@ -242,7 +242,7 @@ fn wrong_measured_data_are_reported() {
     assert!(first(&format!("{arm}{OVERLAY}{OVERLAY}")).what.contains("two [[overlay]]"));
     let found = first(&format!("{arm}{}", OVERLAY.replace("gauge.csv", "none.csv")));
     assert!(found.what.contains("cannot be used") && found.help.contains("check the path"), "{found:?}");
-    let found = first(&format!("{arm}{}", OVERLAY.replace("file", "flie")));
+    let found = first(&format!("{arm}{}", OVERLAY.replace("file", "files")));
     assert!(found.help.contains("`file`"), "{found:?}");
     let expect = "[[expect]]\nwhat = 'overlay_rms:gouge of \"a\"'\nat_most = 1\n";
     assert!(first(&format!("{arm}{OVERLAY}{expect}")).what.contains("no measured data `gouge`"));
