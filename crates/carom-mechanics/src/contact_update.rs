@@ -23,6 +23,9 @@ const INITIAL_GAP: f64 = 1e-9;
 
 /// Correction, relative to L, below which facets are handed over before convergence.
 const CLOSE: f64 = 1e-5;
+/// Correction, over the depth that a node may have without contact, below which it may come into
+/// contact before convergence.
+const KNOWN: f64 = 0.01;
 /// Number of early facet updates in a solve, before corrections are that small.
 const FACET_UPDATES: u32 = 12;
 
@@ -121,7 +124,7 @@ impl ContactUpdate {
         work: &mut Workspace,
     ) -> Result<bool, Rejected> {
         let model = equations.model;
-        let mut changed = self.change_sets(equations, now, &work.system, settled)?;
+        let mut changed = self.change_sets(equations, now, &work.system, settled, step)?;
         changed |= self.change_holds(equations, now, settled)?;
         let mut handed_over = false;
         if !settled && self.facet_updates > 0 && update_facets(model, now, events) {
@@ -149,6 +152,7 @@ impl ContactUpdate {
         evaluation: &mut Evaluation,
         system: &System,
         settled: bool,
+        step: f64,
     ) -> Result<bool, Rejected> {
         let (model, mut changed) = (equations.model, false);
         // The activity of a spring follows from its gap alone.
@@ -164,8 +168,9 @@ impl ContactUpdate {
             let Iterate { pairings, increment, .. } = &mut evaluation.at;
             let pairs = &mut pairings[k].pairs;
             let contender = |(pair, row): (&Pair, Row)| {
-                // Few nodes that may be inside reach their depth: they wait for the others.
-                let waits = !settled && !pair.active && contact.kinematics.allowed(pair.node) > 0.0;
+                // Few nodes that may be inside reach their depth: they wait until it is known.
+                let allowed = contact.kinematics.allowed(pair.node);
+                let waits = !settled && !pair.active && allowed > 0.0 && step > KNOWN * allowed;
                 let gap = if waits { f64::INFINITY } else { row.gap };
                 Contender { active: pair.active, gap, lambda: pair.lambda, stiffness }
             };

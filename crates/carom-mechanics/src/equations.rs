@@ -191,6 +191,19 @@ impl<'a> Equations<'a> {
             }
         }
         model.mass.multiply_into(acceleration, &mut forces.inertia);
+        self.change_contacts(evaluation, timings)
+    }
+
+    /// Contact forces, gaps and residual of an iterate whose pairs have changed.
+    ///
+    /// # Errors
+    /// If an active pair has no gap.
+    pub(crate) fn change_contacts(
+        &self,
+        evaluation: &mut Evaluation,
+        timings: &mut Timings,
+    ) -> Result<(), Rejected> {
+        let Self { model, stage, .. } = self;
         timed(&mut timings.contact, || self.evaluate_contacts(evaluation))?;
         let Evaluation { forces, residual, measure, .. } = evaluation;
         (measure.residual, measure.forces) = residual_into(model, stage, forces, &self.known, residual);

@@ -58,6 +58,7 @@ mod tangent_tests;
 #[cfg(test)]
 mod testing;
 mod timings;
+mod tips;
 mod trace;
 mod undeclared;
 mod valid_cells;

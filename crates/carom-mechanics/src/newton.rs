@@ -38,6 +38,9 @@ const FORCING: f64 = 0.1;
 const FORCING_RATIO: f64 = 0.9;
 /// Number of corrections with a reused factor that may grow without a change of contacts.
 const PATIENCE: u32 = 2;
+/// Number of times that the iterations of a stage are counted anew because they have converged and
+/// the contacts then changed.
+const SETS: u32 = 4;
 /// Bisections of a Newton step that inverts a cell or greatly increases the residual.
 const BISECTIONS: usize = 8;
 /// Fraction of the predicted motion that its first correction may have; otherwise the predictor is
@@ -101,16 +104,17 @@ pub(crate) fn solve_stage(
     work.restore_factor(equations, &renewal)?;
     let digits = if is_static { DIGITS } else { 1.0 };
     let (mut contact, mut rounds) = (ContactUpdate::new(model), Rounds::new());
-    let (mut step, mut ratio, mut grown, mut iteration) = (f64::INFINITY, 1.0_f64, 0, 0);
+    let (mut step, mut ratio, mut grown, mut iteration, mut sets) = (f64::INFINITY, 1.0_f64, 0, 0, 0);
     loop {
         // The error of an inexact linear solve shrinks with the residual, so the residual is
         // reduced further if linear problems are solved inexactly.
-        let enough = DIGITS * tolerance * now.measure.forces + work.system.round_off(equations);
+        let noise = work.system.round_off(equations);
+        let enough = DIGITS * tolerance * now.measure.forces + noise;
         let settled = step * if is_static { 1.0 } else { ratio.min(1.0) } <= tolerance * model.scale
             && now.measure.residual <= enough
             && (now.measure.gap <= GAP_TOLERANCE * model.scale
                 || now.measure.held && Constraints::gap(equations, &now) <= GAP_TOLERANCE * model.scale)
-            && (is_static || are_balanced(equations, &now));
+            && (is_static || are_balanced(equations, &now, noise));
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
         work.trace.push(iterate(equations, &now, iteration, step, changed), &now.y);
         if settled && !changed {
@@ -124,6 +128,10 @@ pub(crate) fn solve_stage(
             }
             (effort.frozen, effort.regularity) = (renewal.finish(), contact.regularity);
             return Ok((now, effort));
+        }
+        if settled && sets < SETS {
+            // Converged for the previous pairs: another solve.
+            (iteration, grown, sets) = (0, 0, sets + 1);
         }
         if changed {
             // The existing rows belong to the previous pairs.
@@ -228,9 +236,13 @@ fn again(
     mut evaluation: Evaluation,
     work: &mut Workspace,
 ) -> Result<Evaluation, Rejected> {
-    let at = std::mem::take(&mut evaluation.at);
-    work.spare.put(evaluation);
-    equations.evaluate(at, &mut work.spare, &mut work.timings)
+    match equations.change_contacts(&mut evaluation, &mut work.timings) {
+        Ok(()) => Ok(evaluation),
+        Err(rejected) => {
+            work.spare.put(evaluation);
+            Err(rejected)
+        }
+    }
 }
 
 /// Takes the Newton step, shortened if it inverts a cell or, with unchanged contacts, greatly

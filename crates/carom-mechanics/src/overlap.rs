@@ -4,8 +4,8 @@
 //! nodes at their ends lie on the boundary beside the side, and are as deep as their neighbours.
 
 use crate::model::Model;
-use crate::penetration::has_gaps;
-use crate::skins::{BodySkin, part_of, skin};
+use crate::skins::{BodySkin, part_of, position, skin};
+use crate::watched::has_gaps;
 
 /// Distance outside of a body, relative to L, at which a node still counts as on its boundary.
 const ON: f64 = 1e-9;
@@ -28,7 +28,8 @@ pub fn depths(model: &Model, y: &[f64]) -> Vec<Vec<f64>> {
                 skins[other] = skin(&model.parts[other]);
                 skins[other].iter_mut().for_each(|skin| skin.update(y));
             }
-            let found = skins[other].as_ref().and_then(|skin| skin.depth(node, None, y));
+            let at = position(y, model.dimension, node);
+            let found = skins[other].as_ref().and_then(|skin| skin.depth(at, None, y));
             let distance = found.map_or(f64::INFINITY, |found| found.distance);
             // Behind a joint of a hollow side no facet is faced.
             if distance <= ON * model.scale { below.unwrap_or(-distance).max(0.0) } else { 0.0 }

@@ -1,6 +1,6 @@
-//! Penetration, measured over all nodes of both sides of every contact, whatever pairs there are: a
-//! node that a search has lost is found here. A step in which a node is deeper than its contact
-//! allows is rejected.
+//! Penetration, measured over all nodes of both sides of every contact, and in space over points of
+//! their sharp edges, whatever pairs there are: a node that a search has lost is found here. A step
+//! in which one is deeper than its contact allows is rejected.
 //!
 //! A node outside, at a distance d from a body, cannot be inside before the two have moved by d
 //! together. Until then it is not measured; no result depends on when it was.
@@ -12,13 +12,15 @@ use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
 use crate::skins::{BodySkin, folding_skin, length, part_of, skin};
 use crate::state::State;
-use crate::watched::{Way, watched};
+use crate::tips::{Pierced, Tip};
+use crate::watched::{Way, edge_points, has_gaps, watched};
 
 /// Measures penetration. A cache: its content affects no result.
 #[derive(Debug, Default)]
 pub(crate) struct Penetration {
     skins: Vec<Option<BodySkin>>,
     pub(crate) ways: Vec<Way>,
+    tips: Vec<Tip>,
     /// Positions to which the clearances refer.
     y: Vec<f64>,
     /// Bodies whose skins have their positions of this step.
@@ -50,10 +52,32 @@ impl Depths {
     }
 }
 
+/// What lies inside a body, and is said of the node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum What {
+    Node,
+    /// A point of an edge that begins with it.
+    Edge,
+    /// A round part of an obstacle, near it.
+    Obstacle,
+}
+
+impl What {
+    /// Words that the node's number follows.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Node => "node",
+            Self::Edge => "the sharp edge at node",
+            Self::Obstacle => "the rigid obstacle beside node",
+        }
+    }
+}
+
 /// A node inside a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Inside {
     pub node: usize,
+    pub what: What,
     pub depth: f64,
     pub limit: f64,
 }
@@ -78,22 +102,28 @@ impl Penetration {
             let Some(secondary) = secondary_facets.first().and_then(|f| part_of(model, f[0])) else {
                 continue;
             };
-            for (body, facets) in [(primary, secondary_facets), (secondary, primary_facets)] {
-                ways.push(Way::new(model, Some(k), body, watched(model, contact, facets)));
+            for (body, own, facets) in
+                [(primary, secondary, secondary_facets), (secondary, primary, primary_facets)]
+            {
+                let mut nodes = watched(model, contact, facets);
+                nodes.append(&mut edge_points(model, contact, own, facets));
+                ways.push(Way::new(model, Some(k), body, nodes));
             }
         }
-        Self::new(model, ways)
+        Self::new(model, ways, Tip::all(model))
     }
 
-    pub(crate) fn new(model: &Model, ways: Vec<Way>) -> Self {
+    pub(crate) fn new(model: &Model, ways: Vec<Way>, tips: Vec<Tip>) -> Self {
         let skin = |body: usize| {
             let part = &model.parts[body];
             let mut of_body = ways.iter().filter(|way| way.body == body).peekable();
-            of_body.peek()?;
+            if of_body.peek().is_none() && tips.iter().all(|tip| tip.part != body) {
+                return None;
+            }
             let folds = of_body.any(|way| way.itself.is_some());
             if folds { folding_skin(model, part).map(BodySkin::Plane) } else { skin(part) }
         };
-        Self { skins: (0..model.parts.len()).map(skin).collect(), ways, ..Self::default() }
+        Self { skins: (0..model.parts.len()).map(skin).collect(), ways, tips, ..Self::default() }
     }
 
     /// Penetration at the state.
@@ -106,6 +136,7 @@ impl Penetration {
             None => Ok(deepest),
             Some((contact, body, inside)) => Err(Rejected::Penetration {
                 contact: model.contacts[contact].name.clone(),
+                what: inside.what.words(),
                 node: inside.node,
                 body: model.parts[body].name.clone(),
                 depth: inside.depth,
@@ -129,6 +160,11 @@ impl Penetration {
                 deepest.add(inside.depth, false);
                 beyond = beyond.or((inside.depth > inside.limit).then_some((k, body, inside)));
             }
+        }
+        for (contact, part, pierced) in self.pierced(model, &state.y) {
+            let Pierced { node, depth, limit } = pierced;
+            let inside = Inside { node, what: What::Obstacle, depth, limit };
+            beyond = beyond.or((depth > limit).then_some((contact, part, inside)));
         }
         for contact in model.contacts.iter().filter(|contact| has_gaps(model, contact)) {
             for node in 0..contact.kinematics.secondary().len() {
@@ -154,7 +190,18 @@ impl Penetration {
         let (node, facet, depth) = skin.deepest_in_itself(y)?;
         let length = length(model, skin.facet_nodes(facet));
         // Chords do not tell smaller depths from none.
-        (depth > CHORDS * length).then_some((body, Inside { node, depth, limit: contact.depths[1] * length }))
+        (depth > CHORDS * length)
+            .then_some((body, Inside { node, what: What::Node, depth, limit: contact.depths[1] * length }))
+    }
+
+    /// The round parts of rigid obstacles that may have met a body, with contact and body.
+    fn pierced(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize, Pierced)> {
+        let Self { skins, tips, current, .. } = self;
+        let of_tip = |tip: &mut Tip| {
+            let found = tip.pierced(model, skins[tip.part].as_mut()?, &mut current[tip.part], y)?;
+            Some((tip.contact, tip.part, found))
+        };
+        tips.iter_mut().filter_map(of_tip).collect()
     }
 
     /// Subtracts the motion since the last call from the clearances.
@@ -166,13 +213,19 @@ impl Penetration {
                     let nodes = way.boundary.iter().map(|&node| moved(node)).fold(0.0, f64::max).sqrt();
                     let body = nodes * self.skins[way.body].as_ref().map_or(1.0, BodySkin::amplification);
                     for watched in way.nodes.iter_mut().filter(|watched| watched.clearance > 0.0) {
-                        watched.clearance -= moved(watched.node).sqrt() + body;
+                        watched.clearance -= watched.motion(moved) + body;
                     }
                 }
             }
         }
+        if self.y.len() == y.len() {
+            for tip in &mut self.tips {
+                let amplification = self.skins[tip.part].as_ref().map_or(1.0, BodySkin::amplification);
+                tip.approach(|node| square(&self.y, y, model.dimension, node), amplification);
+            }
+        }
         self.y.clear();
-        if !self.ways.is_empty() {
+        if !self.ways.is_empty() || !self.tips.is_empty() {
             self.y.extend_from_slice(y);
         }
         self.current.clear();
@@ -228,7 +281,8 @@ impl Penetration {
                 continue;
             }
             let node = watched.node;
-            let (depth, entered) = if let Ok(p) = paired.binary_search_by_key(&node, |(paired, ..)| *paired) {
+            let of_node = paired.binary_search_by_key(&node, |(paired, ..)| *paired).ok();
+            let (depth, entered) = if let Some(p) = of_node.filter(|_| watched.between.is_empty()) {
                 (paired[p].1, paired[p].2)
             } else {
                 if !std::mem::replace(&mut current[*body], true) {
@@ -243,13 +297,14 @@ impl Penetration {
                     // No deeper than any point of the boundary is away: neither the deepest nor too
                     // deep.
                     let known = if watched.constrained { deepest.constrained } else { deepest.all };
+                    let point = watched.point(y, model.dimension);
                     if let Some((facet, xi)) = watched.near {
-                        let bound = skin.distance(facet, xi, node, y);
+                        let bound = skin.distance(facet, xi, point, y);
                         if bound <= known && bound <= watched.limit(entered(facet)) {
                             continue;
                         }
                     }
-                    let Some(found) = skin.depth(node, watched.near.map(|near| near.0), y) else {
+                    let Some(found) = skin.depth(point, watched.near.map(|near| near.0), y) else {
                         continue;
                     };
                     (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
@@ -262,7 +317,8 @@ impl Penetration {
             deepest.add(depth, watched.constrained);
             let limit = watched.limit(entered);
             if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
-                worst = Some(Inside { node, depth, limit });
+                let what = if watched.between.is_empty() { What::Node } else { What::Edge };
+                worst = Some(Inside { node, what, depth, limit });
             }
         }
         (deepest, worst)
@@ -286,6 +342,9 @@ pub fn inside(model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> 
         let of_contact = deepest.zip(penetration.ways[k].contact);
         found.extend(of_contact.map(|(inside, contact)| (contact, inside.node, inside.depth)));
     }
+    // Chords of facets lie in what their nodes touch.
+    let pierced = penetration.pierced(model, y).into_iter().filter(|(.., p)| p.depth > p.limit);
+    found.extend(pierced.map(|(contact, _, pierced)| (contact, pierced.node, pierced.depth)));
     for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| has_gaps(model, contact)) {
         let secondary = contact.kinematics.secondary().iter().enumerate();
         let depth = |(place, &node)| (k, node, -contact.kinematics.signed_distance(place, y).unwrap_or(0.0));
@@ -295,11 +354,6 @@ pub fn inside(model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> 
     found.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.total_cmp(&a.2)));
     found.dedup_by_key(|(contact, ..)| *contact);
     found
-}
-
-/// Whether every node of a contact has a gap: its primary is rigid, or a point.
-pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
-    !contact.itself && contact.facets.len() < 2 || model.dimension == 1
 }
 
 /// Depth over the length of a facet that a chord of it may feign.

@@ -145,13 +145,16 @@ pub enum Rejected {
         /// The bound of the law.
         bound: f64,
     },
-    /// A node of a side lies deeper in the other body than the contact allows.
+    /// A node, a point of a sharp edge, or a rigid obstacle lies deeper in a body than the contact
+    /// allows.
     #[error(
-        "contact \"{contact}\": node {node} lies {depth:.3e} deep in body \"{body}\", more than the allowed {limit:.3e}"
+        "contact \"{contact}\": {what} {node} lies {depth:.3e} deep in body \"{body}\", more than the allowed {limit:.3e}"
     )]
     Penetration {
         /// Contact.
         contact: String,
+        /// What lies there, in words that the node's number follows.
+        what: &'static str,
         /// Global number of the node.
         node: usize,
         /// The body that it has entered.

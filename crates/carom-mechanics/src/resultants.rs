@@ -1,8 +1,10 @@
 //! Balance of the bodies as wholes. With the rigid modes u that supports leave free
 //!
 //! ```text
-//! |u·r| ≤ 1e-13 Σ_j |u·f_j| + 16 ε |u|·(Σ_j |f_j| + w.mass a' M |d|)        r = Σ_j f_j, the terms of the balance
+//! |u·r| ≤ 1e-13 Σ_j |u·f_j| + 16 ε |u|·(Σ_j |f_j| + w.mass a' |M d|)        r = Σ_j f_j, the terms of the balance
 //! ```
+//!
+//! with the length |M d| of the motion of a node, whatever its direction.
 //!
 //! ‖r‖ alone does not say that: the stresses of a stiff body are known to fewer digits than the
 //! forces that move it, but their sum over the body is zero to round-off. The second term is that
@@ -23,11 +25,12 @@ const BALANCED: f64 = 1e-13;
 const SUMMED: f64 = 16.0 * f64::EPSILON;
 
 /// Whether the resultants of the residual are zero; not asked without friction, nor of contacts
-/// that conserve energy, whose states more iterations disturb.
-pub(crate) fn are_balanced(equations: &Equations, now: &Evaluation) -> bool {
+/// that conserve energy, whose states more iterations disturb, nor of bodies in free flight, whose
+/// forces are not above the `noise` of the positions.
+pub(crate) fn are_balanced(equations: &Equations, now: &Evaluation, noise: f64) -> bool {
     let model = equations.model;
     let conserves = model.contacts.iter().any(Contact::conserves);
-    if model.unconstrained.is_empty() || !model.has_friction() || conserves {
+    if model.unconstrained.is_empty() || !model.has_friction() || conserves || now.measure.forces <= noise {
         return true;
     }
     let (weights, d) = (&equations.stage.weights, model.dimension);
@@ -38,6 +41,7 @@ pub(crate) fn are_balanced(equations: &Equations, now: &Evaluation) -> bool {
         let (mut sums, mut sizes, mut whole) = ([0.0; 5], 0.0, 0.0);
         for node in model.parts[mode.part].nodes() {
             let place = &now.y[node * d..(node + 1) * d];
+            let moved = motion[node * d..(node + 1) * d].iter().map(|m| m * m).sum::<f64>().sqrt();
             for (axis, i) in (node * d..(node + 1) * d).enumerate() {
                 let u = mode.at(place, axis);
                 let terms = [
@@ -49,7 +53,7 @@ pub(crate) fn are_balanced(equations: &Equations, now: &Evaluation) -> bool {
                 ];
                 sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += u * term);
                 let size = terms.iter().map(|term| term.abs()).sum::<f64>();
-                sizes += u.abs() * (size + (slope * motion[i]).abs());
+                sizes += u.abs() * (size + slope * moved);
                 whole += u * now.residual[i];
             }
         }

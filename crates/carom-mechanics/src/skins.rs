@@ -36,19 +36,19 @@ impl BodySkin {
         }
     }
 
-    /// Where a node lies, searched from a facet near it if one is known.
-    pub(crate) fn depth(&self, node: usize, from: Option<usize>, y: &[f64]) -> Option<Depth> {
+    /// Where a point lies, searched from a facet near it if one is known.
+    pub(crate) fn depth(&self, point: [f64; 3], from: Option<usize>, y: &[f64]) -> Option<Depth> {
         match self {
-            Self::Plane(skin) => skin.depth([y[2 * node], y[2 * node + 1]], from, y),
-            Self::Space(surface) => surface.depth(node, from, y),
+            Self::Plane(skin) => skin.depth([point[0], point[1]], from, y),
+            Self::Space(surface) => surface.depth(point, from, y),
         }
     }
 
-    /// Distance between a node and a point of a facet.
-    pub(crate) fn distance(&self, facet: usize, xi: [f64; 2], node: usize, y: &[f64]) -> f64 {
+    /// Distance between a point and one of a facet.
+    pub(crate) fn distance(&self, facet: usize, xi: [f64; 2], point: [f64; 3], y: &[f64]) -> f64 {
         match self {
-            Self::Plane(skin) => skin.distance(facet, xi[0], [y[2 * node], y[2 * node + 1]], y),
-            Self::Space(surface) => surface.distance(facet, xi, node, y),
+            Self::Plane(skin) => skin.distance(facet, xi[0], [point[0], point[1]], y),
+            Self::Space(surface) => surface.distance(facet, xi, point, y),
         }
     }
 
@@ -56,6 +56,11 @@ impl BodySkin {
     pub(crate) fn plane(&self) -> Option<&Skin> {
         if let Self::Plane(skin) = self { Some(skin) } else { None }
     }
+}
+
+/// Position of a node, with zeros for the directions that a model does not have.
+pub(crate) fn position(y: &[f64], dimension: usize, node: usize) -> [f64; 3] {
+    std::array::from_fn(|i| if i < dimension { y[dimension * node + i] } else { 0.0 })
 }
 
 /// Distance between the first corners of a facet in the reference configuration.

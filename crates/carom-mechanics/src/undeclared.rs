@@ -52,7 +52,7 @@ impl Undeclared {
                 ways.push(Way::new(model, None, body, nodes.collect()));
             }
         }
-        Self { between: Penetration::new(model, ways), own: None }
+        Self { between: Penetration::new(model, ways, Vec::new()), own: None }
     }
 
     /// Pairs of bodies of which one is inside the other, and each body that crosses itself as a

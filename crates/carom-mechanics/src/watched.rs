@@ -1,11 +1,12 @@
-//! The nodes whose penetration is measured, with the bodies that they must not enter.
+//! The nodes whose penetration is measured, with the bodies that they must not enter; in space
+//! points of sharp edges too, because edges can cross between their nodes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use carom_contact::Side;
+use carom_contact::{Boundary, Side};
 
 use crate::model::{Contact, Model};
-use crate::skins::{length, skin_facets};
+use crate::skins::{length, position, skin_facets};
 
 /// Nodes of a side against a body.
 #[derive(Debug)]
@@ -24,7 +25,10 @@ pub(crate) struct Way {
 
 #[derive(Debug)]
 pub(crate) struct Watched {
+    /// The node; of a point between nodes the first one.
     pub node: usize,
+    /// Nodes and weights of a point of an edge; empty for a node.
+    pub between: Vec<(usize, f64)>,
     /// Length of its facets in the reference configuration.
     pub length: f64,
     /// Whether the contact constrains it.
@@ -77,7 +81,29 @@ impl Way {
 
 impl Watched {
     pub(crate) fn new(node: usize, length: f64, constrained: bool, share: f64) -> Self {
-        Self { node, length, constrained, share, kept: 0.0, reach: 0.0, clearance: 0.0, near: None }
+        let between = Vec::new();
+        Self { node, between, length, constrained, share, kept: 0.0, reach: 0.0, clearance: 0.0, near: None }
+    }
+
+    /// Its position.
+    pub(crate) fn point(&self, y: &[f64], dimension: usize) -> [f64; 3] {
+        if self.between.is_empty() {
+            return position(y, dimension, self.node);
+        }
+        let mut point = [0.0; 3];
+        for &(node, weight) in &self.between {
+            let x = position(y, dimension, node);
+            (0..3).for_each(|i| point[i] += weight * x[i]);
+        }
+        point
+    }
+
+    /// How far it has moved at most, from the squares of its nodes' motions.
+    pub(crate) fn motion(&self, square: impl Fn(usize) -> f64) -> f64 {
+        if self.between.is_empty() {
+            return square(self.node).sqrt();
+        }
+        self.between.iter().map(|&(node, weight)| weight.abs() * square(node).sqrt()).sum()
     }
 
     /// Allowed depth in a facet of this length: a node that the contact law keeps outside is judged
@@ -100,6 +126,36 @@ pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -
         Watched { kept, ..Watched::new(node, length, constrained, contact.depths[usize::from(!constrained)]) }
     };
     lengths(model, facets).map(watched).collect()
+}
+
+/// Whether every node of a contact has a gap: its primary is rigid, or a point.
+pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
+    !contact.itself && contact.facets.len() < 2 || model.dimension == 1
+}
+
+/// Points of the sharp edges of a side in space, of the body `part`. No contact keeps them outside
+/// where the nodes of the edge are.
+pub(crate) fn edge_points(
+    model: &Model,
+    contact: &Contact,
+    part: usize,
+    facets: &[Vec<usize>],
+) -> Vec<Watched> {
+    let shape = model.parts[part].body.mesh().element.facet_shape();
+    if shape.dimension() != 3 {
+        return Vec::new();
+    }
+    let side: HashSet<&Vec<usize>> = facets.iter().collect();
+    let mut rest = skin_facets(&model.parts[part]);
+    rest.retain(|facet| !side.contains(facet));
+    let longest: HashMap<usize, f64> = lengths(model, facets).collect();
+    let points = Boundary::new(shape, facets, &rest, 0).points_of_sharp_edges(&model.reference);
+    let watched = |between: Vec<(usize, f64)>| {
+        let length =
+            between.iter().filter_map(|(node, _)| longest.get(node)).fold(0.0, |a: f64, b| a.max(*b));
+        Watched { between: between.clone(), ..Watched::new(between[0].0, length, false, contact.depths[1]) }
+    };
+    points.into_iter().filter(|point| !point.is_empty()).map(watched).collect()
 }
 
 /// The nodes of facets, ascending, each with the longest of its facets in the reference

@@ -100,7 +100,7 @@ impl<K: OneWay> BothSides<K> {
             let near = NEAR_NODE * self.forward.length(facet, y) + self.reverse.kept(corner.node);
             let own = self.forward.normal(facet, xi, y);
             own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2] < -PARALLEL
-                && faced.iter().any(|&other| self.forward.distance(other, node, y) < near)
+                && faced.iter().any(|&other| self.forward.distance(other, node, normal, y) < near)
         })
     }
 

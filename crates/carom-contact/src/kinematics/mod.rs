@@ -74,6 +74,12 @@ pub trait Kinematics: Send + Sync {
     /// side, plus the depth that it keeps; `None` if no facet faces it.
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64>;
 
+    /// Convex round parts of a rigid obstacle, which can lie between nodes, as centres and radii;
+    /// none of other primary sides.
+    fn tips(&self, _y: &[f64]) -> Vec<([f64; 3], f64)> {
+        Vec::new()
+    }
+
     /// Updates the pairs between positions `before` (no penetration) and `now`: adds candidates,
     /// hands over those that slid off their facet, drops those that left. Returns whether anything
     /// but an inactive pair changed.

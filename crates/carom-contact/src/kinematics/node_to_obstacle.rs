@@ -172,6 +172,16 @@ impl Kinematics for NodeToObstacle {
         self.shape.near(self.shape.nearest(at), at).map(|near| near.gap + self.kept(node))
     }
 
+    fn tips(&self, y: &[f64]) -> Vec<([f64; 3], f64)> {
+        let placed = |(at, radius): (Point, f64)| {
+            let Some(Carrier { node, origin, .. }) = &self.carrier else { return (at, radius) };
+            let c = self.position(*node, y);
+            let arm = rotated(std::array::from_fn(|i| at[i] - origin[i]), self.local(0, y).turn);
+            (std::array::from_fn(|i| c[i] + arm[i]), radius)
+        };
+        self.shape.tips().into_iter().map(placed).collect()
+    }
+
     fn keep(&mut self, depths: &[f64]) {
         self.kept = depths.to_vec();
     }

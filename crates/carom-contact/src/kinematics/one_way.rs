@@ -17,8 +17,9 @@ pub trait OneWay: Kinematics {
     /// Distance between the first corners of a primary facet.
     fn length(&self, facet: usize, y: &[f64]) -> f64;
 
-    /// Distance between two nodes.
-    fn distance(&self, a: usize, b: usize, y: &[f64]) -> f64;
+    /// Distance between two nodes that meet; in space, where more of them meet before convergence,
+    /// that across the `normal`.
+    fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64;
 }
 
 impl OneWay for NodeToFacet {
@@ -44,7 +45,7 @@ impl OneWay for NodeToFacet {
         self.primary.length(facet, self.places(y))
     }
 
-    fn distance(&self, a: usize, b: usize, y: &[f64]) -> f64 {
+    fn distance(&self, a: usize, b: usize, _: [f64; 3], y: &[f64]) -> f64 {
         let y = self.places(y);
         (y.at(a) - y.at(b)).norm()
     }

@@ -32,7 +32,6 @@ use crate::evaluation::{Evaluation, Iterate};
 use crate::friction::book_states;
 use crate::ledger::{book_kinetic, open_work, work_of_loads};
 use crate::model::{LoadsAt, Model};
-use crate::penetration::has_gaps;
 use crate::rejected::Rejected;
 use crate::settings::Settings;
 use crate::skins::length;
@@ -40,6 +39,7 @@ use crate::state::State;
 use crate::sums::max_abs;
 use crate::timings::timed;
 use crate::trace::Iteration;
+use crate::watched::has_gaps;
 use crate::workspace::Workspace;
 
 /// Share of the allowed depth by which a node may sink in a step.

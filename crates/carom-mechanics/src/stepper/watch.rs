@@ -6,9 +6,9 @@ use carom_contact::{Pair, Pairing, Row, Rows};
 
 use crate::independent::DEPENDENT;
 use crate::model::{Contact, Model};
-use crate::penetration::has_gaps;
 use crate::rejected::Rejected;
 use crate::state::State;
+use crate::watched::has_gaps;
 
 /// The initial pairs of a step: those in contact or penetrating, deactivated and without
 /// multiplier; `watch` sets the search margin for others.

@@ -434,3 +434,21 @@ body_force = ["0", "-1e4*t^3"]
         assert!((normal / (0.1 * 1e4 * 0.02_f64.powi(4) / 4.0) - 1.0).abs() < 0.05, "{mu}: {normal}");
     }
 }
+
+/// Its forces are round-off, which need not balance.
+#[test]
+fn friction_does_not_stop_a_body_in_free_flight() {
+    let text = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1932.41, poisson = 0.3 }]
+body = [{ name = "a", material = "m", element = "T3", mesh = { shape = "disc", radius = 0.2443, center = [0.11105, 1.43209], size = 0.0814 }, velocity = [0.0, -1.2201] }]
+contact = [{ name = "floor", secondary = "a.arc", primary = { plane = { point = [0.0, -1e3], normal = [0.0, 1.0] } }, mu = 0.3 }]
+time = { end = 0.076, step = 0.00076, scheme = { kind = "bathe", rho_inf = 0.5 } }
+"#;
+    let sim = finish(simulation(text, &[""; 0]));
+    let model = sim.model();
+    for (dof, y) in sim.state().y.iter().enumerate() {
+        let exact = model.reference[dof] - if dof % 2 == 1 { 1.2201 * 0.076 } else { 0.0 };
+        assert!((y - exact).abs() < 1e-12, "{dof}: {y} {exact}");
+    }
+}

@@ -166,6 +166,26 @@ fn a_block_does_not_pass_through_an_obstacle_in_a_long_step() {
     }
 }
 
+/// The centre passes the middle of a facet, whose nodes are 0.125 from it.
+#[test]
+fn an_obstacle_does_not_pass_between_nodes() {
+    for obstacle in [
+        "{ circle = { center = [-0.0625, 0.05], radius = 0.04 } }",
+        "{ polyline = { points = [[1.0, -1.0], [-0.0625, 0.09], [-1.0, -1.0]] } }",
+    ] {
+        let sets = [
+            "body.block.mesh={ shape = \"rectangle\", min = [-0.5, 0.1], max = [0.5, 1.1], cells = [8, 8] }",
+            "time.step=1e-2",
+            &format!("contact.rigid.primary={obstacle}"),
+        ];
+        let mut sim = Setup::new(&Case::from_text(FALLING, &sets).unwrap()).start().unwrap();
+        let stopped = (0..30).find_map(|_| sim.step().err()).unwrap();
+        let Stopped::NoStep { rejected, .. } = stopped else { panic!("{stopped}") };
+        let Rejected::Penetration { what, depth, limit, .. } = &rejected else { panic!("{rejected}") };
+        assert!(what.contains("obstacle") && depth > limit && (limit - 0.03125).abs() < 1e-12, "{rejected}");
+    }
+}
+
 #[test]
 fn a_pair_of_a_piece_that_is_not_there_belongs_to_another_model() {
     let start = |floor: &str| {

@@ -60,6 +60,15 @@ impl Obstacle {
         if let Self::Polyline(line) = self { line.pieces() } else { 1 }
     }
 
+    /// Its convex round parts, as centres and radii: what can lie between the nodes of a body.
+    pub(crate) fn tips(&self) -> Vec<(Point, f64)> {
+        match self {
+            Self::Circle { center, radius, inside: false } => vec![(*center, *radius)],
+            Self::Polyline(line) => line.tips().collect(),
+            _ => Vec::new(),
+        }
+    }
+
     /// The piece of the surface that is closest to a point.
     pub(crate) fn nearest(&self, at: Point) -> usize {
         if let Self::Polyline(line) = self { line.nearest(at) } else { 0 }

@@ -121,6 +121,14 @@ impl Polyline {
         Ok(Self { pieces, closed })
     }
 
+    /// Centres and radii of its convex corners.
+    pub(crate) fn tips(&self) -> impl Iterator<Item = (Point, f64)> + '_ {
+        self.pieces.iter().filter_map(|piece| match piece {
+            Piece::Corner { center, radius, side, .. } if *side > 0.0 => Some((*center, *radius)),
+            _ => None,
+        })
+    }
+
     /// Number of segments and corners.
     pub(in super::super) fn pieces(&self) -> usize {
         self.pieces.len()

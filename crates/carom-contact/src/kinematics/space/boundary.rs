@@ -16,6 +16,8 @@ use crate::depth::Depth;
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
 const SHARP: f64 = 0.87;
+/// Pieces into which points divide a sharp edge.
+const PIECES: usize = 4;
 
 /// Facets of a side, all of one shape, which may be followed by the rest of the body's boundary.
 #[derive(Clone, Debug)]
@@ -162,6 +164,27 @@ impl Boundary {
         directions.into_iter().filter(|(_, at)| turns(at)).map(|(node, _)| node).collect()
     }
 
+    /// Points between the ends of the side's sharp convex edges, each as nodes with weights.
+    pub fn points_of_sharp_edges(&self, y: &[f64]) -> Vec<Vec<(usize, f64)>> {
+        let count = self.shape.corners();
+        let mut points = Vec::new();
+        for (facet, edge) in (0..self.side).flat_map(|facet| (0..count).map(move |edge| (facet, edge))) {
+            // From one of its facets.
+            let is_first = self.across(facet, edge).is_none_or(|other| facet < other);
+            if !is_first || !self.is_sharp(facet, edge, y) {
+                continue;
+            }
+            let patch = self.patch(facet);
+            for k in 1..PIECES {
+                let values =
+                    self.shape.functions(patch.along(edge, k as f64 / PIECES as f64)).values.into_iter();
+                let weights = patch.nodes.iter().copied().zip(values);
+                points.push(weights.filter(|(_, weight)| weight.abs() > f64::EPSILON).collect());
+            }
+        }
+        points
+    }
+
     /// Box around a facet at positions `y`.
     pub(crate) fn bounds(&self, hull: &Hull, facet: usize, y: &[f64]) -> Bounds {
         let nodes = self.patch(facet).nodes;
@@ -247,18 +270,18 @@ impl ClosedSurface {
         }
     }
 
-    /// Where a node lies at the positions of the last update, searched from a facet near it if one
+    /// Where a point lies at the positions of the last update, searched from a facet near it if one
     /// is known; `None` without a boundary.
-    pub fn depth(&self, node: usize, from: Option<usize>, y: &[f64]) -> Option<Depth> {
-        let at = place(y, node);
+    pub fn depth(&self, point: [f64; 3], from: Option<usize>, y: &[f64]) -> Option<Depth> {
+        let at = Vector(point);
         let distance = |facet: usize| Some(self.boundary.patch(facet).nearest(y, at).distance);
         let (facet, _) = self.tree.nearest(&at.0, from, distance)?;
         Some(self.boundary.depth(facet, at, y))
     }
 
-    /// Distance between a node and the boundary at ξ of a facet.
-    pub fn distance(&self, facet: usize, xi: [f64; 2], node: usize, y: &[f64]) -> f64 {
-        (place(y, node) - self.boundary.patch(facet).at(y, xi).position).norm()
+    /// Distance between a point and the boundary at ξ of a facet.
+    pub fn distance(&self, facet: usize, xi: [f64; 2], point: [f64; 3], y: &[f64]) -> f64 {
+        (Vector(point) - self.boundary.patch(facet).at(y, xi).position).norm()
     }
 
     /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵃ|.

@@ -20,7 +20,7 @@ use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::Boundary;
 use super::gap::PatchGap;
-use super::patch::{Feature, place};
+use super::patch::{Feature, cross, place};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::tangents::tangents;
 use crate::kinematics::{Kinematics, OneWay, SweptPatch};
@@ -175,8 +175,8 @@ impl OneWay for NodeToPatch {
         self.primary.patch(facet).length(y)
     }
 
-    fn distance(&self, a: usize, b: usize, y: &[f64]) -> f64 {
-        (place(y, a) - place(y, b)).norm()
+    fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64 {
+        cross(place(y, a) - place(y, b), Vector(normal)).norm()
     }
 }
 
