@@ -2,12 +2,13 @@
 """Runs seeded hard contact cases and judges their records with field_check.py, which is independent.
 
     python scripts/ladder.py --carom target/release/carom --seed 1 --count 400 --out DIR
+    python scripts/ladder.py --space --carom CAROM --count 100 --out DIR   cases in space
     python scripts/ladder.py --carom CAROM --cases FOLDER --out DIR      existing cases instead
     python scripts/ladder.py --check RUN                                 one record
                                                                          (needs: pip install numpy)
 
 Case k of a seed is the same for every --count and on every machine. Categories alternate; all other
-parameters are random (ladder_cases.py). A case ends as one of
+parameters are random (ladder_cases.py, in space ladder_space_cases.py). A case ends as one of
 
     right      exit 0 and nothing wrong in the record
     wrong      exit 0, but bodies penetrate or pass through, or energy is created without a warning
@@ -25,6 +26,7 @@ that stopped is listed too. Fields of cases that end right are deleted, unless -
 
 import argparse
 import csv
+import json
 import re
 import shutil
 import subprocess
@@ -35,7 +37,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import field_check
+import field_check_space
 import ladder_cases
+import ladder_space_cases
 
 OUTCOMES = ["right", "wrong", "marked", "stopped", "timeout", "refused", "crash"]
 COLUMNS = (
@@ -65,6 +69,12 @@ def kind_of(message):
     return next((kind for kind, words in KINDS.items() if re.search(words, message)), "other")
 
 
+def check(record):
+    """The check of a record, by its dimension."""
+    dimension = json.loads((record / "manifest.json").read_text())["case"]["dimension"]
+    return (field_check_space if dimension == 3 else field_check).check(record)
+
+
 def run(carom, case, out, timeout, sets):
     """(outcome, message, wall time) of a run."""
     command = [carom, "run", case, "--out", out, "--no-report", "--threads", "1", "--color", "never", "-q"]
@@ -90,7 +100,7 @@ def judge(carom, meta, case, out, timeout, keep, sets):
     written = (out / "manifest.json").exists() and (out / "fields.pvd").exists()
     if outcome == "right" or written and outcome != "timeout":
         try:
-            found = field_check.check(out)
+            found = check(out)
         except Exception as error:  # a record that cannot be read is a result, too
             found = {"wrong": [f"record: {type(error).__name__}: {error}"], "marked": False}
         for key in ("nodes", "edges", "self", "initial", "created", "created_recorded", "momentum"):
@@ -112,7 +122,7 @@ def table(rows):
     total = Counter(r["outcome"] for r in rows)
     n = max(len(rows), 1)
     lines = ["", f"{len(rows)} cases: " + ", ".join(f"{total[o]} {o} ({100 * total[o] / n:.0f} %)" for o in OUTCOMES if total[o])]
-    families = [f for f in ladder_cases.FAMILIES if any(r["family"] == f for r in rows)] or sorted({r["family"] for r in rows})
+    families = [f for f in ladder_space_cases.FAMILIES if any(r["family"] == f for r in rows)] or sorted({r["family"] for r in rows})
     categories = list(dict.fromkeys(r["category"] for r in sorted(rows, key=lambda r: r["category"])))
 
     def cell(chosen):
@@ -144,7 +154,7 @@ def table(rows):
 
 def show(run):
     """Prints the check of one record; exit code 1 if it is wrong."""
-    found = field_check.check(run)
+    found = check(run)
     for key in ("status", "reason", "fields", "initial", "nodes", "edges", "self", "created", "created_recorded", "momentum"):
         value = found[key]
         print(f"{key:>17}  {value:.4g}" if isinstance(value, float) else f"{key:>17}  {value}")
@@ -165,6 +175,7 @@ def main():
     parser.add_argument("--cases", type=Path, help="folder of existing cases to run instead")
     parser.add_argument("--check", type=Path, metavar="RUN", help="check one record and stop")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a key of every case that is changed")
+    parser.add_argument("--space", action="store_true", help="cases in space")
     parser.add_argument("--dry", action="store_true", help="write the cases only")
     options = parser.parse_args()
     if options.check:
@@ -179,8 +190,9 @@ def main():
     if options.cases:
         meta = {"category": "given", "family": "given", "enforcement": "", "elements": ""}
         work = [(meta, case) for case in sorted(options.cases.glob("*.toml"))]
+    generator = ladder_space_cases if options.space else ladder_cases
     for k in range(1, options.count + 1) if not options.cases else []:
-        meta, text = ladder_cases.case(options.seed, k)
+        meta, text = generator.case(options.seed, k)
         only = options.only
         if only and not (str(k) == only.lstrip("0") or not only.isdigit() and only in meta["category"] + " " + meta["family"]):
             continue
