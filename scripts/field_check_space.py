@@ -101,12 +101,12 @@ def declared(manifest, bodies):
         nodes = {n for path in manifest["sides"].get(contact["secondary"], []) for n in path}
         nodes = nodes if side != "skin" else set(bodies[body].nodes.tolist())
         primary = contact["primary"]
-        if not {"plane", "sphere", "side"} & set(primary) or contact.get("motion", "fixed") != "fixed":
+        if not {"plane", "circle", "side"} & set(primary) or contact.get("motion", "fixed") != "fixed":
             raise ValueError(f"contact {contact['name']}: only sides, fixed planes and spheres are checked")
         if "side" in primary:
             other = primary["side"].split(".")[0]
         else:
-            spec = primary.get("plane") or primary["sphere"]
+            spec = primary.get("plane") or primary["circle"]  # a sphere, in space
             if spec not in obstacles:
                 obstacles.append(spec)
             other = obstacles.index(spec)

@@ -60,7 +60,7 @@ class Cell:
         points = np.array([(a, b, c) for a in range(n + 1) for b in range(n + 1) for c in range(n + 1)]) / n
         return points[points.sum(1) <= 1 + 1e-12] if self.tet else points
 
-    def quadrature(self, n=4):
+    def quadrature(self, n=5):
         """Gauss points and weights, collapsed for tetrahedra."""
         x, w = np.polynomial.legendre.leggauss(n)
         x, w = (x + 1) / 2, w / 2
