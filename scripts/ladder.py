@@ -4,6 +4,7 @@
     python scripts/ladder.py --carom target/release/carom --seed 1 --count 400 --out DIR
     python scripts/ladder.py --space --carom CAROM --count 100 --out DIR   cases in space
     python scripts/ladder.py --carom CAROM --cases FOLDER --out DIR      existing cases instead
+    python scripts/ladder.py --judge DIR                                 kept records of a ladder
     python scripts/ladder.py --check RUN                                 one record
                                                                          (needs: pip install numpy)
 
@@ -97,6 +98,16 @@ def judge(carom, meta, case, out, timeout, keep, sets):
     row = {**meta, "case": case.stem, "outcome": outcome, "message": message, "wall": f"{wall:.2f}", "kind": ""}
     if outcome in ("stopped", "refused", "crash"):
         row["kind"] = kind_of(message)
+    judged(row, out)
+    if row["outcome"] == "right" and not keep:
+        shutil.rmtree(out / "fields", ignore_errors=True)
+        shutil.rmtree(out / "checkpoint", ignore_errors=True)
+    return row
+
+
+def judged(row, out):
+    """Completes a row by the check of its record."""
+    outcome = row["outcome"]
     written = (out / "manifest.json").exists() and (out / "fields.pvd").exists()
     if outcome == "right" or written and outcome != "timeout":
         try:
@@ -111,10 +122,21 @@ def judge(carom, meta, case, out, timeout, keep, sets):
         if outcome == "right":
             row["outcome"] = "wrong" if found["wrong"] else "marked" if found["marked"] else "right"
             row["kind"] = ", ".join(sorted({w.split(":")[0] for w in found["wrong"]}))
-    if row["outcome"] == "right" and not keep:
-        shutil.rmtree(out / "fields", ignore_errors=True)
-        shutil.rmtree(out / "checkpoint", ignore_errors=True)
-    return row
+
+
+def judge_again(folder):
+    """Checks the records of a ladder that were kept, and prints its table; exit code 1 if one is wrong."""
+    with (folder / "results.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        if row["outcome"] in ("right", "wrong", "marked"):
+            row["outcome"] = "right"
+        judged(row, folder / "runs" / row["case"])
+    for row in rows:
+        if row.get("wrong"):
+            print(f"{row['case']} {row['category']:<15} {row['family']:<14} {row['outcome']:<8} {row['wrong'][:150]}")
+    print(table(rows))
+    return int(any(row["outcome"] == "wrong" for row in rows))
 
 
 def table(rows):
@@ -173,6 +195,7 @@ def main():
     parser.add_argument("--timeout", type=float, default=120.0)
     parser.add_argument("--keep", action="store_true", help="keep the fields of all cases")
     parser.add_argument("--cases", type=Path, help="folder of existing cases to run instead")
+    parser.add_argument("--judge", type=Path, metavar="DIR", help="check the kept records of a ladder again and stop")
     parser.add_argument("--check", type=Path, metavar="RUN", help="check one record and stop")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a key of every case that is changed")
     parser.add_argument("--space", action="store_true", help="cases in space")
@@ -180,6 +203,8 @@ def main():
     options = parser.parse_args()
     if options.check:
         return show(options.check)
+    if options.judge:
+        return judge_again(options.judge)
     if not options.out or not (options.carom or options.dry):
         parser.error("--carom and --out are needed")
     if (options.out / "results.csv").exists():
