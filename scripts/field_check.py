@@ -50,7 +50,7 @@ Energy, from history.csv with E = total − external_work:
 
     created = max_i (E_i − min_{j <= i} E_j) / max(max(kinetic + strain), sum |ΔW_ext|),   limit 0.02
 
-Momentum: without supports, loads and gravity, and with contacts on planes only, the change of
+Momentum: without supports, loads and gravity, and with contacts on obstacles only, the change of
 momentum from first to last row must be contact_impulse (to 1e-6 of the largest momentum), if the
 last row is without contact. Contacts of a body with itself do not count if contact.csv has no row of
 them; otherwise contact_impulse contains forces within the body.
@@ -354,12 +354,14 @@ def momentum(run, case):
     free = not case["supports"] and not case["loads"] and not any(any(b["gravity"]) for b in case["bodies"])
     of_itself = lambda c: c["primary"].get("side") == c["secondary"]
     contacts = [c for c in case["contacts"] if not of_itself(c) or c["name"] in touched(run)]
-    planes = contacts and all("plane" in c["primary"] for c in contacts)
+    rigid = contacts and all("side" not in c["primary"] for c in contacts)
     rows, column = history(run)
-    if not (free and planes and rows and float(rows[-1]["active"]) == 0):
+    if not (free and rigid and rows and float(rows[-1]["active"]) == 0):
         return None
-    error = [column(f"momentum_{i}")[-1] - column(f"momentum_{i}")[0] - column(f"contact_impulse_{i}")[-1] for i in "xy"]
-    return float(np.hypot(*error) / max(np.hypot(column("momentum_x"), column("momentum_y")).max(), 1e-300))
+    axes = [i for i in "xyz" if f"momentum_{i}" in rows[0]]
+    p = np.array([column(f"momentum_{i}") for i in axes])
+    error = p[:, -1] - p[:, 0] - [column(f"contact_impulse_{i}")[-1] for i in axes]
+    return float(np.linalg.norm(error) / max(np.linalg.norm(p, axis=0).max(), 1e-300))
 
 
 def declared(manifest):

@@ -2,12 +2,14 @@
 """Runs seeded hard contact cases and judges their records with field_check.py, which is independent.
 
     python scripts/ladder.py --carom target/release/carom --seed 1 --count 400 --out DIR
+    python scripts/ladder.py --space --carom CAROM --count 100 --out DIR   cases in space
     python scripts/ladder.py --carom CAROM --cases FOLDER --out DIR      existing cases instead
+    python scripts/ladder.py --judge DIR                                 kept records of a ladder
     python scripts/ladder.py --check RUN                                 one record
                                                                          (needs: pip install numpy)
 
 Case k of a seed is the same for every --count and on every machine. Categories alternate; all other
-parameters are random (ladder_cases.py). A case ends as one of
+parameters are random (ladder_cases.py, in space ladder_space_cases.py). A case ends as one of
 
     right      exit 0 and nothing wrong in the record
     wrong      exit 0, but bodies penetrate or pass through, or energy is created without a warning
@@ -25,6 +27,7 @@ that stopped is listed too. Fields of cases that end right are deleted, unless -
 
 import argparse
 import csv
+import json
 import re
 import shutil
 import subprocess
@@ -35,7 +38,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import field_check
+import field_check_space
 import ladder_cases
+import ladder_space_cases
 
 OUTCOMES = ["right", "wrong", "marked", "stopped", "timeout", "refused", "crash"]
 COLUMNS = (
@@ -65,6 +70,12 @@ def kind_of(message):
     return next((kind for kind, words in KINDS.items() if re.search(words, message)), "other")
 
 
+def check(record):
+    """The check of a record, by its dimension."""
+    dimension = json.loads((record / "manifest.json").read_text())["case"]["dimension"]
+    return (field_check_space if dimension == 3 else field_check).check(record)
+
+
 def run(carom, case, out, timeout, sets):
     """(outcome, message, wall time) of a run."""
     command = [carom, "run", case, "--out", out, "--no-report", "--threads", "1", "--color", "never", "-q"]
@@ -87,10 +98,20 @@ def judge(carom, meta, case, out, timeout, keep, sets):
     row = {**meta, "case": case.stem, "outcome": outcome, "message": message, "wall": f"{wall:.2f}", "kind": ""}
     if outcome in ("stopped", "refused", "crash"):
         row["kind"] = kind_of(message)
+    judged(row, out)
+    if row["outcome"] == "right" and not keep:
+        shutil.rmtree(out / "fields", ignore_errors=True)
+        shutil.rmtree(out / "checkpoint", ignore_errors=True)
+    return row
+
+
+def judged(row, out):
+    """Completes a row by the check of its record."""
+    outcome = row["outcome"]
     written = (out / "manifest.json").exists() and (out / "fields.pvd").exists()
     if outcome == "right" or written and outcome != "timeout":
         try:
-            found = field_check.check(out)
+            found = check(out)
         except Exception as error:  # a record that cannot be read is a result, too
             found = {"wrong": [f"record: {type(error).__name__}: {error}"], "marked": False}
         for key in ("nodes", "edges", "self", "initial", "created", "created_recorded", "momentum"):
@@ -101,10 +122,21 @@ def judge(carom, meta, case, out, timeout, keep, sets):
         if outcome == "right":
             row["outcome"] = "wrong" if found["wrong"] else "marked" if found["marked"] else "right"
             row["kind"] = ", ".join(sorted({w.split(":")[0] for w in found["wrong"]}))
-    if row["outcome"] == "right" and not keep:
-        shutil.rmtree(out / "fields", ignore_errors=True)
-        shutil.rmtree(out / "checkpoint", ignore_errors=True)
-    return row
+
+
+def judge_again(folder):
+    """Checks the records of a ladder that were kept, and prints its table; exit code 1 if one is wrong."""
+    with (folder / "results.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        if row["outcome"] in ("right", "wrong", "marked"):
+            row["outcome"] = "right"
+        judged(row, folder / "runs" / row["case"])
+    for row in rows:
+        if row.get("wrong"):
+            print(f"{row['case']} {row['category']:<15} {row['family']:<14} {row['outcome']:<8} {row['wrong'][:150]}")
+    print(table(rows))
+    return int(any(row["outcome"] == "wrong" for row in rows))
 
 
 def table(rows):
@@ -112,7 +144,7 @@ def table(rows):
     total = Counter(r["outcome"] for r in rows)
     n = max(len(rows), 1)
     lines = ["", f"{len(rows)} cases: " + ", ".join(f"{total[o]} {o} ({100 * total[o] / n:.0f} %)" for o in OUTCOMES if total[o])]
-    families = [f for f in ladder_cases.FAMILIES if any(r["family"] == f for r in rows)] or sorted({r["family"] for r in rows})
+    families = [f for f in ladder_space_cases.FAMILIES if any(r["family"] == f for r in rows)] or sorted({r["family"] for r in rows})
     categories = list(dict.fromkeys(r["category"] for r in sorted(rows, key=lambda r: r["category"])))
 
     def cell(chosen):
@@ -144,7 +176,7 @@ def table(rows):
 
 def show(run):
     """Prints the check of one record; exit code 1 if it is wrong."""
-    found = field_check.check(run)
+    found = check(run)
     for key in ("status", "reason", "fields", "initial", "nodes", "edges", "self", "created", "created_recorded", "momentum"):
         value = found[key]
         print(f"{key:>17}  {value:.4g}" if isinstance(value, float) else f"{key:>17}  {value}")
@@ -163,12 +195,16 @@ def main():
     parser.add_argument("--timeout", type=float, default=120.0)
     parser.add_argument("--keep", action="store_true", help="keep the fields of all cases")
     parser.add_argument("--cases", type=Path, help="folder of existing cases to run instead")
+    parser.add_argument("--judge", type=Path, metavar="DIR", help="check the kept records of a ladder again and stop")
     parser.add_argument("--check", type=Path, metavar="RUN", help="check one record and stop")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a key of every case that is changed")
+    parser.add_argument("--space", action="store_true", help="cases in space")
     parser.add_argument("--dry", action="store_true", help="write the cases only")
     options = parser.parse_args()
     if options.check:
         return show(options.check)
+    if options.judge:
+        return judge_again(options.judge)
     if not options.out or not (options.carom or options.dry):
         parser.error("--carom and --out are needed")
     if (options.out / "results.csv").exists():
@@ -179,8 +215,9 @@ def main():
     if options.cases:
         meta = {"category": "given", "family": "given", "enforcement": "", "elements": ""}
         work = [(meta, case) for case in sorted(options.cases.glob("*.toml"))]
+    generator = ladder_space_cases if options.space else ladder_cases
     for k in range(1, options.count + 1) if not options.cases else []:
-        meta, text = ladder_cases.case(options.seed, k)
+        meta, text = generator.case(options.seed, k)
         only = options.only
         if only and not (str(k) == only.lstrip("0") or not only.isdigit() and only in meta["category"] + " " + meta["family"]):
             continue

@@ -14,11 +14,12 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 import ladder_cases
+import ladder_space_cases
 
 NAMES = {
     "trapezoidal": "trapezoidal", "chung-hulbert": "Chung–Hulbert", "tr-bdf2": "TR-BDF2", "bathe": "Bathe",
     "energy-mom": "energy–mom.", "central-diff": "central diff.", "paoli": "Paoli–Sch.",
-    "moreau-jean": "Moreau–Jean", "ns-alpha": "nonsmooth α",
+    "moreau-jean": "Moreau–Jean", "ns-alpha": "nonsmooth α", "static": "load steps",
 }
 WIDTH, HEIGHT, LEFT, TOP = 74, 30, 120, 62
 
@@ -36,8 +37,8 @@ def main(results, out):
         for row in csv.DictReader(file):
             for key in [(row["category"], row["family"]), (row["category"], "all"), ("all", row["family"]), ("all", "all")]:
                 cells[key].append(row["outcome"])
-    columns = [*(f for f in ladder_cases.FAMILIES if cells.get(("all", f))), "all"]
-    rows = [*(c for c in ladder_cases.CATEGORIES if cells.get((c, "all"))), "all"]
+    columns = [*(f for f in ladder_space_cases.FAMILIES if cells.get(("all", f))), "all"]
+    rows = [*(c for c in {**ladder_cases.CATEGORIES, **ladder_space_cases.CATEGORIES} if cells.get((c, "all"))), "all"]
     width, height = LEFT + WIDTH * len(columns) + 10, TOP + HEIGHT * len(rows) + 10
     svg = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '

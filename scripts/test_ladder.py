@@ -71,7 +71,7 @@ def outline(points, cells, moved=(0.0, 0.0)):
     return body
 
 
-def write_vtu(path, bodies, displacement):
+def write_vtu(path, bodies, displacement, velocity=None):
     """As Carom writes it: appended raw arrays with lengths of 8 bytes."""
     data, head = b"", ""
 
@@ -85,8 +85,10 @@ def write_vtu(path, bodies, displacement):
     names = " ".join(str(c) for name in bodies for c in [*name.encode(), 0])
     head += f'<DataArray type="String" Name="bodies" NumberOfTuples="{len(bodies)}" format="ascii">{names}</DataArray>\n'
     shift = np.cumsum([0] + [len(p) for p, _ in bodies.values()])
-    flat = lambda x: np.concatenate([np.pad(v, ((0, 0), (0, 1))) for v in x])
+    flat = lambda x: np.concatenate([np.pad(v, ((0, 0), (0, 3 - v.shape[1]))) for v in x])
     array("Float64", "displacement", flat(displacement), 3)
+    if velocity:
+        array("Float64", "velocity", flat(velocity), 3)
     array("Int32", "body", np.concatenate([np.full(len(c), i) for i, (_, c) in enumerate(bodies.values())]))
     array("Float64", "points", flat([p for p, _ in bodies.values()]), 3)
     array("Int64", "connectivity", np.concatenate([(c + s).ravel() for (_, c), s in zip(bodies.values(), shift)]))

@@ -101,8 +101,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let rule = |degree: usize| S::Domain::rule(degree.max(law.energy_degree() * (k - 1)));
         let force_rules = [rule(2 * k), rule((2 * k).max(4 * (k - 1)))];
         // The Jacobian of a curved quadrilateral or hexahedron has the degree Dk − 1 along each
-        // axis.
-        let curved_mass = if S::Domain::TENSOR { (D + 2) * k - 1 } else { 4 * k - 2 };
+        // axis, that of a simplex D(k − 1).
+        let curved_mass = if S::Domain::TENSOR { (D + 2) * k - 1 } else { (D + 2) * k - D };
         let mass_rules = [S::Domain::rule(2 * k), S::Domain::rule(curved_mass)];
         let cells = mesh.cell_count();
         let mut mirrored = Mat::ZERO;

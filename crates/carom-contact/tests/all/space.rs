@@ -179,6 +179,76 @@ fn a_node_that_crosses_a_thin_body_in_one_step_is_found() {
     assert!(!contact.search(&at(-5.0), &at(3.0), &mut pairing, &mut events));
 }
 
+/// The point nearest to `target` with nᵢ·x ≥ 0 for all planes, over all sets that may hold with
+/// equality.
+fn projected(target: [f64; 3], planes: &[Vector<3>]) -> Vector<3> {
+    let of = |set: usize| {
+        let (mut x, mut basis) = (Vector(target), Vec::<Vector<3>>::new());
+        for (_, plane) in planes.iter().enumerate().filter(|(i, _)| set >> i & 1 == 1) {
+            let rest = basis.iter().fold(*plane, |rest, axis| rest - *axis * rest.dot(axis));
+            if rest.norm() > 1e-9 {
+                basis.push(rest * rest.norm().recip());
+            }
+        }
+        basis.iter().for_each(|axis| x -= *axis * x.dot(axis));
+        x
+    };
+    let outside = |x: &Vector<3>| planes.iter().all(|plane| plane.dot(x) > -1e-12);
+    let all = (0..1 << planes.len()).map(of).filter(outside);
+    let distance = |x: &Vector<3>| (*x - Vector(target)).norm();
+    all.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap()
+}
+
+/// Facets of z = |x| + |y|, pulled at from below: what holds the node there must hold it outside of
+/// all four, wherever they meet.
+#[test]
+fn a_node_in_a_hollow_of_four_facets_is_held_by_those_that_it_would_enter() {
+    let place = |k: usize| [k / 3, k % 3].map(|i| i as f64 - 1.0);
+    let mut y = vec![0.0; 3];
+    (0..9).map(place).for_each(|[x, z]| y.extend([x, z, x.abs() + z.abs()]));
+    let facet = |k: usize| {
+        let node = 1 + 3 * (k / 2) + k % 2;
+        vec![node, node + 3, node + 4, node + 1]
+    };
+    let facets: Vec<Vec<usize>> = (0..4).map(facet).collect();
+    let contact = NodeToPatch::new(vec![0], Boundary::new(FacetShape::Q4, &facets, &[], 0));
+    let normal = |facet: usize| {
+        let [x, z] = [facet / 2, facet % 2].map(|i| 1.0 - 2.0 * i as f64);
+        Vector([x, z, 1.0]) * (1.0 / 3.0_f64.sqrt())
+    };
+    let at = |x: [f64; 3]| [&x[..], &y[3..]].concat();
+    for k in 0..400 {
+        let wave = |w: f64| 0.12 * (f64::from(k) * w).sin();
+        let (mut last, target) = (at([wave(0.7), wave(1.1), 0.5]), [wave(1.9), wave(2.3), wave(3.1) - 0.08]);
+        let mut pairing = Pairing::default();
+        let mut now = at(target);
+        // It is pulled below the hollow by up to a fifth of a facet, until it rests.
+        for step in 0..12 {
+            let pairs = std::mem::take(&mut pairing.pairs);
+            pairing = Pairing::new(pairs);
+            for _ in 0..30 {
+                let changed = contact.search(&last, &now, &mut pairing, &mut Vec::new());
+                let faced: Vec<usize> = pairing.pairs.iter().map(|pair| pair.facet).collect();
+                assert!((1..faced.len()).all(|i| !faced[..i].contains(&faced[i])), "{k}: {faced:?}");
+                let planes: Vec<Vector<3>> = faced.iter().map(|&facet| normal(facet)).collect();
+                let x = projected(target, &planes);
+                now = at(x.0);
+                for (pair, plane) in pairing.pairs.iter_mut().zip(&planes) {
+                    contact.measure(pair, &now, &mut Rows::new(3)).unwrap();
+                    pair.active = plane.dot(&x).abs() < 1e-12;
+                }
+                if !changed && step > 0 {
+                    break;
+                }
+            }
+            last.clone_from(&now);
+        }
+        let exact = projected(target, &[0, 1, 2, 3].map(normal));
+        let error = (0..3).fold(0.0_f64, |most, i| most.max((now[i] - exact.0[i]).abs()));
+        assert!(error < 1e-9, "{k}: {:?} instead of {exact:?}, {:?}", &now[..3], pairing.pairs);
+    }
+}
+
 /// ∇̄G over all dofs, its derivative to the end of the step, and the change of the gap.
 fn discrete_gradient(contact: &dyn Kinematics, start: &[f64], end: &[f64]) -> (Vec<f64>, Vec<f64>, f64) {
     let middle: Vec<f64> = start.iter().zip(end).map(|(a, b)| 0.5 * (a + b)).collect();

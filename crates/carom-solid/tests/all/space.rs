@@ -71,6 +71,29 @@ fn a_box_has_its_volume_its_sides_and_closed_faces() {
     }
 }
 
+/// xᵀMx over the curved cells of a box is ρ∫x² dV, to round-off.
+#[test]
+fn masses_of_curved_cells_are_exact() {
+    for element in all() {
+        let (mesh, n) = (shaken(element, 0.02), element.nodes());
+        let (d, body) = (mesh.dimension(), solid(mesh.clone(), RUBBER));
+        let (mut mass, mut second) = (vec![0.0; n * n], [0.0; 3]);
+        for cell in 0..mesh.cell_count() {
+            body.cell_mass(cell, &mut mass);
+            let nodes = mesh.cell(cell);
+            for (e, m) in mass.iter().enumerate() {
+                let [a, b] = [e / n, e % n].map(|a| &mesh.nodes[nodes[a]]);
+                (0..d).for_each(|i| second[i] += m * a[i] * b[i]);
+            }
+        }
+        let size = &[1.0, 1.5, 0.8][..d];
+        for i in 0..d {
+            let exact = 3.0 * size.iter().product::<f64>() * size[i] * size[i] / 3.0;
+            assert!((second[i] / exact - 1.0).abs() < 1e-13, "{element:?}: {} {exact}", second[i]);
+        }
+    }
+}
+
 #[test]
 fn a_linear_motion_of_curved_cells_has_no_force_inside() {
     let map = [[1.1, 0.2, -0.1], [0.05, 0.9, 0.15], [-0.2, 0.1, 1.2]];

@@ -3,6 +3,7 @@
 
 mod boundary;
 mod candidate;
+mod crease;
 mod crossing;
 mod gap;
 mod node_to_patch;

@@ -6,7 +6,8 @@
 //! ```text
 //! blunt edge       to the facet on which the nearest point lies; where that is the edge itself, the
 //!                  pair keeps its facet
-//! dent             a node that would be handed back within the step has a pair with either facet
+//! dent             a node that would be handed back within the step has a pair with either facet, and
+//!                  one below a crease also with the facet of which it is deepest
 //! sharp edge, end  nothing is faced past it; an active pair keeps its facet to the end of the step and
 //!                  leaves at the start of the next one
 //! ```
@@ -146,6 +147,9 @@ impl NodeToPatch {
             Some((facet, _, xi)) if came_from == Some(facet) => Next::Dent(facet, xi),
             Some((facet, _, xi)) => Next::HandOver(facet, xi),
             None => {
+                if let Some((facet, xi)) = self.in_crease(pair.facet, from, y) {
+                    return Next::Dent(facet, xi);
+                }
                 let bridged = patch.furthest(xi).1 <= REACH && !self.faces_nothing(pair.facet, xi, y);
                 if bridged { Next::Stay } else { Next::Leave }
             }
@@ -233,7 +237,8 @@ impl Kinematics for NodeToPatch {
         let Pairing { pairs, margin, left, fresh } = pairing;
         let mut changed = false;
         let starts = std::mem::replace(fresh, false);
-        let twice = Self::pairs_twice(pairs);
+        // Facets of the pairs of every node, kept up to date: no node has two pairs with one facet.
+        let mut held: Vec<(usize, usize)> = pairs.iter().map(|pair| (pair.node, pair.facet)).collect();
         let mut dents = Vec::new();
         pairs.retain_mut(|pair| {
             let node = self.secondary[pair.node];
@@ -241,9 +246,7 @@ impl Kinematics for NodeToPatch {
                 let came_from = left.get(&pair.node).copied();
                 match self.next_facet(pair, came_from, now) {
                     Next::Stay => return true,
-                    Next::HandOver(facet, _) | Next::Dent(facet, _)
-                        if twice.contains(&(pair.node, facet)) =>
-                    {
+                    Next::HandOver(facet, _) | Next::Dent(facet, _) if held.contains(&(pair.node, facet)) => {
                         let beyond = self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1;
                         // In the joint the node has both pairs. Beyond the reach of this facet that
                         // of the other one is responsible: an extrapolated facet is not the
@@ -256,10 +259,12 @@ impl Kinematics for NodeToPatch {
                             changed = true;
                         }
                         left.remove(&pair.node);
+                        held.retain(|&known| known != (pair.node, pair.facet));
                         return false;
                     }
                     Next::Dent(facet, [xi, eta]) => {
                         changed |= pair.active;
+                        held.push((pair.node, facet));
                         dents.push(Pair { eta, ..Pair::open(pair.node, facet, xi) });
                         return true;
                     }
@@ -270,6 +275,8 @@ impl Kinematics for NodeToPatch {
                         let gap = self.gap(facet, [xi, eta], place(now, node), now);
                         changed |= pair.active || gap + self.slack(pair.node) < 0.0;
                         left.insert(pair.node, pair.facet);
+                        held.retain(|&known| known != (pair.node, pair.facet));
+                        held.push((pair.node, facet));
                         (pair.facet, pair.xi, pair.eta) = (facet, xi, eta);
                     }
                     Next::Leave if pair.active && !starts => return true,
@@ -279,6 +286,7 @@ impl Kinematics for NodeToPatch {
                             changed = true;
                         }
                         left.remove(&pair.node);
+                        held.retain(|&known| known != (pair.node, pair.facet));
                         return false;
                     }
                 }
