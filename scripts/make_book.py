@@ -14,7 +14,7 @@ columns.md     columns of its history.csv, from its manifest
 metrics.md     the table of metrics, from crates/carom-record/src/metrics/table.rs
 activation.md, coarse-steps.md, flagship.md, peak.md     results of docs/book/studies/
 spins.md, refine.md        tables of cases/free/spins.toml and cases/impact/refine-*.toml
-solid-*.svg                figures of the examples in space
+solid-*.svg, contact-*.svg     figures of the examples in space
 FAMILY.md, FAMILY.svg      `carom verify --report --out DIR --markdown DIR`, and a figure of one of
                            its runs; with --verify DIR, the existing content of DIR
 
@@ -217,7 +217,7 @@ def examples(carom, place):
         if said is not None:
             if "MISSED: expected" in said or ": not available" in said:
                 problems.append(f"what {case.name} expects: {said.strip()}")
-            if case.stem.startswith("solid-"):
+            if case.stem.startswith(("solid-", "contact-")):
                 shutil.copy(out / "figures/bodies.svg", GENERATED / f"{case.stem}.svg")
 
 

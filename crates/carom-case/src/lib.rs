@@ -33,6 +33,7 @@ mod scheme;
 mod solids;
 mod spec;
 mod suggest;
+mod surface_file;
 mod tables;
 mod tree;
 mod view;
@@ -55,5 +56,5 @@ pub use spec::{
     ForceTime, FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind,
     MaterialSpec, MeshSpec, NewtonSpec, ObstacleMotion, OutputSpec, Overlap, OverlaySpec, Persistency,
     PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec,
-    TableSpec, TangentRule, TimeSpec, Units, Velocities, Volumetric,
+    SurfaceSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities, Volumetric,
 };

@@ -111,7 +111,7 @@ pub(super) fn read(
 }
 
 /// The file's bytes, or why it cannot be read.
-fn bytes(file: &Path) -> Result<Vec<u8>, String> {
+pub(super) fn bytes(file: &Path) -> Result<Vec<u8>, String> {
     let facts = std::fs::metadata(file).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound => format!("there is no file {}", file.display()),
         _ => e.to_string(),
@@ -143,7 +143,8 @@ pub(crate) fn mesh(
     gmsh::read(&bytes).and_then(|f| group(f, dimension, surface, slits)).map_err(none)
 }
 
-fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, NoMesh> {
+/// The bytes of a file that is still the one with this hash.
+pub(super) fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, NoMesh> {
     let bytes = bytes(file).map_err(NoMesh::Unreadable)?;
     if blake3::hash(&bytes).to_hex().as_str() == hash {
         return Ok(bytes);

@@ -1,19 +1,29 @@
 //! Reads the primary of a contact: a side, or a rigid obstacle with its motion.
 
+use std::path::Path;
+
 use super::load::displacements;
 use super::problem::Problem;
+use super::surface_file;
 use super::tree::{Node, Table};
 use super::view::{View, formula};
 use super::{ObstacleMotion, PrimarySpec};
 
 /// Shapes with the dimension that they need.
-const SHAPES: [(&str, Option<usize>); 4] =
-    [("plane", None), ("circle", Some(2)), ("sphere", Some(3)), ("polyline", Some(2))];
+const SHAPES: [(&str, Option<usize>); 6] = [
+    ("plane", None),
+    ("circle", Some(2)),
+    ("sphere", Some(3)),
+    ("cylinder", Some(3)),
+    ("polyline", Some(2)),
+    ("surface", Some(3)),
+];
 
 /// Reads `primary`.
 pub(super) fn read(
     v: &View,
     dimension: Option<usize>,
+    folder: &Path,
     path: &str,
     problems: &mut Vec<Problem>,
 ) -> Option<(PrimarySpec, ObstacleMotion)> {
@@ -24,11 +34,14 @@ pub(super) fn read(
     let path = format!("{path}.primary");
     let table = node.table()?;
     // A misspelt key is reported once, by `conform`.
-    let known = ["plane", "circle", "sphere", "polyline", "motion", "mass", "velocity", "gravity"];
-    if table.0.iter().any(|entry| !known.contains(&entry.key.as_str())) {
+    let is_known = |key: &str| {
+        SHAPES.iter().any(|(shape, _)| *shape == key)
+            || ["motion", "mass", "velocity", "gravity"].contains(&key)
+    };
+    if table.0.iter().any(|entry| !is_known(&entry.key)) {
         return None;
     }
-    let shape = shape(table, dimension, &path, problems);
+    let shape = shape(table, dimension, folder, &path, problems);
     let motion = motion(table, dimension, &path, problems);
     Some((shape?, motion?))
 }
@@ -36,6 +49,7 @@ pub(super) fn read(
 fn shape(
     table: &Table,
     dimension: Option<usize>,
+    folder: &Path,
     path: &str,
     problems: &mut Vec<Problem>,
 ) -> Option<PrimarySpec> {
@@ -44,7 +58,7 @@ fn shape(
         let names: Vec<_> = given.iter().map(|(name, _)| *name).collect();
         let had = if given.is_empty() { "none".to_owned() } else { names.join(", ") };
         let what = format!("a rigid primary has exactly one shape; this one has {had}");
-        let why = "the shape is `plane`, `circle`, `sphere` or `polyline`";
+        let why = "the shape is `plane`, `circle`, `sphere`, `cylinder`, `polyline` or `surface`";
         let help = "write for example primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }";
         problems.push(Problem::new(path, what, why, help).at_key());
         return None;
@@ -56,7 +70,7 @@ fn shape(
         let help = match d {
             1 => "use a plane with normal = [1.0] or [-1.0]",
             2 => "use a circle",
-            _ => "use a plane or a sphere",
+            _ => "use a plane, a sphere, a cylinder or a surface of triangles",
         };
         let why = format!("the case has dimension = {d}");
         problems.push(Problem::new(format!("{path}.{shape}"), what, why, help));
@@ -71,6 +85,13 @@ fn shape(
             radius: keys.get("radius")?.number()?,
             inside: keys.get("inside").map_or(Some(false), Node::flag)?,
         },
+        "cylinder" => PrimarySpec::Cylinder {
+            point: numbers(keys, "point")?,
+            axis: numbers(keys, "axis")?,
+            radius: keys.get("radius")?.number()?,
+            inside: keys.get("inside").map_or(Some(false), Node::flag)?,
+        },
+        "surface" => surface_file::read(keys, folder, &format!("{path}.surface"), problems)?,
         _ => PrimarySpec::Polyline {
             points: keys
                 .get("points")?

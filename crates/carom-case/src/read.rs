@@ -78,7 +78,7 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
     problems.extend(refine::problem(refine, &counts));
     draft.bodies =
         reader.each("body", |v, path| body(v, reader.dimension?, refine, folder, path, &mut problems));
-    draft.contacts = reader.contacts(&draft, &mut problems);
+    draft.contacts = reader.contacts(&draft, folder, &mut problems);
     draft.loads = reader.each("load", |v, path| load::read(v, folder, path, &mut problems));
     draft.overlays = reader.each("overlay", |v, path| overlay::read(v, folder, path, &mut problems));
     draft.expects = reader.each("expect", |v, path| {
@@ -138,11 +138,16 @@ impl<'a> Reader<'a> {
     }
 
     /// The contacts of all tables; those of `between` need the bodies.
-    fn contacts(&self, draft: &Draft, problems: &mut Vec<Problem>) -> Vec<Option<ContactSpec>> {
+    fn contacts(
+        &self,
+        draft: &Draft,
+        folder: &Path,
+        problems: &mut Vec<Problem>,
+    ) -> Vec<Option<ContactSpec>> {
         let mut entry = 0..;
         let tables = self.each("contact", |v, path| {
             let entry = entry.next()?;
-            Some((v, path.to_owned(), contact(v, entry, self.dimension, problems)))
+            Some((v, path.to_owned(), contact(v, entry, self.dimension, folder, problems)))
         });
         let specs = tables.iter().flatten().filter_map(|(.., contact)| contact.clone());
         let declared: Vec<ContactSpec> = specs.filter(|contact| !contact.between).collect();

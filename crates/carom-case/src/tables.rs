@@ -114,13 +114,15 @@ pub(super) fn contact(
     v: View,
     entry: usize,
     dimension: Option<usize>,
+    folder: &Path,
     problems: &mut Vec<Problem>,
 ) -> Option<ContactSpec> {
     let between = v.has("between");
     let (secondary, primary, motion) = if between {
         (String::new(), PrimarySpec::Side(String::new()), ObstacleMotion::Fixed)
     } else {
-        let (primary, motion) = obstacle::read(&v, dimension, &format!("contact[{entry}]"), problems)?;
+        let (primary, motion) =
+            obstacle::read(&v, dimension, folder, &format!("contact[{entry}]"), problems)?;
         (v.text("secondary")?, primary, motion)
     };
     Some(ContactSpec {

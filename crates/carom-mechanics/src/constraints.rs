@@ -141,7 +141,8 @@ impl Constraints {
         let contact = &equations.model.contacts[k];
         let pair = &evaluation.at.pairings[k].pairs[p];
         equations.slip_derivatives_into(evaluation, (k, p), derivatives);
-        let (traction, spring) = (pair.tangential.traction, equations.stick_spring(k, pair));
+        let traction = pair.tangential.traction;
+        let spring = equations.spring_yields(k, pair, evaluation.slip_of((k, p)));
         let mut curvature = vec![0.0; slip.gradient.len().pow(2)];
         self.rows.push_row(slip);
         self.directions.push_row(slip);
@@ -160,11 +161,12 @@ impl Constraints {
         self.places.push((k, p));
         self.slips.push(Some(along));
         self.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
-        self.compliances.push(spring.map_or(0.0, f64::recip));
+        self.compliances.push(spring.unwrap_or(0.0));
         let forward = inner(pair.tangential.hold.direction(), evaluation.slip_of((k, p)));
         let stiffer = evaluation.at.stiffer;
         let turns = if forward > 0.0 { (forward / length(traction)).min(LOOSE) } else { 0.0 };
-        self.yields.push(equations.stick_yields(k, pair, stiffer).unwrap_or(turns));
+        let yields = equations.stick_yields(k, pair, stiffer).unwrap_or(turns);
+        self.yields.push(if spring.is_some() { 0.0 } else { yields });
         let open = slip.gap - equations.stretch(k, pair, along, stiffer);
         self.open.push(if spring.is_some() { 0.0 } else { open });
         self.curvatures.push(curvature);

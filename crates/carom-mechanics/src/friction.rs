@@ -25,7 +25,10 @@
 //! ```
 //!
 //! which goes on to hold as a stick across d where nothing slips along it. A slip without traction,
-//! as in the iterate in which a pair closes, has the direction of S. Springs are of the plane only.
+//! as in the iterate in which a pair closes, has the direction of S. On a spring, d is that of
+//! q_s + kS, so that its row is that of a spring of stiffness k r/|q_s + kS| across d. The
+//! components of q_s are those along tangents that turn with the normal; about the normal, springs
+//! turn with the facet at the end of the step, by its least-squares rotation in it.
 //!
 //! Between steps q acts along H(y_s): in the averaged forces of the next step and in what is
 //! recorded.
@@ -164,8 +167,7 @@ impl Equations<'_> {
         let radius = law.slip(pressure, length(slip) * rate);
         if let Some(stiffness) = self.stick_spring(contact, pair) {
             let start = self.state.closed(contact, pair.node).map(|old| old.tangential);
-            let before = start.map_or([0.0; 2], |_| pair.tangential.before);
-            let trial = [0, 1].map(|i| before[i] + stiffness * slip[i]);
+            let trial = self.trial(contact, pair, stiffness, slip);
             let slipped = start.is_some_and(|start| inner(start.hold.direction(), trial) > 0.0);
             let edge = if slipped { radius.value } else { law.grip(pressure) };
             pair.tangential.hold = if length(trial) <= edge { Hold::Stick } else { Hold::of(trial, 0.0) };
@@ -182,6 +184,26 @@ impl Equations<'_> {
             pair.tangential.traction = direction.map(|d| d * radius.value);
         }
         Rubbing { direction, radius, rate }
+    }
+
+    /// The traction of a pair whose spring of this stiffness would stick.
+    fn trial(&self, contact: usize, pair: &Pair, stiffness: f64, slip: Along) -> Along {
+        let is_stretched = self.state.closed(contact, pair.node).is_some();
+        let before = if is_stretched { pair.tangential.before } else { [0.0; 2] };
+        [0, 1].map(|i| before[i] + stiffness * slip[i])
+    }
+
+    /// Slip per traction of a row that friction holds on a spring; none without a spring. The
+    /// traction of a slip turns with that of its spring.
+    pub(crate) fn spring_yields(&self, contact: usize, pair: &Pair, slip: Along) -> Option<f64> {
+        let stiffness = self.stick_spring(contact, pair)?;
+        let share = match pair.tangential.hold {
+            Hold::Stick => 1.0,
+            Hold::Slip(_) => {
+                length(self.trial(contact, pair, stiffness, slip)) / length(pair.tangential.traction)
+            }
+        };
+        Some(share / stiffness)
     }
 
     /// The components of the rows by which friction holds a closed pair: every tangent of one that
@@ -354,11 +376,42 @@ pub(crate) fn take_slips(equations: &Equations, solved: &Evaluation, state: &mut
                     };
                 }
                 pair.tangential.before = pair.tangential.traction;
+                if equations.model.dimension == 3 && equations.stick_spring(k, pair).is_some() {
+                    turn_with_facet(contact, pair, [&equations.state.y, &solved.y]);
+                }
             } else {
                 pair.tangential = Tangential::default();
             }
         }
     }
+}
+
+/// Turns the tangents of a pair about the normal with its facet, which a rigid obstacle does not
+/// have.
+fn turn_with_facet(contact: &Contact, pair: &mut Pair, [before, now]: [&[f64]; 2]) {
+    let nodes = contact.kinematics.facet_nodes(pair);
+    if nodes.is_empty() {
+        return;
+    }
+    let [first, second] = pair.tangential.tangents;
+    let share = (nodes.len() as f64).recip();
+    // Components along the tangents of arms from the mean, before and after.
+    let [(from_x, from_y), (to_x, to_y)] = [before, now].map(|y| {
+        let along = |tangent: [f64; 3]| -> Vec<f64> {
+            let at = |node: &usize| (0..3).map(|i| tangent[i] * y[3 * node + i]).sum::<f64>();
+            let mean = share * nodes.iter().map(at).sum::<f64>();
+            nodes.iter().map(|node| at(node) - mean).collect()
+        };
+        (along(first), along(second))
+    });
+    let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (across, along) =
+        (sum(&from_x, &to_y) - sum(&from_y, &to_x), sum(&from_x, &to_x) + sum(&from_y, &to_y));
+    let (sin, cos) = across.atan2(along).sin_cos();
+    pair.tangential.tangents = [
+        std::array::from_fn(|i| cos * first[i] + sin * second[i]),
+        std::array::from_fn(|i| cos * second[i] - sin * first[i]),
+    ];
 }
 
 /// Adds a step of this size to what pairs with friction did.

@@ -1,6 +1,6 @@
 //! The matrix-free tangent of Newton's linear problem against differences of the whole residual.
 
-use carom_contact::{Along, ConservingUnilateral, Hold, inner};
+use carom_contact::{Along, ConservingUnilateral, Hold, Penalty, inner};
 use carom_formula::Formula;
 use carom_solid::{Element, Law, generate};
 use carom_time::schemes::energy_momentum::EnergyMomentum;
@@ -268,6 +268,44 @@ fn the_whole_tangent_with_friction_in_space_is_the_derivative_of_the_residual() 
         for (i, (numeric, k)) in tangent.derivative(&u, 2.5e-5).iter().zip(&ku).enumerate() {
             assert!((numeric - k).abs() < 1e-6 * largest(&ku), "{i}: {numeric} {k} of {}", largest(&ku));
         }
+    }
+}
+
+/// On springs, of which some stick and others slip: the direction of a slip is that of its spring.
+#[test]
+fn the_whole_tangent_with_springs_in_space_is_the_derivative_of_the_residual() {
+    let mut model = strike_in_space();
+    let nodes = model.contacts[0].kinematics.secondary().len();
+    model.contacts[0].interface = Box::new(Penalty::new(vec![200.0; nodes]));
+    let mut friction = Friction::coulomb(0.3, 64);
+    (friction.slip, friction.decay) = (Some(0.2), 0.3);
+    friction.springs = vec![60.0; nodes];
+    model.contacts[0].friction = Some(friction);
+    let scheme = Scheme::chung_hulbert(0.6).unwrap();
+    let mut sim = simulation(model, scheme, 2e-3);
+    while sim.state().time < 0.02 {
+        sim.advance(&mut GridReport::default()).unwrap();
+    }
+    // Of those closed at the start, whose springs end the step well inside or outside the cone.
+    let mut state = sim.state().clone();
+    let closed = state.pairs[0].iter_mut().filter(|pair| pair.active);
+    for (k, pair) in closed.enumerate() {
+        let cone = if k % 2 == 0 { 0.05 } else { 0.6 } * pair.lambda;
+        pair.tangential.before = [0.8 * cone, -0.6 * cone];
+    }
+    let equations = equations(sim.model(), &state, &scheme, sim.dt(), state.time + sim.dt());
+    let mut tangent = Tangent::from(&equations, Iterate::at_start(&state), 1e-4);
+    let holds =
+        tangent.at.pairings[0].pairs.iter().filter(|pair| pair.active).map(|pair| pair.tangential.hold);
+    let sticks = holds.clone().filter(|hold| *hold == Hold::Stick).count();
+    assert!(sticks > 1 && holds.count() > sticks + 1, "{sticks}");
+    let u = tangent.direction(0.1);
+    let u: Vec<f64> =
+        u.iter().take(sim.model().free.len()).copied().chain(vec![0.0; tangent.rows.len()]).collect();
+    let ku = tangent.product(&u);
+    let free = sim.model().free.len();
+    for (i, (numeric, k)) in tangent.derivative(&u, 2.5e-6).iter().zip(&ku).take(free).enumerate() {
+        assert!((numeric - k).abs() < 1e-6 * largest(&ku[..free]), "{i}: {numeric} {k} of {}", largest(&ku));
     }
 }
 

@@ -347,7 +347,7 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
     }
     if bodies::fill_space(first) {
         let length = first.array("displacement").map_or("", |a| a.unit.as_str());
-        let (svg, caption) = space::instants(&sets, (unit, length), during)?;
+        let (svg, caption) = space::instants(run, &sets, (unit, length), during)?;
         return Some((Figure::new("bodies", caption, svg), None));
     }
     let stress = first.array("stress")?.unit.clone();

@@ -7,6 +7,7 @@ mod raster;
 mod scene;
 mod skin;
 mod view;
+mod wires;
 
 pub(crate) use figure::{DRAWN, draw, frame, instants};
 pub(crate) use painter::{Paint, pieces};

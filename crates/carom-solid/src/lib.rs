@@ -23,8 +23,10 @@ mod quality;
 mod reference;
 pub mod shape;
 mod solid;
+pub mod stl;
 mod subdivide;
 mod tree;
+mod triangles;
 mod validity;
 
 pub use bernstein::Direction;
@@ -44,4 +46,5 @@ pub use positions::Positions;
 pub use shape::{Hull, LineShape, line_shape};
 pub use solid::{MeanDilatation, Solid, SolidError};
 pub use tree::{REBUILT, Tree};
+pub use triangles::{Triangles, TrianglesError};
 pub use validity::{Loss, Validity};

@@ -250,7 +250,15 @@ impl Check<'_> {
                     }
                     primary
                 }
-                PrimarySpec::Circle { .. } | PrimarySpec::Polyline { .. } => None,
+                PrimarySpec::Circle { .. } | PrimarySpec::Polyline { .. } | PrimarySpec::Surface(_) => None,
+                PrimarySpec::Cylinder { axis, .. } => {
+                    if axis.iter().all(|a| *a == 0.0) {
+                        let why = "it is the direction of the cylinder, so its length must be > 0";
+                        let help = "write for example axis = [0.0, 0.0, 1.0]";
+                        self.add(path("primary.cylinder.axis"), "the axis is zero", why, help);
+                    }
+                    None
+                }
                 PrimarySpec::Plane { normal, .. } => {
                     if normal.iter().all(|n| *n == 0.0) {
                         let why = "it is the direction out of the half-space, so its length must be > 0";

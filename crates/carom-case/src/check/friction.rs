@@ -33,11 +33,6 @@ impl Check<'_> {
         if draft.dimension == Some(1) {
             refuse("in dimension 1", "the end of a bar has no tangent", "leave mu out");
         }
-        if draft.dimension == Some(3) && contact.enforcement == Enforcement::Penalty {
-            let why =
-                "a tangential spring in space would have to turn with the facet under it, which is not built";
-            refuse("with a penalty in dimension 3", why, "use enforcement = \"multiplier\", or leave mu out");
-        }
         if let Some(scheme) = scheme
             && contact.enforcement == Enforcement::Penalty
             && scheme.conserves()

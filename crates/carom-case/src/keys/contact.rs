@@ -10,7 +10,7 @@ pub(super) const CONTACT: Table = Table {
         key("name", Name, "Name used in records and messages.").example("\"strike\""),
         key("secondary", Side, "Secondary (slave) side: its nodes may not penetrate the primary. `body.skin` is the whole boundary of a body.").example("\"cylinder.arc\"").unless("between"),
         key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of \
-            `plane`, `circle`, `sphere` and `polyline`. If it is the secondary side, this side is in contact \
+            `plane`, `circle`, `sphere`, `cylinder`, `polyline` and `surface`. If it is the secondary side, this side is in contact \
             with itself.").example("\"prism.top\"").unless("between"),
         key(
             "between",
@@ -95,8 +95,7 @@ pub(super) const CONTACT: Table = Table {
             Formula(IN_SPACE_AND_TIME),
             "Coefficient of Coulomb friction μ, for the slip of the secondary side on the primary one: a node sticks while its tangential force is \
              less than μ times its normal force, and otherwise slips against exactly this force. A number, or a formula of the node's reference \
-             position and time. 0: no friction. Default: no friction, or that of `shear`. Dimension 2, and without penalties dimension 3; rigid \
-             obstacles that do not turn, and sides of bodies.",
+             position and time. 0: no friction. Default: no friction, or that of `shear`. Dimensions 2 and 3.",
         )
         .optional()
         .example("0.3"),
@@ -163,6 +162,12 @@ const RIGID: Table = Table {
         key("sphere", Kind::Table(&SPHERE), "A rigid sphere, with bodies outside or inside it; dimension 3.")
             .optional()
             .example("{ center = [0.0, 0.0, 0.0], radius = 1.0, inside = true }"),
+        key("cylinder", Kind::Table(&CYLINDER), "A rigid cylinder without ends, with bodies outside or inside it; dimension 3.")
+            .optional()
+            .example("{ point = [0.0, 0.0, 0.0], axis = [0.0, 1.0, 0.0], radius = 0.5 }"),
+        key("surface", Kind::Table(&SURFACE), "A rigid surface of triangles from a file, with bodies outside it; dimension 3.")
+            .optional()
+            .example("{ file = \"part.stl\" }"),
         key("polyline", Kind::Table(&POLYLINE), "A rigid chain of segments, solid to the left of the direction of travel; dimension 2.")
             .optional()
             .example("{ points = [[2.0, 0.0], [0.0, 0.0], [-2.0, 1.0]], radius = 0.1 }"),
@@ -215,6 +220,35 @@ const SPHERE: Table = Table {
     later: &[],
 };
 
+const CYLINDER: Table = Table {
+    name: "cylinder",
+    doc: "A rigid cylinder without ends.",
+    keys: &[
+        key("point", Vector, "A point of its axis.").unit("length").example("[0.0, 0.0, 0.0]"),
+        key("axis", Vector, "Direction of its axis, of any length > 0.").example("[0.0, 1.0, 0.0]"),
+        key("radius", Number(POSITIVE), "Its radius.").unit("length").example("0.5"),
+        key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false"),
+    ],
+    later: &[],
+};
+
+const SURFACE: Table = Table {
+    name: "surface",
+    doc: "A rigid surface of triangles, whose corners are counter-clockwise as seen from outside. It may be \
+        closed, or open: beyond its rim there is nothing, and behind it a body is inside. Nodes of bodies are \
+        kept out; its own edges and vertices do not meet facets of bodies between their nodes. Across edges \
+        that turn by more than 30° away from the bodies a node leaves the surface; in a groove it is \
+        constrained by one of the faces only.",
+    keys: &[
+        key("file", Kind::Text, "A file in STL, text or binary, or a .msh of Gmsh with triangles of order 1; relative to the folder of the case.")
+            .example("\"part.stl\""),
+        key("group", Kind::Text, "Physical surface of a .msh. Default: all triangles of the file.").optional().example("\"tool\""),
+        key("scale", Number(POSITIVE), "Factor of the coordinates of the file.").default("1.0"),
+        key("reverse", Truth, "Whether inside and outside are exchanged.").default("false"),
+    ],
+    later: &[],
+};
+
 const POLYLINE: Table = Table {
     name: "polyline",
     doc: "A rigid chain of straight segments, with the rigid material to the left of the direction of travel.",
@@ -243,7 +277,11 @@ const MOTION: Table = Table {
     doc: "Prescribed motion of a rigid obstacle, zero at t = 0: rotation about a point that moves with it.",
     keys: &[
         key("x", Formula(IN_TIME), "Displacement along x.").unit("length").optional().example("\"0.1*t\""),
-        key("y", Formula(IN_TIME), "Displacement along y; dimension 2.")
+        key("y", Formula(IN_TIME), "Displacement along y; dimensions 2 and 3.")
+            .unit("length")
+            .optional()
+            .example("\"-0.1*t\""),
+        key("z", Formula(IN_TIME), "Displacement along z; dimension 3.")
             .unit("length")
             .optional()
             .example("\"-0.1*t\""),

@@ -241,7 +241,7 @@ impl Kind {
             Self::Between => "\"all\", or a list of bodies and sides [\"body\", \"body.side\"]".into(),
             Self::Sides => "a list of sides [\"body.side\"]".into(),
             Self::SideOr(_) => {
-                "a side \"body.side\" or a rigid obstacle { plane = …, circle = …, sphere = … or polyline = … }".into()
+                "a side \"body.side\" or a rigid obstacle { plane = …, circle = …, sphere = …, cylinder = …, polyline = … or surface = … }".into()
             }
             Self::Angular if dimension == Some(3) => several(dimension),
             Self::Rotation(_) if dimension == Some(3) => "a table { axis = [x, y, z], angle = … }".into(),

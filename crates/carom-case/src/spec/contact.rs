@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::formula::FormulaSpec;
-use super::obstacle::ObstacleMotion;
+use super::obstacle::{ObstacleMotion, SurfaceSpec};
 
 /// A contact pair: two sides that may come into contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -116,6 +116,19 @@ pub enum PrimarySpec {
         /// Whether bodies are inside it.
         inside: bool,
     },
+    /// A rigid cylinder without ends.
+    Cylinder {
+        /// A point of its axis.
+        point: Vec<f64>,
+        /// Direction of its axis, of any length > 0.
+        axis: Vec<f64>,
+        /// Its radius, > 0.
+        radius: f64,
+        /// Whether bodies are inside it.
+        inside: bool,
+    },
+    /// A rigid surface of triangles.
+    Surface(SurfaceSpec),
     /// A rigid chain of segments with the material to the left of the direction of travel.
     Polyline {
         /// Its points; closed if the last one repeats the first.

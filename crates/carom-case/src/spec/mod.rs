@@ -19,6 +19,6 @@ pub use contact::{
 pub use formula::FormulaSpec;
 pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};
 pub use mesh::{MeshSpec, RefineSpec, SKIN};
-pub use obstacle::ObstacleMotion;
+pub use obstacle::{ObstacleMotion, SurfaceSpec};
 pub use output::{OutputSpec, OverlaySpec, ProbeSpec, Quantity};
 pub use time::{Fallback, LinearRule, NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

@@ -1,8 +1,29 @@
 //! Rigid obstacles: how they move.
 
+use std::path::PathBuf;
+
 use serde::{Deserialize, Serialize};
 
 use super::formula::FormulaSpec;
+
+/// A rigid surface of triangles, from a file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SurfaceSpec {
+    /// The file.
+    pub file: PathBuf,
+    /// The physical surface of a file from Gmsh; none: all of it.
+    pub group: Option<String>,
+    /// Factor of its coordinates, > 0.
+    pub scale: f64,
+    /// Whether its triangles are clockwise as seen from outside.
+    pub reverse: bool,
+    /// BLAKE3 of the file.
+    pub hash: String,
+    /// Number of its triangles.
+    pub triangles: usize,
+    /// Number of its edges with a triangle on one side only.
+    pub rim: usize,
+}
 
 /// Motion of a rigid primary.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -162,7 +162,13 @@ fn wrong_contacts() {
 fn wrong_obstacles() {
     let plane = "plane = { point = [-1.0], normal = [2] }";
     let cases: &[(&str, &[&str])] = &[
-        ("{ }", &["exactly one shape; this one has none", "`plane`, `circle`, `sphere` or `polyline`"]),
+        (
+            "{ }",
+            &[
+                "exactly one shape; this one has none",
+                "`plane`, `circle`, `sphere`, `cylinder`, `polyline` or `surface`",
+            ],
+        ),
         ("{ PLANE, circle = { center = [0.0], radius = 1.0 } }", &["this one has plane, circle"]),
         ("{ circle = { center = [0.0], radius = 1.0 } }", &["a circle needs dimension = 2"]),
         ("{ PLANE, mass = 1.0, motion = { x = 0.0 } }", &["both `motion` and `mass`"]),

@@ -9,6 +9,7 @@ mod mesh_file;
 mod messages;
 mod misspelt;
 mod shapes;
+mod surface_file;
 
 use carom_case::*;
 

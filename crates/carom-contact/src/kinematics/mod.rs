@@ -26,7 +26,7 @@ pub use folds::Side;
 pub(crate) use folds::{Folds, Turns};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_obstacle::{Carrier, NodeToObstacle};
-pub use obstacle::{Obstacle, Polyline, PolylineError};
+pub use obstacle::{Faceted, Obstacle, Polyline, PolylineError};
 pub use one_way::OneWay;
 pub use passed::Passed;
 pub use space::{Boundary, ClosedSurface, NodeToPatch};

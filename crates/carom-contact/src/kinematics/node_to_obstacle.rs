@@ -102,24 +102,25 @@ impl NodeToObstacle {
     }
 
     /// The piece that an inactive node faces: the closest one outside, and inside that through
-    /// which it entered.
-    fn facing(&self, before: Point, now: Point) -> usize {
-        let nearest = self.shape.nearest(now);
-        let Obstacle::Polyline(line) = &self.shape else { return nearest };
+    /// which it entered; searched from the last one.
+    fn facing(&self, last: usize, before: Point, now: Point) -> usize {
+        let nearest = self.shape.nearest(now, Some(last));
         if self.shape.near(nearest, now).is_some_and(|near| near.gap >= 0.0) {
             return nearest;
         }
-        line.entered(before, now).map_or(nearest, |(_, piece)| piece)
+        self.shape.entered(before, now).map_or(nearest, |(_, piece)| piece)
     }
 
     /// The piece on which a pair is measured.
     fn measured(&self, pair: &Pair, at: Point) -> usize {
-        let Obstacle::Polyline(line) = &self.shape else { return 0 };
-        if pair.active {
-            return line.followed(pair.facet, at);
+        if self.shape.pieces() == 1 {
+            return 0;
         }
-        let nearest = line.nearest(at);
-        let is_inside = |piece: usize| line.near(piece, at).is_some_and(|near| near.gap < 0.0);
+        if pair.active {
+            return self.shape.followed(pair.facet, at);
+        }
+        let nearest = self.shape.nearest(at, Some(pair.facet));
+        let is_inside = |piece: usize| self.shape.near(piece, at).is_some_and(|near| near.gap < 0.0);
         if is_inside(nearest) && is_inside(pair.facet) { pair.facet } else { nearest }
     }
 
@@ -169,7 +170,7 @@ impl Kinematics for NodeToObstacle {
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
         let at = self.local(self.secondary[node], y).at;
-        self.shape.near(self.shape.nearest(at), at).map(|near| near.gap + self.kept(node))
+        self.shape.near(self.shape.nearest(at, None), at).map(|near| near.gap + self.kept(node))
     }
 
     fn tips(&self, y: &[f64]) -> Vec<([f64; 3], f64)> {
@@ -198,21 +199,23 @@ impl Kinematics for NodeToObstacle {
         events: &mut Vec<PairEvent>,
     ) -> bool {
         watch_every_node(self.secondary.len(), &mut pairing.pairs);
-        let Obstacle::Polyline(line) = &self.shape else { return false };
+        if self.shape.pieces() == 1 {
+            return false;
+        }
         let Pairing { pairs, left, .. } = pairing;
         let mut changed = false;
         for pair in pairs {
             let node = self.secondary[pair.node];
             let at = self.local(node, now).at;
             if !pair.active {
-                let facing = self.facing(self.local(node, before).at, at);
-                let is_inside = line.near(facing, at).is_some_and(|near| near.gap < 0.0);
+                let facing = self.facing(pair.facet, self.local(node, before).at, at);
+                let is_inside = self.shape.near(facing, at).is_some_and(|near| near.gap < 0.0);
                 changed |= facing != pair.facet && is_inside;
                 pair.facet = facing;
                 continue;
             }
-            pair.facet = line.followed(pair.facet, at);
-            match line.at_corner(pair.facet, at) {
+            pair.facet = self.shape.followed(pair.facet, at);
+            match self.shape.at_corner(pair.facet, at) {
                 AtCorner::Goes(next) if left.get(&pair.node) != Some(&next) => {
                     events.push(PairEvent::HandOver { node, from: pair.facet, to: next });
                     left.insert(pair.node, pair.facet);
@@ -220,7 +223,7 @@ impl Kinematics for NodeToObstacle {
                 }
                 AtCorner::Leaves => {
                     events.push(PairEvent::SlidOff { node, facet: pair.facet });
-                    *pair = Pair::open(pair.node, line.nearest(at), 0.0);
+                    *pair = Pair::open(pair.node, self.shape.nearest(at, Some(pair.facet)), 0.0);
                     changed = true;
                 }
                 AtCorner::Goes(_) | AtCorner::Stays => {}
@@ -279,14 +282,15 @@ impl Kinematics for NodeToObstacle {
         let curvature = &mut curvature[..size * size];
         curvature.fill(0.0);
         let Local { at, arm, turn } = self.local(self.secondary[pair.node], y);
-        let Some(Near { normal, bend, .. }) = self.shape.near(pair.facet, at) else { return };
+        let Some(Near { normal, bend, straight, .. }) = self.shape.near(pair.facet, at) else { return };
         let n = rotated(normal, turn);
         let blocks = size.min(2 * d) / d;
         let sign = |block: usize| if block == 0 { 1.0 } else { -1.0 };
         for (p, q) in (0..blocks).flat_map(|p| (0..blocks).map(move |q| (p, q))) {
             for (i, k) in (0..d).flat_map(|i| (0..d).map(move |k| (i, k))) {
                 let same = if i == k { 1.0 } else { 0.0 };
-                curvature[(p * d + i) * size + q * d + k] = sign(p) * sign(q) * bend * (same - n[i] * n[k]);
+                let flat = n[i] * n[k] + straight[i] * straight[k];
+                curvature[(p * d + i) * size + q * d + k] = sign(p) * sign(q) * bend * (same - flat);
             }
         }
         let Some((_, _, length)) = self.carrier.as_ref().and_then(|carrier| carrier.turn) else { return };
@@ -335,14 +339,16 @@ impl Kinematics for NodeToObstacle {
         let matrix = &mut matrix[..size * size];
         matrix.fill(0.0);
         let Local { at, arm, turn } = self.local(self.secondary[pair.node], y);
-        let Some(Near { normal, bend, .. }) = self.shape.near(pair.facet, at) else { return };
+        let Some(near) = self.shape.near(pair.facet, at) else { return };
+        let Near { normal, bend, .. } = near;
         let n = rotated(normal, turn);
         let along = self.tangents(pair, n)[tangent];
+        let bent = near.bent(along);
         let sign = |block: usize| if block == 0 { 1.0 } else { -1.0 };
         let blocks = size.min(2 * d) / d;
         for (p, q) in (0..blocks).flat_map(|p| (0..blocks).map(move |q| (p, q))) {
             for (i, k) in (0..d).flat_map(|i| (0..d).map(move |k| (i, k))) {
-                matrix[(p * d + i) * size + q * d + k] = -sign(p) * sign(q) * bend * n[i] * along[k];
+                matrix[(p * d + i) * size + q * d + k] = -sign(p) * sign(q) * n[i] * bent[k];
             }
         }
         let Some((_, _, length)) = self.carrier.as_ref().and_then(|carrier| carrier.turn) else { return };

@@ -137,7 +137,7 @@ fn square(v: Vector<2>) -> f64 {
 
 /// Allowed depth over the length of a facet, from the normals where a node enters and leaves: on
 /// the same side it has bounced, and may be as deep as at the end of a step.
-pub(super) fn share([entered, left]: [Vector<2>; 2], bounce: f64) -> f64 {
+pub(super) fn share<const D: usize>([entered, left]: [Vector<D>; 2], bounce: f64) -> f64 {
     if entered.dot(&left) > 0.0 { bounce.max(SHARE) } else { SHARE }
 }
 

@@ -6,6 +6,7 @@ mod derivatives;
 mod discrete_gradient;
 mod kinks;
 mod obstacles;
+mod obstacles_in_space;
 mod slip;
 mod slip_in_space;
 mod space;

@@ -18,6 +18,8 @@ fn scenes(height: f64) -> Vec<(Box<dyn Kinematics>, Vec<f64>, bool)> {
         Obstacle::plane(&[0.0, 0.0, 0.0], &[0.6, 0.48, 0.64]),
         Obstacle::circle(&[0.1, -0.4, 0.3], 0.5, false),
         Obstacle::circle(&[0.1, -0.4, 0.3], 1.5, true),
+        Obstacle::cylinder(&[0.1, -0.4, 0.3], &[0.3, 0.6, -0.2], 0.5, false),
+        Obstacle::cylinder(&[0.1, -0.4, 0.3], &[0.3, 0.6, -0.2], 1.5, true),
     ] {
         let contact = NodeToObstacle::new(vec![0], 3, shape).carried_by(carrier.clone());
         scenes.push((Box::new(contact), vec![0.23, height, 0.7, 0.1, -0.3, 0.2], false));

@@ -103,7 +103,7 @@ impl Setup<'_> {
             }
             let bar = |color: &str| format!("<path d=\"M0 0h20\" stroke=\"{color}\" stroke-width=\"3.2\"/>");
             let side = contact.pointer("/primary/side").and_then(Value::as_str);
-            let shape = ["circle", "polyline"]
+            let shape = ["circle", "cylinder", "polyline", "surface"]
                 .into_iter()
                 .find(|shape| contact.pointer(&format!("/primary/{shape}")).is_some());
             let in_space = self.case().get("dimension").and_then(Value::as_u64) == Some(3);

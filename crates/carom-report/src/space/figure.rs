@@ -1,13 +1,16 @@
 //! Deformed solids at several instants, coloured by the stress of von Mises.
 
-use carom_record::FieldSet;
+use std::fmt::Write as _;
+
+use carom_record::{FieldSet, Run};
 
 use super::painter::{Paint, Piece, paint, pieces};
 use super::raster::image;
 use super::skin::{Facet, Place, places, skin};
 use super::view::View;
+use super::wires::wires;
 use crate::bands::{Bands, positive_bands};
-use crate::pen::Point;
+use crate::pen::{GRID, Pen, Point, open_grid};
 use crate::quantity::stresses;
 use crate::sheet::{Legend, Sheet};
 
@@ -15,6 +18,9 @@ use crate::sheet::{Legend, Sheet};
 pub(crate) const DRAWN: usize = 6000;
 /// Room for the axes below the pictures.
 const FOOT: f64 = 84.0;
+/// Colour and width of the lines on rigid obstacles.
+const RIGID: &str = "#b9b4ab";
+const THIN: f64 = 0.7;
 
 /// Bounding box of facets on the page in units of length: left, right, bottom, top.
 pub(crate) fn frame(skin: &[Facet], places: &[Place], view: &View) -> [f64; 4] {
@@ -42,6 +48,7 @@ pub(crate) fn draw(
 
 /// The figure with its caption, and the bands of its colours; nothing without stresses.
 pub(crate) fn instants(
+    run: &Run,
     sets: &[(f64, FieldSet)],
     (time, length): (&str, &str),
     during: &str,
@@ -58,7 +65,13 @@ pub(crate) fn instants(
     });
     let (bands, cut) = positive_bands(values);
     let frames = list.iter().map(|(_, places, _)| frame(&skin, places, &view));
-    let wide = frames.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].max(b[3])])?;
+    let mut wide = frames.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].max(b[3])])?;
+    let rigid = wires(run, box_of(&skin, list.iter().map(|(_, places, _)| places)));
+    let lines: Vec<Vec<[Place; 2]>> =
+        sets.iter().map(|(time, _)| rigid.iter().flat_map(|wire| wire.at(run, *time)).collect()).collect();
+    for [x, y, _] in lines.iter().flatten().flatten().map(|place| view.of(*place)) {
+        wide = [wide[0].min(x), wide[1].max(x), wide[2].min(y), wide[3].max(y)];
+    }
     if !(wide[1] > wide[0] && wide[3] > wide[2]) {
         return None;
     }
@@ -71,16 +84,56 @@ pub(crate) fn instants(
     for (k, ((heading, ..), pieces)) in list.iter().zip(&all).enumerate() {
         sheet.heading(k, heading);
         let place = sheet.picture(k);
+        let to = sheet.map(k);
+        underlay(&mut sheet.out, &lines[k], &view, &to);
         draw(&mut sheet.out, pieces, (&Paint::Bands(&bands), bands.count), place, drawn);
     }
     let triad = [36.0, sheet.pictures + 36.0];
     view.triad(&mut sheet.out, triad, 28.0);
     let unit = sets[0].1.array("stress")?.unit.clone();
     let svg = sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit: &unit }, length);
-    Some((svg, caption(&bands, cut, during)))
+    Some((svg, caption(&bands, cut, during, !rigid.is_empty())))
 }
 
-fn caption(bands: &Bands, cut: [bool; 2], during: &str) -> String {
+/// Corners of the box of all places of a skin.
+fn box_of<'a>(skin: &[Facet], all: impl Iterator<Item = &'a Vec<Place>>) -> [Place; 2] {
+    let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for places in all {
+        for place in skin.iter().flat_map(|facet| &facet.nodes).map(|&node| places[node]) {
+            for d in 0..3 {
+                corners[0][d] = corners[0][d].min(place[d]);
+                corners[1][d] = corners[1][d].max(place[d]);
+            }
+        }
+    }
+    corners
+}
+
+/// Draws the lines of rigid obstacles, over which bodies are drawn.
+fn underlay(out: &mut String, lines: &[[Place; 2]], view: &View, to: &dyn Fn(Point) -> Point) {
+    if lines.is_empty() {
+        return;
+    }
+    let mut pen = Pen::default();
+    let mut last = None;
+    for [a, b] in lines.iter().map(|piece| piece.map(|place| view.of(place)).map(|[x, y, _]| to([x, y]))) {
+        if last != Some(a) {
+            pen.go(a);
+        }
+        pen.draw(&[b]);
+        last = Some(b);
+    }
+    out.push_str(&open_grid());
+    let _ = writeln!(
+        out,
+        "<path d=\"{}\" fill=\"none\" stroke=\"{RIGID}\" stroke-width=\"{}\"/>\n</g>",
+        pen.data(),
+        THIN * GRID
+    );
+}
+
+fn caption(bands: &Bands, cut: [bool; 2], during: &str, rigid: bool) -> String {
+    let rigid = if rigid { " Light lines, behind the bodies: rigid obstacles." } else { "" };
     let arrow = if cut[1] {
         format!(" Arrow at the colour bar: up to 0.5 % of the values are above {}.", bands.high)
     } else {
@@ -89,7 +142,7 @@ fn caption(bands: &Bands, cut: [bool; 2], during: &str) -> String {
     format!(
         "Deformed bodies with von Mises stress (of nodal averages of the Cauchy stress) at instants \
          {during}. All at the same scale; displacements are not magnified. View: {}. The scale applies to \
-         lengths parallel to the page.{arrow} Data: stress and displacement in the field files.",
+         lengths parallel to the page.{rigid}{arrow} Data: stress and displacement in the field files.",
         View::words()
     )
 }

@@ -76,7 +76,7 @@ impl Samples {
     }
 }
 
-/// A PNG file of pixels red, green, blue (ISO/IEC 15948).
+/// A PNG file of pixels red, green, blue (ISO/IEC 15948), of which those that are white are clear.
 fn png(width: usize, height: usize, pixels: &[u8]) -> Vec<u8> {
     // Each row is preceded by the number of its filter: 1, differences from the pixel to the left.
     let row = |row: &[u8]| {
@@ -94,6 +94,7 @@ fn png(width: usize, height: usize, pixels: &[u8]) -> Vec<u8> {
     // Eight bits for each of three colours, no interlacing.
     let header = [&(width as u32).to_be_bytes()[..], &(height as u32).to_be_bytes(), &[8, 2, 0, 0, 0]];
     chunk(b"IHDR", &header.concat());
+    chunk(b"tRNS", &[0, 255, 0, 255, 0, 255]);
     chunk(b"IDAT", &miniz_oxide::deflate::compress_to_vec_zlib(&rows, 6));
     chunk(b"IEND", &[]);
     file

@@ -44,7 +44,7 @@
     }`;
   const fragment = `#version 300 es
     precision highp float;
-    uniform sampler2D colors; uniform int count; uniform bool lines; uniform vec4 cut;
+    uniform sampler2D colors; uniform int count; uniform bool lines; uniform float grey; uniform vec4 cut;
     in vec3 seen; in vec3 body; in float share;
     out vec4 color;
     void main() {
@@ -53,7 +53,7 @@
       float light = 0.7 + 0.3 * max(0.0, dot(normal, vec3(-0.32, 0.51, 0.8)));
       int band = clamp(int(floor(share * float(count))), 0, count - 1);
       vec3 surface = share < -0.001 ? vec3(1.0) : texelFetch(colors, ivec2(band, 0), 0).rgb;
-      color = vec4(lines ? vec3(0.2) : gl_FrontFacing ? surface * light : vec3(0.62), 1.0);
+      color = vec4(lines ? vec3(grey) : gl_FrontFacing ? surface * light : vec3(0.62), 1.0);
     }`;
   const program = gl.createProgram();
   for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
@@ -63,14 +63,15 @@
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) return;
   gl.useProgram(program);
-  const at = Object.fromEntries(["turn", "middle", "view", "reach", "count", "lines", "cut"].map(n => [n, gl.getUniformLocation(program, n)]));
-  const buffers = ["place", "value"].map((name, k) => {
-    const buffer = gl.createBuffer(), where = gl.getAttribLocation(program, name);
+  const at = Object.fromEntries(["turn", "middle", "view", "reach", "count", "lines", "grey", "cut"].map(n => [n, gl.getUniformLocation(program, n)]));
+  const wheres = ["place", "value"].map(name => gl.getAttribLocation(program, name));
+  const bind = (buffer, k) => {
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.enableVertexAttribArray(where);
-    gl.vertexAttribPointer(where, k ? 1 : 3, gl.FLOAT, false, 0, 0);
-    return buffer;
-  });
+    gl.enableVertexAttribArray(wheres[k]);
+    gl.vertexAttribPointer(wheres[k], k ? 1 : 3, gl.FLOAT, false, 0, 0);
+  };
+  const buffers = [0, 1].map(() => gl.createBuffer()), rigid = gl.createBuffer();
+  const corners = data.rigid.reduce((sum, list) => sum + list.length / 3, 0);
   const indices = [triangles, edges].map(list => {
     const buffer = gl.createBuffer();
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
@@ -107,11 +108,18 @@
     gl.uniformMatrix3fv(at.turn, false, [0, 1, 2].flatMap(column => turn.map(row => row[column])));
     gl.uniform3fv(at.middle, middle); gl.uniform1f(at.reach, 2 * radius);
     gl.uniform4f(at.view, shift[0], shift[1], scale * H / W, scale); gl.uniform4fv(at.cut, cut);
+    buffers.forEach(bind);
+    gl.uniform1f(at.grey, 0.2);
     [triangles, edges].forEach((list, k) => {
       gl.uniform1i(at.lines, k);
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, indices[k]);
       gl.drawElements(k ? gl.LINES : gl.TRIANGLES, list.length, gl.UNSIGNED_INT, 0);
     });
+    // Rigid obstacles: the last list was lines.
+    bind(rigid, 0);
+    gl.disableVertexAttribArray(wheres[1]);
+    gl.uniform1f(at.grey, 0.65);
+    gl.drawArrays(gl.LINES, 0, corners);
     flat.setTransform(2, 0, 0, 2, 0, 0);
     flat.clearRect(0, 0, 80, 80);
     flat.font = "italic 13px Helvetica, Arial, sans-serif"; flat.textAlign = "center"; flat.textBaseline = "middle";
@@ -134,6 +142,8 @@
       gl.bindBuffer(gl.ARRAY_BUFFER, buffers[j]);
       gl.bufferData(gl.ARRAY_BUFFER, list, gl.DYNAMIC_DRAW);
     });
+    gl.bindBuffer(gl.ARRAY_BUFFER, rigid);
+    gl.bufferData(gl.ARRAY_BUFFER, Float32Array.from(data.rigid.flatMap((list, j) => list.map((x, i) => x + data.moves[k][j][i % 3]))), gl.DYNAMIC_DRAW);
     render();
   };
   const paint = () => {

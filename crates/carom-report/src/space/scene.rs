@@ -13,6 +13,7 @@ use serde_json::json;
 
 use super::skin::{Facet, Place, skin};
 use super::view::View;
+use super::wires::wires;
 use crate::animation::{PLAYER, controls, histories};
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::quantity::{Quantity, bars, choice, stresses};
@@ -115,6 +116,20 @@ impl Scene {
             [0, 1, 2].map(|d| self.places.iter().map(|p| p[d]).fold(start, pick))
         };
         [fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    /// Corners of the box of all positions.
+    fn moved_box(&self) -> [Place; 2] {
+        let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        for frame in &self.frames {
+            for (place, moved) in self.places.iter().zip(&frame.moved) {
+                for d in 0..3 {
+                    corners[0][d] = corners[0][d].min(place[d] + moved[d]);
+                    corners[1][d] = corners[1][d].max(place[d] + moved[d]);
+                }
+            }
+        }
+        corners
     }
 
     /// Every `stride`-th frame and the last one.
@@ -248,6 +263,13 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
                                     "file": run.field_file(entries[*k]) })
     };
     let [low, high] = scene.box_of();
+    let rigid = wires(run, scene.moved_box());
+    let lines: Vec<Vec<f32>> = rigid
+        .iter()
+        .map(|wire| wire.at_first().iter().flatten().flatten().map(|x| *x as f32).collect())
+        .collect();
+    let moves: Vec<Vec<Place>> =
+        chosen.iter().map(|&k| rigid.iter().map(|wire| wire.moved(run, entries[k].time)).collect()).collect();
     let data = json!({
         "unit": run.history.unit("time"), "nodes": scene.places.len(),
         "triangles": scene.surface.triangles.len(), "edges": scene.surface.edges.len(),
@@ -255,6 +277,7 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
         "view": View::axonometric().axes, "first": entries[start].time,
         "quantities": quantities.iter().map(Quantity::data).collect::<Vec<_>>(),
         "frames": chosen.iter().map(entry).collect::<Vec<_>>(), "packed": packed,
+        "rigid": lines, "moves": moves,
     });
     let every = if chosen.len() < run.fields.len() {
         format!("{} of the {} recorded instants", chosen.len(), run.fields.len())

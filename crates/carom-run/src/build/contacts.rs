@@ -392,6 +392,7 @@ pub fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
             PrimarySpec::Polyline { .. } => {
                 ("to the left of the polyline, which is rigid", "reverse the order of its points, ")
             }
+            PrimarySpec::Surface(_) => ("behind the rigid surface", "give the surface the other `reverse`, "),
             _ => ("inside the other side's body", ""),
         };
         Problem::new(

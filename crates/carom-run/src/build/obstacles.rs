@@ -5,7 +5,7 @@
 //! makes it a free particle.
 
 use carom_case::{Case, FormulaSpec, ObstacleMotion, PrimarySpec, Problem};
-use carom_contact::{Carrier, Obstacle, Polyline};
+use carom_contact::{Carrier, Faceted, Obstacle, Polyline};
 use carom_mechanics::model::{BodyInstance, Support};
 use carom_solid::{Element, Law, Mesh, Positions};
 
@@ -15,6 +15,16 @@ pub(super) fn shape(primary: &PrimarySpec, contact: usize) -> Result<Option<Obst
         PrimarySpec::Side(_) => return Ok(None),
         PrimarySpec::Plane { point, normal } => Obstacle::plane(point, normal),
         PrimarySpec::Circle { center, radius, inside } => Obstacle::circle(center, *radius, *inside),
+        PrimarySpec::Cylinder { point, axis, radius, inside } => {
+            Obstacle::cylinder(point, axis, *radius, *inside)
+        }
+        PrimarySpec::Surface(surface) => {
+            let wrong = |error: carom_case::NoMesh| {
+                let what = "the surface cannot be used".to_owned();
+                Problem::new(format!("contact[{contact}].primary.surface.file"), what, error.to_string(), "")
+            };
+            Obstacle::Faceted(Faceted::new(surface.triangles().map_err(wrong)?))
+        }
         PrimarySpec::Polyline { points, radius } => {
             let wrong = |error: carom_contact::PolylineError| {
                 let what = "the polyline is not a surface".to_owned();
@@ -57,7 +67,7 @@ pub(super) fn carriers<'a>(
         let padded = std::array::from_fn(|i| origin.get(i).copied().unwrap_or(0.0));
         let turn = (spec.motion.nodes() == 2).then(|| (node + 1, origin[0], length));
         let mesh = Mesh {
-            element: if d == 1 { Element::L2 } else { Element::T3 },
+            element: [Element::L2, Element::T3, Element::Tet4][d.clamp(1, 3) - 1],
             nodes: Positions::new(d, origin.repeat(spec.motion.nodes())),
             cells: Vec::new(),
             sides: std::collections::BTreeMap::new(),
@@ -81,7 +91,9 @@ pub(super) fn carriers<'a>(
 fn point_of(primary: &PrimarySpec) -> Vec<f64> {
     match primary {
         PrimarySpec::Side(_) => Vec::new(),
-        PrimarySpec::Plane { point, .. } => point.clone(),
+        // The origin of its coordinates.
+        PrimarySpec::Surface(_) => vec![0.0; 3],
+        PrimarySpec::Plane { point, .. } | PrimarySpec::Cylinder { point, .. } => point.clone(),
         PrimarySpec::Circle { center, .. } => center.clone(),
         PrimarySpec::Polyline { points, .. } => points.first().map_or_else(Vec::new, |p| p.to_vec()),
     }

@@ -31,6 +31,7 @@ mod self_contact;
 mod space;
 mod space_contact;
 mod space_friction;
+mod space_obstacles;
 mod statics;
 mod substeps;
 mod tangent;

@@ -99,6 +99,8 @@ pub enum Fault {
         "{facets} facets of the boundary of \"{name}\" meet at the edge {start}–{end} at {at:.6?}, of the cells {cells:?}"
     )]
     Pinched { name: String, facets: usize, start: i64, end: i64, cells: Vec<i64>, at: Vec<f64> },
+    #[error("cell {cell} of the surface is {kind}")]
+    NoTriangle { cell: i64, kind: String },
     #[error("node {node} of \"{name}\" belongs to {cells} cells")]
     Branching { name: String, node: i64, cells: usize },
 }
@@ -153,6 +155,7 @@ impl MshError {
                 "two facets of the boundary meet at an edge; the body is held together there by a line without thickness".into()
             }
             Fault::EdgeNodes { .. } => "neighbouring cells must share every node of their edge; otherwise the body would have a gap there".into(),
+            Fault::NoTriangle { .. } => "a rigid surface consists of triangles of three nodes".into(),
             Fault::Branching { .. } => "a node of a bar joins at most two cells".into(),
         }
     }
@@ -188,6 +191,7 @@ impl MshError {
             Fault::FacetNodes { .. } => "set the order after all volumes are meshed",
             Fault::Overlap { .. } => "look for surfaces that overlap or are in the group twice",
             Fault::EdgeNodes { .. } => "set the order after all surfaces are meshed",
+            Fault::NoTriangle { .. } => "set Mesh.ElementOrder = 1 in Gmsh, without Recombine",
             Fault::Branching { .. } => "a bar is one line of cells",
             Fault::Partitioned => "save the mesh without partitions",
             _ => "save the mesh again with Gmsh",

@@ -3,22 +3,28 @@
 //!
 //! ```text
 //! plane    g = (x − p)·n             ∇g = n              ∇²g = 0
-//! circle, sphere
-//!          g = |x − c| − r           ∇g = (x − c)/|x − c|   ∇²g = (1 − n nᵀ)/|x − c|        from inside all with the opposite sign
+//! circle, sphere: s = x − c; from inside all with the opposite sign
+//!          g = |s| − r               ∇g = s/|s|             ∇²g = (1 − n nᵀ)/|s|
+//! cylinder with the axis a: s = (1 − a aᵀ)(x − c)
+//!          g = |s| − r               ∇g = s/|s|             ∇²g = (1 − n nᵀ − a aᵀ)/|s|
 //! ```
 //!
-//! A polyline consists of such pieces. So ∇²g = h (1 − n nᵀ) with one number h for every piece.
+//! Polylines and surfaces of triangles consist of such pieces. So ∇²g = h (1 − n nᵀ − a aᵀ) with
+//! one number h for every piece, and a direction a, which may be zero.
 
+mod corner;
+mod faceted;
 mod near;
 mod path;
 mod polyline;
 
+pub(super) use corner::AtCorner;
+pub use faceted::Faceted;
 pub(super) use near::{Near, Point};
-pub(super) use polyline::AtCorner;
 pub use polyline::{Polyline, PolylineError};
 
 use super::zero;
-use near::round;
+use near::{across, around, dot, minus};
 
 /// A rigid shape. All its data are in the coordinates of the body that carries it.
 #[derive(Clone, Debug)]
@@ -30,10 +36,12 @@ pub enum Obstacle {
         /// Unit normal out of the rigid side.
         normal: [f64; 3],
     },
-    /// A circle; in space a sphere.
+    /// A circle; in space a sphere or a cylinder.
     Circle {
-        /// Its centre.
+        /// Its centre, or a point of its axis.
         center: [f64; 3],
+        /// The axis of a cylinder, of length one; zero for a circle or a sphere.
+        axis: [f64; 3],
         /// Its radius, > 0.
         radius: f64,
         /// Whether bodies are inside it.
@@ -41,23 +49,34 @@ pub enum Obstacle {
     },
     /// A chain of segments and arcs in the plane.
     Polyline(Polyline),
+    /// Triangles in space.
+    Faceted(Faceted),
 }
 
 impl Obstacle {
     /// A half-space: bodies are on the side of `point` to which `normal` (any length > 0) points.
     pub fn plane(point: &[f64], normal: &[f64]) -> Self {
-        let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-        Self::Plane { point: padded(point, 1.0), normal: padded(normal, length.recip()) }
+        Self::Plane { point: padded(point), normal: unit(normal) }
     }
 
     /// A circle, with bodies outside or `inside` it.
     pub fn circle(center: &[f64], radius: f64, inside: bool) -> Self {
-        Self::Circle { center: padded(center, 1.0), radius, inside }
+        Self::Circle { center: padded(center), axis: [0.0; 3], radius, inside }
+    }
+
+    /// A cylinder without ends, around a line through `point` along `axis` (any length > 0), with
+    /// bodies outside or `inside` it.
+    pub fn cylinder(point: &[f64], axis: &[f64], radius: f64, inside: bool) -> Self {
+        Self::Circle { center: padded(point), axis: unit(axis), radius, inside }
     }
 
     /// Number of pieces of the surface.
     pub(crate) fn pieces(&self) -> usize {
-        if let Self::Polyline(line) = self { line.pieces() } else { 1 }
+        match self {
+            Self::Polyline(line) => line.pieces(),
+            Self::Faceted(surface) => surface.pieces(),
+            _ => 1,
+        }
     }
 
     /// Its convex round parts, as centres and radii: what can lie between the nodes of a body.
@@ -69,28 +88,60 @@ impl Obstacle {
         }
     }
 
-    /// The piece of the surface that is closest to a point.
-    pub(crate) fn nearest(&self, at: Point) -> usize {
-        if let Self::Polyline(line) = self { line.nearest(at) } else { 0 }
+    /// The piece of the surface that is closest to a point, searched from one near it if it is
+    /// known.
+    pub(crate) fn nearest(&self, at: Point, from: Option<usize>) -> usize {
+        match self {
+            Self::Polyline(line) => line.nearest(at),
+            Self::Faceted(surface) => surface.nearest(at, from),
+            _ => 0,
+        }
+    }
+
+    /// θ and the piece at which a point entered on a straight path, of several pieces.
+    pub(super) fn entered(&self, before: Point, now: Point) -> Option<(f64, usize)> {
+        match self {
+            Self::Polyline(line) => line.entered(before, now),
+            Self::Faceted(surface) => surface.entered(before, now),
+            _ => None,
+        }
+    }
+
+    /// The piece on which a node in contact with a piece is measured.
+    pub(super) fn followed(&self, piece: usize, at: Point) -> usize {
+        match self {
+            Self::Polyline(line) => line.followed(piece, at),
+            Self::Faceted(surface) => surface.followed(piece, at),
+            _ => 0,
+        }
+    }
+
+    /// What becomes of a node in contact at the end of its piece.
+    pub(super) fn at_corner(&self, piece: usize, at: Point) -> AtCorner {
+        match self {
+            Self::Polyline(line) => line.at_corner(piece, at),
+            Self::Faceted(surface) => surface.at_corner(piece, at),
+            _ => AtCorner::Stays,
+        }
     }
 
     /// The first θ at which a point on a straight path from `before` to `now` meets the surface;
     /// none if it is outside at the end.
     pub(crate) fn met(&self, before: Point, now: Point) -> Option<f64> {
-        let [from, to] = [before, now].map(|at| self.near(self.nearest(at), at));
+        let [from, to] = [before, now].map(|at| self.near(self.nearest(at, None), at));
         let (from, to) = (from?.gap, to?.gap);
         let linear = zero(from, to)?;
         match self {
             _ if from <= 0.0 => Some(0.0),
             Self::Plane { .. } => Some(linear),
-            Self::Circle { center, radius, inside } => {
+            Self::Circle { center, axis, radius, inside } => {
                 // |b + θ d|² = r²: into a circle at the earlier root, out of it at the later one.
-                let [arm, path] = [[before, *center], [now, before]].map(|[a, b]| minus(a, b));
+                let [arm, path] = [[before, *center], [now, before]].map(|[a, b]| across(minus(a, b), *axis));
                 let (a, b, c) = (dot(path, path), dot(arm, path), dot(arm, arm) - radius * radius);
                 let root = (b * b - a * c).max(0.0).sqrt();
                 Some((-b + if *inside { root } else { -root }) / a)
             }
-            Self::Polyline(line) => line.entered(before, now).map(|(theta, _)| theta),
+            Self::Polyline(_) | Self::Faceted(_) => self.entered(before, now).map(|(theta, _)| theta),
         }
     }
 
@@ -100,24 +151,23 @@ impl Obstacle {
         match self {
             Self::Plane { point, normal } => {
                 let gap = (0..3).map(|i| (at[i] - point[i]) * normal[i]).sum();
-                Some(Near { gap, normal: *normal, bend: 0.0 })
+                Some(Near::flat(gap, *normal))
             }
-            Self::Circle { center, radius, inside } => {
-                round(at, *center, *radius, if *inside { -1.0 } else { 1.0 })
+            Self::Circle { center, axis, radius, inside } => {
+                around(minus(at, *center), *axis, *radius, if *inside { -1.0 } else { 1.0 })
             }
             Self::Polyline(line) => line.near(piece, at),
+            Self::Faceted(surface) => surface.near(piece, at),
         }
     }
 }
 
-fn minus(a: Point, b: Point) -> Point {
-    std::array::from_fn(|i| a[i] - b[i])
+/// A vector over its length.
+fn unit(x: &[f64]) -> Point {
+    let length = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    padded(x).map(|x| x * length.recip())
 }
 
-fn dot(a: Point, b: Point) -> f64 {
-    (0..3).map(|i| a[i] * b[i]).sum()
-}
-
-fn padded(x: &[f64], factor: f64) -> Point {
-    std::array::from_fn(|i| x.get(i).map_or(0.0, |x| x * factor))
+fn padded(x: &[f64]) -> Point {
+    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
 }

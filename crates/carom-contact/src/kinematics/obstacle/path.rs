@@ -20,8 +20,8 @@ impl Obstacle {
         from: Point,
         to: Point,
         limit: f64,
-    ) -> Option<(f64, [Vector<2>; 2])> {
-        let seen = |at: Point| self.near(self.nearest(at), at);
+    ) -> Option<(f64, [Vector<3>; 2])> {
+        let seen = |at: Point| self.near(self.nearest(at, None), at);
         let [start, end] = [from, to].map(|at| seen(at).map_or(f64::NEG_INFINITY, |near| near.gap));
         let length = distance(from, to);
         // No point of the way is further inside than the ends allow.
@@ -30,7 +30,7 @@ impl Obstacle {
         }
         let shortest = limit.max(SHORTEST * length);
         let (mut done, mut deepest) = (0.0, limit);
-        let mut normals: Option<[Vector<2>; 2]> = None;
+        let mut normals: Option<[Vector<3>; 2]> = None;
         while done < length {
             let at = std::array::from_fn(|i| from[i] + done / length * (to[i] - from[i]));
             // At the centre of a circle there is no direction.
@@ -39,7 +39,7 @@ impl Obstacle {
                 continue;
             };
             if gap < 0.0 {
-                let here = Vector([normal[0], normal[1]]);
+                let here = Vector(normal);
                 normals = Some([normals.map_or(here, |[first, _]| first), here]);
             }
             deepest = f64::max(deepest, -gap);

@@ -12,11 +12,8 @@
 //!
 //! An open chain has no ends: its first and last segment go on for ever.
 
+use super::corner::{AtCorner, CORNER_COSINE};
 use super::near::{Near, Point, distance, round};
-
-/// Cosine of the largest turn at a sharp corner across which a node keeps its contact: as for
-/// facets.
-const CORNER_COSINE: f64 = 0.87;
 
 /// A piece of the chain.
 #[derive(Clone, Copy, Debug)]
@@ -173,9 +170,7 @@ impl Polyline {
     /// A piece as a point sees it.
     pub(in super::super) fn near(&self, piece: usize, at: Point) -> Option<Near> {
         match self.pieces[piece] {
-            Piece::Segment { start, normal, .. } => {
-                Some(Near { gap: dot(minus(at, start), normal), normal, bend: 0.0 })
-            }
+            Piece::Segment { start, normal, .. } => Some(Near::flat(dot(minus(at, start), normal), normal)),
             Piece::Corner { center, radius, side, .. } => round(at, center, radius, side),
         }
     }
@@ -284,13 +279,6 @@ impl Polyline {
         }
         first
     }
-}
-
-/// What becomes of a node in contact at a sharp corner.
-pub(in super::super) enum AtCorner {
-    Stays,
-    Goes(usize),
-    Leaves,
 }
 
 fn dot(a: Point, b: Point) -> f64 {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use carom::case::{
     Case, Document, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
+    SurfaceSpec,
 };
 use carom::stability::SAFETY;
 use carom_study::Plan;
@@ -193,7 +194,9 @@ fn table(case: &Case, facts: &Facts) -> String {
             PrimarySpec::Plane { .. } => "a rigid plane".to_owned(),
             PrimarySpec::Circle { .. } if case.dimension == 3 => "a rigid sphere".to_owned(),
             PrimarySpec::Circle { .. } => "a rigid circle".to_owned(),
+            PrimarySpec::Cylinder { .. } => "a rigid cylinder".to_owned(),
             PrimarySpec::Polyline { .. } => "a rigid polyline".to_owned(),
+            PrimarySpec::Surface(surface) => surface_text(surface),
         };
         lines.push(format!("  contact  {:12} {} against {primary}", contact.name, contact.secondary));
     }
@@ -215,6 +218,12 @@ fn table(case: &Case, facts: &Facts) -> String {
     }
     lines.extend(facts.warnings.iter().map(|warning| format!("  warning  {warning}")));
     lines.join("\n")
+}
+
+fn surface_text(surface: &SurfaceSpec) -> String {
+    let SurfaceSpec { triangles, rim, .. } = surface;
+    let kind = if *rim == 0 { "closed".to_owned() } else { format!("open, with a rim of {rim} edges") };
+    format!("a rigid surface of {triangles} triangles, {kind}")
 }
 
 fn scheme_text(scheme: &SchemeSpec) -> String {

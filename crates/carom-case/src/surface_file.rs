@@ -1,0 +1,107 @@
+//! A rigid surface of triangles from a file in STL or from Gmsh. It is read together with the case,
+//! so that its errors are reported at the key that names it; the resolved case stores its hash.
+
+use std::path::Path;
+
+use carom_solid::{Triangles, gmsh, stl};
+
+use super::mesh_file::{bytes, unchanged};
+use super::no_mesh::NoMesh;
+use super::problem::Problem;
+use super::tree::{Node, Table};
+use super::{PrimarySpec, SurfaceSpec};
+
+/// Why a file gives no surface: the key at fault, what, why, and what to try.
+struct Fault {
+    key: &'static str,
+    what: String,
+    why: String,
+    help: String,
+}
+
+/// Reads the table of a surface; its path is relative to the folder of the case.
+pub(super) fn read(
+    keys: &Table,
+    folder: &Path,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<PrimarySpec> {
+    let name = keys.get("file")?.text()?;
+    let group = match keys.get("group") {
+        Some(group) => Some(group.text()?.to_owned()),
+        None => None,
+    };
+    let scale = keys.get("scale").map_or(Some(1.0), Node::number).filter(|scale| *scale > 0.0)?;
+    let reverse = keys.get("reverse").map_or(Some(false), Node::flag)?;
+    let joined = folder.join(name);
+    let file = std::path::absolute(&joined).unwrap_or(joined);
+    let found = bytes(&file)
+        .map_err(|why| {
+            let what = format!("the surface \"{name}\" cannot be read");
+            let help = "check the path; it is relative to the folder of the case".to_owned();
+            Fault { key: "file", what, why, help }
+        })
+        .and_then(|bytes| triangles(&bytes, group.as_deref()).map(|triangles| (bytes, triangles)));
+    match found {
+        Ok((bytes, triangles)) => Some(PrimarySpec::Surface(SurfaceSpec {
+            file,
+            group,
+            scale,
+            reverse,
+            hash: blake3::hash(&bytes).to_hex().to_string(),
+            triangles: triangles.corners().len(),
+            rim: triangles.rim(),
+        })),
+        Err(Fault { key, what, why, help }) => {
+            let what = if what.contains(name) { what } else { format!("{name}: {what}") };
+            problems.push(Problem::new(format!("{path}.{key}"), what, why, help));
+            None
+        }
+    }
+}
+
+/// The triangles of a file, or of a physical group in it.
+fn triangles(bytes: &[u8], group: Option<&str>) -> Result<Triangles, Fault> {
+    let help = "repair the surface where it was made: merge its points, remove what is there twice, orient its \
+        triangles counter-clockwise as seen from outside";
+    let why = "a rigid surface has one outside: at most two triangles at an edge, oriented alike, and one fan at a corner";
+    let no_surface = |what: String| Fault { key: "file", what, why: why.to_owned(), help: help.to_owned() };
+    if !bytes.starts_with(b"$MeshFormat") {
+        if group.is_some() {
+            let what = "a file in STL has no groups".to_owned();
+            let why = "`group` is a physical surface of a file from Gmsh".to_owned();
+            return Err(Fault { key: "group", what, why, help: "leave it out".to_owned() });
+        }
+        return stl::read(bytes).map_err(|error| match error {
+            stl::StlError::Surface(error) => no_surface(error.to_string()),
+            stl::StlError::Format { .. } => Fault {
+                key: "file",
+                what: error.to_string(),
+                why: "the file is read as STL, text or binary, since it does not begin with $MeshFormat as a mesh from Gmsh".to_owned(),
+                help: "save it again as STL, or as .msh with Gmsh".to_owned(),
+            },
+        });
+    }
+    let of_msh = |error: gmsh::MshError| {
+        let key = if matches!(error.fault, gmsh::Fault::NoName { .. }) { "group" } else { "file" };
+        Fault { key, what: error.to_string(), why: error.why(), help: error.help().to_owned() }
+    };
+    let file = gmsh::read(bytes).map_err(of_msh)?;
+    file.triangles(group).map_err(|error| match error {
+        gmsh::SurfaceError::File(error) => of_msh(error),
+        gmsh::SurfaceError::Surface(error) => no_surface(error.to_string()),
+    })
+}
+
+impl SurfaceSpec {
+    /// The triangles of a resolved case, if the file is still the one the case was resolved with.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub fn triangles(&self) -> Result<Triangles, NoMesh> {
+        let bytes = unchanged(&self.file, &self.hash)?;
+        let none = |fault: Fault| NoMesh::Unreadable(format!("{}: {}", self.file.display(), fault.what));
+        let triangles = triangles(&bytes, self.group.as_deref()).map_err(none)?;
+        Ok(triangles.placed(self.scale, self.reverse))
+    }
+}

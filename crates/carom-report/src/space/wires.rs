@@ -1,0 +1,156 @@
+//! Rigid obstacles in space as lines on their surfaces, near the bodies: a grid on a plane, circles
+//! on a sphere, circles and lines on a cylinder.
+
+use carom_record::Run;
+use serde_json::Value;
+
+use super::skin::Place;
+use super::view::{cross, dot, minus};
+
+/// Points on a line, and lines in each of both directions.
+const POINTS: usize = 96;
+const LINES: usize = 8;
+/// How far beyond the box of the bodies obstacles are drawn, over its diagonal.
+const MARGIN: f64 = 0.15;
+
+/// The lines of an obstacle, and how it moves.
+pub(crate) struct Wire {
+    segments: Vec<[Place; 2]>,
+    /// Columns of its position, and where it is at first.
+    center: [String; 3],
+    origin: Place,
+}
+
+/// The obstacles of a run whose bodies fill a box.
+pub(crate) fn wires(run: &Run, [low, high]: [Place; 2]) -> Vec<Wire> {
+    let contacts = run.manifest.case.get("contacts").and_then(Value::as_array);
+    contacts.into_iter().flatten().filter_map(|contact| one(contact, [low, high])).collect()
+}
+
+fn vector(value: Option<&Value>) -> Option<Place> {
+    let list = value?.as_array()?;
+    let number = |i: usize| list.get(i)?.as_f64();
+    Some([number(0)?, number(1)?, number(2)?])
+}
+
+fn plus(a: Place, factor: f64, b: Place) -> Place {
+    [0, 1, 2].map(|i| a[i] + factor * b[i])
+}
+
+fn unit(v: Place) -> Place {
+    v.map(|x| x / dot(v, v).sqrt())
+}
+
+/// Two directions across a third one, along axes of coordinates where they can be.
+fn across(n: Place) -> [Place; 2] {
+    let least = (1..3).fold(0, |least, i| if n[i].abs() < n[least].abs() { i } else { least });
+    let axis = [0, 1, 2].map(|i| if i == least { 1.0 } else { 0.0 });
+    let first = unit(plus(axis, -dot(axis, n), n));
+    [first, cross(n, first)]
+}
+
+fn one(contact: &Value, [low, high]: [Place; 2]) -> Option<Wire> {
+    let primary = contact.get("primary")?;
+    let diagonal = dot(minus(high, low), minus(high, low)).sqrt();
+    let middle = plus(low, 0.5, minus(high, low));
+    let reach = (0.5 + MARGIN) * diagonal;
+    let share = |k: usize, n: usize| k as f64 / n as f64;
+    let angle = |k: usize, n: usize| (std::f64::consts::TAU * share(k, n)).sin_cos();
+    let (lines, origin): (Vec<Vec<Place>>, Place) = if let Some(plane) = primary.get("plane") {
+        let (point, normal) = (vector(plane.get("point"))?, unit(vector(plane.get("normal"))?));
+        let foot = plus(middle, -dot(minus(middle, point), normal), normal);
+        let line = |[along, beside]: [Place; 2], k: usize| {
+            let start = plus(foot, reach * (2.0 * share(k, LINES) - 1.0), beside);
+            (0..=POINTS).map(|i| plus(start, reach * (2.0 * share(i, POINTS) - 1.0), along)).collect()
+        };
+        let [a, b] = across(normal);
+        ((0..=LINES).flat_map(|k| [line([a, b], k), line([b, a], k)]).collect(), point)
+    } else if let Some(cylinder) = primary.get("cylinder") {
+        let (point, axis) = (vector(cylinder.get("point"))?, unit(vector(cylinder.get("axis"))?));
+        let radius = cylinder.get("radius")?.as_f64()?;
+        let foot = plus(point, dot(minus(middle, point), axis), axis);
+        let [a, b] = across(axis);
+        let at = |along: f64, (sin, cos): (f64, f64)| {
+            plus(plus(plus(foot, reach * (2.0 * along - 1.0), axis), radius * cos, a), radius * sin, b)
+        };
+        let circle = |k: usize| (0..=POINTS).map(|i| at(share(k, LINES), angle(i, POINTS))).collect();
+        let line = |k: usize| (0..=POINTS).map(|i| at(share(i, POINTS), angle(k, 2 * LINES))).collect();
+        ((0..=LINES).map(circle).chain((0..2 * LINES).map(line)).collect(), point)
+    } else {
+        let sphere = primary.get("circle")?;
+        let (center, radius) = (vector(sphere.get("center"))?, sphere.get("radius")?.as_f64()?);
+        let at =
+            |(sin, cos): (f64, f64), (up, out): (f64, f64)| plus(center, radius, [out * cos, out * sin, up]);
+        let meridian = |k: usize| (0..=POINTS).map(|i| at(angle(k, 2 * LINES), angle(i, POINTS))).collect();
+        let parallel = |k: usize| {
+            let height = std::f64::consts::PI * (share(k, LINES) - 0.5);
+            (0..=POINTS).map(|i| at(angle(i, POINTS), height.sin_cos())).collect()
+        };
+        ((0..LINES).map(meridian).chain((1..LINES).map(parallel)).collect(), center)
+    };
+    let is_near =
+        |p: &Place| (0..3).all(|i| p[i] >= low[i] - MARGIN * diagonal && p[i] <= high[i] + MARGIN * diagonal);
+    let pieces = lines.iter().flat_map(|line: &Vec<Place>| line.windows(2)).map(|w| [w[0], w[1]]);
+    let segments: Vec<[Place; 2]> = pieces.filter(|piece| piece.iter().all(is_near)).collect();
+    let name = contact.get("name").and_then(Value::as_str).unwrap_or_default();
+    let center = ["x", "y", "z"].map(|axis| format!("{name}.center_{axis}"));
+    (!segments.is_empty()).then_some(Wire { segments, center, origin })
+}
+
+impl Wire {
+    /// Its lines where it is at first.
+    pub(crate) fn at_first(&self) -> &[[Place; 2]] {
+        &self.segments
+    }
+
+    /// How far it has moved at a recorded time.
+    pub(crate) fn moved(&self, run: &Run, time: f64) -> Place {
+        let times = run.times();
+        let row =
+            times.partition_point(|t| *t < time - 1e-12 * time.abs()).min(times.len().saturating_sub(1));
+        [0, 1, 2].map(|i| {
+            let place = run.column(&self.center[i]).and_then(|column| column.get(row).copied());
+            place.map_or(0.0, |place| place - self.origin[i])
+        })
+    }
+
+    /// Its lines at a recorded time.
+    pub(crate) fn at(&self, run: &Run, time: f64) -> Vec<[Place; 2]> {
+        let moved = self.moved(run, time);
+        self.segments.iter().map(|piece| piece.map(|p| plus(p, 1.0, moved))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn lines_lie_on_their_surface_near_the_bodies() {
+        let primaries = [
+            (json!({ "plane": { "point": [0.0, 0.0, -0.1], "normal": [0.0, 1.0, 2.0] } }), 0.0),
+            (json!({ "circle": { "center": [0.0, 0.0, -2.0], "radius": 2.0, "inside": false } }), 2.0),
+            (
+                json!({ "cylinder": { "point": [0.0, 9.0, 0.5], "axis": [0.0, 3.0, 0.0], "radius": 0.7 } }),
+                0.7,
+            ),
+        ];
+        for (k, (primary, radius)) in primaries.into_iter().enumerate() {
+            let box_of = [[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]];
+            let wire = one(&json!({ "name": "strike", "primary": primary }), box_of).unwrap();
+            assert!(wire.at_first().len() > 100, "{k}");
+            for p in wire.at_first().iter().flatten() {
+                let distance = match k {
+                    0 => p[1] + 2.0 * (p[2] + 0.1),
+                    1 => dot(minus(*p, wire.origin), minus(*p, wire.origin)).sqrt(),
+                    _ => p[0].hypot(p[2] - 0.5),
+                };
+                assert!((distance - radius).abs() < 1e-12, "{k}: {p:?}");
+                assert!(p.iter().all(|x| x.abs() < 1.5), "{k}: {p:?}");
+            }
+        }
+        assert!(one(&json!({ "name": "a", "primary": { "side": "b.top" } }), [[0.0; 3], [1.0; 3]]).is_none());
+    }
+}

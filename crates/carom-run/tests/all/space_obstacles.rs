@@ -1,0 +1,264 @@
+//! Rigid obstacles in space: the plane is a slice of a cylinder, no direction is special, and
+//! triangles are the plane or the sphere that they cover.
+
+use std::fmt::Write as _;
+
+use super::common::{finish, simulation};
+use super::space::apart;
+use carom_run::Simulation;
+
+/// A block that falls, turning, beside the summit of a circle, or into one.
+const BLOCK: &str = r#"
+dimension = 2
+material = [{ name = "rubber", law = "neo-hookean", density = 0.25, lambda = 200.0, mu = 15.0 }]
+body = [{ name = "block", material = "rubber", element = "Q9", mesh = { shape = "rectangle", min = [-0.8, 0.01], max = [1.2, 0.81], cells = [4, 2] }, velocity = ["0.4 + 0.2*Y", "-3 - 0.2*X"] }]
+contact = [{ name = "strike", secondary = "block.bottom", primary = { circle = { center = [0.0, -1.5], radius = 1.5 } } }]
+time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 2e-3, end = 0.04 }
+newton = { tolerance = 1e-12 }
+"#;
+
+const SLAB: [&str; 4] = [
+    "dimension=3",
+    "body.block.element=\"Hex27\"",
+    "body.block.mesh={ shape = \"box\", min = [-0.8, 0.01, 0.0], max = [1.2, 0.81, 0.5], cells = [4, 2, 1] }",
+    "body.block.velocity=[\"0.4 + 0.2*Y\", \"-3 - 0.2*X\", 0]",
+];
+
+/// The ends are held, as in plane strain.
+const HELD: &str = "support=[{ on = [\"block.bottom\", \"block.top\"], fix = [\"z\"] }]";
+
+#[test]
+fn a_slab_on_a_cylinder_is_the_plane_on_a_circle() {
+    let shapes = [
+        (
+            "center = [0.0, -1.5], radius = 1.5",
+            "point = [0.0, -1.5, 7.0], axis = [0.0, 0.0, -2.0], radius = 1.5",
+        ),
+        (
+            "center = [0.2, 2.0], radius = 2.3, inside = true",
+            "point = [0.2, 2.0, 7.0], axis = [0.0, 0.0, 0.1], radius = 2.3, inside = true",
+        ),
+    ];
+    for (circle, cylinder) in shapes {
+        for rest in [
+            "",
+            ", mu = 0.3",
+            ", motion = { x = \"0.5*t\", y = \"t\" }",
+            ", mass = 0.7, velocity = [1.0, 0.5]",
+        ] {
+            let (inside, outside) =
+                if rest.contains('m') && !rest.contains("mu") { (rest, "") } else { ("", rest) };
+            let contact = |side: &str, shape: &str, inside: &str| {
+                format!(
+                    "contact=[{{ name = \"strike\", secondary = \"block.{side}\", primary = {{ {shape}{inside} }}{outside} }}]"
+                )
+            };
+            let plane = contact("bottom", &format!("circle = {{ {circle} }}"), inside);
+            let plane = finish(simulation(BLOCK, &[plane]));
+            // Half as thick.
+            let inside = inside
+                .replace("mass = 0.7, velocity = [1.0, 0.5]", "mass = 0.35, velocity = [1.0, 0.5, 0.0]");
+            let space = contact("front", &format!("cylinder = {{ {cylinder} }}"), &inside);
+            let sets: Vec<&str> = SLAB.iter().copied().chain([space.as_str(), HELD]).collect();
+            let space = finish(simulation(BLOCK, &sets));
+            assert!(plane.state().pairs[0].iter().filter(|pair| pair.active).count() > 1, "{circle} {rest}");
+            let worst = apart(&plane, &space);
+            assert!(worst < 1e-8, "{circle} {rest}: {worst:e}");
+        }
+    }
+}
+
+/// A ball that strikes an obstacle obliquely.
+const BALL: &str = r#"
+dimension = 3
+material = [{ name = "rubber", law = "neo-hookean", density = 0.25, lambda = 200.0, mu = 15.0 }]
+body = [{ name = "ball", material = "rubber", element = "Tet10", mesh = { shape = "ball", radius = 0.5, center = [0.1, -0.05, 0.51], size = 0.4 }, velocity = { linear = [0.5, 0.2, -3.0], angular = [1.0, 2.0, 3.0], about = [0.1, -0.05, 0.51] } }]
+contact = []
+time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 2e-3, end = 0.04 }
+newton = { tolerance = 1e-12 }
+"#;
+
+fn against(primary: &str, rest: &str) -> String {
+    format!("contact=[{{ name = \"floor\", secondary = \"ball.sphere\", primary = {{ {primary} }}{rest} }}]")
+}
+
+const FRICTION: [&str; 2] = ["", ", mu = 0.3"];
+
+/// The forces of springs change continuously with the shape, also where nodes close.
+const SPRINGS: &str = ", enforcement = \"penalty\"";
+
+fn worst(a: &Simulation, b: &Simulation) -> f64 {
+    let pairs = a.state().y.iter().zip(&b.state().y);
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// A vector turned by 50° about (2, 3, 6)/7.
+fn turned(x: [f64; 3]) -> [f64; 3] {
+    let (n, (s, c)) = ([2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0], 50_f64.to_radians().sin_cos());
+    let along: f64 = (0..3).map(|i| n[i] * x[i]).sum();
+    std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        c * x[i] + (1.0 - c) * along * n[i] + s * (n[j] * x[k] - n[k] * x[j])
+    })
+}
+
+#[test]
+fn a_turned_impact_on_a_cylinder_is_the_same() {
+    let cylinder = |turn: &dyn Fn([f64; 3]) -> [f64; 3], velocity: &[f64; 3]| {
+        let (point, axis) = (turn([0.3, 0.0, -0.8]), turn([0.4, 1.0, 0.1]));
+        let motion: Vec<String> = ["x", "y", "z"]
+            .iter()
+            .zip(turn(*velocity))
+            .map(|(axis, v)| format!("{axis} = \"{v:?}*t\""))
+            .collect();
+        let motion = motion.join(", ");
+        format!("cylinder = {{ point = {point:?}, axis = {axis:?}, radius = 0.8 }}, motion = {{ {motion} }}")
+    };
+    for law in FRICTION {
+        let still = finish(simulation(BALL, &[against(&cylinder(&|x| x, &[0.5, -1.0, 1.0]), law)]));
+        assert!(still.state().pairs[0].iter().filter(|pair| pair.active).count() > 3, "{law}");
+        let vector = |x: [f64; 3]| format!("{:?}", turned(x));
+        let other = finish(simulation(
+            BALL,
+            &[
+                against(&cylinder(&turned, &[0.5, -1.0, 1.0]), law),
+                "body.ball.place={ rotate = { axis = [2.0, 3.0, 6.0], angle = 50.0 } }".to_owned(),
+                format!(
+                    "body.ball.velocity={{ linear = {}, angular = {}, about = {} }}",
+                    vector([0.5, 0.2, -3.0]),
+                    vector([1.0, 2.0, 3.0]),
+                    vector([0.1, -0.05, 0.51])
+                ),
+            ],
+        ));
+        let bodies = 3 * still.model().parts[0].nodes().end;
+        let pairs =
+            still.state().y[..bodies].as_chunks::<3>().0.iter().zip(other.state().y.as_chunks::<3>().0);
+        let apart = |(here, there): (&[f64; 3], &[f64; 3])| {
+            let expected = turned(*here);
+            (0..3).map(|i| (expected[i] - there[i]).abs()).fold(0.0, f64::max)
+        };
+        let worst = pairs.map(apart).fold(0.0, f64::max);
+        assert!(worst < 1e-9, "{law}: {worst:e}");
+    }
+}
+
+/// Forces of a cylinder without friction point to its axis: momentum along it and its moment about
+/// it stay as they are.
+#[test]
+fn a_cylinder_without_friction_changes_neither_motion_along_nor_about_its_axis() {
+    let sets = [
+        against("cylinder = { point = [0.3, 0.0, -0.8], axis = [0.0, 1.0, 0.0], radius = 0.8 }", ""),
+        "time.scheme={ kind = \"energy-momentum\" }".to_owned(),
+        "material.rubber.law=\"saint-venant-kirchhoff\"".to_owned(),
+        "contact.floor.restitution=1.0".to_owned(),
+    ];
+    let conserved = |sim: &Simulation| {
+        let (y, v) = (&sim.state().y, &sim.state().v);
+        let mut p = vec![0.0; v.len()];
+        sim.model().mass.multiply_into(v, &mut p);
+        let pairs = y.as_chunks::<3>().0.iter().zip(p.as_chunks::<3>().0);
+        pairs.fold([0.0; 2], |[sum, moment], (y, p)| {
+            [sum + p[1], moment + (y[2] + 0.8) * p[0] - (y[0] - 0.3) * p[2]]
+        })
+    };
+    let start = simulation(BALL, &sets);
+    let (before, energy) = (conserved(&start), start.state().ledger.total());
+    let end = finish(start);
+    assert!(end.state().pairs[0].iter().any(|pair| pair.active));
+    let after = conserved(&end);
+    assert!((0..2).all(|i| (before[i] - after[i]).abs() < 1e-11), "{before:?} {after:?}");
+    let ledger = &end.state().ledger;
+    assert!((energy + ledger.contact_work - ledger.total()).abs() < 1e-9 * energy, "{ledger:?}");
+}
+
+/// Triangles as a text in STL.
+fn stl(triangles: &[[[f64; 3]; 3]]) -> String {
+    let mut text = "solid test\n".to_owned();
+    for triangle in triangles {
+        text.push_str("facet normal 0 0 0\nouter loop\n");
+        triangle.iter().for_each(|[x, y, z]| writeln!(text, "vertex {x} {y} {z}").unwrap());
+        text.push_str("endloop\nendfacet\n");
+    }
+    text + "endsolid test\n"
+}
+
+/// The case with a surface in a file.
+fn on_surface(triangles: &[[[f64; 3]; 3]], rest: &str, law: &str) -> Simulation {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("part.stl");
+    std::fs::write(&file, stl(triangles)).unwrap();
+    let shape = format!("surface = {{ file = {:?}{rest} }}", file.display().to_string());
+    finish(simulation(BALL, &[against(&shape, law)]))
+}
+
+/// A grid of triangles over the square |x|, |y| ≤ size, at a height.
+fn grid(size: f64, count: usize, height: impl Fn(f64, f64) -> f64) -> Vec<[[f64; 3]; 3]> {
+    let at = |i: usize, k: usize| {
+        let [x, y] = [i, k].map(|i| size * (2.0 * i as f64 / count as f64 - 1.0));
+        [x, y, height(x, y)]
+    };
+    let cell = |(i, k): (usize, usize)| {
+        let [a, b, c, d] = [at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    (0..count).flat_map(|i| (0..count).map(move |k| (i, k))).flat_map(cell).collect()
+}
+
+#[test]
+fn a_plane_of_triangles_is_the_plane() {
+    for law in FRICTION {
+        let plane = "plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }";
+        let plane = finish(simulation(BALL, &[against(plane, law)]));
+        assert!(plane.state().pairs[0].iter().filter(|pair| pair.active).count() > 3);
+        let surface = on_surface(&grid(2.0, 32, |_, _| 0.0), "", law);
+        let error = worst(&plane, &surface);
+        assert!(error < 1e-12, "{law}: {error:e}");
+        // In other units, with the other side outside.
+        let mut reversed = grid(2.0, 7, |_, _| 0.0);
+        reversed.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        reversed.iter_mut().flatten().flatten().for_each(|x| *x *= 1024.0);
+        let error = worst(&plane, &on_surface(&reversed, ", scale = 0.0009765625, reverse = true", law));
+        assert!(error < 1e-12, "{law}: {error:e}");
+    }
+}
+
+/// Largest distances of nodes from their places on an exact surface, for so many triangles along a
+/// side of a square. Triangles of size h are h² off a surface, but their normals, along which the
+/// forces act, only h.
+fn errors(exact: &str, size: f64, counts: [usize; 3], height: impl Fn(f64, f64) -> f64) -> [f64; 3] {
+    let exact = finish(simulation(BALL, &[against(exact, SPRINGS)]));
+    assert!(exact.state().pairs[0].iter().filter(|pair| pair.active).count() > 3);
+    counts.map(|count| worst(&exact, &on_surface(&grid(size, count, &height), "", SPRINGS)))
+}
+
+#[test]
+fn a_sphere_of_triangles_approaches_the_sphere() {
+    let (radius, depth) = (3.0_f64, 0.01);
+    let height = |x: f64, y: f64| (radius * radius - x * x - y * y).sqrt() - radius + depth;
+    let sphere = format!("sphere = {{ center = [0.0, 0.0, {:?}], radius = {radius:?} }}", depth - radius);
+    let [coarse, middle, fine] = errors(&sphere, 2.0, [10, 20, 40], height);
+    assert!(fine < 0.005 && middle < 0.6 * coarse && fine < 0.6 * middle, "{coarse} {middle} {fine}");
+}
+
+/// Every edge of a bowl is a groove.
+#[test]
+fn a_bowl_of_triangles_approaches_the_bowl() {
+    let (radius, middle) = (1.2_f64, 1.19);
+    let height = |x: f64, y: f64| middle - (radius * radius - x * x - y * y).sqrt();
+    let bowl = format!("sphere = {{ center = [0.0, 0.0, {middle:?}], radius = {radius:?}, inside = true }}");
+    let [coarse, middle, fine] = errors(&bowl, 0.8, [8, 16, 32], height);
+    assert!(fine < 0.005 && middle < 0.6 * coarse && fine < 0.6 * middle, "{coarse} {middle} {fine}");
+}
+
+/// Multipliers, with friction, in grooves and off rims: the nodes near the end of the bowl leave.
+#[test]
+fn a_ball_slides_through_a_bowl_of_triangles() {
+    let height = |x: f64, y: f64| 1.19 - (1.44 - x * x - y * y).sqrt();
+    for law in FRICTION {
+        let end = on_surface(&grid(0.8, 12, height), "", law);
+        assert!(end.state().pairs[0].iter().filter(|pair| pair.active).count() > 3, "{law}");
+        let ledger = &end.state().ledger;
+        assert!(ledger.contact_work <= 0.0 && ledger.friction_work <= 0.0, "{law}: {ledger:?}");
+    }
+}

@@ -1,0 +1,113 @@
+//! Triangles of a file in STL, binary or text (3D Systems, Stereolithography Interface
+//! Specification). Corners that coincide exactly are one vertex; the normals of the file are not
+//! read, since the order of the corners gives them.
+
+use std::collections::HashMap;
+use std::io::Cursor;
+
+use crate::triangles::{Triangles, TrianglesError};
+
+/// Bytes before the first triangle of a binary file, and of every triangle.
+const HEADER: usize = 84;
+const TRIANGLE: usize = 50;
+
+/// Why a file in STL gave no surface.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StlError {
+    /// It cannot be read.
+    #[error("triangle {triangle} cannot be read: {why}")]
+    Format {
+        /// Its number, from 1.
+        triangle: usize,
+        /// Why.
+        why: String,
+    },
+    /// Its triangles are not a surface.
+    #[error("{0}")]
+    Surface(TrianglesError),
+}
+
+/// Reads a file in STL.
+///
+/// # Errors
+/// A violation of the format, with the number of the triangle; triangles that are not a surface.
+pub fn read(bytes: &[u8]) -> Result<Triangles, StlError> {
+    let mut bytes = bytes.to_vec();
+    let format = |triangle: usize, why: String| StlError::Format { triangle, why };
+    if is_binary(&bytes) {
+        // Whatever the title is: texts begin with `solid`, and so do some binary files.
+        bytes[0] = b' ';
+    }
+    let (mut points, mut corners) = (Vec::new(), Vec::new());
+    let mut number: HashMap<[u64; 3], usize> = HashMap::new();
+    let mut file = Cursor::new(bytes);
+    let triangles = stl_io::create_stl_reader(&mut file).map_err(|error| format(1, error.to_string()))?;
+    for (k, triangle) in triangles.enumerate() {
+        let triangle = triangle.map_err(|error| format(k + 1, error.to_string()))?;
+        let mut nodes = [0; 3];
+        for (node, corner) in nodes.iter_mut().zip(triangle.vertices) {
+            // −0 is 0.
+            let x = corner.0.map(|x| f64::from(x) + 0.0);
+            if !x.iter().all(|x| x.is_finite()) {
+                return Err(format(k + 1, "its coordinates are not finite".to_owned()));
+            }
+            *node = *number.entry(x.map(f64::to_bits)).or_insert_with(|| {
+                points.push(x);
+                points.len() - 1
+            });
+        }
+        corners.push(nodes);
+    }
+    Triangles::new(points, corners).map_err(StlError::Surface)
+}
+
+/// Whether a file has the length that its count of triangles implies.
+fn is_binary(bytes: &[u8]) -> bool {
+    let count = bytes.get(80..HEADER).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
+    count.is_some_and(|count| bytes.len() == HEADER + TRIANGLE * count as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "solid two\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 -0\nvertex 1 1 0\nendloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid two\n";
+
+    fn binary(title: &str, triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
+        let mut bytes = title.as_bytes().to_vec();
+        bytes.resize(80, b' ');
+        bytes.extend((triangles.len() as u32).to_le_bytes());
+        for triangle in triangles {
+            bytes.extend([0; 12]);
+            bytes.extend(triangle.iter().flatten().flat_map(|x| x.to_le_bytes()));
+            bytes.extend([0; 2]);
+        }
+        bytes
+    }
+
+    #[test]
+    fn texts_and_binary_files_have_the_same_triangles() {
+        let text = read(TEXT.as_bytes()).unwrap();
+        let [a, b, c, d] = [[0.0, 0.0, 0.0], [1.0, 0.0, -0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        assert_eq!((text.points().len(), text.corners().len(), text.rim()), (4, 2, 4));
+        for title in ["", "solid two"] {
+            assert_eq!(read(&binary(title, &[[a, b, c], [a, c, d]])).unwrap(), text, "{title}");
+        }
+    }
+
+    #[test]
+    fn wrong_files_are_named() {
+        let cut = &TEXT[..TEXT.find("vertex 0 1 0").unwrap()];
+        for (bytes, words) in [
+            (b"".to_vec(), "triangle 1 cannot be read"),
+            (cut.as_bytes().to_vec(), "triangle 2 cannot be read"),
+            (TEXT.replace("1 1 0", "1 x 0").into_bytes(), "triangle 1 cannot be read: invalid float"),
+            (TEXT.replace("vertex 1 1 0", "vertex 2 0 0").into_bytes(), "triangle 1 has no area"),
+            (binary("", &[[[f32::NAN; 3]; 3]]), "triangle 1 cannot be read: its coordinates are not finite"),
+            (binary("", &[]), "there are no triangles"),
+        ] {
+            let error = read(&bytes).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
+    }
+}
