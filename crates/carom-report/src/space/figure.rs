@@ -77,12 +77,16 @@ pub(crate) fn instants(
     view.triad(&mut sheet.out, triad, 28.0);
     let unit = sets[0].1.array("stress")?.unit.clone();
     let svg = sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit: &unit }, length);
-    Some((svg, caption(&bands, cut, during)))
+    Some((svg, caption(&bands, cut, &unit, during)))
 }
 
-fn caption(bands: &Bands, cut: [bool; 2], during: &str) -> String {
+fn caption(bands: &Bands, cut: [bool; 2], unit: &str, during: &str) -> String {
     let arrow = if cut[1] {
-        format!(" Arrow at the colour bar: up to 0.5 % of the values are above {}.", bands.high)
+        format!(
+            " Arrow at the colour bar: up to 0.5 % of the values are above {}{}{unit}.",
+            bands.high,
+            if unit.is_empty() { "" } else { " " }
+        )
     } else {
         String::new()
     };
