@@ -299,8 +299,10 @@ def scene(browser):
         *[(f"the colours of {k}", lambda k=k: pick(browser, ".quantity", k)) for k in "120"],
         *[(f"a cut at {axis}", lambda axis=axis: pick(browser, ".cut", axis)) for axis in ("x", "−y", "")],
     ]
-    before = first
     for name, step in steps:
+        # Each from the same view: after several, the bodies may be out of sight.
+        browser.click("#animation .home")
+        before = shown()
         step()
         after = shown()
         if apart(before, after) < SAME and name == "the wheel":
@@ -309,7 +311,6 @@ def scene(browser):
             after = shown()
         if apart(before, after) < SAME:
             wrong.append(f"{name} does not change the scene")
-        before = after
     key(",")
     browser.click("#animation .home")
     if (by := apart(first, shown())) >= SAME:

@@ -16,7 +16,8 @@ use serde_json::json;
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::bodies::{Instant, frame, triangles};
 use crate::chart::{Chart, Options, Panel, Series, Track};
-use crate::labels::{number, symbol, with_unit};
+use crate::labels::{is_stress, number, symbol, with_unit};
+use crate::noise;
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::Point;
@@ -145,6 +146,9 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
         let probes = run.manifest.case.get("probes").and_then(|p| p.as_array());
         let known = |p: &serde_json::Value| p.get("name").and_then(|n| n.as_str()) == Some(probe);
         let Some(k) = probes.and_then(|list| list.iter().position(known)) else { continue };
+        if is_stress(quantity) && noise::is_noise(run, &column.name) {
+            continue;
+        }
         let Some(s) = series(&column.name, format!("{} at {probe}", symbol(quantity)), k) else { continue };
         match panels.iter().position(|p| p.label == symbol(quantity)) {
             Some(i) => panels[i].series.push(s),
@@ -158,6 +162,10 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
             }
             None => {}
         }
+    }
+    // A force that is zero throughout needs no panel, unless there is no other for the cursor.
+    if panels.len() > 1 && panels[0].label.starts_with("force") && noise::is_noise(run, force) {
+        panels.remove(0);
     }
     let x_label = with_unit("time t", h.unit("time"));
     let chart = Chart { title: "Time histories beside the animation", x_label, shades, panels };

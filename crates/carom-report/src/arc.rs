@@ -16,9 +16,10 @@ pub(crate) struct Place {
     pub(crate) is_secondary: bool,
 }
 
-/// The places of the nodes in contact along the secondary side in the reference configuration. A
+/// The places of the nodes in contact along the secondary side in the reference configuration, and
+/// whether they are lengths: without field files, which have the positions, nodes are counted. A
 /// closed side is cut where no node is in contact for longest.
-pub(crate) fn places(run: &Run, name: &str, rows: &[&ContactRow]) -> BTreeMap<u64, Place> {
+pub(crate) fn places(run: &Run, name: &str, rows: &[&ContactRow]) -> (BTreeMap<u64, Place>, bool) {
     let contacts = run.manifest.case.get("contacts").and_then(|value| value.as_array());
     let of_name = |item: &&serde_json::Value| item.get("name").and_then(|v| v.as_str()) == Some(name);
     let side = contacts.into_iter().flatten().find(of_name).and_then(|item| item.get("secondary")?.as_str());
@@ -26,12 +27,18 @@ pub(crate) fn places(run: &Run, name: &str, rows: &[&ContactRow]) -> BTreeMap<u6
     let first = run.fields.first().and_then(|entry| run.field(entry).ok());
     let rubbing: BTreeSet<u64> = rows.iter().map(|row| row.node).collect();
     let (mut found, mut end) = (BTreeMap::new(), 0.0);
-    let mut before = 0;
+    let (mut before, mut gaps) = (0, 0);
     for chain in chains {
-        let point = |node: &usize| first.as_ref().and_then(|set| set.points.get(*node).copied());
+        let point = |node: &usize| match &first {
+            Some(set) => set.points.get(*node).copied(),
+            None => Some([0.0; 3]),
+        };
         let points: Vec<(u64, [f64; 3])> =
             chain.iter().filter_map(|n| Some((*n as u64, point(n)?))).collect();
-        let length = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
+        let length = |a: [f64; 3], b: [f64; 3]| match &first {
+            Some(_) => (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt(),
+            None => 1.0,
+        };
         let mut order: Vec<usize> = (0..points.len()).collect();
         let is_closed = points.len() > 2 && points[0].0 == points[points.len() - 1].0;
         if is_closed {
@@ -51,16 +58,24 @@ pub(crate) fn places(run: &Run, name: &str, rows: &[&ContactRow]) -> BTreeMap<u6
             found.entry(points[k].0).or_insert(place);
         }
         before += order.len() + 1;
+        gaps += order.len().saturating_sub(1);
     }
-    // Corners of the primary side, in the order in which they touch.
+    // Corners of the primary side, in the order in which they touch, each as wide as a node of the
+    // secondary side.
+    let wide = if gaps > 0 { end / gaps as f64 } else { 1.0 };
     for row in rows {
         found.entry(row.node).or_insert_with(|| {
-            end += 1.0;
+            end += wide;
             before += 2;
-            Place { number: before, at: end - 0.5, part: [end - 1.0, end], is_secondary: false }
+            Place { number: before, at: end - 0.5 * wide, part: [end - wide, end], is_secondary: false }
         });
     }
-    found
+    (found, first.is_some())
+}
+
+/// What is said of the places: quantity and unit.
+pub(crate) fn label(is_length: bool, unit: &str) -> (&'static str, &str) {
+    if is_length { ("arc length s", unit) } else { ("node along the side", "") }
 }
 
 /// Where to cut a cycle: in the middle of the longest run without a rubbing node.

@@ -79,10 +79,15 @@ impl Axis {
 
     /// The label of the axis: quantity, offset and unit.
     pub(crate) fn label(&self, quantity: &str, unit: &str) -> String {
+        // The offset is in the unit without a prefix: “F − 0.06 N (µN)”.
+        let amount = |offset: f64| match unit {
+            "" | "1" => number(offset),
+            unit => format!("{} {unit}", number(offset)),
+        };
         let quantity = match self.offset {
             0.0 => quantity.to_owned(),
-            offset if offset < 0.0 => format!("{quantity} + {}", number(-offset)),
-            offset => format!("{quantity} − {}", number(offset)),
+            offset if offset < 0.0 => format!("{quantity} + {}", amount(-offset)),
+            offset => format!("{quantity} − {}", amount(offset)),
         };
         with_unit(&quantity, &scaled(unit, self.exponent))
     }
@@ -122,8 +127,9 @@ mod tests {
     fn narrow_ranges_have_an_offset() {
         let axis = Axis::new((0.06, 0.060008), 4.0, true);
         assert_eq!(axis.ticks.iter().map(|t| t.1.as_str()).collect::<Vec<_>>(), ["0", "2", "4", "6", "8"]);
-        assert_eq!(axis.label("F", "N"), "F − 0.06 (µN)");
-        assert_eq!(Axis::new((-300.0, -299.9), 2.0, true).label("y", "m"), "y + 300 (m)");
+        assert_eq!(axis.label("F", "N"), "F − 0.06 N (µN)");
+        assert_eq!(axis.label("n", "1"), "n − 0.06 (10^{-6})");
+        assert_eq!(Axis::new((-300.0, -299.9), 2.0, true).label("y", "m"), "y + 300 m (m)");
     }
 
     #[test]

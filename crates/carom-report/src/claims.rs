@@ -17,14 +17,21 @@ fn class(v: &Verdict) -> &'static str {
     }
 }
 
-/// The ratio of the sides: over an ensemble its median, and its range as the interval.
+/// The ratio of the sides, and what it is compared with: over an ensemble its median, and its range
+/// as the interval.
 fn ratio(v: &Verdict) -> Markup {
-    if let Some(spread) = v.held.as_ref().and_then(|held| held.ratio.as_ref()) {
-        let (low, high) = spread.range();
-        return html! { b { (three(spread.median())) } br; span.small { (three(low)) " to " (three(high)) } };
+    let spread = v.held.as_ref().and_then(|held| held.ratio.as_ref());
+    let bound = v.bound.map_or_else(String::new, |(sign, bound)| format!("{sign} {}", three(bound)));
+    html! {
+        @match spread {
+            Some(spread) => {
+                b { (three(spread.median())) } br;
+                span.small { (three(spread.range().0)) " to " (three(spread.range().1)) }
+            }
+            None => b { (or_dash(v.ratio, three)) },
+        }
+        br; span.small { "claimed " (bound) }
     }
-    let ratio = v.left.zip(v.right).map(|(left, right)| left / right).filter(|ratio| ratio.is_finite());
-    html! { b { (or_dash(ratio, three)) } }
 }
 
 /// The section of the page; nothing for a study without claims.
@@ -35,6 +42,7 @@ pub(crate) fn section(study: &Study) -> Markup {
     let all = study.manifest.ensemble.is_some();
     let confirmed = study.verdicts.iter().filter(|v| class(v) == "pass").count();
     let result = |v: &Verdict| match &v.held {
+        Some(Held { held: 0, of, .. }) => format!("denied in all ({of} of {of})"),
         Some(held @ Held { held: k, of, .. }) => format!("confirmed {} ({k} of {of})", held.word()),
         None => v.word().to_owned(),
     };
@@ -42,8 +50,8 @@ pub(crate) fn section(study: &Study) -> Markup {
         h2 { "Claims" }
         p { (confirmed) " of " (study.verdicts.len()) " confirmed" @if all { " in all members of the ensemble" } "." }
         div.scroll {
-            table {
-                thead { tr { th { "Claim" } th { "Result" } th.n { "Left / right" } } }
+            table.claims {
+                thead { tr { th { "Claim" } th { "Result" } th.n { "Ratio" } } }
                 @for v in &study.verdicts {
                     tr {
                         td {
@@ -60,12 +68,14 @@ pub(crate) fn section(study: &Study) -> Markup {
         }
         @if all {
             p.small {
-                "Left / right: median of the ratio of the two sides over the members of the ensemble in which \
-                 it can be decided, and its range. Left and right: of the arms as given."
+                "Ratio: the left quantity divided by the right one, without constant factors, and what is \
+                 claimed of it; where the right side is a number, the left one. Median over the members of the \
+                 ensemble in which the claim can be decided, and range. Left and right: of the arms as given."
             }
         } @else {
             p.small {
-                "Left / right: ratio of the two sides. Without an ensemble ("
+                "Ratio: the left quantity divided by the right one, without constant factors, and what is \
+                 claimed of it; where the right side is a number, the left one. Without an ensemble ("
                 code { "[ensemble]" } ") it has no interval."
             }
         }

@@ -8,7 +8,8 @@ use carom_record::study::checks::fingerprint;
 use carom_record::study::reference::FORCE;
 
 use crate::digits::five;
-use crate::labels::{symbol, words};
+use crate::labels::{is_stress, symbol, words};
+use crate::noise;
 use crate::plot::Curve;
 
 /// Columns shown besides those of the probes: name, label, caption.
@@ -113,7 +114,11 @@ pub(crate) fn collect(columns: &mut Vec<Column>, measured: &Measured, arm: usize
     }
     let nonzero = |name: &&str| run.column(name).is_some_and(|c| c.iter().any(|x| *x != 0.0));
     let others = OTHERS[1..].iter().map(|other| other.0).filter(nonzero);
-    let mut names: Vec<&str> = probe_columns(run).into_iter().chain(others).collect();
+    let probes = probe_columns(run).into_iter().filter(|name| {
+        let stress = name.rsplit_once('.').is_some_and(|(_, quantity)| is_stress(quantity));
+        !(stress && noise::is_noise(run, name))
+    });
+    let mut names: Vec<&str> = probes.chain(others).collect();
     for overlay in &measured.0 {
         if !names.contains(&overlay.column.as_str()) {
             names.push(&overlay.column);

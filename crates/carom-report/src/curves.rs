@@ -54,10 +54,16 @@ pub(crate) fn merged(curves: Vec<Curve>) -> Vec<(Curve, Vec<String>)> {
 }
 
 /// What is said about curves that are drawn once: `Drawn once, because they differ by less than
-/// 0.3 % of the range: …`; nothing where there are none.
+/// 0.3 % of the range: “a”, “b” and “c”; …`; nothing where there are none.
 pub(crate) fn drawn_once(found: &[(String, Vec<String>)]) -> String {
     let sets = found.iter().filter(|(_, others)| !others.is_empty());
-    let sets: Vec<String> = sets.map(|(first, others)| format!("{first} = {}", others.join(" = "))).collect();
+    let quoted = |name: &String| format!("“{name}”");
+    let together = |(first, others): &(String, Vec<String>)| {
+        let (last, rest) = others.split_last()?;
+        let front: Vec<String> = std::iter::once(first).chain(rest).map(quoted).collect();
+        Some(format!("{} and {}", front.join(", "), quoted(last)))
+    };
+    let sets: Vec<String> = sets.filter_map(together).collect();
     if sets.is_empty() {
         return String::new();
     }
@@ -149,7 +155,7 @@ mod tests {
             Curve { y: x.clone(), x, ..Curve::default() }
         };
         assert_eq!(merged(vec![line(3), line(7)]).len(), 1);
-        assert!(drawn_once(&found).contains("range: a = b."));
+        assert!(drawn_once(&found).contains("range: “a” and “b”."));
     }
 
     #[test]

@@ -26,7 +26,7 @@ pub(crate) fn figure(number: usize, name: &str, endings: &[&str], caption: &str,
     let links = endings.iter().map(|ending| file(&format!("figures/{name}.{ending}")));
     html! {
         figure {
-            (PreEscaped(svg))
+            div.drawing { (PreEscaped(svg)) }
             figcaption {
                 b { "Figure " (number) "." } " " (Prose(caption)) " "
                 span.small { "(" (joined(links, ", ")) ")" }

@@ -9,12 +9,12 @@ use crate::bodies::{self, Instant};
 use crate::chart::{Chart, Options, Panel, Series};
 use crate::collected::measured_label;
 use crate::figure::Figure;
-use crate::labels::{symbol, with_unit, words};
+use crate::labels::{capitalised, is_stress, symbol, with_unit, words};
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::redraw::of_chart;
 use crate::sheet::Legend;
-use crate::{animation, bars, contours, pressure, setup, space, stick_slip, stopped};
+use crate::{animation, bars, contours, noise, pressure, setup, space, stick_slip, stopped};
 
 /// Everything that can be drawn from a record.
 #[derive(Clone, Debug, Default)]
@@ -63,9 +63,15 @@ fn setup(run: &Run) -> Option<Figure> {
     } else {
         String::new()
     };
+    let there = |(key, words): &(&'static str, &'static str)| {
+        let items = run.manifest.case.get(*key).and_then(|v| v.as_array());
+        items.is_some_and(|items| !items.is_empty()).then_some(*words)
+    };
+    let parts =
+        [("supports", "supports"), ("loads", "loads"), ("contacts", "contact sides"), ("probes", "probes")];
+    let parts: String = parts.iter().filter_map(there).map(|words| format!(", {words}")).collect();
     let caption = format!(
-        "Initial configuration: bodies with their mesh, supports, loads, contact sides and probes.{view} \
-         Data: first field file; case and sides in `manifest.json`."
+        "Initial configuration: bodies with their mesh{parts}.{view} Data: first field file; case and sides in `manifest.json`."
     );
     Some(Figure::new("setup", caption, svg))
 }
@@ -169,6 +175,10 @@ fn probes(run: &Run) -> Option<Figure> {
             continue;
         };
         let Some(values) = run.column(&column.name) else { continue };
+        // Stresses of a body that is not deformed.
+        if is_stress(quantity) && noise::is_noise(run, &column.name) {
+            continue;
+        }
         columns.push(&column.name);
         let at = panels.iter().position(|(q, _)| q == quantity).unwrap_or_else(|| {
             panels.push((quantity.to_string(), panel(&symbol(quantity), &column.unit, 190.0, Vec::new())));
@@ -223,7 +233,7 @@ const WORKS: [(&str, &str); 4] = [
 /// Contact force and impulse against time.
 fn force(run: &Run) -> Option<Figure> {
     let h = &run.history;
-    let size = metrics::contact_force(h).into_iter().fold(f64::MIN_POSITIVE, f64::max);
+    let size = noise::force_size(run).max(f64::MIN_POSITIVE);
     let impulse = ["contact_impulse_x", "contact_impulse_y", "contact_impulse_z"]
         .iter()
         .filter_map(|c| run.column(c))
@@ -256,11 +266,17 @@ fn energy(run: &Run) -> Option<Figure> {
         panel("energy", unit, 200.0, curves(run, &overlays, &ENERGIES, size)),
         panel("work, dissipation", unit, 150.0, curves(run, &overlays, &WORKS, 1e-3 * size)),
     ];
-    let caption = "Energy balance. Top: energies. Bottom: accumulated work and dissipation, which is \
-                   external work + contact work + friction work − change of the total energy; where it is negative, energy \
-                   was created. Quantities that remain zero are omitted. Data: `history.csv`, columns of the \
-                   same names.";
-    chart(run, ("energy", "Energy balance"), caption.into(), panels)
+    let works = if panels[1].series.is_empty() {
+        " All work and dissipation are below 10^{-12} of the largest energy and omitted."
+    } else {
+        " Top: energies. Bottom: accumulated work and dissipation, which is external work + contact work + \
+         friction work − change of the total energy; where it is negative, energy was created."
+    };
+    let caption = format!(
+        "Energy balance.{works} Quantities that remain zero are omitted. Data: `history.csv`, columns of the \
+         same names."
+    );
+    chart(run, ("energy", "Energy balance"), caption, panels)
 }
 
 /// Measured data of columns that no other figure shows, with these columns.
@@ -288,18 +304,28 @@ fn measured(run: &Run) -> Option<Figure> {
 /// Iterations, active nodes and rejections by step.
 fn solver(run: &Run) -> Option<Figure> {
     let one = |name: &str, label: &str| panel(label, "", 84.0, curves(run, &[], &[(name, "")], 0.0));
-    let mut panels = vec![one("newton", "iterations"), one("active", "active nodes")];
-    if run.column("rejected").is_some_and(|c| c.iter().any(|&x| x > 0.0)) {
-        panels.push(one("rejected", "rejected"));
-    }
-    let what = if panels.len() == 2 {
-        "Newton iterations and active contact nodes per step. No step was rejected."
-    } else {
-        "Newton iterations, active contact nodes and rejected attempts per step."
-    };
+    let occurs = |name: &str| run.column(name).is_some_and(|c| c.iter().any(|&x| x > 0.0));
+    // A scheme without a linear system counts the evaluations of its forces.
+    let is_explicit =
+        run.manifest.case.pointer("/time/scheme/kind").is_some_and(|kind| kind == "central-difference");
+    let all = [
+        (
+            "newton",
+            "iterations",
+            if is_explicit { "iterations of the contact forces" } else { "Newton iterations" },
+        ),
+        ("active", "active nodes", "active contact nodes"),
+        ("rejected", "rejected", "rejected attempts"),
+    ];
+    let shown: Vec<_> = all.into_iter().filter(|(name, ..)| occurs(name)).collect();
+    let panels = shown.iter().map(|(name, label, _)| one(name, label)).collect();
+    let words: Vec<&str> = shown.iter().map(|(_, _, words)| *words).collect();
+    let names: Vec<&str> = shown.iter().map(|(name, ..)| *name).collect();
+    let none = if occurs("rejected") { "" } else { " No step was rejected." };
     let caption = format!(
-        "{what} Ticks: events by kind. Data: `history.csv`, columns `newton`, `active` and `rejected`; \
-         `log.jsonl`."
+        "{} per step.{none} Ticks: events by kind. Data: `history.csv`, columns `{}`; `log.jsonl`.",
+        capitalised(&words.join(", ")),
+        names.join("`, `")
     );
     chart(run, ("solver", "Solver"), caption, panels)
 }
@@ -328,7 +354,7 @@ fn five(run: &Run) -> (Vec<&FieldEntry>, bool) {
 fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>)> {
     let (entries, contact) = five(run);
     if entries.is_empty() {
-        notes.push("No field files were written (output.fields_every = 0); the bodies are not drawn.".into());
+        notes.push("No field files were written (output.fields_every = 0): bodies and contact pressure are not drawn.".into());
     }
     let mut sets = Vec::new();
     for entry in entries {

@@ -15,6 +15,11 @@ pub(crate) fn symbol(quantity: &str) -> String {
     }
 }
 
+/// Whether a probe quantity is a stress.
+pub(crate) fn is_stress(quantity: &str) -> bool {
+    quantity == "von_mises" || quantity.starts_with("sigma_")
+}
+
 /// Description of a probe quantity.
 pub(crate) fn words(quantity: &str) -> String {
     let axis = |c: &str| if c == "x" { "horizontal" } else { "vertical" }.to_string();

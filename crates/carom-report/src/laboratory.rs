@@ -120,6 +120,12 @@ fn apart(panes: &[Pane]) -> &'static str {
     }
 }
 
+/// What is said of the recommended arm where there is one.
+fn ring(panes: &[Pane]) -> &'static str {
+    let has_ring = panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.ring.is_some());
+    if has_ring { " Ring: recommended arm." } else { "" }
+}
+
 /// What grey curves of these panes are, where not all curves are coloured.
 fn quiet(panes: &[Pane]) -> &'static str {
     if panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.quiet) {
@@ -164,9 +170,10 @@ fn error_cost(study: &Study) -> Option<Plot> {
     (!panes.is_empty()).then(|| Plot {
         name: "error-cost".into(),
         caption: format!(
-            "Error against cost: one point per arm, one curve per method. Broad line: Pareto front. Ring: \
-             recommended arm.{} Cost: processor time of the time steps without output. Arms with a zero are \
-             omitted (logarithmic axes).{}",
+            "Error against cost: one point per arm, one curve per method. Broad line: Pareto front.{}{} \
+             Cost: processor time of the time steps without output. Arms with a zero are omitted \
+             (logarithmic axes).{}",
+            ring(&panes),
             quiet(&panes),
             apart(&panes)
         ),
@@ -208,9 +215,10 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
         name: "roughness-dissipation".into(),
         caption: format!(
             "Roughness of the contact force against energy drift: one point per arm, one curve per method. \
-             Broad line: Pareto front. Ring: recommended arm.{} Numerical damping reduces roughness at the cost of energy; methods at the lower left are smooth \
-             without it. TV: total variation during the first contact. Arms with a zero are omitted \
-             (logarithmic axes).{}",
+             Broad line: Pareto front.{}{} Numerical damping reduces roughness at the cost of energy; \
+             methods at the lower left are smooth without it. TV: total variation during the first contact. \
+             Arms with a zero are omitted (logarithmic axes).{}",
+            ring(&panes),
             quiet(&panes),
             apart(&panes)
         ),
@@ -352,7 +360,7 @@ fn theory(study: &Study) -> Option<Plot> {
     let mut pane = |title: &str, y_label: &str, column: usize, limits: (f64, f64)| {
         let found = curves::merged(curve(column).filter(|c| !c.x.is_empty()).collect());
         let names = found.iter().filter(|(_, others)| !others.is_empty());
-        once.extend(names.map(|(curve, others)| (format!("{title}: {}", curve.label), others.clone())));
+        once.extend(names.map(|(curve, others)| (format!("{} ({title})", curve.label), others.clone())));
         Pane {
             title: title.into(),
             y_label: y_label.into(),

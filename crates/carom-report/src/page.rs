@@ -10,8 +10,9 @@ use serde_json::Value;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::figure::Figure;
 use crate::labels::number;
+use crate::noise::has_contact;
 use crate::stopped;
-use crate::text::{Label, Prose};
+use crate::text::{Label, Prose, typeset};
 use crate::timing::timing;
 
 /// Number of log events listed; all of them are counted.
@@ -55,8 +56,8 @@ fn warning_line(warning: &Warning) -> Markup {
     let Warning { id, place, what, why, advice } = warning;
     html! {
         p {
-            b.miss { "Warning" } " (" code { (id) } "), " (place) ": " (what) "; " (why) ". Try "
-            (advice) "."
+            b.miss { "Warning" } " (" code { (id) } "), " (typeset(place)) ": " (typeset(what)) "; " (typeset(why)) ". Try "
+            (typeset(advice)) "."
         }
     }
 }
@@ -97,7 +98,7 @@ fn header(run: &Run) -> Markup {
                 (rows) " rows, up to t = " (number(last)) " " (Label(run.history.unit("time")))
             }))
             @if let Some(time) = integration(&m.case, run.history.unit("time")) {
-                (row("Time integration", time))
+                (row("Time integration", Label(&time)))
             }
             (row("Machine", html! {
                 (machine.cpus) " cores, " (machine.os) " " (machine.arch) "; threads: " (m.threads)
@@ -117,12 +118,31 @@ fn row(name: &str, value: impl Render) -> Markup {
 fn integration(case: &Value, unit: &str) -> Option<String> {
     let part = |(k, v): (&String, &Value)| match v.as_str() {
         Some(text) if k == "kind" => text.to_string(),
-        Some(text) => format!("{k} {text}"),
-        None => format!("{k} = {v}"),
+        Some(text) => format!("{k}: {}", text.replace('-', " ")),
+        None => format!("{} = {}", symbol_of(k), v.as_f64().map_or_else(|| v.to_string(), number)),
     };
-    let scheme: Vec<String> = case.pointer("/time/scheme")?.as_object()?.iter().map(part).collect();
+    let scheme = case.pointer("/time/scheme")?.as_object()?;
+    let is_static = scheme.get("kind").is_some_and(|kind| kind == "static");
+    // Averaged internal forces are the rule, and without inertia there is nothing to average.
+    let told = |(k, v): &(&String, &Value)| *k != "forces" || !(is_static || *v == "average-forces");
+    let scheme: Vec<String> = scheme.iter().filter(told).map(part).collect();
     let step = case.pointer("/time/step").and_then(Value::as_f64).map_or(String::new(), number);
-    Some(format!("{}; Δt = {step} {unit}", scheme.join(", ")))
+    let what = if is_static { "load step" } else { "Δt" };
+    Some(format!("{}; {what} = {step} {unit}", scheme.join(", ")))
+}
+
+/// The symbol of a parameter of a scheme.
+fn symbol_of(key: &str) -> &str {
+    match key {
+        "rho_inf" => "ρ_{∞}",
+        "alpha" => "α",
+        "alpha_m" => "α_{m}",
+        "alpha_f" => "α_{f}",
+        "beta" => "β",
+        "gamma" => "γ",
+        "theta" => "θ",
+        key => key,
+    }
 }
 
 fn results(run: &Run) -> Markup {
@@ -148,9 +168,25 @@ fn results(run: &Run) -> Markup {
                 }
             }
         }
-        @if let Some(body) = metrics::striker(&run.history) {
+        @if let Some(body) = metrics::striker(&run.history).filter(|_| has_contact(run)) {
             p.small { "Striker: " (body) ". " (Prose(RESULTS)) }
         }
+    }
+}
+
+/// The unit of a metric, or of a reduction of one column; empty for other expressions.
+fn unit_of_question(run: &Run, what: &str) -> String {
+    if let Some(metric) = metrics::all(&run.history).into_iter().find(|m| m.name == what) {
+        return metric.unit;
+    }
+    let Some((form, column)) = what.rsplit_once(' ') else { return run.history.unit(what).to_owned() };
+    match form.split(' ').next().unwrap_or_default() {
+        _ if form.contains(['[', '/', '*', '+']) => String::new(),
+        "time" => run.history.unit("time").to_owned(),
+        "min" | "max" | "first" | "last" | "at" | "range" | "drift" | "peak" | "rms" => {
+            run.history.unit(column).to_owned()
+        }
+        _ => String::new(),
     }
 }
 
@@ -159,11 +195,12 @@ fn expectations(run: &Run) -> Markup {
         @if !run.manifest.expectations.is_empty() {
             h2 { "Expectations" }
             table {
-                thead { tr { th { "Quantity" } th { "Expected" } th.n { "Result" } th {} th { "Source" } } }
+                thead { tr { th { "Quantity" } th { "Expected" } th.n { "Result" } th { "Unit" } th {} th { "Source" } } }
                 @for e in &run.manifest.expectations {
                     tr {
                         td { code { (e.what) } } td { (minus(&e.expected)) }
                         td.n { (or_dash(e.got, number)) }
+                        td { (Label(&unit_of_question(run, &e.what))) }
                         @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
                         td { @if let Some(source) = &e.source { (source) } }
                     }
@@ -189,7 +226,7 @@ fn events(run: &Run) -> Markup {
             details {
                 summary { (listed) " of " (all) " events" }
                 table {
-                    thead { tr { th.n { "Step" } th.n { "Time" } th { "Kind" } th { "Message" } } }
+                    thead { tr { th.n { "Step" } th.n { "Time (" (Label(run.history.unit("time"))) ")" } th { "Kind" } th { "Message" } } }
                     @for e in &run.log[..listed] {
                         tr { td.n { (e.step) } td.n { (number(e.time)) } td { (e.kind) } td { (e.message) } }
                     }

@@ -59,9 +59,9 @@ pub(crate) fn rgb(color: &str) -> [u8; 3] {
     [0, 1, 2].map(|c| part(c).unwrap_or(0))
 }
 
-/// Colours of successive instants from dark to light: the darker three quarters of cividis
-/// (J. R. Nuñez et al., PLOS ONE 13(7), 2018).
+/// Colours of successive instants from dark to light: the first four fifths of plasma (S. van der
+/// Walt and N. Smith, matplotlib 1.5). The style sheet has lighter ones for a dark ground.
 pub(crate) fn sequence(i: usize, n: usize) -> &'static str {
-    const STEPS: [&str; 5] = ["#00224e", "#3b496c", "#6c6e72", "#9a9376", "#c9b764"];
+    const STEPS: [&str; 5] = ["#0d0887", "#6a00a8", "#b12a90", "#e16462", "#fca636"];
     STEPS[(i * STEPS.len() / n.max(1)).min(STEPS.len() - 1)]
 }

@@ -34,7 +34,8 @@ struct Side<'a> {
 
 /// The sides of all contacts of the plane that have had pressure.
 fn sides(run: &Run) -> Vec<Side<'_>> {
-    if contact_axes(&run.manifest.case) != 2 {
+    // Without field files there are neither positions nor units.
+    if contact_axes(&run.manifest.case) != 2 || run.fields.is_empty() {
         return Vec::new();
     }
     let mut names: Vec<&str> = Vec::new();
@@ -45,7 +46,7 @@ fn sides(run: &Run) -> Vec<Side<'_>> {
     }
     let side = |name| {
         let rows: Vec<&ContactRow> = run.contact.iter().filter(|row| row.contact == name).collect();
-        let places = places(run, name, &rows);
+        let (places, _) = places(run, name, &rows);
         let with_place = |row: &'_ ContactRow<'static>| {
             places.get(&row.node).copied().filter(|place| place.is_secondary && row.pressure.is_finite())
         };
@@ -71,6 +72,14 @@ fn units(run: &Run) -> (String, String) {
     (unit("displacement"), unit("contact_pressure"))
 }
 
+/// The time from the first to the last pressure with a margin, within the run.
+fn in_contact(run: &Run, sides: &[Side]) -> (f64, f64) {
+    let (start, end) = range(run.times());
+    let (first, last) = range(sides.iter().flat_map(|side| &side.rows).map(|(row, _)| &row.time));
+    let margin = 0.04 * (last - first).max(0.02 * (end - start));
+    ((first - margin).max(start), (last + margin).min(end))
+}
+
 /// The map of every contact.
 pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let sides = sides(run);
@@ -78,12 +87,14 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         return None;
     }
     let (length, stress) = units(run);
-    let x_axis = Axis::new(range(run.times()), 7.0, true);
+    let (from, to) = in_contact(run, &sides);
+    let x_axis = Axis::new((from, to), 7.0, true);
     let plot = WIDTH - LEFT - RIGHT;
     let step = HEIGHT + 46.0;
     let mut out = open_chart("Contact pressure along the side", WIDTH, sides.len() as f64 * step + 34.0);
-    let stride = run.times().len().div_ceil(INSTANTS).max(1);
-    let kept: Vec<f64> = run.times().iter().copied().step_by(stride).collect();
+    let shown: Vec<f64> = run.times().iter().copied().filter(|t| (from..=to).contains(t)).collect();
+    let stride = shown.len().div_ceil(INSTANTS).max(1);
+    let kept: Vec<f64> = shown.into_iter().step_by(stride).collect();
     let to_x = |t: f64| LEFT + plot * x_axis.position(t);
     let mut table = String::from("contact,node,s,time,pressure\n");
     for (k, side) in sides.iter().enumerate() {
@@ -113,9 +124,9 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     write_text(&mut out, LEFT + 0.5 * plot, y, "text-anchor=\"middle\"", &label);
     out.push_str("</svg>\n");
     let thinned =
-        if stride > 1 { format!(" One in {stride} recorded instants is drawn.") } else { String::new() };
+        if stride > 1 { format!(" {} recorded instant is drawn.", every(stride)) } else { String::new() };
     let caption = format!(
-        "Contact pressure p over time and the arc length s of the secondary side in the reference \
+        "Contact pressure p during contact, over time and the arc length s of the secondary side in the reference \
          configuration; a band per node, nothing where it is open.{thinned} Data: `contact.csv`, column \
          `pressure`."
     );
@@ -126,6 +137,15 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     ];
     let script = filled(include_str!("pressure.py"), &labels);
     Some(Figure::new("pressure", caption, out).with(table, script))
+}
+
+/// `Every second`, `Every third`, `Every 4th`.
+fn every(stride: usize) -> String {
+    match stride {
+        2 => "Every second".to_owned(),
+        3 => "Every third".to_owned(),
+        n => format!("Every {n}th"),
+    }
 }
 
 /// Ticks and axes of a pane at left, width, top and height.
@@ -204,7 +224,7 @@ pub(crate) fn profiles(run: &Run, frames: &[&FieldEntry]) -> Option<(String, Vec
                 writeln!(out, "<path d=\"M{LEFT} {y:.1}h{wide}\" stroke=\"#d8d8d8\" stroke-width=\"0.6\"/>");
         }
         frame(&mut out, (&x_axis, &y_axis), [LEFT, wide, top, high]);
-        write_text(&mut out, LEFT, 14.0, "font-size=\"12\"", &format!("pressure of {}", side.name));
+        write_text(&mut out, LEFT, 14.0, "font-size=\"12\"", &format!("contact pressure, “{}”", side.name));
         let middle = top + 0.5 * high;
         let turned = format!("text-anchor=\"middle\" transform=\"translate(17 {middle:.1}) rotate(-90)\"");
         write_text(&mut out, 0.0, 0.0, &turned, &y_axis.label("p", &stress));

@@ -1,6 +1,6 @@
-//! The arms of a study in the order of the ranking, in three tables narrow enough for print: errors
-//! and costs; energy and contact force; penetration, errors and orders. A quantity that is not
-//! available in any arm has no column.
+//! The arms of a study in the order of the ranking, in tables narrow enough for print: errors and
+//! costs; energy and contact force; penetration and errors; errors of stresses and orders. A
+//! quantity that is not available in any arm has no column.
 
 use carom_record::Reason;
 use carom_record::study::compared::is_stress;
@@ -178,7 +178,7 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
         ranked.metric("High-frequency power", "force_high_frequency"),
         ranked.metric(&ranked.with_unit("Chatter", "chatter"), "chatter"),
     ];
-    let mut third = vec![
+    let third = [
         ranked.metric(&ranked.with_unit("Max. penetration", "penetration"), "penetration"),
         ranked.metric(&ranked.with_unit("Mean penetration", "penetration"), "penetration_mean"),
         ranked.error("Error of x impulse", "impulse_x"),
@@ -186,12 +186,13 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
         ranked.error("Error of restitution", "restitution"),
         ranked.error("Error of contact duration", "contact_duration"),
     ];
-    third.extend(ranked.stresses());
-    third.extend(ranked.orders());
+    let mut fourth = ranked.stresses();
+    fourth.extend(ranked.orders());
     html! {
         (table("Error and cost", ranking, study, &first))
         (table("Energy and roughness of the contact force", ranking, study, &second))
-        (table("Penetration, errors and orders of convergence", ranking, study, &third))
+        (table("Penetration and errors", ranking, study, &third))
+        (table("Errors of stresses and orders of convergence", ranking, study, &fourth))
     }
 }
 

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use carom_record::{ContactRow, Run};
 
-use crate::arc::places;
+use crate::arc::{self, places};
 use crate::axis::{Axis, range};
 use crate::chart::{open_chart, write_text};
 use crate::figure::Figure;
@@ -61,13 +61,22 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         }
     }
     out.push_str("</svg>\n");
-    let caption = "Nodes in contact over time, along the secondary side in the reference configuration: where \
-                   they stick and slip, at the recorded instants; nothing is drawn for open nodes. Data: \
-                   `contact.csv`, columns `friction` and `traction`.";
-    let labels = [
-        ("@T@", with_unit("time t", run.history.unit("time"))),
-        ("@S@", with_unit("arc length s", &length(run))),
-    ];
+    let is_length = !run.fields.is_empty();
+    let counted = if is_length {
+        ""
+    } else {
+        " Nodes are numbered along the side, because no field file has their positions."
+    };
+    let caption = format!(
+        "Nodes in contact over time, along the secondary side in the reference configuration: where they \
+         stick and slip, at the recorded instants; nothing is drawn for open nodes.{counted} Forward: the \
+         force of friction on the secondary side has the direction of the outward normal of the primary \
+         side turned by a quarter clockwise; backward: the opposite one. Data: `contact.csv`, columns \
+         `friction` and `traction`."
+    );
+    let unit = length(run);
+    let (words, unit) = arc::label(is_length, &unit);
+    let labels = [("@T@", with_unit("time t", run.history.unit("time"))), ("@S@", with_unit(words, unit))];
     let script = filled(include_str!("stick_slip.py"), &labels);
     Some(Figure::new("stick-slip", caption, out).with(table(run, &contacts), script))
 }
@@ -77,7 +86,7 @@ fn table(run: &Run, contacts: &[&str]) -> String {
     let mut out = String::from("contact,node,s,time,state,traction\n");
     for name in contacts {
         let rows: Vec<&ContactRow> = run.contact.iter().filter(|row| row.contact == *name).collect();
-        let places = places(run, name, &rows);
+        let (places, _) = places(run, name, &rows);
         for row in rows {
             let Some(place) = places.get(&row.node) else { continue };
             let (node, state) = (row.node, &row.friction);
@@ -90,7 +99,7 @@ fn table(run: &Run, contacts: &[&str]) -> String {
 /// The map of one contact.
 fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &Axis, top: f64) {
     let plot = WIDTH - LEFT - RIGHT;
-    let places = places(run, name, rows);
+    let (places, is_length) = places(run, name, rows);
     let y_axis = Axis::new(range(places.values().flat_map(|place| &place.part)), 4.0, true);
     let to_x = |t: f64| LEFT + plot * x_axis.position(t);
     let to_y = |s: f64| top + HEIGHT * (1.0 - y_axis.position(s));
@@ -135,7 +144,9 @@ fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &
         out,
         "<path d=\"M{LEFT} {top:.1}v{HEIGHT}h{plot}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.9\"/>"
     );
-    let label = y_axis.label("arc length s", &length(run));
+    let unit = length(run);
+    let (words, unit) = arc::label(is_length, &unit);
+    let label = y_axis.label(words, unit);
     let (x, y) = (16.0, top + 0.5 * HEIGHT);
     write_text(out, x, y, &format!("text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\""), &label);
 }

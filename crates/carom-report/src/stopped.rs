@@ -6,7 +6,7 @@ use carom_record::{Advice, Run, Stop, StopIteration, StopNode, StopPlace};
 use maud::{Markup, html};
 
 use crate::document::{figure, file, joined, or_dash};
-use crate::labels::number;
+use crate::labels::{capitalised, number};
 use crate::text::{Label, Prose, typeset};
 
 const ITERATIONS: &str = "Newton's iterations of the last attempt, each before its correction. Residual: as \
@@ -24,8 +24,8 @@ pub(crate) fn section(run: &Run, picture: Option<(usize, &str, &str)>) -> Markup
     let unit = run.history.unit("time");
     html! {
         h2 { "Why it stopped" }
-        p.reason { (typeset(&stop.reason)) "." }
-        @if let Some(place) = &stop.place { (where_table(place)) }
+        p.reason { (capitalised(&typeset(&stop.reason))) "." }
+        @if let Some(place) = &stop.place { (where_table(place, length_unit(run))) }
         @if let Some((i, caption, svg)) = picture { (figure(i, "stopped", &["svg"], caption, svg)) }
         (advice(stop, unit))
         (iterations(&stop.iterations))
@@ -37,8 +37,16 @@ pub(crate) fn section(run: &Run, picture: Option<(usize, &str, &str)>) -> Markup
     }
 }
 
-fn where_table(place: &StopPlace) -> Markup {
-    let at = |x: &[f64]| format!("({})", x.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", "));
+/// The unit of length of the case.
+fn length_unit(run: &Run) -> &str {
+    run.manifest.case.pointer("/units/length").and_then(|unit| unit.as_str()).unwrap_or_default()
+}
+
+fn where_table(place: &StopPlace, unit: &str) -> Markup {
+    let at = |x: &[f64]| {
+        let list = x.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", ");
+        format!("({list}) {unit}").trim_end().to_owned()
+    };
     let node = |node: &StopNode| {
         html! {
             "node " (node.number) " of “" (node.body) "” at " (at(&node.at)) ", in the mesh at "
@@ -98,7 +106,7 @@ fn advice(stop: &Stop, unit: &str) -> Markup {
             h3 { "What to try" }
             div.scroll {
                 table {
-                    thead { tr { th { "Remedy" } th { "Option" } th { "Tried" } th.n { "From t" } } }
+                    thead { tr { th { "Remedy" } th { "Option" } th { "Tried" } th.n { "From t (" (Label(unit)) ")" } } }
                     @for advice in &stop.advice {
                         tr {
                             td { (Prose(&advice.what)) }

@@ -102,13 +102,6 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         if curves.is_empty() {
             return None;
         }
-        let apart = if curves.iter().any(|curve| curve.apart) {
-            " Dashed grey: arms that failed, up to where they stopped, and arms that created more energy \
-             than the default guard allows. They do not affect the axes, and rough ones have panes of their \
-             own."
-        } else {
-            ""
-        };
         let file = file_name(&column.name);
         let (name, part) = match (groups.len(), &members[..]) {
             (2.., [first, .., last]) => {
@@ -123,6 +116,14 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         // A rough curve of a failed arm would cover the others.
         let (aside, curves): (Vec<Curve>, Vec<Curve>) =
             curves.into_iter().partition(|curve| curve.apart && curves::is_rough(curve));
+        let apart = match (curves.iter().any(|curve| curve.apart), aside.is_empty()) {
+            (false, true) => String::new(),
+            (_, none_is_rough) => format!(
+                " Dashed grey: arms that failed, up to the cross where they stopped, and arms that created \
+                 more energy than the default guard allows. They do not affect the axes{}.",
+                if none_is_rough { "" } else { ", and rough ones have panes of their own" }
+            ),
+        };
         let rough = curves.iter().filter(|curve| curves::is_rough(curve)).count() > 1;
         let (panes, across, enlarged) = if rough {
             (
@@ -148,7 +149,7 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
             (whole.into_iter().chain(part).collect::<Vec<_>>(), 1, "")
         };
         let aside = aside.into_iter().map(|curve| Pane {
-            title: format!("{}: apart", curve.label),
+            title: curve.label.clone(),
             y_label: with_unit(&label, &column.unit),
             curves: vec![Curve { unlisted: true, ..curve }],
             ..Pane::default()

@@ -5,11 +5,11 @@ use carom_record::study::{Row, Study};
 use carom_record::{Status, metrics};
 use maud::{Markup, PreEscaped, Render, html};
 
-use crate::collected::Origin;
+use crate::collected::{Origin, time_unit};
 use crate::digits::five;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::plot::{APART, Plot, style};
-use crate::text::{Prose, typeset};
+use crate::text::{Label, Prose, typeset};
 use crate::{by_arm, claims, convergence, design, ensemble, integrity, trend, verdict};
 
 /// Largest number of values of a key that are listed one by one.
@@ -68,7 +68,9 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
 /// The drawing of the case, the values that differ between arms, and the design.
 fn setup(study: &Study, picture: Option<&str>) -> Markup {
     let mut varied: Vec<(&str, Vec<&str>)> = Vec::new();
-    let sets = study.manifest.arms.iter().filter(|a| !a.role.fine).flat_map(|a| &a.sets);
+    let arms = || study.manifest.arms.iter().filter(|a| !a.role.fine);
+    let is_everywhere = |set: &String| arms().all(|arm| arm.sets.contains(set));
+    let sets = arms().flat_map(|arm| &arm.sets).filter(|set| !is_everywhere(set));
     for (key, value) in sets.filter_map(|set| set.split_once('=')) {
         let (key, value) = (key.trim(), value.trim());
         match varied.iter_mut().find(|(k, _)| *k == key) {
@@ -81,7 +83,7 @@ fn setup(study: &Study, picture: Option<&str>) -> Markup {
         h2 { "Setup" }
         @if let Some(svg) = picture {
             figure {
-                (PreEscaped(svg))
+                div.drawing { (PreEscaped(svg)) }
                 figcaption {
                     "Initial configuration of the first arm, case "
                     code { (study.manifest.source.case_path) } ". "
@@ -173,6 +175,26 @@ fn line(arm: usize, apart: bool) -> Markup {
     }
 }
 
+/// The unit of a metric, or of a reduction of one column, of the first arm named; empty for other
+/// expressions.
+fn unit_of_question(study: &Study, what: &str) -> String {
+    let plain = what.split(" of \"").next().unwrap_or(what);
+    let (form, column) = plain.rsplit_once(' ').unwrap_or(("", plain));
+    if plain.contains(['[', '/', '*', '+']) || what.matches(" of \"").count() > 1 {
+        return String::new();
+    }
+    let metrics = study.metrics();
+    let unit = |name: &str| metrics.iter().find(|m| m.name == name).map(|m| m.unit.clone());
+    let of_column = || unit(&format!("{column}:min"));
+    match form.split(' ').next() {
+        Some("") | None => unit(plain),
+        Some("time") => Some(time_unit(study).to_owned()),
+        Some("min" | "max" | "first" | "last" | "at" | "range" | "drift" | "peak" | "rms") => of_column(),
+        _ => None,
+    }
+    .unwrap_or_default()
+}
+
 fn expectations(study: &Study) -> Markup {
     let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (row.name.as_str(), e)));
     let all: Vec<_> = arms.chain(study.expectations.iter().map(|e| ("", e))).collect();
@@ -188,7 +210,7 @@ fn expectations(study: &Study) -> Markup {
                 table {
                     thead {
                         tr {
-                            th { "Quantity" } th { "Arm" } th { "Expected" } th.n { "Result" } th {}
+                            th { "Quantity" } th { "Arm" } th { "Expected" } th.n { "Result" } th { "Unit" } th {}
                             th { "Source" }
                         }
                     }
@@ -201,6 +223,7 @@ fn expectations(study: &Study) -> Markup {
                             td { (arm) }
                             td { (minus(&e.expected)) }
                             td.n { (or_dash(e.got, five)) }
+                            td { (Label(&unit_of_question(study, &e.what))) }
                             @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
                             td { @if let Some(source) = &e.source { (source) } }
                         }
@@ -219,7 +242,7 @@ fn warnings(study: &Study) -> Markup {
             h2 { "Warnings" }
             table {
                 thead { tr { th { "Warning" } th { "What was found, and why it matters" } th { "Try" } th { "Arms" } } }
-                @for (warning, arms) in shared {
+                @for (warning, arms) in &shared {
                     tr {
                         td { code { (warning.id) } }
                         td { (warning.place) ": " (warning.what) "; " (warning.why) "." }
@@ -231,7 +254,9 @@ fn warnings(study: &Study) -> Markup {
                     }
                 }
             }
-            p.small { "Arms by their number." }
+            @if shared.iter().any(|(_, arms)| arms.len() < study.rows.len() || arms.len() == 1) {
+                p.small { "Arms by their number." }
+            }
         }
     }
 }

@@ -22,7 +22,7 @@ pub(crate) fn timing(m: &Manifest) -> Markup {
     html! {
         h2 { "Timing" }
         @if let Some(&total) = m.timings.get("total") {
-            table {
+            table.timing {
                 thead {
                     tr {
                         th { "Phase" } th.n { "Total (s)" } th.n { "Per step (ms)" } th.n { "Share" } th {}

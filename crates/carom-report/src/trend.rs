@@ -90,10 +90,22 @@ impl Trend {
         Some((edge(0.0), band))
     }
 
-    fn words(&self) -> Option<String> {
+    /// The slope with its interval, in units of the metric per unit of the key.
+    fn words(&self, metric: &str, key: &str) -> Option<String> {
         let fit = self.fit?;
-        let of = if self.power { "exponent" } else { "slope" };
-        Some(format!("{of} {} ± {}", three(fit.slope), three(fit.uncertainty)))
+        let (slope, interval) = (three(fit.slope), three(fit.uncertainty));
+        // An interval of round-off says nothing.
+        let interval = if fit.uncertainty < 1e-6 * fit.slope.abs() { "0" } else { &interval };
+        if self.power {
+            return Some(format!("exponent {slope} ± {interval}"));
+        }
+        let unit = match (metric, key) {
+            ("" | "1", "") => String::new(),
+            ("" | "1", key) => format!(" /{key}"),
+            (metric, "") => format!(" {metric}"),
+            (metric, key) => format!(" {metric}/{key}"),
+        };
+        Some(format!("slope {slope} ± {interval}{unit}"))
     }
 }
 
@@ -113,12 +125,18 @@ fn metrics<'a>(study: &'a Study, groups: &[Refinement]) -> Vec<&'a Metric> {
     found
 }
 
+/// The unit of a key, where it is known.
+fn unit_of_key<'a>(study: &'a Study, key: &str) -> &'a str {
+    if TIMES.contains(&key) { time_unit(study) } else { "" }
+}
+
 /// The label of a key with its unit: its last part; `1/cells` where its values count cells.
 fn axis(study: &Study, key: &str) -> String {
     let last = key.rsplit_once('.').map_or(key, |(_, last)| last);
     match last {
         "cells" => "1/cells".to_owned(),
         _ if TIMES.contains(&key) => with_unit(last, time_unit(study)),
+        "rho_inf" => "ρ_{∞}".to_owned(),
         _ => last.to_owned(),
     }
 }
@@ -141,7 +159,7 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
             let label = if single { "arms".to_owned() } else { keys.label(&group.common) };
             let trend = trend(study, group, &metric.name, power);
             if single {
-                pane.title = trend.words().unwrap_or_default();
+                pane.title = trend.words(&metric.unit, unit_of_key(study, key)).unwrap_or_default();
             }
             if let Some((y, band)) = trend.line(wide) {
                 let label = format!("fit of {label}");
@@ -172,9 +190,10 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
     (!panes.is_empty()).then(|| Plot {
         name: format!("trend-{}", file_name(key)),
         caption: format!(
-            "{which} against `{key}`. Lines: least squares{}.{} Arms that failed or created energy are left \
+            "{which} against `{key}`{}. Lines: least squares{}.{} Arms that failed or created energy are left \
              out.",
-            if wide { ", of logarithms where a metric spans a factor of three too" } else { "" },
+            if wide { " on a logarithmic axis, where straight lines look curved" } else { "" },
+            if wide { ", of the logarithms of both where the metric also spans a factor of three" } else { "" },
             if single { " Grey: 95 % confidence interval of the line." } else { "" }
         ),
         x_label: axis(study, key),
@@ -201,7 +220,7 @@ pub(crate) fn section(study: &Study) -> Markup {
                         @for metric in metrics(study, groups) {
                             @let power = power(study, groups, &metric.name);
                             @for group in groups {
-                                @if let Some(words) = trend(study, group, &metric.name, power).words() {
+                                @if let Some(words) = trend(study, group, &metric.name, power).words(&metric.unit, unit_of_key(study, key)) {
                                     tr {
                                         td { code { (metric.name) } } td { (Label(&metric.unit)) }
                                         td { (keys.label(&group.common)) } td { (words) }

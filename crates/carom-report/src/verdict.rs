@@ -30,6 +30,9 @@ const SIDE_EFFECTS: [(&str, &str); 9] = [
     ("restitution", "error of the restitution"),
 ];
 
+/// Tables with more rows are folded.
+const FEW: usize = 12;
+
 /// What the columns of the ranking mean.
 const COLUMNS: [&str; 11] = [
     "Errors are relative errors; energies are fractions of the largest kinetic + strain energy.",
@@ -192,7 +195,7 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
         table {
             thead {
                 tr {
-                    th { "Level" } th { "Ranked first" } th { "Compared at" } th { "Smallest errors there" }
+                    th { "Level" } th { "First in the table" } th { "Compared at" } th { "Smallest errors there" }
                     th { "Conclusion" }
                 }
             }
@@ -211,7 +214,7 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
         }
         p.small {
             "Errors of every method interpolated between its levels (linearly in logarithms) at the value of \
-             the arm that is ranked first; a method whose levels do not reach it is left out."
+             the arm that stands first in the table of its level; a method whose levels do not reach it is left out."
         }
     }
 }
@@ -338,7 +341,8 @@ pub(crate) fn phases(study: &Study) -> Markup {
     let cell = |order: &Result<f64, Reason>| {
         html! {
             @match order {
-                Ok(order) => (format!("{order:.2}").replace('-', "−")),
+                Ok(order) if *order < 0.0 => span.small { "no order (errors grow with a shorter step)" },
+                Ok(order) => (format!("{order:.2}")),
                 Err(why) => span.small { "no order (" (why) ")" },
             }
         }
@@ -346,12 +350,15 @@ pub(crate) fn phases(study: &Study) -> Markup {
     html! {
         @if !study.phase_orders.is_empty() {
             h2 { "Order of convergence before and after the first contact" }
-            table {
-                thead { tr { th { "Method" } th { "Column" } th { "Before" } th { "After" } } }
-                @for o in &study.phase_orders {
-                    tr {
-                        td { (o.method) } td { code { (o.column) } }
-                        td { (cell(&o.smooth)) } td { (cell(&o.across)) }
+            details open[study.phase_orders.len() <= FEW] {
+                summary { "Orders of " (study.phase_orders.len()) " columns of methods" }
+                table {
+                    thead { tr { th { "Method" } th { "Column" } th { "Before" } th { "After" } } }
+                    @for o in &study.phase_orders {
+                        tr {
+                            td { (o.method) } td { code { (o.column) } }
+                            td { (cell(&o.smooth)) } td { (cell(&o.across)) }
+                        }
                     }
                 }
             }

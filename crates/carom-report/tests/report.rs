@@ -71,7 +71,7 @@ fn figures_and_page() {
         "&lt;script&gt;",
         "failed</span> energy &lt;created&gt;: 3 %",
         "missed",
-        "(<code>coarse-secondary</code>), contact &quot;strike&quot;: 0.2 against 0.1; nodes may slip through. Try to swap.",
+        "(<code>coarse-secondary</code>), contact “strike”: 0.2 against 0.1; nodes may slip through. Try to swap.",
         "3.3168",
         "4 × rejected",
         "<td>assembly</td><td class=\"n\">1.25</td><td class=\"n\">3.13</td><td class=\"n\">50 %</td>",

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::arms::ArmRecords;
 use super::ensemble::Spread;
 use crate::Reason;
-use crate::expression::{Token, tokens};
+use crate::expression::{Expression, Sign, Token, tokens};
 use crate::question::{Question, Window};
 
 /// A statement and the comparison that decides it.
@@ -32,6 +32,11 @@ pub struct Verdict {
     pub right: Option<f64>,
     /// Whether it holds; none if it cannot be decided.
     pub holds: Option<bool>,
+    /// The left quantity divided by the right one, without the constant factors of the sides.
+    pub ratio: Option<f64>,
+    /// What the ratio is compared with, and how: `> 2`. Where the right side is only a number, it
+    /// is this number, and the ratio is the left side.
+    pub bound: Option<(&'static str, f64)>,
     /// How it fares over an ensemble, if the study has one.
     pub held: Option<Held>,
 }
@@ -43,7 +48,7 @@ pub struct Held {
     pub held: usize,
     /// Members in which it can be decided.
     pub of: usize,
-    /// The left number divided by the right one.
+    /// The left quantity divided by the right one, without the constant factors of the sides.
     pub ratio: Option<Spread>,
 }
 
@@ -77,16 +82,20 @@ impl Verdict {
         let (left, right) = sides(records);
         let decided: Vec<(f64, f64)> =
             members.iter().map(sides).filter_map(|(left, right)| left.zip(right)).collect();
+        let bound = comparison.map(Comparison::bound);
+        let ratio = |(l, r): (f64, f64)| l / r * bound.map_or(1.0, |bound| bound.1);
         let held = || Held {
             held: decided.iter().filter(|(l, r)| holds((Some(*l), Some(*r))) == Some(true)).count(),
             of: decided.len(),
-            ratio: Spread::of(decided.iter().map(|(l, r)| l / r)),
+            ratio: Spread::of(decided.iter().copied().map(ratio)),
         };
         Self {
             claim: claim.clone(),
             left,
             right,
             holds: holds((left, right)),
+            ratio: left.zip(right).map(ratio).filter(|ratio| ratio.is_finite()),
+            bound,
             held: (decided.len() > 1).then(held),
         }
     }
@@ -117,6 +126,15 @@ enum Operator {
 }
 
 impl Operator {
+    fn symbol(self) -> &'static str {
+        match self {
+            Self::Less => "<",
+            Self::LessOrEqual => "≤",
+            Self::Greater => ">",
+            Self::GreaterOrEqual => "≥",
+        }
+    }
+
     fn holds(self, left: f64, right: f64) -> bool {
         match self {
             Self::Less => left < right,
@@ -161,6 +179,21 @@ impl Comparison {
         self.questions().iter().flat_map(Question::arms).flatten().collect()
     }
 
+    /// The comparison as one of the ratio of the two sides without their constant factors:
+    /// `a > 2 * b` is a / b > 2.
+    fn bound(&self) -> (&'static str, f64) {
+        let factor = |side: &Question| match side {
+            Expression::Number(value) => *value,
+            Expression::Binary(Sign::Times, parts) => match &**parts {
+                [Expression::Number(value), _] | [_, Expression::Number(value)] => *value,
+                _ => 1.0,
+            },
+            _ => 1.0,
+        };
+        let [left, right] = self.sides.each_ref().map(factor);
+        (self.operator.symbol(), right / left)
+    }
+
     /// Its two sides.
     pub(super) fn questions(&self) -> &[Question] {
         &self.sides
@@ -190,6 +223,23 @@ mod tests {
         assert_eq!(of("r of 'Hu, a' / r of 'b > c' - 1 <= 1.5"), (Some(2.0), Some(1.5), "denied"));
         assert_eq!(of("1 - 2 - 3 < q of 'b > c'"), (Some(-4.0), Some(-0.5), "confirmed"));
         assert_eq!(of("r of 'nobody' < 1"), (None, Some(1.0), "undecided"));
+    }
+
+    /// By hand: 6 against twice 2 is a ratio of 3, compared with 2; against the number 4, it is
+    /// itself compared with 4.
+    #[test]
+    fn ratios_are_without_constant_factors() {
+        let mut records = ArmRecords::default();
+        [("a", 6.0), ("b", 2.0)].into_iter().for_each(|(arm, value)| records.put_metric(arm, "r", value));
+        let of = |text: &str| {
+            let claim = Claim { text: String::new(), compare: text.into() };
+            let v = Verdict::of(&claim, Comparison::parse(text).as_ref().ok(), &records, &[]);
+            (v.ratio.unwrap(), v.bound.unwrap())
+        };
+        assert_eq!(of("r of 'a' > 2 * r of 'b'"), (3.0, (">", 2.0)));
+        assert_eq!(of("2 * r of 'a' <= r of 'b'"), (3.0, ("≤", 0.5)));
+        assert_eq!(of("r of 'a' < 4"), (6.0, ("<", 4.0)));
+        assert_eq!(of("r of 'a' >= r of 'b'"), (3.0, ("≥", 1.0)));
     }
 
     /// By hand: of three members with the ratios 2, 1.5 and 0.5 the claim holds in two.

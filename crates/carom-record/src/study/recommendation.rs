@@ -141,12 +141,20 @@ pub(super) fn recommended(
     let others = others.filter(|r| name(r.arm) != best);
     if let Some(next) = others.min_by(|a, b| minimised(a).total_cmp(&minimised(b))) {
         reasons.push(format!(
-            "best of the other methods at the same level, {}: {}{unit}",
+            "best of the other methods at the same level, {}: {}{unit}{}",
             name(next.arm),
-            short(minimised(next))
+            short(minimised(next)),
+            if goal != Goal::Cost && next.error.max(chosen.error) <= measure.uncertainty {
+                format!("; both are below the uncertainty of the errors, {}", short(measure.uncertainty))
+            } else {
+                String::new()
+            }
         ));
     }
-    reasons.push(format!("ranked first at {first_at} of {} levels", full.len()));
+    reasons.push(format!(
+        "no method is distinguishably better at {first_at} of {}",
+        if full.len() == 1 { "1 level".to_owned() } else { format!("{} levels", full.len()) }
+    ));
     let next = costs.iter().enumerate().filter(|(i, _)| *i != picked).filter_map(|(i, c)| Some((i, (*c)?)));
     let next = next.min_by(|a, b| a.1.total_cmp(&b.1));
     // Cost of the cheapest of the others, relative to that of the recommended one.
@@ -276,11 +284,9 @@ fn confidence(
         confidence = confidence.min(most);
         reasons.push(why);
     };
-    let close = format!(
-        "differences of at most {}, {} % or the half-widths of both ensembles",
-        short(measure.uncertainty),
-        100.0 * ALIKE
-    );
+    let widths = if evidence.ensemble { " or the half-widths of both ensembles" } else { "" };
+    let close =
+        format!("differences of at most {} or {} %{widths}", short(measure.uncertainty), 100.0 * ALIKE);
     match decided_by {
         DecidedBy::Error => {}
         DecidedBy::Accuracy => at_most(
@@ -307,7 +313,10 @@ fn confidence(
         ),
     }
     if first_at < levels.len() {
-        at_most(Confidence::Low, format!("it is ranked first at only {first_at} of {} levels", levels.len()));
+        at_most(
+            Confidence::Low,
+            format!("at only {first_at} of {} levels no method is distinguishably better", levels.len()),
+        );
     }
     if levels.len() < 2 {
         at_most(

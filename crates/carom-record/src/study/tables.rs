@@ -65,11 +65,13 @@ impl Study {
             "ratio",
             "ratio_low",
             "ratio_high",
+            "bound",
         ];
         let line = |v: &Verdict| {
             let held = v.held.as_ref();
             let count = |n: Option<usize>| n.map_or_else(String::new, |n| n.to_string());
             let ratio = held.and_then(|held| held.ratio.as_ref());
+            let bound = v.bound.map_or_else(String::new, |(sign, bound)| format!("{sign} {bound}"));
             vec![
                 v.claim.text.clone(),
                 v.claim.compare.clone(),
@@ -78,9 +80,10 @@ impl Study {
                 v.word().to_string(),
                 count(held.map(|held| held.held)),
                 count(held.map(|held| held.of)),
-                cell(ratio.map(Spread::median)),
+                cell(ratio.map(Spread::median).or(v.ratio)),
                 cell(ratio.map(|r| r.range().0)),
                 cell(ratio.map(|r| r.range().1)),
+                bound,
             ]
         };
         self.write("claims.csv", &header, self.verdicts.iter().map(line))

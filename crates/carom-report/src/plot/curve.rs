@@ -53,11 +53,26 @@ pub(crate) const APART: (&str, &str, usize) = ("#b0b0b0", "4 3", 0);
 /// The colour of a curve of less interest.
 pub(crate) const QUIET: &str = "#9a9a9a";
 
+/// Number of colours: those of lines, and grey.
+const COLORS: usize = LINES.len() + 1;
+
 /// Colour, dashes and marker number of a style. Seven colours of Okabe and Ito and grey, with five
 /// markers, give forty different styles.
 pub(crate) fn style(i: usize) -> (&'static str, &'static str, usize) {
     const DASHES: [&str; 8] = ["", "9 3", "3 2", "9 3 2 3", "14 4", "5 2 1.5 2 1.5 2", "1.5 2.5", "6 6"];
-    (LINES.get(i % 8).copied().unwrap_or("#777777"), DASHES[(i + i / 8) % 8], i % 5)
+    (LINES.get(i % COLORS).copied().unwrap_or("#777777"), DASHES[(i + i / COLORS) % 8], i % 5)
+}
+
+/// Whether a curve is dashed. One that is alone in its pane needs no dashes to be identified, nor
+/// do the first eight colours beside markers or labels.
+pub(super) fn is_dashed(curve: &Curve, direct: bool) -> bool {
+    let is_first = curve.style < COLORS;
+    match () {
+        () if curve.marked => !is_first && !curve.apart && !curve.quiet,
+        () if curve.apart => true,
+        () if curve.quiet || curve.label.is_empty() || curve.unlisted => false,
+        () => !(direct && is_first),
+    }
 }
 
 /// Draws a curve inside the rectangle `id`.
@@ -78,10 +93,7 @@ pub(super) fn draw(
         return;
     }
     let d = trace::path(points.iter().copied());
-    // A curve that is alone in its pane, or has its label beside it, needs no dashes to be
-    // identified.
-    let plain = curve.marked || ((curve.label.is_empty() || curve.unlisted || direct) && !curve.apart);
-    let dashes = if plain { "" } else { dashes };
+    let dashes = if is_dashed(curve, direct) { dashes } else { "" };
     let width = if curve.quiet || curve.apart { 0.9 } else { 1.5 };
     let d = if curve.points { String::new() } else { d };
     let _ = writeln!(

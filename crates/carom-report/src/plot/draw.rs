@@ -12,6 +12,8 @@ use crate::{text, trace};
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 12.0;
+/// Width of bold letters relative to others.
+const BOLD: f64 = 1.12;
 /// Font size of ticks.
 const TICK: f64 = 11.0;
 const TOP: f64 = 30.0;
@@ -155,11 +157,13 @@ impl Plot {
         for (value, label) in &scales.x.axis.ticks {
             let x = x0 + wide * scales.x.axis.position(*value);
             let _ = writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v4\" stroke=\"#222\" stroke-width=\"0.8\"/>");
-            write_text(out, x, bottom + 16.0, "text-anchor=\"middle\" font-size=\"11\"", label);
+            // The label of the last tick may not leave the figure.
+            let middle = x.min(WIDTH - 2.0 - 0.5 * TICK * text::width(label));
+            write_text(out, middle, bottom + 16.0, "text-anchor=\"middle\" font-size=\"11\"", label);
         }
         let size = if self.across > 2 { 10.5 } else { 12.0 };
         let place = format!("font-size=\"{size}\" font-weight=\"600\"");
-        write_text(out, x0, y0 - 9.0, &place, &text::fitted(&pane.title, (wide + RIGHT) / size));
+        write_text(out, x0, y0 - 9.0, &place, &text::fitted(&pane.title, (wide + RIGHT) / (BOLD * size)));
         if !pane.y_label.is_empty() {
             let (words, unit) = unit_of(&pane.y_label);
             let label = scales.y.axis.label(words, unit);
@@ -176,7 +180,7 @@ impl Plot {
     }
 }
 
-/// Where a curve ends in its pane, in pixels.
+/// Where a curve is last seen in its pane, in pixels; at the edge if it never is.
 fn end(
     curve: &Curve,
     frame: &Frame,
@@ -184,9 +188,12 @@ fn end(
     to_y: &dyn Fn(f64) -> f64,
 ) -> Option<(f64, f64)> {
     let points = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y)));
-    let inside = |p: &(f64, f64)| p.1.is_finite() && p.0 >= frame.left - 0.5 && p.0 <= frame.right() + 0.5;
-    let (x, y) = points.filter(inside).last()?;
-    Some((x, y.clamp(frame.top, frame.bottom())))
+    let within = |p: &(f64, f64)| p.1.is_finite() && p.0 >= frame.left - 0.5 && p.0 <= frame.right() + 0.5;
+    let (top, bottom) = (frame.top, frame.bottom());
+    let mut points: Vec<(f64, f64)> = points.filter(within).collect();
+    let (x, y) = *points.last()?;
+    points.retain(|p| p.1 >= top - 0.5 && p.1 <= bottom + 0.5);
+    Some(points.last().map_or((x, y.clamp(top, bottom)), |p| (p.0, p.1.clamp(top, bottom))))
 }
 
 /// Vertical lines; a label that would cover the one before it is left out.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::curve::{Curve, mark};
+use super::curve::{Curve, is_dashed, mark};
 use crate::chart::{dots, write_text};
 use crate::text;
 
@@ -38,7 +38,7 @@ pub(super) fn draw(out: &mut String, legend: &[&Curve], lines: &[Vec<usize>], le
         for i in line {
             let Curve { label, marked, points, .. } = legend[*i];
             let (color, dashes, marker) = legend[*i].style();
-            let dashes = if *marked { "" } else { dashes };
+            let dashes = if is_dashed(legend[*i], false) { dashes } else { "" };
             let long = if *points { 0 } else { 26 };
             let _ = writeln!(
                 out,

@@ -105,11 +105,23 @@ impl Setup<'_> {
             let amount = if parts.len() == 1 { parts[0].clone() } else { format!("({})", parts.join(", ")) };
             let sides: Vec<&str> = list(load.spec, "on").iter().filter_map(Value::as_str).collect();
             let place = if sides.is_empty() { text(load.spec, "body").to_owned() } else { sides.join(", ") };
+            let unit = self.load_unit(load.kind);
+            let amount = format!("{amount} {unit}").trim_end().to_owned();
             let table = value.pointer("/table/file").and_then(Value::as_str);
             let table = table.map_or_else(String::new, |file| format!(" × {file}"));
             Some(format!("{place}: {} {amount}{table}", load.kind.replace('-', " ")))
         };
         list(self.case(), "loads").iter().filter_map(words).collect()
+    }
+
+    /// The unit of the values of a load.
+    fn load_unit(&self, kind: &str) -> String {
+        let unit = |key: &str| text(self.case().get("units").unwrap_or(&Value::Null), key);
+        match (kind, unit("length"), unit("time"), unit("mass")) {
+            ("body-force", "m", "s", "kg") => "N/m^3".to_owned(),
+            ("body-force", length, time, mass) => format!("{mass}/({length}^2 {time}^2)"),
+            _ => self.fields.array("stress").map_or_else(String::new, |array| array.unit.clone()),
+        }
     }
 
     /// The conditions of a support: `u_{x} = u_{y} = 0`.

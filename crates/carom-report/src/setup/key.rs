@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use serde_json::Value;
 
 use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORT, Setup};
+use super::forces::written;
 use super::values::{list, text as word, tuple, vector};
 use crate::bodies::fill_space;
 use crate::chart::write_text;
@@ -63,13 +64,16 @@ impl Setup<'_> {
                 }
             }
         }
+        if let Some(plane) = self.plane_in_words(length) {
+            line("", &plane, false);
+        }
         line("", "Materials", true);
         for m in list(self.case(), "materials") {
             let real = |key| m.get(key).and_then(Value::as_f64).map_or(String::new(), number);
             line("", &format!("{}: {}", word(m, "name"), word(m, "law")), false);
             let (density, lambda, mu) = (real("density"), real("lambda"), real("mu"));
             line("", &format!("ρ = {density} {mass}/{length}^3"), false);
-            line("", &format!("Λ = {lambda}, μ = {mu} {stress}"), false);
+            line("", &format!("Λ = {lambda} {stress}, μ = {mu} {stress}"), false);
         }
         for (k, support) in list(self.case(), "supports").iter().enumerate() {
             if k == 0 {
@@ -112,6 +116,12 @@ impl Setup<'_> {
             let primary = side.unwrap_or(&rigid);
             line(&bar(SECONDARY), &format!("{} (secondary)", word(contact, "secondary")), false);
             line(&bar(PRIMARY), &format!("{primary} (primary)"), false);
+            if let Some(motion) = motion_in_words(contact, length, time) {
+                line("", &motion, false);
+            }
+            if let Some(friction) = friction_in_words(contact, length, time) {
+                line("", &friction, false);
+            }
         }
         for (k, probe) in list(self.case(), "probes").iter().enumerate() {
             if k == 0 {
@@ -127,4 +137,39 @@ impl Setup<'_> {
         }
         y + 12.0
     }
+
+    /// `plane strain, thickness 1 m`; none in bars and in space.
+    fn plane_in_words(&self, length: &str) -> Option<String> {
+        let is_plane = self.case().get("dimension").and_then(Value::as_u64) == Some(2);
+        let thickness = self.case().get("thickness").and_then(Value::as_f64)?;
+        is_plane.then(|| {
+            format!("plane {}, thickness {} {length}", word(self.case(), "plane"), number(thickness))
+        })
+    }
+}
+
+/// How a rigid primary moves.
+fn motion_in_words(contact: &Value, length: &str, time: &str) -> Option<String> {
+    let given = contact.pointer("/motion/prescribed")?;
+    let moved = list(given, "moves").iter().filter_map(|m| {
+        let [axis, formula] = m.as_array()?.as_slice() else { return None };
+        let axis = ["u_{x}", "u_{y}", "u_{z}"].get(axis.as_u64()? as usize)?;
+        Some(format!("{axis} = {} {length}", written(formula)))
+    });
+    let turned = given.get("rotate").and_then(|turn| Some(format!("angle = {}°", written(turn.get(0)?))));
+    let words: Vec<String> = moved.chain(turned).collect();
+    (!words.is_empty()).then(|| format!("{} (t in {time})", words.join(", ")))
+}
+
+/// The coefficients of friction.
+fn friction_in_words(contact: &Value, length: &str, time: &str) -> Option<String> {
+    let given = |key: &str| contact.get("friction")?.get(key).filter(|value| !value.is_null()).map(written);
+    let mut words = format!("friction μ = {}", given("mu")?);
+    if let Some(dynamic) = given("mu_dynamic") {
+        words += &format!(", sliding {dynamic}");
+    }
+    if let Some(decay) = given("decay") {
+        words += &format!(", decay {decay} {time}/{length}");
+    }
+    Some(words)
 }

@@ -92,7 +92,7 @@ pub(crate) fn instants(
     view.triad(&mut sheet.out, triad, 28.0);
     let unit = sets[0].1.array("stress")?.unit.clone();
     let svg = sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit: &unit }, length);
-    Some((svg, caption(&bands, cut, during, !rigid.is_empty())))
+    Some((svg, caption(&bands, cut, &unit, during, !rigid.is_empty())))
 }
 
 /// Corners of the box of all places of a skin.
@@ -132,10 +132,14 @@ fn underlay(out: &mut String, lines: &[[Place; 2]], view: &View, to: &dyn Fn(Poi
     );
 }
 
-fn caption(bands: &Bands, cut: [bool; 2], during: &str, rigid: bool) -> String {
+fn caption(bands: &Bands, cut: [bool; 2], unit: &str, during: &str, rigid: bool) -> String {
     let rigid = if rigid { " Light lines, behind the bodies: rigid obstacles." } else { "" };
     let arrow = if cut[1] {
-        format!(" Arrow at the colour bar: up to 0.5 % of the values are above {}.", bands.high)
+        format!(
+            " Arrow at the colour bar: up to 0.5 % of the values are above {}{}{unit}.",
+            bands.high,
+            if unit.is_empty() { "" } else { " " }
+        )
     } else {
         String::new()
     };

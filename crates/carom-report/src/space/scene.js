@@ -35,12 +35,13 @@
   });
 
   const vertex = `#version 300 es
-    uniform mat3 turn; uniform vec3 middle; uniform vec4 view; uniform float reach;
+    uniform mat3 turn; uniform vec3 middle; uniform vec4 view; uniform float reach; uniform bool lines;
     in vec3 place; in float value;
     out vec3 seen; out vec3 body; out float share;
     void main() {
       seen = turn * (place - middle); body = place; share = value;
-      gl_Position = vec4((seen.xy + view.xy) * view.zw, -seen.z / reach, 1.0);
+      // Edges lie a little before their faces, which would hide parts of them.
+      gl_Position = vec4((seen.xy + view.xy) * view.zw, -seen.z / reach - (lines ? 0.002 : 0.0), 1.0);
     }`;
   const fragment = `#version 300 es
     precision highp float;

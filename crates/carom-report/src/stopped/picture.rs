@@ -37,9 +37,10 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<(String, String)> {
     let (svg, moved) = draw(run, stop, place, &fields)?;
     let rejected = if moved { " Dashed: the positions that were rejected." } else { "" };
     let caption = format!(
-        "The place of the stop at t = {:.6}, the last accepted state: deformed mesh with the node, and the \
+        "The place of the stop at t = {:.6} {}, the last accepted state: deformed mesh with the node, and the \
          facet or cell, where the next step failed.{rejected} Data: `stopped.vtu`, `stopped.json`.",
-        stop.last
+        stop.last,
+        run.history.unit("time")
     );
     Some((caption, svg))
 }

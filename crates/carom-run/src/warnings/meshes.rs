@@ -102,8 +102,9 @@ pub(super) fn coarse_secondary(case: &Case, model: &Model) -> Vec<Found> {
         let [secondary, primary] = [0, 1].map(|side| zone.spacing(side));
         (secondary > ALIKE * primary).then(|| {
             let (secondary, primary) = (short(secondary), short(primary));
+            let unit = &case.units.length;
             let what = format!(
-                "near the contact the nodes of the secondary side are {secondary} apart, those of the primary {primary}"
+                "near the contact the nodes of the secondary side are {secondary} {unit} apart, those of the primary {primary} {unit}"
             );
             Found::of_contact(&case.contacts[k].name, what)
         })

@@ -57,8 +57,8 @@ pub const WARNINGS: [Entry; 11] = [
     },
     Entry {
         id: "long-step",
-        why: "the step resolves only waves longer than that; the contact force is the change of momentum in \
-            a step divided by the step, and depends on the step more than on the body",
+        why: "the contact force is the change of momentum in a step divided by the step, and depends on the \
+            step more than on the body",
         advice: "a shorter step, or reading only impulse, duration and motion",
         rule: Rule::Model(steps::long_step),
     },

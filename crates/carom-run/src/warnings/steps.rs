@@ -19,6 +19,7 @@ pub(super) fn long_step(case: &Case, model: &Model) -> Vec<Found> {
     if case.time.scheme.is_static() {
         return Vec::new();
     }
+    let unit = &case.units.length;
     let touches = |name: &str| case.contacts.iter().flat_map(ContactSpec::bodies).any(|body| body == name);
     let mut found = Vec::new();
     for (part, spec) in model.parts.iter().zip(&case.bodies).filter(|(part, _)| touches(&part.name)) {
@@ -29,7 +30,7 @@ pub(super) fn long_step(case: &Case, model: &Model) -> Vec<Found> {
             found.push(Found::of_body(
                 &part.name,
                 format!(
-                    "a pressure wave crosses {} cells of size {} in a step (Courant number), while waves shorter than {} are not resolved in time",
+                    "a pressure wave crosses {} cells of size {} {unit} in a step (Courant number); waves shorter than {} {unit} are not resolved in time",
                     short(courant),
                     short(cell),
                     short(2.0 * std::f64::consts::PI * courant * cell)

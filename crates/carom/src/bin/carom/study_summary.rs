@@ -94,9 +94,11 @@ fn text(study: &Study) -> String {
             || format!("{:9}", v.word()),
             |held| format!("confirmed in {} of {}", held.held, held.of),
         );
+        let bound =
+            v.bound.map_or_else(String::new, |(sign, bound)| format!(", claimed {sign} {}", short(bound)));
         let ratio = v.held.as_ref().and_then(|held| held.ratio.as_ref()).map_or_else(String::new, |ratio| {
             let (low, high) = ratio.range();
-            format!("; ratio {}, {} to {}", short(ratio.median()), short(low), short(high))
+            format!("; ratio {}, {} to {}{bound}", short(ratio.median()), short(low), short(high))
         });
         lines.push(format!(
             "{word}  {}  ({} against {}{ratio})",
