@@ -1,9 +1,9 @@
-//! How deep the round parts of rigid obstacles lie in bodies: the nodes of a body can pass a circle,
-//! a sphere or a corner on both sides of it.
+//! How deep the round parts of rigid obstacles lie in bodies: the nodes of a body can pass a
+//! circle, a sphere or a corner on both sides of it.
 //!
 //! A centre at a distance d from the boundary of a body, negative inside, with the radius r lies
-//! r − d deep. Nothing is measured before the two can have met. The depth is not part of the recorded
-//! penetration: where nodes lie on a circle, the chords between them are inside.
+//! r − d deep. Nothing is measured before the two can have met. The depth is not part of the
+//! recorded penetration: where nodes lie on a circle, the chords between them are inside.
 
 use crate::model::Model;
 use crate::skins::{BodySkin, length, part_of, skin_facets};

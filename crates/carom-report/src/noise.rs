@@ -1,4 +1,5 @@
-//! Values that are round-off: they are not drawn, because an axis that fits them shows nothing else.
+//! Values that are round-off: they are not drawn, because an axis that fits them shows nothing
+//! else.
 
 use carom_record::{Run, metrics};
 

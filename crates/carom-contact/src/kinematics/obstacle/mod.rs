@@ -82,7 +82,7 @@ impl Obstacle {
     /// Its convex round parts, as centres and radii: what can lie between the nodes of a body.
     pub(crate) fn tips(&self) -> Vec<(Point, f64)> {
         match self {
-            Self::Circle { center, radius, inside: false } => vec![(*center, *radius)],
+            Self::Circle { center, radius, inside: false, .. } => vec![(*center, *radius)],
             Self::Polyline(line) => line.tips().collect(),
             _ => Vec::new(),
         }
