@@ -114,6 +114,8 @@ impl Setup<'_> {
             let shape = shape.map(|shape| if in_space && shape == "circle" { "sphere" } else { shape });
             let rigid = format!("rigid {}", shape.unwrap_or("plane"));
             let primary = side.unwrap_or(&rigid);
+            // The sides are not coloured in the drawing of bodies in space.
+            let bar = |color: &str| if fill_space(self.fields) { String::new() } else { bar(color) };
             line(&bar(SECONDARY), &format!("{} (secondary)", word(contact, "secondary")), false);
             line(&bar(PRIMARY), &format!("{primary} (primary)"), false);
             if let Some(motion) = motion_in_words(contact, length, time) {
