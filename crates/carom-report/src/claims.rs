@@ -30,7 +30,7 @@ fn ratio(v: &Verdict) -> Markup {
             }
             None => b { (or_dash(v.ratio, three)) },
         }
-        br; span.small { "claimed " (bound) }
+        @if !bound.is_empty() { br; span.small { "claimed " (bound) } }
     }
 }
 

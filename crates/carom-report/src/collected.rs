@@ -75,8 +75,8 @@ impl Measured {
     pub(crate) fn points(&self, column: &str, end: f64, unlisted: bool) -> Vec<Curve> {
         let points = |(k, overlay): (usize, &Overlay)| {
             let (x, y) = overlay.within(0.0, end);
-            // Black, then colours that are far from those of most arms.
-            let style = [0, 4, 5][k % 3];
+            // Colours that are far from those of most arms, of which the first is black.
+            let style = [4, 5, 6][k % 3];
             Curve { label: measured_label(overlay), style, x, y, points: true, unlisted, ..Curve::default() }
         };
         self.of(column).enumerate().map(points).filter(|curve| !curve.x.is_empty()).collect()

@@ -9,7 +9,7 @@ use crate::bodies::{self, Instant};
 use crate::chart::{Chart, Options, Panel, Series};
 use crate::collected::measured_label;
 use crate::figure::Figure;
-use crate::labels::{capitalised, is_stress, symbol, with_unit, words};
+use crate::labels::{capitalised, is_stress, listed, symbol, with_unit, words};
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::redraw::of_chart;
@@ -69,9 +69,10 @@ fn setup(run: &Run) -> Option<Figure> {
     };
     let parts =
         [("supports", "supports"), ("loads", "loads"), ("contacts", "contact sides"), ("probes", "probes")];
-    let parts: String = parts.iter().filter_map(there).map(|words| format!(", {words}")).collect();
+    let parts: Vec<&str> = std::iter::once("mesh").chain(parts.iter().filter_map(there)).collect();
+    let parts = listed(&parts);
     let caption = format!(
-        "Initial configuration: bodies with their mesh{parts}.{view} Data: first field file; case and sides in `manifest.json`."
+        "Initial configuration: bodies with {parts}.{view} Data: first field file; case and sides in `manifest.json`."
     );
     Some(Figure::new("setup", caption, svg))
 }
@@ -324,7 +325,7 @@ fn solver(run: &Run) -> Option<Figure> {
     let none = if occurs("rejected") { "" } else { " No step was rejected." };
     let caption = format!(
         "{} per step.{none} Ticks: events by kind. Data: `history.csv`, columns `{}`; `log.jsonl`.",
-        capitalised(&words.join(", ")),
+        capitalised(&listed(&words)),
         names.join("`, `")
     );
     chart(run, ("solver", "Solver"), caption, panels)

@@ -7,13 +7,14 @@ use carom_record::{FieldFormat, Run, Status, Warning};
 use maud::{Markup, Render, html};
 use serde_json::Value;
 
+use crate::digits;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::figure::Figure;
 use crate::labels::number;
 use crate::noise::has_contact;
 use crate::stopped;
 use crate::text::{Label, Prose, typeset};
-use crate::timing::timing;
+use crate::timing::{three, timing};
 
 /// Number of log events listed; all of them are counted.
 const EVENTS: usize = 50;
@@ -103,7 +104,7 @@ fn header(run: &Run) -> Markup {
             (row("Machine", html! {
                 (machine.cpus) " cores, " (machine.os) " " (machine.arch) "; threads: " (m.threads)
             }))
-            (row("Wall time", html! { (number(wall)) " s" }))
+            (row("Wall time", html! { (three(wall)) " s" }))
             (row("Started", &m.started))
         }
         p.small { (Prose(HEADER)) }
@@ -145,6 +146,11 @@ fn symbol_of(key: &str) -> &str {
     }
 }
 
+/// Six digits; three of what may be round-off.
+fn shown(x: f64) -> String {
+    if x.abs() < 1e-9 { digits::three(x) } else { number(x) }
+}
+
 fn results(run: &Run) -> Markup {
     let overlays = metrics::overlays(run);
     let measured = overlays.iter().flat_map(|overlay| metrics::of_measured(&run.history, overlay));
@@ -161,7 +167,7 @@ fn results(run: &Run) -> Markup {
                 @for metric in members {
                     tr {
                         td { code { (metric.name) } }
-                        td.n { (or_dash(metric.value, number)) }
+                        td.n { (or_dash(metric.value, shown)) }
                         td { @if metric.unit.is_empty() { "–" } @else { (Label(&metric.unit)) } }
                         td { (metric.definition) }
                     }

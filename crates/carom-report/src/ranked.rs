@@ -124,8 +124,10 @@ impl Ranked<'_> {
             let method = self.study.manifest.arms[arm].method();
             orders.iter().find(|o| o.method == method && Some(&o.column) == named.as_ref())
         };
-        let cell =
-            |order: &Result<f64, Reason>| order.as_ref().ok().map(|p| format!("{p:.2}").replace('-', "−"));
+        let cell = |order: &Result<f64, Reason>| {
+            // Errors that grow with a shorter step have no order.
+            order.as_ref().ok().filter(|p| **p >= 0.0).map(|p| format!("{p:.2}"))
+        };
         let head = |phase: &str| match &named {
             Some(column) => format!("Order of {column} {phase} contact"),
             None => format!("Order {phase} contact"),

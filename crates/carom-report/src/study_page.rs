@@ -245,8 +245,8 @@ fn warnings(study: &Study) -> Markup {
                 @for (warning, arms) in &shared {
                     tr {
                         td { code { (warning.id) } }
-                        td { (warning.place) ": " (warning.what) "; " (warning.why) "." }
-                        td { (warning.advice) }
+                        td { (typeset(&warning.place)) ": " (typeset(&warning.what)) "; " (typeset(&warning.why)) "." }
+                        td { (typeset(&warning.advice)) }
                         td {
                             @if arms.len() == study.rows.len() && arms.len() > 1 { "all" }
                             @else { (joined(arms.iter().map(|arm| arm + 1), ", ")) }

@@ -7,7 +7,7 @@ use crate::labels::number;
 use crate::text::Prose;
 
 /// Three significant digits; all digits of the integer part of a larger number.
-fn three(x: f64) -> String {
+pub(crate) fn three(x: f64) -> String {
     let unit = if x == 0.0 { 1.0 } else { 10.0_f64.powi(x.abs().log10().floor().min(2.0) as i32 - 2) };
     number((x / unit).round() * unit)
 }

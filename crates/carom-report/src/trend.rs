@@ -332,7 +332,7 @@ mod tests {
         let plot = plots_of(&arms).swap_remove(0);
         assert_eq!(
             (plot.x_label.as_str(), plot.panes[0].curves[1].x.as_slice()),
-            ("rho_inf", &[1.0, 0.5, 0.0][..])
+            ("ρ_{∞}", &[1.0, 0.5, 0.0][..])
         );
         let keys = ["a.v=-2", "a.v=-1", "a.v=3"];
         let arms: Vec<_> = keys.iter().zip([1.0, 2.0, 4.0]).map(|(key, y)| (*key, vec![("r", y)])).collect();

@@ -12,10 +12,10 @@ use maud::{Markup, html};
 use crate::collected::{in_time, time_unit};
 use crate::digits::{five, three};
 use crate::document::{file, joined, or_dash};
-use crate::labels::with_unit;
+use crate::labels::{capitalised, with_unit};
 use crate::laboratory::methods;
 use crate::ranked;
-use crate::text::{Label, Prose};
+use crate::text::{Label, Prose, typeset};
 
 /// Metrics whose error a user should know before following a recommendation.
 const SIDE_EFFECTS: [(&str, &str); 9] = [
@@ -69,8 +69,12 @@ pub(crate) fn summary(study: &Study) -> Markup {
     };
     let arm = &study.manifest.arms[verdict.arm];
     let sets: Vec<&String> = arm.sets_without_step().collect();
-    let entry =
-        |head: &str, lines: &[String]| html! { dt { (head) } @for line in lines { dd { (Prose(line)) } } };
+    let entry = |head: &str, lines: &[String]| {
+        html! {
+            dt { (head) }
+            @for line in lines { dd { (Prose(&capitalised(&typeset(line)))) } }
+        }
+    };
     html! {
         section.verdict {
             h2 {
@@ -235,7 +239,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
         Standing::Established { .. } => None,
     }));
     html! {
-        p { "Reference: " (reference.what) "." }
+        p { "Reference: " (typeset(&reference.what)) "." }
         details {
             summary { "Reference values and their uncertainties" }
             table {

@@ -165,7 +165,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 28] = [
             Unit::Length,
             "vertex of the parabola through the highest row and its neighbours, − y_0",
             OWN,
-            "largest height of the striker's centre above its initial position, after the first episode",
+            "largest height of the striker's centre above its initial position (distance along x in one dimension), after the first episode",
         ),
         |f| apex(f).map(|a| a.1),
     ),

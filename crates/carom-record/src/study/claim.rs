@@ -35,7 +35,8 @@ pub struct Verdict {
     /// The left quantity divided by the right one, without the constant factors of the sides.
     pub ratio: Option<f64>,
     /// What the ratio is compared with, and how: `> 2`. Where the right side is only a number, it
-    /// is this number, and the ratio is the left side.
+    /// is this number, and the ratio is the left side. Less is greater where the right side is
+    /// negative, and there is none where its sign differs between members.
     pub bound: Option<(&'static str, f64)>,
     /// How it fares over an ensemble, if the study has one.
     pub held: Option<Held>,
@@ -82,8 +83,17 @@ impl Verdict {
         let (left, right) = sides(records);
         let decided: Vec<(f64, f64)> =
             members.iter().map(sides).filter_map(|(left, right)| left.zip(right)).collect();
-        let bound = comparison.map(Comparison::bound);
-        let ratio = |(l, r): (f64, f64)| l / r * bound.map_or(1.0, |bound| bound.1);
+        let [fl, fr] = comparison.map_or([1.0; 2], Comparison::factors);
+        let ratio = |(l, r): (f64, f64)| l / r * (fr / fl);
+        // Dividing by a negative quantity turns the comparison round; by one whose sign differs
+        // between members, nothing can be said of the ratio.
+        let turned = |r: f64| (fl * (r / fr) < 0.0, fl * (r / fr) > 0.0);
+        let rights: Vec<f64> = decided.iter().map(|(_, r)| *r).chain(right).collect();
+        let bound = comparison.and_then(|c| match () {
+            () if rights.iter().all(|r| turned(*r).1) => Some((c.operator.symbol(), fr / fl)),
+            () if rights.iter().all(|r| turned(*r).0) => Some((c.operator.turned().symbol(), fr / fl)),
+            () => None,
+        });
         let held = || Held {
             held: decided.iter().filter(|(l, r)| holds((Some(*l), Some(*r))) == Some(true)).count(),
             of: decided.len(),
@@ -135,6 +145,16 @@ impl Operator {
         }
     }
 
+    /// The comparison of the same numbers with the other sign.
+    fn turned(self) -> Self {
+        match self {
+            Self::Less => Self::Greater,
+            Self::LessOrEqual => Self::GreaterOrEqual,
+            Self::Greater => Self::Less,
+            Self::GreaterOrEqual => Self::LessOrEqual,
+        }
+    }
+
     fn holds(self, left: f64, right: f64) -> bool {
         match self {
             Self::Less => left < right,
@@ -179,9 +199,8 @@ impl Comparison {
         self.questions().iter().flat_map(Question::arms).flatten().collect()
     }
 
-    /// The comparison as one of the ratio of the two sides without their constant factors:
-    /// `a > 2 * b` is a / b > 2.
-    fn bound(&self) -> (&'static str, f64) {
+    /// The constant factors of the sides: 1 and 2 of `a > 2 * b`, which is a / b > 2.
+    fn factors(&self) -> [f64; 2] {
         let factor = |side: &Question| match side {
             Expression::Number(value) => *value,
             Expression::Binary(Sign::Times, parts) => match &**parts {
@@ -190,8 +209,7 @@ impl Comparison {
             },
             _ => 1.0,
         };
-        let [left, right] = self.sides.each_ref().map(factor);
-        (self.operator.symbol(), right / left)
+        self.sides.each_ref().map(factor)
     }
 
     /// Its two sides.
@@ -230,7 +248,9 @@ mod tests {
     #[test]
     fn ratios_are_without_constant_factors() {
         let mut records = ArmRecords::default();
-        [("a", 6.0), ("b", 2.0)].into_iter().for_each(|(arm, value)| records.put_metric(arm, "r", value));
+        [("a", 6.0), ("b", 2.0), ("c", -8.0)]
+            .into_iter()
+            .for_each(|(arm, value)| records.put_metric(arm, "r", value));
         let of = |text: &str| {
             let claim = Claim { text: String::new(), compare: text.into() };
             let v = Verdict::of(&claim, Comparison::parse(text).as_ref().ok(), &records, &[]);
@@ -240,6 +260,8 @@ mod tests {
         assert_eq!(of("2 * r of 'a' <= r of 'b'"), (3.0, ("≤", 0.5)));
         assert_eq!(of("r of 'a' < 4"), (6.0, ("<", 4.0)));
         assert_eq!(of("r of 'a' >= r of 'b'"), (3.0, ("≥", 1.0)));
+        // 6 > −8 is 6 / −8 < 1.
+        assert_eq!(of("r of 'a' > r of 'c'"), (-0.75, ("<", 1.0)));
     }
 
     /// By hand: of three members with the ratios 2, 1.5 and 0.5 the claim holds in two.

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 
 use super::Curve;
 use super::frame::Frame;
-use crate::chart::write_text;
+use crate::chart::{dots, write_text};
 use crate::text;
 
 /// Height of a line, font size, and room for the leader between pane and label.
@@ -82,6 +82,8 @@ pub(super) fn draw(out: &mut String, curves: &[&Curve], ends: &[(f64, f64)], fra
                  stroke=\"{color}\" stroke-width=\"0.7\" stroke-opacity=\"0.5\"/>",
                 right + LEADER - if curve.marked { 10.0 } else { 3.0 }
             );
+        } else if curve.points && !curve.marked {
+            dots(out, [4.0, 10.0].map(|by| (right + by, y)).into_iter(), color);
         } else {
             let dashes = if super::curve::is_dashed(curve, true) { dashes } else { "" };
             let _ = writeln!(

@@ -114,6 +114,8 @@ impl Setup<'_> {
             let shape = shape.map(|shape| if in_space && shape == "circle" { "sphere" } else { shape });
             let rigid = format!("rigid {}", shape.unwrap_or("plane"));
             let primary = side.unwrap_or(&rigid);
+            // The sides are not coloured in the drawing of bodies in space.
+            let bar = |color: &str| if fill_space(self.fields) { String::new() } else { bar(color) };
             line(&bar(SECONDARY), &format!("{} (secondary)", word(contact, "secondary")), false);
             line(&bar(PRIMARY), &format!("{primary} (primary)"), false);
             if let Some(motion) = motion_in_words(contact, length, time) {
@@ -156,7 +158,7 @@ fn motion_in_words(contact: &Value, length: &str, time: &str) -> Option<String> 
         let axis = ["u_{x}", "u_{y}", "u_{z}"].get(axis.as_u64()? as usize)?;
         Some(format!("{axis} = {} {length}", written(formula)))
     });
-    let turned = given.get("rotate").and_then(|turn| Some(format!("angle = {}°", written(turn.get(0)?))));
+    let turned = given.get("rotate").and_then(|turn| Some(format!("angle = ({})°", written(turn.get(0)?))));
     let words: Vec<String> = moved.chain(turned).collect();
     (!words.is_empty()).then(|| format!("{} (t in {time})", words.join(", ")))
 }
@@ -164,12 +166,9 @@ fn motion_in_words(contact: &Value, length: &str, time: &str) -> Option<String> 
 /// The coefficients of friction.
 fn friction_in_words(contact: &Value, length: &str, time: &str) -> Option<String> {
     let given = |key: &str| contact.get("friction")?.get(key).filter(|value| !value.is_null()).map(written);
-    let mut words = format!("friction μ = {}", given("mu")?);
-    if let Some(dynamic) = given("mu_dynamic") {
-        words += &format!(", sliding {dynamic}");
-    }
-    if let Some(decay) = given("decay") {
-        words += &format!(", decay {decay} {time}/{length}");
-    }
-    Some(words)
+    let coefficient = format!("friction μ = {}", given("mu")?);
+    let dynamic = given("mu_dynamic").map(|mu| format!("sliding {mu}"));
+    let decay = given("decay").map(|decay| format!("decay {decay} {time}/{length}"));
+    let words: Vec<String> = std::iter::once(coefficient).chain(dynamic).chain(decay).collect();
+    Some(words.join(", "))
 }

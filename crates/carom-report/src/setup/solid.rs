@@ -125,6 +125,8 @@ impl Solid<'_> {
 
     /// Outlines of supported and loaded sides; dashed where the side turns its back to the eye.
     fn sides(&self, out: &mut String) {
+        // An edge of two sides is drawn once: two lines of dashes would be a solid one.
+        let mut drawn = HashSet::new();
         for (what, color) in [("supports", "#44607c"), ("loads", COLOR)] {
             for side in self.outlined(what) {
                 let mut found: HashMap<[usize; 2], (usize, usize)> = HashMap::new();
@@ -142,10 +144,11 @@ impl Solid<'_> {
                 }
                 for (key, e) in order {
                     let (count, facet) = found[&key];
-                    if count > 1 {
+                    let facet_is_seen = self.seen(facet);
+                    if count > 1 || !drawn.insert((key, color, facet_is_seen)) {
                         continue;
                     }
-                    let dashes = if self.seen(facet) { "" } else { " stroke-dasharray=\"4 3\"" };
+                    let dashes = if facet_is_seen { "" } else { " stroke-dasharray=\"4 3\"" };
                     let facet = &self.skin[facet];
                     let line = crate::bodies::edge_nodes(facet.degree, &facet.nodes, e)
                         .map(|k| self.to(self.places[k]))
