@@ -301,7 +301,7 @@ def scene(browser):
     ]
     for name, step in steps:
         # Each from the same view: after several, the bodies may be out of sight.
-        browser.click("#animation .home")
+        browser.value("document.querySelector('#animation .home').click()")
         before = shown()
         step()
         after = shown()
