@@ -17,7 +17,7 @@ use crate::depth::Depth;
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
 const SHARP: f64 = 0.87;
 /// Pieces into which points divide a sharp edge.
-const PIECES: usize = 4;
+const PIECES: usize = 8;
 
 /// Facets of a side, all of one shape, which may be followed by the rest of the body's boundary.
 #[derive(Clone, Debug)]
