@@ -21,7 +21,7 @@ pub(crate) fn cuboid(size: [f64; 3]) -> Triangles {
 /// A sphere around the origin: an octahedron whose triangles are divided so often.
 fn sphere(radius: f64, divisions: u32) -> Triangles {
     let mut points: Vec<[f64; 3]> = (0..6)
-        .map(|k| [0, 1, 2].map(|i| if i == k / 2 { 1.0 - 2.0 * (k % 2) as f64 } else { 0.0 }))
+        .map(|k| [0, 1, 2].map(|i| if i == k / 2 { 1.0 - 2.0 * f64::from(k % 2) } else { 0.0 }))
         .collect();
     let mut corners = Vec::new();
     for (x, y, z) in (0..2).flat_map(|x| (0..2).flat_map(move |y| (0..2).map(move |z| (x, y, z)))) {

@@ -267,12 +267,11 @@ impl Surface {
     /// most directly.
     fn steepest(&self, edge: usize, at: Point) -> usize {
         let order = |a: &usize, b: &usize| self.height(*a, at).total_cmp(&self.height(*b, at)).then(a.cmp(b));
-        let faces = match self.edges.get(edge) {
-            Some(edge) => edge.faces.to_vec(),
-            None => {
-                let node = edge - self.edges.len();
-                self.triangles.fan(self.corners[node].0, node)
-            }
+        let faces = if let Some(edge) = self.edges.get(edge) {
+            edge.faces.to_vec()
+        } else {
+            let node = edge - self.edges.len();
+            self.triangles.fan(self.corners[node].0, node)
         };
         faces.into_iter().min_by(order).unwrap_or(0)
     }
