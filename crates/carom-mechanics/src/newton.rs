@@ -38,9 +38,6 @@ const FORCING: f64 = 0.1;
 const FORCING_RATIO: f64 = 0.9;
 /// Number of corrections with a reused factor that may grow without a change of contacts.
 const PATIENCE: u32 = 2;
-/// Number of times that the iterations of a stage are counted anew because they have converged and
-/// the contacts then changed.
-const SETS: u32 = 4;
 /// Bisections of a Newton step that inverts a cell or greatly increases the residual.
 const BISECTIONS: usize = 8;
 /// Fraction of the predicted motion that its first correction may have; otherwise the predictor is
@@ -104,7 +101,7 @@ pub(crate) fn solve_stage(
     work.restore_factor(equations, &renewal)?;
     let digits = if is_static { DIGITS } else { 1.0 };
     let (mut contact, mut rounds) = (ContactUpdate::new(model), Rounds::new());
-    let (mut step, mut ratio, mut grown, mut iteration, mut sets) = (f64::INFINITY, 1.0_f64, 0, 0, 0);
+    let (mut step, mut ratio, mut grown, mut iteration) = (f64::INFINITY, 1.0_f64, 0, 0);
     loop {
         // The error of an inexact linear solve shrinks with the residual, so the residual is
         // reduced further if linear problems are solved inexactly.
@@ -128,10 +125,6 @@ pub(crate) fn solve_stage(
             }
             (effort.frozen, effort.regularity) = (renewal.finish(), contact.regularity);
             return Ok((now, effort));
-        }
-        if settled && sets < SETS {
-            // Converged for the previous pairs: another solve.
-            (iteration, grown, sets) = (0, 0, sets + 1);
         }
         if changed {
             // The existing rows belong to the previous pairs.
