@@ -368,5 +368,5 @@ on = "floor"
         message.contains("primary = \"ball.arc\"") && message.contains("on = [\"ball.arc\"]"),
         "{message}"
     );
-    assert!(!message.contains("prism") && !message.contains("cylinder"), "{message}");
+    assert!(!message.contains("prism.") && !message.contains("cylinder."), "{message}");
 }
