@@ -65,11 +65,11 @@
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) return;
   gl.useProgram(program);
   const at = Object.fromEntries(["turn", "middle", "view", "reach", "count", "lines", "grey", "cut"].map(n => [n, gl.getUniformLocation(program, n)]));
-  const wheres = ["place", "value"].map(name => gl.getAttribLocation(program, name));
+  const spots = ["place", "value"].map(name => gl.getAttribLocation(program, name));
   const bind = (buffer, k) => {
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.enableVertexAttribArray(wheres[k]);
-    gl.vertexAttribPointer(wheres[k], k ? 1 : 3, gl.FLOAT, false, 0, 0);
+    gl.enableVertexAttribArray(spots[k]);
+    gl.vertexAttribPointer(spots[k], k ? 1 : 3, gl.FLOAT, false, 0, 0);
   };
   const buffers = [0, 1].map(() => gl.createBuffer()), rigid = gl.createBuffer();
   const corners = data.rigid.reduce((sum, list) => sum + list.length / 3, 0);
@@ -118,7 +118,7 @@
     });
     // Rigid obstacles: the last list was lines.
     bind(rigid, 0);
-    gl.disableVertexAttribArray(wheres[1]);
+    gl.disableVertexAttribArray(spots[1]);
     gl.uniform1f(at.grey, 0.65);
     gl.drawArrays(gl.LINES, 0, corners);
     flat.setTransform(2, 0, 0, 2, 0, 0);
