@@ -86,7 +86,10 @@ def against_tables(run, times, grids):
     for instant, grid in zip(times, grids):
         array = grid.GetPointData().GetArray("contact_pressure")
         found = {i: array.GetValue(i) for i in range(array.GetNumberOfValues()) if array.GetValue(i) != 0.0}
-        assert found == pressures.get(instant, {}), f"contact pressure at {instant}"
+        listed = pressures.get(instant, {})
+        # The shares of a node with two pairs are summed in another order.
+        same = found.keys() == listed.keys() and all(abs(found[k] - p) <= 1e-14 * p for k, p in listed.items())
+        assert same, f"contact pressure at {instant}"
         in_contact += bool(found)
     assert in_contact > 0, "no instant has contact"
     assert {grids[-1].GetCellType(i) for i in range(grids[-1].GetNumberOfCells())} == {69}
