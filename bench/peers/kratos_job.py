@@ -19,47 +19,20 @@ import KratosMultiphysics.ContactStructuralMechanicsApplication
 from KratosMultiphysics.StructuralMechanicsApplication.structural_mechanics_analysis import StructuralMechanicsAnalysis
 
 import job
+import kratos_settings
 
 RINGS, STEPS = int(sys.argv[1]), int(sys.argv[2])
 Kratos.Logger.GetDefaultOutput().SetSeverity(Kratos.Logger.Severity.WARNING)
 Kratos.ParallelUtilities.SetNumThreads(1)
 
-PARAMETERS = f"""{{
-    "problem_data": {{ "problem_name": "disc", "parallel_type": "OpenMP", "start_time": 0.0, "end_time": {(STEPS - 0.5) * job.DT}, "echo_level": 0 }},
-    "solver_settings": {{
-        "solver_type": "Dynamic", "time_integration_method": "implicit", "scheme_type": "bossak", "damp_factor_m": -0.3,
-        "model_part_name": "Structure", "domain_size": 2, "echo_level": 0, "analysis_type": "non_linear",
-        "model_import_settings": {{ "input_type": "use_input_model_part" }},
-        "time_stepping": {{ "time_step": {job.DT} }},
-        "contact_settings": {{ "mortar_type": "ALMContactFrictionless", "fancy_convergence_criterion": false }},
-        "clear_storage": true, "reform_dofs_at_each_step": true, "compute_reactions": false,
-        "convergence_criterion": "contact_residual_criterion",
-        "residual_relative_tolerance": 1e-4, "residual_absolute_tolerance": 1e-9, "max_iteration": 20,
-        "linear_solver_settings": {{ "solver_type": "LinearSolversApplication.sparse_lu" }}
-    }},
-    "processes": {{
-        "contact_process_list": [{{
-            "python_module": "alm_contact_process", "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication",
-            "process_name": "ALMContactProcess",
-            "Parameters": {{
-                "model_part_name": "Structure", "contact_model_part": {{ "0": ["Touching"] }}, "assume_master_slave": {{ "0": ["Arc"] }},
-                "contact_type": "Frictionless"
-            }}
-        }}]
-    }}
-}}"""
+PARAMETERS = kratos_settings.parameters("disc", (STEPS - 0.5) * job.DT, job.DT, 2, "Arc", "LinearSolversApplication.sparse_lu")
 
 
 def build(part):
     """Builds nodes, elements and contact lines; returns the nodes of the disc with their share of
     its area."""
-    material = part.CreateNewProperties(1)
-    lam, mu = job.LAMBDA, job.MU
-    material[Kratos.YOUNG_MODULUS] = mu * (3 * lam + 2 * mu) / (lam + mu)
-    material[Kratos.POISSON_RATIO] = lam / (2 * (lam + mu))
-    material[Kratos.DENSITY] = job.RHO
+    material = kratos_settings.rubber(part, job, "HyperElasticPlaneStrain2DLaw")
     material[Kratos.THICKNESS] = 1.0
-    material[Kratos.CONSTITUTIVE_LAW] = Kratos.KratosGlobals.GetConstitutiveLaw("HyperElasticPlaneStrain2DLaw").Clone()
     nodes, share = {}, {}
 
     def node(key, at):
@@ -102,7 +75,7 @@ def build(part):
     return share
 
 
-analysis = StructuralMechanicsAnalysis(Kratos.Model(), Kratos.Parameters(PARAMETERS))
+analysis = StructuralMechanicsAnalysis(Kratos.Model(), PARAMETERS)
 part = analysis.model["Structure"]
 share = build(part)
 analysis.Initialize()
