@@ -364,6 +364,16 @@ def momentum(run, case):
     return float(np.linalg.norm(error) / max(np.linalg.norm(p, axis=0).max(), 1e-300))
 
 
+def declare(pairs, contact, body, other, nodes):
+    """Adds the nodes of a body that another body, or an obstacle by number, keeps out."""
+    soft = contact["enforcement"] == "penalty" or contact.get("law") == "velocity"
+    kind = "soft" if soft else "exact"
+    old = pairs.get((body, other), (set(), kind))
+    pairs[body, other] = (old[0] | nodes, kind)
+    if not isinstance(other, int):
+        pairs.setdefault((other, body), (set(), kind))
+
+
 def declared(manifest):
     """{(body, other body or plane index): (secondary nodes, kind of limit)}, planes, from the resolved case."""
     pairs, planes = {}, []
@@ -381,12 +391,7 @@ def declared(manifest):
             other = [k for k, *_ in planes].index(key)
         else:
             other = contact["primary"]["side"].split(".")[0]
-        soft = contact["enforcement"] == "penalty" or contact.get("law") == "velocity"
-        kind = "soft" if soft else "exact"
-        old = pairs.get((body, other), (set(), kind))
-        pairs[body, other] = (old[0] | nodes, kind)
-        if not isinstance(other, int):
-            pairs.setdefault((other, body), (set(), kind))
+        declare(pairs, contact, body, other, nodes)
     return pairs, planes
 
 

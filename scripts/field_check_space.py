@@ -47,7 +47,7 @@ from pathlib import Path
 
 import numpy as np
 
-from field_check import CREATED_LIMIT, LIMITS, Worst, energy, frames, history, momentum
+from field_check import CREATED_LIMIT, LIMITS, Worst, declare, energy, frames, history, momentum
 from field_skin import skins
 
 BALANCE = 1e-6
@@ -110,12 +110,7 @@ def declared(manifest, bodies):
             if spec not in obstacles:
                 obstacles.append(spec)
             other = obstacles.index(spec)
-        soft = contact["enforcement"] == "penalty" or contact.get("law") == "velocity"
-        kind = "soft" if soft else "exact"
-        old = pairs.get((body, other), (set(), kind))
-        pairs[body, other] = (old[0] | nodes, kind)
-        if not isinstance(other, int):
-            pairs.setdefault((other, body), (set(), kind))
+        declare(pairs, contact, body, other, nodes)
     return pairs, obstacles
 
 
