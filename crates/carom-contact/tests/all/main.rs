@@ -5,6 +5,7 @@
 mod derivatives;
 mod discrete_gradient;
 mod kinks;
+mod near_obstacle;
 mod obstacles;
 mod obstacles_in_space;
 mod slip;

@@ -1,11 +1,12 @@
 //! Rigid obstacles: gaps against elementary geometry, gradient and second derivative against
 //! differences, corners.
 
-use carom_algebra::jacobian_error;
 use carom_contact::{
     Carrier, ContactError, Kinematics, NodeToObstacle, Obstacle, Pair, PairEvent, Pairing, Polyline,
     PolylineError, Rows,
 };
+
+use super::near_obstacle::{derivatives_agree, measured_in};
 
 const SQUARE: [[f64; 2]; 5] = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0]];
 
@@ -18,12 +19,7 @@ fn distance(contact: &NodeToObstacle, x: f64, y: f64) -> f64 {
 }
 
 fn measured(contact: &NodeToObstacle, pair: &mut Pair, y: &[f64]) -> (f64, Vec<f64>) {
-    let mut rows = Rows::new(2);
-    contact.measure(pair, y, &mut rows).unwrap();
-    let row = rows.row(0);
-    let mut gradient = vec![0.0; y.len()];
-    row.add_to(1.0, &mut gradient);
-    (row.gap, gradient)
+    measured_in(2, contact, pair, y)
 }
 
 fn close(a: f64, b: f64) {
@@ -91,18 +87,7 @@ fn scenes() -> Vec<(NodeToObstacle, Vec<f64>)> {
 
 #[test]
 fn gradient_and_second_derivative_agree_with_differences() {
-    for (k, (contact, y)) in scenes().iter().enumerate() {
-        let mut pair = Pair::open(0, 0, 0.0);
-        let (_, gradient) = measured(contact, &mut pair, y);
-        let gap = |y: &[f64]| vec![measured(contact, &mut pair.clone(), y).0];
-        let error = jacobian_error(y, 1e-5, gap, &gradient);
-        assert!(error < 1e-9, "scene {k}: {error:e}");
-        let mut curvature = vec![0.0; y.len() * y.len()];
-        contact.curvature_into(&pair, y, &mut curvature);
-        let slope = |y: &[f64]| measured(contact, &mut pair.clone(), y).1;
-        let error = jacobian_error(y, 1e-5, slope, &curvature);
-        assert!(error < 1e-8, "scene {k}: {error:e}");
-    }
+    derivatives_agree(2, &scenes());
 }
 
 /// Turning and moving an obstacle together with the node changes nothing.

@@ -1,9 +1,10 @@
 //! Rigid cylinders and surfaces of triangles: gaps against elementary geometry, gradient and second
 //! derivative against differences, the face through which a node entered, hand-over.
 
-use carom_algebra::jacobian_error;
 use carom_contact::{Carrier, Faceted, Kinematics, NodeToObstacle, Obstacle, Pair, PairEvent, Pairing, Rows};
 use carom_solid::Triangles;
+
+use super::near_obstacle::{derivatives_agree, measured_in};
 
 fn contact(shape: Obstacle) -> NodeToObstacle {
     NodeToObstacle::new(vec![0], 3, shape)
@@ -58,11 +59,7 @@ fn distance(contact: &NodeToObstacle, at: [f64; 3]) -> f64 {
 }
 
 fn measured(contact: &NodeToObstacle, pair: &mut Pair, y: &[f64]) -> (f64, Vec<f64>) {
-    let mut rows = Rows::new(3);
-    contact.measure(pair, y, &mut rows).unwrap();
-    let mut gradient = vec![0.0; y.len()];
-    rows.row(0).add_to(1.0, &mut gradient);
-    (rows.row(0).gap, gradient)
+    measured_in(3, contact, pair, y)
 }
 
 fn close(a: f64, b: f64) {
@@ -153,18 +150,7 @@ pub(crate) fn scenes() -> Vec<(NodeToObstacle, Vec<f64>)> {
 
 #[test]
 fn gradient_and_second_derivative_agree_with_differences() {
-    for (k, (contact, y)) in scenes().iter().enumerate() {
-        let mut pair = Pair::open(0, 0, 0.0);
-        let (_, gradient) = measured(contact, &mut pair, y);
-        let gap = |y: &[f64]| vec![measured(contact, &mut pair.clone(), y).0];
-        let error = jacobian_error(y, 1e-5, gap, &gradient);
-        assert!(error < 1e-9, "scene {k}: {error:e}");
-        let mut curvature = vec![0.0; y.len() * y.len()];
-        contact.curvature_into(&pair, y, &mut curvature);
-        let slope = |y: &[f64]| measured(contact, &mut pair.clone(), y).1;
-        let error = jacobian_error(y, 1e-5, slope, &curvature);
-        assert!(error < 1e-8, "scene {k}: {error:e}");
-    }
+    derivatives_agree(3, &scenes());
 }
 
 fn searched(contact: &NodeToObstacle, pair: Pair, before: [f64; 3], now: [f64; 3]) -> (Pair, Vec<PairEvent>) {
