@@ -108,6 +108,16 @@ pub(crate) fn finish(mut sim: Simulation) -> Simulation {
     sim
 }
 
+/// A vector turned by 50° about (2, 3, 6)/7.
+pub(crate) fn turned(x: [f64; 3]) -> [f64; 3] {
+    let (n, (s, c)) = ([2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0], 50_f64.to_radians().sin_cos());
+    let along: f64 = (0..3).map(|i| n[i] * x[i]).sum();
+    std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        c * x[i] + (1.0 - c) * along * n[i] + s * (n[j] * x[k] - n[k] * x[j])
+    })
+}
+
 /// Linear and angular momentum of the velocities `v` at the current positions.
 pub(crate) fn momenta(sim: &Simulation, v: &[f64]) -> [f64; 3] {
     let mut p = vec![0.0; v.len()];

@@ -6,7 +6,7 @@ use carom_run::model::Contact;
 use carom_run::recording::Rows;
 use carom_run::{GridReport, Simulation, State};
 
-use super::common::{case as case_of, finish, on_threads, simulation};
+use super::common::{case as case_of, finish, on_threads, simulation, turned};
 use super::space::apart;
 use super::space_contact::{BALL, IMPACT, momenta, slab, turned_impact};
 
@@ -196,16 +196,6 @@ newton = { tolerance = 1e-12 }
     let size = start[0].abs();
     assert!((end[1] - start[0]).abs() < 1e-2 * size && end[0].abs() < 2e-2 * size, "{start:?} {end:?}");
     assert!((end[2] / start[2] - 1.0).abs() < 1e-3, "{start:?} {end:?}");
-}
-
-/// A vector turned about an axis.
-fn turned(x: [f64; 3]) -> [f64; 3] {
-    let (n, (s, c)) = ([2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0], 50_f64.to_radians().sin_cos());
-    let along: f64 = (0..3).map(|i| n[i] * x[i]).sum();
-    std::array::from_fn(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        c * x[i] + (1.0 - c) * along * n[i] + s * (n[j] * x[k] - n[k] * x[j])
-    })
 }
 
 #[test]

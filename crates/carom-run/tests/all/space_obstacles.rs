@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::common::{finish, simulation};
+use super::common::{finish, simulation, turned};
 use super::space::apart;
 use carom_run::Simulation;
 
@@ -90,16 +90,6 @@ const SPRINGS: &str = ", enforcement = \"penalty\"";
 fn worst(a: &Simulation, b: &Simulation) -> f64 {
     let pairs = a.state().y.iter().zip(&b.state().y);
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-}
-
-/// A vector turned by 50° about (2, 3, 6)/7.
-fn turned(x: [f64; 3]) -> [f64; 3] {
-    let (n, (s, c)) = ([2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0], 50_f64.to_radians().sin_cos());
-    let along: f64 = (0..3).map(|i| n[i] * x[i]).sum();
-    std::array::from_fn(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        c * x[i] + (1.0 - c) * along * n[i] + s * (n[j] * x[k] - n[k] * x[j])
-    })
 }
 
 #[test]
