@@ -79,6 +79,14 @@ pub(crate) fn skin_facets(part: &BodyInstance) -> Vec<Vec<usize>> {
     skin.map(|facet| facet.nodes.iter().map(|node| node + part.first_node).collect()).collect()
 }
 
+/// The nodes of a body's boundary, ascending.
+pub(crate) fn skin_nodes(part: &BodyInstance) -> Vec<usize> {
+    let mut nodes = skin_facets(part).concat();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
 /// The boundary of a body in the plane or in space.
 pub(crate) fn skin(part: &BodyInstance) -> Option<BodySkin> {
     let shape = part.body.mesh().element.facet_shape();

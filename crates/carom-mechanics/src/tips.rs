@@ -5,8 +5,10 @@
 //! r − d deep. Nothing is measured before the two can have met. The depth is not part of the
 //! recorded penetration: where nodes lie on a circle, the chords between them are inside.
 
+use std::sync::Arc;
+
 use crate::model::Model;
-use crate::skins::{BodySkin, length, part_of, skin_facets};
+use crate::skins::{BodySkin, length, part_of, skin_nodes};
 use crate::watched::has_gaps;
 
 /// Allowed depth over the length of a facet: chords of facets that lie on a circle are inside it.
@@ -20,7 +22,7 @@ pub(crate) struct Tip {
     number: usize,
     /// The body that must not meet it, and the nodes of its boundary.
     pub part: usize,
-    boundary: Vec<usize>,
+    boundary: Arc<[usize]>,
     at: [f64; 3],
     clearance: f64,
     near: Option<usize>,
@@ -44,9 +46,7 @@ impl Tip {
             let first = of.facets.first().and_then(|(_, facets)| facets.first()?.first());
             let Some(part) = first.and_then(|node| part_of(model, *node)) else { continue };
             let tips = of.kinematics.tips(&model.initial_position);
-            let mut boundary = skin_facets(&model.parts[part]).concat();
-            boundary.sort_unstable();
-            boundary.dedup();
+            let boundary: Arc<[usize]> = skin_nodes(&model.parts[part]).into();
             all.extend(tips.into_iter().enumerate().map(|(number, (at, _))| Self {
                 contact,
                 number,

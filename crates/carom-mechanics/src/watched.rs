@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use carom_contact::{Boundary, Side};
 
 use crate::model::{Contact, Model};
-use crate::skins::{length, position, skin_facets};
+use crate::skins::{length, position, skin_facets, skin_nodes};
 
 /// Nodes of a side against a body.
 #[derive(Debug)]
@@ -47,9 +47,7 @@ pub(crate) struct Watched {
 
 impl Way {
     pub(crate) fn new(model: &Model, contact: Option<usize>, body: usize, nodes: Vec<Watched>) -> Self {
-        let mut boundary = skin_facets(&model.parts[body]).concat();
-        boundary.sort_unstable();
-        boundary.dedup();
+        let boundary = skin_nodes(&model.parts[body]);
         Self { contact, body, boundary, itself: None, nodes, first: 0 }
     }
 
@@ -118,8 +116,7 @@ pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -
     let nodes = contact.kinematics.secondary().iter().enumerate();
     let strict = nodes.filter(|(k, _)| contact.kinematics.allowed(*k) == 0.0).map(|(_, &node)| node);
     let strict: HashSet<usize> = strict.collect();
-    let nodes = contact.kinematics.secondary().iter().enumerate();
-    let kept: HashMap<usize, f64> = nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect();
+    let kept = kept_depths(contact);
     let watched = |(node, length)| {
         let constrained = strict.contains(&node);
         let kept = kept.get(&node).copied().unwrap_or(0.0);
@@ -128,13 +125,19 @@ pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -
     lengths(model, facets).map(watched).collect()
 }
 
+/// The depth that a contact keeps at each of its nodes.
+fn kept_depths(contact: &Contact) -> HashMap<usize, f64> {
+    let nodes = contact.kinematics.secondary().iter().enumerate();
+    nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect()
+}
+
 /// Whether every node of a contact has a gap: its primary is rigid, or a point.
 pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
     !contact.itself && contact.facets.len() < 2 || model.dimension == 1
 }
 
-/// Points of the sharp edges of a side in space, of the body `part`. No contact keeps them outside
-/// where the nodes of the edge are.
+/// Points of the sharp edges of a side in space, of the body `part`. No contact keeps edges outside
+/// between their nodes.
 pub(crate) fn edge_points(
     model: &Model,
     contact: &Contact,
@@ -149,13 +152,16 @@ pub(crate) fn edge_points(
     let mut rest = skin_facets(&model.parts[part]);
     rest.retain(|facet| !side.contains(facet));
     let longest: HashMap<usize, f64> = lengths(model, facets).collect();
+    let kept = kept_depths(contact);
     let points = Boundary::new(shape, facets, &rest, 0).points_of_sharp_edges(&model.reference);
     let watched = |between: Vec<(usize, f64)>| {
-        let length =
-            between.iter().filter_map(|(node, _)| longest.get(node)).fold(0.0, |a: f64, b| a.max(*b));
-        Watched { between: between.clone(), ..Watched::new(between[0].0, length, false, contact.depths[1]) }
+        let largest = |of: &HashMap<usize, f64>| {
+            between.iter().filter_map(|(node, _)| of.get(node)).fold(0.0, |most: f64, x| most.max(*x))
+        };
+        let (length, kept, node) = (largest(&longest), largest(&kept), between[0].0);
+        Watched { between, kept, ..Watched::new(node, length, false, contact.depths[1]) }
     };
-    points.into_iter().filter(|point| !point.is_empty()).map(watched).collect()
+    points.into_iter().map(watched).collect()
 }
 
 /// The nodes of facets, ascending, each with the longest of its facets in the reference
