@@ -178,6 +178,8 @@ pub(crate) fn solve_stage(
             contact.restart();
             work.linear.restart();
             now = begin(equations, before, fallback, &mut effort.events, work)?;
+            // A tangent of the discarded motion misleads.
+            renewal.due |= renewal.made > 0;
             step = f64::INFINITY;
             continue;
         }

@@ -28,6 +28,10 @@ pub enum FacetShape {
 /// Most nodes of a facet.
 pub(crate) const NODES: usize = 10;
 
+/// ∂²φᵃ/∂ξ∂ξ, ∂²φᵃ/∂ξ∂η and ∂²φᵃ/∂η∂η of L(2L − 1) and 4LL.
+const T6_SECOND: [[f64; 6]; 3] =
+    [[4.0, 4.0, 0.0, -8.0, 0.0, 0.0], [4.0, 0.0, 0.0, -4.0, 4.0, -4.0], [4.0, 0.0, 4.0, 0.0, 0.0, -8.0]];
+
 /// Shape functions of a facet at a point; entries beyond its nodes and its coordinates are zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FacetFunctions {
@@ -108,19 +112,43 @@ impl FacetShape {
         }
     }
 
-    /// ∂²φᵃ/∂ξ∂ξ, ∂²φᵃ/∂ξ∂η and ∂²φᵃ/∂η∂η of a surface: central differences of the first
-    /// derivatives, which are exact because these are quadratic in each coordinate at most.
+    /// ∂²φᵃ/∂ξ∂ξ, ∂²φᵃ/∂ξ∂η and ∂²φᵃ/∂η∂η of a surface: constant or, by central differences of the
+    /// first derivatives, exact, because these are quadratic in each coordinate at most.
     pub fn second(self, xi: [f64; 2]) -> [[f64; NODES]; 3] {
-        let difference = |axis: usize| {
-            let [low, high] = [-0.5, 0.5].map(|step| {
-                let mut moved = xi;
-                moved[axis] += step;
-                self.functions(moved).slopes
-            });
-            [0, 1].map(|i| std::array::from_fn(|a| high[i][a] - low[i][a]))
+        let mut second = [[0.0; NODES]; 3];
+        match self {
+            Self::T3 => {}
+            Self::T6 => {
+                for (second, constant) in second.iter_mut().zip(T6_SECOND) {
+                    second[..6].copy_from_slice(&constant);
+                }
+            }
+            _ => {
+                for axis in 0..2 {
+                    let [low, high] = [-0.5, 0.5].map(|step| {
+                        let mut moved = xi;
+                        moved[axis] += step;
+                        self.functions(moved)
+                    });
+                    for (i, a) in (axis..2).flat_map(|i| (0..self.nodes()).map(move |a| (i, a))) {
+                        second[axis + i][a] = high.slopes[i][a] - low.slopes[i][a];
+                    }
+                }
+            }
+        }
+        second
+    }
+
+    /// Nodes of the edge from a corner of a surface to the next one, in the order of a line's, and
+    /// how many there are.
+    pub fn edge(self, edge: usize) -> ([usize; 4], usize) {
+        let (corners, inner) = (self.corners(), self.degree() - 1);
+        let node = |k: usize| match k {
+            0 => edge,
+            1 => (edge + 1) % corners,
+            _ => corners + inner * edge + k - 2,
         };
-        let ([by_first, mixed], [_, by_second]) = (difference(0), difference(1));
-        [by_first, mixed, by_second]
+        (std::array::from_fn(node), inner + 2)
     }
 
     /// Quadrature points and weights exact for polynomials of a degree; a point has weight one.
@@ -177,4 +205,56 @@ fn surface<const N: usize, S: Shape<2, N>>(xi: [f64; 2]) -> FacetFunctions {
         functions.slopes[1][a] = gradients[a][1];
     }
     functions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SURFACES: [FacetShape; 5] =
+        [FacetShape::T3, FacetShape::T6, FacetShape::T10, FacetShape::Q4, FacetShape::Q9];
+
+    #[test]
+    fn second_derivatives_are_differences_of_the_first() {
+        let (xi, h) = ([0.23, 0.41], 1e-3);
+        for shape in SURFACES {
+            let found = shape.second(xi);
+            for (k, (by, of)) in [(0, 0), (1, 0), (1, 1)].into_iter().enumerate() {
+                let [low, high] = [-h, h].map(|step| {
+                    let mut moved = xi;
+                    moved[by] += step;
+                    shape.functions(moved).slopes[of]
+                });
+                for a in 0..NODES {
+                    let expected = (high[a] - low[a]) / (2.0 * h);
+                    assert!((found[k][a] - expected).abs() < 1e-10, "{shape:?} {k} {a}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_edge_is_a_line() {
+        let corners = |count| -> &[[f64; 2]] {
+            match count {
+                3 => &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+                _ => &[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
+            }
+        };
+        for shape in SURFACES {
+            let corners = corners(shape.corners());
+            for edge in 0..corners.len() {
+                let (from, to) = (corners[edge], corners[(edge + 1) % corners.len()]);
+                let (nodes, count) = shape.edge(edge);
+                for s in [0.0, 0.3, 0.8] {
+                    let at = std::array::from_fn(|i| from[i] + s * (to[i] - from[i]));
+                    let mut values = shape.functions(at).values;
+                    let line = line_shape(count, 2.0 * s - 1.0).values;
+                    nodes[..count].iter().zip(line).for_each(|(node, value)| values[*node] -= value);
+                    let error = values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+                    assert!(error < 1e-14, "{shape:?} {edge} {s}: {error:e}");
+                }
+            }
+        }
+    }
 }

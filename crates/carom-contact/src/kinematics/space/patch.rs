@@ -5,6 +5,7 @@
 
 use carom_algebra::{Mat, Vector};
 use carom_solid::FacetShape;
+use carom_solid::shape::line_shape;
 
 /// Positions of nodes in space, flat.
 pub(crate) fn place(y: &[f64], node: usize) -> Vector<3> {
@@ -135,6 +136,12 @@ impl Patch<'_> {
         at
     }
 
+    /// The place at ξ.
+    fn position(&self, y: &[f64], xi: [f64; 2]) -> Vector<3> {
+        let values = self.shape.functions(xi).values;
+        self.nodes.iter().zip(values).fold(Vector::ZERO, |sum, (&n, value)| sum + place(y, n) * value)
+    }
+
     /// Distance between its first corners.
     pub(crate) fn length(&self, y: &[f64]) -> f64 {
         (place(y, self.nodes[1]) - place(y, self.nodes[0])).norm()
@@ -191,9 +198,7 @@ impl Patch<'_> {
             for j in 0..=count {
                 let [s, t] = [i, j].map(|k| k as f64 / SAMPLES as f64);
                 let xi = if self.corners() == 3 { [s, t] } else { [2.0 * s - 1.0, 2.0 * t - 1.0] };
-                let functions = self.shape.functions(xi);
-                let mut d = from;
-                self.nodes.iter().zip(functions.values).for_each(|(&n, value)| d += place(y, n) * -value);
+                let d = from - self.position(y, xi);
                 let square = d.dot(&d);
                 if square < best.1 {
                     best = (xi, square);
@@ -205,7 +210,7 @@ impl Patch<'_> {
 
     /// The nearest point of the facet with its edges and corners.
     pub(crate) fn nearest(&self, y: &[f64], from: Vector<3>) -> Nearest {
-        let distance = |xi: [f64; 2]| (from - self.at(y, xi).position).norm();
+        let distance = |xi: [f64; 2]| (from - self.position(y, xi)).norm();
         let inside = self.closest_point(y, from, 0.0).map(|xi| Nearest {
             xi,
             at: Feature::Inside,
@@ -232,17 +237,16 @@ impl Patch<'_> {
     /// Newton's method guarded by bisection.
     fn nearest_on_edge(&self, y: &[f64], from: Vector<3>, edge: usize) -> f64 {
         const PIECES: usize = 4;
-        let direction: [f64; 2] = {
-            let [a, b] = [0.0, 1.0].map(|s| self.along(edge, s));
-            [b[0] - a[0], b[1] - a[1]]
-        };
+        let (nodes, count) = self.shape.edge(edge);
         let slope = |s: f64| {
-            let at = self.at(y, self.along(edge, s));
-            let d = from - at.position;
-            let first = at.tangents[0] * direction[0] + at.tangents[1] * direction[1];
-            let second = at.second[0] * (direction[0] * direction[0])
-                + at.second[1] * (2.0 * direction[0] * direction[1])
-                + at.second[2] * (direction[1] * direction[1]);
+            let line = line_shape(count, 2.0 * s - 1.0);
+            let (mut d, mut first, mut second) = (from, Vector::ZERO, Vector::ZERO);
+            for (k, &node) in nodes[..count].iter().enumerate() {
+                let x = place(y, self.nodes[node]);
+                d += x * -line.values[k];
+                first += x * (2.0 * line.first[k]);
+                second += x * (4.0 * line.second[k]);
+            }
             (-d.dot(&first), first.dot(&first) - d.dot(&second), d.dot(&d))
         };
         let at = |k: usize| k as f64 / PIECES as f64;
