@@ -181,10 +181,10 @@ impl Constraints {
         let open = |(k, p, number): (usize, usize, usize)| {
             let pair = &evaluation.at.pairings[k].pairs[p];
             let is_spring = number == 0 || equations.stick_spring(k, pair).is_some();
-            let weight = equations.weight_of_slip(pair, evaluation.slip_of((k, p)));
             if is_spring {
                 return 0.0;
             }
+            let weight = equations.weight_of_slip(pair, evaluation.slip_of((k, p)));
             let (along, slip) = held.find((k, p, number));
             weight * (slip.gap - equations.stretch(k, pair, along, evaluation.at.stiffer)).abs()
         };

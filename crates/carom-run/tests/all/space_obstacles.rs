@@ -252,3 +252,18 @@ fn a_ball_slides_through_a_bowl_of_triangles() {
         assert!(ledger.contact_work <= 0.0 && ledger.friction_work <= 0.0, "{law}: {ledger:?}");
     }
 }
+
+/// A block that stands on a rough plane and is struck by a smooth ball: gaps of nodes on the planes
+/// of symmetry depend on others, in a contact that has no slip.
+#[test]
+fn contacts_with_and_without_friction_stand_side_by_side() {
+    let floor = "[[contact]]\nname = \"floor\"\nsecondary = \"block.bottom\"\nmu = 0.3\n\
+                 primary = { plane = { point = [0.0, 0.0, -0.5], normal = [0.0, 0.0, 1.0] } }\n\n[time]";
+    let held = "[[support]]\non = [\"block.bottom\"]\nfix = [\"x\", \"y\", \"z\"]\n";
+    let ball = include_str!("../../../../cases/space/ball.toml");
+    let text = ball.replace(held, "").replace("[time]", floor);
+    assert!(!text.contains(held) && text.contains("mu = 0.3"));
+    let sim = finish(simulation(&text, &["time.end=0.0075"]));
+    let pressing = |k: usize| sim.state().pairs[k].iter().filter(|pair| pair.lambda < 0.0).count();
+    assert!(pressing(0) > 2 && pressing(1) > 2, "{} {}", pressing(0), pressing(1));
+}
