@@ -9,10 +9,10 @@
 //!
 //! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations
 //! it is the rate of change of the slip rate, which decides for pairs that have none; others slip
-//! in their direction. All rows are equalities, as without friction: a closed gap stays closed
-//! (`persistency.rs`), and one whose p pulls goes on to stick, or to slip with q = −sμp. So the
-//! solution depends continuously on μ, and tangential impulses that slip are μ times the normal
-//! ones.
+//! in their direction, or in that of the step before. All rows are equalities, as without friction:
+//! a closed gap stays closed (`persistency.rs`), and one whose p pulls goes on to stick, or to slip
+//! with q = −sμp. So the solution depends continuously on μ, and tangential impulses that slip are μ
+//! times the normal ones.
 
 use carom_contact::{Along, Hold, Law, Row, Rows, Rub, StickSlip, Tangential, inner, length};
 
@@ -206,19 +206,41 @@ impl Closed {
         self.solve(model, state, right, system, (ways, &laws))
     }
 
-    /// The accelerations: pairs with a slip rate slip in its direction.
+    /// The direction in which each pair slipped in the step, but those that were not closed before.
+    pub(crate) fn directions(
+        &self,
+        model: &Model,
+        state: &State,
+        activations: &[(usize, usize)],
+    ) -> Vec<Option<Along>> {
+        let of = |&(k, p): &(usize, usize)| {
+            let pair = &state.pairs[k][p];
+            let is_new = activations.contains(&(k, model.contacts[k].kinematics.secondary()[pair.node]));
+            match pair.tangential.hold {
+                Hold::Slip(direction) if !is_new => Some(direction),
+                _ => None,
+            }
+        };
+        self.places.iter().map(of).collect()
+    }
+
+    /// The accelerations: pairs slip in the direction in which they `slid`, others with a slip rate
+    /// in that of it.
     pub(crate) fn accelerate(
         &self,
         model: &Model,
         state: &mut State,
         right: &Right,
+        slid: &[Option<Along>],
         system: &mut System,
     ) -> Result<Motion, Rejected> {
         let mut ways = self.ways(state);
         let (rates, still) = (self.slip_rates(&state.v), AT_REST * max_abs(&state.v));
         for (i, way) in ways.iter_mut().enumerate() {
-            if Hold::of(rates[i], still) != Hold::Stick {
-                (way.hold, way.is_free) = (Hold::of(rates[i], still), false);
+            let known = slid.get(i).copied().flatten().map(Hold::Slip);
+            let hold = known.unwrap_or_else(|| Hold::of(rates[i], still));
+            if hold != Hold::Stick {
+                (way.hold, way.is_free) = (hold, false);
             }
         }
         self.solve(model, state, right, system, (ways, &self.laws))

@@ -48,6 +48,7 @@ pub(crate) fn project(
     let slips = closed.slip_rates(&state.v);
     let stopping: Vec<Along> = slips.iter().map(|rate| rate.map(|rate| -rate)).collect();
     let right = Right { forces: &vec![0.0; dofs], gaps: &closing, slips: &stopping };
+    let slid = closed.directions(model, state, activations);
     let jump = closed.impulse(model, state, &right, system)?;
     for i in (0..dofs).filter(|&i| !model.massless[i]) {
         state.v[i] += jump.x[i];
@@ -60,10 +61,15 @@ pub(crate) fn project(
     let rates = slips.iter().zip(&after).map(mean);
     let mut rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| inner(rate, *q)).sum::<f64>();
 
+    // Velocities at the end of a step ring from node to node, its slips do not: a pair slips on in
+    // the direction of its slip, unless the impulse turns it round.
+    let turned = slips.iter().zip(&after).map(|(before, after)| inner(*before, *after) <= 0.0);
+    let slid: Vec<Option<Along>> = slid.into_iter().zip(turned).map(|(d, t)| d.filter(|_| !t)).collect();
+
     let before = state.ledger.kinetic;
     take(model, state, before - model.kinetic(&state.v) + rubbed);
     rubbed += impact.restitute(model, state, &closed, system)?;
-    accelerate(model, state, &gaps, &closed, system)?;
+    accelerate(model, state, &gaps, &closed, &slid, system)?;
 
     averaged_contact_into(model, state, &gaps);
     book_contact_forces(model, state);
@@ -74,19 +80,21 @@ pub(crate) fn project(
     Ok(Some(jump))
 }
 
-/// Accelerations and multipliers of a state with these closed pairs.
+/// Accelerations and multipliers of a state with these closed pairs; `slid`: directions in which
+/// they slip, of the others those of their slip rates.
 pub(crate) fn accelerate(
     model: &Model,
     state: &mut State,
     gaps: &[Rows],
     closed: &Closed,
+    slid: &[Option<Along>],
     system: &mut System,
 ) -> Result<(), Rejected> {
     let (forces, bending) = drive(model, state, gaps, closed);
     let turning: Vec<Along> =
         closed.slip_curvatures(model, state).iter().map(|bent| bent.map(|b| -b)).collect();
     let right = Right { forces: &forces, gaps: &bending, slips: &turning };
-    let motion = closed.accelerate(model, state, &right, system)?;
+    let motion = closed.accelerate(model, state, &right, slid, system)?;
     for &i in &model.free {
         // Moving supports keep theirs.
         state.a[i] = if model.massless[i] { 0.0 } else { motion.x[i] };

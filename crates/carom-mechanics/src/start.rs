@@ -154,5 +154,5 @@ fn accelerate(model: &Model, state: &mut State, gaps: &[Rows], system: &mut Syst
     let mut places = independent_rows(model, pressing(state), gaps);
     places.retain(asks);
     let closed = Closed::new(model, state, places, gaps)?;
-    persistency::accelerate(model, state, gaps, &closed, system)
+    persistency::accelerate(model, state, gaps, &closed, &[], system)
 }
