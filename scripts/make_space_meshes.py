@@ -13,8 +13,15 @@ sphere above z = 0.9) and `plane_y`.
 cases/space/half-space.msh: the quarter x, y > 0 of the half z < 0 of a ball of radius 0.4 about the
 origin, refined at the circle of radius 0.1 in z = 0, the edge of a contact. Volume `ground`; surfaces
 `touched` (in the circle), `free`, `far`, `plane_x` and `plane_y`.
+
+docs/book/examples/bracket.msh: an angle bracket of 50 mm with a rib and holes. Volume `bracket`;
+surface `skin`.
+
+docs/book/examples/cup.msh: a quarter of a cup upside down, a shell of revolution. Volume `cup`;
+surfaces `rim`, `outer`, `inner`, `plane_x` and `plane_y`.
 """
 
+import math
 from pathlib import Path
 
 import gmsh
@@ -81,10 +88,62 @@ def half_space(edge=0.1, reach=0.4):
     write(ROOT / "cases/space/half-space.msh")
 
 
-def mesh(size):
+def bracket():
+    start("bracket")
+    occ = gmsh.model.occ
+    foot, wall = occ.addBox(0, 0, 0, 1, 0.8, 0.16), occ.addBox(0, 0, 0, 0.16, 0.8, 1)
+    points = [occ.addPoint(*x) for x in ((0.1, 0.34, 0.1), (0.75, 0.34, 0.1), (0.1, 0.34, 0.75))]
+    edges = [occ.addLine(a, b) for a, b in zip(points, points[1:] + points[:1])]
+    rib = occ.extrude([(2, occ.addPlaneSurface([occ.addCurveLoop(edges)]))], 0, 0.12, 0)
+    solid = [x for x in rib if x[0] == 3]
+    whole, _ = occ.fuse([(3, foot)], [(3, wall), *solid])
+    holes = [(3, occ.addCylinder(0.72, 0.17, -1, 0, 0, 2, 0.09)), (3, occ.addCylinder(0.72, 0.63, -1, 0, 0, 2, 0.09))]
+    holes.append((3, occ.addCylinder(-1, 0.4, 0.86, 2, 0, 0, 0.07)))
+    part, _ = occ.cut(whole, holes)
+    occ.dilate(part, 0, 0, 0, 50, 50, 50)
+    occ.synchronize()
+    gmsh.model.addPhysicalGroup(3, [tag for _, tag in gmsh.model.getEntities(3)], name="bracket")
+    gmsh.model.addPhysicalGroup(2, [tag for _, tag in gmsh.model.getEntities(2)], name="skin")
+    size = gmsh.model.mesh.field.add("MathEval")
+    gmsh.model.mesh.field.setString(size, "F", "11")
+    mesh(size, curvature=8)
+    write(ROOT / "docs/book/examples/bracket.msh")
+
+
+def cup(radius=1.0, thick=0.06, height=1.5, corner=0.35):
+    """Its profile is turned about z: wall, rounded corner, bottom (above)."""
+    start("cup")
+    occ = gmsh.model.occ
+    outer = [(radius, 0), (radius, height - corner), (radius - corner, height), (0, height)]
+    inner = [(0, height - thick), (radius - corner, height - thick), (radius - thick, height - corner), (radius - thick, 0)]
+    center = occ.addPoint(radius - corner, 0, height - corner)
+    at = [occ.addPoint(x, 0, z) for x, z in outer + inner]
+    curves = [occ.addLine(at[i], at[(i + 1) % 8]) if i not in (1, 5) else occ.addCircleArc(at[i], center, at[i + 1]) for i in range(8)]
+    profile = occ.addPlaneSurface([occ.addCurveLoop(curves)])
+    occ.revolve([(2, profile)], 0, 0, 0, 0, 0, 1, math.pi / 2)
+    occ.synchronize()
+    gmsh.model.addPhysicalGroup(3, [tag for _, tag in gmsh.model.getEntities(3)], name="cup")
+    sides = {name: [] for name in ("rim", "plane_x", "plane_y", "outer", "inner")}
+    for _, tag in gmsh.model.getEntities(2):
+        low, high = (gmsh.model.getBoundingBox(2, tag)[k : k + 3] for k in (0, 3))
+        where = {"rim": high[2] < 1e-5, "plane_x": high[0] < 1e-5, "plane_y": high[1] < 1e-5}
+        middle = occ.getCenterOfMass(2, tag)
+        flat = math.hypot(*middle[:2])
+        where["outer"] = middle[2] > height - 0.6 * thick or high[0] > radius - 0.6 * thick and flat > 0.6 * radius
+        sides[next((name for name, is_here in where.items() if is_here), "inner")].append(tag)
+    for name, surfaces in sides.items():
+        gmsh.model.addPhysicalGroup(2, surfaces, name=name)
+    size = gmsh.model.mesh.field.add("MathEval")
+    gmsh.model.mesh.field.setString(size, "F", "0.22")
+    mesh(size)
+    write(ROOT / "docs/book/examples/cup.msh")
+
+
+def mesh(size, curvature=0):
     gmsh.model.mesh.field.setAsBackgroundMesh(size)
-    for option in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
+    for option in ("ExtendFromBoundary", "FromPoints"):
         gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)
+    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", curvature)
     gmsh.model.mesh.generate(3)
     gmsh.model.mesh.setOrder(2)
     gmsh.model.mesh.optimize("HighOrderElastic")
@@ -121,6 +180,8 @@ def main():
     gmsh.initialize()
     half_ball()
     half_space()
+    bracket()
+    cup()
     gmsh.finalize()
 
 
