@@ -14,6 +14,9 @@ cases/space/half-space.msh: the quarter x, y > 0 of the half z < 0 of a ball of 
 origin, refined at the circle of radius 0.1 in z = 0, the edge of a contact. Volume `ground`; surfaces
 `touched` (in the circle), `free`, `far`, `plane_x` and `plane_y`.
 
+cases/space/punch.msh: a disc of 60 triangles, slightly larger than that circle, which faces downwards.
+Physical surface `face`.
+
 docs/book/examples/bracket.msh: an angle bracket of 50 mm with a rib and holes. Volume `bracket`;
 surface `skin`.
 
@@ -86,6 +89,16 @@ def half_space(edge=0.1, reach=0.4):
     field.setString(size, "F", f"0.006 + 0.4*Sqrt((Sqrt(x*x + y*y) - {edge})^2 + z*z)")
     mesh(size)
     write(ROOT / "cases/space/half-space.msh")
+
+
+def punch(radius=0.10001, count=60):
+    corners = [(radius * math.cos(2 * math.pi * i / count), radius * math.sin(2 * math.pi * i / count), 0) for i in range(count)]
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "1", '2 1 "face"', "$EndPhysicalNames"]
+    lines += ["$Nodes", str(count + 1)]
+    lines += [f"{i} {x:.9g} {y:.9g} {z}" for i, (x, y, z) in enumerate([(0, 0, 0), *corners], 1)]
+    lines += ["$EndNodes", "$Elements", str(count)]
+    lines += [f"{i} 2 2 1 1 1 {i % count + 2} {i + 1}" for i in range(1, count + 1)]
+    (ROOT / "cases/space/punch.msh").write_text("\n".join([*lines, "$EndElements", ""]))
 
 
 def bracket():
@@ -180,6 +193,7 @@ def main():
     gmsh.initialize()
     half_ball()
     half_space()
+    punch()
     bracket()
     cup()
     gmsh.finalize()
