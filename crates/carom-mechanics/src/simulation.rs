@@ -393,8 +393,8 @@ impl Simulation {
     fn watch(&self, state: &State) -> Result<(), Stopped> {
         let Some(share) = self.grid.guard else { return Ok(()) };
         let ledger = &state.ledger;
-        let (created, scale) = (ledger.rise(), ledger.scale());
-        if ledger.created() > share * scale {
+        let (created, scale) = (ledger.created(), ledger.scale());
+        if ledger.surely_created() > share * scale {
             return Err(Stopped::EnergyGuard { time: state.time, created, share, scale });
         }
         Ok(())

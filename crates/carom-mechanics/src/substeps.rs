@@ -101,7 +101,9 @@ pub(crate) fn decide(
     let (rejected, returns) = match stepped {
         Ok(mut step) => {
             step.observe();
-            let Some((created, allowed)) = limits.guard.and_then(|share| beyond(&step, from, share)) else {
+            let Some((created, allowed)) =
+                limits.guard.and_then(|share| beyond(&step, from, share))
+            else {
                 return Next::Take(step);
             };
             let worse = |stored: &StoredStep| stored.is_within && (last || created > WORSE * stored.created);
@@ -132,8 +134,9 @@ pub(crate) fn decide(
 /// The energy that a step created and what it may create, if it is less.
 fn beyond(step: &Accepted, from: &State, share: f64) -> Option<(f64, f64)> {
     let (before, now) = (&from.ledger, &step.state().ledger);
-    let so_far = before.created().max(0.0);
-    let (created, allowed) = (now.created() - so_far, STEP * (share * now.scale() - so_far).max(0.0));
+    let so_far = before.surely_created().max(0.0);
+    let created = now.surely_created() - so_far;
+    let allowed = STEP * (share * now.scale() - so_far).max(0.0);
     (created > allowed).then_some((created, allowed))
 }
 
