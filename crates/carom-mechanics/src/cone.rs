@@ -11,8 +11,8 @@
 //! it is the rate of change of the slip rate, which decides for pairs that have none; others slip
 //! in their direction, or in that of the step before. All rows are equalities, as without friction:
 //! a closed gap stays closed (`persistency.rs`), and one whose p pulls goes on to stick, or to slip
-//! with q = −sμp. So the solution depends continuously on μ, and tangential impulses that slip are μ
-//! times the normal ones.
+//! with q = −sμp. So the solution depends continuously on μ, and tangential impulses that slip are
+//! μ times the normal ones.
 
 use carom_contact::{Along, Hold, Law, Row, Rows, Rub, StickSlip, Tangential, inner, length};
 

@@ -14,6 +14,8 @@ pub struct Grid {
     /// Fraction of the energy scale so far that may be created before the run stops; none
     /// disables the guard.
     pub guard: Option<f64>,
+    /// Energy of round-off of positions, which may always be created.
+    pub floor: f64,
 }
 
 impl Grid {
@@ -58,7 +60,7 @@ mod tests {
 
     /// 200 steps from 0 to 0.75; a shifted grid has one more.
     fn grid(phase: f64) -> Grid {
-        Grid { dt: 3.75e-3, steps: 200 + u64::from(phase > 0.0), phase, guard: None }
+        Grid { dt: 3.75e-3, steps: 200 + u64::from(phase > 0.0), phase, guard: None, floor: 0.0 }
     }
 
     #[test]

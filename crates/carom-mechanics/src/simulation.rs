@@ -316,7 +316,7 @@ impl Simulation {
         let end = start + length;
         let bisections =
             if falls_back { self.bisections.min(FEW) } else { self.state.bisection.limit(self.bisections) };
-        let limits = Limits { guard: self.grid.guard, bisections, end };
+        let limits = Limits { guard: self.grid.guard, floor: self.grid.floor, bisections, end };
         while progress.done() < 1.0 {
             let dt = length / f64::from(1_u32 << progress.level);
             let time = start + progress.done as f64 * dt;
@@ -393,8 +393,8 @@ impl Simulation {
     fn watch(&self, state: &State) -> Result<(), Stopped> {
         let Some(share) = self.grid.guard else { return Ok(()) };
         let ledger = &state.ledger;
-        let (created, scale) = (ledger.rise(), ledger.scale());
-        if ledger.created() > share * scale {
+        let (created, scale) = (ledger.created(), ledger.scale());
+        if ledger.surely_created() > share * scale + self.grid.floor {
             return Err(Stopped::EnergyGuard { time: state.time, created, share, scale });
         }
         Ok(())

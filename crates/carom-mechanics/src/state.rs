@@ -26,11 +26,10 @@ pub struct Ledger {
     pub total_at_start: f64,
     /// Work of loads without potential, of supports and of moving primaries.
     pub external_work: f64,
-    /// Σ Δy·ΔF of the loads: their work with the forces at the ends of steps minus that with the
-    /// forces at the starts, the scale of the scheme-dependent uncertainty. While a load is being
-    /// applied it can be as large as the work itself. Contact of explicit schemes adds the work of
-    /// its forces over the tolerance of gaps.
-    pub open: f64,
+    /// What the trapezoidal rule adds to that work, which the means of a scheme over a step know to
+    /// first order only. Contact of explicit schemes adds the work of its forces over the tolerance
+    /// of gaps.
+    pub unbooked: f64,
     /// Work of the contact forces on the bodies, and the jumps of kinetic energy at activation.
     pub contact_work: f64,
     /// Work of friction on the bodies.
@@ -81,9 +80,9 @@ pub struct Rubbed {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Created {
     pub(crate) lowest: f64,
-    /// [`Ledger::open`] at that minimum.
-    pub(crate) open: f64,
-    /// Largest rise so far.
+    /// [`Ledger::unbooked`] at that minimum.
+    pub(crate) unbooked: f64,
+    /// Largest rise so far beyond what was not booked since then.
     pub(crate) most: f64,
     /// Σ |ΔW_ext| so far, and W_ext at its last term.
     pub(crate) worked: f64,
@@ -96,7 +95,7 @@ impl Created {
         Self { lowest: ledger.total(), ..Self::default() }
     }
 
-    /// Largest rise so far.
+    /// The most that was created so far.
     pub fn most(&self) -> f64 {
         self.most
     }

@@ -78,6 +78,8 @@ pub(crate) enum Next {
 pub(crate) struct Limits {
     /// Share of the energy scale that the run may create.
     pub guard: Option<f64>,
+    /// Energy that may always be created.
+    pub floor: f64,
     /// Bisections before the run stops.
     pub bisections: u32,
     /// Time at the end of the grid step.
@@ -101,7 +103,9 @@ pub(crate) fn decide(
     let (rejected, returns) = match stepped {
         Ok(mut step) => {
             step.observe();
-            let Some((created, allowed)) = limits.guard.and_then(|share| beyond(&step, from, share)) else {
+            let Some((created, allowed)) =
+                limits.guard.and_then(|share| beyond(&step, from, share, limits.floor))
+            else {
                 return Next::Take(step);
             };
             let worse = |stored: &StoredStep| stored.is_within && (last || created > WORSE * stored.created);
@@ -130,10 +134,11 @@ pub(crate) fn decide(
 }
 
 /// The energy that a step created and what it may create, if it is less.
-fn beyond(step: &Accepted, from: &State, share: f64) -> Option<(f64, f64)> {
+fn beyond(step: &Accepted, from: &State, share: f64, floor: f64) -> Option<(f64, f64)> {
     let (before, now) = (&from.ledger, &step.state().ledger);
-    let so_far = before.created().max(0.0);
-    let (created, allowed) = (now.created() - so_far, STEP * (share * now.scale() - so_far).max(0.0));
+    let so_far = before.surely_created().max(0.0);
+    let created = now.surely_created() - so_far;
+    let allowed = STEP * (share * now.scale() + floor - so_far).max(0.0);
     (created > allowed).then_some((created, allowed))
 }
 

@@ -123,6 +123,13 @@ pub(crate) fn simulation(model: Model, scheme: impl Kernel + 'static, dt: f64) -
         mixing: 0,
     };
     let stepper = Box::new(Implicit::new(Box::new(scheme), settings));
-    Simulation::new(model, stepper, Grid { dt, steps: u64::MAX, phase: 0.0, guard: None }, true, None, 1)
-        .unwrap()
+    Simulation::new(
+        model,
+        stepper,
+        Grid { dt, steps: u64::MAX, phase: 0.0, guard: None, floor: 0.0 },
+        true,
+        None,
+        1,
+    )
+    .unwrap()
 }

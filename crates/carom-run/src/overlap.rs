@@ -17,8 +17,8 @@
 //! first row.
 
 use carom_case::{
-    Case, ContactLaw, FormulaSpec, FrictionSpec, MassKind, ObstacleMotion, Overlap, Persistency, Problem,
-    SchemeSpec,
+    BodySpec, Case, ContactLaw, FormulaSpec, FrictionSpec, Law, MassKind, ObstacleMotion, Overlap,
+    Persistency, Problem, SchemeSpec,
 };
 use carom_contact::{Pairing, Rows};
 use carom_mechanics::model::Model;
@@ -38,6 +38,8 @@ const SETTLED: f64 = 1e-10;
 const MOST: u32 = 200;
 /// Gap, relative to L, at which a pair is closed.
 const CLOSED: f64 = 1e-9;
+/// Stretch of a body of small strain by its rotation, over the overlap, that is allowed.
+const SWELLS: f64 = 0.01;
 
 /// A node of a contact inside the body of the other side.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -145,12 +147,68 @@ pub(crate) fn relaxed(
     for stage in 1..=STAGES {
         let model = at(1.0 - f64::from(stage) / f64::from(STAGES))?;
         let most = if stage == STAGES { MOST } else { 1 };
-        before = settle(model, before, step, most, case.newton.tolerance, threads).map_err(&fails)?;
+        before = settle(model, before, step, most, (case.newton.tolerance, floor(case, &start)), threads)
+            .map_err(&fails)?;
+    }
+    if let Some(why) = swells(case, &start, &before.y) {
+        let what = format!("the overlap of contact \"{}\" cannot be relaxed", case.contacts[first].name);
+        let help = "use law = \"saint-venant-kirchhoff\" with the same constants, or a support that prevents the rotation";
+        return Err(vec![Problem::new(format!("contact[{first}].overlap"), what, why, help)]);
     }
     // The carriers of moving obstacles come last.
     let (mut y, from) = (model.initial_position.clone(), &before.y);
     y[..from.len()].copy_from_slice(from);
     Ok(Some(Before { y, v: model.initial_velocity.clone(), pairs: before.pairs }))
+}
+
+/// The energy of round-off: of displacements of 1e-10 L in the stiffest material.
+pub(crate) fn floor(case: &Case, model: &Model) -> f64 {
+    let stiffest = case.materials.iter().map(|m| m.lambda + 2.0 * m.mu).fold(0.0, f64::max);
+    1e-20 * stiffest * model.scale.powi(model.dimension as i32)
+}
+
+/// Why the equilibrium is none, if a body has turned whose strain is that of small displacements:
+/// turned by ω, it is longer by √(1 + ω²) across the axis at no energy, and an overlap vanishes
+/// without pressure.
+fn swells(case: &Case, start: &Model, y: &[f64]) -> Option<String> {
+    let deepest = depths(start, &start.initial_position).concat().into_iter().fold(0.0, f64::max);
+    let is_small = |spec: &&BodySpec| {
+        let law = case.materials.iter().find(|material| material.name == spec.material).map(|m| m.law);
+        law == Some(Law::LinearElastic)
+    };
+    case.bodies.iter().filter(is_small).find_map(|spec| {
+        let part = start.parts.iter().find(|part| part.name == spec.name)?;
+        let turn = rotation(start.dimension, part.of(&start.reference), part.of(y));
+        let stretch = ((1.0 + turn * turn).sqrt() - 1.0) * part.body.mesh().diameter();
+        (stretch > SWELLS * deepest).then(|| {
+            format!(
+                "body \"{}\" turns by {turn:.2e} rad, and linear elasticity, whose strain is that of small displacements, stretches a body that turns at no energy: here by {stretch:.1e}, with an overlap of {deepest:.1e}",
+                spec.name
+            )
+        })
+    })
+}
+
+/// Angle by which points have turned on average about their centre, Σ x × u / Σ |x|²; in space the
+/// length of its vector.
+fn rotation(d: usize, reference: &[f64], y: &[f64]) -> f64 {
+    let count = (reference.len() / d) as f64;
+    let mean = |values: &[f64], i: usize| values.iter().skip(i).step_by(d).sum::<f64>() / count;
+    let from = |values: &[f64]| -> Vec<f64> {
+        let centre: Vec<f64> = (0..d).map(|i| mean(values, i)).collect();
+        values.iter().enumerate().map(|(k, value)| value - centre[k % d]).collect()
+    };
+    let (x, now) = (from(reference), from(y));
+    let mut sum = 0.0;
+    for (i, j) in [(0, 1), (1, 2), (2, 0)].into_iter().filter(|(i, j)| *i.max(j) < d) {
+        let (mut moment, mut square) = (0.0, 0.0);
+        for (x, now) in x.chunks_exact(d).zip(now.chunks_exact(d)) {
+            moment += x[i] * (now[j] - x[j]) - x[j] * (now[i] - x[i]);
+            square += x[i] * x[i] + x[j] * x[j];
+        }
+        sum += (moment / square).powi(2);
+    }
+    sum.sqrt()
 }
 
 /// Steps from rest until nothing moves, or after so many steps, if more than one is allowed.
@@ -159,11 +217,11 @@ fn settle(
     mut before: Before,
     step: f64,
     most: u32,
-    tolerance: f64,
+    (tolerance, floor): (f64, f64),
     threads: usize,
 ) -> Result<Before, String> {
     let rest = before.v.clone();
-    let grid = Grid { dt: step, steps: u64::from(most), phase: 0.0, guard: None };
+    let grid = Grid { dt: step, steps: u64::from(most), phase: 0.0, guard: None, floor: 0.0 };
     let mut simulation = Simulation::new(model, stepper(tolerance)?, grid, true, Some(before), threads)
         .map_err(|rejected| rejected.to_string())?;
     loop {
@@ -171,7 +229,7 @@ fn settle(
         simulation.step().map_err(|stopped| stopped.to_string())?;
         let mut state = simulation.state().clone();
         let strain = state.ledger.strain;
-        if most == 1 || (strain - old).abs() <= SETTLED * strain.abs() {
+        if most == 1 || (strain - old).abs() <= SETTLED * strain.abs() + floor {
             before = Before { y: state.y, v: rest, pairs: state.pairs };
             return Ok(before);
         }

@@ -108,7 +108,7 @@ impl<'a> Setup<'a> {
     /// or the start has no forces or accelerations.
     pub fn start(self) -> Result<Simulation, Problems> {
         if let Some(state) = saved(self.case.initial.as_ref())? {
-            on_the_grid(&state, &grid(self.case))?;
+            on_the_grid(&state, &grid(self.case, 0.0))?;
             return self.resume(state);
         }
         let (case, model) = (self.case, self.build()?);
@@ -130,7 +130,8 @@ impl<'a> Setup<'a> {
         let fallback = fallback(case, &model, self.kernel.as_deref());
         let stepper = stepper(case, &model, self.kernel)?;
         let inertia = !case.time.scheme.is_static();
-        Simulation::new(model, stepper, grid(case), inertia, before, self.threads)
+        let grid = grid(case, overlap::floor(case, &model));
+        Simulation::new(model, stepper, grid, inertia, before, self.threads)
             .map(|simulation| simulation.with_fallback(fallback))
             .map_err(|rejected| vec![no_start(case, placed, &rejected)].into())
     }
@@ -144,7 +145,8 @@ impl<'a> Setup<'a> {
         let model = self.build()?;
         let fallback = fallback(self.case, &model, self.kernel.as_deref());
         let stepper = stepper(self.case, &model, self.kernel)?;
-        let resumed = Simulation::resume(model, stepper, grid(self.case), state, self.threads);
+        let grid = grid(self.case, overlap::floor(self.case, &model));
+        let resumed = Simulation::resume(model, stepper, grid, state, self.threads);
         resumed.map(|simulation| simulation.with_fallback(fallback)).map_err(|other| {
             let why = "a run is resumed from a state of the same case";
             vec![Problem::new("", other.to_string(), why, "give a state of this case")].into()
@@ -190,11 +192,12 @@ fn unfit(kernel: &dyn Kernel, case: &Case) -> Option<Problem> {
     None
 }
 
-fn grid(case: &Case) -> Grid {
+/// `floor`: energy that counts as none.
+fn grid(case: &Case, floor: f64) -> Grid {
     // Load steps create no energy: the difference between works and energies is the error of a sum
     // over few steps.
     let guard = case.time.energy_guard.filter(|_| !case.time.scheme.is_static());
-    Grid { dt: case.time.step, steps: case.time.steps() as u64, phase: case.time.phase, guard }
+    Grid { dt: case.time.step, steps: case.time.steps() as u64, phase: case.time.phase, guard, floor }
 }
 
 /// Whether the formulas of an initial position invert a cell.

@@ -126,7 +126,7 @@ impl Explicit {
             for (i, (before, now)) in start.f_external.iter().zip(&next.f_external).enumerate() {
                 // v_n is a mean of half steps: a load has contributed Δt²/8 f·M⁻¹f to M v·v/2
                 // before its work is recorded.
-                ledger.open += 0.125 * dt * dt * self.inverse_mass[i] * (now * now - before * before);
+                ledger.unbooked += 0.125 * dt * dt * self.inverse_mass[i] * (now * now - before * before);
                 ledger.external_work += dt * start.half_step.velocity[i] * 0.5 * (before + now);
             }
         }
@@ -149,7 +149,7 @@ impl Explicit {
         }
         // Gaps are closed to a tolerance, over which the work of their forces is not known.
         let pressed = |state: &State| state.pairs.iter().flatten().map(|pair| -pair.lambda).sum::<f64>();
-        next.ledger.open += GAP_TOLERANCE * model.scale * (pressed(start) + pressed(next));
+        next.ledger.unbooked += GAP_TOLERANCE * model.scale * (pressed(start) + pressed(next));
         next.ledger.potential = model.potential(&next.y);
         self.book_kinetic(next);
     }

@@ -30,7 +30,7 @@ use crate::contact_update::search;
 use crate::equations::Equations;
 use crate::evaluation::{Evaluation, Iterate};
 use crate::friction::book_states;
-use crate::ledger::{book_kinetic, open_work, work_of_loads};
+use crate::ledger::{Lag, book_kinetic, change_of_loads, work_of_loads};
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
 use crate::settings::Settings;
@@ -134,7 +134,9 @@ impl Stepper for Impulsive {
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
             model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
         }
-        next.ledger.open += open_work(state, &next, &solved.at.increment);
+        let mut lag = Lag::default();
+        lag.add(&equations.stage, false);
+        next.ledger.unbooked -= lag.value() * change_of_loads(state, &next, &solved.at.increment);
         impulses.record(dt, &mut next, &mut pairings);
         // Nodes that arrived later in the step than the prediction are tracked from now on.
         measure_into(model, &next.y, &mut pairings, &mut Vec::new())?;

@@ -109,11 +109,11 @@ pub(super) fn contacts(
                     let (others, allowed) = others(&primary, &before, &secondary, &corners, &reference, 2);
                     primary_facets = Some((primary.shape, primary.facets));
                     let nodes = NodeToFacet::new(nodes, side, detection).with_point(point);
-                    if case.dimension == 1 || detection == Detection::Trajectory {
+                    if case.dimension == 1 || point == ContactPoint::Frozen {
                         Box::new(nodes)
                     } else {
-                        let others = NodeToFacet::new(others, opposite, detection).with_allowed(allowed);
-                        Box::new(BothSides::new(nodes, others))
+                        let others = NodeToFacet::new(others, opposite, Detection::ClosestPoint);
+                        Box::new(BothSides::new(nodes, others.with_allowed(allowed)))
                     }
                 }
                 Err(problem) => {

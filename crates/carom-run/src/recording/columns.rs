@@ -39,7 +39,10 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
             "dissipation",
             "external_work + contact_work + friction_work − (total − total at the start); negative if energy was created",
         ),
-        ("energy_created", "largest rise of total − external_work above its running minimum so far"),
+        (
+            "energy_created",
+            "largest rise of total − external_work above its running minimum so far, beyond work that means over steps have missed since",
+        ),
         (
             "energy_scale",
             "largest kinetic + strain energy so far, or Σ |change of external_work| if that is larger",

@@ -4,6 +4,7 @@
 //!
 //! [`WARNINGS`] is the one table; a rule is a function of the case and its model, or of the record.
 
+mod courses;
 mod elements;
 mod found;
 mod masses;
@@ -24,6 +25,8 @@ pub enum Rule {
     Model(fn(&Case, &Model) -> Vec<Found>),
     /// After it.
     Record(fn(&Case, &Run) -> Vec<Found>),
+    /// Before it, from what is expected, and after it, from what happened.
+    Both(fn(&Case, &Model) -> Vec<Found>, fn(&Case, &Run) -> Vec<Found>),
 }
 
 /// A warning that may be given.
@@ -91,7 +94,7 @@ pub const WARNINGS: [Entry; 11] = [
         id: "undeclared-contact",
         why: "nothing keeps them apart: contact acts only where a [[contact]] declares it",
         advice: "a [[contact]] with between = \"all\", or ending the run before they meet",
-        rule: Rule::Record(record::undeclared_contact),
+        rule: Rule::Both(courses::undeclared_contact, record::undeclared_contact),
     },
     Entry {
         id: "ambiguous-friction",
@@ -131,7 +134,7 @@ impl Entry {
 /// The warnings that a case and its model give before the run.
 pub fn warnings(case: &Case, model: &Model) -> Vec<Warning> {
     let given = |entry: &Entry| match entry.rule {
-        Rule::Model(find) => Some(entry.given(find(case, model))),
+        Rule::Model(find) | Rule::Both(find, _) => Some(entry.given(find(case, model))),
         Rule::Record(_) => None,
     };
     WARNINGS.iter().filter_map(given).flatten().collect()
@@ -140,7 +143,7 @@ pub fn warnings(case: &Case, model: &Model) -> Vec<Warning> {
 /// The warnings that the record of a finished run gives.
 pub(crate) fn warnings_of_record(case: &Case, run: &Run) -> Vec<Warning> {
     let given = |entry: &Entry| match entry.rule {
-        Rule::Record(find) => Some(entry.given(find(case, run))),
+        Rule::Record(find) | Rule::Both(_, find) => Some(entry.given(find(case, run))),
         Rule::Model(_) => None,
     };
     WARNINGS.iter().filter_map(given).flatten().collect()

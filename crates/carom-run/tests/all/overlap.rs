@@ -74,3 +74,44 @@ fn an_overlap_is_refused_by_default() {
     let problems = refused.err().unwrap();
     assert!(problems[0].what.contains("overlap at the start by 1.000000e-3"), "{problems:?}");
 }
+
+/// Of a ring on a rigid core a little larger than its hole. Of linear elasticity, it can turn and
+/// grow by √(1 + ω²) at no energy.
+const CORE: &str = r#"
+dimension = 2
+plane = "strain"
+material = [{ name = "rubber", law = "linear-elastic", density = 1.0, young = 100.0, poisson = 0.3 }]
+[[body]]
+name = "ring"
+material = "rubber"
+element = "T6"
+mesh = { shape = "ring", inner = 1.0, outer = 1.5, center = [0.0, 0.0], size = 0.5 }
+[[contact]]
+name = "fit"
+secondary = "ring.inner"
+primary = { circle = { center = [0.0, 0.0], radius = 1.001 } }
+overlap = "relax"
+[time]
+end = 0.2
+step = 1e-2
+scheme = { kind = "bathe", rho_inf = 0.5 }
+"#;
+
+#[test]
+fn a_fit_that_a_rotation_releases_is_refused() {
+    for size in ["0.5", "0.25"] {
+        let case = case(CORE, &[format!("body.ring.mesh.size={size}")]);
+        let Err(problems) = Setup::new(&case).start() else { panic!("{size}") };
+        let text = problems.to_string();
+        assert!(text.contains("body \"ring\" turns by") && text.contains("saint-venant-kirchhoff"), "{text}");
+        // Lamé: an interference of 1e-3 with E = 100, ν = 0.3, r = 1, 1.5, plane strain.
+        for law in ["saint-venant-kirchhoff", "neo-hookean"] {
+            let sets = [format!("material.rubber.law={law}"), format!("body.ring.mesh.size={size}")];
+            let strain = simulation(CORE, &sets).state().ledger.strain;
+            let (a2, b2) = (1.0, 2.25);
+            let compliance = 1.3 / 100.0 * (a2 * 0.4 + b2) / (b2 - a2);
+            let exact = std::f64::consts::PI * 1e-6 / compliance;
+            assert!((strain / exact - 1.0).abs() < 0.02, "{law} {size}: {strain:e} {exact:e}");
+        }
+    }
+}

@@ -254,10 +254,57 @@ fn one_node_that_carries_a_contact() {
     assert!(!recorded(DISCS, &["time.end=0.2"]).contains(&id));
 }
 
-/// Bodies of a case without any contact, too.
+/// Bodies of a case without any contact, too: what is expected, and what happened.
 #[test]
 fn bodies_that_overlap_without_a_contact() {
-    assert_eq!(recorded(DISCS, &["contact=[]", "time.end=0.1"]), ["undeclared-contact"]);
+    assert_eq!(recorded(DISCS, &["contact=[]", "time.end=0.1"]), ["undeclared-contact"; 2]);
+}
+
+/// Three discs of radius ½: the one on the right flies at that on the left; the third is above.
+const THREE: &str = r#"
+dimension = 2
+material = [{ name = "rubber", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
+body = [
+    { name = "left", material = "rubber", element = "T6", mesh = { shape = "disc", radius = 0.5, center = [0.0, 0.0], size = 0.25 } },
+    { name = "right", material = "rubber", element = "T6", mesh = { shape = "disc", radius = 0.5, center = [2.0, 0.0], size = 0.25 }, velocity = [-1.0, 0.0] },
+    { name = "above", material = "rubber", element = "T6", mesh = { shape = "disc", radius = 0.5, center = [0.0, 5.0], size = 0.25 } },
+]
+[[contact]]
+name = "pair"
+secondary = "left.arc"
+primary = "above.arc"
+[time]
+end = 4.0
+step = 0.01
+scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
+"#;
+
+#[test]
+fn bodies_that_fly_at_each_other_without_a_contact() {
+    let id = "undeclared-contact".to_owned();
+    let meets = |sets: &[&str]| found(THREE, sets).into_iter().find(|(found, _)| *found == id);
+    // They are 1 apart. Extents along 16 directions are those of the discs.
+    let what = meets(&[]).unwrap().1;
+    assert_eq!(what, "bodies \"left\" and \"right\": as they move at the start, they meet at t = 1.00");
+    assert!(meets(&["time.end=0.9"]).is_none());
+    assert!(meets(&["body.right.velocity=[-1.0, 0.9]"]).is_none());
+    assert!(meets(&["body.left.velocity=[-1.0, 0.0]"]).is_none());
+    assert!(meets(&["contact.pair.primary=right.arc"]).is_none());
+    // Falling from 5: the gap of 4 takes √(8/g).
+    let falls = ["contact=[]", "body.above.gravity=[0.0, -8.0]", "body.right.velocity=[0.0, 0.0]"];
+    assert!(
+        meets(&falls)
+            .unwrap()
+            .1
+            .contains("bodies \"left\" and \"above\": as they move at the start, they meet at t = 1.00")
+    );
+    // What a declared contact does to a body is not known: with the third disc, or with a wall.
+    let thrown = ["body.above.mesh.center=[1.0, 5.0]", "body.above.velocity=[0.0, -5.0]"];
+    let middle = "contact.pair.secondary=right.arc";
+    assert!(meets(&[&thrown[..], &[middle, "body.left.mesh.center=[-3.0, 0.0]"]].concat()).is_none());
+    let wall = "contact.pair.primary={ plane = { point = [1.4, 0.0], normal = [1.0, 0.0] } }";
+    assert!(meets(&[middle, wall]).is_none());
+    assert!(meets(&[middle, &wall.replace("1.4", "-4.0")]).is_some());
 }
 
 /// A rubber bar that is stretched by half under its load, by one step of static loading, and free

@@ -10,6 +10,7 @@ mod export;
 mod input;
 mod mesh;
 mod misspelt;
+mod mutants;
 mod new;
 #[cfg(unix)]
 mod report;
