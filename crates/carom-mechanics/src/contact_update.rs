@@ -3,9 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use carom_contact::{
-    ActiveSet, Along, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip, Tangential,
-};
+use carom_contact::{ActiveSet, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip};
 
 use crate::constraints::Constraints;
 use crate::equations::Equations;
@@ -201,21 +199,17 @@ impl ContactUpdate {
         settled: bool,
     ) -> Result<bool, Rejected> {
         let mut changed = false;
-        let constraints = equations.model.contacts.iter().enumerate();
-        for (k, contact) in constraints.filter(|(_, contact)| contact.interface.is_constraint()) {
+        for (k, contact) in equations.model.contacts.iter().enumerate() {
             if contact.friction.is_none() {
                 continue;
             }
-            let slips: Vec<Along> =
-                (0..evaluation.rows[k].len()).map(|p| evaluation.slip_of((k, p))).collect();
-            let pairs = &mut evaluation.at.pairings[k].pairs;
-            let rub = |(pair, slip): (&Pair, Along)| {
-                let Tangential { hold, traction, .. } = pair.tangential;
+            let rub = |(p, pair): (usize, &Pair)| {
                 // One that has just closed has no pressure yet.
-                let cone = equations.laws[k][pair.node].grip(-pair.lambda);
-                (pair.active && pair.lambda != 0.0).then_some(Rub { hold, traction, slip, cone })
+                (pair.active && pair.lambda != 0.0).then(|| equations.rubs(evaluation, (k, p)))
             };
-            let rubs: Vec<Option<Rub>> = pairs.iter().zip(slips).map(rub).collect();
+            let pairs = &evaluation.at.pairings[k].pairs[..evaluation.rows[k].len()];
+            let rubs: Vec<Option<Rub>> = pairs.iter().enumerate().map(rub).collect();
+            let pairs = &mut evaluation.at.pairings[k].pairs;
             let changes =
                 self.holds[k].changes(&rubs, settled).map_err(|cycle| Rejected::StickSlipCycle {
                     contact: contact.name.clone(),
