@@ -183,7 +183,8 @@ impl ContactUpdate {
                 (pairs[p].multiplier, pairs[p].tangential.before) = (0.0, [0.0; 2]);
                 if contact.friction.is_some() {
                     let slip = equations.slip(k, &mut pairs[p], &evaluation.middle, increment);
-                    pairs[p].tangential.hold = Hold::of(slip, GAP_TOLERANCE * model.scale);
+                    let law = &equations.laws[k][pairs[p].node];
+                    pairs[p].tangential.hold = Hold::under(law, slip, GAP_TOLERANCE * model.scale);
                     pairs[p].tangential.traction = [0.0; 2];
                 }
             }
@@ -204,8 +205,10 @@ impl ContactUpdate {
                 continue;
             }
             let rub = |(p, pair): (usize, &Pair)| {
-                // One that has just closed has no pressure yet.
-                (pair.active && pair.lambda != 0.0).then(|| equations.rubs(evaluation, (k, p)))
+                // One that has just closed has no pressure yet; one that slips without friction
+                // goes on to do so.
+                let slips = pair.tangential.hold != Hold::Stick && equations.laws[k][pair.node].is_none();
+                (pair.active && pair.lambda != 0.0 && !slips).then(|| equations.rubs(evaluation, (k, p)))
             };
             let pairs = &evaluation.at.pairings[k].pairs[..evaluation.rows[k].len()];
             let rubs: Vec<Option<Rub>> = pairs.iter().enumerate().map(rub).collect();
