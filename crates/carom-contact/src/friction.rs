@@ -57,6 +57,11 @@ impl Hold {
         if size > tolerance { Self::Slip(slip.map(|s| s / size)) } else { Self::Stick }
     }
 
+    /// The state of a closing pair under a law, from its slip: without friction any slip.
+    pub fn under(law: &Law, slip: Along, tolerance: f64) -> Self {
+        if law.is_none() { Self::Slip([1.0, 0.0]) } else { Self::of(slip, tolerance) }
+    }
+
     /// d; zero in stick.
     pub fn direction(self) -> Along {
         match self {
@@ -128,6 +133,11 @@ impl Law {
     /// Coulomb's law with one coefficient.
     pub const fn coulomb(coefficient: f64) -> Self {
         Self { stick: coefficient, slip: coefficient, decay: 0.0, limit: f64::INFINITY }
+    }
+
+    /// Whether it holds nothing under any pressure: there is no friction.
+    pub fn is_none(&self) -> bool {
+        self.limit == 0.0 || self.stick == 0.0 && self.slip == 0.0
     }
 
     /// Largest traction in stick under a pressure |λ|.

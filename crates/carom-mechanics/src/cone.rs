@@ -118,7 +118,8 @@ impl Closed {
         let of_contacts = model.friction_laws(state.time)?;
         for &(k, p) in &places {
             let contact = &model.contacts[k];
-            laws.push(of_contacts[k].get(state.pairs[k][p].node).copied());
+            let law = of_contacts[k].get(state.pairs[k][p].node).copied();
+            laws.push(law.filter(|law| !law.is_none()));
             if contact.friction.is_none() {
                 (1..model.dimension).for_each(|_| slips.push_open());
                 continue;

@@ -109,9 +109,10 @@ impl Constraints {
             let answer = &evaluation.answers[k][p];
             let mut curvature =
                 derivative_of_direction(equations, evaluation, place, &mut rows, &mut gradient);
-            let hold = evaluation.at.pairings[k].pairs[p].tangential.hold;
+            let pair = &evaluation.at.pairings[k].pairs[p];
             curvature.iter_mut().for_each(|c| *c *= answer.lambda);
-            if contact.friction.is_some() && hold != Hold::Stick {
+            let rubs = equations.laws[k].get(pair.node).is_some_and(|law| !law.is_none());
+            if rubs && pair.tangential.hold != Hold::Stick {
                 equations.slip_curvature_into(evaluation, place, &mut derivatives, &mut curvature);
                 constraints.is_skew = true;
             }

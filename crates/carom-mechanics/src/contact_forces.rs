@@ -67,7 +67,7 @@ impl Equations<'_> {
             self.push_discrete_gradient(k, pair, gap, evaluation)?;
         }
         if contact.friction.is_some() {
-            self.add_friction(k, pair, gap, evaluation)?;
+            self.add_friction(k, pair, gap, !active, evaluation)?;
         }
         if answer.active {
             let p = evaluation.answers[k].len();

@@ -3,9 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use carom_contact::{
-    ActiveSet, Along, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip, Tangential,
-};
+use carom_contact::{ActiveSet, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip};
 
 use crate::constraints::Constraints;
 use crate::equations::Equations;
@@ -185,7 +183,8 @@ impl ContactUpdate {
                 (pairs[p].multiplier, pairs[p].tangential.before) = (0.0, [0.0; 2]);
                 if contact.friction.is_some() {
                     let slip = equations.slip(k, &mut pairs[p], &evaluation.middle, increment);
-                    pairs[p].tangential.hold = Hold::of(slip, GAP_TOLERANCE * model.scale);
+                    let law = &equations.laws[k][pairs[p].node];
+                    pairs[p].tangential.hold = Hold::under(law, slip, GAP_TOLERANCE * model.scale);
                     pairs[p].tangential.traction = [0.0; 2];
                 }
             }
@@ -201,21 +200,19 @@ impl ContactUpdate {
         settled: bool,
     ) -> Result<bool, Rejected> {
         let mut changed = false;
-        let constraints = equations.model.contacts.iter().enumerate();
-        for (k, contact) in constraints.filter(|(_, contact)| contact.interface.is_constraint()) {
+        for (k, contact) in equations.model.contacts.iter().enumerate() {
             if contact.friction.is_none() {
                 continue;
             }
-            let slips: Vec<Along> =
-                (0..evaluation.rows[k].len()).map(|p| evaluation.slip_of((k, p))).collect();
-            let pairs = &mut evaluation.at.pairings[k].pairs;
-            let rub = |(pair, slip): (&Pair, Along)| {
-                let Tangential { hold, traction, .. } = pair.tangential;
-                // One that has just closed has no pressure yet.
-                let cone = equations.laws[k][pair.node].grip(-pair.lambda);
-                (pair.active && pair.lambda != 0.0).then_some(Rub { hold, traction, slip, cone })
+            let rub = |(p, pair): (usize, &Pair)| {
+                // One that has just closed has no pressure yet; one that slips without friction
+                // goes on to do so.
+                let slips = pair.tangential.hold != Hold::Stick && equations.laws[k][pair.node].is_none();
+                (pair.active && pair.lambda != 0.0 && !slips).then(|| equations.rubs(evaluation, (k, p)))
             };
-            let rubs: Vec<Option<Rub>> = pairs.iter().zip(slips).map(rub).collect();
+            let pairs = &evaluation.at.pairings[k].pairs[..evaluation.rows[k].len()];
+            let rubs: Vec<Option<Rub>> = pairs.iter().enumerate().map(rub).collect();
+            let pairs = &mut evaluation.at.pairings[k].pairs;
             let changes =
                 self.holds[k].changes(&rubs, settled).map_err(|cycle| Rejected::StickSlipCycle {
                     contact: contact.name.clone(),

@@ -15,7 +15,8 @@
 //! A pair that slips has q = r(λ, Ṡ) d and is the normal row with the direction ∇g − ∂r/∂|λ| Σ d_α
 //! H_α; one that sticks has rows of its own with the multipliers q, S = 0 or, on a spring, S = (q −
 //! q_s)/k. A spring that slipped in the last step goes on to do so while its stick would exceed r,
-//! whatever a stick could hold.
+//! whatever a stick could hold. Its states change between iterates like all others: from one slip
+//! to the opposite one through stick.
 //!
 //! In the plane d = ±1 is a state. In space it is an unknown, with the unit vector e across it and
 //! the row that nothing slips across it,
@@ -33,7 +34,9 @@
 //! Between steps q acts along H(y_s): in the averaged forces of the next step and in what is
 //! recorded.
 
-use carom_contact::{Along, ContactError, Hold, Law, Pair, Radius, Row, Rows, Tangential, inner, length};
+use carom_contact::{
+    Along, ContactError, Hold, Law, Pair, Radius, Row, Rows, Rub, Tangential, inner, length,
+};
 
 use crate::balance::contact_weights;
 use crate::contact_update::GAP_TOLERANCE;
@@ -166,12 +169,12 @@ impl Equations<'_> {
         let rate = self.rate(part);
         let radius = law.slip(pressure, length(slip) * rate);
         if let Some(stiffness) = self.stick_spring(contact, pair) {
-            let start = self.state.closed(contact, pair.node).map(|old| old.tangential);
             let trial = self.trial(contact, pair, stiffness, slip);
-            let slipped = start.is_some_and(|start| inner(start.hold.direction(), trial) > 0.0);
-            let edge = if slipped { radius.value } else { law.grip(pressure) };
-            pair.tangential.hold = if length(trial) <= edge { Hold::Stick } else { Hold::of(trial, 0.0) };
-            pair.tangential.traction = trial;
+            let tangential = &mut pair.tangential;
+            if inner(tangential.hold.direction(), trial) > 0.0 {
+                tangential.hold = Hold::of(trial, 0.0);
+            }
+            tangential.traction = trial;
         } else if self.model.dimension == 3
             && radius.value == 0.0
             && pair.tangential.hold != Hold::Stick
@@ -184,6 +187,51 @@ impl Equations<'_> {
             pair.tangential.traction = direction.map(|d| d * radius.value);
         }
         Rubbing { direction, radius, rate }
+    }
+
+    /// Traction that a pair on a spring would have in stick, and the one at which it slips: a
+    /// spring that slipped in the last step goes on to do so at its slip rate.
+    fn yields_at(
+        &self,
+        contact: usize,
+        pair: &Pair,
+        stiffness: f64,
+        slip: Along,
+        part: Counted,
+    ) -> (Along, f64) {
+        let trial = self.trial(contact, pair, stiffness, slip);
+        let (law, pressure) = (self.laws[contact][pair.node], (-pair.lambda).max(0.0));
+        let start = self.state.closed(contact, pair.node).map(|old| old.tangential.hold.direction());
+        let slipped = start.is_some_and(|direction| inner(direction, trial) > 0.0);
+        let slips = law.slip(pressure, length(slip) * self.rate(part)).value;
+        (trial, if slipped { slips } else { law.grip(pressure) })
+    }
+
+    /// A closed pair of an iterate as the law sees it. On a spring, what slips is what exceeds its
+    /// stretch at the edge of the cone: an iterate beyond the opposite edge sticks before it slips
+    /// there, since from one edge to the other Newton's method would find no tangent between them.
+    pub(crate) fn rubs(&self, evaluation: &Evaluation, (contact, p): (usize, usize)) -> Rub {
+        let pair = &evaluation.at.pairings[contact].pairs[p];
+        let Tangential { hold, traction, .. } = pair.tangential;
+        let slip = evaluation.slip_of((contact, p));
+        let Some(stiffness) = self.stick_spring(contact, pair) else {
+            let cone = self.laws[contact][pair.node].grip(-pair.lambda);
+            return Rub { hold, traction, slip, cone };
+        };
+        let gap = evaluation.rows[contact].row(p).gap;
+        let part = self.part(contact, pair, gap, &mut Rows::new(self.model.dimension));
+        let (trial, cone) = self.yields_at(contact, pair, stiffness, slip, part);
+        let direction = hold.direction();
+        let beyond = (inner(direction, trial) - cone) / stiffness;
+        Rub { hold, traction: trial, slip: direction.map(|d| d * beyond), cone }
+    }
+
+    /// The state in which a spring begins, by the projection of its traction.
+    fn begin_spring(&self, contact: usize, pair: &mut Pair, slip: Along, part: Counted) {
+        if let Some(stiffness) = self.stick_spring(contact, pair) {
+            let (trial, edge) = self.yields_at(contact, pair, stiffness, slip, part);
+            pair.tangential.hold = if length(trial) <= edge { Hold::Stick } else { Hold::of(trial, 0.0) };
+        }
     }
 
     /// The traction of a pair whose spring of this stiffness would stick.
@@ -221,12 +269,13 @@ impl Equations<'_> {
     }
 
     /// Adds the friction of a pair with this gap: the rows of its slip, the direction of its force,
-    /// and what acts beyond that.
+    /// and what acts beyond that. `begins`: it was open in the iterate before.
     pub(crate) fn add_friction(
         &self,
         contact: usize,
         pair: &mut Pair,
         gap: f64,
+        begins: bool,
         evaluation: &mut Evaluation,
     ) -> Result<(), ContactError> {
         let weight = contact_weights(&self.stage, self.model.contacts[contact].at_the_end).0;
@@ -246,6 +295,9 @@ impl Equations<'_> {
         }
         let part = self.slip_into(contact, pair, gap, middle, &at.increment, slips)?;
         let slip = slip_of(slips, p);
+        if begins {
+            self.begin_spring(contact, pair, slip, part);
+        }
         let Rubbing { direction, radius, .. } = self.rub(contact, pair, slip, part);
         let traction = pair.tangential.traction;
         let mut rest = [0.0; 2];

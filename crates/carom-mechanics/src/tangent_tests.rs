@@ -292,6 +292,7 @@ fn the_whole_tangent_with_springs_in_space_is_the_derivative_of_the_residual() {
     for (k, pair) in closed.enumerate() {
         let cone = if k % 2 == 0 { 0.05 } else { 0.6 } * pair.lambda;
         pair.tangential.before = [0.8 * cone, -0.6 * cone];
+        pair.tangential.hold = if k % 2 == 0 { Hold::Stick } else { Hold::of(pair.tangential.before, 0.0) };
     }
     let equations = equations(sim.model(), &state, &scheme, sim.dt(), state.time + sim.dt());
     let mut tangent = Tangent::from(&equations, Iterate::at_start(&state), 1e-4);

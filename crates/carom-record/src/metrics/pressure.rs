@@ -98,6 +98,15 @@ fn at_rest(run: &Run) -> Option<(Vec<f64>, Vec<f64>)> {
     (!rows.is_empty()).then(|| (places, rows.iter().map(|r| r.pressure).collect()))
 }
 
+/// Tangential coordinate of the resultant pressure at the end of a static run, Σ λᵢ sᵢ/Σ λᵢ.
+pub(crate) fn center(run: &Run) -> Option<f64> {
+    let (places, _) = at_rest(run)?;
+    let forces = || last_rows(run).into_iter().map(|row| row.multiplier);
+    let total = forces().sum::<f64>();
+    let moment = forces().zip(places).map(|(force, s)| force * s).sum::<f64>();
+    (total != 0.0).then(|| moment / total)
+}
+
 /// Smallest pressure of a node at the end of a static run.
 pub(crate) fn smallest(run: &Run) -> Option<f64> {
     extreme(&at_rest(run)?.1, f64::lt).map(|x| x.1)

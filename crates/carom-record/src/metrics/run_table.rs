@@ -5,7 +5,7 @@ use super::pressure;
 use crate::Run;
 
 /// Metrics of the contact pressure at the end of a static run; not defined for dynamic runs.
-pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 5] = [
+pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 6] = [
     (
         d(
             "pressure_min",
@@ -35,6 +35,16 @@ pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 5] = [
             "largest tangential traction at a node in contact at the end of a static run",
         ),
         pressure::largest_traction,
+    ),
+    (
+        d(
+            "pressure_center",
+            Unit::Length,
+            "Σ λᵢ sᵢ/Σ λᵢ",
+            OWN,
+            "coordinate along the contact, across its mean normal, of the resultant pressure at the end of a static run",
+        ),
+        pressure::center,
     ),
     (
         d(

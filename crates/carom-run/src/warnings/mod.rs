@@ -43,7 +43,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 11] = [
+pub const WARNINGS: [Entry; 12] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of a \
@@ -115,6 +115,13 @@ pub const WARNINGS: [Entry; 11] = [
             scheme",
         advice: "persistency = \"project\", a scheme with more damping, another step, or the energy guard, which stops such a run",
         rule: Rule::Record(record::energy_created),
+    },
+    Entry {
+        id: "hidden-energy",
+        why: "the balance of energy as a whole does not show it where friction takes as much: bodies may hop, and \
+              friction may take more than there was",
+        advice: "a scheme with damping at high frequencies or one that conserves energy; a shorter step does not always help",
+        rule: Rule::Record(record::hidden_energy),
     },
 ];
 

@@ -77,3 +77,36 @@ pub(super) fn energy_created(case: &Case, run: &Run) -> Vec<Found> {
     let what = |share: f64| format!("it created {} % of its energy scale", short(100.0 * share));
     share.map(|share| Found { place: "the run".into(), what: what(share) }).into_iter().collect()
 }
+
+/// The same with the work of friction added, which may take what contact and scheme create: the
+/// rise of total − external_work − friction_work above its running minimum, judged against the
+/// energy scale, or friction's work if that is more. Not given where the energy as a whole shows
+/// it.
+pub(super) fn hidden_energy(case: &Case, run: &Run) -> Vec<Found> {
+    let history = &run.history;
+    let columns =
+        ["total", "external_work", "friction_work", "energy_scale"].map(|name| history.column(name));
+    let [Some(total), Some(work), Some(friction), Some(scale)] = columns else { return Vec::new() };
+    if case.time.scheme.is_static() || !energy_created(case, run).is_empty() {
+        return Vec::new();
+    }
+    let (mut lowest, mut most, mut at) = (f64::INFINITY, 0.0, 0);
+    for row in 0..total.len() {
+        let energy = total[row] - work[row] - friction[row];
+        lowest = lowest.min(energy);
+        if energy - lowest > most {
+            (most, at) = (energy - lowest, row);
+        }
+    }
+    let largest =
+        friction.iter().copied().chain(scale.last().copied()).fold(0.0, |a, b| f64::max(a, b.abs()));
+    if most <= MUCH_CREATED * largest {
+        return Vec::new();
+    }
+    let [made, taken] = [most, -friction[at]].map(|energy| short(100.0 * energy / largest));
+    let what = format!(
+        "scheme and contact created {made} % of its energy scale until t = {}, where friction took {taken} %",
+        short(history.times()[at])
+    );
+    vec![Found { place: "the run".into(), what }]
+}

@@ -14,6 +14,7 @@ mod frequencies;
 mod friction;
 mod impact;
 mod kernels;
+mod ledger;
 mod linear;
 mod loads;
 mod meeting;

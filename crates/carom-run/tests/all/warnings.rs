@@ -353,6 +353,19 @@ fn energy_that_a_run_without_guard_creates() {
     assert!(!recorded(IMPACT, &sets[2..]).contains(&id));
 }
 
+/// A cube that slides: with the trapezoidal rule it hops, and friction takes what that creates.
+#[test]
+fn energy_that_friction_hides() {
+    const CUBE: &str = include_str!("../../../../cases/friction/cube.toml");
+    let short = ["body.cube.mesh.cells=[1,1]", "output.fields_every=0", "expect=[]"];
+    let id = "hidden-energy".to_owned();
+    let hops =
+        ["time.scheme={ kind = \"newmark\", beta = 0.25, gamma = 0.5 }", "time.step=5e-4", "time.end=0.8"];
+    let found = recorded(CUBE, &[&short[..], &hops].concat());
+    assert!(found.contains(&id) && !found.contains(&"energy-created".to_owned()), "{found:?}");
+    assert!(!recorded(CUBE, &[&short[..], &["time.end=0.4"]].concat()).contains(&id));
+}
+
 /// A square of two triangles without lateral strain, of which one corner is free: its triangle has
 /// K = ¼ [3 −1; −1 3] (tangential, normal), so that pushed to the right it is singular for μ = 3.
 const CORNER: &str = r#"

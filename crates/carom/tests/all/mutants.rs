@@ -70,7 +70,7 @@ fn mutant(seed: usize) -> String {
         let at = random.below(letters.len());
         match random.below(8) {
             0 => line.clear(),
-            1 => line.push_str(&format!("\n{other}")),
+            1 => *line = format!("{line}\n{other}"),
             2 => *line = other,
             3 if !letters.is_empty() => {
                 letters.remove(at);
