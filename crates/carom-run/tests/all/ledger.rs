@@ -239,13 +239,6 @@ fn booked_works_leave_what_the_scheme_dissipates() {
             for (name, case) in variants(path) {
                 let Some(judged) = judge(&case) else { continue };
                 let Judged { errors: [identity, energies], scale, noise, .. } = judged;
-                println!(
-                    "{name}: {:.1e} {:.1e}, {:.1e}, {}",
-                    identity / scale,
-                    energies / scale,
-                    noise / scale,
-                    judged.rubbed
-                );
                 let closes = identity < 1e-12 * scale + 16.0 * noise && energies < 1e-12 * scale;
                 if !closes {
                     missed
