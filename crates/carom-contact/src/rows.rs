@@ -16,8 +16,6 @@ pub struct Rows {
     gradients: Vec<f64>,
     /// Whether the first node of each row belongs to the primary side.
     reversed: Vec<bool>,
-    /// Share of the first node of each row in the point that faces a facet.
-    shares: Vec<f64>,
 }
 
 /// One row.
@@ -31,8 +29,6 @@ pub struct Row<'a> {
     pub gradient: &'a [f64],
     /// Whether the first node belongs to the primary side and the others to the secondary one.
     pub reversed: bool,
-    /// Share of the first node in the point that faces a facet: 1 where it is a node.
-    pub share: f64,
 }
 
 impl Rows {
@@ -45,7 +41,6 @@ impl Rows {
             nodes: Vec::new(),
             gradients: Vec::new(),
             reversed: Vec::new(),
-            shares: Vec::new(),
         }
     }
 
@@ -71,7 +66,6 @@ impl Rows {
         self.nodes.clear();
         self.gradients.clear();
         self.reversed.clear();
-        self.shares.clear();
     }
 
     /// Adds a row from its nodes with their ∂g/∂y, of which as many components are used as there
@@ -79,7 +73,6 @@ impl Rows {
     pub fn push<const P: usize>(&mut self, gap: f64, nodes: impl IntoIterator<Item = (usize, [f64; P])>) {
         self.gaps.push(gap);
         self.reversed.push(false);
-        self.shares.push(1.0);
         for (node, gradient) in nodes {
             self.nodes.push(node);
             self.gradients.extend_from_slice(&gradient[..self.dimension]);
@@ -97,7 +90,6 @@ impl Rows {
         let Some(gap) = self.gaps.pop() else { return f64::INFINITY };
         self.starts.pop();
         self.reversed.pop();
-        self.shares.pop();
         let end = self.starts.last().copied().unwrap_or(0);
         self.nodes.truncate(end);
         self.gradients.truncate(end * self.dimension);
@@ -108,7 +100,6 @@ impl Rows {
     pub fn push_row(&mut self, row: Row) {
         self.gaps.push(row.gap);
         self.reversed.push(row.reversed);
-        self.shares.push(row.share);
         self.nodes.extend_from_slice(row.nodes);
         self.gradients.extend_from_slice(row.gradient);
         self.starts.push(self.nodes.len());
@@ -145,7 +136,6 @@ impl Rows {
             nodes: &self.nodes[range],
             gradient: &self.gradients[gradients],
             reversed: self.reversed[row],
-            share: self.shares[row],
         }
     }
 
@@ -153,11 +143,6 @@ impl Rows {
     /// one.
     pub(crate) fn reverse_from(&mut self, first: usize) {
         self.reversed[first..].fill(true);
-    }
-
-    /// Marks the last row as that of a point between nodes, of which the first one has this share.
-    pub(crate) fn share_last(&mut self, share: f64) {
-        self.shares.last_mut().into_iter().for_each(|last| *last = share);
     }
 
     /// All rows in order.
@@ -201,10 +186,10 @@ impl Row<'_> {
         }
     }
 
-    /// The gradient of the point that faces a facet, padded with zeros to space.
+    /// The gradient of the first node, padded with zeros to space.
     pub fn first(&self) -> [f64; 3] {
         let d = self.dimension();
-        std::array::from_fn(|i| if i < d { self.gradient[i] / self.share } else { 0.0 })
+        std::array::from_fn(|i| if i < d { self.gradient[i] } else { 0.0 })
     }
 
     /// The primary's outward unit normal, padded with zeros to space: ∂g/∂y of the first node, with
@@ -226,7 +211,7 @@ mod tests {
         rows.push_open();
         assert_eq!(
             rows.row(0),
-            Row { gap: -0.5, nodes: &[3, 1], gradient: &[0.0, 1.0, 0.0, -1.0], reversed: false, share: 1.0 }
+            Row { gap: -0.5, nodes: &[3, 1], gradient: &[0.0, 1.0, 0.0, -1.0], reversed: false }
         );
         assert_eq!(rows.row(0).along(&[0.0, 0.0, 5.0, 2.0, 0.0, 0.0, 7.0, 10.0]), 8.0);
         assert_eq!((rows.len(), rows.row(1).gap, rows.row(1).along(&[])), (2, f64::INFINITY, 0.0));

@@ -127,12 +127,8 @@ pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -
 
 /// The depth that a contact keeps at each of its nodes.
 fn kept_depths(contact: &Contact) -> HashMap<usize, f64> {
-    let mut kept: HashMap<usize, f64> = HashMap::new();
-    for (k, &node) in contact.kinematics.secondary().iter().enumerate() {
-        let deepest = kept.entry(node).or_default();
-        *deepest = deepest.max(contact.kinematics.kept(k));
-    }
-    kept
+    let nodes = contact.kinematics.secondary().iter().enumerate();
+    nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect()
 }
 
 /// Whether every node of a contact has a gap: its primary is rigid, or a point.
@@ -140,8 +136,8 @@ pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
     !contact.itself && contact.facets.len() < 2 || model.dimension == 1
 }
 
-/// Points of the sharp edges of a side in space, of the body `part`. Contact holds them at a small
-/// depth.
+/// Points of the sharp edges of a side in space, of the body `part`. No contact keeps edges outside
+/// between their nodes.
 pub(crate) fn edge_points(
     model: &Model,
     contact: &Contact,

@@ -76,18 +76,12 @@ pub(super) fn contacts(
                     let (before, after) = siblings(case, parts, k, primary.part, Which::Primary);
                     let side = boundary_of(&primary, &[&before[..], &after].concat(), parts);
                     let (of_earlier, of_later) = siblings(case, parts, k, secondary.part, Which::Secondary);
-                    let opposite = boundary_of(&secondary, &[&of_earlier[..], &of_later].concat(), parts);
+                    let opposite = boundary_of(&secondary, &[of_earlier, of_later].concat(), parts);
                     let corners = side.corners(&reference);
                     let (others, allowed) = others(&primary, &before, &secondary, &corners, &reference, 3);
-                    let edges = |of: &Boundary, earlier: &[Side], on: &Side| {
-                        (between_nodes(of, earlier, &reference), ALLOWED * shortest(on, &reference, 3))
-                    };
-                    let (points, depth) = edges(&opposite, &of_earlier, &primary);
-                    let (other_points, other_depth) = edges(&side, &before, &secondary);
                     primary_facets = Some((primary.shape, primary.facets));
-                    let nodes = NodeToPatch::new(nodes, side).with_points(points, depth);
-                    let others = NodeToPatch::new(others, opposite).with_allowed(allowed);
-                    Box::new(BothSides::new(nodes, others.with_points(other_points, other_depth)))
+                    let nodes = NodeToPatch::new(nodes, side);
+                    Box::new(BothSides::new(nodes, NodeToPatch::new(others, opposite).with_allowed(allowed)))
                 }
                 Ok(primary) => {
                     primary_part = Some(primary.part);
@@ -278,27 +272,12 @@ fn others(
     reference: &[f64],
     d: usize,
 ) -> (Vec<usize>, Vec<f64>) {
-    let shortest = shortest(secondary, reference, d);
+    let shortest = lengths(&secondary.facets, reference, d).map(|(_, l)| l).fold(f64::INFINITY, f64::min);
     let mut nodes = without(&primary.nodes, earlier);
     nodes.sort_unstable();
     let allowed = nodes.iter().map(|node| if corners.contains(node) { 0.0 } else { ALLOWED * shortest });
     let allowed = allowed.collect();
     (nodes, allowed)
-}
-
-/// The points of the sharp edges of a side in space that belong to none of these sides.
-fn between_nodes(side: &Boundary, earlier: &[Side], reference: &[f64]) -> Vec<Vec<(usize, f64)>> {
-    let mut points = side.points_of_sharp_edges(reference);
-    let belongs = |point: &[(usize, f64)]| {
-        earlier.iter().any(|side| point.iter().all(|(node, _)| side.nodes.contains(node)))
-    };
-    points.retain(|point| !belongs(point));
-    points
-}
-
-/// The length of the shortest facet of a side in `d` dimensions.
-fn shortest(side: &Side, reference: &[f64], d: usize) -> f64 {
-    lengths(&side.facets, reference, d).map(|(_, length)| length).fold(f64::INFINITY, f64::min)
 }
 
 /// The facets of a side in `d` dimensions with the distances between their first corners.

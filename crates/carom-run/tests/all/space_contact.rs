@@ -163,10 +163,9 @@ fn a_rigid_sphere_of_large_radius_is_a_plane() {
     }
 }
 
-/// Two bars strike each other at right angles, edge on edge, in the middle between their nodes, and
-/// rebound.
+/// Two bars cross at right angles, edge on edge, in the middle between their nodes.
 #[test]
-fn sharp_edges_do_not_cross() {
+fn sharp_edges_do_not_cross_unseen() {
     let bar = |name: &str, axis: &str, height: f64, speed: f64| {
         let box_of = |half: [f64; 3], cells: [usize; 3]| {
             let low = half.map(|x| -x);
@@ -184,31 +183,13 @@ fn sharp_edges_do_not_cross() {
     let text = format!(
         "dimension = 3\n[[material]]\nname = \"m\"\nlaw = \"neo-hookean\"\ndensity = 1.0\nyoung = 100.0\n\
          poisson = 0.3\n{}{}[[contact]]\nname = \"cross\"\nbetween = [\"lower\", \"upper\"]\nself = false\n\
-         [time]\nend = 0.3\nstep = 2e-3\nscheme = {{ kind = \"chung-hulbert\", rho_inf = 0.5 }}\n",
+         [time]\nend = 0.2\nstep = 2e-3\nscheme = {{ kind = \"chung-hulbert\", rho_inf = 0.5 }}\n",
         bar("lower", "x", 0.0, 0.0),
         bar("upper", "y", 0.3, -2.0),
     );
     let mut sim = simulation(&text, &[""; 0]);
-    let start = sim.state().y.clone();
-    // The middle of a ridge lies between two nodes, a third of the bar apart.
-    let ridge = |height: f64, across: usize| -> Vec<usize> {
-        let places = start.as_chunks::<3>().0.iter().enumerate();
-        let on = places.filter(|(_, x)| (x[2] - height).abs() < 1e-9 && x[across].abs() < 0.2);
-        on.map(|(node, _)| 3 * node + 2).collect()
-    };
-    let lower = ridge(0.1 * 2.0_f64.sqrt(), 0);
-    let upper = ridge(0.3 - 0.1 * 2.0_f64.sqrt(), 1);
-    assert!(lower.len() == 2 && upper.len() == 2);
-    let before = momenta(&sim);
-    let (mut least, mut last) = (f64::INFINITY, 0.0);
-    while sim.state().time < 0.3 - 1e-9 {
-        sim.step().unwrap();
-        let height = |dofs: &[usize]| 0.5 * (sim.state().y[dofs[0]] + sim.state().y[dofs[1]]);
-        last = height(&upper) - height(&lower);
-        least = least.min(last);
-    }
-    // An edge may enter by a fiftieth of a facet of 0.2.
-    assert!(least < 0.0 && least > -0.01 && last > 0.01, "{least} {last}");
-    let change = (0..3).map(|i| (momenta(&sim)[i] - before[i]).abs()).fold(0.0, f64::max);
-    assert!(change < 1e-12, "{change:e}");
+    let stopped = (0..100).find_map(|_| sim.step().err()).unwrap();
+    // The ridges are 0.3 − 0.2 √2 apart.
+    assert!((sim.state().time - (0.3 - 0.08_f64.sqrt()) / 2.0).abs() < 0.03, "{}", sim.state().time);
+    assert!(stopped.to_string().contains("sharp edge at node"), "{stopped}");
 }

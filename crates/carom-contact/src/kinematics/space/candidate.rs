@@ -1,11 +1,11 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the nearest one that it was not behind before.
 
-use carom_algebra::Vector;
 use carom_solid::{Bounds, Tree};
 
 use super::crossing::crossing;
 use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
+use super::patch::place;
 use crate::kinematics::{Kinematics, SweptPatch};
 
 /// A node this far behind a facet, relative to its length, at the start of a step has not crossed
@@ -25,7 +25,8 @@ impl NodeToPatch {
         now: &[f64],
         near: &mut Vec<usize>,
     ) {
-        let path: Bounds = [self.position(k, before).0, self.position(k, now).0].iter().collect();
+        let node = self.secondary[k];
+        let path: Bounds = [place(before, node).0, place(now, node).0].iter().collect();
         tree.find_into(&path.grown(NOISE * path.size()), near);
     }
 
@@ -49,14 +50,14 @@ impl NodeToPatch {
         &self,
         swept: &mut SweptPatch,
         near: &[usize],
-        path: [Vector<3>; 2],
+        node: usize,
         before: &[f64],
         now: &[f64],
     ) -> Option<(f64, usize)> {
         let mut first = [None; 2];
         for &facet in near {
             let first = &mut first[usize::from(self.primary.is_of_side(facet))];
-            if let Some(theta) = crossing(swept, self.primary.patch(facet), before, now, path)
+            if let Some(theta) = crossing(swept, self.primary.patch(facet), before, now, node)
                 && first.is_none_or(|(least, _)| theta < least)
             {
                 *first = Some((theta, facet));
@@ -77,10 +78,10 @@ impl NodeToPatch {
         before: &[f64],
         now: &[f64],
     ) -> Option<(usize, [f64; 2])> {
-        let slack = self.slack(place_of);
-        let [start, end] = [before, now].map(|y| self.position(place_of, y));
+        let (node, slack) = (self.secondary[place_of], self.slack(place_of));
+        let [start, end] = [before, now].map(|y| place(y, node));
         let mut closest: Option<(f64, usize, [f64; 2], f64)> = None;
-        let first = self.first(swept, near, [start, end], before, now);
+        let first = self.first(swept, near, node, before, now);
         for &facet in near {
             let patch = self.primary.patch(facet);
             let Some(xi) = patch.closest_point(now, end, REACH) else { continue };

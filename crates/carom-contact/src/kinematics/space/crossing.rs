@@ -25,25 +25,26 @@ pub(super) fn crossing(
     patch: Patch,
     before: &[f64],
     now: &[f64],
-    path: [Vector<3>; 2],
+    node: usize,
 ) -> Option<f64> {
     let mut places = [[Vector::ZERO; Net::POINTS]; 2];
     for (places, y) in places.iter_mut().zip([before, now]) {
         places.iter_mut().zip(patch.nodes).for_each(|(x, &n)| *x = place(y, n));
     }
+    let path = [before, now].map(|y| place(y, node));
     let facet = places.each_ref().map(|places| &places[..patch.nodes.len()]);
     let hit = swept.first(path, facet, SEPARATION * patch.length(before))?;
-    Some(polished(patch, before, now, path, hit).unwrap_or(hit.theta))
+    Some(polished(patch, before, now, node, hit).unwrap_or(hit.theta))
 }
 
 /// Newton's method from an isolated crossing; none if it does not lead to one near it.
-fn polished(patch: Patch, before: &[f64], now: &[f64], path: [Vector<3>; 2], hit: PatchHit) -> Option<f64> {
+fn polished(patch: Patch, before: &[f64], now: &[f64], node: usize, hit: PatchHit) -> Option<f64> {
     let PatchHit { mut theta, mut xi } = hit;
     let lerp = |n: usize, theta: f64| place(before, n) * (1.0 - theta) + place(now, n) * theta;
     for _ in 0..20 {
         let functions = patch.shape.functions(xi);
-        let mut miss = path[0] * (1.0 - theta) + path[1] * theta;
-        let mut relative = path[1] - path[0];
+        let mut miss = lerp(node, theta);
+        let mut relative = place(now, node) - place(before, node);
         let mut tangents = [Vector::ZERO; 2];
         for (k, &n) in patch.nodes.iter().enumerate() {
             let x = lerp(n, theta);

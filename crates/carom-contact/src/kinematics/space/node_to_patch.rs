@@ -45,10 +45,7 @@ pub(super) const NOISE: f64 = 1e-9;
 /// Secondary nodes against a primary side of facets in space.
 #[derive(Debug)]
 pub struct NodeToPatch {
-    /// Nodes; of a point between nodes, the one with the largest share in it.
     pub(super) secondary: Vec<usize>,
-    /// Points between nodes, which follow the nodes: nodes with their shares.
-    points: Vec<Vec<(usize, f64)>>,
     pub(super) primary: Boundary,
     pub(super) hull: Hull,
     /// Depth that each node may have without contact; empty if none may have any.
@@ -83,76 +80,7 @@ impl NodeToPatch {
         let apart = Apart::new(both, 3, hull.weight());
         let swept = SweptPatch::new(primary.shape());
         let tools = Mutex::new(Tools { tree: Tree::default(), apart, swept });
-        Self { secondary, points: Vec::new(), primary, hull, allowed: Vec::new(), kept: Vec::new(), tools }
-    }
-
-    /// The same with points of edges besides the nodes, as nodes with shares that sum to one; none
-    /// may be further inside than `allowed`.
-    #[must_use]
-    pub fn with_points(mut self, points: Vec<Vec<(usize, f64)>>, allowed: f64) -> Self {
-        self.allowed.resize(self.secondary.len(), 0.0);
-        self.allowed.resize(self.secondary.len() + points.len(), allowed);
-        let largest = |point: &Vec<(usize, f64)>| {
-            let of = |most: (usize, f64), next: &(usize, f64)| if next.1 > most.1 { *next } else { most };
-            point.iter().fold((0, 0.0), of).0
-        };
-        self.secondary.extend(points.iter().map(largest));
-        let all = self.primary.nodes().iter().chain(&self.secondary).copied();
-        let all = all.chain(points.iter().flatten().map(|(node, _)| *node));
-        let tools = self.tools.get_mut().unwrap_or_else(PoisonError::into_inner);
-        tools.apart = Apart::new(all, 3, self.hull.weight());
-        self.points = points;
-        self
-    }
-
-    /// The shares of nodes in a point between nodes; none of a node.
-    fn shares(&self, k: usize) -> Option<&[(usize, f64)]> {
-        let nodes = self.secondary.len() - self.points.len();
-        k.checked_sub(nodes).map(|point| &self.points[point][..])
-    }
-
-    /// Position of a secondary node, or point, given by index.
-    pub(super) fn position(&self, k: usize, y: &[f64]) -> Vector<3> {
-        match self.shares(k) {
-            None => place(y, self.secondary[k]),
-            Some(shares) => {
-                shares.iter().fold(Vector::ZERO, |sum, &(node, share)| sum + place(y, node) * share)
-            }
-        }
-    }
-
-    /// Adds the row of a pair from its gap and the slopes of its point and of the facet's nodes.
-    fn push(
-        &self,
-        pair: &Pair,
-        facet: &[usize],
-        gap: f64,
-        mut slopes: impl Iterator<Item = Vector<3>>,
-        rows: &mut Rows,
-    ) {
-        let of_point = slopes.next().unwrap_or(Vector::ZERO);
-        let own = [(self.secondary[pair.node], 1.0)];
-        let shares = self.shares(pair.node).unwrap_or(&own);
-        let of_nodes = shares.iter().map(|&(node, share)| (node, (of_point * share).0));
-        rows.push(gap, of_nodes.chain(facet.iter().zip(slopes).map(|(&node, slope)| (node, slope.0))));
-        rows.share_last(shares[0].1);
-    }
-
-    /// A matrix over a point and `count` nodes of a facet, 3 × 3 blocks, becomes one over the nodes
-    /// of the point and those of the facet: P applied from both sides.
-    fn spread(&self, k: usize, count: usize, matrix: &mut [f64]) {
-        let Some(shares) = self.shares(k) else { return };
-        let (small, large) = (3 * (1 + count), 3 * (shares.len() + count));
-        let narrow = matrix[..small * small].to_vec();
-        let of = |p: usize| match p.checked_sub(shares.len()) {
-            None => (0, shares[p].1),
-            Some(node) => (1 + node, 1.0),
-        };
-        for (row, column) in (0..large).flat_map(|row| (0..large).map(move |column| (row, column))) {
-            let ((p, by_row), (q, by_column)) = (of(row / 3), of(column / 3));
-            let entry = narrow[(3 * p + row % 3) * small + 3 * q + column % 3];
-            matrix[row * large + column] = by_row * by_column * entry;
-        }
+        Self { secondary, primary, hull, allowed: Vec::new(), kept: Vec::new(), tools }
     }
 
     /// The same with a depth for each node that it may have without contact.
@@ -171,7 +99,7 @@ impl NodeToPatch {
     }
 
     fn closest(&self, pair: &Pair, y: &[f64]) -> Option<[f64; 2]> {
-        let (patch, from) = (self.primary.patch(pair.facet), self.position(pair.node, y));
+        let (patch, from) = (self.primary.patch(pair.facet), place(y, self.secondary[pair.node]));
         let start = [pair.xi, pair.eta];
         patch.closest_from(y, from, start, WANDER).or_else(|| patch.closest_point(y, from, REACH))
     }
@@ -198,7 +126,7 @@ impl NodeToPatch {
         if patch.furthest(xi).1 <= PAST {
             return Next::Stay;
         }
-        let from = self.position(pair.node, y);
+        let from = place(y, self.secondary[pair.node]);
         let own = patch.nearest(y, from);
         let mut best = None;
         for facet in self.primary.ring(pair.facet) {
@@ -286,12 +214,11 @@ impl Kinematics for NodeToPatch {
     }
 
     fn stencil(&self) -> usize {
-        let most = self.points.iter().map(Vec::len).max().unwrap_or(1);
-        most + self.primary.shape().nodes()
+        1 + self.primary.shape().nodes()
     }
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
-        let from = self.position(node, y);
+        let from = place(y, self.secondary[node]);
         let gap = |facet: usize| {
             let xi = self.primary.patch(facet).closest_point(y, from, PAST)?;
             Some(self.gap(facet, xi, from, y))
@@ -345,7 +272,7 @@ impl Kinematics for NodeToPatch {
                         if pair.active {
                             events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
                         }
-                        let gap = self.gap(facet, [xi, eta], self.position(pair.node, now), now);
+                        let gap = self.gap(facet, [xi, eta], place(now, node), now);
                         changed |= pair.active || gap + self.slack(pair.node) < 0.0;
                         left.insert(pair.node, pair.facet);
                         held.retain(|&known| known != (pair.node, pair.facet));
@@ -376,11 +303,11 @@ impl Kinematics for NodeToPatch {
             return changed;
         }
         self.update(tree, *margin, before, now);
-        let ends = |k: usize| [self.position(k, before).0, self.position(k, now).0];
-        let paths: Bounds = (0..self.secondary.len()).flat_map(ends).collect();
+        let ends = |&node: &usize| [place(before, node).0, place(now, node).0];
+        let paths: Bounds = self.secondary.iter().flat_map(ends).collect();
         apart.searched([&tree.bounds(), &paths.grown(NOISE * paths.size())], [*margin, NOISE], now);
         let (known, mut next, mut near) = (pairs.len(), 0, Vec::new());
-        for k in 0..self.secondary.len() {
+        for (k, &node) in self.secondary.iter().enumerate() {
             let first = next;
             while next < known && pairs[next].node == k {
                 next += 1;
@@ -393,7 +320,7 @@ impl Kinematics for NodeToPatch {
                 continue;
             }
             let Some((facet, [xi, eta])) = self.candidate(swept, &near, k, before, now) else { continue };
-            let gap = self.gap(facet, [xi, eta], self.position(k, now), now) + self.slack(k);
+            let gap = self.gap(facet, [xi, eta], place(now, node), now) + self.slack(k);
             if self.allowed(k) > 0.0 && gap >= 0.0 {
                 continue;
             }
@@ -411,8 +338,7 @@ impl Kinematics for NodeToPatch {
         let mut near = Vec::new();
         let mut met = |&k: &usize| {
             self.find_into(tree, k, before, now, &mut near);
-            let path = [before, now].map(|y| self.position(k, y));
-            let first = self.first(swept, &near, path, before, now);
+            let first = self.first(swept, &near, self.secondary[k], before, now);
             let (theta, _) = first.filter(|&(_, facet)| self.primary.is_of_side(facet))?;
             (self.slack(k) == 0.0).then(|| theta.clamp(0.0, 1.0))
         };
@@ -455,42 +381,42 @@ impl Kinematics for NodeToPatch {
             return Ok(());
         }
         let patch = self.primary.patch(pair.facet);
-        let gap = PatchGap::new(patch, y, self.position(pair.node, y), xi);
+        let gap = PatchGap::new(patch, y, place(y, node), xi);
         let a = gap.regularity();
         if a <= 0.0 || !a.is_finite() {
             return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a });
         }
+        let nodes = std::iter::once(&node).chain(patch.nodes);
         let slopes = gap.gradient(patch.nodes.len());
-        self.push(pair, patch.nodes, gap.distance + self.slack(pair.node), slopes, rows);
+        rows.push(gap.distance + self.slack(pair.node), nodes.zip(slopes).map(|(&n, slope)| (n, slope.0)));
         Ok(())
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        let (patch, from) = (self.primary.patch(pair.facet), self.position(pair.node, y));
+        let (patch, from) = (self.primary.patch(pair.facet), place(y, self.secondary[pair.node]));
         PatchGap::new(patch, y, from, [pair.xi, pair.eta]).curvature_into(patch.nodes.len(), curvature);
-        self.spread(pair.node, patch.nodes.len(), curvature);
     }
 
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let (node, patch) = (self.secondary[pair.node], self.primary.patch(pair.facet));
-        let gap = PatchGap::new(patch, y, self.position(pair.node, y), [pair.xi, pair.eta]);
+        let gap = PatchGap::new(patch, y, place(y, node), [pair.xi, pair.eta]);
         let a = gap.regularity();
         if a <= 0.0 || !a.is_finite() {
             return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a });
         }
         for along in tangents(gap.normal(), pair.tangential.tangents) {
+            let nodes = std::iter::once(&node).chain(patch.nodes);
             let slopes = gap.slip(along, patch.nodes.len());
-            self.push(pair, patch.nodes, 0.0, slopes, rows);
+            rows.push(0.0, nodes.zip(slopes).map(|(&n, slope)| (n, slope.0)));
         }
         Ok(())
     }
 
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
-        let (patch, from) = (self.primary.patch(pair.facet), self.position(pair.node, y));
+        let (patch, from) = (self.primary.patch(pair.facet), place(y, self.secondary[pair.node]));
         let gap = PatchGap::new(patch, y, from, [pair.xi, pair.eta]);
         let along = tangents(gap.normal(), pair.tangential.tangents)[tangent];
         let second = patch.shape.second([pair.xi, pair.eta]);
         gap.slip_derivative_into(along, &second, patch.nodes.len(), matrix);
-        self.spread(pair.node, patch.nodes.len(), matrix);
     }
 }
