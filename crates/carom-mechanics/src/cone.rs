@@ -14,7 +14,7 @@
 //! with q = −sμp. So the solution depends continuously on μ, and tangential impulses that slip are
 //! μ times the normal ones.
 
-use carom_contact::{Along, Hold, Law, Row, Rows, Rub, StickSlip, Tangential, inner, length};
+use carom_contact::{Along, Hold, Law, Pair, Row, Rows, Rub, StickSlip, Tangential, inner, length};
 
 use crate::constraints::Constraints;
 use crate::independent::{DEPENDENT, independent_above, slip_remainder};
@@ -207,16 +207,11 @@ impl Closed {
         self.solve(model, state, right, system, (ways, &laws))
     }
 
-    /// The direction in which each pair slipped in the step, but those that were not closed before.
-    pub(crate) fn directions(
-        &self,
-        model: &Model,
-        state: &State,
-        activations: &[(usize, usize)],
-    ) -> Vec<Option<Along>> {
+    /// The direction in which each pair slipped in the step, but those not closed `before`.
+    pub(crate) fn directions(&self, state: &State, before: &[Vec<Pair>]) -> Vec<Option<Along>> {
         let of = |&(k, p): &(usize, usize)| {
             let pair = &state.pairs[k][p];
-            let is_new = activations.contains(&(k, model.contacts[k].kinematics.secondary()[pair.node]));
+            let is_new = !before[k].iter().any(|old| old.active && old.node == pair.node);
             match pair.tangential.hold {
                 Hold::Slip(direction) if !is_new => Some(direction),
                 _ => None,

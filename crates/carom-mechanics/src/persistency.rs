@@ -48,7 +48,7 @@ pub(crate) fn project(
     let slips = closed.slip_rates(&state.v);
     let stopping: Vec<Along> = slips.iter().map(|rate| rate.map(|rate| -rate)).collect();
     let right = Right { forces: &vec![0.0; dofs], gaps: &closing, slips: &stopping };
-    let slid = closed.directions(model, state, activations);
+    let slid = closed.directions(state, impact.pairs);
     let jump = closed.impulse(model, state, &right, system)?;
     for i in (0..dofs).filter(|&i| !model.massless[i]) {
         state.v[i] += jump.x[i];

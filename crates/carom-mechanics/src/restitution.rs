@@ -14,7 +14,7 @@
 //! law for the impulse (`cone.rs`): what it takes is not owed. Which nodes stick depends on f,
 //! which is iterated.
 
-use carom_contact::{Along, Hold, Row, Tangential, inner};
+use carom_contact::{Along, Hold, Pair, Row, Tangential, inner};
 
 use crate::active_rows::{measure, pressing};
 use crate::cone::{Closed, Right};
@@ -35,6 +35,8 @@ pub(crate) struct Impact<'a> {
     pub dt: f64,
     /// Velocities at its start.
     pub velocity: &'a [f64],
+    /// Pairs of each contact at its start.
+    pub pairs: &'a [Vec<Pair>],
     /// The gaps at its start of pairs that closed in it: (contact, pair), gap.
     pub closed: Vec<((usize, usize), f64)>,
 }

@@ -136,7 +136,7 @@ fn of_statics(model: &Model, before: &State, now: &State) -> f64 {
 }
 
 /// Number of steps of a case.
-const STEPS: u64 = 8;
+const STEPS: u64 = 16;
 
 /// What was found over the first steps of a case.
 #[derive(Default)]
