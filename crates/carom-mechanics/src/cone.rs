@@ -233,10 +233,10 @@ impl Closed {
         let mut ways = self.ways(state);
         let (rates, still) = (self.slip_rates(&state.v), AT_REST * max_abs(&state.v));
         for (i, way) in ways.iter_mut().enumerate() {
-            let known = slid.get(i).copied().flatten().map(Hold::Slip);
-            let hold = known.unwrap_or_else(|| Hold::of(rates[i], still));
+            let hold = Hold::of(rates[i], still);
             if hold != Hold::Stick {
-                (way.hold, way.is_free) = (hold, false);
+                let known = slid.get(i).copied().flatten().map(Hold::Slip);
+                (way.hold, way.is_free) = (known.unwrap_or(hold), false);
             }
         }
         self.solve(model, state, right, system, (ways, &self.laws))

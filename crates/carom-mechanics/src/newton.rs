@@ -140,6 +140,7 @@ pub(crate) fn solve_stage(
                 residual: [now.measure.residual, enough]
                     .map(|r| r / now.measure.forces.max(f64::MIN_POSITIVE)),
                 gap: Some([now.measure.gap / model.scale, GAP_TOLERANCE]),
+                unbalanced: !is_static && !are_balanced(equations, &now, noise),
             });
         }
         let rows = Constraints::of(equations, &now);

@@ -11,10 +11,10 @@
 //! (`cone.rs`). With a restitution, energy is returned (`restitution.rs`) before the accelerations
 //! are solved for.
 
-use carom_contact::{Along, Row, Rows, inner};
+use carom_contact::{Along, Row, Rows, inner, length};
 
 use crate::active_rows::{measure_all, pressing};
-use crate::cone::{Closed, Right};
+use crate::cone::{AT_REST, Closed, Right};
 use crate::friction::each_slip;
 use crate::independent::independent_rows;
 use crate::ledger::{book_contact_forces, book_kinetic};
@@ -22,6 +22,7 @@ use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::restitution::{Impact, take};
 use crate::state::State;
+use crate::sums::max_abs;
 use crate::system::System;
 
 /// Projects `state`, the end of the step `impact`, if one of the new contacts (contact, node)
@@ -63,8 +64,9 @@ pub(crate) fn project(
 
     // Velocities at the end of a step ring from node to node, its slips do not: a pair slips on in
     // the direction of its slip, unless the impulse turns it round.
-    let turned = slips.iter().zip(&after).map(|(before, after)| inner(*before, *after) <= 0.0);
-    let slid: Vec<Option<Along>> = slid.into_iter().zip(turned).map(|(d, t)| d.filter(|_| !t)).collect();
+    let still = AT_REST * max_abs(&state.v);
+    let goes_on = slips.iter().zip(&after).map(|(a, b)| length(*a) > still && inner(*a, *b) > 0.0);
+    let slid: Vec<Option<Along>> = slid.into_iter().zip(goes_on).map(|(d, on)| d.filter(|_| on)).collect();
 
     let before = state.ledger.kinetic;
     take(model, state, before - model.kinetic(&state.v) + rubbed);

@@ -30,8 +30,9 @@ pub enum Rejected {
     },
     /// Newton did not converge.
     #[error(
-        "Newton's method did not converge in {iterations} iterations: last correction {:.2e} L (allowed: {:.1e}), residual {:.2e} of the sum of forces (allowed: {:.1e}){}",
-        step[0], step[1], residual[0], residual[1], open(*gap)
+        "Newton's method did not converge in {iterations} iterations: last correction {:.2e} L (allowed: {:.1e}), residual {:.2e} of the sum of forces (allowed: {:.1e}){}{}",
+        step[0], step[1], residual[0], residual[1], open(*gap),
+        if *unbalanced && residual[0] <= residual[1] { "; the forces on a body with friction do not balance as a whole" } else { "" }
     )]
     NoConvergence {
         /// Number of iterations.
@@ -42,6 +43,8 @@ pub enum Rejected {
         residual: [f64; 2],
         /// Largest |g|/L of an active constraint, and what is allowed; none without contact.
         gap: Option<[f64; 2]>,
+        /// Whether the resultants of the forces do not balance, which friction requires.
+        unbalanced: bool,
     },
     /// The multipliers of an augmented Lagrangian were not found.
     #[error(

@@ -210,6 +210,7 @@ pub(super) fn solve(
                 step: [step / model.scale, tolerance],
                 residual: [size, allowed].map(|r| r / forces.max(f64::MIN_POSITIVE)),
                 gap: None,
+                unbalanced: false,
             });
         }
         *iterations += 1;
