@@ -179,8 +179,9 @@ pub(crate) fn solve_stage(
             contact.restart();
             work.linear.restart();
             now = begin(equations, before, fallback, &mut effort.events, work)?;
-            // A tangent of the discarded motion misleads.
-            renewal.due |= renewal.made > 0;
+            // A tangent of the discarded motion misleads where it is all that is known; a factor is
+            // corrected by products, and dearer.
+            renewal.due |= renewal.made > 0 && work.system.preconditioner.iterations().is_some();
             step = f64::INFINITY;
             continue;
         }

@@ -77,7 +77,13 @@ fn of_springs(equations: &Equations, now: &Evaluation) -> Vec<f64> {
         if compliance > 0.0 {
             let weight = contact_weights(&equations.stage, model.contacts[k].at_the_end).0;
             let factor = weight * reach / compliance;
-            now.rows[k].row(p).entries().for_each(|(dof, slope)| forces[dof] += factor * slope.abs());
+            // Springs along the tangents are as stiff.
+            let row = now.rows[k].row(p);
+            for (node, slopes) in row.nodes.iter().zip(row.gradient.chunks_exact(model.dimension)) {
+                let length = slopes.iter().map(|slope| slope * slope).sum::<f64>().sqrt();
+                let dofs = &mut forces[node * model.dimension..(node + 1) * model.dimension];
+                dofs.iter_mut().for_each(|force| *force += factor * length);
+            }
         }
     }
     forces
