@@ -40,8 +40,6 @@ const MOST: u32 = 200;
 const CLOSED: f64 = 1e-9;
 /// Stretch of a body of small strain by its rotation, over the overlap, that is allowed.
 const SWELLS: f64 = 0.01;
-/// Displacement, relative to L, whose energy is round-off.
-const ROUND_OFF: f64 = 1e-10;
 
 /// A node of a contact inside the body of the other side.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -149,15 +147,8 @@ pub(crate) fn relaxed(
     for stage in 1..=STAGES {
         let model = at(1.0 - f64::from(stage) / f64::from(STAGES))?;
         let most = if stage == STAGES { MOST } else { 1 };
-        before = settle(
-            model,
-            before,
-            step,
-            most,
-            (case.newton.tolerance, energy_of(ROUND_OFF, case, &start)),
-            threads,
-        )
-        .map_err(&fails)?;
+        before = settle(model, before, step, most, (case.newton.tolerance, floor(case, &start)), threads)
+            .map_err(&fails)?;
     }
     if let Some(why) = swells(case, &start, &before.y) {
         let what = format!("the overlap of contact \"{}\" cannot be relaxed", case.contacts[first].name);
@@ -170,10 +161,10 @@ pub(crate) fn relaxed(
     Ok(Some(Before { y, v: model.initial_velocity.clone(), pairs: before.pairs }))
 }
 
-/// The energy of displacements of a size, relative to L, in the stiffest material.
-pub(crate) fn energy_of(size: f64, case: &Case, model: &Model) -> f64 {
+/// The energy of round-off: of displacements of 1e-10 L in the stiffest material.
+pub(crate) fn floor(case: &Case, model: &Model) -> f64 {
     let stiffest = case.materials.iter().map(|m| m.lambda + 2.0 * m.mu).fold(0.0, f64::max);
-    size * size * stiffest * model.scale.powi(model.dimension as i32)
+    1e-20 * stiffest * model.scale.powi(model.dimension as i32)
 }
 
 /// Why the equilibrium is none, if a body has turned whose strain is that of small displacements:

@@ -15,10 +15,6 @@ use crate::build::{Materials, build, overlaps};
 use crate::initial::{before, given, on_the_grid, saved};
 use crate::overlap;
 
-/// Displacement, relative to L, whose energy the guard does not judge: Newton's method does not
-/// resolve it with its default tolerance.
-const RESOLVED: f64 = 1e-9;
-
 /// A case on its way to a simulation: with how many threads, and with laws and a time integrator of
 /// your own in place of the case's.
 ///
@@ -134,7 +130,7 @@ impl<'a> Setup<'a> {
         let fallback = fallback(case, &model, self.kernel.as_deref());
         let stepper = stepper(case, &model, self.kernel)?;
         let inertia = !case.time.scheme.is_static();
-        let grid = grid(case, overlap::energy_of(RESOLVED, case, &model));
+        let grid = grid(case, overlap::floor(case, &model));
         Simulation::new(model, stepper, grid, inertia, before, self.threads)
             .map(|simulation| simulation.with_fallback(fallback))
             .map_err(|rejected| vec![no_start(case, placed, &rejected)].into())
@@ -149,7 +145,7 @@ impl<'a> Setup<'a> {
         let model = self.build()?;
         let fallback = fallback(self.case, &model, self.kernel.as_deref());
         let stepper = stepper(self.case, &model, self.kernel)?;
-        let grid = grid(self.case, overlap::energy_of(RESOLVED, self.case, &model));
+        let grid = grid(self.case, overlap::floor(self.case, &model));
         let resumed = Simulation::resume(model, stepper, grid, state, self.threads);
         resumed.map(|simulation| simulation.with_fallback(fallback)).map_err(|other| {
             let why = "a run is resumed from a state of the same case";
