@@ -1,6 +1,7 @@
 //! A sparse symmetric matrix of D × D blocks between nodes, both triangles, in single precision: of
 //! a matrix of which only products are needed, and to few digits.
 
+use crate::simd::wide;
 use crate::threads::Threads;
 
 /// Nodes per block of a product.
@@ -82,19 +83,20 @@ impl NodeMatrix {
     fn multiply<const D: usize, const DD: usize>(&self, x: &[f64], out: &mut [f64]) {
         let (x, values) = (x.as_chunks::<D>().0, self.values.as_chunks::<DD>().0);
         self.threads.for_each_block(out.as_chunks_mut::<D>().0, BLOCK, |first, block| {
-            for (range, out) in self.starts[first..].windows(2).zip(block) {
-                let range = range[0]..range[1];
-                let mut sum = [0.0; D];
-                for (&column, a) in self.columns[range.clone()].iter().zip(&values[range]) {
-                    let x = &x[column as usize];
-                    for i in 0..D {
-                        for j in 0..D {
-                            sum[i] += f64::from(a[i * D + j]) * x[j];
+            wide(|| {
+                for (range, out) in self.starts[first..].windows(2).zip(block) {
+                    let range = range[0]..range[1];
+                    // A sum for each entry of the blocks: none waits for another.
+                    let mut sums = [0.0; DD];
+                    for (&column, a) in self.columns[range.clone()].iter().zip(&values[range]) {
+                        let x = &x[column as usize];
+                        for k in 0..DD {
+                            sums[k] += f64::from(a[k]) * x[k % D];
                         }
                     }
+                    *out = std::array::from_fn(|i| sums[i * D..(i + 1) * D].iter().sum());
                 }
-                *out = sum;
-            }
+            });
         });
     }
 }

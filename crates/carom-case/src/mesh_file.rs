@@ -98,16 +98,29 @@ pub(super) fn read(
     };
     if let Some(element) = element.filter(|e| *e != facts.element && e.dimension() == dimension) {
         let what = format!("\"{surface}\" of {name} has {:?} cells, not {element:?}", facts.element);
-        let help = format!(
-            "write element = \"{:?}\", or set Mesh.ElementOrder = {} in Gmsh",
-            facts.element,
-            element.degree()
-        );
+        let (found, wanted) = (facts.element, element.degree());
+        let in_gmsh = if found.degree() == wanted {
+            format!("mesh it with {}", shape(element))
+        } else {
+            format!("set Mesh.ElementOrder = {wanted}")
+        };
+        let help = format!("write element = \"{found:?}\", or {in_gmsh} in Gmsh");
         return wrong(named, what, "the element of a body must be that of its mesh".into(), &help);
     }
     let hash = blake3::hash(&bytes).to_hex().to_string();
     let Facts { nodes, cells, sides, repairs, .. } = facts;
     Some(MeshSpec::File { file, surface, slits, hash, nodes, cells, sides, repairs, parts: 1 })
+}
+
+/// The shape of an element's cells.
+fn shape(element: Element) -> &'static str {
+    match element {
+        Element::L2 | Element::L3 | Element::L4 => "lines",
+        Element::T3 | Element::T6 | Element::T10 => "triangles",
+        Element::Q4 | Element::Q9 => "quadrilaterals",
+        Element::Tet4 | Element::Tet10 | Element::Tet20 => "tetrahedra",
+        Element::Hex8 | Element::Hex27 => "hexahedra",
+    }
 }
 
 /// The file's bytes, or why it cannot be read.

@@ -17,8 +17,8 @@ use crate::preconditioner::Preconditioner;
 use crate::rejected::Rejected;
 use crate::renewal::Point;
 
-/// Cost of assembling a tangent, in solves with it.
-const COST: f64 = 3.0;
+/// Cost of assembling a tangent, in solves with it and evaluations of the residual.
+const COST: f64 = 2.0;
 /// Reduction of the residual by a solve with the tangent, and with the mass.
 const REDUCTION: f64 = 0.01;
 const ROUND_OFF: f64 = 1e-15;

@@ -51,8 +51,8 @@ pub(crate) struct Effort {
     pub iterations: u32,
     /// Events of the pairs.
     pub events: Events,
-    /// The smallest relative singular value of the interface with friction, negative where its
-    /// determinant is; infinite without friction.
+    /// The smallest relative singular value of the interface with friction at the solution, negative
+    /// where its determinant is; infinite without friction.
     pub regularity: f64,
     /// The point of the reused factor.
     pub frozen: FrozenTangent,
@@ -69,7 +69,7 @@ pub(crate) fn solve_stage(
     work: &mut Workspace,
 ) -> Result<(Evaluation, Effort), Rejected> {
     let (model, state, tolerance) = (equations.model, equations.state, settings.tolerance);
-    let mut effort = Effort::default();
+    let mut effort = Effort { regularity: f64::INFINITY, ..Effort::default() };
     let (mass, stiffness) = (equations.mass_factor(), equations.factor_stiffness());
     let cost = work.system.preconditioner.cost();
     let mut renewal = Renewal::new(frozen, [mass, stiffness], settings.tangent != Tangent::Frozen, cost);
@@ -100,6 +100,7 @@ pub(crate) fn solve_stage(
     }
     work.restore_factor(equations, &renewal)?;
     let digits = if is_static { DIGITS } else { 1.0 };
+    let iterates = work.system.preconditioner.iterations().is_some();
     let (mut contact, mut rounds) = (ContactUpdate::new(model), Rounds::new());
     let (mut step, mut ratio, mut grown, mut iteration) = (f64::INFINITY, 1.0_f64, 0, 0);
     loop {
@@ -114,6 +115,18 @@ pub(crate) fn solve_stage(
             && (is_static || are_balanced(equations, &now, noise));
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
         work.trace.push(iterate(equations, &now, iteration, step, changed), &now.y);
+        if changed
+            && iteration == 0
+            && iterates
+            && let Some(fallback) = fallback.take()
+        {
+            // The predictor would be tried at the cost of an iteration.
+            work.spare.put(now);
+            contact.restart();
+            work.linear.restart();
+            now = begin(equations, before, fallback, &mut effort.events, work)?;
+            continue;
+        }
         if settled && !changed {
             if rounds.next(equations, &mut now)? {
                 // A solve of its own, from the solution of the last one.
@@ -123,7 +136,7 @@ pub(crate) fn solve_stage(
                 (step, ratio, grown, iteration) = (f64::INFINITY, 1.0, 0, 0);
                 continue;
             }
-            (effort.frozen, effort.regularity) = (renewal.finish(), contact.regularity);
+            effort.frozen = renewal.finish();
             return Ok((now, effort));
         }
         if changed {
@@ -151,10 +164,9 @@ pub(crate) fn solve_stage(
         let made = renewal.made;
         renewal.due |= full;
         work.factor_for(equations, &now, &rows, &mut renewal)?;
-        if rows.is_skew {
-            let regularity = work.system.preconditioner.regularity().unwrap_or(f64::INFINITY);
-            contact.regularity = contact.regularity.min(regularity);
-        }
+        let regularity = work.system.preconditioner.regularity().filter(|_| rows.is_skew);
+        effort.regularity = regularity.unwrap_or(f64::INFINITY);
+        contact.regularity = contact.regularity.min(effort.regularity);
         let trust = if fallback.is_some() && predicted > 0.0 { TRUST * predicted } else { f64::INFINITY };
         // Limited by the progress of the outer iteration, and by its convergence criterion.
         let pace = if changed { 1.0 } else { ratio };
@@ -181,7 +193,7 @@ pub(crate) fn solve_stage(
             now = begin(equations, before, fallback, &mut effort.events, work)?;
             // A tangent of the discarded motion misleads where it is all that is known; a factor is
             // corrected by products, and dearer.
-            renewal.due |= renewal.made > 0 && work.system.preconditioner.iterations().is_some();
+            renewal.due |= renewal.made > 0 && iterates;
             step = f64::INFINITY;
             continue;
         }

@@ -10,11 +10,12 @@
 //!
 //! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) If the largest pressure is at
 //! an outermost node, the model is one half of a symmetric problem, and c is the coordinate of that
-//! node. Multipliers are recorded as λ/weight, the mean pressure near a node. Of several contacts,
-//! the one with the largest load is used.
+//! node. Multipliers are recorded as λ/weight, the mean pressure near a node; a node without weight,
+//! as the corner of a T6 facet, has none. Of several contacts, the one with the largest load is used.
+//! Places along the contact are those of the plane; in space there are none.
 
 use super::samples::extreme;
-use crate::{ContactRow, Run};
+use crate::{ContactRow, Run, contact_axes};
 
 /// Peak and half-width of the ellipse fitted to pressures at given coordinates.
 ///
@@ -86,50 +87,60 @@ fn last_rows(run: &Run) -> Vec<&ContactRow<'static>> {
     rows.into_iter().filter(|r| r.contact == most).collect()
 }
 
-/// Tangential coordinates and pressures at the end of a static run; none for a dynamic run, or
-/// without contact.
-fn at_rest(run: &Run) -> Option<(Vec<f64>, Vec<f64>)> {
+/// Rows of nodes with a pressure at the end of a static run; none for a dynamic run, or without
+/// contact.
+fn at_rest(run: &Run) -> Option<Vec<&ContactRow<'static>>> {
     let kind = run.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
-    let rows = if kind == Some("static") { last_rows(run) } else { Vec::new() };
-    // Coordinates along the tangent that is orthogonal to the mean normal.
+    let mut rows = if kind == Some("static") { last_rows(run) } else { Vec::new() };
+    rows.retain(|row| row.pressure.is_finite());
+    (!rows.is_empty()).then_some(rows)
+}
+
+/// Coordinates of rows of the plane along the tangent that is orthogonal to the mean normal.
+fn places(run: &Run, rows: &[&ContactRow]) -> Option<Vec<f64>> {
+    if contact_axes(&run.manifest.case) == 3 {
+        return None;
+    }
     let [x, y] = rows.iter().fold([0.0, 0.0], |n, r| std::array::from_fn(|i| n[i] + r.normal[i]));
     let length = f64::hypot(x, y);
-    let places = rows.iter().map(|r| (y * r.point[0] - x * r.point[1]) / length).collect();
-    (!rows.is_empty()).then(|| (places, rows.iter().map(|r| r.pressure).collect()))
+    Some(rows.iter().map(|r| (y * r.point[0] - x * r.point[1]) / length).collect())
+}
+
+fn pressures(rows: &[&ContactRow]) -> Vec<f64> {
+    rows.iter().map(|row| row.pressure).collect()
 }
 
 /// Tangential coordinate of the resultant pressure at the end of a static run, Σ λᵢ sᵢ/Σ λᵢ.
 pub(crate) fn center(run: &Run) -> Option<f64> {
-    let (places, _) = at_rest(run)?;
-    let forces = || last_rows(run).into_iter().map(|row| row.multiplier);
+    let rows = at_rest(run)?;
+    let forces = || rows.iter().map(|row| row.multiplier);
     let total = forces().sum::<f64>();
-    let moment = forces().zip(places).map(|(force, s)| force * s).sum::<f64>();
+    let moment = forces().zip(places(run, &rows)?).map(|(force, s)| force * s).sum::<f64>();
     (total != 0.0).then(|| moment / total)
 }
 
 /// Smallest pressure of a node at the end of a static run.
 pub(crate) fn smallest(run: &Run) -> Option<f64> {
-    extreme(&at_rest(run)?.1, f64::lt).map(|x| x.1)
+    extreme(&pressures(&at_rest(run)?), f64::lt).map(|x| x.1)
 }
 
 /// Largest pressure of a node at the end of a static run.
 pub(crate) fn largest(run: &Run) -> Option<f64> {
-    extreme(&at_rest(run)?.1, f64::gt).map(|x| x.1)
+    extreme(&pressures(&at_rest(run)?), f64::gt).map(|x| x.1)
 }
 
 /// Largest tangential traction of a node at the end of a static run, a force over the weight that
 /// the pressure is one over; none without friction.
 pub(crate) fn largest_traction(run: &Run) -> Option<f64> {
-    at_rest(run)?;
-    let rows = last_rows(run);
+    let rows = at_rest(run)?;
     let tractions = rows.iter().filter(|r| r.friction != "none" && r.multiplier != 0.0);
     tractions.map(|r| (r.traction * r.pressure / r.multiplier).abs()).reduce(f64::max)
 }
 
 /// [`hertz`] of the pressures at the end of a static run.
 pub(crate) fn ellipse(run: &Run) -> Option<(f64, f64)> {
-    let (places, pressures) = at_rest(run)?;
-    hertz(&places, &pressures)
+    let rows = at_rest(run)?;
+    hertz(&places(run, &rows)?, &pressures(&rows))
 }
 
 #[cfg(test)]

@@ -67,8 +67,7 @@ impl Records for Run {
             return value(self).ok_or_else(|| format!("the manifest has no {name}").into());
         }
         if let Some((_, value)) = PRESSURE.iter().find(|(pressure, _)| pressure.name == name) {
-            return value(self)
-                .ok_or_else(|| format!("{name} is defined only for static runs that end in contact").into());
+            return value(self).ok_or_else(|| format!("{name} is defined only for {}", defined(name)).into());
         }
         if let Some((definition, value)) = metrics::of_overlay(self, name) {
             return value.ok_or_else(|| format!("{} is not defined for this record", definition.name).into());
@@ -79,5 +78,17 @@ impl Records for Run {
     fn column(&self, asked: &Asked) -> Result<Rows<'_>, Reason> {
         self.history.column(&asked.column).ok_or_else(|| no_column(&asked.column))?;
         Records::column(&self.history, asked)
+    }
+}
+
+/// The runs for which a metric of pressure is defined.
+fn defined(metric: &str) -> &'static str {
+    match metric {
+        "traction_max" => "static runs that end in contact with friction",
+        "pressure_center" => "static runs in the plane that end in contact",
+        "hertz_peak" | "hertz_half_width" => {
+            "static runs in the plane that end in contact, with pressures that rise to a maximum"
+        }
+        _ => "static runs that end in contact",
     }
 }

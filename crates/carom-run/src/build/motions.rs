@@ -19,8 +19,8 @@ struct Moves {
     by_dof: BTreeMap<usize, usize>,
 }
 
-/// The motions of a case, ascending by dof. A dof that is fixed, or prescribed by two different
-/// formulas, is a problem.
+/// The motions of a case, ascending by dof. A dof that is fixed and moved by anything but 0, or
+/// prescribed by two different formulas, is a problem.
 pub(super) fn motions(
     case: &Case,
     parts: &[BodyInstance],
@@ -82,6 +82,9 @@ impl Moves {
     /// Assigns a formula to a dof; returns a conflicting assignment.
     fn conflict(&mut self, dof: usize, formula: usize, fixed: &[bool]) -> Option<String> {
         let text = |formula: usize| self.formulas[formula].1.text();
+        if fixed[dof] && text(formula).parse::<f64>() == Ok(0.0) {
+            return None;
+        }
         let other = self.by_dof.insert(dof, formula).map(text).filter(|other| *other != text(formula));
         if fixed[dof] { Some("fixed".to_owned()) } else { other.map(|text| format!("moved as {text}")) }
     }

@@ -78,8 +78,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     let suite = Suite::read(&paths, fast)?;
     if suite.items.is_empty() {
-        let help = "give a case or a study that has an [[expect]], or a folder that contains one".to_owned();
-        return Err(Failure::Argument { what: "no expectations found".to_owned(), help });
+        let slow = fast && !Suite::read(&paths, false)?.items.is_empty();
+        let (what, help) = if slow {
+            ("all expectations found are slow, and --fast leaves them out", "leave out --fast")
+        } else {
+            (
+                "no expectations found",
+                "give a case or a study that has an [[expect]], or a folder that contains one",
+            )
+        };
+        return Err(Failure::Argument { what: what.to_owned(), help: help.to_owned() });
     }
     std::fs::create_dir_all(&*directory)?;
     let options = VerifyOptions { jobs, whole: arguments.report, fail_fast: arguments.fail_fast };
