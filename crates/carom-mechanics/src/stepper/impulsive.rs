@@ -14,8 +14,9 @@
 //! ```
 //!
 //! so that P solves a small complementarity problem (`impulses.rs`), exactly, and Newton's method
-//! converges as without contact. Velocities are constrained, not positions: an arriving node
-//! penetrates by up to Δt times its speed, which is recorded as it is.
+//! converges as without contact. K and K⁻¹Gᵀ are kept while corrections shrink well. Velocities are
+//! constrained, not positions: an arriving node penetrates by up to Δt times its speed, which is
+//! recorded as it is.
 
 use carom_contact::{Pairing, Rows, Tangential};
 use carom_time::{Impulse, ImpulseShares, Memory, Stage};
@@ -33,7 +34,7 @@ use crate::friction::book_states;
 use crate::ledger::{Lag, book_kinetic, change_of_loads, work_of_loads};
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
-use crate::settings::Settings;
+use crate::settings::{Settings, Tangent};
 use crate::skins::length;
 use crate::state::State;
 use crate::sums::max_abs;
@@ -44,6 +45,9 @@ use crate::workspace::Workspace;
 
 /// Share of the allowed depth by which a node may sink in a step.
 const SINKS: f64 = 0.1;
+/// Ratio of two corrections above which the next one has a tangent of its own: K⁻¹Gᵀ costs as many
+/// solves as there are impulses.
+const RENEWAL: f64 = 0.1;
 /// Bisections of a Newton step that inverts a cell.
 const BISECTIONS: usize = 8;
 
@@ -183,7 +187,7 @@ pub(super) fn solve(
     let mut correction = vec![0.0; dofs];
     let mut columns = vec![vec![0.0; dofs]; impulses.rows.len()];
     let mut target = impulses.values.clone();
-    let mut step = f64::INFINITY;
+    let (mut step, mut due) = (f64::INFINITY, true);
     work.trace.start();
     let mut now = evaluate(equations, shares, increment, impulses, work)?;
     for iteration in 0.. {
@@ -215,11 +219,14 @@ pub(super) fn solve(
         }
         *iterations += 1;
         let Workspace { system, timings, .. } = work;
-        let point = equations.point(&now.place, &[]);
-        timed(&mut timings.factor, || -> Result<(), Rejected> {
-            system.tangent_at(model, &point, true)?;
-            Ok(system.preconditioner.prepare(model, &none).map(|_| ())?)
-        })?;
+        let renewed = std::mem::replace(&mut due, settings.tangent == Tangent::Full);
+        if renewed {
+            let point = equations.point(&now.place, &[]);
+            timed(&mut timings.factor, || -> Result<(), Rejected> {
+                system.tangent_at(model, &point, true)?;
+                Ok(system.preconditioner.prepare(model, &none).map(|_| ())?)
+            })?;
+        }
         // −r₀: the residual without the impulses.
         for (right, (contact, r)) in right.iter_mut().zip(now.forces.contact.iter().zip(&now.residual)) {
             *right = contact - r;
@@ -227,6 +234,9 @@ pub(super) fn solve(
         timed(&mut timings.solve, || -> Result<(), Rejected> {
             let multipliers = &mut Vec::new();
             system.solve(model, [&right, &[]], &mut correction, multipliers)?;
+            if !renewed {
+                return Ok(());
+            }
             for (row, column) in impulses.rows.rows.iter().zip(&mut columns) {
                 right.fill(0.0);
                 row.add_to(1.0, &mut right);
@@ -240,7 +250,8 @@ pub(super) fn solve(
                 *x += shares.force * impulse * c;
             }
         }
-        step = max_abs(&correction);
+        let last = std::mem::replace(&mut step, max_abs(&correction));
+        due |= step > RENEWAL * last;
         let old = impulses.values.clone();
         let mut length = 1.0;
         for bisection in 0..=BISECTIONS {
