@@ -99,17 +99,18 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
         }
     };
     let is_second = |i: usize| i > 0 && second(kinds, i - 1).is_some();
-    for _ in 0..ATTEMPTS {
-        for _ in 0..SWEEPS {
-            for i in (0..n).filter(|&i| !is_second(i)) {
-                if let Some(other) = second(kinds, i) {
-                    sweep_vector(a, b, kinds, z, [i, other]);
-                    continue;
-                }
-                let value = z[i] - motion(z, i) / a[i * n + i];
-                z[i] = if a[i * n + i] > 0.0 { project(z, i, value) } else { 0.0 };
+    let sweep = |z: &mut [f64]| {
+        for i in (0..n).filter(|&i| !is_second(i)) {
+            if let Some(other) = second(kinds, i) {
+                sweep_vector(a, b, kinds, z, [i, other]);
+                continue;
             }
+            let value = z[i] - motion(z, i) / a[i * n + i];
+            z[i] = if a[i * n + i] > 0.0 { project(z, i, value) } else { 0.0 };
         }
+    };
+    for _ in 0..ATTEMPTS {
+        (0..SWEEPS).for_each(|_| sweep(z));
         let state = |i: usize| match kinds[i] {
             Kind::Tangential { of, coefficient, limit } if second(kinds, i).is_some() || is_second(i) => {
                 let first = i - usize::from(is_second(i));
@@ -178,7 +179,7 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
             return Ok(());
         }
     }
-    Err(LinearError::Inaccurate { size: n, residual: f64::NAN })
+    Err(LinearError::NoStates { forces: n, sweeps: ATTEMPTS * SWEEPS })
 }
 
 /// The point of a disc nearest to a given one.

@@ -21,6 +21,16 @@ pub enum LinearError {
         /// Residual after refinement.
         residual: f64,
     },
+    /// No states of open, stick and slip agree with each other.
+    #[error(
+        "no states of stick and slip agree with each other: {forces} forces, {sweeps} sweeps; use a smaller step or a smaller mu, for a large one there may be none"
+    )]
+    NoStates {
+        /// Forces, normal and tangential.
+        forces: usize,
+        /// Sweeps over them.
+        sweeps: usize,
+    },
     /// Conjugate gradients do not converge.
     #[error(
         "conjugate gradients do not converge: {iterations} iterations reduced the residual of {size} unknowns to {reduction:.1e}; use a smaller step, or solve directly"
