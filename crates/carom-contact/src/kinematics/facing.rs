@@ -77,8 +77,8 @@ impl Surface {
 
     /// Distance of a point along the normal of a facet at ξ.
     pub(super) fn gap(&self, facet: usize, xi: f64, from: Vector<2>, y: Places) -> f64 {
-        let c = self.facet(facet).at(y, xi);
-        (from - c.position).dot(&c.normal)
+        let c = self.facet(facet).seen_from(from, y, xi);
+        -c.position.dot(&c.normal)
     }
 
     /// Whether ξ lies past a facet's end and no blunt joint with the side follows there.

@@ -42,16 +42,16 @@ pub(crate) struct Gap {
 impl Gap {
     /// At the closest point ξ, which follows the positions.
     pub(crate) fn closest(facet: Facet, y: Places, from: Vector<2>, xi: f64) -> Self {
-        let at = facet.at(y, xi);
-        let (gap, kappa) = ((from - at.position).dot(&at.normal), at.normal.dot(&at.second));
+        let at = facet.seen_from(from, y, xi);
+        let (gap, kappa) = (-at.position.dot(&at.normal), at.normal.dot(&at.second));
         let a = at.measure * at.measure - gap * kappa;
         Self { at, shape: facet.shape.at(xi), distance: gap, tau: 0.0, kappa, a }
     }
 
     /// At a fixed ξ.
     pub(crate) fn fixed(facet: Facet, y: Places, from: Vector<2>, xi: f64) -> Self {
-        let at = facet.at(y, xi);
-        let (from_point, a) = (from - at.position, at.measure * at.measure);
+        let at = facet.seen_from(from, y, xi);
+        let (from_point, a) = (-at.position, at.measure * at.measure);
         let tau = from_point.dot(&at.tangent) / a;
         Self { at, shape: facet.shape.at(xi), distance: from_point.dot(&at.normal), tau, kappa: 0.0, a }
     }

@@ -30,10 +30,16 @@ pub(crate) struct FacetPoint {
 impl Facet<'_> {
     /// The facet at ξ.
     pub(crate) fn at(&self, y: Places, xi: f64) -> FacetPoint {
+        self.seen_from(Vector::ZERO, y, xi)
+    }
+
+    /// The facet at ξ with positions relative to a place. Near a facet these are exact differences,
+    /// however far from the origin both are.
+    pub(crate) fn seen_from(&self, from: Vector<2>, y: Places, xi: f64) -> FacetPoint {
         let shape = self.shape.at(xi);
         let (mut position, mut tangent, mut second) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
         for (k, &n) in self.nodes.iter().enumerate() {
-            let x = y.at(n);
+            let x = y.at(n) - from;
             position += x * shape.values[k];
             tangent += x * shape.first[k];
             second += x * shape.second[k];
@@ -50,8 +56,8 @@ impl Facet<'_> {
 
     /// Derivative of half the squared distance, and its derivative a.
     fn distance_slope(&self, y: Places, from: Vector<2>, xi: f64) -> (f64, f64) {
-        let c = self.at(y, xi);
-        let d = from - c.position;
+        let c = self.seen_from(from, y, xi);
+        let d = -c.position;
         (-d.dot(&c.tangent), c.tangent.dot(&c.tangent) - d.dot(&c.second))
     }
 
@@ -88,8 +94,8 @@ impl Facet<'_> {
         }
         let at = |k: usize| reach * (2.0 * k as f64 / SAMPLES as f64 - 1.0);
         // The curve relative to `from` in powers of ξ, up to the cubic one: samples only bracket.
-        let (middle, end) = (self.at(y, 0.0), self.at(y, 1.0));
-        let (p, q, r) = (middle.position - from, middle.tangent, middle.second * 0.5);
+        let (middle, end) = (self.seen_from(from, y, 0.0), self.seen_from(from, y, 1.0));
+        let (p, q, r) = (middle.position, middle.tangent, middle.second * 0.5);
         let s = (end.second - middle.second) * (1.0 / 6.0);
         let slope_at = |xi: f64| {
             let position = p + (q + (r + s * xi) * xi) * xi;
@@ -102,7 +108,7 @@ impl Facet<'_> {
             let slope = slope_at(at(k));
             if last <= 0.0 && slope > 0.0 {
                 let xi = self.bisected(y, from, at(k - 1), at(k));
-                let distance = (from - self.at(y, xi).position).norm();
+                let distance = self.seen_from(from, y, xi).position.norm();
                 if best.is_none_or(|(d, _)| distance < d) {
                     best = Some((distance, xi));
                 }

@@ -40,16 +40,18 @@ pub(super) fn crossing(
 /// Newton's method from an isolated crossing; none if it does not lead to one near it.
 fn polished(patch: Patch, before: &[f64], now: &[f64], node: usize, hit: PatchHit) -> Option<f64> {
     let PatchHit { mut theta, mut xi } = hit;
-    let lerp = |n: usize, theta: f64| place(before, n) * (1.0 - theta) + place(now, n) * theta;
+    // Relative to the node: exact differences, however far from the origin.
+    let [from, to] = [before, now].map(|y| place(y, node));
+    let lerp =
+        |n: usize, theta: f64| (place(before, n) - from) * (1.0 - theta) + (place(now, n) - to) * theta;
     for _ in 0..20 {
         let functions = patch.shape.functions(xi);
-        let mut miss = lerp(node, theta);
-        let mut relative = place(now, node) - place(before, node);
+        let (mut miss, mut relative) = (Vector::ZERO, Vector::ZERO);
         let mut tangents = [Vector::ZERO; 2];
         for (k, &n) in patch.nodes.iter().enumerate() {
             let x = lerp(n, theta);
             miss += x * -functions.values[k];
-            relative += (place(now, n) - place(before, n)) * -functions.values[k];
+            relative += (place(now, n) - to - (place(before, n) - from)) * -functions.values[k];
             (0..2).for_each(|i| tangents[i] += x * functions.slopes[i][k]);
         }
         // miss + relative dθ − τ_α dξ_α = 0

@@ -36,8 +36,8 @@ pub(crate) struct PatchGap {
 impl PatchGap {
     /// At the closest point ξ.
     pub(crate) fn new(patch: Patch, y: &[f64], from: Vector<3>, xi: [f64; 2]) -> Self {
-        let at = patch.at(y, xi);
-        let distance = (from - at.position).dot(&at.normal);
+        let at = patch.seen_from(from, y, xi);
+        let distance = -at.position.dot(&at.normal);
         let bend = at.bend(at.normal);
         let a = at.metric() - bend * distance;
         Self { at, functions: patch.shape.functions(xi), distance, bend, a }

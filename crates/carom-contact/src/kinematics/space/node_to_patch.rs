@@ -94,8 +94,8 @@ impl NodeToPatch {
     }
 
     pub(super) fn gap(&self, facet: usize, xi: [f64; 2], from: Vector<3>, y: &[f64]) -> f64 {
-        let at = self.primary.patch(facet).at(y, xi);
-        (from - at.position).dot(&at.normal)
+        let at = self.primary.patch(facet).seen_from(from, y, xi);
+        -at.position.dot(&at.normal)
     }
 
     fn closest(&self, pair: &Pair, y: &[f64]) -> Option<[f64; 2]> {

@@ -117,6 +117,12 @@ impl Patch<'_> {
 
     /// The facet at ξ.
     pub(crate) fn at(&self, y: &[f64], xi: [f64; 2]) -> PatchPoint {
+        self.seen_from(Vector::ZERO, y, xi)
+    }
+
+    /// The facet at ξ with positions relative to a place. Near a facet these are exact differences,
+    /// however far from the origin both are.
+    pub(crate) fn seen_from(&self, from: Vector<3>, y: &[f64], xi: [f64; 2]) -> PatchPoint {
         let functions = self.shape.functions(xi);
         let second = self.shape.second(xi);
         let mut at = PatchPoint {
@@ -126,7 +132,7 @@ impl Patch<'_> {
             normal: Vector::ZERO,
         };
         for (k, &node) in self.nodes.iter().enumerate() {
-            let x = place(y, node);
+            let x = place(y, node) - from;
             at.position += x * functions.values[k];
             (0..2).for_each(|i| at.tangents[i] += x * functions.slopes[i][k]);
             (0..3).for_each(|i| at.second[i] += x * second[i][k]);
@@ -136,10 +142,11 @@ impl Patch<'_> {
         at
     }
 
-    /// The place at ξ.
-    fn position(&self, y: &[f64], xi: [f64; 2]) -> Vector<3> {
+    /// The place at ξ relative to another one.
+    fn offset(&self, from: Vector<3>, y: &[f64], xi: [f64; 2]) -> Vector<3> {
         let values = self.shape.functions(xi).values;
-        self.nodes.iter().zip(values).fold(Vector::ZERO, |sum, (&n, value)| sum + place(y, n) * value)
+        let nodes = self.nodes.iter().zip(values);
+        nodes.fold(Vector::ZERO, |sum, (&n, value)| sum + (place(y, n) - from) * value)
     }
 
     /// Distance between its first corners.
@@ -158,8 +165,8 @@ impl Patch<'_> {
     ) -> Option<[f64; 2]> {
         let mut xi = start;
         for _ in 0..STEPS {
-            let at = self.at(y, xi);
-            let d = from - at.position;
+            let at = self.seen_from(from, y, xi);
+            let d = -at.position;
             let a = at.metric() - at.bend(d);
             if !is_positive(&a) {
                 return None;
@@ -198,7 +205,7 @@ impl Patch<'_> {
             for j in 0..=count {
                 let [s, t] = [i, j].map(|k| k as f64 / SAMPLES as f64);
                 let xi = if self.corners() == 3 { [s, t] } else { [2.0 * s - 1.0, 2.0 * t - 1.0] };
-                let d = from - self.position(y, xi);
+                let d = self.offset(from, y, xi);
                 let square = d.dot(&d);
                 if square < best.1 {
                     best = (xi, square);
@@ -210,7 +217,7 @@ impl Patch<'_> {
 
     /// The nearest point of the facet with its edges and corners.
     pub(crate) fn nearest(&self, y: &[f64], from: Vector<3>) -> Nearest {
-        let distance = |xi: [f64; 2]| (from - self.position(y, xi)).norm();
+        let distance = |xi: [f64; 2]| self.offset(from, y, xi).norm();
         let inside = self.closest_point(y, from, 0.0).map(|xi| Nearest {
             xi,
             at: Feature::Inside,
@@ -240,9 +247,9 @@ impl Patch<'_> {
         let (nodes, count) = self.shape.edge(edge);
         let slope = |s: f64| {
             let line = line_shape(count, 2.0 * s - 1.0);
-            let (mut d, mut first, mut second) = (from, Vector::ZERO, Vector::ZERO);
+            let (mut d, mut first, mut second) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
             for (k, &node) in nodes[..count].iter().enumerate() {
-                let x = place(y, self.nodes[node]);
+                let x = place(y, self.nodes[node]) - from;
                 d += x * -line.values[k];
                 first += x * (2.0 * line.first[k]);
                 second += x * (4.0 * line.second[k]);
