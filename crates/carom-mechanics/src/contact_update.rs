@@ -14,8 +14,6 @@ use crate::system::System;
 use crate::timings::timed;
 use crate::workspace::Workspace;
 
-/// Penetration, as a fraction of L, that counts as contact.
-pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
 /// Gap, as a fraction of L, of nodes in contact before the first load step.
 const INITIAL_GAP: f64 = 1e-9;
 
@@ -89,8 +87,8 @@ pub(crate) struct ContactUpdate {
 impl ContactUpdate {
     /// The initial state for a stage.
     pub(crate) fn new(model: &Model) -> Self {
-        let set = |contact: &Contact| ActiveSet::new(GAP_TOLERANCE * model.scale, contact.within);
-        let hold = |contact: &Contact| StickSlip::new(GAP_TOLERANCE * model.scale, contact.within);
+        let set = |contact: &Contact| ActiveSet::new(model.gap_tolerance, contact.within);
+        let hold = |contact: &Contact| StickSlip::new(model.gap_tolerance, contact.within);
         Self {
             sets: model.contacts.iter().map(set).collect(),
             holds: model.contacts.iter().map(hold).collect(),
@@ -184,7 +182,7 @@ impl ContactUpdate {
                 if contact.friction.is_some() {
                     let slip = equations.slip(k, &mut pairs[p], &evaluation.middle, increment);
                     let law = &equations.laws[k][pairs[p].node];
-                    pairs[p].tangential.hold = Hold::under(law, slip, GAP_TOLERANCE * model.scale);
+                    pairs[p].tangential.hold = Hold::under(law, slip, model.gap_tolerance);
                     pairs[p].tangential.traction = [0.0; 2];
                 }
             }
@@ -261,7 +259,7 @@ pub(crate) fn check_satisfiable(equations: &Equations, evaluation: &Evaluation) 
     let gaps: BTreeSet<_> = gaps.map(|(place, _)| *place).collect();
     for (k, p) in evaluation.pressing().filter(|place| !gaps.contains(place)) {
         let (contact, depth) = (&model.contacts[k], -evaluation.rows[k].row(p).gap);
-        if contact.interface.is_constraint() && depth > GAP_TOLERANCE * model.scale {
+        if contact.interface.is_constraint() && depth > model.gap_tolerance {
             let node = contact.kinematics.secondary()[evaluation.at.pairings[k].pairs[p].node];
             return Err(Rejected::Overconstrained { contact: contact.name.clone(), node, depth });
         }

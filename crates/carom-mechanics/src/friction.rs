@@ -39,7 +39,6 @@ use carom_contact::{
 };
 
 use crate::balance::contact_weights;
-use crate::contact_update::GAP_TOLERANCE;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
 use crate::model::{Contact, Model, NoValue};
@@ -324,7 +323,7 @@ impl Equations<'_> {
 
     /// Factor of a slip that is prevented, as a gap: of one across a slip, its angle counts too.
     pub(crate) fn weight_of_slip(&self, pair: &Pair, slip: Along) -> f64 {
-        let gap = GAP_TOLERANCE * self.model.scale;
+        let gap = self.model.gap_tolerance;
         let turns = pair.tangential.hold != Hold::Stick;
         if turns { (gap / (ANGLE * length(slip) + ROUND_OFF * gap)).max(1.0) } else { 1.0 }
     }

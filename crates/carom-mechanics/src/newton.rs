@@ -12,9 +12,7 @@ use carom_contact::inner;
 
 use crate::augmented;
 use crate::constraints::Constraints;
-use crate::contact_update::{
-    ContactUpdate, Events, GAP_TOLERANCE, activate_initial, check_satisfiable, search,
-};
+use crate::contact_update::{ContactUpdate, Events, activate_initial, check_satisfiable, search};
 use crate::equations::Equations;
 use crate::evaluation::{Evaluation, Iterate, Measure};
 use crate::linear_problem::{Correction, Goal};
@@ -110,8 +108,8 @@ pub(crate) fn solve_stage(
         let enough = DIGITS * tolerance * now.measure.forces + noise;
         let settled = step * if is_static { 1.0 } else { ratio.min(1.0) } <= tolerance * model.scale
             && now.measure.residual <= enough
-            && (now.measure.gap <= GAP_TOLERANCE * model.scale
-                || now.measure.held && Constraints::gap(equations, &now) <= GAP_TOLERANCE * model.scale)
+            && (now.measure.gap <= model.gap_tolerance
+                || now.measure.held && Constraints::gap(equations, &now) <= model.gap_tolerance)
             && (is_static || are_balanced(equations, &now, noise));
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
         work.trace.push(iterate(equations, &now, iteration, step, changed), &now.y);
@@ -152,7 +150,7 @@ pub(crate) fn solve_stage(
                 step: [step / model.scale, tolerance],
                 residual: [now.measure.residual, enough]
                     .map(|r| r / now.measure.forces.max(f64::MIN_POSITIVE)),
-                gap: Some([now.measure.gap / model.scale, GAP_TOLERANCE]),
+                gap: Some([now.measure.gap, model.gap_tolerance].map(|gap| gap / model.scale)),
                 unbalanced: !is_static && !are_balanced(equations, &now, noise),
             });
         }

@@ -5,7 +5,7 @@ use carom_solid::{Law, LoadedSide, Mesh, body};
 use carom_time::Kernel;
 
 use crate::grid::Grid;
-use crate::model::{BodyInstance, Contact, Loads, Mass, Model, Motions};
+use crate::model::{BodyInstance, Contact, Loads, Mass, Model, Motions, gap_tolerance};
 use crate::settings::{Linear, Settings, Tangent};
 use crate::simulation::Simulation;
 use crate::stepper::Implicit;
@@ -90,8 +90,10 @@ pub(crate) fn model(
     let free: Vec<usize> = (0..dofs).filter(|&dof| !constrained[dof]).collect();
     let mut unknown = vec![usize::MAX; dofs];
     free.iter().enumerate().for_each(|(place, &dof)| unknown[dof] = place);
+    let scale = parts.iter().map(|part| part.body.mesh().diameter()).fold(0.0, f64::max);
     Model {
         dimension,
+        gap_tolerance: gap_tolerance(scale, &reference),
         initial_position: reference.clone(),
         initial_velocity: vec![0.0; dofs],
         fixed: constrained,
@@ -106,7 +108,7 @@ pub(crate) fn model(
         contacts,
         supports: Vec::new(),
         probes: Vec::new(),
-        scale: parts.iter().map(|part| part.body.mesh().diameter()).fold(0.0, f64::max),
+        scale,
         threads: carom_algebra::Threads::one(),
         reference,
         parts,

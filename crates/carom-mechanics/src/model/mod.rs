@@ -25,4 +25,4 @@ pub use probe::{Probe, Quantity, von_mises};
 pub use redistribution::redistribute;
 pub(crate) use rigid::check_rigid_modes;
 pub use rigid::{Mode, Unconstrained, free_motions};
-pub use whole::{Model, Support};
+pub use whole::{Model, Support, gap_tolerance};

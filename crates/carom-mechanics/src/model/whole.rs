@@ -63,8 +63,20 @@ pub struct Model {
     pub probes: Vec<Probe>,
     /// Length L that tolerances refer to: the largest body's diameter.
     pub scale: f64,
+    /// Gap that counts as closed; see [`gap_tolerance`].
+    pub gap_tolerance: f64,
     /// Threads; no result depends on their number.
     pub threads: Threads,
+}
+
+/// Gap, as a fraction of L, that counts as closed.
+const GAP_TOLERANCE: f64 = 1e-12;
+
+/// Gap that counts as closed, for bodies of size L at `positions`: a fraction of L, and what
+/// round-off of positions makes of none.
+pub fn gap_tolerance(scale: f64, positions: &[f64]) -> f64 {
+    let furthest = positions.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    GAP_TOLERANCE * scale + 4.0 * f64::EPSILON * furthest
 }
 
 impl Model {

@@ -38,7 +38,7 @@ use super::rubbing::{combined, hold, kind, loose};
 use super::scratch::Scratch;
 use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, moves, overconstrained};
 use super::{Accepted, StepReport, Stepper, difference};
-use crate::contact_update::{GAP_TOLERANCE, search};
+use crate::contact_update::search;
 use crate::friction::{book_states, each_slip};
 use crate::independent::{independent, independent_rows};
 use crate::ledger::book_contact_forces;
@@ -149,7 +149,7 @@ impl Explicit {
         }
         // Gaps are closed to a tolerance, over which the work of their forces is not known.
         let pressed = |state: &State| state.pairs.iter().flatten().map(|pair| -pair.lambda).sum::<f64>();
-        next.ledger.unbooked += GAP_TOLERANCE * model.scale * (pressed(start) + pressed(next));
+        next.ledger.unbooked += model.gap_tolerance * (pressed(start) + pressed(next));
         next.ledger.potential = model.potential(&next.y);
         self.book_kinetic(next);
     }
@@ -239,7 +239,7 @@ impl Explicit {
         scratch: &mut Scratch,
         report: &mut StepReport,
     ) -> Result<bool, Rejected> {
-        let tolerance = GAP_TOLERANCE * model.scale;
+        let tolerance = model.gap_tolerance;
         let Scratch {
             free, at, pairings, rows, impulses, places, loaded, acting, slips, along, kinds, ..
         } = scratch;

@@ -10,7 +10,7 @@ use super::in_velocity::solve_in_velocity;
 use super::meetings::{Path, meetings};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::carried;
-use crate::contact_update::{GAP_TOLERANCE, search, start_step};
+use crate::contact_update::{search, start_step};
 use crate::equations::Equations;
 use crate::evaluation::Iterate;
 use crate::friction::{book_states, take_slips};
@@ -299,7 +299,7 @@ fn penetrates(model: &Model, before: &[f64], now: &[f64], pairings: &mut [Pairin
         pairing.pairs.iter_mut().any(|pair| {
             rows.clear();
             let found = contact.kinematics.measure(pair, now, &mut rows);
-            found.is_ok() && rows.row(0).gap < -GAP_TOLERANCE * model.scale
+            found.is_ok() && rows.row(0).gap < -model.gap_tolerance
         })
     })
 }

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use carom_algebra::Threads;
 use carom_case::{Case, FormulaSpec, MassKind, Problem, SKIN, Volumetric};
 use carom_mechanics::model::{
-    BodyInstance, Mass, Model, Probe, Quantity, Support, free_motions, redistribute, value,
+    BodyInstance, Mass, Model, Probe, Quantity, Support, free_motions, gap_tolerance, redistribute, value,
 };
 use carom_solid::{Constitutive, Law, mean_dilatation_body};
 
@@ -131,6 +131,7 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
             dimension: d,
             parts,
             reference,
+            gap_tolerance: gap_tolerance(scale, &initial_position),
             initial_position,
             initial_velocity,
             fixed,
