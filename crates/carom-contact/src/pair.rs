@@ -6,17 +6,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::friction::Tangential;
 
-/// One secondary node against one facet of the primary side: contact point and history.
+/// One secondary node against one facet of the primary side, or a sharp edge against a sharp edge:
+/// contact point and history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
-    /// Index of the secondary node in [`Kinematics::secondary`](crate::Kinematics::secondary). A
-    /// node in a dent of the primary has several pairs.
+    /// Index of the secondary node in [`Kinematics::secondary`](crate::Kinematics::secondary), or
+    /// of the edge: edges follow the nodes. A node in a dent of the primary has several pairs, and
+    /// so has an edge that crosses several ones.
     pub node: usize,
-    /// Facet of the primary side, or piece of a polyline; 0 for a plane or a circle.
+    /// Facet of the primary side, or piece of a polyline; 0 for a plane or a circle. Edges are
+    /// numbered after the facets.
     pub facet: usize,
     /// Contact point on the facet, −1 … 1; 0 if the facet is a point or a plane.
     pub xi: f64,
-    /// Its second coordinate on a facet in space; 0 in the plane.
+    /// Its second coordinate on a facet in space; 0 in the plane. Of two edges, ξ is that on the
+    /// edge of the secondary side and η that on the other one.
     pub eta: f64,
     /// Whether it is active: for a constraint, whether its gap is constrained to zero.
     pub active: bool,
@@ -166,6 +170,16 @@ pub enum ContactError {
     Center {
         /// Global number of the secondary node.
         node: usize,
+    },
+    /// Two edges run along each other, or have left each other: no closest points.
+    #[error(
+        "the sharp edge at secondary node {node} does not cross edge {facet} of the primary: they run along each other, or are far past their ends"
+    )]
+    Edges {
+        /// Global number of the first node of the edge.
+        node: usize,
+        /// Number of the edge, after the facets of the primary.
+        facet: usize,
     },
     /// The closest point lies far outside the facet or was not found.
     #[error("secondary node {node} is beyond primary facet {facet}: its closest point is at ξ = {xi:.3}")]

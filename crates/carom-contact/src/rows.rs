@@ -16,6 +16,8 @@ pub struct Rows {
     gradients: Vec<f64>,
     /// Whether the first node of each row belongs to the primary side.
     reversed: Vec<bool>,
+    /// Number of the first nodes of each row that belong to one side.
+    own: Vec<usize>,
 }
 
 /// One row.
@@ -29,6 +31,8 @@ pub struct Row<'a> {
     pub gradient: &'a [f64],
     /// Whether the first node belongs to the primary side and the others to the secondary one.
     pub reversed: bool,
+    /// Number of the first nodes that belong to one side: one, or those of an edge.
+    pub own: usize,
 }
 
 impl Rows {
@@ -41,6 +45,7 @@ impl Rows {
             nodes: Vec::new(),
             gradients: Vec::new(),
             reversed: Vec::new(),
+            own: Vec::new(),
         }
     }
 
@@ -66,6 +71,7 @@ impl Rows {
         self.nodes.clear();
         self.gradients.clear();
         self.reversed.clear();
+        self.own.clear();
     }
 
     /// Adds a row from its nodes with their ∂g/∂y, of which as many components are used as there
@@ -73,6 +79,7 @@ impl Rows {
     pub fn push<const P: usize>(&mut self, gap: f64, nodes: impl IntoIterator<Item = (usize, [f64; P])>) {
         self.gaps.push(gap);
         self.reversed.push(false);
+        self.own.push(1);
         for (node, gradient) in nodes {
             self.nodes.push(node);
             self.gradients.extend_from_slice(&gradient[..self.dimension]);
@@ -90,6 +97,7 @@ impl Rows {
         let Some(gap) = self.gaps.pop() else { return f64::INFINITY };
         self.starts.pop();
         self.reversed.pop();
+        self.own.pop();
         let end = self.starts.last().copied().unwrap_or(0);
         self.nodes.truncate(end);
         self.gradients.truncate(end * self.dimension);
@@ -100,6 +108,7 @@ impl Rows {
     pub fn push_row(&mut self, row: Row) {
         self.gaps.push(row.gap);
         self.reversed.push(row.reversed);
+        self.own.push(row.own);
         self.nodes.extend_from_slice(row.nodes);
         self.gradients.extend_from_slice(row.gradient);
         self.starts.push(self.nodes.len());
@@ -136,6 +145,7 @@ impl Rows {
             nodes: &self.nodes[range],
             gradient: &self.gradients[gradients],
             reversed: self.reversed[row],
+            own: self.own[row],
         }
     }
 
@@ -143,6 +153,13 @@ impl Rows {
     /// one.
     pub(crate) fn reverse_from(&mut self, first: usize) {
         self.reversed[first..].fill(true);
+    }
+
+    /// Marks the last row as that of an edge, which its first `own` nodes form.
+    pub(crate) fn begin_with_edge(&mut self, own: usize) {
+        if let Some(last) = self.own.last_mut() {
+            *last = own;
+        }
     }
 
     /// All rows in order.
@@ -186,10 +203,21 @@ impl Row<'_> {
         }
     }
 
-    /// The gradient of the first node, padded with zeros to space.
+    /// The gradient of the first node, or of the first edge as a whole, padded with zeros to space.
     pub fn first(&self) -> [f64; 3] {
         let d = self.dimension();
-        std::array::from_fn(|i| if i < d { self.gradient[i] } else { 0.0 })
+        let of = |i: usize| {
+            let rest = (1..self.own).map(|node| self.gradient[node * d + i]);
+            rest.fold(self.gradient[i], |sum, slope| sum + slope)
+        };
+        std::array::from_fn(|i| if i < d { of(i) } else { 0.0 })
+    }
+
+    /// Shares of the nodes of the first edge in its contact point; one of a node.
+    pub fn shares(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let (d, whole) = (self.dimension(), self.first());
+        let share = move |node: usize| (0..d).map(|i| self.gradient[node * d + i] * whole[i]).sum::<f64>();
+        (0..self.own).map(move |k| (self.nodes[k], if self.own == 1 { 1.0 } else { share(k) }))
     }
 
     /// The primary's outward unit normal, padded with zeros to space: ∂g/∂y of the first node, with
@@ -211,7 +239,7 @@ mod tests {
         rows.push_open();
         assert_eq!(
             rows.row(0),
-            Row { gap: -0.5, nodes: &[3, 1], gradient: &[0.0, 1.0, 0.0, -1.0], reversed: false }
+            Row { gap: -0.5, nodes: &[3, 1], gradient: &[0.0, 1.0, 0.0, -1.0], reversed: false, own: 1 }
         );
         assert_eq!(rows.row(0).along(&[0.0, 0.0, 5.0, 2.0, 0.0, 0.0, 7.0, 10.0]), 8.0);
         assert_eq!((rows.len(), rows.row(1).gap, rows.row(1).along(&[])), (2, f64::INFINITY, 0.0));

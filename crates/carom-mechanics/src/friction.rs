@@ -68,9 +68,10 @@ impl Model {
     pub(crate) fn stick_energy<'a>(&self, pairs: impl Iterator<Item = &'a [Pair]>) -> f64 {
         let of = |(contact, pairs): (&Contact, &'a [Pair])| {
             let springs = contact.friction.as_ref().map_or(&[][..], |friction| &friction.springs);
-            let closed = pairs.iter().filter(|pair| pair.active && !springs.is_empty());
+            let closed = pairs.iter().filter(|pair| pair.active);
             let square = |pair: &Pair| inner(pair.tangential.traction, pair.tangential.traction);
-            closed.map(|pair| 0.5 * square(pair) / springs[pair.node]).sum::<f64>()
+            let energy = |pair: &Pair| Some(0.5 * square(pair) / springs.get(pair.node)?);
+            closed.filter_map(energy).sum::<f64>()
         };
         self.contacts.iter().zip(pairs).map(of).sum()
     }
@@ -294,6 +295,12 @@ impl Equations<'_> {
         }
         let part = self.slip_into(contact, pair, gap, middle, &at.increment, slips)?;
         let slip = slip_of(slips, p);
+        if self.laws[contact][pair.node].is_none()
+            && pair.node >= self.model.contacts[contact].kinematics.nodes()
+        {
+            // Edges have neither friction nor its springs.
+            pair.tangential.hold = Hold::Slip([1.0, 0.0]);
+        }
         if begins {
             self.begin_spring(contact, pair, slip, part);
         }
@@ -469,7 +476,10 @@ fn turn_with_facet(contact: &Contact, pair: &mut Pair, [before, now]: [&[f64]; 2
 pub(crate) fn book_states(model: &Model, state: &mut State, dt: f64) {
     let rubbed = &mut state.ledger.rubbed;
     let rubs = model.contacts.iter().zip(&state.pairs).filter(|(contact, _)| contact.friction.is_some());
-    for pair in rubs.flat_map(|(_, pairs)| pairs).filter(|pair| pair.active) {
+    // Edges have none.
+    let nodes =
+        rubs.flat_map(|(contact, pairs)| pairs.iter().filter(|p| p.node < contact.kinematics.nodes()));
+    for pair in nodes.filter(|pair| pair.active) {
         rubbed.closed += dt;
         rubbed.stuck += if pair.tangential.hold == Hold::Stick { dt } else { 0.0 };
         rubbed.farthest = rubbed.farthest.max(length(pair.tangential.slip));

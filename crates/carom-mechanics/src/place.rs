@@ -28,9 +28,9 @@ impl Rejected {
             }
             Self::Contact { contact, error } => {
                 let (node, facet) = match *error {
-                    ContactError::Focal { node, facet, .. } | ContactError::Lost { node, facet, .. } => {
-                        (node, Some(facet))
-                    }
+                    ContactError::Focal { node, facet, .. }
+                    | ContactError::Lost { node, facet, .. }
+                    | ContactError::Edges { node, facet } => (node, Some(facet)),
                     ContactError::Center { node } => (node, None),
                 };
                 Place { contact: Some(contact), node: Some(node), facet, ..Place::default() }

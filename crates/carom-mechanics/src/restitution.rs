@@ -84,7 +84,8 @@ pub(crate) fn separate(
     }
     let opened = |&(k, node): &(usize, usize)| {
         let secondary = model.contacts[k].kinematics.secondary();
-        let p = state.pairs[k].iter().position(|pair| secondary[pair.node] == node)?;
+        let opens = |pair: &Pair| secondary[pair.node] == node && !pair.active;
+        let p = state.pairs[k].iter().position(opens)?;
         model.contacts[k].conserves().then_some((k, p))
     };
     let opened: Vec<(usize, usize)> = released.iter().filter_map(opened).collect();

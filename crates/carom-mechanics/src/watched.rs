@@ -113,7 +113,7 @@ impl Watched {
 
 /// The nodes of a side's facets, with the depths that its contact allows.
 pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -> Vec<Watched> {
-    let nodes = contact.kinematics.secondary().iter().enumerate();
+    let nodes = contact.kinematics.secondary().iter().enumerate().take(contact.kinematics.nodes());
     let strict = nodes.filter(|(k, _)| contact.kinematics.allowed(*k) == 0.0).map(|(_, &node)| node);
     let strict: HashSet<usize> = strict.collect();
     let kept = kept_depths(contact);
@@ -127,7 +127,7 @@ pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -
 
 /// The depth that a contact keeps at each of its nodes.
 fn kept_depths(contact: &Contact) -> HashMap<usize, f64> {
-    let nodes = contact.kinematics.secondary().iter().enumerate();
+    let nodes = contact.kinematics.secondary().iter().enumerate().take(contact.kinematics.nodes());
     nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect()
 }
 
@@ -136,8 +136,8 @@ pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
     !contact.itself && contact.facets.len() < 2 || model.dimension == 1
 }
 
-/// Points of the sharp edges of a side in space, of the body `part`. No contact keeps edges outside
-/// between their nodes.
+/// Points of the sharp edges of a side in space, of the body `part`. Contacts hold edges against
+/// edges, not these points.
 pub(crate) fn edge_points(
     model: &Model,
     contact: &Contact,

@@ -29,7 +29,7 @@ pub use node_to_obstacle::{Carrier, NodeToObstacle};
 pub use obstacle::{Faceted, Obstacle, Polyline, PolylineError};
 pub use one_way::OneWay;
 pub use passed::Passed;
-pub use space::{Boundary, ClosedSurface, NodeToPatch};
+pub use space::{Boundary, ClosedSurface, EdgeToEdge, NodeToPatch, WithEdges};
 pub use surface::Surface;
 pub use swept::{Crossings, PatchHit, Swept, SweptPatch, SweptTest};
 
@@ -41,6 +41,12 @@ pub trait Kinematics: Send + Sync {
     /// Global numbers of the secondary nodes. In contact of a side with itself all occur twice: as
     /// nodes of the later place, then as nodes of the earlier one.
     fn secondary(&self) -> &[usize];
+
+    /// Number of nodes among these: the edges that follow them have the number of one of their
+    /// nodes.
+    fn nodes(&self) -> usize {
+        self.secondary().len()
+    }
 
     /// Depth that a secondary node, given by index, may have without contact: its gap is larger by
     /// that.

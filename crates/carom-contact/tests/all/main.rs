@@ -4,6 +4,7 @@
 
 mod derivatives;
 mod discrete_gradient;
+mod edges;
 mod kinks;
 mod near_obstacle;
 mod obstacles;

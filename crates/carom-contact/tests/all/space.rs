@@ -11,7 +11,7 @@ pub(crate) const SHAPES: [FacetShape; 5] =
     [FacetShape::T3, FacetShape::T6, FacetShape::T10, FacetShape::Q4, FacetShape::Q9];
 
 /// Places of the nodes of a facet in its plane: corners, then edge by edge, then the interior.
-fn lattice(shape: FacetShape) -> Vec<[f64; 2]> {
+pub(crate) fn lattice(shape: FacetShape) -> Vec<[f64; 2]> {
     let k = shape.degree();
     let corners: &[[f64; 2]] = match shape.corners() {
         3 => &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],

@@ -22,6 +22,8 @@ pub struct Friction {
     pub limits: Vec<f64>,
     /// Stiffness of the tangential spring of each secondary node; empty for constraints.
     pub springs: Vec<f64>,
+    /// Number of edges after these nodes, which have no friction.
+    pub edges: usize,
 }
 
 impl Friction {
@@ -34,10 +36,11 @@ impl Friction {
             places: vec![Vec::new(); nodes],
             limits: Vec::new(),
             springs: Vec::new(),
+            edges: 0,
         }
     }
 
-    /// The law of every secondary node at a time.
+    /// The law of every secondary node at a time, and of the edges that follow them.
     ///
     /// # Errors
     /// A coefficient that is negative or not finite.
@@ -56,6 +59,8 @@ impl Friction {
             let stick = stick.max(0.0);
             Ok(Law { stick, slip: self.slip.unwrap_or(stick).min(stick), decay: self.decay, limit })
         };
-        self.places.iter().enumerate().map(law).collect()
+        let none = Law { stick: 0.0, slip: 0.0, decay: 0.0, limit: f64::INFINITY };
+        let of_edges = std::iter::repeat_n(Ok(none), self.edges);
+        self.places.iter().enumerate().map(law).chain(of_edges).collect()
     }
 }

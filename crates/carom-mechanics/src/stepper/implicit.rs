@@ -274,14 +274,26 @@ fn closed(
     activations: &[(usize, usize)],
 ) -> Vec<((usize, usize), f64)> {
     let mut rows = Rows::new(model.dimension);
-    let mut of = |&(k, node): &(usize, usize)| {
-        let kinematics = &model.contacts[k].kinematics;
-        let secondary = kinematics.secondary();
-        let p = pairings[k].pairs.iter().position(|pair| secondary[pair.node] == node)?;
-        kinematics.measure(&mut pairings[k].pairs[p].clone(), &state.y, &mut rows).ok()?;
-        Some(((k, p), rows.pop()))
-    };
-    activations.iter().filter_map(&mut of).collect()
+    let mut found = Vec::new();
+    for &(k, node) in activations {
+        let (kinematics, pairs) = (&model.contacts[k].kinematics, &pairings[k].pairs);
+        // An edge has the number of one of its nodes.
+        let mut last = None;
+        for (p, pair) in
+            pairs.iter().enumerate().filter(|(_, pair)| kinematics.secondary()[pair.node] == node)
+        {
+            let is_node = pair.node < kinematics.nodes();
+            let closes = if is_node { last != Some(pair.node) } else { pair.active };
+            last = Some(pair.node);
+            if closes
+                && state.closed(k, pair.node).is_none()
+                && kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_ok()
+            {
+                found.push(((k, p), rows.pop()));
+            }
+        }
+    }
+    found
 }
 
 /// Moving supports have their own velocities and accelerations, not the scheme's.

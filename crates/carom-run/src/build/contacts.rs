@@ -9,7 +9,8 @@ use carom_case::{
 };
 use carom_contact::{
     Augmented, BothSides, Boundary, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection,
-    Direction, Kinematics, NodeToFacet, NodeToObstacle, NodeToPatch, Penalty, Surface, Unilateral,
+    Direction, EdgeToEdge, Kinematics, NodeToFacet, NodeToObstacle, NodeToPatch, Penalty, Surface,
+    Unilateral, WithEdges,
 };
 use carom_mechanics::model::{Augmentation, BodyInstance, Contact, Friction, Model};
 use carom_solid::FacetShape;
@@ -79,9 +80,17 @@ pub(super) fn contacts(
                     let opposite = boundary_of(&secondary, &[of_earlier, of_later].concat(), parts);
                     let corners = side.corners(&reference);
                     let (others, allowed) = others(&primary, &before, &secondary, &corners, &reference, 3);
+                    let of = |sides: &[Side]| sides.iter().flat_map(|side| side.nodes.clone()).collect();
+                    let edges = EdgeToEdge::new(
+                        [opposite.clone(), side.clone()],
+                        &[of(&earlier), of(&before)],
+                        &reference,
+                    );
+                    let facets = primary.facets.len();
                     primary_facets = Some((primary.shape, primary.facets));
                     let nodes = NodeToPatch::new(nodes, side);
-                    Box::new(BothSides::new(nodes, NodeToPatch::new(others, opposite).with_allowed(allowed)))
+                    let others = NodeToPatch::new(others, opposite).with_allowed(allowed);
+                    Box::new(WithEdges::new(BothSides::new(nodes, others), edges, facets))
                 }
                 Ok(primary) => {
                     primary_part = Some(primary.part);
@@ -140,13 +149,16 @@ pub(super) fn contacts(
             std::iter::once((secondary.shape, &secondary.facets))
                 .chain(primary_facets.as_ref().map(|(shape, facets)| (*shape, facets)))
         };
-        let friction = match friction(case, spec, kinematics.secondary(), &reference, shapes()) {
+        let rubbing = &kinematics.secondary()[..kinematics.nodes()];
+        let friction = match friction(case, spec, rubbing, &reference, shapes()) {
             Ok(mut friction) => {
+                let edges = kinematics.secondary().len() - rubbing.len();
+                friction.iter_mut().for_each(|friction| friction.edges = edges);
                 if let Some(friction) = friction.as_mut().filter(|_| spec.enforcement == Enforcement::Penalty)
                 {
                     let factor = spec.friction.stick_stiffness.unwrap_or(spec.stiffness);
                     let stiffness = |&node: &usize| factor * node_stiffness(parts, node);
-                    friction.springs = kinematics.secondary().iter().map(stiffness).collect();
+                    friction.springs = rubbing.iter().map(stiffness).collect();
                 }
                 friction
             }
@@ -244,6 +256,7 @@ fn friction<'a>(
         places: nodes.iter().map(|node| reference[node * d..(node + 1) * d].to_vec()).collect(),
         limits: limits.unwrap_or_default(),
         springs: Vec::new(),
+        edges: 0,
     }))
 }
 

@@ -134,15 +134,17 @@ fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {
     let mut pressure = vec![0.0; model.mass.nodes()];
     for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
         let weights = weights(contact, state, case.thickness);
-        for pair in pairs.iter().filter(|p| p.active) {
+        // The force of an edge acts on no area.
+        for pair in pairs.iter().filter(|p| p.active && p.node < contact.kinematics.nodes()) {
             pressure[contact.kinematics.secondary()[pair.node]] -= pair.lambda / weights[pair.node];
         }
     }
     pressure
 }
 
-/// The area of each multiplier of a contact at a state, one entry per node of its pairs. NaN at the
-/// corners of triangles of degree 2, whose functions have no area: they have no nodal pressure.
+/// The area of each multiplier of a contact at a state, one entry per node of its pairs. NaN of
+/// edges, and at the corners of triangles of degree 2, whose functions have no area: they have no
+/// nodal pressure.
 pub(super) fn weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f64> {
     let facets = contact.facets.iter().map(|(shape, facets)| (*shape, facets));
     let nodes = contact.kinematics.secondary();
@@ -153,6 +155,7 @@ pub(super) fn weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f
     for (weight, _) in weights.iter_mut().zip(nodes).filter(|(_, node)| corners.contains(node)) {
         *weight = f64::NAN;
     }
+    weights[contact.kinematics.nodes()..].fill(f64::NAN);
     weights
 }
 
@@ -191,12 +194,27 @@ pub(crate) fn consistent_weights<'a>(
     secondary.iter().map(|node| weights[node]).collect()
 }
 
-/// Gap of a pair in a state and the outward unit normal of the primary; NaN if undefined.
-pub(super) fn gap_of(contact: &Contact, pair: &Pair, state: &State) -> (f64, [f64; 3]) {
-    let mut rows = Rows::new(contact.facets[0].0.dimension());
+/// Gap of a pair in a state, the outward unit normal of the primary, and the place of its node or
+/// of the contact point of its edge; NaN if undefined.
+pub(super) fn gap_of(contact: &Contact, pair: &Pair, state: &State) -> (f64, [f64; 3], [f64; 3]) {
+    let d = contact.facets[0].0.dimension();
+    let mut rows = Rows::new(d);
+    let place = |shares: &mut dyn Iterator<Item = (usize, f64)>| {
+        let mut place = [0.0; 3];
+        for (node, share) in shares {
+            (0..d).for_each(|i| place[i] += share * state.y[node * d + i]);
+        }
+        place
+    };
     match contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows) {
-        Ok(()) => (rows.row(0).gap - contact.kinematics.allowed(pair.node), rows.row(0).normal()),
-        Err(_) => (f64::NAN, [f64::NAN; 3]),
+        Ok(()) => {
+            let row = rows.row(0);
+            (row.gap - contact.kinematics.allowed(pair.node), row.normal(), place(&mut row.shares()))
+        }
+        Err(_) => {
+            let node = contact.kinematics.secondary()[pair.node];
+            (f64::NAN, [f64::NAN; 3], place(&mut std::iter::once((node, 1.0))))
+        }
     }
 }
 

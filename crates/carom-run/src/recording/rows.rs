@@ -84,14 +84,13 @@ pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> 
         for (p, pair) in pairs.iter().enumerate().filter(|(_, pair)| pair.active) {
             let Tangential { traction, slip, .. } = pair.tangential;
             let node = contact.kinematics.secondary()[pair.node];
-            let y = &state.y[node * model.dimension..(node + 1) * model.dimension];
-            let (gap, normal) = gap_of(contact, pair, state);
+            let (gap, normal, point) = gap_of(contact, pair, state);
             rows.push(ContactRow {
                 step: state.step,
                 time: state.time,
                 contact: contact.name.as_str().into(),
                 node: node as u64,
-                point: std::array::from_fn(|i| y.get(i).copied().unwrap_or(0.0)),
+                point,
                 facet: pair.facet as u64,
                 xi: pair.xi,
                 eta: pair.eta,
@@ -100,6 +99,7 @@ pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> 
                 pressure: -of_node[pair.node] / weights[pair.node],
                 normal,
                 friction: match (&contact.friction, pair.tangential.hold) {
+                    _ if pair.node >= contact.kinematics.nodes() => "none",
                     (None, _) => "none",
                     (_, Hold::Stick) => "stick",
                     (_, Hold::Slip(_)) => "slip",

@@ -7,6 +7,7 @@ mod augmented;
 mod bar;
 mod common;
 mod conserving_contact;
+mod edges;
 mod energy_momentum;
 mod fallback;
 mod fields;

@@ -127,8 +127,8 @@ impl Boundary {
         ring
     }
 
-    /// Outward normals on both sides of the middle of an edge.
-    fn normals_at_edge(&self, facet: usize, edge: usize, s: f64, y: &[f64]) -> [Vector<3>; 2] {
+    /// Outward normals on both sides of an edge, at s from its first corner.
+    pub(crate) fn normals_at_edge(&self, facet: usize, edge: usize, s: f64, y: &[f64]) -> [Vector<3>; 2] {
         let own = self.patch(facet);
         let here = own.at(y, own.along(edge, s)).normal;
         let there = self.neighbours[facet][edge].map(|(neighbour, other)| {
@@ -164,16 +164,19 @@ impl Boundary {
         directions.into_iter().filter(|(_, at)| turns(at)).map(|(node, _)| node).collect()
     }
 
+    /// The side's sharp convex edges, as facets with the numbers of their edges: each from one of
+    /// its facets.
+    pub(crate) fn sharp_edges(&self, y: &[f64]) -> Vec<(usize, usize)> {
+        let count = self.shape.corners();
+        let all = (0..self.side).flat_map(|facet| (0..count).map(move |edge| (facet, edge)));
+        let is_first = |facet: usize, edge: usize| self.across(facet, edge).is_none_or(|other| facet < other);
+        all.filter(|&(facet, edge)| is_first(facet, edge) && self.is_sharp(facet, edge, y)).collect()
+    }
+
     /// Points between the ends of the side's sharp convex edges, each as nodes with weights.
     pub fn points_of_sharp_edges(&self, y: &[f64]) -> Vec<Vec<(usize, f64)>> {
-        let count = self.shape.corners();
         let mut points = Vec::new();
-        for (facet, edge) in (0..self.side).flat_map(|facet| (0..count).map(move |edge| (facet, edge))) {
-            // From one of its facets.
-            let is_first = self.across(facet, edge).is_none_or(|other| facet < other);
-            if !is_first || !self.is_sharp(facet, edge, y) {
-                continue;
-            }
+        for (facet, edge) in self.sharp_edges(y) {
             let patch = self.patch(facet);
             for k in 1..PIECES {
                 let values =

@@ -113,9 +113,9 @@ fn facet(model: &Model, state: &State, k: usize, node: usize) -> (Option<usize>,
     let mut rows = Rows::new(model.dimension);
     if let Some(pair) = pairs.next()
         && contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_ok()
-        && rows.row(0).nodes.len() > 1
+        && rows.row(0).nodes.len() > rows.row(0).own
     {
-        return (Some(pair.facet), ordered(&rows.row(0).nodes[1..]));
+        return (Some(pair.facet), ordered(&rows.row(0).nodes[rows.row(0).own..]));
     }
     let own = contact.facets.iter().position(|(_, facets)| facets.iter().any(|nodes| nodes.contains(&node)));
     let Some((_, facets)) = own.and_then(|own| contact.facets.get(1 - own.min(1))) else {

@@ -1,0 +1,336 @@
+//! Sharp edges of the secondary side against sharp edges of the primary, in one set of pairs: where
+//! two edges cross between their nodes, no node enters a body.
+//!
+//! Two edges are in contact where the normal along the product of their tangents points out of the
+//! body of the one and into that of the other, between the normals of the facets that meet at
+//! either edge: elsewhere a body rests on a facet, and nodes hold it. A pair arises once they cross
+//! in a step; it follows the contact point along edges that continue each other, and leaves at a
+//! corner, or where the normal leaves the facets' normals.
+
+use std::collections::HashSet;
+use std::sync::{Mutex, PoisonError};
+
+use carom_algebra::Vector;
+use carom_solid::{Bounds, Tree};
+
+use super::boundary::Boundary;
+use super::edge_gap::EdgeGap;
+use super::edges::Edges;
+use crate::friction::{Hold, Tangential};
+use crate::kinematics::apart::Apart;
+use crate::kinematics::tangents::tangents;
+use crate::pair::{ContactError, Pair, PairEvent, Pairing};
+use crate::rows::Rows;
+
+/// Sine of the angle between edges below which they form no pair.
+const ALONG: f64 = 0.1;
+/// Sine of the angle by which the normal of a new pair lies between the facets' normals, and by
+/// which that of a known one may lie outside them: an edge that lies on a facet is held at its end
+/// by the edge of the facet.
+const BETWEEN: f64 = 0.02;
+const OUTSIDE: f64 = -0.4;
+/// Depth over the length of the shorter edge that two edges may have before the step in which they
+/// meet, and after it.
+const BEHIND: f64 = 0.05;
+const DEEP: f64 = 0.25;
+/// |ξ| beyond 1 at which a pair goes on to the next edge, up to which an edge is extrapolated if
+/// there is none to go on to, and by which a new pair is before a corner.
+const PAST: f64 = 0.02;
+const REACH: f64 = 0.2;
+const CORNER: f64 = 0.02;
+/// Distance over the length of an edge of contact points of edges that continue each other, and the
+/// cosine of the angle between their normals, below and above which one pair holds both.
+const TOGETHER: f64 = 0.1;
+const PARALLEL: f64 = 0.985;
+/// Share of its size by which the box of an edge's path is larger than it.
+const NOISE: f64 = 1e-9;
+
+/// Numbers of the edges of a pair, and its gap if it has one.
+type Held = ([usize; 2], Option<EdgeGap>);
+
+/// Edges against edges.
+#[derive(Debug)]
+pub struct EdgeToEdge {
+    /// Of the secondary side and of the primary.
+    sides: [Edges; 2],
+    tools: Mutex<Tools>,
+}
+
+/// Reused memory; results do not depend on its content.
+#[derive(Debug)]
+struct Tools {
+    /// Boxes of the paths of the primary's edges.
+    tree: Tree,
+    apart: Apart,
+}
+
+impl EdgeToEdge {
+    /// Of both sides, the secondary one first, at reference positions; `others`: the nodes of sides
+    /// whose contacts hold the edges that they share with these.
+    pub fn new(sides: [Boundary; 2], others: &[HashSet<usize>; 2], reference: &[f64]) -> Self {
+        let [one, other] = sides;
+        let sides = [Edges::new(one, &others[0], reference), Edges::new(other, &others[1], reference)];
+        let nodes = sides.iter().flat_map(|side| (0..side.len()).flat_map(|k| side.nodes(k)));
+        // The boxes of both sides grow.
+        let weight = sides[0].weight() + sides[1].weight();
+        let apart = Apart::new(nodes.copied(), 3, weight);
+        Self { sides, tools: Mutex::new(Tools { tree: Tree::default(), apart }) }
+    }
+
+    /// A node of every edge of the secondary side.
+    pub(super) fn names(&self) -> impl Iterator<Item = usize> {
+        (0..self.sides[0].len()).map(|edge| self.sides[0].nodes(edge)[0])
+    }
+
+    /// Number of edges of the primary.
+    pub(super) fn count(&self) -> usize {
+        self.sides[1].len()
+    }
+
+    /// Nodes of the primary's edge of a pair, ends first.
+    pub(super) fn nodes_of(&self, pair: &Pair) -> &[usize] {
+        self.sides[1].nodes(self.of(pair)[1])
+    }
+
+    /// Largest number of nodes of a row.
+    pub(super) fn stencil(&self) -> usize {
+        self.sides.iter().map(|side| (0..side.len()).map(|k| side.nodes(k).len()).max().unwrap_or(0)).sum()
+    }
+
+    /// Numbers of the edges of a pair.
+    fn of(&self, pair: &Pair) -> [usize; 2] {
+        [pair.node, pair.facet - self.sides[1].facets()]
+    }
+
+    fn pair(&self, edges: [usize; 2], xi: [f64; 2]) -> Pair {
+        let mut pair = Pair::open(edges[0], self.sides[1].facets() + edges[1], xi[0]);
+        pair.eta = xi[1];
+        // It has no friction.
+        pair.tangential = Tangential { hold: Hold::Slip([1.0, 0.0]), ..Tangential::default() };
+        pair
+    }
+
+    fn closest(&self, edges: [usize; 2], start: [f64; 2], y: &[f64]) -> Option<EdgeGap> {
+        let sum = |i: usize| {
+            let [here, there] = self.sides[i].normals(edges[i], start[i], y);
+            here + there
+        };
+        let nodes = [0, 1].map(|i| self.sides[i].nodes(edges[i]));
+        EdgeGap::closest(nodes, start, y, sum(1) - sum(0))
+    }
+
+    fn gap_of(&self, pair: &Pair, y: &[f64]) -> Option<EdgeGap> {
+        self.closest(self.of(pair), [pair.xi, pair.eta], y)
+    }
+
+    /// Whether the normal lies between those of the facets on both sides, with this margin, and the
+    /// edges do not run along each other.
+    fn cross(&self, edges: [usize; 2], gap: &EdgeGap, margin: f64, y: &[f64]) -> bool {
+        let out = |i: usize| {
+            let direction = if i == 1 { gap.normal } else { -gap.normal };
+            self.sides[i].outwards(edges[i], gap.xi[i], gap.tangent(i), direction, y)
+        };
+        gap.sine() >= ALONG && out(0) >= margin && out(1) >= margin
+    }
+
+    fn shorter(&self, edges: [usize; 2], y: &[f64]) -> f64 {
+        let [a, b] = [0, 1].map(|i| self.sides[i].length(edges[i], y));
+        a.min(b)
+    }
+
+    /// Whether the closest points lie on both edges: `past` an end that another edge continues, and
+    /// `corner` past one where none does.
+    fn is_on(&self, edges: [usize; 2], xi: [f64; 2], past: f64, corner: f64) -> bool {
+        [0, 1].into_iter().all(|i| {
+            let continues = self.sides[i].beyond(edges[i], xi[i]).is_some();
+            xi[i].abs() <= 1.0 + if continues { past } else { corner }
+        })
+    }
+
+    /// The gap of two edges that have met between these positions.
+    fn candidate(&self, edges: [usize; 2], before: &[f64], now: &[f64]) -> Option<EdgeGap> {
+        let gap = self.closest(edges, [0.0; 2], now)?;
+        let length = self.shorter(edges, now);
+        let met = gap.distance < 0.0 && gap.distance > -DEEP * length;
+        if !met || !self.is_on(edges, gap.xi, PAST, -CORNER) || !self.cross(edges, &gap, BETWEEN, now) {
+            return None;
+        }
+        let start = self.closest(edges, gap.xi, before)?;
+        (start.distance >= -BEHIND * length).then_some(gap)
+    }
+
+    /// Where a pair past an end goes on, if an edge continues it there.
+    fn next(&self, edges: [usize; 2], xi: [f64; 2], y: &[f64]) -> Option<([usize; 2], EdgeGap)> {
+        let (mut to, mut start) = (edges, xi);
+        for i in (0..2).filter(|&i| xi[i].abs() > 1.0 + PAST) {
+            if let Some((next, there)) = self.sides[i].beyond(edges[i], xi[i]) {
+                (to[i], start[i]) = (next, there);
+            }
+        }
+        if to == edges {
+            return None;
+        }
+        let gap = self.closest(to, start, y)?;
+        (self.is_on(to, gap.xi, PAST, PAST) && self.cross(to, &gap, OUTSIDE, y)).then_some((to, gap))
+    }
+
+    /// Pairs go on to the next edges, or leave: at the start of a step from where they are, not from
+    /// where they would be without contact. Those that remain, at the positions `now`.
+    fn follow(
+        &self,
+        [before, now]: [&[f64]; 2],
+        pairing: &mut Pairing,
+        events: &mut Vec<PairEvent>,
+    ) -> (bool, Vec<Held>) {
+        let starts = std::mem::replace(&mut pairing.fresh, false);
+        let y = if starts { before } else { now };
+        let mut known: HashSet<[usize; 2]> = pairing.pairs.iter().map(|pair| self.of(pair)).collect();
+        let mut changed = false;
+        pairing.pairs.retain_mut(|pair| {
+            let edges = self.of(pair);
+            let gap = self.gap_of(pair, y);
+            let node = self.sides[0].nodes(edges[0])[0];
+            if let Some((to, gap)) = gap.and_then(|gap| self.next(edges, gap.xi, y))
+                && known.insert(to)
+            {
+                *pair = Pair { node: to[0], facet: self.sides[1].facets() + to[1], ..*pair };
+                [pair.xi, pair.eta] = gap.xi;
+                let from = self.sides[1].facets() + edges[1];
+                if pair.active && from != pair.facet {
+                    events.push(PairEvent::HandOver { node, from, to: pair.facet });
+                }
+                changed |= pair.active || gap.distance < 0.0;
+                return true;
+            }
+            let stays =
+                |gap: &EdgeGap| self.is_on(edges, gap.xi, REACH, PAST) && self.cross(edges, gap, OUTSIDE, y);
+            if gap.as_ref().is_some_and(stays) || pair.active && !starts {
+                return true;
+            }
+            if pair.active {
+                events.push(PairEvent::SlidOff { node, facet: pair.facet });
+                changed = true;
+            }
+            false
+        });
+        let held = |pair: &Pair| (self.of(pair), self.gap_of(pair, now));
+        (changed, pairing.pairs.iter().map(held).collect())
+    }
+
+    pub(super) fn search(
+        &self,
+        before: &[f64],
+        now: &[f64],
+        pairing: &mut Pairing,
+        events: &mut Vec<PairEvent>,
+    ) -> bool {
+        let (mut changed, mut all) = self.follow([before, now], pairing, events);
+        self.each_near(before, now, |edges| {
+            if all.iter().any(|(known, _)| *known == edges) {
+                return;
+            }
+            let Some(gap) = self.candidate(edges, before, now) else { return };
+            let near = TOGETHER * self.shorter(edges, now);
+            let is_held = all.iter().any(|(known, other)| {
+                let joins = (0..2).all(|i| self.sides[i].is_near(edges[i], known[i]));
+                let same = |other: &EdgeGap| {
+                    (other.point(0) - gap.point(0)).norm() < near && other.normal.dot(&gap.normal) > PARALLEL
+                };
+                joins && other.as_ref().is_some_and(same)
+            });
+            if !is_held {
+                changed = true;
+                pairing.pairs.push(self.pair(edges, gap.xi));
+                all.push((edges, Some(gap)));
+            }
+        });
+        pairing.pairs.sort_by_key(|pair| (pair.node, pair.facet));
+        changed
+    }
+
+    /// Calls `visit` for the edges whose paths come near each other, in order.
+    fn each_near(&self, before: &[f64], now: &[f64], mut visit: impl FnMut([usize; 2])) {
+        if self.sides.iter().any(|side| side.len() == 0) {
+            return;
+        }
+        let swept = |i: usize, edge: usize| {
+            let [old, new] = [before, now].map(|y| self.sides[i].bounds(edge, y));
+            let bounds = old.union(&new);
+            bounds.grown(NOISE * bounds.size())
+        };
+        let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
+        let Tools { tree, apart } = &mut *tools;
+        if apart.holds(NOISE, [before, now]) {
+            return;
+        }
+        if tree.is_empty() {
+            *tree = Tree::new(self.sides[1].len(), |edge| swept(1, edge));
+        } else {
+            tree.update(|edge| swept(1, edge));
+        }
+        let own: Vec<Bounds> = (0..self.sides[0].len()).map(|edge| swept(0, edge)).collect();
+        let all = own.iter().skip(1).fold(own[0], |all, bounds| all.union(bounds));
+        apart.searched([&tree.bounds(), &all], [NOISE, NOISE], now);
+        let mut near = Vec::new();
+        for (a, bounds) in own.iter().enumerate() {
+            tree.find_into(bounds, &mut near);
+            near.sort_unstable();
+            near.iter().for_each(|&b| visit([a, b]));
+        }
+    }
+
+    /// θ at which an edge of the secondary side first meets one of the primary, with gaps that are
+    /// linear in θ.
+    pub(super) fn met(&self, edge: usize, before: &[f64], now: &[f64]) -> Option<f64> {
+        let mut first: Option<f64> = None;
+        self.each_near(before, now, |edges| {
+            if edges[0] == edge
+                && let Some(gap) = self.candidate(edges, before, now)
+                && let Some(start) = self.closest(edges, gap.xi, before)
+                && let Some(theta) = crate::kinematics::zero(start.distance, gap.distance)
+            {
+                first = Some(first.map_or(theta, |first| first.min(theta)));
+            }
+        });
+        first
+    }
+
+    fn lost(&self, pair: &Pair) -> ContactError {
+        ContactError::Edges { node: self.sides[0].nodes(pair.node)[0], facet: pair.facet }
+    }
+
+    pub(super) fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        let edges = self.of(pair);
+        let gap = self.gap_of(pair, y).ok_or_else(|| self.lost(pair))?;
+        [pair.xi, pair.eta] = gap.xi;
+        if !pair.active && !(self.is_on(edges, gap.xi, REACH, PAST) && self.cross(edges, &gap, OUTSIDE, y)) {
+            rows.push_open();
+            return Ok(());
+        }
+        self.push(edges, gap.distance, gap.gradient(), rows);
+        Ok(())
+    }
+
+    /// Adds a row over the nodes of both edges.
+    fn push(&self, edges: [usize; 2], gap: f64, slopes: impl Iterator<Item = Vector<3>>, rows: &mut Rows) {
+        let [own, other] = [0, 1].map(|i| self.sides[i].nodes(edges[i]));
+        let nodes = own.iter().chain(other);
+        rows.push(gap, nodes.zip(slopes).map(|(&node, slope)| (node, slope.0)));
+        rows.begin_with_edge(own.len());
+    }
+
+    pub(super) fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
+        match self.gap_of(pair, y) {
+            Some(gap) => gap.curvature_into(curvature),
+            None => curvature.fill(0.0),
+        }
+    }
+
+    pub(super) fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        let gap = self.gap_of(pair, y).ok_or_else(|| self.lost(pair))?;
+        for along in tangents(gap.normal, pair.tangential.tangents) {
+            self.push(self.of(pair), 0.0, gap.slip(along), rows);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,130 @@
+//! The sharp convex edges of a side, each with the two facets that meet there, and what continues
+//! them at their ends.
+
+use std::collections::{HashMap, HashSet};
+
+use carom_algebra::Vector;
+use carom_solid::{Bounds, Hull};
+
+use super::boundary::Boundary;
+use super::patch::{cross, place};
+
+/// Cosine of the angle up to which an edge continues another one.
+const STRAIGHT: f64 = 0.87;
+
+/// The sharp edges of a side.
+#[derive(Debug)]
+pub(super) struct Edges {
+    boundary: Boundary,
+    /// Facet and edge of the facet.
+    places: Vec<(usize, usize)>,
+    /// Nodes of each, ends first.
+    nodes: Vec<Vec<usize>>,
+    /// The edge that continues it at its start and at its end, and whether it does so with its end.
+    next: Vec<[Option<(usize, bool)>; 2]>,
+    hull: Hull,
+}
+
+impl Edges {
+    /// Of the side of a boundary at its reference positions; without those between nodes of other
+    /// sides, which hold them.
+    pub(super) fn new(boundary: Boundary, others: &HashSet<usize>, reference: &[f64]) -> Self {
+        let shape = boundary.shape();
+        let nodes_of = |&(facet, edge): &(usize, usize)| {
+            let (local, count) = shape.edge(edge);
+            local[..count].iter().map(|&k| boundary.facet_nodes(facet)[k]).collect::<Vec<usize>>()
+        };
+        let mut places = boundary.sharp_edges(reference);
+        places.retain(|place| !nodes_of(place).iter().all(|node| others.contains(node)));
+        let nodes: Vec<Vec<usize>> = places.iter().map(nodes_of).collect();
+        let mut at: HashMap<usize, Vec<(usize, bool)>> = HashMap::new();
+        for (k, nodes) in nodes.iter().enumerate() {
+            for is_end in [false, true] {
+                at.entry(nodes[usize::from(is_end)]).or_default().push((k, is_end));
+            }
+        }
+        // Out of the edge at that end.
+        let leaving = |k: usize, is_end: bool| {
+            let [from, to] = [!is_end, is_end].map(|end| place(reference, nodes[k][usize::from(end)]));
+            let along = to - from;
+            along * along.norm().recip()
+        };
+        let next = |k: usize, is_end: bool| {
+            let out = leaving(k, is_end);
+            let others = at[&nodes[k][usize::from(is_end)]].iter().filter(|(other, _)| *other != k);
+            let straight = others.map(|&(other, end)| (-leaving(other, end).dot(&out), other, end));
+            let best = straight.fold((STRAIGHT, None), |best, (cosine, other, end)| {
+                if cosine > best.0 { (cosine, Some((other, end))) } else { best }
+            });
+            best.1
+        };
+        let next = (0..nodes.len()).map(|k| [next(k, false), next(k, true)]).collect();
+        let hull = Hull::line(shape.degree() + 1, 1.0);
+        Self { boundary, places, nodes, next, hull }
+    }
+
+    /// Number of edges.
+    pub(super) fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Number of facets of the side.
+    pub(super) fn facets(&self) -> usize {
+        self.boundary.facets()
+    }
+
+    /// Nodes of an edge, ends first.
+    pub(super) fn nodes(&self, edge: usize) -> &[usize] {
+        &self.nodes[edge]
+    }
+
+    /// What bounds the sum of weights of an edge's nodes in the points of its box.
+    pub(super) fn weight(&self) -> f64 {
+        self.hull.weight()
+    }
+
+    /// Box around an edge.
+    pub(super) fn bounds(&self, edge: usize, y: &[f64]) -> Bounds {
+        let nodes = &self.nodes[edge];
+        self.hull.bounds(|a| &y[3 * nodes[a]..3 * nodes[a] + 3])
+    }
+
+    /// Distance between the ends.
+    pub(super) fn length(&self, edge: usize, y: &[f64]) -> f64 {
+        (place(y, self.nodes[edge][1]) - place(y, self.nodes[edge][0])).norm()
+    }
+
+    /// The edge that continues it beyond ξ, and ξ there of the same distance from the joint.
+    pub(super) fn beyond(&self, edge: usize, xi: f64) -> Option<(usize, f64)> {
+        let (next, is_end) = self.next[edge][usize::from(xi > 0.0)]?;
+        let excess = xi.abs() - 1.0;
+        Some((next, if is_end { 1.0 - excess } else { excess - 1.0 }))
+    }
+
+    /// Whether another edge is the same or continues it.
+    pub(super) fn is_near(&self, edge: usize, other: usize) -> bool {
+        edge == other || self.next[edge].iter().flatten().any(|&(next, _)| next == other)
+    }
+
+    /// Outward normals of the facets that meet at ξ.
+    pub(super) fn normals(&self, edge: usize, xi: f64, y: &[f64]) -> [Vector<3>; 2] {
+        let (facet, of_facet) = self.places[edge];
+        self.boundary.normals_at_edge(facet, of_facet, 0.5 * (1.0 + xi.clamp(-1.0, 1.0)), y)
+    }
+
+    /// How far a direction points out of the body at ξ of an edge with this tangent: the smaller
+    /// sine of its angles to the planes across the facets; positive between the facets' normals.
+    pub(super) fn outwards(
+        &self,
+        edge: usize,
+        xi: f64,
+        tangent: Vector<3>,
+        direction: Vector<3>,
+        y: &[f64],
+    ) -> f64 {
+        let [here, there] = self.normals(edge, xi, y);
+        // Into the facets: counter-clockwise seen from outside.
+        let [first, second] = [cross(here, tangent), cross(tangent, there)];
+        -first.dot(&direction).max(second.dot(&direction))
+    }
+}

@@ -1,0 +1,187 @@
+//! Two bars cross edge on edge, between their nodes: no node enters, and only the pair of the edges
+//! holds them apart.
+
+use super::common::simulation;
+use super::space_contact::momenta;
+use carom_run::Simulation;
+
+const CHUNG_HULBERT: &str = "kind = \"chung-hulbert\", rho_inf = 0.5";
+
+/// A bar along x or y, turned on an edge, whose middle is between two nodes.
+fn bar(name: &str, axis: &str, height: f64, speed: f64, place: &str) -> String {
+    let half = if axis == "x" { [0.5, 0.1, 0.1] } else { [0.1, 0.5, 0.1] };
+    let cells = if axis == "x" { [3, 1, 1] } else { [1, 3, 1] };
+    let turned = if axis == "x" { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+    let low = half.map(|x| -x);
+    format!(
+        "[[body]]\nname = \"{name}\"\nmaterial = \"m\"\nelement = \"Hex8\"\nmass = \"lumped\"\n\
+         mesh = {{ shape = \"box\", min = {low:?}, max = {half:?}, cells = {cells:?} }}\n\
+         place = {{ rotate = {{ axis = {turned:?}, angle = 45.0 }}, shift = [{place}, {height}] }}\n\
+         velocity = [0.0, 0.0, {speed}]\n"
+    )
+}
+
+/// The upper bar falls on the lower one with the speed 2; the ridges are 0.3 − 0.2 √2 apart.
+fn bars(scheme: &str, contact: &str) -> String {
+    format!(
+        "dimension = 3\n[[material]]\nname = \"m\"\nlaw = \"saint-venant-kirchhoff\"\ndensity = 1.0\n\
+         young = 1000.0\npoisson = 0.3\n{}{}[[contact]]\nname = \"cross\"\nsecondary = \"upper.skin\"\n\
+         primary = \"lower.skin\"\n{contact}\n[time]\nend = 0.1\nstep = 5e-4\nscheme = {{ {scheme} }}\n\
+         [newton]\ntolerance = 1e-12\n",
+        bar("lower", "x", 0.0, 0.0, "0.0, 0.0"),
+        bar("upper", "y", 0.3, -2.0, "0.03, 0.02"),
+    )
+}
+
+/// Heights of the upper edge of the lower bar and of the lower edge of the upper one where they
+/// cross, from their nodes on both sides.
+fn ridges(sim: &Simulation) -> impl Fn(&Simulation) -> [f64; 2] + use<> {
+    let start = sim.state().y.clone();
+    let half = 0.1 * 2.0_f64.sqrt();
+    // Nodes of an edge nearest to the middle, across which it runs from −0.5/3 to 0.5/3.
+    let ends = |height: f64, along: usize, middle: f64| -> Vec<usize> {
+        let places = start.as_chunks::<3>().0.iter().enumerate();
+        let on = |x: &[f64; 3]| (x[2] - height).abs() < 1e-9 && (x[along] - middle).abs() < 0.2;
+        places.filter(|(_, x)| on(x)).map(|(node, _)| node).collect()
+    };
+    let lower = ends(half, 0, 0.0);
+    let upper = ends(0.3 - half, 1, 0.02);
+    assert!(lower.len() == 2 && upper.len() == 2, "{lower:?} {upper:?}");
+    move |sim: &Simulation| {
+        let y = sim.state().y.as_chunks::<3>().0;
+        let line = |nodes: &[usize]| {
+            let (a, b) = (y[nodes[0]], y[nodes[1]]);
+            (a, [b[0] - a[0], b[1] - a[1], b[2] - a[2]])
+        };
+        let ((a, u), (b, v)) = (line(&lower), line(&upper));
+        // Where they cross seen from above.
+        let det = u[1] * v[0] - u[0] * v[1];
+        let (x, z) = (b[0] - a[0], b[1] - a[1]);
+        let (s, t) = ((z * v[0] - x * v[1]) / det, (u[0] * z - u[1] * x) / det);
+        [a[2] + s * u[2], b[2] + t * v[2]]
+    }
+}
+
+#[test]
+fn bars_that_cross_edge_on_edge_rebound_with_every_scheme() {
+    // Depth over the edge of a cell, 0.2: of constraints on positions none. Change of the moment of
+    // momentum: means of forces at both ends of a step, and impulses along rows at predicted
+    // positions, have one of the order of the scheme.
+    let cases = [
+        (CHUNG_HULBERT, "", 1e-8, 1e-6),
+        ("kind = \"bathe\", rho_inf = 0.0", "", 1e-8, 1e-6),
+        ("kind = \"energy-momentum\"", "restitution = 1.0", 1e-8, 1e-11),
+        (CHUNG_HULBERT, "enforcement = \"penalty\"\nstiffness = 20.0", 0.05, 1e-6),
+        ("kind = \"energy-momentum\"", "enforcement = \"penalty\"\nstiffness = 20.0", 0.05, 1e-11),
+        (CHUNG_HULBERT, "enforcement = \"augmented\"", 1e-6, 1e-6),
+        (CHUNG_HULBERT, "mu = 0.5", 1e-8, 1e-6),
+        ("kind = \"central-difference\"", "", 1e-8, 1e-11),
+        ("kind = \"paoli-schatzman\"", "", 0.02, 1e-11),
+        ("kind = \"moreau-jean\", theta = 0.5", "", 0.02, 1e-6),
+    ];
+    for (scheme, contact, depth, drift) in cases {
+        let mut sim = simulation(&bars(scheme, contact), &[""; 0]);
+        let heights = ridges(&sim);
+        let before = momenta(&sim);
+        let (mut least, mut was_closed) = (f64::INFINITY, false);
+        while !sim.finished() {
+            if let Err(stopped) = sim.step() {
+                panic!("{scheme} {contact}: {stopped}");
+            }
+            let [lower, upper] = heights(&sim);
+            least = least.min(upper - lower);
+            was_closed |= sim.state().pairs[0].iter().any(|pair| pair.active);
+        }
+        let [lower, upper] = heights(&sim);
+        assert!(was_closed && upper - lower > 0.005, "{scheme} {contact}: {lower} {upper}");
+        assert!(least > -0.2 * depth, "{scheme} {contact}: {least:e}");
+        let after = momenta(&sim);
+        let change =
+            |range: std::ops::Range<usize>| range.map(|i| (after[i] - before[i]).abs()).fold(0.0, f64::max);
+        let [linear, angular] = [change(0..3), change(3..6)];
+        assert!(linear < 1e-12 && angular < drift, "{scheme} {contact}: {linear:e} {angular:e}");
+    }
+}
+
+#[test]
+fn an_elastic_impact_of_edges_conserves_energy() {
+    let text = bars("kind = \"energy-momentum\"", "restitution = 1.0");
+    let mut sim = simulation(&text, &[""; 0]);
+    let energy = sim.state().ledger.total();
+    while !sim.finished() {
+        sim.step().unwrap();
+    }
+    let ledger = &sim.state().ledger;
+    assert!((energy + ledger.contact_work - ledger.total()).abs() < 1e-9 * energy);
+    // Restitution returns what the impact took.
+    assert!(ledger.contact_work.abs() < 1e-3 * energy, "{:e} of {energy}", ledger.contact_work);
+}
+
+#[test]
+fn a_run_resumed_while_edges_are_in_contact_has_the_same_bits() {
+    let text = bars(CHUNG_HULBERT, "");
+    let mut sim = simulation(&text, &[""; 0]);
+    while !sim.state().pairs[0].iter().any(|pair| pair.active) {
+        sim.step().unwrap();
+    }
+    let mut other = simulation(&text, &[""; 0]);
+    other.restore(sim.state().clone()).unwrap();
+    for _ in 0..20 {
+        sim.step().unwrap();
+        other.step().unwrap();
+    }
+    assert!(sim.state().y == other.state().y && sim.state().v == other.state().v);
+    assert_eq!(sim.state().pairs, other.state().pairs);
+}
+
+#[test]
+fn a_turned_impact_of_edges_is_the_same() {
+    let text = bars(CHUNG_HULBERT, "");
+    let still = finish(&text);
+    let turn = |text: &str| {
+        // 120° about the diagonal, x → y → z → x, after the turn of each bar.
+        let mut text = text.to_owned();
+        for (axis, angle_axis) in [("[1.0, 0.0, 0.0]", 0), ("[0.0, 1.0, 0.0]", 1)] {
+            let (axis_of, angle) = composed(angle_axis);
+            text = text.replace(
+                &format!("axis = {axis}, angle = 45.0"),
+                &format!("axis = {axis_of:?}, angle = {angle:?}"),
+            );
+        }
+        text = text.replace("shift = [0.0, 0.0, 0]", "shift = [0, 0.0, 0.0]");
+        text = text.replace("shift = [0.03, 0.02, 0.3]", "shift = [0.3, 0.03, 0.02]");
+        text.replace("velocity = [0.0, 0.0, -2]", "velocity = [-2, 0.0, 0.0]")
+    };
+    let turned = finish(&turn(&text));
+    let pairs = still.state().y.as_chunks::<3>().0.iter().zip(turned.state().y.as_chunks::<3>().0);
+    let apart =
+        |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|i| (a[(i + 2) % 3] - b[i]).abs()).fold(0.0, f64::max);
+    let worst = pairs.map(apart).fold(0.0, f64::max);
+    assert!(still.state().pairs[0].iter().any(|pair| pair.rests || !pair.active));
+    assert!(worst < 1e-9, "{worst:e}");
+}
+
+/// Axis and angle of a turn by 45° about a coordinate axis, followed by one by 120° about the
+/// diagonal, as products of quaternions.
+fn composed(axis: usize) -> ([f64; 3], f64) {
+    let (s, c) = (std::f64::consts::PI / 8.0).sin_cos();
+    let mut first = [c, 0.0, 0.0, 0.0];
+    first[1 + axis] = s;
+    let [a, b] = [[0.5; 4], first];
+    let w = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];
+    let v = [
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    ];
+    let size = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    (v.map(|x| x / size), 2.0 * size.atan2(w).to_degrees())
+}
+
+fn finish(text: &str) -> Simulation {
+    let mut sim = simulation(text, &[""; 0]);
+    while !sim.finished() {
+        sim.step().unwrap();
+    }
+    sim
+}
