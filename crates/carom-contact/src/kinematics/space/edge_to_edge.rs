@@ -7,7 +7,7 @@
 //! in a step; it follows the contact point along edges that continue each other, and leaves at a
 //! corner, or where the normal leaves the facets' normals.
 
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
 use carom_algebra::Vector;
@@ -67,7 +67,7 @@ struct Tools {
 impl EdgeToEdge {
     /// Of both sides, the secondary one first, at reference positions; `others`: the nodes of sides
     /// whose contacts hold the edges that they share with these.
-    pub fn new(sides: [Boundary; 2], others: &[HashSet<usize>; 2], reference: &[f64]) -> Self {
+    pub fn new(sides: [Boundary; 2], others: &[BTreeSet<usize>; 2], reference: &[f64]) -> Self {
         let [one, other] = sides;
         let sides = [Edges::new(one, &others[0], reference), Edges::new(other, &others[1], reference)];
         let nodes = sides.iter().flat_map(|side| (0..side.len()).flat_map(|k| side.nodes(k)));
@@ -174,8 +174,8 @@ impl EdgeToEdge {
         (self.is_on(to, gap.xi, PAST, PAST) && self.cross(to, &gap, OUTSIDE, y)).then_some((to, gap))
     }
 
-    /// Pairs go on to the next edges, or leave: at the start of a step from where they are, not from
-    /// where they would be without contact. Those that remain, at the positions `now`.
+    /// Pairs go on to the next edges, or leave: at the start of a step from where they are, not
+    /// from where they would be without contact. Those that remain, at the positions `now`.
     fn follow(
         &self,
         [before, now]: [&[f64]; 2],
@@ -184,7 +184,7 @@ impl EdgeToEdge {
     ) -> (bool, Vec<Held>) {
         let starts = std::mem::replace(&mut pairing.fresh, false);
         let y = if starts { before } else { now };
-        let mut known: HashSet<[usize; 2]> = pairing.pairs.iter().map(|pair| self.of(pair)).collect();
+        let mut known: BTreeSet<[usize; 2]> = pairing.pairs.iter().map(|pair| self.of(pair)).collect();
         let mut changed = false;
         pairing.pairs.retain_mut(|pair| {
             let edges = self.of(pair);

@@ -1,7 +1,7 @@
 //! The sharp convex edges of a side, each with the two facets that meet there, and what continues
 //! them at their ends.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap};
 
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull};
@@ -28,7 +28,7 @@ pub(super) struct Edges {
 impl Edges {
     /// Of the side of a boundary at its reference positions; without those between nodes of other
     /// sides, which hold them.
-    pub(super) fn new(boundary: Boundary, others: &HashSet<usize>, reference: &[f64]) -> Self {
+    pub(super) fn new(boundary: Boundary, others: &BTreeSet<usize>, reference: &[f64]) -> Self {
         let shape = boundary.shape();
         let nodes_of = |&(facet, edge): &(usize, usize)| {
             let (local, count) = shape.edge(edge);
