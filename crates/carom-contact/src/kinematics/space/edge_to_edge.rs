@@ -30,7 +30,7 @@ const ALONG: f64 = 0.1;
 const BETWEEN: f64 = 0.02;
 const OUTSIDE: f64 = -0.4;
 /// Depth over the length of the shorter edge that two edges may have before the step in which they
-/// meet, and after it.
+/// meet, if they approach by as much in it, and after it.
 const BEHIND: f64 = 0.05;
 const DEEP: f64 = 0.25;
 /// |ξ| beyond 1 at which a pair goes on to the next edge, up to which an edge is extrapolated if
@@ -156,7 +156,9 @@ impl EdgeToEdge {
             return None;
         }
         let start = self.closest(edges, gap.xi, before)?;
-        (start.distance >= -BEHIND * length).then_some(gap)
+        // A pair that takes edges out of each other faster than they approach would throw them.
+        let approach = start.distance - gap.distance;
+        (start.distance >= -approach.max(NOISE * length).min(BEHIND * length)).then_some(gap)
     }
 
     /// Where a pair past an end goes on, if an edge continues it there.
