@@ -2,11 +2,17 @@
 //! minimum, so that what was lost before does not hide it. It is judged against the largest energy
 //! that was there or was supplied, max (kinetic + strain, Σ |ΔW_ext|).
 //!
-//! The work of a load or a support that changes over a step belongs to the path, to second order
-//! Δy·(F_s + F_{s+1})/2. That of a scheme's mean is τ Δy·ΔF more, where the mean belongs to the
-//! instant (½ + τ) Δt of the step: τ = ½ − α_f in the α family, which carries the missing momentum
-//! in its accelerations. A rise by −Σ τ Δy·ΔF is no creation: a wall of constant velocity V that
-//! presses with R lends τ Δt V R until it is left. Schemes with τ = 0 have no such work.
+//! The α family carries the momentum c Δt M a in its accelerations, c = 1 − γ − α_m (`carried.rs`),
+//! which the kinetic energy of its velocities does not contain. A load or a support that changes by
+//! ΔF over a step does the work c Δy·ΔF on it. A rise by −Σ c Δy·ΔF is no creation: a wall of
+//! constant velocity V that presses with R lends −c Δt V R until it is left. For α_m = α_f = 0 and
+//! a linear body, with the scheme's own energy H (Krenk 2006),
+//!
+//! ```text
+//! Δ[E + ½ (β − γ/2) Δt² a·Ma] = −c Δy·ΔF − (γ − ½) [Δy·KΔy + (β − γ/2) Δt² Δa·MΔa]
+//! ```
+//!
+//! Schemes with c = 0 have no such work.
 
 use crate::state::Ledger;
 

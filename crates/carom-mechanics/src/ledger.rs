@@ -87,37 +87,6 @@ pub(crate) fn work_of_loads(equations: &Equations, solved: &Evaluation) -> f64 {
     solved.at.increment.iter().zip(mean).map(|(moved, force)| moved * force).sum()
 }
 
-/// How much later than the middle of a step, as a fraction of it, the instant is to which the mean
-/// of forces over the step belongs: Σ bₖ cₖ − ½, with the weights bₖ of the forces at the instants
-/// cₖ. Zero in schemes of second order that carry no momentum in accelerations, ½ − α_f in the α
-/// family.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Lag {
-    /// Σ bₖ cₖ over the stages.
-    sum: f64,
-    /// Weight of the mean over the previous step.
-    old: f64,
-}
-
-impl Lag {
-    /// Adds a stage.
-    pub(crate) fn add(&mut self, stage: &Stage, has_previous: bool) {
-        let [old, _, now] = stage.mean;
-        self.sum += stage.end
-            * match averaging(stage) {
-                Averaging::BothEnds => 0.5,
-                Averaging::Ends => now,
-                Averaging::Within => stage.weights.external * (1.0 - stage.average),
-            };
-        self.old += if has_previous { old } else { 0.0 };
-    }
-
-    /// After the last stage. The mean over the previous step belongs to the same instant of that.
-    pub(crate) fn value(self) -> f64 {
-        (self.sum - self.old) / (1.0 - self.old) - 0.5
-    }
-}
-
 /// How the mean of a stage's forces is formed.
 enum Averaging {
     /// Without inertia, the mean of both ends.
@@ -214,14 +183,14 @@ fn add_supports(
 }
 
 /// Records a step in `next`, before any projection: `last` is its last stage, `strain` the bodies'
-/// energy at its end.
+/// energy at its end, `carried` the factor of the momentum in its accelerations.
 pub(crate) fn account(
     equations: &Equations,
     last: &Evaluation,
     next: &mut State,
     strain: f64,
     dt: f64,
-    (means, lag): (&Means, f64),
+    (means, carried): (&Means, f64),
 ) {
     let Equations { model, state, .. } = equations;
     let increment = &last.at.increment;
@@ -243,9 +212,9 @@ pub(crate) fn account(
     }
     if !equations.motions.is_empty() {
         next.ledger.external_work += work_of_motions(equations, next, increment, dt, means);
-        next.ledger.unbooked -= lag * change_of_reactions(model, state, next, increment);
+        next.ledger.unbooked -= carried * change_of_reactions(model, state, next, increment);
     }
-    next.ledger.unbooked -= lag * change_of_loads(state, next, increment);
+    next.ledger.unbooked -= carried * change_of_loads(state, next, increment);
     book_contact_forces(model, next);
     for (impulse, mean) in next.impulses.iter_mut().zip(&means.contact_forces) {
         (0..3).for_each(|i| impulse[i] += dt * mean[i]);
@@ -321,8 +290,8 @@ pub fn secondary_force<'a>(pairs: &[Pair], rows: impl Iterator<Item = Row<'a>>) 
 }
 
 /// Δy·ΔF of the loads: their work with the forces at the step's end minus that with the forces at
-/// its start. The work of a scheme's mean is [`Lag`] times this more than that of the trapezoidal
-/// rule, which is exact to second order.
+/// its start. Times the factor of the momentum in accelerations, it is work on that momentum
+/// (`created.rs`).
 pub(crate) fn change_of_loads(state: &State, next: &State, increment: &[f64]) -> f64 {
     let forces = state.f_external.iter().zip(&next.f_external);
     increment.iter().zip(forces).map(|(moved, (before, now))| moved * (now - before)).sum()

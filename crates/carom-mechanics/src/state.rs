@@ -26,9 +26,9 @@ pub struct Ledger {
     pub total_at_start: f64,
     /// Work of loads without potential, of supports and of moving primaries.
     pub external_work: f64,
-    /// What the trapezoidal rule adds to that work, which the means of a scheme over a step know to
-    /// first order only. Contact of explicit schemes adds the work of its forces over the tolerance
-    /// of gaps.
+    /// What that work lacks of the work on the momentum of velocities: the part on momentum in
+    /// accelerations (`created.rs`). Contact of explicit schemes adds the work of its forces over
+    /// the tolerance of gaps.
     pub unbooked: f64,
     /// Work of the contact forces on the bodies, and the jumps of kinetic energy at activation.
     pub contact_work: f64,

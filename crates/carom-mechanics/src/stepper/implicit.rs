@@ -14,7 +14,7 @@ use crate::contact_update::{search, start_step};
 use crate::equations::Equations;
 use crate::evaluation::Iterate;
 use crate::friction::{book_states, take_slips};
-use crate::ledger::{self, Lag};
+use crate::ledger;
 use crate::model::{Contact, LoadsAt, Model};
 use crate::newton::solve_stage;
 use crate::persistency::{averaged_contact_into, project};
@@ -76,7 +76,6 @@ impl Stepper for Implicit {
         let mut report = StepReport::default();
         let mut finished: Vec<Point> = Vec::new();
         let mut means = Means::new(model.dofs(), model.contacts.len());
-        let mut lag = Lag::default();
         let mut guess = Iterate::at_start(state);
         start_step(model, &state.y, &mut guess.pairings);
         let shift = self.predictor_shift(model, state, dt, to, work)?;
@@ -107,7 +106,6 @@ impl Stepper for Implicit {
             report.events.extend(effort.events);
             next.frozen = effort.frozen;
             ledger::add_stage(&equations, &solved, previous, &mut means);
-            lag.add(&equations.stage, previous.is_some());
             next.a.clone_from(&solved.acceleration);
             equations.stage.velocity.value_into(&solved.at.increment, &mut next.v);
             take_motions(&equations, &mut next);
@@ -145,7 +143,7 @@ impl Stepper for Implicit {
             model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
         }
         averaged_contact_into(model, &mut next, &solved.rows);
-        ledger::account(&equations, &solved, &mut next, strain, dt, (&means, lag.value()));
+        ledger::account(&equations, &solved, &mut next, strain, dt, (&means, self.kernel.carried()));
         if self.kernel.stages() > 1 {
             ledger::keep_friction(model, &solved, &mut next);
         }

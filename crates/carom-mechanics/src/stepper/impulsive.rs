@@ -19,7 +19,7 @@
 //! recorded as it is.
 
 use carom_contact::{Pairing, Rows, Tangential};
-use carom_time::{Impulse, ImpulseShares, Memory, Stage};
+use carom_time::{Impulse, ImpulseShares, Kernel, Memory, Stage};
 
 use super::impulses::{Impulses, TIE};
 use super::meetings::{Path, meetings};
@@ -31,7 +31,7 @@ use crate::contact_update::search;
 use crate::equations::Equations;
 use crate::evaluation::{Evaluation, Iterate};
 use crate::friction::book_states;
-use crate::ledger::{Lag, book_kinetic, change_of_loads, work_of_loads};
+use crate::ledger::{book_kinetic, change_of_loads, work_of_loads};
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
 use crate::settings::{Settings, Tangent};
@@ -138,9 +138,8 @@ impl Stepper for Impulsive {
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
             model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
         }
-        let mut lag = Lag::default();
-        lag.add(&equations.stage, false);
-        next.ledger.unbooked -= lag.value() * change_of_loads(state, &next, &solved.at.increment);
+        let carried = self.scheme.alpha().map_or(0.0, |alpha| alpha.carried());
+        next.ledger.unbooked -= carried * change_of_loads(state, &next, &solved.at.increment);
         impulses.record(dt, &mut next, &mut pairings);
         // Nodes that arrived later in the step than the prediction are tracked from now on.
         measure_into(model, &next.y, &mut pairings, &mut Vec::new())?;
