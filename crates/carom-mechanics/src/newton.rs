@@ -49,8 +49,8 @@ pub(crate) struct Effort {
     pub iterations: u32,
     /// Events of the pairs.
     pub events: Events,
-    /// The smallest relative singular value of the interface with friction at the solution, negative
-    /// where its determinant is; infinite without friction.
+    /// The smallest relative singular value of the interface with friction at the solution,
+    /// negative where its determinant is; infinite without friction.
     pub regularity: f64,
     /// The point of the reused factor.
     pub frozen: FrozenTangent,

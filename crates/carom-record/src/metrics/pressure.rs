@@ -10,9 +10,9 @@
 //!
 //! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) If the largest pressure is at
 //! an outermost node, the model is one half of a symmetric problem, and c is the coordinate of that
-//! node. Multipliers are recorded as λ/weight, the mean pressure near a node; a node without weight,
-//! as the corner of a T6 facet, has none. Of several contacts, the one with the largest load is used.
-//! Places along the contact are those of the plane; in space there are none.
+//! node. Multipliers are recorded as λ/weight, the mean pressure near a node; a node without
+//! weight, as the corner of a T6 facet, has none. Of several contacts, the one with the largest
+//! load is used. Places along the contact are those of the plane; in space there are none.
 
 use super::samples::extreme;
 use crate::{ContactRow, Run, contact_axes};
