@@ -104,7 +104,7 @@ fn shipped_cases_are_read() {
             case.newton,
             NewtonSpec {
                 tolerance: 1e-9,
-                max_iterations: 20,
+                max_iterations: 40,
                 linear: LinearRule::Auto,
                 tangent: TangentRule::Frozen,
                 mixing: 4

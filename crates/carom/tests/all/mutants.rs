@@ -58,9 +58,6 @@ impl Random {
 /// A case with one to three damages.
 fn mutant(seed: usize) -> String {
     let mut random = Random(seed as u64);
-    for _ in 0..4 {
-        random.below(1);
-    }
     let mut lines: Vec<String> = CASES[random.below(CASES.len())].lines().map(str::to_owned).collect();
     for _ in 0..=random.below(3) {
         let (k, count) = (random.below(lines.len()), lines.len());
