@@ -126,9 +126,13 @@ pub(super) fn contacts(
             },
         };
         let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * case.dimension]);
-        // A ball on a massless spring: the projection would stop the ball.
         let is_thrown = matches!(spec.motion, ObstacleMotion::Free { .. });
-        let follows = is_thrown && !has_mass(&secondary.nodes);
+        let opposite = spec.primary.side().and_then(|name| side(parts, name, "").ok());
+        let primary_has_mass = obstacle.is_some_and(|obstacle| parts[obstacle.part].point_mass > 0.0)
+            || opposite.as_ref().is_some_and(|side| has_mass(&side.nodes));
+        // A ball on a massless spring: the projection would stop the ball.
+        let both_move = is_thrown || opposite.is_some();
+        let follows = both_move && has_mass(&secondary.nodes) != primary_has_mass;
         let light = |part: usize| case.bodies[part].mass.is_redistributed();
         let projects = spec.law == Some(ContactLaw::Position)
             && spec.enforcement.is_exact()
@@ -210,11 +214,6 @@ pub(super) fn contacts(
             within: spec.active_set == ActiveSetRule::Within,
             restitution: spec.restitution,
         };
-        let primary_has_mass = obstacle.is_some_and(|obstacle| parts[obstacle.part].point_mass > 0.0)
-            || spec
-                .primary
-                .side()
-                .is_some_and(|name| side(parts, name, "").is_ok_and(|s| has_mass(&s.nodes)));
         if contact.projects && !has_mass(&secondary.nodes) && !primary_has_mass {
             problems.push(Problem::new(
                 format!("contact[{}]", spec.entry),

@@ -206,16 +206,12 @@ pub(super) fn gap_of(contact: &Contact, pair: &Pair, state: &State) -> (f64, [f6
         }
         place
     };
-    match contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows) {
-        Ok(()) => {
-            let row = rows.row(0);
-            (row.gap - contact.kinematics.allowed(pair.node), row.normal(), place(&mut row.shares()))
-        }
-        Err(_) => {
-            let node = contact.kinematics.secondary()[pair.node];
-            (f64::NAN, [f64::NAN; 3], place(&mut std::iter::once((node, 1.0))))
-        }
+    if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_err() {
+        let node = contact.kinematics.secondary()[pair.node];
+        return (f64::NAN, [f64::NAN; 3], place(&mut std::iter::once((node, 1.0))));
     }
+    let row = rows.row(0);
+    (row.gap - contact.kinematics.allowed(pair.node), row.normal(), place(&mut row.shares()))
 }
 
 /// Chains of point numbers of every named side, in the order of traversal; in space one for every

@@ -4,7 +4,7 @@ use carom_contact::Rows;
 use carom_run::case::Case;
 use carom_run::{GridReport, Simulation, State};
 
-use super::common::{DISCS, case, dot, momenta, schemes, simulation, sums};
+use super::common::{DISCS, case, dot, finish, momenta, schemes, simulation, sums};
 
 const IMPACT: &str = include_str!("../../../../cases/impact/impact.toml");
 const COARSE: [&str; 2] = ["body.cylinder.mesh.size=0.25", "body.prism.mesh.cells=[4,2]"];
@@ -176,4 +176,60 @@ fn giving_up_after_a_change_of_pairs_is_told() {
         rejected += report.rejected;
     }
     assert!(rejected > 0);
+}
+
+/// A block that flies against a side without mass keeps its velocity: the side follows it.
+#[test]
+fn a_massless_side_stops_nobody() {
+    let text = |secondary: &str, primary: &str| {
+        format!(
+            r#"
+dimension = 2
+[[material]]
+name = "block"
+law = "linear-elastic"
+density = 500.0
+young = 1e7
+poisson = 0.0
+[[material]]
+name = "spring"
+law = "linear-elastic"
+density = 0.0
+young = 4e3
+poisson = 0.0
+[[body]]
+name = "block"
+material = "block"
+element = "Q4"
+mesh = {{ shape = "rectangle", min = [0.05, 0.0], max = [1.05, 1.0], cells = [1, 1] }}
+velocity = [-1.0, 0.0]
+[[body]]
+name = "spring"
+material = "spring"
+element = "Q4"
+mesh = {{ shape = "rectangle", min = [-1.0, 0.0], max = [0.0, 1.0], cells = [1, 1] }}
+[[support]]
+on = ["spring.left"]
+fix = ["x", "y"]
+[[support]]
+on = ["spring.bottom", "spring.top"]
+fix = ["y"]
+[[contact]]
+name = "push"
+secondary = "{secondary}"
+primary = "{primary}"
+[time]
+end = 0.3
+step = 2e-3
+scheme = {{ kind = "bathe", rho_inf = 0.5 }}
+"#
+        )
+    };
+    for (secondary, primary) in [("spring.right", "block.left"), ("block.left", "spring.right")] {
+        let sim = finish(simulation(&text(secondary, primary), &[] as &[&str]));
+        let ledger = &sim.state().ledger;
+        let total = ledger.kinetic + ledger.strain;
+        // ½ m v² = 250.
+        assert!((total - 250.0).abs() < 1e-5, "{secondary}: {total}");
+    }
 }

@@ -271,7 +271,7 @@ impl EdgeToEdge {
             tree.update(|edge| swept(1, edge));
         }
         let own: Vec<Bounds> = (0..self.sides[0].len()).map(|edge| swept(0, edge)).collect();
-        let all = own.iter().skip(1).fold(own[0], |all, bounds| all.union(bounds));
+        let all = own.iter().skip(1).fold(own[0], carom_solid::Bounds::union);
         apart.searched([&tree.bounds(), &all], [NOISE, NOISE], now);
         let mut near = Vec::new();
         for (a, bounds) in own.iter().enumerate() {
@@ -305,7 +305,8 @@ impl EdgeToEdge {
         let edges = self.of(pair);
         let gap = self.gap_of(pair, y).ok_or_else(|| self.lost(pair))?;
         [pair.xi, pair.eta] = gap.xi;
-        if !pair.active && !(self.is_on(edges, gap.xi, REACH, PAST) && self.cross(edges, &gap, OUTSIDE, y)) {
+        let crosses = self.is_on(edges, gap.xi, REACH, PAST) && self.cross(edges, &gap, OUTSIDE, y);
+        if !pair.active && !crosses {
             rows.push_open();
             return Ok(());
         }
