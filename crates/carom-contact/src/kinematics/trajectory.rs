@@ -64,16 +64,15 @@ fn polished(facet: Facet, before: Places, now: Places, node: usize, start: Cross
     let Crossing { mut theta, mut xi } = start;
     for _ in 0..20 {
         let shape = facet.shape.at(xi);
-        // Relative to the node: exact differences, however far from the origin.
         let (mut position, mut tangent, mut velocity) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
         for (k, &n) in facet.nodes.iter().enumerate() {
-            let [from, to] = [before, now].map(|y| y.at(n) - y.at(node));
-            let y = lerp(from, to, theta);
+            let y = lerp(before.at(n), now.at(n), theta);
             position += y * shape.values[k];
             tangent += y * shape.first[k];
-            velocity += (to - from) * shape.values[k];
+            velocity += (now.at(n) - before.at(n)) * shape.values[k];
         }
-        let (miss, relative) = (-position, -velocity);
+        let miss = lerp(before.at(node), now.at(node), theta) - position;
+        let relative = now.at(node) - before.at(node) - velocity;
         // miss + relative dθ − tangent dξ = 0
         let det = -relative[0] * tangent[1] + relative[1] * tangent[0];
         if det == 0.0 || !det.is_finite() {
