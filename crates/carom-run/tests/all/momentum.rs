@@ -169,10 +169,10 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Checks a case; returns whether a contact of it could be judged.
-fn is_balanced(path: &Path) -> bool {
+/// Checks a case; none if no contact of it could be judged, else what is out of balance.
+fn unbalanced(path: &Path) -> Option<Option<String>> {
     // Studies are other runs of the cases beside them.
-    let Ok(case) = Case::from_file(path, &[TIGHT]) else { return false };
+    let case = Case::from_file(path, &[TIGHT]).ok()?;
     let dofs_too_many = path.to_string_lossy().contains("perf");
     let is_slow = case.expects.iter().any(|expect| expect.slow);
     // Their equilibrium at the start is not found to the tolerance.
@@ -180,11 +180,14 @@ fn is_balanced(path: &Path) -> bool {
     // Open: 5e-9, stiff with friction and a discrete gradient, whose resultants are not asked for.
     let is_stiff = path.ends_with("space/cube.toml");
     if case.contacts.is_empty() || dofs_too_many || is_slow || has_no_start || is_stiff {
-        return false;
+        return None;
     }
     // These are long; what they have of contact they have early.
     let is_long = ["ladder", "self"].iter().any(|folder| path.to_string_lossy().contains(folder));
-    let Some(worst) = worst(&case, if is_long { 100 } else { 300 }) else { return false };
+    let worst = worst(&case, if is_long { 100 } else { 300 })?;
+    // Bodies that fly tens of diameters a step: it is bisected a thousandfold, and the last digit of
+    // a position over that time is 1e-12 of the velocity (2.2e-16 · 1.8/(0.1/2¹²)/10).
+    let is_shot = ["slanting", "grapeshot"].iter().any(|name| path.ends_with(format!("ladder/{name}.toml")));
     // As above.
     let spring = case.time.scheme.conserves()
         && case.contacts.iter().any(|contact| contact.enforcement == Enforcement::Penalty);
@@ -193,28 +196,29 @@ fn is_balanced(path: &Path) -> bool {
     let head_on = path.ends_with("self/all.toml");
     let bound = if head_on {
         1e-10
-    } else if spring || path.ends_with("space/sphere-strikes.toml") {
+    } else if spring || is_shot || path.ends_with("space/sphere-strikes.toml") {
         4e-12
     } else {
         1e-12
     };
-    assert!(worst < bound, "{}: {worst:e}", path.display());
-    true
+    Some((worst >= bound).then(|| format!("{}: {worst:e}", path.display())))
 }
 
 #[test]
 fn every_case_of_the_repository() {
     let mut cases = Vec::new();
     files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases"), &mut cases);
-    let (next, checked) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let work = || {
-        while let Some(path) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-            checked.fetch_add(usize::from(is_balanced(path)), Ordering::Relaxed);
-        }
+    let next = AtomicUsize::new(0);
+    let work = || -> Vec<Option<String>> {
+        std::iter::from_fn(|| cases.get(next.fetch_add(1, Ordering::Relaxed)))
+            .filter_map(|path| unbalanced(path))
+            .collect()
     };
-    std::thread::scope(|scope| {
-        scope.spawn(work);
-        work();
+    let judged = std::thread::scope(|scope| {
+        let other = scope.spawn(work);
+        [work(), other.join().unwrap()].concat()
     });
-    assert!(checked.into_inner() > 20);
+    assert!(judged.len() > 20);
+    let wrong: Vec<String> = judged.into_iter().flatten().collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
