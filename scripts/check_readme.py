@@ -47,8 +47,8 @@ def main():
 
     total = re.search(r"^(\d+) set-ups", verified.read_text(encoding="utf-8"), re.MULTILINE)
     set_ups = total[1] if total else "no"
-    if f"Verified by {set_ups} set-ups" not in readme:
-        wrong.append(f"README.md does not say {set_ups} set-ups")
+    if f"Verified by {set_ups} cases and studies" not in readme:
+        wrong.append(f"README.md does not say {set_ups} cases and studies")
 
     faults = len(json.loads((ROOT / "scripts/faults.json").read_text(encoding="utf-8")))
     if not re.search(rf"\b{faults}\s+faults are planted", readme):

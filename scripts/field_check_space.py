@@ -33,7 +33,7 @@ Inverted: the determinant of a cell's map is not positive at one of the points w
 
 Passing through: as in the plane, by the path of the centre of the smaller body between two fields.
 
-Momentum P and moment of momentum L of the written velocities v, with the mass matrix formed here by
+Momentum P and angular momentum L of the written velocities v, with the mass matrix formed here by
 quadrature over the reference cells (or the sums of HRZ, if the case says so): without supports and
 loads, components of P on which neither gravity nor an obstacle acts must not change by more than 1e-6
 of Σ m|v|; with energy–momentum and without obstacles and gravity, L not by more than 1e-6 of
@@ -124,7 +124,7 @@ def depth_below(spec):
 
 
 class Balance:
-    """Momentum and moment of momentum of the fields, and of what may not change the largest change."""
+    """Momentum and angular momentum of the fields, and of what may not change the largest change."""
 
     def __init__(self, case, obstacles):
         density = {m["name"]: m["density"] for m in case["materials"]}

@@ -265,7 +265,7 @@ class Skin:
         return (np.einsum("qn,fni->fqi", at, x) - SELF_LIMIT * h * n).reshape(-1, 3)
 
     def moments(self, position, velocity, density, lumped):
-        """Momentum, moment of momentum about the centre of mass, Σ m|v| and Σ m|x||v|."""
+        """Momentum, angular momentum about the centre of mass, Σ m|v| and Σ m|x||v|."""
         if lumped:  # HRZ: the diagonal of the consistent matrix, scaled to the mass of the cell
             diagonal = np.einsum("cq,qn->cn", self.weight, self.values**2)
             diagonal *= (self.weight.sum(1) / diagonal.sum(1))[:, None]

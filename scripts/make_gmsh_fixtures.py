@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Generates the .msh files of the tests, of cases/gmsh and of an example of the book with Gmsh.
+"""Generates the .msh files of the tests, of cases and of an example of the book with Gmsh.
 
     pip install gmsh==4.15.2
     python3 scripts/make_gmsh_fixtures.py
@@ -82,6 +82,36 @@ def eighth(order):
         gmsh.model.mesh.optimize("HighOrderElastic")
 
 
+def sector(order):
+    """A quarter of a ring of quadrangles, `sector`, with the curves `inner`, `outer`, `plane_x`, `plane_y`;
+    and hexahedra above it, `wedge`, with the surfaces of these names, `sector` and `lid`."""
+    start("sector")
+    geo = gmsh.model.geo
+    center = geo.addPoint(0, 0, 0)
+    ends = [[geo.addPoint(r, 0, 0), geo.addPoint(0, r, 0)] for r in (1, 2)]
+    inner, outer = (geo.addCircleArc(a, center, b) for a, b in ends)
+    low, high = (geo.addLine(ends[0][k], ends[1][k]) for k in (0, 1))
+    base = geo.addPlaneSurface([geo.addCurveLoop([low, outer, -high, -inner])])
+    for curve in (inner, outer):
+        geo.mesh.setTransfiniteCurve(curve, 5)
+    for curve in (low, high):
+        geo.mesh.setTransfiniteCurve(curve, 4)
+    geo.mesh.setTransfiniteSurface(base)
+    geo.mesh.setRecombine(2, base)
+    # The lid, the volume, and the surface above each curve.
+    lid, volume, *above = geo.extrude([(2, base)], 0, 0, 0.5, numElements=[2], recombine=True)
+    geo.synchronize()
+    names = ("plane_y", "outer", "plane_x", "inner")
+    for name, curve, (_, surface) in zip(names, (low, outer, high, inner), above):
+        gmsh.model.addPhysicalGroup(1, [curve], name=name)
+        gmsh.model.addPhysicalGroup(2, [surface], name=name)
+    gmsh.model.addPhysicalGroup(2, [base], name="sector")
+    gmsh.model.addPhysicalGroup(2, [lid[1]], name="lid")
+    gmsh.model.addPhysicalGroup(3, [volume[1]], name="wedge")
+    gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.setOrder(order)
+
+
 def tee():
     """A quarter of a T-piece of a pipe: its volume `tee`, the cuts `plane_x` and `plane_z`, the ends
     `end` and `branch`, and the inner surface `bore`."""
@@ -144,9 +174,19 @@ def main():
     mesh(1)
     write(TESTS / "quadrangles.msh")
 
+    sector(1)
+    write(TESTS / "sector_order1.msh")
+    sector(2)
+    write(TESTS / "sector_order2.msh")
+    write(TESTS / "sector_order2_22_binary.msh", 2.2, True)
+    write(ROOT / "cases/space/sector.msh")
+
     for order, version, label in ((1, 4.1, "41_ascii"), (2, 4.1, "41_ascii"), (2, 2.2, "22_binary"), (3, 4.1, "41_binary")):
         eighth(order)
         write(TESTS / f"eighth_order{order}_{label}.msh", version, "binary" in label)
+        if version == 4.1 and order > 1:
+            name = {2: "quadratic", 3: "cubic"}[order]
+            write(ROOT / f"cases/space/eighth-{name}.msh", version, "binary" in label)
     gmsh.option.restoreDefaults()
 
     start("bar")

@@ -314,7 +314,7 @@ mod tests {
         vectors(|_, _| {});
     }
 
-    /// Rows and columns of tangents along which supports hold a node.
+    /// Rows and columns of tangents along which supports constrain a node.
     fn without(a: &mut [f64; 36], rows: &[usize]) {
         for &row in rows {
             (0..6).for_each(|i| (a[row * 6 + i], a[i * 6 + row]) = (0.0, 0.0));

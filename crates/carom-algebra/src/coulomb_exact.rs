@@ -101,7 +101,8 @@ fn solve(
     worth: &[f64],
 ) -> Option<(Vec<f64>, Vec<(usize, f64)>)> {
     let n = kinds.len();
-    // The forces and the motions of the unknowns: those that are held, and those across a slip.
+    // The forces and the motions of the unknowns: those that are prevented, and those across a
+    // slip.
     let (mut forces, mut motions) = (Vec::new(), Vec::new());
     let (mut names, mut diagonal) = (Vec::new(), Vec::new());
     // What moves nothing across the direction does not turn it.

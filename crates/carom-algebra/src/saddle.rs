@@ -112,7 +112,7 @@ impl Saddle {
                 continue;
             }
             *penalty = share * along / (square * square);
-            // What yields is held by no more than 1/C.
+            // A row that yields has at most the stiffness 1/C.
             *penalty /= 1.0 + *penalty * self.yields[r];
             for (k, &j) in self.nonzeros.iter().enumerate() {
                 for &i in &self.nonzeros[k..] {

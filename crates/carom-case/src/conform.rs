@@ -7,13 +7,19 @@ use super::keys::{self, Default, Key, Kind, Variants};
 use super::problem::Problem;
 use super::suggest;
 use super::tree::{Node, Table};
+use super::unit::Labels;
 
 mod value;
 
 /// All problems of single keys and values.
 pub(super) fn problems(document: &Document) -> Vec<Problem> {
     let dimension = document.root().get("dimension").and_then(Node::count).filter(|d| (1..=3).contains(d));
-    let mut check = Check { dimension, names: Names::of(document.root()), problems: Vec::new() };
+    let mut check = Check {
+        dimension,
+        names: Names::of(document.root()),
+        labels: Labels::of(document.root()),
+        problems: Vec::new(),
+    };
     check.keys(
         document.root(),
         &Spec {
@@ -29,14 +35,16 @@ pub(super) fn problems(document: &Document) -> Vec<Problem> {
 
 /// The same for a table of variants alone.
 pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
-    let mut check = Check { dimension: None, names: Names::default(), problems: Vec::new() };
+    let mut check =
+        Check { dimension: None, names: Names::default(), labels: Labels::default(), problems: Vec::new() };
     check.variant(table, variants, "");
     check.problems
 }
 
 /// The same for one table of fixed keys.
 pub(super) fn table(table: &Table, keys: &keys::Table, path: &str) -> Vec<Problem> {
-    let mut check = Check { dimension: None, names: Names::default(), problems: Vec::new() };
+    let mut check =
+        Check { dimension: None, names: Names::default(), labels: Labels::default(), problems: Vec::new() };
     let spec =
         Spec { name: keys.name, tag: None, keys: keys.keys.iter().collect(), later: keys.later.to_vec() };
     check.keys(table, &spec, path);
@@ -46,6 +54,7 @@ pub(super) fn table(table: &Table, keys: &keys::Table, path: &str) -> Vec<Proble
 struct Check {
     dimension: Option<usize>,
     names: Names,
+    labels: Labels,
     problems: Vec<Problem>,
 }
 
@@ -101,8 +110,10 @@ impl Check {
     fn missing_together(&mut self, keys: &[&Key], spec: &Spec, path: &str) {
         let names: Vec<_> = keys.iter().map(|key| format!("`{}`", key.name)).collect();
         let meanings: Vec<_> = keys.iter().map(|key| format!("{}: {}", key.name, key.meaning())).collect();
-        let examples: Vec<_> =
-            keys.iter().map(|key| format!("`{} = {}`", key.name, self.names.example(key))).collect();
+        let examples: Vec<_> = keys
+            .iter()
+            .map(|key| format!("`{} = {}`", key.name, self.names.example(key, self.dimension)))
+            .collect();
         let what = format!("{} has no {}", spec.name, and(&names));
         let help = format!("add for example {}", and(&examples));
         let why = format!("they are required. {}", meanings.join(" "));
@@ -113,7 +124,7 @@ impl Check {
         let help = match key.kind {
             Kind::Tables(table) => format!("add a table {}", table.name),
             Kind::Table(table) if path.is_empty() => format!("add a table {}", table.name),
-            _ => format!("add `{name} = {}`", self.names.example(key)),
+            _ => format!("add `{name} = {}`", self.names.example(key, self.dimension)),
         };
         let help = if key.example.is_empty() { help } else { format!("{help}, for example") };
         let what = format!("{table} has no `{name}`");

@@ -3,11 +3,13 @@
 
 use std::io::Read;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::overrides;
 use super::problem::{CaseError, Diagnostic, Problem};
+use super::suggest;
 use super::tree::{self, Node, Origin, Table, Value};
+use super::unit::{Labels, bare};
 
 /// Largest size of a case file in bytes.
 const LARGEST: u64 = 10_000_000;
@@ -20,6 +22,35 @@ pub struct Document {
     root: Node,
 }
 
+/// A case in the folder of a file that does not exist, with a similar name.
+fn beside(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let names =
+        std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names: Vec<String> =
+        names.filter_map(|name| Some(name.strip_suffix(".toml")?.to_owned())).collect();
+    names.sort_unstable();
+    let near = suggest::nearest(path.file_stem()?.to_str()?, names.iter().map(String::as_str))?;
+    Some(path.with_file_name(format!("{near}.toml")))
+}
+
+/// A diagnostic for text that is not TOML, or of a number with a unit where that is why.
+fn without_unit(name: &str, text: &str, error: &toml_edit::TomlError) -> Diagnostic {
+    let found = Diagnostic::of_syntax(name, text, error);
+    let line = text.lines().nth(found.line.saturating_sub(1)).unwrap_or_default();
+    let Some((key, value)) = bare(line) else { return found };
+    // The units of a case whose lines of this kind are left out.
+    let rest: Vec<&str> = text.lines().filter(|line| bare(line).is_none()).collect();
+    let labels = toml_edit::Document::parse(rest.join("\n")).ok().and_then(|parsed| {
+        let root = tree::node(parsed.as_item(), 0, 0, &(0..0));
+        root.table().map(Labels::of)
+    });
+    let key = key.rsplit('.').next().unwrap_or(key);
+    let help = labels.unwrap_or_default().advice(key, None, value);
+    let why = format!("a value is a number or a text in quotes, and `{value}` is neither");
+    Diagnostic { why, help: help.unwrap_or_default(), ..found }
+}
+
 impl Document {
     /// Reads a file and applies overrides `key=value`, in their order.
     pub fn open(path: &Path, sets: &[String]) -> Result<Self, CaseError> {
@@ -28,6 +59,11 @@ impl Document {
             CaseError::Wrong(vec![Diagnostic::of_file(&name, what, why, help)])
         };
         let unreadable = |source: std::io::Error| match source.kind() {
+            std::io::ErrorKind::NotFound if let Some(near) = beside(path) => wrong(
+                "there is no such file",
+                "its folder has one with a similar name",
+                &format!("did you mean {}?", near.display()),
+            ),
             std::io::ErrorKind::NotFound if path.is_absolute() => {
                 wrong("there is no such file", "no file or directory has this path", "check the path")
             }
@@ -84,8 +120,7 @@ impl Document {
     pub fn parse(name: &str, text: &str, sets: &[String]) -> Result<Self, CaseError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let wrong = |diagnostic| CaseError::Wrong(vec![diagnostic]);
-        let parsed =
-            toml_edit::Document::parse(text).map_err(|e| wrong(Diagnostic::of_syntax(name, text, &e)))?;
+        let parsed = toml_edit::Document::parse(text).map_err(|e| wrong(without_unit(name, text, &e)))?;
         if parsed.as_table().is_empty() && sets.is_empty() {
             let (what, why) = (
                 "the case is empty",

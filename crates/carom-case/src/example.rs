@@ -30,14 +30,27 @@ impl Names {
         }
     }
 
-    /// A value of a key, as TOML.
-    pub(super) fn example(&self, key: &Key) -> String {
+    /// A value of a key, as TOML; `dimension`: of its vectors.
+    pub(super) fn example(&self, key: &Key, dimension: Option<usize>) -> String {
         let one = |names: &[String], none: &str| format!("{:?}", names.first().map_or(none, String::as_str));
         match (key.kind, key.name) {
             (Kind::Side | Kind::SideOr(_), name) => format!("{:?}", self.side(name == "primary")),
             (Kind::Sides, _) => format!("[{:?}]", self.side(false)),
             (Kind::Name, "body") => one(&self.bodies, "BODY"),
             (Kind::Name, "material") => one(&self.materials, "MATERIAL"),
+            (Kind::Angular, _) if dimension == Some(3) => format!("[0.0, 0.0, {}]", key.example),
+            (Kind::Rotation(_), _) if dimension == Some(3) => {
+                format!("{{ axis = [0.0, 0.0, 1.0], angle = {} }}", key.example)
+            }
+            (
+                Kind::Vector
+                | Kind::Direction
+                | Kind::Counts(_)
+                | Kind::Formulas(_)
+                | Kind::FormulasOr(..)
+                | Kind::Table(_),
+                _,
+            ) => in_dimension(key.example, dimension),
             _ => key.example.to_owned(),
         }
     }
@@ -53,6 +66,42 @@ impl Names {
         let sides = if last { self.sides.last() } else { self.sides.first() };
         sides.and_then(|sides| sides.first()).map_or("BODY.SIDE", String::as_str)
     }
+}
+
+/// An example with its vectors in another dimension: along z there is nothing, or one more number
+/// of cells; a single component is one that is not zero.
+fn in_dimension(example: &str, dimension: Option<usize>) -> String {
+    let Some(dimension) = dimension else { return example.to_owned() };
+    let mut out = String::new();
+    for (i, part) in example.split('[').enumerate() {
+        let (inner, rest) = part.split_once(']').unwrap_or((part, ""));
+        let mut components: Vec<&str> = inner.split(',').map(str::trim).collect();
+        let is_vector = (2..=3).contains(&components.len()) && components.iter().all(|x| is_component(x));
+        if i > 0 {
+            out.push('[');
+        }
+        if i == 0 || !is_vector || components.len() == dimension {
+            out.push_str(part);
+            continue;
+        }
+        if dimension == 1 {
+            let one = components.iter().find(|x| x.parse() != Ok(0.0)).unwrap_or(&components[0]);
+            components = vec![one];
+        } else if dimension == 2 {
+            components.pop();
+        } else {
+            components.push(if components[0].parse::<usize>().is_ok() { components[1] } else { "0.0" });
+        }
+        out.push_str(&components.join(", "));
+        out.push(']');
+        out.push_str(rest);
+    }
+    out
+}
+
+/// A number or a formula.
+fn is_component(text: &str) -> bool {
+    text.parse::<f64>().is_ok() || text.starts_with('"')
 }
 
 /// Sides of the built-in shapes; first the one most likely to be in contact.
@@ -77,6 +126,26 @@ fn sides_of(shape: &str) -> &'static [&'static str] {
 mod tests {
     use super::*;
     use crate::keys::shapes;
+
+    #[test]
+    fn vectors_have_the_dimension_of_the_case() {
+        let plane = "{ point = [0.0, 0.0], normal = [0.0, 1.0] }";
+        for (example, one, three) in [
+            ("[0.0, -9.81]", "[-9.81]", "[0.0, -9.81, 0.0]"),
+            ("[0.0, 0.0]", "[0.0]", "[0.0, 0.0, 0.0]"),
+            ("[8, 2]", "[8]", "[8, 2, 2]"),
+            ("[\"0.1*X\", 0.0]", "[\"0.1*X\"]", "[\"0.1*X\", 0.0, 0.0]"),
+            (
+                plane,
+                "{ point = [0.0], normal = [1.0] }",
+                "{ point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] }",
+            ),
+            ("\"x\"", "\"x\"", "\"x\""),
+        ] {
+            let found = [1, 2, 3].map(|dimension| in_dimension(example, Some(dimension)));
+            assert_eq!(found, [one, example, three]);
+        }
+    }
 
     /// Every built-in shape is listed here, with the sides that its documentation names.
     #[test]

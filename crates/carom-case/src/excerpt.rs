@@ -92,7 +92,12 @@ impl Excerpt {
             if let (Some(file), Some(mesh)) =
                 (self.meshes.get(&name), body.get_mut("mesh").and_then(Item::as_table_like_mut))
             {
-                mesh.insert("file", value(file.as_str()));
+                // The file may be that of an extrusion.
+                let plane = if mesh.contains_key("of") { mesh.get_mut("of") } else { None };
+                match plane.and_then(Item::as_table_like_mut) {
+                    Some(of) => of.insert("file", value(file.as_str())),
+                    None => mesh.insert("file", value(file.as_str())),
+                };
             }
         });
         for list in ["support", "load"] {

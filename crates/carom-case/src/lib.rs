@@ -36,6 +36,7 @@ mod suggest;
 mod surface_file;
 mod tables;
 mod tree;
+mod unit;
 mod view;
 
 pub use carom_formula::{Function, Functions};

@@ -15,10 +15,7 @@ impl BodySpec {
     /// Why it cannot be made.
     pub fn make_mesh(&self, dimension: usize) -> Result<Mesh, NoMesh> {
         let mut mesh = match self.mesh {
-            MeshSpec::File { ref file, ref surface, ref hash, parts, slits, .. } => {
-                let mesh = mesh_file::mesh(file, dimension, surface, slits, hash)?;
-                mesh.subdivided(parts).ok_or(NoMesh::Indivisible)?
-            }
+            MeshSpec::File { .. } => of_file(&self.mesh, dimension)?,
             MeshSpec::Interval { .. } if dimension != 1 => {
                 return Err(NoMesh::Dimension(1));
             }
@@ -64,9 +61,18 @@ impl BodySpec {
     }
 }
 
-/// The mesh of a shape of the plane.
+/// The mesh of a file, divided.
+fn of_file(spec: &MeshSpec, dimension: usize) -> Result<Mesh, NoMesh> {
+    let MeshSpec::File { file, surface, hash, parts, slits, .. } = spec else {
+        return Err(NoMesh::NotPlane);
+    };
+    Ok(mesh_file::mesh(file, dimension, surface, *slits, hash)?.subdivided(*parts))
+}
+
+/// The mesh of a shape of the plane, or of a file.
 fn plane_mesh(shape: &MeshSpec, element: Element) -> Result<Mesh, NoMesh> {
     Ok(match *shape {
+        MeshSpec::File { .. } => return of_file(shape, 2),
         MeshSpec::Rectangle { min, max, cells } => generate::rectangle(element, min, max, cells),
         MeshSpec::Disc { radius, center, size } => generate::disc(element, radius, center, size),
         MeshSpec::HalfDisc { radius, center, size } => generate::half_disc(element, radius, center, size),

@@ -6,7 +6,7 @@ use carom_solid::{Element, generate};
 
 use super::keys::{self, Kind};
 use super::mesh_cells::{divided, fitting, ordered};
-use super::mesh_file;
+use super::mesh_file::{self, Purpose};
 use super::problem::Problem;
 use super::tree::{Node, Table};
 use super::view::View;
@@ -24,7 +24,8 @@ pub(super) fn read(
 ) -> Option<MeshSpec> {
     if let Some(spec) = keys::shapes().or.filter(|_| table.get("file").is_some()) {
         let v = View { table, keys: spec.keys, preset };
-        return mesh_file::read(v, dimension, element, folder, path, problems);
+        let purpose = Purpose { dimension, element, extruded: false };
+        return mesh_file::read(v, purpose, folder, path, problems);
     }
     let shape = table.get("shape")?.text()?;
     let v = View { table, keys: keys::shapes().table(shape)?.keys, preset };
@@ -45,7 +46,15 @@ pub(super) fn read(
         return None;
     }
     if shape == "extrusion" {
-        let of = read(v.value("of")?.table()?, 2, None, folder, preset, &format!("{path}.of"), problems)?;
+        let (of, path) = (v.value("of")?, format!("{path}.of"));
+        let table = of.table()?;
+        let of = if table.get("file").is_some() {
+            let v = View { table, keys: keys::shapes().or?.keys, preset };
+            let purpose = Purpose { dimension: 2, element, extruded: true };
+            mesh_file::read(v, purpose, folder, &path, problems)?
+        } else {
+            read(table, 2, None, folder, preset, &path, problems)?
+        };
         let (height, layers) = (v.number("height")?, v.count("layers")?);
         return Some(MeshSpec::Extrusion { of: Box::new(of), height, layers });
     }

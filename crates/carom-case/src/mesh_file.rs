@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use carom_solid::{Element, Mesh, gmsh};
+use carom_solid::{Element, Mesh, generate, gmsh};
 
 use super::MeshSpec;
 use super::machine::available_memory;
@@ -45,18 +45,30 @@ impl From<Mesh> for Facts {
     }
 }
 
+/// What a mesh from a file is for.
+#[derive(Clone, Copy)]
+pub(super) struct Purpose {
+    /// Its dimension.
+    pub dimension: usize,
+    /// Element of the body, if it is known.
+    pub element: Option<Element>,
+    /// Whether the body is the extrusion of the mesh.
+    pub extruded: bool,
+}
+
 /// Reads the table of a mesh from a file; its path is relative to the folder of the case.
 pub(super) fn read(
     v: View,
-    dimension: usize,
-    element: Option<Element>,
+    purpose: Purpose,
     folder: &Path,
     path: &str,
     problems: &mut Vec<Problem>,
 ) -> Option<MeshSpec> {
+    let Purpose { dimension, element, extruded } = purpose;
     let (name, slits) = (v.text("file")?, v.value("slits")?.flag()?);
     let (named, other) = if dimension == 3 { ("volume", "surface") } else { ("surface", "volume") };
-    if v.has(other) {
+    // The table of an extrusion has no such key.
+    if v.has(other) && !extruded {
         let what = format!("the body of a file is its `{named}`, not its `{other}`");
         let why = format!("the case has dimension = {dimension}");
         problems
@@ -67,7 +79,10 @@ pub(super) fn read(
     let joined = folder.join(&name);
     let file = std::path::absolute(&joined).unwrap_or(joined);
     let mut wrong = |key: &str, what: String, why: String, help: &str| {
-        problems.push(Problem::new(format!("{path}.{key}"), what, why, help));
+        // A file of several bodies is reported once.
+        if key != "file" || problems.iter().all(|known| known.what != what) {
+            problems.push(Problem::new(format!("{path}.{key}"), what, why, help));
+        }
         None
     };
     let bytes = match bytes(&file) {
@@ -96,11 +111,14 @@ pub(super) fn read(
             return wrong(key, format!("{name}: {error}"), error.why(), error.help());
         }
     };
-    if let Some(element) = element.filter(|e| *e != facts.element && e.dimension() == dimension) {
-        let what = format!("\"{surface}\" of {name} has {:?} cells, not {element:?}", facts.element);
-        let (found, wanted) = (facts.element, element.degree());
+    let found = if extruded { generate::extruded(facts.element)? } else { facts.element };
+    if let Some(element) = element.filter(|e| *e != found && e.dimension() == found.dimension()) {
+        let of = if extruded { "the extrusion of " } else { "" };
+        let what = format!("{of}\"{surface}\" of {name} has {found:?} cells, not {element:?}");
+        let wanted = element.degree();
         let in_gmsh = if found.degree() == wanted {
-            format!("mesh it with {}", shape(element))
+            let cells = if extruded { generate::plane_of(element)? } else { element };
+            format!("mesh it with {}", shape(cells))
         } else {
             format!("set Mesh.ElementOrder = {wanted}")
         };
@@ -175,7 +193,7 @@ impl MeshSpec {
     /// # Errors
     /// A message with the file's name.
     pub fn verify(&self) -> Result<(), NoMesh> {
-        match self {
+        match self.source() {
             Self::File { file, hash, .. } => unchanged(file, hash).map(|_| ()),
             _ => Ok(()),
         }

@@ -22,9 +22,6 @@ pub enum NoMesh {
     /// Its file cannot be used: a sentence with its name.
     #[error("{0}")]
     Unreadable(String),
-    /// Its cells cannot be divided.
-    #[error("its cells cannot be divided")]
-    Indivisible,
     /// The shape is one of another dimension.
     #[error("this shape needs dimension = {0}")]
     Dimension(usize),

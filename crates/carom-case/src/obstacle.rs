@@ -59,7 +59,13 @@ fn shape(
         let had = if given.is_empty() { "none".to_owned() } else { names.join(", ") };
         let what = format!("a rigid primary has exactly one shape; this one has {had}");
         let why = "the shape is `plane`, `circle`, `sphere`, `cylinder`, `polyline` or `surface`";
-        let help = "write for example primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }";
+        let [point, normal] = match dimension {
+            Some(1) => ["[0.0]", "[1.0]"],
+            Some(3) => ["[0.0, 0.0, 0.0]", "[0.0, 0.0, 1.0]"],
+            _ => ["[0.0, 0.0]", "[0.0, 1.0]"],
+        };
+        let help =
+            format!("write for example primary = {{ plane = {{ point = {point}, normal = {normal} }} }}");
         problems.push(Problem::new(path, what, why, help).at_key());
         return None;
     };
@@ -70,7 +76,7 @@ fn shape(
         let help = match d {
             1 => "use a plane with normal = [1.0] or [-1.0]",
             2 => "use a circle",
-            _ => "use a plane, a sphere, a cylinder or a surface of triangles",
+            _ => "use a plane, a sphere, a cylinder or a triangulated surface",
         };
         let why = format!("the case has dimension = {d}");
         problems.push(Problem::new(format!("{path}.{shape}"), what, why, help));

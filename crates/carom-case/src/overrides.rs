@@ -41,10 +41,14 @@ pub(super) fn apply(root: &mut Node, set: &str, source: usize) -> Result<(), Box
                     list.iter_mut().find(|n| n.table().and_then(|t| t.get("name")?.text()) == Some(key));
                 found.ok_or_else(|| {
                     let list = keys[..depth].iter().map(toml_edit::Key::get).collect::<Vec<_>>().join(".");
-                    let why = format!(
-                        "the names are: {}",
-                        if names.is_empty() { "none".into() } else { names.join(", ") }
-                    );
+                    if names.is_empty() {
+                        let why = format!("no table of `{list}` has a `name`");
+                        let help = format!(
+                            "give the one that is meant name = \"{key}\" in the file, or replace the list as a whole: --set {list}=[…]"
+                        );
+                        return wrong(here.span.clone(), format!("no `{list}` is named `{key}`"), why, help);
+                    }
+                    let why = format!("the names are: {}", names.join(", "));
                     let help = suggest::nearest(key, names.iter().map(String::as_str)).map_or_else(
                         || "use one of them".to_owned(),
                         |name| format!("did you mean `{list}.{name}`?"),

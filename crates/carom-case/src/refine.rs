@@ -25,7 +25,11 @@ impl Counts {
         if let (Some(layers), Some(of)) =
             (mesh.get("layers").and_then(Node::count), mesh.get("of").and_then(Node::table))
         {
-            let of = Self::of(of, String::new()).map_or(Vec::new(), |of| of.numbers);
+            let of = Self::of(of, format!("{path}.of"));
+            if let Some(of) = of.as_ref().filter(|of| of.of_file) {
+                return Some(Self { path: of.path.clone(), of_file: true, numbers: vec![1] });
+            }
+            let of = of.map_or(Vec::new(), |of| of.numbers);
             let numbers = [&of[..], &[layers]].concat();
             return (layers > 0).then(|| Self {
                 path: if of.is_empty() {

@@ -1,4 +1,4 @@
-//! A rigid surface of triangles from a file in STL or from Gmsh. It is read together with the case,
+//! A rigid triangulated surface from a file in STL or from Gmsh. It is read together with the case,
 //! so that its errors are reported at the key that names it; the resolved case stores its hash.
 
 use std::path::Path;
@@ -74,6 +74,12 @@ fn triangles(bytes: &[u8], group: Option<&str>) -> Result<Triangles, Fault> {
         }
         return stl::read(bytes).map_err(|error| match error {
             stl::StlError::Surface(error) => no_surface(error.to_string()),
+            stl::StlError::Cut(_) => Fault {
+                key: "file",
+                what: error.to_string(),
+                why: "the file was cut, perhaps while it was copied or written".to_owned(),
+                help: "copy it again, or save it again where it was made".to_owned(),
+            },
             stl::StlError::Format { .. } => Fault {
                 key: "file",
                 what: error.to_string(),

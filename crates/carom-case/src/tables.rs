@@ -31,6 +31,9 @@ pub(super) fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Opti
                 let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
                 let what = format!("the elastic constants are not a valid pair: {had}");
                 let help = elastic_help(v, given);
+                // One from an option is too much, whatever the file says.
+                let is_set = |key: &&&str| v.table.get(key).is_some_and(|node| node.origin.source > 0);
+                let path = given.iter().find(is_set).map_or(path.to_owned(), |key| format!("{path}.{key}"));
                 problems.push(
                     Problem::new(path, what, "an isotropic material has two elastic constants", help)
                         .at_key(),

@@ -135,7 +135,7 @@ impl Law {
         Self { stick: coefficient, slip: coefficient, decay: 0.0, limit: f64::INFINITY }
     }
 
-    /// Whether it holds nothing under any pressure: there is no friction.
+    /// Whether its traction is zero under any pressure: there is no friction.
     pub fn is_none(&self) -> bool {
         self.limit == 0.0 || self.stick == 0.0 && self.slip == 0.0
     }

@@ -11,8 +11,8 @@ use crate::friction::Tangential;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
     /// Index of the secondary node in [`Kinematics::secondary`](crate::Kinematics::secondary), or
-    /// of the edge: edges follow the nodes. A node in a dent of the primary has several pairs, and
-    /// so has an edge that crosses several ones.
+    /// of the edge: edges follow the nodes. A node in a concave corner of the primary has several
+    /// pairs, and so has an edge that crosses several ones.
     pub node: usize,
     /// Facet of the primary side, or piece of a polyline; 0 for a plane or a circle. Edges are
     /// numbered after the facets.
@@ -68,7 +68,8 @@ pub struct Pairing {
     pub pairs: Vec<Pair>,
     /// Margin around facets within which nodes are tracked.
     pub(crate) margin: f64,
-    /// Facet from which a node was handed over in this step: one that would return lies in a dent.
+    /// Facet from which a node was handed over in this step: one that would return lies in a
+    /// concave corner.
     pub(crate) left: BTreeMap<usize, usize>,
     /// Whether no search has been made in this solve.
     pub(crate) fresh: bool,
@@ -165,7 +166,7 @@ pub enum ContactError {
     },
     /// The node is inside a rigid obstacle, at the centre of a circle.
     #[error(
-        "secondary node {node} is at the centre of a rigid circle or rounded corner: every direction leads out"
+        "secondary node {node} is at the centre of a rigid circle or rounded corner: the normal is not unique"
     )]
     Center {
         /// Global number of the secondary node.

@@ -24,6 +24,7 @@
 mod error;
 mod function;
 mod given;
+mod instant;
 mod jet;
 mod parse;
 mod tree;
@@ -34,6 +35,7 @@ use serde::{Serialize, Serializer};
 
 pub use error::FormulaError;
 pub use given::{Function, Functions};
+pub use instant::instant;
 use jet::Jet;
 use tree::Tree;
 

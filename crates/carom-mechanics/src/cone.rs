@@ -10,9 +10,9 @@
 //! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations
 //! it is the rate of change of the slip rate, which decides for pairs that have none; others slip
 //! in their direction, or in that of the step before. All rows are equalities, as without friction:
-//! a closed gap stays closed (`persistency.rs`), and one whose p pulls goes on to stick, or to slip
-//! with q = −sμp. So the solution depends continuously on μ, and tangential impulses that slip are
-//! μ times the normal ones.
+//! a closed gap stays closed (`persistency.rs`), and one whose p is tensile remains closed: it
+//! sticks, or slips with q = −sμp. So the solution depends continuously on μ, and tangential
+//! impulses that slip are μ times the normal ones.
 
 use carom_contact::{Along, Hold, Law, Pair, Row, Rows, Rub, StickSlip, Tangential, inner, length};
 
@@ -93,7 +93,8 @@ impl Way {
         is_new || motion.turns[pair].abs() > TURN * widest
     }
 
-    /// The components of the rows by which friction holds a pair, and whether they are of a slip.
+    /// The components of the rows by which friction constrains a pair, and whether they are of a
+    /// slip.
     fn held(&self, tangents: usize) -> impl Iterator<Item = (Along, bool)> + use<> {
         match (self.hold, self.turns) {
             (Hold::Stick, _) => [([1.0, 0.0], false), ([0.0, 1.0], false)].into_iter().take(tangents),

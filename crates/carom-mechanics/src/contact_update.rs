@@ -204,7 +204,7 @@ impl ContactUpdate {
             }
             let rub = |(p, pair): (usize, &Pair)| {
                 // One that has just closed has no pressure yet; one that slips without friction
-                // goes on to do so.
+                // continues to do so.
                 let slips = pair.tangential.hold != Hold::Stick && equations.laws[k][pair.node].is_none();
                 (pair.active && pair.lambda != 0.0 && !slips).then(|| equations.rubs(evaluation, (k, p)))
             };

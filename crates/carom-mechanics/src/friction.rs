@@ -14,9 +14,9 @@
 //!
 //! A pair that slips has q = r(λ, Ṡ) d and is the normal row with the direction ∇g − ∂r/∂|λ| Σ d_α
 //! H_α; one that sticks has rows of its own with the multipliers q, S = 0 or, on a spring, S = (q −
-//! q_s)/k. A spring that slipped in the last step goes on to do so while its stick would exceed r,
-//! whatever a stick could hold. Its states change between iterates like all others: from one slip
-//! to the opposite one through stick.
+//! q_s)/k. A spring that slipped in the last step continues to do so while its traction in stick
+//! would exceed r at its slip rate, even if stick could carry it. Its states change between
+//! iterates like all others: from one slip to the opposite one through stick.
 //!
 //! In the plane d = ±1 is a state. In space it is an unknown, with the unit vector e across it and
 //! the row that nothing slips across it,
@@ -25,14 +25,12 @@
 //! e·S = 0,   δd = e δθ,   δq = r δθ:      e·∂S/∂y δy − (d·S/r) δq = −e·S,     force  δq Σ e_α H_α
 //! ```
 //!
-//! which goes on to hold as a stick across d where nothing slips along it. A slip without traction,
+//! which remains valid as a stick across d where nothing slips along it. A slip without traction,
 //! as in the iterate in which a pair closes, has the direction of S. On a spring, d is that of
 //! q_s + kS, so that its row is that of a spring of stiffness k r/|q_s + kS| across d. The
-//! components of q_s are those along tangents that turn with the normal; about the normal, springs
-//! turn with the facet at the end of the step, by its least-squares rotation in it.
-//!
-//! Between steps q acts along H(y_s): in the averaged forces of the next step and in what is
-//! recorded.
+//! components of q_s are those along tangents that turn with the normal, and between steps about it
+//! (`friction_state.rs`). There q acts along H(y_s): in the averaged forces of the next step and in
+//! what is recorded.
 
 use carom_contact::{
     Along, ContactError, Hold, Law, Pair, Radius, Row, Rows, Rub, Tangential, inner, length,
@@ -42,7 +40,6 @@ use crate::balance::contact_weights;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
 use crate::model::{Contact, Model, NoValue};
-use crate::state::State;
 
 /// Angle by which a slip may miss its direction, unless it is shorter than ROUND_OFF / ANGLE times
 /// the tolerance of gaps.
@@ -190,7 +187,7 @@ impl Equations<'_> {
     }
 
     /// Traction that a pair on a spring would have in stick, and the one at which it slips: a
-    /// spring that slipped in the last step goes on to do so at its slip rate.
+    /// spring that slipped in the last step continues to do so at its slip rate.
     fn yields_at(
         &self,
         contact: usize,
@@ -241,7 +238,7 @@ impl Equations<'_> {
         [0, 1].map(|i| before[i] + stiffness * slip[i])
     }
 
-    /// Slip per traction of a row that friction holds on a spring; none without a spring. The
+    /// Slip per traction of a row that friction constrains by a spring; none without a spring. The
     /// traction of a slip turns with that of its spring.
     pub(crate) fn spring_yields(&self, contact: usize, pair: &Pair, slip: Along) -> Option<f64> {
         let stiffness = self.stick_spring(contact, pair)?;
@@ -254,8 +251,8 @@ impl Equations<'_> {
         Some(share / stiffness)
     }
 
-    /// The components of the rows by which friction holds a closed pair: every tangent of one that
-    /// sticks, and in space what is across the direction of a slip with a traction.
+    /// The components of the rows by which friction constrains a closed pair: every tangent of one
+    /// that sticks, and in space what is across the direction of a slip with a traction.
     pub(crate) fn held(&self, contact: usize, pair: &Pair) -> impl Iterator<Item = Along> {
         let tangents = self.model.dimension - 1;
         let rows = match pair.tangential.hold {
@@ -366,34 +363,15 @@ impl Equations<'_> {
 
     /// Share of the step after the touch of a pair that closes, which approaches with its velocity
     /// at the start, or at the mean one if that is larger.
-    fn since_touch(&self, contact: usize, pair: &Pair, gap: Row, rows: &mut Rows) -> f64 {
+    pub(crate) fn since_touch(&self, contact: usize, pair: &Pair, gap: Row, rows: &mut Rows) -> f64 {
         let start = self.gap_at_start(contact, pair, rows).unwrap_or(0.0);
         let approach = (-gap.along(&self.state.v)).max(start / self.duration);
         if start > 0.0 { 1.0 - start / (self.duration * approach) } else { 1.0 }
     }
 
     /// Whether a pair was open at the step's start.
-    fn closes(&self, contact: usize, pair: &Pair) -> bool {
+    pub(crate) fn closes(&self, contact: usize, pair: &Pair) -> bool {
         !self.stage.is_static() && self.state.closed(contact, pair.node).is_none()
-    }
-}
-
-/// Calls `visit(contact, pair, q, H)` for every tangent of the closed pairs of a state that have
-/// friction, with the traction along it and H at the positions of the state.
-pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usize, f64, Row)) {
-    let mut rows = Rows::new(model.dimension);
-    let rubs = |(_, contact): &(usize, &Contact)| contact.friction.is_some();
-    for (k, contact) in model.contacts.iter().enumerate().filter(rubs) {
-        for (p, pair) in state.pairs[k].iter().enumerate().filter(|(_, pair)| pair.active) {
-            let mut at = *pair;
-            rows.clear();
-            if contact.kinematics.measure(&mut at, &state.y, &mut rows).is_ok()
-                && contact.kinematics.slip(&at, &state.y, &[], &mut rows).is_ok()
-            {
-                let along = rows.iter().skip(1).zip(pair.tangential.traction);
-                along.for_each(|(row, traction)| visit(k, p, traction, row));
-            }
-        }
     }
 }
 
@@ -413,75 +391,4 @@ pub(crate) fn secondary_friction(evaluation: &Evaluation, contact: usize) -> [f6
         }
     }
     force
-}
-
-/// Adds the slips of a solved step to those of the closed pairs; open pairs have none.
-pub(crate) fn take_slips(equations: &Equations, solved: &Evaluation, state: &mut State) {
-    let mut rows = Rows::new(equations.model.dimension);
-    for (k, contact) in equations.model.contacts.iter().enumerate() {
-        if contact.friction.is_none() {
-            continue;
-        }
-        for (p, (pair, gap)) in state.pairs[k].iter_mut().zip(solved.rows[k].iter()).enumerate() {
-            if pair.active {
-                // On a spring, S is no more than what follows the touch.
-                let touches = equations.closes(k, pair) && equations.stick_spring(k, pair).is_none();
-                for (i, slip) in solved.slip_rows((k, p)).enumerate() {
-                    pair.tangential.slip[i] += if touches {
-                        equations.since_touch(k, pair, gap, &mut rows) * slip.along(&solved.at.increment)
-                    } else {
-                        slip.gap
-                    };
-                }
-                pair.tangential.before = pair.tangential.traction;
-                if equations.model.dimension == 3 && equations.stick_spring(k, pair).is_some() {
-                    turn_with_facet(contact, pair, [&equations.state.y, &solved.y]);
-                }
-            } else {
-                pair.tangential = Tangential::default();
-            }
-        }
-    }
-}
-
-/// Turns the tangents of a pair about the normal with its facet, which a rigid obstacle does not
-/// have.
-fn turn_with_facet(contact: &Contact, pair: &mut Pair, [before, now]: [&[f64]; 2]) {
-    let nodes = contact.kinematics.facet_nodes(pair);
-    if nodes.is_empty() {
-        return;
-    }
-    let [first, second] = pair.tangential.tangents;
-    let share = (nodes.len() as f64).recip();
-    // Components along the tangents of arms from the mean, before and after.
-    let [(from_x, from_y), (to_x, to_y)] = [before, now].map(|y| {
-        let along = |tangent: [f64; 3]| -> Vec<f64> {
-            let at = |node: &usize| (0..3).map(|i| tangent[i] * y[3 * node + i]).sum::<f64>();
-            let mean = share * nodes.iter().map(at).sum::<f64>();
-            nodes.iter().map(|node| at(node) - mean).collect()
-        };
-        (along(first), along(second))
-    });
-    let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let (across, along) =
-        (sum(&from_x, &to_y) - sum(&from_y, &to_x), sum(&from_x, &to_x) + sum(&from_y, &to_y));
-    let (sin, cos) = across.atan2(along).sin_cos();
-    pair.tangential.tangents = [
-        std::array::from_fn(|i| cos * first[i] + sin * second[i]),
-        std::array::from_fn(|i| cos * second[i] - sin * first[i]),
-    ];
-}
-
-/// Adds a step of this size to what pairs with friction did.
-pub(crate) fn book_states(model: &Model, state: &mut State, dt: f64) {
-    let rubbed = &mut state.ledger.rubbed;
-    let rubs = model.contacts.iter().zip(&state.pairs).filter(|(contact, _)| contact.friction.is_some());
-    // Edges have none.
-    let nodes =
-        rubs.flat_map(|(contact, pairs)| pairs.iter().filter(|p| p.node < contact.kinematics.nodes()));
-    for pair in nodes.filter(|pair| pair.active) {
-        rubbed.closed += dt;
-        rubbed.stuck += if pair.tangential.hold == Hold::Stick { dt } else { 0.0 };
-        rubbed.farthest = rubbed.farthest.max(length(pair.tangential.slip));
-    }
 }

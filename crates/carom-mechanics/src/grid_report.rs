@@ -2,6 +2,7 @@
 
 use carom_contact::PairEvent;
 
+use crate::overlapping::Overlap;
 use crate::penetration::Depths;
 use crate::rejected::Rejected;
 use crate::stepper::StepReport;
@@ -49,12 +50,12 @@ pub enum LogEvent {
         /// The event.
         event: PairEvent,
     },
-    /// Two bodies without a contact overlap, or one crosses itself, for the first time.
+    /// Bodies overlap without a contact, or one crosses itself, for the first time.
     Overlap {
         /// Time.
         time: f64,
-        /// Indices of the bodies.
-        bodies: (usize, usize),
+        /// What overlaps.
+        overlap: Overlap,
     },
     /// Stick and slip of the contacts are not unique.
     Ambiguous {

@@ -22,9 +22,9 @@ pub(crate) fn independent_rows(
     independent(model, places.map(|(k, p)| ((k, p), rows[k].row(p))))
 }
 
-/// Remainder of the row of a slip below which it depends on the others. In space supports may hold
-/// a node and its facet along one tangent, and the row then has only what turns the facet, times
-/// the gap.
+/// Remainder of the row of a slip below which it depends on the others. In space supports may
+/// constrain a node and its facet along one tangent, and the row then has only what turns the
+/// facet, times the gap.
 pub(crate) fn slip_remainder(model: &Model) -> f64 {
     if model.dimension == 3 { HELD } else { DEPENDENT }
 }

@@ -18,14 +18,19 @@ use crate::constraints::Constraints;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
 use crate::mixing::Mixing;
+use crate::model::Model;
 use crate::preconditioner::Preconditioner;
 use crate::rejected::Rejected;
 use crate::renewal::Renewal;
 use crate::sums::max_abs;
 use crate::timings::{Timings, timed};
+use crate::wholes::Wholes;
 
 /// Maximum number of solves of one linear problem; then the current solution is used.
 const MOST_SOLVES: u32 = 30;
+
+/// Correction, as a fraction of L, from which on the bodies' balance is closed.
+const LATE: f64 = 1e-6;
 
 /// The step of a Newton iteration.
 #[derive(Debug, Default)]
@@ -62,6 +67,7 @@ pub(crate) struct LinearProblem {
     increment: Vec<f64>,
     multipliers: Vec<f64>,
     product: Vec<f64>,
+    wholes: Wholes,
     mixing: Mixing,
     /// Size of the last correction, if comparable with the next.
     comparable: Option<f64>,
@@ -71,6 +77,11 @@ pub(crate) struct LinearProblem {
 }
 
 impl LinearProblem {
+    /// Buffers for a model.
+    pub(crate) fn new(model: &Model) -> Self {
+        Self { wholes: Wholes::new(model), ..Self::default() }
+    }
+
     /// Clears the history: with another factor, other rows, or after a shortened step it is
     /// meaningless.
     pub(crate) fn restart(&mut self) {
@@ -105,7 +116,7 @@ impl LinearProblem {
         let mut total = Correction::default();
         (total.increment, total.multipliers) = (self.increment.clone(), vec![0.0; rows.len()]);
         loop {
-            self.correct(equations, preconditioner, depth, &mut total, timings)?;
+            self.correct(equations, rows, preconditioner, depth, &mut total, timings)?;
             if let Some(last) = self.comparable.replace(total.last) {
                 renewal.observe(total.last / last);
             }
@@ -150,6 +161,7 @@ impl LinearProblem {
     fn correct(
         &mut self,
         equations: &Equations,
+        rows: &Constraints,
         preconditioner: &mut dyn Preconditioner,
         depth: usize,
         total: &mut Correction,
@@ -169,6 +181,7 @@ impl LinearProblem {
         }
         total.solves += 1;
         self.mixing.improve([&mut self.increment, &mut self.multipliers], depth);
+        self.close(equations, rows);
         total.increment.iter_mut().zip(&self.increment).for_each(|(total, change)| *total += change);
         total.multipliers.iter_mut().zip(&self.multipliers).for_each(|(total, change)| *total += change);
         Ok(())
@@ -199,26 +212,46 @@ impl LinearProblem {
         self.product.resize(self.forces.len(), 0.0);
         equations.product_into(now, &self.increment, &mut self.product, timings)?;
         self.forces.iter_mut().zip(&self.product).for_each(|(right, product)| *right -= product);
-        for r in 0..rows.len() {
-            let (row, weight) = (rows.rows.row(r), rows.weights[r]);
-            let approach = row.along(&self.increment);
-            let multiplier = if rows.compliances[r] == 0.0 {
-                self.gaps[r] -= weight * approach;
-                if rows.yields[r] != 0.0 {
-                    self.gaps[r] += weight * rows.yields[r] * self.multipliers[r];
-                }
-                self.multipliers[r]
-            } else {
-                approach / rows.compliances[r]
-            };
-            rows.directions.row(r).add_to(-weight * multiplier, &mut self.forces);
-            let curvature = rows.curvatures[r].chunks_exact(row.gradient.len());
-            for ((dof, _), curved) in row.entries().zip(curvature) {
-                let bent: f64 =
-                    curved.iter().zip(row.entries()).map(|(c, (other, _))| c * self.increment[other]).sum();
-                self.forces[dof] -= weight * bent;
+        subtract_contact_forces(rows, [&self.increment, &self.multipliers], &mut self.forces);
+        for r in (0..rows.len()).filter(|&r| rows.compliances[r] == 0.0) {
+            let weight = rows.weights[r];
+            self.gaps[r] -= weight * rows.rows.row(r).along(&self.increment);
+            if rows.yields[r] != 0.0 {
+                self.gaps[r] += weight * rows.yields[r] * self.multipliers[r];
             }
         }
         Ok(())
+    }
+
+    /// Completes a correction by the translations of the bodies.
+    fn close(&mut self, equations: &Equations, rows: &Constraints) {
+        let model = equations.model;
+        // What earlier corrections leave, the next ones correct. Pressures that follow their sides
+        // change their resultant with the shape.
+        let is_late = max_abs(&self.increment) <= LATE * model.scale;
+        if !is_late || equations.stage.is_static() || model.loads.follow_sides() {
+            return;
+        }
+        self.product.clone_from(&self.forces);
+        subtract_contact_forces(rows, [&self.increment, &self.multipliers], &mut self.product);
+        self.wholes.close(&self.product, equations.mass_factor(), rows, &mut self.increment);
+    }
+}
+
+/// Subtracts the forces of the contacts that a correction of positions and multipliers causes.
+fn subtract_contact_forces(rows: &Constraints, [increment, multipliers]: [&[f64]; 2], forces: &mut [f64]) {
+    for r in 0..rows.len() {
+        let (row, weight) = (rows.rows.row(r), rows.weights[r]);
+        let multiplier = match rows.compliances[r] {
+            0.0 => multipliers[r],
+            compliance => row.along(increment) / compliance,
+        };
+        rows.directions.row(r).add_to(-weight * multiplier, forces);
+        let curvature = rows.curvatures[r].chunks_exact(row.gradient.len());
+        for ((dof, _), curved) in row.entries().zip(curvature) {
+            let bent: f64 =
+                curved.iter().zip(row.entries()).map(|(c, (other, _))| c * increment[other]).sum();
+            forces[dof] -= weight * bent;
+        }
     }
 }

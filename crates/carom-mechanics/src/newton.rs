@@ -281,7 +281,7 @@ fn advance(
             }
         }
         for &((k, p), along) in &rows.dropped {
-            // Other rows hold it.
+            // Other rows constrain it.
             let tangential = &mut at.pairings[k].pairs[p].tangential;
             tangential.pull(along, -inner(along, tangential.traction));
         }

@@ -17,7 +17,7 @@ use crate::watched::{Way, edge_points, has_gaps, watched};
 
 /// Measures penetration. A cache: its content affects no result.
 #[derive(Debug, Default)]
-pub(crate) struct Penetration {
+pub struct Penetration {
     skins: Vec<Option<BodySkin>>,
     pub(crate) ways: Vec<Way>,
     tips: Vec<Tip>,
@@ -84,7 +84,7 @@ pub(crate) struct Inside {
 
 impl Penetration {
     /// For the contacts of a model.
-    pub(crate) fn of_contacts(model: &Model) -> Self {
+    pub fn of_contacts(model: &Model) -> Self {
         let mut ways = Vec::new();
         for (k, contact) in model.contacts.iter().enumerate() {
             if contact.itself {
@@ -268,7 +268,7 @@ impl Penetration {
                     paired.push((node, (-rows.row(0).gap).max(0.0), length(model, facet)));
                 }
             }
-            // A node in a dent has two pairs: the deeper one counts.
+            // A node in a concave corner has two pairs: the deeper one counts.
             paired.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
             paired.dedup_by_key(|(node, ..)| *node);
         }
@@ -323,6 +323,33 @@ impl Penetration {
         }
         (deepest, worst)
     }
+
+    /// As the function [`inside`], for positions that follow each other. What is measured so is not
+    /// for `Penetration::check`.
+    pub fn inside(&mut self, model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> {
+        self.begin(model, y);
+        self.ways.iter_mut().flat_map(|way| &mut way.nodes).for_each(|watched| watched.share = 0.0);
+        let mut found: Vec<(usize, usize, f64)> = Vec::new();
+        for k in 0..self.ways.len() {
+            let (_, deepest) = self.deepest(model, k, None);
+            let of_contact = deepest.zip(self.ways[k].contact);
+            found.extend(of_contact.map(|(inside, contact)| (contact, inside.node, inside.depth)));
+        }
+        // Chords of facets lie in what their nodes touch.
+        let pierced = self.pierced(model, y).into_iter().filter(|(.., p)| p.depth > p.limit);
+        found.extend(pierced.map(|(contact, _, pierced)| (contact, pierced.node, pierced.depth)));
+        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| has_gaps(model, contact))
+        {
+            let secondary = contact.kinematics.secondary().iter().enumerate();
+            let depth =
+                |(place, &node)| (k, node, -contact.kinematics.signed_distance(place, y).unwrap_or(0.0));
+            found.extend(secondary.map(depth));
+        }
+        found.retain(|(.., depth)| *depth > limit);
+        found.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.total_cmp(&a.2)));
+        found.dedup_by_key(|(contact, ..)| *contact);
+        found
+    }
 }
 
 /// Penetration at a state.
@@ -333,27 +360,7 @@ pub fn penetration(model: &Model, state: &State) -> Depths {
 /// The deepest node of each contact in which a node lies deeper than `limit` at positions `y`:
 /// (contact, node, depth).
 pub fn inside(model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> {
-    let mut penetration = Penetration::of_contacts(model);
-    penetration.begin(model, y);
-    penetration.ways.iter_mut().flat_map(|way| &mut way.nodes).for_each(|watched| watched.share = 0.0);
-    let mut found: Vec<(usize, usize, f64)> = Vec::new();
-    for k in 0..penetration.ways.len() {
-        let (_, deepest) = penetration.deepest(model, k, None);
-        let of_contact = deepest.zip(penetration.ways[k].contact);
-        found.extend(of_contact.map(|(inside, contact)| (contact, inside.node, inside.depth)));
-    }
-    // Chords of facets lie in what their nodes touch.
-    let pierced = penetration.pierced(model, y).into_iter().filter(|(.., p)| p.depth > p.limit);
-    found.extend(pierced.map(|(contact, _, pierced)| (contact, pierced.node, pierced.depth)));
-    for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| has_gaps(model, contact)) {
-        let secondary = contact.kinematics.secondary().iter().enumerate();
-        let depth = |(place, &node)| (k, node, -contact.kinematics.signed_distance(place, y).unwrap_or(0.0));
-        found.extend(secondary.map(depth));
-    }
-    found.retain(|(.., depth)| *depth > limit);
-    found.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.total_cmp(&a.2)));
-    found.dedup_by_key(|(contact, ..)| *contact);
-    found
+    Penetration::of_contacts(model).inside(model, y, limit)
 }
 
 /// Depth over the length of a facet that a chord of it may feign.

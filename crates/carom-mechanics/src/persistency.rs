@@ -15,7 +15,7 @@ use carom_contact::{Along, Row, Rows, inner, length};
 
 use crate::active_rows::{measure_all, pressing};
 use crate::cone::{AT_REST, Closed, Right};
-use crate::friction::each_slip;
+use crate::friction_state::each_slip;
 use crate::independent::independent_rows;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;

@@ -48,7 +48,7 @@ pub enum Rejected {
     },
     /// The multipliers of an augmented Lagrangian were not found.
     #[error(
-        "the augmented Lagrangian did not close its contacts in {rounds} rounds: the largest gap or slip is {:.2e} L (allowed: {:.0e}); supports may prevent a node from moving out",
+        "the augmented Lagrangian did not close its contacts in {rounds} rounds (Uzawa iterations): the largest gap or slip is {:.2e} L (allowed: {:.0e}); supports may prevent a node from moving out",
         gap[0], gap[1]
     )]
     NoMultipliers {
@@ -140,7 +140,8 @@ pub enum Rejected {
     },
     /// Penetration deeper than the scheme's law allows in one step.
     #[error(
-        "a node penetrates by {depth:.3e}, more than the {bound:.3e} that the contact law allows in this step"
+        "a node penetrates by {}, more than the {} that the contact law allows in this step",
+        apart(*depth, *bound)[0], apart(*depth, *bound)[1]
     )]
     Deep {
         /// Depth of the deepest node.
@@ -151,7 +152,8 @@ pub enum Rejected {
     /// A node, a point of a sharp edge, or a rigid obstacle lies deeper in a body than the contact
     /// allows.
     #[error(
-        "contact \"{contact}\": {what} {node} lies {depth:.3e} deep in body \"{body}\", more than the allowed {limit:.3e}"
+        "contact \"{contact}\": {what} {node} lies {} deep in body \"{body}\", more than the allowed {}",
+        apart(*depth, *limit)[0], apart(*depth, *limit)[1]
     )]
     Penetration {
         /// Contact.
@@ -169,7 +171,8 @@ pub enum Rejected {
     },
     /// A node enters the other body and leaves it within the step.
     #[error(
-        "contact \"{contact}\": node {node} passes through the other body within the step, {depth:.3e} deep, more than the allowed {limit:.3e}"
+        "contact \"{contact}\": node {node} passes through the other body within the step, {} deep, more than the allowed {}",
+        apart(*depth, *limit)[0], apart(*depth, *limit)[1]
     )]
     Passed {
         /// Contact.
@@ -197,6 +200,13 @@ pub enum Rejected {
         /// Which number.
         what: &'static str,
     },
+}
+
+/// A depth and the smaller one that is allowed, with four digits, or so many that they differ.
+fn apart(depth: f64, limit: f64) -> [String; 2] {
+    let written = |digits: usize| [depth, limit].map(|x| format!("{x:.digits$e}"));
+    let differ = |texts: &[String; 2]| texts[0] != texts[1];
+    (3..16).map(written).find(differ).unwrap_or_else(|| written(16))
 }
 
 /// The part of a message about a constraint that is not satisfied.
@@ -233,5 +243,17 @@ impl Rejected {
             Self::Energy { .. } => "energy-created",
             Self::NotFinite { .. } => "not-finite",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_depth_is_told_from_its_limit() {
+        assert_eq!(apart(4.2e-3, 4.1e-3), ["4.200e-3", "4.100e-3"]);
+        assert_eq!(apart(4.166_693_1e-3, 4.166_666_7e-3), ["4.16669e-3", "4.16667e-3"]);
+        assert_eq!(apart(0.1 + f64::EPSILON, 0.1), ["1.000000000000002e-1", "1.000000000000000e-1"]);
     }
 }

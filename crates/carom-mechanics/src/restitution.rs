@@ -10,19 +10,20 @@
 //! with which b = 0, or their separation speeds; zero for pairs that remain closed. Owed energy
 //! makes nodes separate faster. Energy that contact has created, owed < 0, makes them separate
 //! slower, at most until b + a f = 0; the rest is carried. Gradients are those at y_{n+1}, so
-//! momentum and moment of momentum do not change. With friction, M w + Gᵀp + Hᵀq = 0 with Coulomb's
+//! momentum and angular momentum do not change. With friction, M w + Gᵀp + Hᵀq = 0 with Coulomb's
 //! law for the impulse (`cone.rs`): what it takes is not owed. Which nodes stick depends on f,
 //! which is iterated.
 
 use carom_contact::{Along, Hold, Pair, Row, Tangential, inner};
 
 use crate::active_rows::{measure, pressing};
-use crate::cone::{Closed, Right};
+use crate::cone::{AT_REST, Closed, Right};
 use crate::independent::independent_rows;
 use crate::ledger::book_kinetic;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
+use crate::sums::max_abs;
 use crate::system::System;
 
 /// Solutions for the factor of speeds with friction, and its change that is round-off.
@@ -133,13 +134,22 @@ fn settle(
         if sticks(place) { [0.0; 2] } else { rate.map(|rate| -rate) }
     };
     let stopping: Vec<Along> = closed.places.iter().zip(&slips).map(stop).collect();
-    // Stick, slip and tractions of the state are not those of these impulses.
+    // Stick, slip and tractions of the state are not those of these impulses: a pair that has
+    // opened slips as it moves, however small they are, and is not stopped by one that pulls.
     let of_state = |&(k, p): &(usize, usize)| state.pairs[k][p].tangential;
     let tangentials: Vec<Tangential> = closed.places.iter().map(of_state).collect();
+    let still = AT_REST * max_abs(&state.v);
+    let hold = |(place, rate): (&(usize, usize), &Along)| {
+        if sticks(place) { Hold::Stick } else { Hold::of(*rate, still) }
+    };
+    let holds: Vec<Hold> = closed.places.iter().zip(&slips).map(hold).collect();
     let mut reach = 1.0;
     for _ in 0..ROUNDS {
         let parting: Vec<f64> = speeds.iter().map(|speed| reach * speed).collect();
         let right = Right { forces: &forces, gaps: &parting, slips: &stopping };
+        for (&(k, p), hold) in closed.places.iter().zip(&holds) {
+            state.pairs[k][p].tangential.hold = *hold;
+        }
         let motion = closed.impulse(model, state, &right, system)?;
         for (&(k, p), tangential) in closed.places.iter().zip(&tangentials) {
             state.pairs[k][p].tangential = *tangential;

@@ -5,6 +5,7 @@
 use std::ops::ControlFlow;
 
 use carom_contact::Passed;
+use carom_formula::instant;
 
 use crate::audit::{Doubt, audit};
 use crate::grid::Grid;
@@ -24,7 +25,7 @@ use crate::workspace::Workspace;
 pub enum Stopped {
     /// No step from here is accepted, however small.
     #[error(
-        "the step at t = {time:.6} {} rejected: {rejected}", tried(*halvings, *dt)
+        "the step at t = {} {} rejected: {rejected}", at(*time, *dt * f64::from(*halvings).exp2()), tried(*halvings, *dt)
     )]
     NoStep {
         /// Time of the last accepted state.
@@ -37,26 +38,32 @@ pub enum Stopped {
         rejected: Rejected,
     },
     /// The caller ended it within a grid step.
-    #[error("interrupted in the step that begins at t = {time:.6}")]
+    #[error("interrupted in the step that begins at t = {}", at(*time, *dt))]
     Interrupted {
         /// Time of the last grid time.
         time: f64,
+        /// The grid step.
+        dt: f64,
     },
     /// A second method contradicts the contact of a step.
-    #[error("the audit of the step that ends at t = {time:.6} contradicts its contact: {doubt}")]
+    #[error("the audit of the step that ends at t = {} contradicts its contact: {doubt}", at(*time, *dt))]
     Audit {
         /// Time.
         time: f64,
+        /// The grid step.
+        dt: f64,
         /// What it found.
         doubt: Doubt,
     },
     /// The scheme created energy.
     #[error(
-        "energy was created at t = {time:.6}: {created:.4e}, which is {} % of the energy scale {scale:.4e}; the limit is {} %", percent(created / scale), percent(*share)
+        "energy was created at t = {}: {created:.4e}, which is {} % of the energy scale {scale:.4e}; the limit is {} %", at(*time, *dt), percent(created / scale), percent(*share)
     )]
     EnergyGuard {
         /// Time.
         time: f64,
+        /// The grid step.
+        dt: f64,
         /// Rise of total − external work above its running minimum.
         created: f64,
         /// Allowed fraction.
@@ -75,6 +82,11 @@ impl Stopped {
             Self::Interrupted { .. } | Self::Audit { .. } => false,
         }
     }
+}
+
+/// A time with the digits of the grid step.
+fn at(time: f64, step: f64) -> String {
+    instant(time, step, 6)
 }
 
 fn tried(halvings: u32, dt: f64) -> String {
@@ -350,7 +362,7 @@ impl Simulation {
             if (report.rejected > before || progress.level > 0)
                 && watch(&Attempt { time, dt, rejected: report.rejected - before }).is_break()
             {
-                return Err(Stopped::Interrupted { time: self.state.time });
+                return Err(Stopped::Interrupted { time: self.state.time, dt: length });
             }
             let Some(step) = taken else {
                 progress.bisect();
@@ -360,7 +372,7 @@ impl Simulation {
             if self.audited {
                 let from = &reached.as_ref().unwrap_or(&self.state).y;
                 audit(&self.model, returned.as_ref().unwrap_or(from), &next.y, step.penetration)
-                    .map_err(|doubt| Stopped::Audit { time: next.time, doubt })?;
+                    .map_err(|doubt| Stopped::Audit { time: next.time, dt: length, doubt })?;
             }
             report.add(next.time, step);
             if let Some(before) = reached.replace(next) {
@@ -376,10 +388,10 @@ impl Simulation {
         state.step += 1;
         state.time = self.grid.time(state.step);
         let Workspace { undeclared, timings, .. } = &mut self.work;
-        for pair in timed(&mut timings.contact, || undeclared.found(&self.model, &state.y)) {
-            if !state.overlaps.contains(&pair) {
-                state.overlaps.push(pair);
-                report.events.push(LogEvent::Overlap { time: state.time, bodies: pair });
+        for overlap in timed(&mut timings.contact, || undeclared.found(&self.model, &state.y)) {
+            if !state.overlaps.contains(&overlap) {
+                state.overlaps.push(overlap);
+                report.events.push(LogEvent::Overlap { time: state.time, overlap });
             }
         }
         if let Err(stopped) = self.watch(&state) {
@@ -395,7 +407,7 @@ impl Simulation {
         let ledger = &state.ledger;
         let (created, scale) = (ledger.created(), ledger.scale());
         if ledger.surely_created() > share * scale + self.grid.floor {
-            return Err(Stopped::EnergyGuard { time: state.time, created, share, scale });
+            return Err(Stopped::EnergyGuard { time: state.time, dt: self.grid.dt, created, share, scale });
         }
         Ok(())
     }
@@ -418,8 +430,18 @@ mod tests {
 
     #[test]
     fn percentages_have_three_digits() {
-        let stopped = Stopped::EnergyGuard { time: 0.5, created: 0.0123456, share: 5e-6, scale: 0.1 };
+        let stopped =
+            Stopped::EnergyGuard { time: 0.5, dt: 0.01, created: 0.0123456, share: 5e-6, scale: 0.1 };
         let message = "energy was created at t = 0.500000: 1.2346e-2, which is 12.3 % of the energy scale 1.0000e-1; the limit is 0.0005 %";
         assert_eq!(stopped.to_string(), message);
+    }
+
+    #[test]
+    fn times_have_the_digits_of_the_step() {
+        let stopped = Stopped::Interrupted { time: 1.02e-6, dt: 2e-8 };
+        assert_eq!(stopped.to_string(), "interrupted in the step that begins at t = 0.00000102");
+        let rejected = Rejected::NegativeMass;
+        let stopped = Stopped::NoStep { time: 1.02e-6, dt: 2e-8 / 8.0, halvings: 3, rejected };
+        assert!(stopped.to_string().starts_with("the step at t = 0.00000102 was bisected 3 times"));
     }
 }

@@ -4,6 +4,7 @@ use carom_contact::{Pair, Pairing};
 use serde::{Deserialize, Serialize};
 
 use crate::model::Model;
+use crate::overlapping::Overlap;
 use crate::renewal::FrozenTangent;
 
 /// Bisections of a grid step that the fallback takes, and of the next one.
@@ -234,9 +235,9 @@ pub struct State {
     pub frozen: FrozenTangent,
     /// Recently bisected grid steps.
     pub bisection: Bisection,
-    /// Bodies without a contact that have overlapped, each pair once; a body with itself if it has
-    /// crossed itself.
-    pub overlaps: Vec<(usize, usize)>,
+    /// What has overlapped without a contact, each pair once; a body with itself if it has crossed
+    /// itself.
+    pub overlaps: Vec<Overlap>,
 }
 
 impl State {

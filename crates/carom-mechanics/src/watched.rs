@@ -126,7 +126,7 @@ pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -
 }
 
 /// The depth that a contact keeps at each of its nodes.
-fn kept_depths(contact: &Contact) -> HashMap<usize, f64> {
+pub(crate) fn kept_depths(contact: &Contact) -> HashMap<usize, f64> {
     let nodes = contact.kinematics.secondary().iter().enumerate().take(contact.kinematics.nodes());
     nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect()
 }

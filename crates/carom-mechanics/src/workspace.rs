@@ -49,7 +49,7 @@ impl Workspace {
             timings: Timings::default(),
             penetration: Penetration::of_contacts(model),
             undeclared: Undeclared::new(model),
-            linear: LinearProblem::default(),
+            linear: LinearProblem::new(model),
             trace: Trace::default(),
         }
     }

@@ -4,7 +4,7 @@ use carom_record::Run;
 
 use crate::chart::{Chart, Panel, Series};
 use crate::figure::Figure;
-use crate::labels::with_unit;
+use crate::labels::{instant_label, with_unit};
 use crate::palette::sequence;
 use crate::redraw::of_chart;
 
@@ -31,13 +31,12 @@ pub(crate) fn figure(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: 
         sets.iter().filter_map(line).collect()
     };
     let (u, stress) = (lines("displacement", 0), lines("stress", 0));
-    let time = run.history.unit("time");
     let unit =
         |array: &str| sets.first().and_then(|s| s.1.array(array)).map(|a| a.unit.clone()).unwrap_or_default();
     let mut panels = Vec::new();
     for (label, array, lines) in [("u_{x}", "displacement", &u), ("σ_{xx}", "stress", &stress)] {
         let series = lines.iter().enumerate().map(|(i, (t, x, y))| Series {
-            label: format!("t = {t:.4} {time}"),
+            label: instant_label(run, *t),
             color: sequence(i, sets.len()),
             x,
             y: y.clone(),

@@ -40,6 +40,7 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
         h3 {
             "Refinement of " code { (key) }
             @if key.ends_with("cells") { " (step: 1/cells)" }
+            @if key == "refine" { " (step: 1/refine)" }
             @if !group.common.is_empty() { ", " code { (group.common) } }
         }
         details {

@@ -9,7 +9,7 @@ use crate::bodies::{self, Instant};
 use crate::chart::{Chart, Options, Panel, Series};
 use crate::collected::measured_label;
 use crate::figure::Figure;
-use crate::labels::{capitalised, is_stress, listed, symbol, with_unit, words};
+use crate::labels::{capitalised, instant_label, is_stress, listed, symbol, with_unit, words};
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::redraw::of_chart;
@@ -374,12 +374,12 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
     }
     if bodies::fill_space(first) {
         let length = first.array("displacement").map_or("", |a| a.unit.as_str());
-        let (svg, caption) = space::instants(run, &sets, (unit, length), during)?;
+        let (svg, caption) = space::instants(run, &sets, length, during)?;
         return Some((Figure::new("bodies", caption, svg), None));
     }
     let stress = first.array("stress")?.unit.clone();
     let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
-    let instant = |(time, set): &_| Instant::new(set, "stress", 1, format!("t = {time:.4} {unit}"));
+    let instant = |(time, set): &_| Instant::new(set, "stress", 1, instant_label(run, *time));
     let list: Vec<Instant> = sets.iter().filter_map(instant).collect();
     let (bands, cut) = bodies::colors(&list);
     let title = "Deformed bodies with vertical Cauchy stress";
@@ -408,9 +408,8 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
     };
     let caption = format!(
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
-         the same scale; displacements are not magnified. Blue: compression. Red: tension, which the von \
-         Mises stress, a colour of the animation, does not distinguish.{arrow} Data: stress and \
-         displacement in the field files."
+         the same scale; displacements are not magnified. Blue: compression. Red: tension. The von Mises \
+         stress of the animation has no sign.{arrow} Data: stress and displacement in the field files."
     );
     let figure = Figure::new("bodies", caption, svg);
     let figure = contours::with_files(figure, &times, &list, [unit, &length, &stress]);

@@ -63,7 +63,7 @@ fn recomputed(study: &Study) -> Markup {
             @if hash == checks.fingerprint {
                 b { "bitwise identical" } "."
             } @else {
-                b.miss { "different" } " (kept in " code { "checks/" } ")."
+                b.miss { "different" } " (saved in " code { "checks/" } ")."
             }
         }
     };

@@ -1,5 +1,8 @@
 //! Labels of columns and numbers in figures and tables.
 
+use carom_formula::instant;
+use carom_record::Run;
+
 /// Symbol of a probe quantity: `σ_{yy}`.
 pub(crate) fn symbol(quantity: &str) -> String {
     match quantity {
@@ -40,6 +43,14 @@ pub(crate) fn words(quantity: &str) -> String {
 /// A label followed by its unit, if it has one.
 pub(crate) fn with_unit(label: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { label.to_string() } else { format!("{label} ({unit})") }
+}
+
+/// `t = 0.3150 s`, with the digits that tell the rows of a run apart.
+pub(crate) fn instant_label(run: &Run, time: f64) -> String {
+    let apart = run.times().windows(2).map(|pair| pair[1] - pair[0]);
+    let step = apart.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
+    let label = format!("t = {} {}", instant(time, step, 4), run.history.unit("time"));
+    label.trim_end().to_owned()
 }
 
 /// A unit times a power of ten: with another prefix where it has one, otherwise with the power.

@@ -115,7 +115,7 @@ fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &
         };
         let spans = of_nodes.entry(row.node).or_default();
         match spans.last_mut() {
-            // The same state goes on.
+            // The same state continues.
             Some(last) if last.1 >= row.time && last.2 == state => last.1 = next(row.time),
             _ => spans.push((row.time, next(row.time), state)),
         }

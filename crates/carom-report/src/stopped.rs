@@ -10,8 +10,8 @@ use crate::labels::{capitalised, number};
 use crate::text::{Label, Prose, typeset};
 
 const ITERATIONS: &str = "Newton's iterations of the last attempt, each before its correction. Residual: as \
-    a fraction of the sum of the forces. Gap and correction: as fractions of the length of the model. Part: \
-    the fraction of a correction that was applied. Data: `stopped.json`.";
+    a fraction of the sum of the forces. Gap and correction: as fractions of the length of the model. \
+    Damping: the fraction of the correction that was applied. Data: `stopped.json`.";
 
 /// Caption and picture of the place.
 pub(crate) fn picture(run: &Run) -> Option<(String, String)> {
@@ -131,7 +131,7 @@ fn iterations(iterations: &[StopIteration]) -> Markup {
                     thead {
                         tr {
                             th.n { "Iteration" } th.n { "Residual" } th.n { "Gap" } th.n { "Correction" }
-                            th.n { "Part" } th.n { "Active pairs" } th { "Contacts" }
+                            th.n { "Damping" } th.n { "Active pairs" } th { "Contacts" }
                         }
                     }
                     @for i in iterations {

@@ -135,6 +135,7 @@ fn axis(study: &Study, key: &str) -> String {
     let last = key.rsplit_once('.').map_or(key, |(_, last)| last);
     match last {
         "cells" => "1/cells".to_owned(),
+        "refine" => "1/refine".to_owned(),
         _ if TIMES.contains(&key) => with_unit(last, time_unit(study)),
         "rho_inf" => "ρ_{∞}".to_owned(),
         _ => last.to_owned(),
@@ -234,7 +235,7 @@ pub(crate) fn section(study: &Study) -> Markup {
             p.small {
                 "Exponent: of the power of the key that fits best, where metric and key are positive and span a \
                  factor of three in all groups of arms; slope: of a straight line, in the unit of the metric per \
-                 unit of the key. Interval: that of least squares, as if the deviations were accidental."
+                 unit of the key. Interval: that of least squares, as if the deviations were random."
             }
         }
     }

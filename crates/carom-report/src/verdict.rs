@@ -315,7 +315,7 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
     let placed = |arm: &usize| ranking.levels.iter().flatten().any(|r| r.arm == *arm);
     let without = methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|arm| !placed(arm));
     let without: Vec<&str> = without.map(|arm| study.rows[arm].name.as_str()).collect();
-    let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "no value of the metric" };
+    let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "metric not available" };
     let unsound = ranking.levels.iter().flatten().filter(|r| !r.sound);
     let unsound: Vec<&str> = unsound.map(|r| study.rows[r.arm].name.as_str()).collect();
     html! {
@@ -328,9 +328,9 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
             }
         }
         p.small {
-            "The place of an arm is one more than the number of arms that are distinguishably better: by \
-             more than the uncertainty of the reference, than their ranges over the ensemble together, and \
-             than 5 %. Within a place arms are in the order of their cost."
+            "The place of an arm is one plus the number of arms that are distinguishably better: by more than \
+             the uncertainty of the reference, more than the spreads of both over the ensemble added, and \
+             more than 5 %. Within a place arms are in the order of their cost."
             @if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) {
                 " An exclamation mark means more than 10 % off the budget."
             }

@@ -278,7 +278,7 @@ fn write(
     put(STATE, &encoded)?;
     let mut meshes = BTreeMap::new();
     for body in &best.case.bodies {
-        if let MeshSpec::File { file, .. } = &body.mesh {
+        if let MeshSpec::File { file, .. } = body.mesh.source() {
             let name = format!("{}.msh", body.name);
             let to = out.join(&name);
             fs::copy(file, &to).map_err(failed("copy", file))?;

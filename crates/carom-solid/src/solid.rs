@@ -236,6 +236,7 @@ fn check<const D: usize, const N: usize>(
 mod body;
 mod integrals;
 mod mean;
+mod rotation;
 #[cfg(test)]
 mod tests;
 

@@ -22,6 +22,9 @@ pub enum StlError {
         /// Why.
         why: String,
     },
+    /// It ends before its end.
+    #[error("it ends early: {0}")]
+    Cut(String),
     /// Its triangles are not a surface.
     #[error("{0}")]
     Surface(TrianglesError),
@@ -32,6 +35,9 @@ pub enum StlError {
 /// # Errors
 /// A violation of the format, with the number of the triangle; triangles that are not a surface.
 pub fn read(bytes: &[u8]) -> Result<Triangles, StlError> {
+    if let Some(end) = cut(bytes) {
+        return Err(StlError::Cut(end));
+    }
     let mut bytes = bytes.to_vec();
     let format = |triangle: usize, why: String| StlError::Format { triangle, why };
     if is_binary(&bytes) {
@@ -59,6 +65,44 @@ pub fn read(bytes: &[u8]) -> Result<Triangles, StlError> {
         corners.push(nodes);
     }
     Triangles::new(points, corners).map_err(StlError::Surface)
+}
+
+/// Where a file ends early: a text before `endsolid`, a binary file before its last triangle.
+fn cut(bytes: &[u8]) -> Option<String> {
+    if is_binary(bytes) || bytes.is_empty() {
+        return None;
+    }
+    if bytes.trim_ascii_start().starts_with(b"solid") && !bytes.contains(&0) {
+        let lines = bytes.trim_ascii_end().split(|byte| *byte == b'\n');
+        let (mut count, mut last, mut triangles) = (0, &b""[..], 0);
+        for line in lines {
+            (count, last) = (count + 1, line.trim_ascii());
+            triangles += usize::from(last == b"endfacet");
+        }
+        let is_whole = last.starts_with(b"endsolid");
+        return (!is_whole && is_beginning(last)).then(|| {
+            format!("line {count} is the last one, after {triangles} triangles, and `endsolid` is missing")
+        });
+    }
+    // No text: the count of the triangles of a binary file has a byte of zero.
+    let count = bytes.get(80..HEADER).filter(|_| bytes.contains(&0))?;
+    let count = u32::from_le_bytes(count.try_into().ok()?);
+    let whole = HEADER + TRIANGLE * count as usize;
+    (bytes.len() < whole).then(|| {
+        let triangles = (bytes.len() - HEADER) / TRIANGLE;
+        format!(
+            "byte {} is the last one, in triangle {}, and {count} triangles need {whole}",
+            bytes.len(),
+            triangles + 1
+        )
+    })
+}
+
+/// Whether a line begins like one of a text in STL.
+fn is_beginning(line: &[u8]) -> bool {
+    let first = line.split(u8::is_ascii_whitespace).next().unwrap_or_default();
+    let words = ["solid", "facet", "outer", "vertex", "endloop", "endfacet", "endsolid"];
+    words.iter().any(|word| word.as_bytes().starts_with(first))
 }
 
 /// Whether a file has the length that its count of triangles implies.
@@ -97,10 +141,20 @@ mod tests {
 
     #[test]
     fn wrong_files_are_named() {
+        let whole = binary("", &[[[0.0; 3]; 3]; 2]);
         let cut = &TEXT[..TEXT.find("vertex 0 1 0").unwrap()];
         for (bytes, words) in [
             (b"".to_vec(), "triangle 1 cannot be read"),
-            (cut.as_bytes().to_vec(), "triangle 2 cannot be read"),
+            (
+                cut.as_bytes().to_vec(),
+                "it ends early: line 12 is the last one, after 1 triangles, and `endsolid`",
+            ),
+            (TEXT.as_bytes()[..TEXT.len() - 33].to_vec(), "it ends early: line 13 is the last one"),
+            (
+                whole[..whole.len() - 20].to_vec(),
+                "it ends early: byte 164 is the last one, in triangle 2, and 2 triangles need 184",
+            ),
+            (whole[..90].to_vec(), "it ends early: byte 90 is the last one, in triangle 1"),
             (TEXT.replace("1 1 0", "1 x 0").into_bytes(), "triangle 1 cannot be read: invalid float"),
             (TEXT.replace("vertex 1 1 0", "vertex 2 0 0").into_bytes(), "triangle 1 has no area"),
             (binary("", &[[[f32::NAN; 3]; 3]]), "triangle 1 cannot be read: its coordinates are not finite"),

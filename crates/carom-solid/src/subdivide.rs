@@ -1,5 +1,5 @@
-//! Uniform subdivision of a mesh: every edge of a cell becomes `parts` edges, every triangle
-//! `parts`² triangles, every tetrahedron `parts`³ tetrahedra. New nodes lie on the curved cell that
+//! Uniform subdivision of a mesh: every edge of a cell becomes `parts` edges, every cell of the
+//! plane `parts`² cells, every cell in space `parts`³ cells. New nodes lie on the curved cell that
 //! they divide, so the geometry stays that of the given mesh.
 //!
 //! ```text
@@ -11,6 +11,7 @@
 //! ```
 
 mod nodes;
+mod tensor;
 mod tetrahedra;
 
 use std::collections::HashMap;
@@ -18,28 +19,35 @@ use std::collections::HashMap;
 use carom_algebra::Vector;
 
 use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::{Line2, Line3, Line4, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10, line_shape};
+use crate::shape::line_shape;
+use crate::shape::{
+    Hex8, Hex27, Line2, Line3, Line4, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10,
+};
 use nodes::{Nodes, Place};
+use tensor::tensor;
 use tetrahedra::tetrahedra;
 
 impl Mesh {
-    /// The mesh with every edge divided into `parts` edges; a copy for 0 or 1. None for cells that
-    /// cannot be divided yet: quadrilaterals and hexahedra.
-    pub fn subdivided(&self, parts: usize) -> Option<Self> {
+    /// The mesh with every edge divided into `parts` edges; a copy for 0 or 1.
+    #[must_use]
+    pub fn subdivided(&self, parts: usize) -> Self {
         if parts < 2 {
-            return Some(self.clone());
+            return self.clone();
         }
         match self.element {
-            Element::L2 => Some(lines::<2, Line2>(self, parts)),
-            Element::L3 => Some(lines::<3, Line3>(self, parts)),
-            Element::L4 => Some(lines::<4, Line4>(self, parts)),
-            Element::T3 => Some(triangles::<3, Tri3>(self, parts)),
-            Element::T6 => Some(triangles::<6, Tri6>(self, parts)),
-            Element::T10 => Some(triangles::<10, Tri10>(self, parts)),
-            Element::Tet4 => Some(tetrahedra::<4, Tet4>(self, parts)),
-            Element::Tet10 => Some(tetrahedra::<10, Tet10>(self, parts)),
-            Element::Tet20 => Some(tetrahedra::<20, Tet20>(self, parts)),
-            Element::Q4 | Element::Q9 | Element::Hex8 | Element::Hex27 => None,
+            Element::L2 => lines::<2, Line2>(self, parts),
+            Element::L3 => lines::<3, Line3>(self, parts),
+            Element::L4 => lines::<4, Line4>(self, parts),
+            Element::T3 => triangles::<3, Tri3>(self, parts),
+            Element::T6 => triangles::<6, Tri6>(self, parts),
+            Element::T10 => triangles::<10, Tri10>(self, parts),
+            Element::Q4 => tensor::<2, 4, Quad4>(self, parts),
+            Element::Q9 => tensor::<2, 9, Quad9>(self, parts),
+            Element::Tet4 => tetrahedra::<4, Tet4>(self, parts),
+            Element::Tet10 => tetrahedra::<10, Tet10>(self, parts),
+            Element::Tet20 => tetrahedra::<20, Tet20>(self, parts),
+            Element::Hex8 => tensor::<3, 8, Hex8>(self, parts),
+            Element::Hex27 => tensor::<3, 27, Hex27>(self, parts),
         }
     }
 }
@@ -55,7 +63,7 @@ fn lines<const N: usize, S: Shape<1, N>>(mesh: &Mesh, parts: usize) -> Mesh {
                 let place = match i {
                     0 => Place::Corner(ends[0]),
                     i if i == count => Place::Corner(ends[1]),
-                    i => Place::Inside(cell, [i, 0]),
+                    i => Place::Inside(cell, [i, 0, 0]),
                 };
                 let xi = 2.0 * i as f64 / count as f64 - 1.0;
                 nodes.at(place, cell, &line_shape(N, xi).values)
@@ -132,6 +140,6 @@ fn place(corners: [usize; 3], [i, j]: [usize; 2], count: usize, cell: usize) -> 
             let (first, second) = if corners[b] < corners[c] { (b, c) } else { (c, b) };
             Place::Edge([corners[first], corners[second]], l[second])
         }
-        None => Place::Inside(cell, [i, j]),
+        None => Place::Inside(cell, [i, j, 0]),
     }
 }

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-/// A surface of triangles.
+/// A triangulated surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangles {
     points: Vec<[f64; 3]>,

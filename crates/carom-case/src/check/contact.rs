@@ -266,7 +266,7 @@ impl Check<'_> {
                             path("primary.plane.normal"),
                             "the normal is zero",
                             why,
-                            "write for example normal = [0.0, 1.0]",
+                            format!("write for example normal = {}", upward(normal.len())),
                         );
                     }
                     None
@@ -279,6 +279,7 @@ impl Check<'_> {
                 && self.massless(body)
                 && (rigid || primary.is_some_and(|p| self.massless(p)))
                 && contact.persistency == Persistency::Project
+                && !self.draft.time.as_ref().is_some_and(|time| time.scheme.is_static())
             {
                 let what = format!("no node in contact `{}` has mass", contact.name);
                 let why = "persistency = \"project\" projects velocities with the mass matrix, which is zero for these nodes";
@@ -309,4 +310,9 @@ fn is_free(contact: &ContactSpec) -> bool {
 fn same_pair(a: &ContactSpec, b: &ContactSpec) -> bool {
     let swapped = |a: &ContactSpec, b: &ContactSpec| a.primary == PrimarySpec::Side(b.secondary.clone());
     a.secondary == b.secondary && a.primary == b.primary || swapped(a, b) && swapped(b, a)
+}
+
+/// The last direction of so many.
+fn upward(dimension: usize) -> &'static str {
+    ["[1.0]", "[0.0, 1.0]", "[0.0, 0.0, 1.0]"][dimension.clamp(1, 3) - 1]
 }

@@ -52,7 +52,7 @@ fn of_contact(contact: &ContactSpec) -> Vec<(&'static str, &'static str, &'stati
         Enforcement::Multiplier => {}
         Enforcement::Penalty => found.push((
             "enforcement = \"penalty\"",
-            "the step constrains gaps, and springs let nodes penetrate: it would throw them out",
+            "the step constrains gaps, and would eject nodes that springs let penetrate",
             "use enforcement = \"multiplier\", or leave out `fallback`",
         )),
         Enforcement::Augmented => found.push((

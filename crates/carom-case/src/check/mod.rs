@@ -237,16 +237,19 @@ impl<'a> Check<'a> {
                 && let Some(shape) = shape().filter(|shape| *shape != "rectangle")
             {
                 let what = format!("the element {element:?} does not fill the shape \"{shape}\"");
-                let why = "quadrilaterals fill rectangles only";
-                self.add(format!("body[{i}].element"), what, why, "use T3, T6 or T10");
+                let why = "of the built-in shapes, quadrilaterals fill rectangles only";
+                let help = "use T3, T6 or T10, or a mesh of quadrilaterals from a file";
+                self.add(format!("body[{i}].element"), what, why, help);
             }
             let of = || table.table()?.get("mesh")?.table()?.get("of")?.table()?.get("shape")?.text();
             if let Some(element @ (carom_solid::Element::Hex8 | carom_solid::Element::Hex27)) = element
                 && let Some(of) = of().filter(|shape| *shape != "rectangle")
             {
                 let what = format!("the element {element:?} does not fill the extrusion of a \"{of}\"");
-                let why = "quadrilaterals, the faces of hexahedra, fill rectangles only";
-                self.add(format!("body[{i}].element"), what, why, "use Tet4, Tet10 or Tet20");
+                let why =
+                    "of the built-in shapes, quadrilaterals, the faces of hexahedra, fill rectangles only";
+                let help = "use Tet4, Tet10 or Tet20, or a mesh of quadrilaterals from a file";
+                self.add(format!("body[{i}].element"), what, why, help);
             }
         }
     }

@@ -182,7 +182,7 @@ impl Check {
             } else if let Some(end) = range.end_next_to(x) {
                 format!("write for example `{} = {end}`", key.name)
             } else {
-                format!("write for example `{} = {}`", key.name, self.names.example(key))
+                format!("write for example `{} = {}`", key.name, self.names.example(key, self.dimension))
             };
             self.add(path, what, key.meaning(), help);
         }
@@ -212,7 +212,7 @@ impl Check {
                     // `there is no function …: did you mean …?`
                     let (wrong, help) = error.message.split_once(": ").map_or_else(
                         || {
-                            let example = self.names.example(key);
+                            let example = self.names.example(key, self.dimension);
                             (error.message.as_str(), format!("write for example `{} = {example}`", key.name))
                         },
                         |(wrong, help)| (wrong, help.to_owned()),
@@ -235,7 +235,7 @@ impl Check {
             path,
             what,
             key.meaning(),
-            format!("write for example `{} = {}`", key.name, self.names.example(key)),
+            format!("write for example `{} = {}`", key.name, self.names.example(key, self.dimension)),
         );
     }
 
@@ -253,22 +253,19 @@ impl Check {
         }
         let help = match key.kind {
             Kind::Tables(table) => format!("write its header in double brackets: {}", table.name),
-            Kind::Number(_) | Kind::NumberOrFalse(_) if let Some(number) = number_with_unit(node) => {
-                format!("write `{} = {number}`: the number alone, in the units of the whole case", key.name)
+            Kind::Number(_) | Kind::NumberOrFalse(_)
+                if let Some(advice) =
+                    node.text().and_then(|text| self.labels.advice(key.name, Some(key.unit), text)) =>
+            {
+                advice
             }
             Kind::Vector if self.dimension == Some(1) => {
                 format!("write one number in brackets, for example `{} = [0.0]`", key.name)
             }
-            _ => format!("write for example `{} = {}`", key.name, self.names.example(key)),
+            _ => format!("write for example `{} = {}`", key.name, self.names.example(key, self.dimension)),
         };
         self.add(path, what, why, help);
     }
-}
-
-/// The number of a string like `2 GPa`.
-fn number_with_unit(node: &Node) -> Option<&str> {
-    let number = node.text()?.trim_end_matches(|c: char| !c.is_ascii_digit()).trim();
-    number.parse::<f64>().is_ok().then_some(number)
 }
 
 /// Whether the value at this path may be a function of a program: a load or the motion of a

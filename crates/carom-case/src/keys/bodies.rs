@@ -49,7 +49,7 @@ pub(super) const BODY: Table = Table {
         key(
             "element",
             Choice(&["L2", "L3", "L4", "T3", "T6", "T10", "Q4", "Q9", "Tet4", "Tet10", "Tet20", "Hex8", "Hex27"], &[]),
-            "Cell type: lines (L) in dimension 1, triangles (T) or quadrilaterals (Q) in dimension 2, tetrahedra (Tet) or hexahedra (Hex) in dimension 3. Q4 and Q9 fill rectangles, Hex8 and Hex27 every shape.",
+            "Cell type: lines (L) in dimension 1, triangles (T) or quadrilaterals (Q) in dimension 2, tetrahedra (Tet) or hexahedra (Hex) in dimension 3. Of the built-in shapes, Q4 and Q9 fill rectangles; Hex8 and Hex27 fill those of space, and extrusions of rectangles.",
         )
         .example("\"T6\""),
         key(
@@ -122,9 +122,7 @@ const ROTATION: Table = Table {
     doc: "A rotation in space.",
     keys: &[
         key("axis", Vector, "Direction of the axis, of any length.").example("[0.0, 0.0, 1.0]"),
-        key("angle", Number(ANY), "Angle, counter-clockwise seen against the axis.")
-            .unit("degrees")
-            .example("30.0"),
+        key("angle", Number(ANY), "Angle, right-handed about the axis.").unit("degrees").example("30.0"),
     ],
     later: &[],
 };

@@ -30,8 +30,8 @@ pub(super) const CONTACT: Table = Table {
             "enforcement",
             Choice(&["multiplier", "penalty", "augmented"], &[]),
             "How the constraint is enforced: exactly by a Lagrange multiplier; by penalty springs whose energy counts as strain energy; or by an \
-             augmented Lagrangian, springs on multipliers that are renewed in rounds until gaps of closed nodes and slips of sticking ones are below \
-             1e-10 of the size of the model.",
+             augmented Lagrangian, springs on multipliers that are updated in rounds (Uzawa iterations) until gaps of closed nodes and slips of \
+             sticking ones are below 1e-10 of the size of the model.",
         )
         .default("\"multiplier\""),
         key(
@@ -87,7 +87,7 @@ pub(super) const CONTACT: Table = Table {
             "overlap",
             Choice(&["refuse", "relax", "keep-gap"], &[]),
             "Overlap of the bodies at the start: an error; closed before the start, which leaves the bodies in equilibrium under the pressure of an \
-             interference fit; or kept, with the gap of every node larger by its depth at the start.",
+             interference fit; or allowed, with the depth of every node at the start added to its gap.",
         )
         .default("\"refuse\""),
         key(
@@ -162,10 +162,10 @@ const RIGID: Table = Table {
         key("sphere", Kind::Table(&SPHERE), "A rigid sphere, with bodies outside or inside it; dimension 3.")
             .optional()
             .example("{ center = [0.0, 0.0, 0.0], radius = 1.0, inside = true }"),
-        key("cylinder", Kind::Table(&CYLINDER), "A rigid cylinder without ends, with bodies outside or inside it; dimension 3.")
+        key("cylinder", Kind::Table(&CYLINDER), "A rigid infinite cylinder, with bodies outside or inside it; dimension 3.")
             .optional()
             .example("{ point = [0.0, 0.0, 0.0], axis = [0.0, 1.0, 0.0], radius = 0.5 }"),
-        key("surface", Kind::Table(&SURFACE), "A rigid surface of triangles from a file, with bodies outside it; dimension 3.")
+        key("surface", Kind::Table(&SURFACE), "A rigid triangulated surface from a file, with bodies outside it; dimension 3.")
             .optional()
             .example("{ file = \"part.stl\" }"),
         key("polyline", Kind::Table(&POLYLINE), "A rigid chain of segments, solid to the left of the direction of travel; dimension 2.")
@@ -222,7 +222,7 @@ const SPHERE: Table = Table {
 
 const CYLINDER: Table = Table {
     name: "cylinder",
-    doc: "A rigid cylinder without ends.",
+    doc: "A rigid infinite cylinder.",
     keys: &[
         key("point", Vector, "A point of its axis.").unit("length").example("[0.0, 0.0, 0.0]"),
         key("axis", Vector, "Direction of its axis, of any length > 0.").example("[0.0, 1.0, 0.0]"),
@@ -234,11 +234,11 @@ const CYLINDER: Table = Table {
 
 const SURFACE: Table = Table {
     name: "surface",
-    doc: "A rigid surface of triangles, whose corners are counter-clockwise as seen from outside. It may be \
-        closed, or open: beyond its rim there is nothing, and behind it a body is inside. Nodes of bodies are \
-        kept out; its own edges and vertices do not meet facets of bodies between their nodes. Across edges \
-        that turn by more than 30° away from the bodies a node leaves the surface; in a groove it is \
-        constrained by one of the faces only.",
+    doc: "A rigid triangulated surface, with the vertices of its triangles counter-clockwise as seen from \
+        outside. It may be closed, or open: past its rim there is no contact, and behind it a body is inside. \
+        Nodes of bodies may not penetrate it; its own edges and vertices do not meet facets of bodies between \
+        their nodes. A node that slides across a convex edge of more than 30° leaves the surface; in a groove \
+        it is constrained by one of the faces only.",
     keys: &[
         key("file", Kind::Text, "A file in STL, text or binary, or a .msh of Gmsh with triangles of order 1; relative to the folder of the case.")
             .example("\"part.stl\""),

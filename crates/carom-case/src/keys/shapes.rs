@@ -98,11 +98,11 @@ const SHAPES: Variants = Variants {
             "extrusion",
             Table {
                 name: "mesh of shape \"extrusion\"",
-                doc: "Dimension 3; a plane shape from z = 0 to its height; its sides, and bottom, top (base, \
-                    lid if it has sides of these names).",
+                doc: "Dimension 3; a plane shape or a plane mesh of a file from z = 0 to its height; its sides, \
+                    and bottom, top (base, lid if it has sides of these names).",
                 keys: &[
-                    key("of", Variant(plane_shapes), "The plane shape; its cells are the faces of the solid \
-                        cells.")
+                    key("of", Variant(plane_shapes), "The plane shape, or a surface of a Gmsh file; its cells are \
+                        the faces of the solid cells.")
                         .example("{ shape = \"ring\", inner = 0.4, outer = 0.5, center = [0.0, 0.0], size = 0.1 }"),
                     key("height", Number(POSITIVE), "Length along z.").unit("length").example("0.2"),
                     key("layers", Count(1), "Number of layers of cells.").example("2"),
@@ -137,7 +137,7 @@ const PLANE: Variants = Variants {
         ("ring", RING),
         ("polygon", POLYGON),
     ],
-    or: None,
+    or: Some(&PLANE_FILE),
     dimension: Some(2),
     later: &[],
     later_keys: &[],
@@ -240,20 +240,39 @@ const MESH_FILE: Table = Table {
     name: "mesh from a file",
     doc: "A body from a Gmsh file; its sides are the named physical curves (dimension 1: points, dimension 3: surfaces) on its boundary.",
     keys: &[
-        key("file", Text, "Path of a .msh file of version 4.1 or 2.2, relative to the folder of the case.")
-            .example("\"impact.msh\""),
+        FILE,
         key("surface", Text, "Name of the physical surface (dimension 1: curve) that is the body; in dimension 3 give `volume`.")
             .unless("volume")
             .example("\"cylinder\""),
         key("volume", Text, "Dimension 3: name of the physical volume that is the body.")
             .optional()
             .example("\"part\""),
-        key("slits", Truth, "Whether neighbouring cells may have separate nodes at the same place: a closed \
-            slit, or pieces that touch. Otherwise this is an error.")
-            .default("false"),
+        SLITS,
     ],
     later: &[],
 };
+
+const PLANE_FILE: Table = Table {
+    name: "plane mesh from a file",
+    doc: "A surface of a Gmsh file; its sides are the named physical curves on its boundary.",
+    keys: &[
+        FILE,
+        key("surface", Text, "Name of the physical surface that is extruded.").example("\"profile\""),
+        SLITS,
+    ],
+    later: &[],
+};
+
+const FILE: Key =
+    key("file", Text, "Path of a .msh file of version 4.1 or 2.2, relative to the folder of the case.")
+        .example("\"impact.msh\"");
+
+const SLITS: Key = key(
+    "slits",
+    Truth,
+    "Whether neighbouring cells may have separate nodes at the same place: a closed slit, or pieces that touch. Otherwise this is an error.",
+)
+.default("false");
 
 const ROUND: &[Key] = &[
     key("radius", Number(POSITIVE), "Radius.").unit("length").example("0.5"),

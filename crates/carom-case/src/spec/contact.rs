@@ -116,7 +116,7 @@ pub enum PrimarySpec {
         /// Whether bodies are inside it.
         inside: bool,
     },
-    /// A rigid cylinder without ends.
+    /// A rigid infinite cylinder.
     Cylinder {
         /// A point of its axis.
         point: Vec<f64>,
@@ -127,7 +127,7 @@ pub enum PrimarySpec {
         /// Whether bodies are inside it.
         inside: bool,
     },
-    /// A rigid surface of triangles.
+    /// A rigid triangulated surface.
     Surface(SurfaceSpec),
     /// A rigid chain of segments with the material to the left of the direction of travel.
     Polyline {

@@ -129,9 +129,9 @@ pub enum MeshSpec {
         #[serde(default, skip_serializing_if = "whole_shape")]
         symmetry: [bool; 3],
     },
-    /// Dimension 3: a shape of the plane from z = 0 to a height; its sides, `bottom top`.
+    /// Dimension 3: a mesh of the plane from z = 0 to a height; its sides, `bottom top`.
     Extrusion {
-        /// The shape of the plane.
+        /// The mesh of the plane.
         of: Box<MeshSpec>,
         /// Length along z.
         height: f64,
@@ -209,6 +209,15 @@ impl MeshSpec {
             Self::File { parts, .. } => *parts = factor.round() as usize,
         }
         self
+    }
+
+    /// The mesh that is extruded, or this one: what comes from a shape or a file.
+    #[must_use]
+    pub fn source(&self) -> &Self {
+        match self {
+            Self::Extrusion { of, .. } => of.source(),
+            _ => self,
+        }
     }
 
     /// Names of the sides, in order along the boundary.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::formula::FormulaSpec;
 
-/// A rigid surface of triangles, from a file.
+/// A rigid triangulated surface, from a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SurfaceSpec {
     /// The file.

@@ -86,3 +86,18 @@ fn an_override_of_a_body_named_body() {
     assert_eq!(contact["name"].as_str(), Some("one"));
     assert_eq!(contact["between"].as_array().map(toml_edit::Array::len), Some(1));
 }
+
+/// The file of an extrusion is that of its plane mesh.
+#[test]
+fn the_file_of_an_extrusion_is_beside_the_case() {
+    let text = "[[body]]\nname = \"a\"\n[body.mesh]\nshape = \"extrusion\"\nheight = 1.0\nlayers = 1\n\
+        of = { file = \"far/away.msh\", surface = \"profile\" }\n[time]\n[output]\n";
+    let excerpt = Excerpt {
+        bodies: vec!["a".into()],
+        meshes: [("a".to_owned(), "a.msh".to_owned())].into(),
+        ..Excerpt::default()
+    };
+    let case: DocumentMut = excerpt.of(text, &[]).unwrap().parse().unwrap();
+    let mesh = &case["body"][0]["mesh"];
+    assert_eq!((mesh["of"]["file"].as_str(), mesh.get("file").is_none()), (Some("a.msh"), true));
+}

@@ -77,3 +77,120 @@ fn a_changed_mesh_is_noticed() {
     std::fs::remove_dir_all(&folder).unwrap();
     assert!(case.bodies[1].mesh.verify().unwrap_err().to_string().contains("there is no file"));
 }
+
+const PART: &str = r#"
+dimension = 3
+material = [{ name = "steel", law = "linear-elastic", density = 7850.0, young = 2.1e11, poisson = 0.3 }]
+time = { end = 1e-3, step = 1e-5, scheme = { kind = "newmark", rho_inf = 1 } }
+
+[[body]]
+name = "part"
+material = "steel"
+element = "Hex27"
+mesh = { file = "sector_order2.msh", volume = "wedge" }
+"#;
+
+/// Reads a case as if it were in the folder of the meshes of `carom-solid`.
+fn part(sets: &[&str]) -> Result<Case, Vec<Diagnostic>> {
+    resolved_as(concat!(env!("CARGO_MANIFEST_DIR"), "/../carom-solid/tests/msh/part.toml"), PART, sets)
+}
+
+const WEDGE: &str = "body.part.mesh={ shape = \"extrusion\", of = { file = \"sector_order2.msh\", \
+    surface = \"sector\" }, height = 0.5, layers = 2 }";
+
+/// Quadrilaterals and hexahedra of a file are divided, too; the estimate of their number is exact.
+#[test]
+fn hexahedra_are_divided() {
+    let quadrilaterals = [
+        "body.prism.mesh={ file = \"../../crates/carom-solid/tests/msh/quadrangles.msh\", \
+        surface = \"prism\" }",
+        "body.prism.element=Q4",
+    ];
+    let plane = |refine: &str| {
+        let sets = [&quadrilaterals[..], &[refine]].concat();
+        resolved(GMSH, &sets).unwrap_or_else(|p| panic!("{}", p[0])).bodies[1].clone()
+    };
+    assert_eq!(plane("refine=2").make_mesh(2).unwrap().cell_count(), 4 * 11);
+    assert_eq!(plane("refine=3").make_mesh(2).unwrap().cell_count(), 9 * 11);
+    for refine in [1_usize, 2, 3] {
+        let body = part(&[&format!("refine={refine}")]).unwrap().bodies[0].clone();
+        let cells = body.make_mesh(3).unwrap().cell_count();
+        assert_eq!((cells, body.mesh.estimate(body.element).0), (24 * refine.pow(3), cells as f64));
+    }
+}
+
+/// The extrusion of a plane mesh from a file is the mesh in space that Gmsh extruded, with its
+/// sides; it is refined like any other, and its file is remembered.
+#[test]
+fn a_plane_mesh_is_extruded() {
+    for (element, cells) in [("Hex27", 24), ("Hex8", 24)] {
+        let order = if element == "Hex8" { 1 } else { 2 };
+        let wedge = WEDGE.replace("order2", &format!("order{order}"));
+        let element = format!("body.part.element={element}");
+        let whole = format!("body.part.mesh={{ file = \"sector_order{order}.msh\", volume = \"wedge\" }}");
+        let made = |sets: &[&str]| {
+            let case = part(sets).unwrap_or_else(|p| panic!("{}", p[0]));
+            let written = serde_json::to_string(&case).unwrap();
+            assert_eq!(serde_json::from_str::<Case>(&written).unwrap(), case);
+            assert_eq!(case.bodies[0].mesh.verify(), Ok(()));
+            let mesh = case.bodies[0].make_mesh(3).unwrap();
+            let (cells, nodes) = case.bodies[0].mesh.estimate(mesh.element);
+            assert_eq!(cells, mesh.cell_count() as f64);
+            assert!((0.8..2.0).contains(&(nodes / mesh.nodes.len() as f64)), "{nodes}");
+            let mut sides = case.bodies[0].mesh.sides();
+            sides.sort();
+            assert_eq!(mesh.sides.keys().cloned().collect::<Vec<_>>(), sides);
+            mesh
+        };
+        let (mesh, of_gmsh) = (made(&[&wedge, &element]), made(&[&whole, &element]));
+        assert_eq!((mesh.cell_count(), mesh.nodes.len()), (cells, of_gmsh.nodes.len()));
+        assert_eq!(
+            mesh.sides.keys().collect::<Vec<_>>(),
+            ["bottom", "inner", "outer", "plane_x", "plane_y", "top"]
+        );
+        assert_eq!(made(&[&wedge, &element, "refine=2"]).cell_count(), 8 * cells);
+    }
+    let MeshSpec::File { file, .. } = part(&[WEDGE]).unwrap().bodies[0].mesh.source().clone() else {
+        panic!()
+    };
+    assert!(file.is_absolute() && file.ends_with("sector_order2.msh"));
+    let triangles =
+        WEDGE.replace("sector_order2.msh", "impact_order3_41_binary.msh").replace("\"sector\"", "\"prism\"");
+    let body = part(&[&triangles, "body.part.element=Tet20"]).unwrap_or_else(|p| panic!("{}", p[0]));
+    assert!(body.bodies[0].make_mesh(3).unwrap().scaled_jacobian().unwrap() > 0.1);
+}
+
+#[test]
+fn errors_of_extruded_files_are_reported_at_their_key() {
+    let problem = |set: &str| {
+        let problems = part(&[set]).expect_err(set);
+        problems.iter().map(ToString::to_string).collect::<String>()
+    };
+    let problem_of = |old: &str, new: &str| problem(&WEDGE.replace(old, new));
+    for (old, new, texts) in [
+        ("sector_order2", "nowhere", ["\"nowhere.msh\" cannot be read", "there is no file"]),
+        ("\"sector\"", "\"part\"", ["no physical surface \"part\"", "sector"]),
+        (
+            "order2",
+            "order1",
+            ["the extrusion of \"sector\"", "element = \"Hex8\", or set Mesh.ElementOrder = 2"],
+        ),
+        ("surface", "volume", ["unknown key `volume`", "surface"]),
+        (", surface = \"sector\"", "", ["has no `surface`", "surface = \"profile\""]),
+        ("height = 0.5, ", "", ["has no `height`", "height = 0.2"]),
+    ] {
+        let problem = problem_of(old, new);
+        assert!(texts.iter().all(|text| problem.contains(text)), "{old} {new}: {problem}");
+    }
+    let wrong = problem_of(
+        "sector_order2.msh\", surface = \"sector\"",
+        "impact_order2_41_ascii.msh\", surface = \"prism\"",
+    );
+    assert!(
+        wrong.contains("mesh it with quadrilaterals") && wrong.contains("element = \"Tet10\""),
+        "{wrong}"
+    );
+    let sets = [WEDGE, "refine=1.5"];
+    let fraction = part(&sets).unwrap_err().remove(0).to_string();
+    assert!(fraction.contains("body[0].mesh.of comes from a file"), "{fraction}");
+}

@@ -46,7 +46,10 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     ),
     (
         &["material.rubber.density=\"2 kg\""],
-        &["not the string \"2 kg\"", "write `density = 2`: the number alone"],
+        &[
+            "not the string \"2 kg\"",
+            "write the number alone, in mass/length³ of the case, whose length is in m",
+        ],
     ),
     (&["time.end=nan"], &["`end` is NaN", "all numbers of a case must be finite"]),
     (&["body.cylinder.gravity=[0.0, -inf]"], &["`gravity` is -inf"]),
@@ -369,4 +372,70 @@ on = "floor"
         "{message}"
     );
     assert!(!message.contains("prism.") && !message.contains("cylinder."), "{message}");
+}
+
+/// What to write instead of a number with a unit, in quotes or without.
+#[test]
+fn numbers_with_units() {
+    let unquoted = |line: &str| shown(&IMPACT.replace("step = ", &format!("{line}\nstep0 = ")), &[]);
+    let of_line = unquoted("step = 2e-4 s");
+    assert!(
+        of_line.contains("write `step = 2e-4`: the number alone, in s, the unit of time of the case"),
+        "{of_line}"
+    );
+    assert!(unquoted("step = 20 ms  # short").contains("write `step = 0.02`: the number alone, in s"));
+    let quoted = |set: &str| shown(IMPACT, &[set]);
+    assert!(quoted("time.end=\"100 ms\"").contains("write `end = 0.1`: the number alone, in s"));
+    let in_ms = ["units={ time = \"ms\" }", "time.end=\"100 ms\""];
+    assert!(shown(IMPACT, &in_ms).contains("write `end = 100`: the number alone, in ms"));
+}
+
+/// The same input is no advice.
+#[test]
+fn examples_have_the_dimension_of_the_case() {
+    let space = "dimension = 3\n[[body]]\nname = \"box\"\ngravity = [0.0, -9.81]\nvelocity = { angular = 3.0 }\nplace = { rotate = 4.0 }\n";
+    let text = shown(space, &[]);
+    for words in [
+        "write for example `gravity = [0.0, -9.81, 0.0]`",
+        "write for example `rotate = { axis = [0.0, 0.0, 1.0], angle =",
+        "write for example `angular = [0.0, 0.0, 2.0]`",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+}
+
+#[test]
+fn tables_without_names() {
+    let text = shown(IMPACT, &["support.a.fix=[\"x\"]"]);
+    assert!(text.contains("no table of `support` has a `name`"), "{text}");
+    assert!(text.contains("replace the list as a whole: --set support=[…]"), "{text}");
+}
+
+/// The option that is too much, not the table in the file.
+#[test]
+fn a_third_elastic_constant() {
+    let text = shown(IMPACT, &["material.rubber.young=3"]);
+    assert!(text.contains("--set:1:") && text.contains("lambda, mu, young"), "{text}");
+}
+
+#[test]
+fn a_file_with_a_similar_name() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("slope.toml"), "").unwrap();
+    let of = |name: &str| Document::open(&folder.path().join(name), &[]).unwrap_err().to_string();
+    assert!(of("slop.toml").contains("slope.toml?"), "{}", of("slop.toml"));
+    assert!(of("ball.toml").contains("check the path"));
+}
+
+/// A load step has no velocities that a projection could need.
+#[test]
+fn contact_without_mass_in_statics() {
+    let massless = [
+        "material.rubber.density=0",
+        "body.cylinder.velocity=[0.0, 0.0]",
+        "time.scheme={ kind = \"static\" }",
+    ];
+    let found = resolved(IMPACT, &massless).err().unwrap_or_default();
+    let text: String = found.iter().map(ToString::to_string).collect();
+    assert!(!text.contains("has mass"), "{text}");
 }

@@ -72,7 +72,12 @@ fn errors_of_surfaces_are_reported_at_their_key() {
             &["triangles 1 and 2 are oriented in opposite ways"][..],
         ),
         ("part.stl", stl(&[[a, b, b]]), "", &["triangle 1 has no area", "one outside"]),
-        ("part.stl", b"solid x\nfacet".to_vec(), "", &["triangle 1 cannot be read", "save it again"]),
+        (
+            "part.stl",
+            b"solid x\nfacet".to_vec(),
+            "",
+            &["it ends early: line 2 is the last one", "save it again"],
+        ),
         ("part.stl", square, ", group = \"tool\"", &["has no groups"]),
         ("part.msh", MSH.into(), ", group = \"toll\"", &["the physical surfaces are: tool"]),
         (

@@ -3,7 +3,7 @@
 //! ```text
 //! joint, convex          a pair past the end is handed to the neighbour; past the ends of both, it keeps
 //!                        its facet, which is extrapolated up to |ξ| = 1.2
-//! dent                   a node that would be handed back within the step has a pair with either facet,
+//! concave corner         a node that would be handed back within the step has a pair with either facet,
 //!                        g ≥ 0 for both: it may lie in the joint
 //! corner, end of side    nothing is faced past the end, |ξ| > 1.001; a pair that slides past it keeps its
 //!                        facet to the end of the step and leaves at the start of the next one
@@ -62,7 +62,7 @@ impl Surface {
             return if self.faces_nothing(pair.facet, pair.xi, y) { Next::Leave } else { Next::Stay };
         };
         if came_from == Some(neighbour) {
-            return Next::Dent(neighbour, if forward { -1.0 } else { 1.0 });
+            return Next::Concave(neighbour, if forward { -1.0 } else { 1.0 });
         }
         if let Some(xi) = self.facet(neighbour).closest_point(y, from, REACH) {
             let inside = if forward { xi >= -1.0 } else { xi <= 1.0 };
@@ -117,6 +117,6 @@ pub(super) enum Next {
     /// On the neighbour, at ξ.
     HandOver(usize, f64),
     /// On the neighbour too, at ξ.
-    Dent(usize, f64),
+    Concave(usize, f64),
     Leave,
 }

@@ -80,6 +80,12 @@ pub trait Kinematics: Send + Sync {
     /// side, plus the depth that it keeps; `None` if no facet faces it.
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64>;
 
+    /// Signed distance of any node, given by its global number, to a rigid obstacle; none of other
+    /// primary sides.
+    fn distance_to_obstacle(&self, _node: usize, _y: &[f64]) -> Option<f64> {
+        None
+    }
+
     /// Convex round parts of a rigid obstacle, which can lie between nodes, as centres and radii;
     /// none of other primary sides.
     fn tips(&self, _y: &[f64]) -> Vec<([f64; 3], f64)> {

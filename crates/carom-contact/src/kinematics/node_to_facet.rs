@@ -211,13 +211,13 @@ impl Kinematics for NodeToFacet {
         let Pairing { pairs, margin, left, fresh } = pairing;
         let mut changed = false;
         let starts = std::mem::replace(fresh, false);
-        // Facets of nodes in dents.
+        // Facets of nodes in concave corners.
         let twice: Vec<(usize, usize)> = pairs
             .windows(2)
             .filter(|two| two[0].node == two[1].node)
             .flat_map(|two| [two[0], two[1]].map(|pair| (pair.node, pair.facet)))
             .collect();
-        let mut dents = Vec::new();
+        let mut in_corners = Vec::new();
         // A frozen contact point belongs to the positions at the start of the step.
         let placed = if self.is_frozen() { before } else { now };
         pairs.retain_mut(|pair| {
@@ -233,7 +233,7 @@ impl Kinematics for NodeToFacet {
                 };
                 match next {
                     Next::Stay => return true,
-                    Next::HandOver(facet, _) | Next::Dent(facet, _)
+                    Next::HandOver(facet, _) | Next::Concave(facet, _)
                         if twice.contains(&(pair.node, facet)) =>
                     {
                         // In the joint the node has both pairs. Beyond the reach of this facet that
@@ -249,9 +249,9 @@ impl Kinematics for NodeToFacet {
                         left.remove(&pair.node);
                         return false;
                     }
-                    Next::Dent(facet, xi) => {
+                    Next::Concave(facet, xi) => {
                         changed |= pair.active;
-                        dents.push(Pair::open(pair.node, facet, xi));
+                        in_corners.push(Pair::open(pair.node, facet, xi));
                         return true;
                     }
                     Next::HandOver(facet, xi) => {
@@ -278,8 +278,8 @@ impl Kinematics for NodeToFacet {
             }
             true
         });
-        if !dents.is_empty() {
-            pairs.append(&mut dents);
+        if !in_corners.is_empty() {
+            pairs.append(&mut in_corners);
             pairs.sort_by_key(|pair| pair.node);
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
@@ -372,8 +372,8 @@ impl Kinematics for NodeToFacet {
         let Pairing { pairs, left, .. } = pairing;
         let mut changed = false;
         let nodes: Vec<usize> = pairs.iter().map(|pair| pair.node).collect();
-        let in_dent = |p: usize| p > 0 && nodes[p - 1] == nodes[p] || nodes.get(p + 1) == Some(&nodes[p]);
-        for (_, pair) in pairs.iter_mut().enumerate().filter(|(p, pair)| pair.active && !in_dent(*p)) {
+        let in_corner = |p: usize| p > 0 && nodes[p - 1] == nodes[p] || nodes.get(p + 1) == Some(&nodes[p]);
+        for (_, pair) in pairs.iter_mut().enumerate().filter(|(p, pair)| pair.active && !in_corner(*p)) {
             let came_from = left.get(&pair.node).copied();
             if pair.xi.abs() <= if came_from.is_some() { HAND_BACK } else { HAND_OVER } {
                 continue;

@@ -169,8 +169,12 @@ impl Kinematics for NodeToObstacle {
     }
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
-        let at = self.local(self.secondary[node], y).at;
-        self.shape.near(self.shape.nearest(at, None), at).map(|near| near.gap + self.kept(node))
+        Some(self.distance_to_obstacle(self.secondary[node], y)? + self.kept(node))
+    }
+
+    fn distance_to_obstacle(&self, node: usize, y: &[f64]) -> Option<f64> {
+        let at = self.local(node, y).at;
+        self.shape.near(self.shape.nearest(at, None), at).map(|near| near.gap)
     }
 
     fn tips(&self, y: &[f64]) -> Vec<([f64; 3], f64)> {

@@ -1,4 +1,4 @@
-//! Corners, dents and ends of sides: which facets a node faces there.
+//! Convex and concave corners, and ends of sides: which facets a node faces there.
 
 use carom_contact::{BothSides, Detection, Kinematics, NodeToFacet, Pair, Pairing, Rows, Surface};
 use carom_solid::FacetShape;

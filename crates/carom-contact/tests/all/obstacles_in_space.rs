@@ -1,4 +1,4 @@
-//! Rigid cylinders and surfaces of triangles: gaps against elementary geometry, gradient and second
+//! Rigid cylinders and triangulated surfaces: gaps against elementary geometry, gradient and second
 //! derivative against differences, the face through which a node entered, hand-over.
 
 use carom_contact::{Carrier, Faceted, Kinematics, NodeToObstacle, Obstacle, Pair, PairEvent, Pairing, Rows};

@@ -1,5 +1,6 @@
 //! Contact in space: derivatives of the gap against differences, balance of force and moment,
-//! objectivity, the sign of the distance to a closed surface, hand-over across edges, dents.
+//! objectivity, the sign of the distance to a closed surface, hand-over across edges, concave
+//! corners.
 
 use carom_algebra::{Vector, jacobian_error};
 use carom_contact::{

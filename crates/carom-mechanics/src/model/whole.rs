@@ -193,6 +193,13 @@ impl Model {
         -(0..y.len()).map(|i| self.gravity[i] * (y[i] - self.reference[i])).sum::<f64>()
     }
 
+    /// Largest angle by which a quadrature point of a body has turned.
+    pub fn rotation(&self, body: usize, y: &[f64]) -> f64 {
+        let part = &self.parts[body];
+        let cells = 0..part.body.mesh().cell_count();
+        cells.map(|cell| part.body.cell_rotation(cell, part.of(y))).fold(0.0, f64::max)
+    }
+
     /// Smallest J over all quadrature points.
     pub fn min_det_f(&self, y: &[f64]) -> f64 {
         let mut least = f64::INFINITY;

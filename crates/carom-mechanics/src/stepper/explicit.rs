@@ -39,7 +39,7 @@ use super::scratch::Scratch;
 use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, moves, overconstrained};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::contact_update::search;
-use crate::friction::{book_states, each_slip};
+use crate::friction_state::{book_states, each_slip};
 use crate::independent::{independent, independent_rows};
 use crate::ledger::book_contact_forces;
 use crate::model::Model;

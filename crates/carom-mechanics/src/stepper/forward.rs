@@ -1,4 +1,4 @@
-//! The gaps that the law of an explicit step wants ≥ 0, at positions ahead of the step's start.
+//! The gaps that the law of an explicit step wants ≥ 0, at predicted positions.
 
 use carom_contact::{Pair, Rows};
 

@@ -13,7 +13,7 @@ use crate::carried;
 use crate::contact_update::{search, start_step};
 use crate::equations::Equations;
 use crate::evaluation::Iterate;
-use crate::friction::{book_states, take_slips};
+use crate::friction_state::{book_states, take_slips};
 use crate::ledger;
 use crate::model::{Contact, LoadsAt, Model};
 use crate::newton::solve_stage;

@@ -30,7 +30,7 @@ use crate::constraints::Constraints;
 use crate::contact_update::search;
 use crate::equations::Equations;
 use crate::evaluation::{Evaluation, Iterate};
-use crate::friction::book_states;
+use crate::friction_state::book_states;
 use crate::ledger::{book_kinetic, change_of_loads, work_of_loads};
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;

@@ -138,7 +138,7 @@ pub trait Stepper: Send + Sync {
 }
 
 /// Nodes with an active pair in `a` and none in `b`: (contact, global node). A node in contact that
-/// slides into a dent does not come into contact.
+/// slides into a concave corner does not come into contact.
 fn difference(model: &Model, a: &State, b: &State) -> Vec<(usize, usize)> {
     let mut nodes = Vec::new();
     for (k, contact) in model.contacts.iter().enumerate() {

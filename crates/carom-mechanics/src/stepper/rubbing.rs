@@ -1,6 +1,6 @@
 //! Coulomb's law in a step of the schemes with their own contact law. The step has one coefficient:
-//! μ_s for a node that stuck, and for others that of their slip rate at its start. So a node that
-//! touches while it moves along the other side slips from the start.
+//! μ_s for a node that was sticking, and for others that of their slip rate at its start. So a node
+//! that comes into contact while it moves along the other side slips from the start.
 
 use carom_algebra::Kind;
 use carom_contact::{Along, Hold, Law, Pair, Row, Rows, length};
@@ -41,8 +41,8 @@ pub(super) fn hold(kind: Kind, normal: f64, tangential: Along) -> Hold {
 }
 
 /// The components along its tangents of the slips of a pair on which its friction acts. In space
-/// supports may hold its nodes along a tangent: what is left of that row, along the normal, only
-/// turns the facet, times the gap, and its force would take part of the cone without any other
+/// supports may constrain its nodes along a tangent: what is left of that row, along the normal,
+/// only turns the facet, times the gap, and its force would take part of the cone without any other
 /// effect. `x`: a motion; where supports move the nodes along that tangent, they slip.
 pub(super) fn loose(model: &Model, slips: &Rows, x: &[f64]) -> impl Iterator<Item = Along> + use<> {
     let tangents = [[1.0, 0.0], [0.0, 1.0]];

@@ -39,7 +39,7 @@ pub(super) fn gap_at(contact: &Contact, pair: &mut Pair, y: &[f64], row: &mut Ro
     found.map_or(f64::INFINITY, |()| row.row(0).gap)
 }
 
-/// Whether a force along a row moves anything: not if supports hold all its nodes.
+/// Whether a force along a row moves anything: not if supports constrain all its nodes.
 pub(super) fn moves(model: &Model, row: Row) -> bool {
     row.entries().any(|(dof, slope)| !model.fixed[dof] && slope.abs() > DEPENDENT)
 }

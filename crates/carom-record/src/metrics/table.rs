@@ -186,7 +186,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 28] = [
             Unit::None,
             "max_t [E(t) − min_{s ≤ t} E(s)] / max(E*, Σ |ΔW|), E = total − W, W = external_work to second order in Δt",
             "Krenk 2006",
-            "largest rise of the energy above its running minimum / largest kinetic + strain energy or Σ of |external work|",
+            "largest rise of the energy above its running minimum, divided by the larger of the largest kinetic + strain energy and Σ |ΔW|",
         ),
         ledger::created,
     ),

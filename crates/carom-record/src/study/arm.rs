@@ -49,7 +49,7 @@ pub fn sets_step(set: &str) -> bool {
 }
 
 /// The step of an arm: the value it sets for the key, or that of its case; 1/n for a number of
-/// cells.
+/// cells and for the factor of refinement.
 pub fn step(arm: &Arm, key: &str) -> Option<f64> {
     let value = match set(arm, key) {
         Some(text) => number(text.trim_start_matches('[').split([',', ']']).next()?)?,
@@ -70,7 +70,7 @@ pub(super) fn scalar(arm: &Arm, key: &str) -> Option<f64> {
 }
 
 fn counts_cells(key: &str) -> bool {
-    key.ends_with("cells")
+    key.ends_with("cells") || key == "refine"
 }
 
 /// What an arm sets for a key.
@@ -114,5 +114,6 @@ mod tests {
         assert_eq!(scalar(&arm("a.v=[0, -2]"), "a.v"), None);
         assert_eq!(scalar(&arm("a.v=inf"), "a.v"), None);
         assert_eq!(scalar(&arm("a.mesh.cells=[8, 4]"), "a.mesh.cells"), Some(0.125));
+        assert_eq!(scalar(&arm("refine=4"), "refine"), Some(0.25));
     }
 }

@@ -22,7 +22,7 @@ pub struct Refinement {
     pub common: String,
     /// Numbers of the arms.
     pub arms: Vec<usize>,
-    /// Their steps: the value of the key, or 1/value where the key counts cells.
+    /// Their steps: the value of the key, or 1/value where the key counts cells or refines them.
     pub steps: Vec<f64>,
 }
 

@@ -30,8 +30,8 @@ pub(super) fn alike(a: (f64, f64), b: (f64, f64), reference: f64) -> bool {
     (a.0 - b.0).abs() <= f64::max(reference, own)
 }
 
-/// Assigns places: one more than the number of arms that are distinguishably better. An arm that
-/// created much energy is worse than any that did not.
+/// Assigns places: one plus the number of arms that are distinguishably better. An arm that created
+/// much energy is worse than any that did not.
 pub(super) fn places(ranked: &mut [Ranked], better: impl Fn(&Ranked, &Ranked) -> bool) {
     let better = |a: &Ranked, b: &Ranked| if a.sound == b.sound { better(a, b) } else { a.sound };
     for i in 0..ranked.len() {

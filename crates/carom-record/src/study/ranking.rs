@@ -6,7 +6,7 @@
 //! from it as its uncertainty. Arms are ranked within a level only, that is, at the same step or
 //! the same cost. Two arms of a level are not distinguished if their errors differ by no more than
 //! the sum of their uncertainties, than that of the reference, or than 5 %. The place of an arm is
-//! one more than the number of arms that are distinguishably better; within a place arms are in the
+//! one plus the number of arms that are distinguishably better; within a place arms are in the
 //! order of their cost. An arm that created so much energy that the default guard would have
 //! stopped it is placed behind all others; a member that did counts as failed.
 //!

@@ -17,7 +17,7 @@ use super::row::Row;
 /// Confidence in a recommendation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Confidence {
-    /// The ranking may be accidental.
+    /// The ranking may be due to chance.
     Low,
     /// The ranking holds for this study.
     Medium,

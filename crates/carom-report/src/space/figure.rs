@@ -10,6 +10,7 @@ use super::skin::{Facet, Place, places, skin};
 use super::view::View;
 use super::wires::wires;
 use crate::bands::{Bands, positive_bands};
+use crate::labels::instant_label;
 use crate::pen::{GRID, Pen, Point, open_grid};
 use crate::quantity::stresses;
 use crate::sheet::{Legend, Sheet};
@@ -50,7 +51,7 @@ pub(crate) fn draw(
 pub(crate) fn instants(
     run: &Run,
     sets: &[(f64, FieldSet)],
-    (time, length): (&str, &str),
+    length: &str,
     during: &str,
 ) -> Option<(String, String)> {
     let view = View::axonometric();
@@ -58,7 +59,7 @@ pub(crate) fn instants(
     let mut list = Vec::new();
     for (t, set) in sets.iter().filter(|(_, set)| set.points.len() == sets[0].1.points.len()) {
         let [mises, _] = stresses(set)?;
-        list.push((format!("t = {t:.4} {time}"), places(set), mises));
+        list.push((instant_label(run, *t), places(set), mises));
     }
     let values = list.iter().flat_map(|(_, _, mises)| {
         skin.iter().flat_map(|facet| &facet.nodes).map(|&k| mises[k]).collect::<Vec<_>>()

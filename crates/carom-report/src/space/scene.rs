@@ -166,7 +166,7 @@ impl Scene {
                 let [last, older] = &mut before[channel];
                 let mut left = 0i16;
                 let differs = (0..now.len()).map(|i| {
-                    // From the second frame on, displacements are expected to go on as before.
+                    // From the second frame on, displacements are extrapolated linearly.
                     let expected = if channel < 3 && k > 1 {
                         last[i].wrapping_mul(2).wrapping_sub(older[i])
                     } else {

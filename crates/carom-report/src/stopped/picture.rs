@@ -9,6 +9,7 @@ use carom_record::{FieldSet, Run, Stop, StopPlace};
 use crate::axis::round_step;
 use crate::bodies::{Instant, bezier, corners, edge_nodes, edges, is_plane, places};
 use crate::chart::{open, write_text};
+use crate::labels::instant_label;
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::{Pen, Point};
@@ -37,10 +38,9 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<(String, String)> {
     let (svg, moved) = draw(run, stop, place, &fields)?;
     let rejected = if moved { " Dashed: the positions that were rejected." } else { "" };
     let caption = format!(
-        "The place of the stop at t = {:.6} {}, the last accepted state: deformed mesh with the node, and the \
+        "The place of the stop at {}, the last accepted state: deformed mesh with the node, and the \
          facet or cell, where the next step failed.{rejected} Data: `stopped.vtu`, `stopped.json`.",
-        stop.last,
-        run.history.unit("time")
+        instant_label(run, stop.last)
     );
     Some((caption, svg))
 }

@@ -171,7 +171,7 @@ pub(super) fn contacts(
                 continue;
             }
         };
-        // With the predictor law y_{n+1} − y_n is not Δt v_½, and no force conserves moment of
+        // With the predictor law y_{n+1} − y_n is not Δt v_½, and no force conserves angular
         // momentum.
         let conserving = conserves && spec.law == Some(ContactLaw::Position);
         let augmentation = (spec.enforcement == Enforcement::Augmented).then(|| Augmentation {

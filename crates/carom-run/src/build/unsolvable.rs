@@ -9,7 +9,7 @@ pub(super) fn unconstrained(parts: &[BodyInstance], free: &[Mode], contacts: &[C
     let mut problems: Vec<Problem> = Vec::new();
     for (place, part) in parts.iter().enumerate() {
         let involves = |c: &Contact| {
-            // A body cannot hold itself.
+            // A body cannot constrain itself.
             let secondary =
                 |place: usize| c.kinematics.secondary().iter().any(|n| parts[place].nodes().contains(n));
             !c.itself && (c.primary_part == Some(place) || secondary(place))

@@ -115,12 +115,7 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
     add("min_det_f".into(), "", "smallest J over all quadrature points", false);
     if rubs(model) {
         add("sticking".into(), "", "pairs in contact that stick", true);
-        add(
-            "stick_time".into(),
-            &label.time,
-            "time in which pairs stuck, summed over them, cumulative",
-            false,
-        );
+        add("stick_time".into(), &label.time, "stick time, summed over pairs, cumulative", false);
         add("rub_time".into(), &label.time, "the same of all closed pairs with friction", false);
         add("slip".into(), &label.length, "largest slip of a pair since it closed, so far", false);
     }

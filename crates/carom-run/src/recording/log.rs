@@ -2,13 +2,13 @@
 
 use carom_case::{BodySpec, Case, ContactSpec, MeshSpec, Overlap};
 use carom_contact::PairEvent;
-use carom_mechanics::LogEvent;
 use carom_mechanics::model::Model;
+use carom_mechanics::{LogEvent, Overlap as Undeclared};
 use carom_record::Event;
 
 /// Repairs of meshes that were read from files.
 pub(super) fn repairs(case: &Case) -> Vec<Event> {
-    let of_body = |body: &BodySpec| match &body.mesh {
+    let of_body = |body: &BodySpec| match body.mesh.source() {
         MeshSpec::File { repairs, .. } => repairs.clone(),
         _ => Vec::new(),
     };
@@ -51,8 +51,8 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             Event::new(step, *time, "fallback", message).with("dt", *dt)
         }
         LogEvent::ActiveSet { time, contact, node, active, met } => {
-            let verb = if *active { "comes into" } else { "leaves" };
-            let met_at = met.map_or_else(String::new, |met| format!(", which it met at t = {met:.9e}"));
+            let verb = if *active { "becomes active in" } else { "leaves" };
+            let met_at = met.map_or_else(String::new, |met| format!("; paths crossed at t = {met:.9e}"));
             let message = format!(
                 "node {node} of \"{}\" {verb} contact \"{}\"{met_at}",
                 body_of(*node),
@@ -79,15 +79,26 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             };
             Event::new(step, *time, kind, message).with("contact", name).with("node", *node)
         }
-        LogEvent::Overlap { time, bodies: (a, b) } => {
+        LogEvent::Overlap { time, overlap: Undeclared::Bodies(a, b) } => {
             let [first, second] = [a, b].map(|k| model.parts[*k].name.as_str());
             let place = if a == b {
                 format!("body \"{first}\"")
             } else {
                 format!("bodies \"{first}\" and \"{second}\"")
             };
-            let what = if a == b { "crosses itself" } else { "overlap: there is no contact between them" };
+            let what = if a == b {
+                "crosses itself"
+            } else {
+                "overlap: no contact between them covers the nodes that are inside"
+            };
             Event::new(step, *time, "overlap", format!("{place} {what}")).with("place", place)
+        }
+        LogEvent::Overlap { time, overlap: Undeclared::Obstacle { body, contact } } => {
+            let (place, name) = (format!("body \"{}\"", model.parts[*body].name), contact_name(*contact));
+            let message = format!(
+                "{place} lies in the obstacle of contact \"{name}\" with nodes beside the side of the contact"
+            );
+            Event::new(step, *time, "overlap", message).with("place", place).with("obstacle", name)
         }
         LogEvent::Ambiguous { time, regularity } => {
             let message = format!(

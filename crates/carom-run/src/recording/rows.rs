@@ -78,7 +78,7 @@ pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> 
             continue;
         }
         let weights = weights(contact, state, case.thickness);
-        // In a dent, a node has several pairs.
+        // In a concave corner, a node has several pairs.
         let mut of_node = vec![0.0; weights.len()];
         pairs.iter().filter(|p| p.active).for_each(|pair| of_node[pair.node] += pair.lambda);
         for (p, pair) in pairs.iter().enumerate().filter(|(_, pair)| pair.active) {

@@ -1,10 +1,12 @@
 //! The steps of a run in one process, with rows, fields, events and checkpoints, up to its end.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use carom_case::Case;
+use carom_case::{BodySpec, Case, Law};
+use carom_mechanics::model::Model;
 use carom_mechanics::{Attempt, GridReport, Simulation, State, Stopped, penetration};
 use carom_record::{Event, Manifest, Recorder, Run, Status};
 
@@ -16,7 +18,7 @@ use super::rows::contact_rows;
 use super::stopped::{FEW, Found, Record};
 use super::tally::{Busy, Tally, checkpoint};
 use super::verdicts::judged;
-use crate::warnings::warnings_of_record;
+use crate::warnings::{LARGE_ROTATION, warnings_of_record};
 
 /// Time between signs of life while a step is bisected.
 const HEARTBEAT: Duration = Duration::from_secs(1);
@@ -37,6 +39,8 @@ pub(super) struct Session<'a> {
     pub(super) since: Since,
     /// What earlier processes counted up to the checkpoint that this one began from.
     pub(super) earlier: Tally,
+    /// Largest rotation of each linear-elastic body in a row so far, and its time.
+    pub(super) rotations: BTreeMap<usize, [f64; 2]>,
     /// Wall seconds spent on writing.
     output: f64,
     /// Processor seconds in steps.
@@ -58,6 +62,7 @@ impl<'a> Session<'a> {
         let weights = center_weights(simulation.model());
         let first_step = simulation.state().step;
         let stressed = stressed(&simulation);
+        let rotations = rotations(case, simulation.model());
         let began = Instant::now();
         Self {
             case,
@@ -69,6 +74,7 @@ impl<'a> Session<'a> {
             stressed,
             since: Since::default(),
             earlier: Tally::default(),
+            rotations,
             began,
             first_step,
             output: 0.0,
@@ -101,10 +107,10 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Adds the warnings that only the record of a finished run shows.
-    fn add_warnings(&mut self, run: &Run) -> Result<(), RunError> {
+    /// Adds the warnings that only the record of a run shows.
+    fn add_warnings(&mut self, run: &Run, finished: bool) -> Result<(), RunError> {
         let known = self.manifest.warnings.len();
-        self.manifest.warnings.extend(warnings_of_record(self.case, run));
+        self.manifest.warnings.extend(warnings_of_record(self.case, run, finished));
         self.log_warnings(known)
     }
 
@@ -207,6 +213,12 @@ impl<'a> Session<'a> {
         let fallbacks = self.simulation.has_fallback();
         row(model, state, dt, (&self.since, fallbacks), &self.weights, &mut self.values);
         self.since = Since::default();
+        for (body, largest) in &mut self.rotations {
+            let angle = model.rotation(*body, &state.y);
+            if angle > largest[0] {
+                *largest = [angle, state.time];
+            }
+        }
         self.writer.history(&self.values)?;
         contact_rows(self.case, model, state).iter().try_for_each(|row| self.writer.contact(row))?;
         Ok(())
@@ -216,6 +228,21 @@ impl<'a> Session<'a> {
         if self.case.output.fields_every > 0 || !self.field_steps.is_empty() {
             let (model, state) = (self.simulation.model(), self.simulation.state());
             self.writer.fields(state.step, state.time, field_set(self.case, model, state))?;
+        }
+        Ok(())
+    }
+
+    /// Logs the largest rotations of bodies whose strain is that of small displacements, once: the
+    /// last checkpoint has none.
+    fn log_rotations(&mut self) -> Result<(), RunError> {
+        let step = self.simulation.state().step;
+        for (body, [angle, time]) in std::mem::take(&mut self.rotations) {
+            if angle > LARGE_ROTATION {
+                let name = self.case.bodies[body].name.as_str();
+                let message = format!("a point of body \"{name}\" has turned by {angle:.3e} rad");
+                let event = Event::new(step, time, "rotation", message);
+                self.writer.log(&event.with("body", name).with("angle", angle))?;
+            }
         }
         Ok(())
     }
@@ -258,7 +285,7 @@ impl<'a> Session<'a> {
     /// Adds what this process has spent so far to what earlier ones had. A checkpoint holds both,
     /// so that a killed process is counted up to there.
     fn tally(&mut self) {
-        let Tally { counters, timings } = &self.earlier;
+        let Tally { counters, timings, .. } = &self.earlier;
         let spent = self.simulation.timings();
         for (phase, seconds) in [
             ("assembly", spent.assembly),
@@ -289,8 +316,11 @@ impl<'a> Session<'a> {
             return Ok(());
         }
         let state = self.simulation.state();
-        let tally =
-            Tally { counters: self.manifest.counters.clone(), timings: self.manifest.timings.clone() };
+        let tally = Tally {
+            counters: self.manifest.counters.clone(),
+            timings: self.manifest.timings.clone(),
+            rotations: self.rotations.clone(),
+        };
         Ok(self.writer.checkpoint(state.step, &checkpoint(state, self.since, &tally)?)?)
     }
 
@@ -326,6 +356,9 @@ impl<'a> Session<'a> {
         interrupted: &AtomicBool,
         remarks: Vec<String>,
     ) -> Result<Outcome, RunError> {
+        if matches!(end, End::Finished) {
+            self.log_rotations()?;
+        }
         self.checkpoint()?;
         let manifest = &mut self.manifest;
         (manifest.status, manifest.reason) = match &end {
@@ -339,12 +372,12 @@ impl<'a> Session<'a> {
         // A record that cannot be read does not make a finished run unfinished.
         let asked = match end {
             End::Finished => true,
-            End::Stopped(_) => !self.case.expects.is_empty(),
+            End::Stopped(_) => !self.case.expects.is_empty() || !self.simulation.state().overlaps.is_empty(),
             End::Interrupted => false,
         };
         let read = asked.then(|| self.writer.read());
-        if let (End::Finished, Some(Ok(run))) = (&end, &read) {
-            self.add_warnings(run)?;
+        if let Some(Ok(run)) = &read {
+            self.add_warnings(run, matches!(end, End::Finished))?;
         }
         let state = self.simulation.state();
         let wall = self.began.elapsed().as_secs_f64();
@@ -364,6 +397,20 @@ impl<'a> Session<'a> {
         }
         Ok(outcome)
     }
+}
+
+/// The bodies whose rotation is watched, not turned yet: one that is fixed is as it was given.
+fn rotations(case: &Case, model: &Model) -> BTreeMap<usize, [f64; 2]> {
+    let moves = |k: usize| {
+        let d = model.dimension;
+        model.parts[k].nodes().any(|node| model.fixed[node * d..(node + 1) * d].contains(&false))
+    };
+    let is_linear = |body: &BodySpec| {
+        let law = case.materials.iter().find(|m| m.name == body.material).map(|m| m.law);
+        law == Some(Law::LinearElastic) && case.dimension > 1
+    };
+    let bodies = case.bodies.iter().enumerate().filter(|(k, body)| is_linear(body) && moves(*k));
+    bodies.map(|(k, _)| (k, [0.0; 2])).collect()
 }
 
 fn stressed(simulation: &Simulation) -> Vec<bool> {

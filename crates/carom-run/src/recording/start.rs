@@ -162,6 +162,7 @@ pub fn resume_with(
     let mut writer = reopened.writer;
     writer.field_format(case.output.format);
     let mut session = Session::new(case, simulation, &mut writer, manifest);
+    session.rotations.clone_from(&tally.rotations);
     (session.since, session.earlier) = (since, tally);
     session.writer.manifest(&session.manifest)?;
     if reopened.rows == 0 {

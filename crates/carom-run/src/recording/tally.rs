@@ -15,13 +15,15 @@ use super::outcome::RunError;
 pub(super) struct Tally {
     pub(super) counters: BTreeMap<String, u64>,
     pub(super) timings: BTreeMap<String, f64>,
+    /// Largest rotation of each linear-elastic body in a row, and its time.
+    pub(super) rotations: BTreeMap<usize, [f64; 2]>,
 }
 
 impl Tally {
     /// The start may need a factorisation.
     pub(super) fn at_start(simulation: &Simulation) -> Self {
         let counters = [("factorisations".to_owned(), simulation.factorisations())].into();
-        Self { counters, timings: BTreeMap::new() }
+        Self { counters, ..Self::default() }
     }
 }
 

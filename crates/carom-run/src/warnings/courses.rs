@@ -6,16 +6,21 @@
 //! min_b − max_a < n·w(t) < max_b − min_a,      min, max of n·y over the nodes at the start
 //! ```
 //!
+//! Where a contact between them names sides, they are moved on their courses, and it matters which
+//! nodes come to lie inside first: those of its sides, or others. The same is asked of a body and
+//! the rigid obstacle of its contact.
+//!
 //! Of what comes after a declared contact nothing is known before the run.
 
-use carom_case::{Case, PrimarySpec};
+use carom_case::{Case, ContactSpec, ObstacleMotion, PrimarySpec};
 use carom_mechanics::model::{BodyInstance, Model};
+use carom_mechanics::{Overlap, Penetration, Undeclared};
 
-use super::found::{Found, short};
+use super::found::{Found, covered_by, short};
 
 /// Directions in the plane: convex bodies are wrapped to 1 − cos(π/32), half a per cent.
 const DIRECTIONS: usize = 16;
-/// Instants at which rigid obstacles are looked for on a course.
+/// Instants at which rigid obstacles, and nodes inside bodies, are looked for on a course.
 const INSTANTS: u32 = 64;
 /// Depth, relative to L, from which a node is inside an obstacle.
 const INSIDE: f64 = 1e-6;
@@ -27,20 +32,38 @@ pub(super) fn undeclared_contact(case: &Case, model: &Model) -> Vec<Found> {
     if case.dimension < 2 || case.time.scheme.is_static() || case.initial.is_some() {
         return Vec::new();
     }
-    let scene = Scene::new(case, model);
+    let mut scene = Scene::new(case, model);
     let mut found = Vec::new();
     for a in 0..model.parts.len() {
         for b in a + 1..model.parts.len() {
-            if scene.is_declared(a, b) {
-                continue;
-            }
-            let Some(time) = scene.meet(a, b).filter(|time| *time > 0.0) else { continue };
-            if [a, b].iter().all(|&body| scene.flies_until(body, time)) {
+            let contacts = scene.between(a, b);
+            let meeting = if contacts.is_empty() {
+                scene.meet(a, b).map(|[first, _]| first).filter(|time| *time > 0.0)
+            } else {
+                scene.meet_elsewhere(a, b)
+            };
+            let Some(time) = meeting else { continue };
+            if scene.flies_until(a, Some(b), time) && scene.flies_until(b, Some(a), time) {
                 let [first, second] = [a, b].map(|k| &model.parts[k].name);
                 let place = format!("bodies \"{first}\" and \"{second}\"");
-                let what = format!("as they move at the start, they meet at t = {}", short(time));
+                let specs: Vec<&ContactSpec> = contacts.iter().map(|&k| &case.contacts[k]).collect();
+                let where_not = covered_by(&specs);
+                let what = format!("as they move at the start, they meet at t = {}{where_not}", short(time));
                 found.push(Found { place, what });
             }
+        }
+    }
+    for (k, contact) in case.contacts.iter().enumerate() {
+        if let Some((body, time)) = scene.falls_into_obstacle(k)
+            && scene.flies_until(body, None, time)
+        {
+            let what = format!(
+                "as it moves at the start, it meets the obstacle of contact \"{}\" at t = {}{}",
+                contact.name,
+                short(time),
+                covered_by(&[contact])
+            );
+            found.push(Found::of_body(&model.parts[body].name, what));
         }
     }
     found
@@ -55,6 +78,8 @@ struct Scene<'a> {
     courses: Vec<Option<Course>>,
     /// Extents of each body along the directions at the start.
     extents: Vec<Vec<[f64; 2]>>,
+    undeclared: Undeclared,
+    contacts: Penetration,
 }
 
 impl<'a> Scene<'a> {
@@ -68,20 +93,67 @@ impl<'a> Scene<'a> {
         let moved: Vec<usize> = model.motions.dofs().collect();
         let courses = model.parts.iter().map(|part| course(model, part, &momentum, &moved)).collect();
         let extents = model.parts.iter().map(|part| extents(model, part, &directions)).collect();
-        Self { case, model, directions, courses, extents }
+        let (undeclared, contacts) = (Undeclared::new(model), Penetration::of_contacts(model));
+        Self { case, model, directions, courses, extents, undeclared, contacts }
     }
 
-    fn is_declared(&self, a: usize, b: usize) -> bool {
+    /// The contacts between two bodies.
+    fn between(&self, a: usize, b: usize) -> Vec<usize> {
         let [first, second] = [a, b].map(|k| self.model.parts[k].name.as_str());
-        self.case.contacts.iter().any(|contact| {
+        let is_between = |contact: &ContactSpec| {
             let bodies: Vec<&str> = contact.bodies().collect();
             bodies == [first, second] || bodies == [second, first]
-        })
+        };
+        (0..self.case.contacts.len()).filter(|&k| is_between(&self.case.contacts[k])).collect()
     }
 
-    /// When two bodies that move relative to each other meet, if nothing stops them before; zero if
-    /// they do at the start.
-    fn meet(&self, a: usize, b: usize) -> Option<f64> {
+    /// When nodes of two bodies that their contacts do not cover come to lie inside the other body,
+    /// before those that they cover.
+    fn meet_elsewhere(&mut self, a: usize, b: usize) -> Option<f64> {
+        let [from, to] = self.meet(a, b)?;
+        self.enters(from, to, &self.between(a, b), Overlap::Bodies(a, b))
+    }
+
+    /// The body of a contact with a fixed obstacle, and when nodes of it that are not in the side
+    /// of the contact come to lie in the obstacle, before those of the side.
+    fn falls_into_obstacle(&mut self, contact: usize) -> Option<(usize, f64)> {
+        let spec = &self.case.contacts[contact];
+        if matches!(spec.primary, PrimarySpec::Side(_)) || spec.motion != ObstacleMotion::Fixed {
+            return None;
+        }
+        let name = spec.bodies().next()?;
+        let body = self.model.parts.iter().position(|part| part.name == name)?;
+        let [v, g] = self.courses[body]?;
+        if v == [0.0; 3] && g == [0.0; 3] {
+            return None;
+        }
+        let overlap = Overlap::Obstacle { body, contact };
+        Some((body, self.enters(0.0, self.case.time.end, &[contact], overlap)?))
+    }
+
+    /// When this overlap is first seen between two times, unless one of the contacts that cover
+    /// other nodes of the same bodies acts before.
+    fn enters(&mut self, from: f64, to: f64, covering: &[usize], overlap: Overlap) -> Option<f64> {
+        if !self.undeclared.watches(self.model, overlap) {
+            return None;
+        }
+        for k in 1..=INSTANTS {
+            let time = from + (to - from) * f64::from(k) / f64::from(INSTANTS);
+            let y = self.positions(time);
+            let acting = self.contacts.inside(self.model, &y, INSIDE * self.model.scale);
+            if acting.into_iter().any(|(contact, ..)| covering.contains(&contact)) {
+                return None;
+            }
+            if self.undeclared.overlapping(self.model, &y).contains(&overlap) {
+                return Some(time);
+            }
+        }
+        None
+    }
+
+    /// When the extents of two bodies that move relative to each other begin and cease to overlap,
+    /// if nothing stops them before; from zero if they do at the start.
+    fn meet(&self, a: usize, b: usize) -> Option<[f64; 2]> {
         let [[v, g], [v_b, g_b]] = [self.courses[a]?, self.courses[b]?];
         let along = |n: &[f64; 3], x: &[f64; 3], x_b: &[f64; 3]| (0..3).map(|i| n[i] * (x[i] - x_b[i])).sum();
         let bands: Vec<Band> = (self.directions.iter().zip(self.extents[a].iter().zip(&self.extents[b])))
@@ -97,14 +169,16 @@ impl<'a> Scene<'a> {
         instants.extend([0.0, end]);
         instants.sort_unstable_by(f64::total_cmp);
         let overlap = |t: f64| bands.iter().all(|band| band.contains(t));
-        let first = instants.windows(2).find(|between| overlap(0.5 * (between[0] + between[1])))?[0];
-        (v != v_b || g != g_b).then_some(first)
+        let first = instants.windows(2).find(|between| overlap(0.5 * (between[0] + between[1])))?;
+        (v != v_b || g != g_b).then_some([first[0], first[1]])
     }
 
-    /// Whether a body meets nothing that it has a contact with before this time.
-    fn flies_until(&self, body: usize, time: f64) -> bool {
-        let others = (0..self.model.parts.len()).filter(|&other| self.is_declared(body, other));
-        let mut meetings = others.filter_map(|other| self.meet(body, other));
+    /// Whether a body meets nothing that it has a contact with before this time, other than the one
+    /// that it meets then.
+    fn flies_until(&self, body: usize, partner: Option<usize>, time: f64) -> bool {
+        let is_declared = |&other: &usize| Some(other) != partner && !self.between(body, other).is_empty();
+        let others = (0..self.model.parts.len()).filter(is_declared);
+        let mut meetings = others.filter_map(|other| Some(self.meet(body, other)?[0]));
         !meetings.any(|meeting| meeting < time) && !self.meets_obstacle(body, time)
     }
 

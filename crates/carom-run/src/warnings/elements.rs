@@ -44,6 +44,25 @@ pub(super) fn locking(case: &Case, _: &Model) -> Vec<Found> {
     found
 }
 
+/// Bodies in one dimension whose modulus is not Young's. A manufactured solution is one of the law
+/// as it is.
+pub(super) fn bar_modulus(case: &Case, _: &Model) -> Vec<Found> {
+    let mut found = Vec::new();
+    for body in case.bodies.iter().filter(|_| case.dimension == 1 && case.manufactured.is_none()) {
+        let Some(material) = case.materials.iter().find(|m| m.name == body.material) else { continue };
+        let (lambda, mu) = (material.lambda, material.mu);
+        let young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+        let confined = lambda + 2.0 * mu;
+        // Λ computed from a ratio of zero is zero.
+        if (confined - young).abs() > 1e-9 * young.abs() {
+            let [confined, young, ratio] = [confined, young, confined / young].map(short);
+            let what = format!("its modulus is Λ + 2μ = {confined}, {ratio} times Young's modulus {young}");
+            found.push(Found::of_body(&body.name, what));
+        }
+    }
+    found
+}
+
 fn plane(element: Element) -> &'static str {
     if element.dimension() == 2 { " in plane strain" } else { "" }
 }

@@ -1,5 +1,7 @@
 //! What a rule finds.
 
+use carom_case::ContactSpec;
+
 /// Where a rule applies, and what it found there.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Found {
@@ -17,8 +19,23 @@ impl Found {
     }
 }
 
+/// What the contacts between bodies that meet elsewhere name, to be appended; nothing without any.
+pub(super) fn covered_by(contacts: &[&ContactSpec]) -> String {
+    let named = |contact: &&ContactSpec| match contact.primary.side() {
+        Some(primary) => format!("\"{}\" acts between {} and {primary}", contact.name, contact.secondary),
+        None => format!("\"{}\" acts on {}", contact.name, contact.secondary),
+    };
+    if contacts.is_empty() {
+        return String::new();
+    }
+    format!(", elsewhere than where {}", contacts.iter().map(named).collect::<Vec<_>>().join(" and "))
+}
+
 /// A number with three digits.
 pub(super) fn short(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
     let digits = (2 - x.abs().max(1e-300).log10().floor() as i32).clamp(0, 9) as usize;
-    if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) { format!("{x:.2e}") } else { format!("{x:.digits$}") }
+    if (1e-4..1e6).contains(&x.abs()) { format!("{x:.digits$}") } else { format!("{x:.2e}") }
 }

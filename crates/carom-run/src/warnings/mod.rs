@@ -17,6 +17,7 @@ use carom_mechanics::model::Model;
 use carom_record::{Run, Warning};
 
 pub use found::Found;
+pub(crate) use record::LARGE_ROTATION;
 
 /// How a warning is found.
 #[derive(Clone, Copy, Debug)]
@@ -43,18 +44,18 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 12] = [
+pub const WARNINGS: [Entry; 14] = [
     Entry {
         id: "coarse-secondary",
-        why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of a \
-            facet",
+        why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
+            length of a facet",
         advice: "a finer secondary side, or the finer side as the secondary one",
         rule: Rule::Model(meshes::coarse_secondary),
     },
     Entry {
         id: "unmatched-pressure",
-        why: "node-to-segment contact fails the patch test where nodes do not match, so that pressures and stresses at the surface are wrong by a \
-              tenth and more",
+        why: "node-to-segment contact fails the patch test where nodes do not match, so that pressures and stresses at the surface are wrong by \
+              10 % or more",
         advice: "matching meshes, resultants, or probes a few cells away from the contact",
         rule: Rule::Model(meshes::unmatched_pressure),
     },
@@ -78,6 +79,12 @@ pub const WARNINGS: [Entry; 12] = [
         rule: Rule::Model(elements::stiff_bending),
     },
     Entry {
+        id: "bar-modulus",
+        why: "dimension 1 has no lateral strain: bodies are columns that cannot widen, not free bars",
+        advice: "poisson = 0 (or lambda = 0, mu = E/2) for a bar whose sides are free",
+        rule: Rule::Model(elements::bar_modulus),
+    },
+    Entry {
         id: "strained-massless",
         why: "a node without mass moves to its equilibrium position in the first step, and the strain energy \
             released is lost",
@@ -92,9 +99,15 @@ pub const WARNINGS: [Entry; 12] = [
     },
     Entry {
         id: "undeclared-contact",
-        why: "nothing keeps them apart: contact acts only where a [[contact]] declares it",
-        advice: "a [[contact]] with between = \"all\", or ending the run before they meet",
+        why: "nothing keeps them apart: contact acts only between the sides that a [[contact]] names",
+        advice: "a [[contact]] that names the sides that meet, or one with between = \"all\"; or ending the run before they meet",
         rule: Rule::Both(courses::undeclared_contact, record::undeclared_contact),
+    },
+    Entry {
+        id: "large-rotation",
+        why: "linear elasticity takes rotations for strains, and a body that turns is stretched and resists",
+        advice: "law = \"neo-hookean\" or \"saint-venant-kirchhoff\" with the same constants",
+        rule: Rule::Record(record::large_rotation),
     },
     Entry {
         id: "ambiguous-friction",
@@ -147,9 +160,11 @@ pub fn warnings(case: &Case, model: &Model) -> Vec<Warning> {
     WARNINGS.iter().filter_map(given).flatten().collect()
 }
 
-/// The warnings that the record of a finished run gives.
-pub(crate) fn warnings_of_record(case: &Case, run: &Run) -> Vec<Warning> {
+/// The warnings that the record of a run gives; of one that stopped only the overlaps, which may be
+/// why it stopped.
+pub(crate) fn warnings_of_record(case: &Case, run: &Run, finished: bool) -> Vec<Warning> {
     let given = |entry: &Entry| match entry.rule {
+        _ if !finished && entry.id != "undeclared-contact" => None,
         Rule::Record(find) | Rule::Both(_, find) => Some(entry.given(find(case, run))),
         Rule::Model(_) => None,
     };

@@ -2,14 +2,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use carom_case::Case;
+use carom_case::{Case, ContactSpec};
 use carom_record::Run;
 use carom_record::metrics::{self, MUCH_CREATED};
 
-use super::found::{Found, short};
+use super::found::{Found, covered_by, short};
+
+/// Rotation in rad from which a body of linear elasticity is warned about: it makes strains of half
+/// a per cent.
+pub(crate) const LARGE_ROTATION: f64 = 0.1;
 
 /// A contact in the plane in which no row has more than one active node, of several. A node in a
-/// dent has several pairs; a corner of the primary side is a node, too.
+/// concave corner has several pairs; a corner of the primary side is a node, too.
 pub(super) fn one_node(case: &Case, run: &Run) -> Vec<Found> {
     let mut active: BTreeMap<(&str, u64), BTreeSet<u64>> = BTreeMap::new();
     for row in &run.contact {
@@ -30,14 +34,42 @@ pub(super) fn one_node(case: &Case, run: &Run) -> Vec<Found> {
     found
 }
 
-/// Bodies that overlapped without a contact between them.
-pub(super) fn undeclared_contact(_: &Case, run: &Run) -> Vec<Found> {
+/// Bodies that overlapped, or lay in a rigid obstacle, where no contact between them acts.
+pub(super) fn undeclared_contact(case: &Case, run: &Run) -> Vec<Found> {
     let overlaps = run.log.iter().filter(|event| event.kind == "overlap");
     let found = overlaps.filter_map(|event| {
-        let place = event.data.get("place")?.as_str()?.to_owned();
-        let one = place.starts_with("body ");
-        let verb = if one { "crosses itself" } else { "overlap" };
-        Some(Found { place, what: format!("{verb} from t = {} on", short(event.time)) })
+        let text = |key: &str| event.data.get(key)?.as_str();
+        let (place, from) = (text("place")?.to_owned(), format!("from t = {} on", short(event.time)));
+        let what = if let Some(name) = text("obstacle") {
+            let contact = case.contacts.iter().find(|contact| contact.name == name)?;
+            format!("lies in the obstacle of contact \"{name}\" {from}{}", covered_by(&[contact]))
+        } else if place.starts_with("body ") {
+            format!("crosses itself {from}")
+        } else {
+            let is_between = |contact: &&ContactSpec| {
+                let [first, second] = &contact.bodies().collect::<Vec<_>>()[..] else { return false };
+                let in_order = |a, b| place == format!("bodies \"{a}\" and \"{b}\"");
+                in_order(first, second) || in_order(second, first)
+            };
+            let contacts: Vec<&ContactSpec> = case.contacts.iter().filter(is_between).collect();
+            format!("overlap {from}{}", covered_by(&contacts))
+        };
+        Some(Found { place, what })
+    });
+    found.collect()
+}
+
+/// Bodies of linear elasticity that have turned by more than [`LARGE_ROTATION`].
+pub(super) fn large_rotation(_: &Case, run: &Run) -> Vec<Found> {
+    let found = run.log.iter().filter(|event| event.kind == "rotation").filter_map(|event| {
+        let (name, angle) = (event.data.get("body")?.as_str()?, event.data.get("angle")?.as_f64()?);
+        let what = format!(
+            "a point turned by {} rad at t = {}, which alone makes strains of cos θ − 1 = {}",
+            short(angle),
+            short(event.time),
+            short(angle.cos() - 1.0)
+        );
+        Some(Found::of_body(name, what))
     });
     found.collect()
 }

@@ -64,7 +64,7 @@ fn ridges(sim: &Simulation) -> impl Fn(&Simulation) -> [f64; 2] + use<> {
 
 #[test]
 fn bars_that_cross_edge_on_edge_rebound_with_every_scheme() {
-    // Depth over the edge of a cell, 0.2: of constraints on positions none. Change of the moment of
+    // Depth over the edge of a cell, 0.2: of constraints on positions none. Change of the angular
     // momentum: means of forces at both ends of a step, and impulses along rows at predicted
     // positions, have one of the order of the scheme.
     let cases = [

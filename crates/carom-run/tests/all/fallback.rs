@@ -163,7 +163,7 @@ fn what_it_is_not_built_for_is_refused() {
         (&["time.scheme={ kind = \"static\" }"][..], "no velocities"),
         (&["time.scheme={ kind = \"moreau-jean\", theta = 0.5 }"], "own contact law"),
         (&["time.scheme={ kind = \"central-difference\" }"], "own contact law"),
-        (&["contact.strike.enforcement=penalty"], "throw them out"),
+        (&["contact.strike.enforcement=penalty"], "eject nodes"),
         (&["contact.strike.mu=0.3"], "normal impulses"),
         (&["time.scheme={ kind = \"energy-momentum\" }", "contact.strike.restitution=1.0"], "inelastic"),
         (&["contact.strike.law=predictor"], "no predictor"),

@@ -93,8 +93,9 @@ fn orders_on_smooth_nonlinear_motion_are_those_claimed() {
     }
 }
 
-/// Every scheme conserves momentum through contact. Explicit schemes also conserve the moment of
-/// v_{n+½}, since every force at t_n balances at y_n; the ledger's dissipation is as documented.
+/// Every scheme conserves momentum through contact. Explicit schemes also conserve the angular
+/// momentum of v_{n+½}, since every force at t_n balances at y_n; the ledger's dissipation is as
+/// documented.
 #[test]
 fn two_discs_keep_their_momentum() {
     for (scheme, member) in schemes(true) {

@@ -67,7 +67,7 @@ time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 5e-3, end = 
 newton = { tolerance = 1e-12 }
 "#;
 
-/// Momentum and moment of momentum.
+/// Momentum and angular momentum.
 pub(crate) fn momenta(sim: &Simulation) -> [f64; 6] {
     let (y, v) = (&sim.state().y, &sim.state().v);
     let mut p = vec![0.0; v.len()];

@@ -143,7 +143,7 @@ fn a_step_that_is_interrupted_leaves_the_state_of_the_last_grid_time() {
                 if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let stopped = run.advance_watched(&mut GridReport::default(), &mut stop);
-            assert_eq!(stopped, Err(Stopped::Interrupted { time: before.time }));
+            assert_eq!(stopped, Err(Stopped::Interrupted { time: before.time, dt: run.dt() }));
             assert_eq!(run.state(), &before);
             interrupted += 1;
         }

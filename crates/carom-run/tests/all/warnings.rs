@@ -307,6 +307,140 @@ fn bodies_that_fly_at_each_other_without_a_contact() {
     assert!(meets(&[middle, &wall.replace("1.4", "-4.0")]).is_some());
 }
 
+/// Two blocks of which the right one flies at the left one; the contact names their far sides.
+const FAR_SIDES: &str = r#"
+dimension = 2
+material = [{ name = "pu", law = "neo-hookean", density = 1000.0, young = 1e6, poisson = 0.3 }]
+body = [
+    { name = "a", material = "pu", element = "Q4", mesh = { shape = "rectangle", min = [0.0, 0.0], max = [0.1, 0.1], cells = [4, 4] } },
+    { name = "b", material = "pu", element = "Q4", mesh = { shape = "rectangle", min = [0.11, 0.0], max = [0.2, 0.1], cells = [4, 4] }, velocity = [-1.0, 0.0] },
+]
+[[contact]]
+name = "c"
+secondary = "a.left"
+primary = "b.right"
+[time]
+end = 0.05
+step = 1e-3
+scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
+"#;
+
+#[test]
+fn bodies_that_meet_where_their_contact_does_not_act() {
+    let undeclared = |sets: &[&str]| found(FAR_SIDES, sets).into_iter().map(|(_, what)| what).next();
+    // They are 0.01 apart; such a node is seen a tenth of a facet, 2.5e-3, deep at t = 0.0125.
+    let what = undeclared(&[]).unwrap();
+    let rest = what.strip_prefix("bodies \"a\" and \"b\": as they move at the start, they meet at t = ");
+    let (time, elsewhere) = rest.unwrap().split_once(", elsewhere than where ").unwrap();
+    assert!((0.0125..0.0135).contains(&time.parse().unwrap()), "{what}");
+    assert_eq!(elsewhere, "\"c\" acts between a.left and b.right");
+    // Before the run, and after it.
+    assert_eq!(recorded(FAR_SIDES, &[]), ["undeclared-contact"; 2]);
+    // The sides that meet, in either order, or all of them.
+    let right = ["contact.c.secondary=a.right", "contact.c.primary=b.left"];
+    let swapped = ["contact.c.secondary=b.left", "contact.c.primary=a.right"];
+    for sets in [right, swapped, ["contact.c.secondary=a.skin", "contact.c.primary=b.skin"]] {
+        assert!(recorded(FAR_SIDES, &sets).is_empty(), "{sets:?}");
+    }
+    // Faster, the far sides meet each other's bodies, and the run stops there.
+    assert_eq!(recorded(FAR_SIDES, &["body.b.velocity=[-3.0, 0.0]"]), ["undeclared-contact"; 2]);
+}
+
+#[test]
+fn a_body_that_falls_into_an_obstacle_beside_the_side_of_its_contact() {
+    let floor = |side: &str| {
+        let secondary = format!("contact.c.secondary=b.{side}");
+        let sets = [
+            secondary.as_str(),
+            "contact.c.primary={ plane = { point = [0.0, -0.01], normal = [0.0, 1.0] } }",
+            "body.b.velocity=[0.0, -1.0]",
+            "time.end=0.04",
+        ];
+        (undeclared_findings(&sets), recorded(FAR_SIDES, &sets))
+    };
+    let (before, after) = floor("top");
+    let [what] = &before[..] else { panic!("{before:?}") };
+    let start = "body \"b\": as it moves at the start, it meets the obstacle of contact \"c\" at t = 0.0";
+    assert!(what.starts_with(start) && what.ends_with("\"c\" acts on b.top"), "{what}");
+    assert_eq!(after, ["undeclared-contact"; 2]);
+    assert_eq!(floor("bottom"), (Vec::new(), Vec::new()));
+    // A side that reaches the floor with its corners.
+    assert_eq!(floor("left").0, Vec::<String>::new());
+}
+
+fn undeclared_findings(sets: &[&str]) -> Vec<String> {
+    found(FAR_SIDES, sets).into_iter().map(|(_, what)| what).collect()
+}
+
+/// Against the strain of the run: with u = 0.012 at E = 1000 the bar has its free length.
+#[test]
+fn bars_that_cannot_widen() {
+    let pulled = |poisson: &str| {
+        let sets = ["material.steel.young=1000.0", poisson, "body.bar.position=[\"X\"]", "contact=[]"];
+        let load = "load=[{ on = [\"bar.right\"], traction = [12.0] }]";
+        let still = [
+            "body.bar.mass=consistent",
+            "time.end=1.0",
+            "time.step=1.0",
+            "time.scheme={ kind = \"static\" }",
+        ];
+        let sets = [&sets[..], &[load], &still].concat();
+        let end = finish(simulation(STRETCHED, &sets));
+        let strain = end.state().y[10] - 1.0;
+        let given: Vec<String> =
+            found(STRETCHED, &sets).into_iter().map(|(id, what)| format!("{id}: {what}")).collect();
+        (given, 12.0 / strain)
+    };
+    let (given, modulus) = pulled("material.steel.poisson=0.3");
+    let stated = "its modulus is Λ + 2μ = 1346, 1.35 times Young's modulus 1000";
+    assert_eq!(given, [format!("bar-modulus: body \"bar\": {stated}")]);
+    assert!((modulus - 1346.15).abs() < 0.01, "{modulus}");
+    let (given, modulus) = pulled("material.steel.poisson=0.0");
+    assert!(given.is_empty() && (modulus - 1000.0).abs() < 1e-6, "{given:?} {modulus}");
+}
+
+/// A square that is turned at its start, by an angle that the formulas give exactly.
+#[test]
+fn linear_elasticity_that_turns() {
+    let turned = |angle: f64, law: &str| {
+        let case = format!(
+            r#"
+dimension = 2
+material = [{{ name = "soft", law = "{law}", density = 1.0, young = 1.0, poisson = 0.3 }}]
+[[body]]
+name = "block"
+material = "soft"
+element = "Q4"
+mesh = {{ shape = "rectangle", min = [-0.5, -0.5], max = [0.5, 0.5], cells = [2, 2] }}
+position = ["X*cos({angle}) - Y*sin({angle})", "X*sin({angle}) + Y*cos({angle})"]
+[time]
+end = 1e-3
+step = 1e-3
+scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }}
+"#
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("run");
+        let source = Source { text: case.clone(), sets: Vec::new(), folder: None };
+        run(
+            &super::common::case(&case, &[""; 0]),
+            source,
+            &directory,
+            Options::default(),
+            &mut |_| {},
+            &AtomicBool::new(false),
+        )
+        .unwrap();
+        Manifest::read(&directory).unwrap().warnings
+    };
+    let given = turned(0.5, "linear-elastic");
+    let [warning] = &given[..] else { panic!("{given:?}") };
+    let stated = "a point turned by 0.500 rad at t = 0, which alone makes strains of cos θ − 1 = -0.122";
+    assert_eq!((warning.id.as_str(), warning.what.as_str()), ("large-rotation", stated));
+    assert!(turned(0.09, "linear-elastic").is_empty());
+    assert!(turned(0.5, "neo-hookean").is_empty());
+}
+
 /// A rubber bar that is stretched by half under its load, by one step of static loading, and free
 /// oscillations about it with a long step.
 const PULLED: &str = r#"

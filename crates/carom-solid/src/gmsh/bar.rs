@@ -18,9 +18,9 @@ impl MshFile {
     pub fn bar(&self, curve: &str) -> Result<Mesh, MshError> {
         let mut group = Group::<1>::of(self, curve)?;
         match group.element {
-            Element::L2 => orient::<1, 2, Line2>(&mut group, [1, 0])?,
-            Element::L3 => orient::<1, 3, Line3>(&mut group, [1, 0, 2])?,
-            _ => orient::<1, 4, Line4>(&mut group, [1, 0, 3, 2])?,
+            Element::L2 => orient::<1, 2, Line2>(&mut group)?,
+            Element::L3 => orient::<1, 3, Line3>(&mut group)?,
+            _ => orient::<1, 4, Line4>(&mut group)?,
         }
         let mut cells_at = vec![Vec::new(); group.used.len()];
         for (cell, nodes) in group.cells.chunks_exact(group.element.nodes()).enumerate() {

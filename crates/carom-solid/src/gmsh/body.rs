@@ -10,21 +10,24 @@ use super::error::{Fault, MshError};
 use super::file::MshFile;
 use super::group::Group;
 use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::{Tri3, Tri6, Tri10};
+use crate::shape::{Quad4, Quad9, Tri3, Tri6, Tri10};
 
 impl MshFile {
     /// The mesh of a physical surface. Its sides are the physical curves with edges on its
     /// boundary.
     ///
     /// # Errors
-    /// With line or byte: an unknown name, cells other than triangles of one order 1 to 3, folded
-    /// cells, coincident nodes, edges of more than two cells, nodes off the plane.
+    /// With line or byte: an unknown name, cells other than triangles of one order 1 to 3 or
+    /// quadrilaterals of order 1 or 2, folded cells, coincident nodes, edges of more than two
+    /// cells, nodes off the plane.
     pub fn body(&self, surface: &str) -> Result<Mesh, MshError> {
         let mut group = Group::<2>::of(self, surface)?;
         match group.element {
-            Element::T3 => orient::<2, 3, Tri3>(&mut group, [0, 2, 1])?,
-            Element::T6 => orient::<2, 6, Tri6>(&mut group, [0, 2, 1, 5, 4, 3])?,
-            _ => orient::<2, 10, Tri10>(&mut group, [0, 2, 1, 8, 7, 6, 5, 4, 3, 9])?,
+            Element::T3 => orient::<2, 3, Tri3>(&mut group)?,
+            Element::T6 => orient::<2, 6, Tri6>(&mut group)?,
+            Element::T10 => orient::<2, 10, Tri10>(&mut group)?,
+            Element::Q4 => orient::<2, 4, Quad4>(&mut group)?,
+            _ => orient::<2, 9, Quad9>(&mut group)?,
         }
         let boundary = boundary(&group)?;
         let sides = group.sides(&boundary)?;
@@ -34,12 +37,6 @@ impl MshFile {
     }
 }
 
-/// The edge of a cell after corner `side`: start, end, then the nodes between them.
-fn edge(cell: &[usize], degree: usize, side: usize) -> Vec<usize> {
-    let between = &cell[3 + side * (degree - 1)..3 + (side + 1) * (degree - 1)];
-    [cell[side], cell[(side + 1) % 3]].into_iter().chain(between.iter().copied()).collect()
-}
-
 /// The same edge from its end to its start.
 fn reversed(edge: &[usize]) -> Vec<usize> {
     [edge[1], edge[0]].into_iter().chain(edge[2..].iter().rev().copied()).collect()
@@ -47,11 +44,12 @@ fn reversed(edge: &[usize]) -> Vec<usize> {
 
 /// Edges of only one cell, by start and end.
 fn boundary(group: &Group<2>) -> Result<HashMap<(usize, usize), Facet>, MshError> {
-    let (n, degree) = (group.element.nodes(), group.element.degree());
-    let mut edges: HashMap<(usize, usize), Facet> = HashMap::with_capacity(group.cells.len() / n * 3);
+    let (n, sides) = (group.element.nodes(), group.element.facets());
+    let mut edges: HashMap<(usize, usize), Facet> =
+        HashMap::with_capacity(group.cells.len() / n * sides.len());
     for (cell, nodes) in group.cells.chunks_exact(n).enumerate() {
-        for side in 0..3 {
-            let facet = Facet { cell, nodes: edge(nodes, degree, side) };
+        for side in sides {
+            let facet = Facet { cell, nodes: side.iter().map(|&a| nodes[a]).collect() };
             if let Some(other) = edges.insert((facet.nodes[0], facet.nodes[1]), facet) {
                 let [start, end] = [other.nodes[0], other.nodes[1]].map(|n| group.node(n).tag);
                 let (a, b) = (group.rows[other.cell].tag, group.rows[cell].tag);

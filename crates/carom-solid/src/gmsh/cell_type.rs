@@ -57,8 +57,8 @@ impl CellType {
 
     /// The element, if bodies can consist of it.
     pub(super) fn element(self) -> Option<Element> {
-        use Element::{Hex8, Hex27, L2, L3, L4, T3, T6, T10, Tet4, Tet10, Tet20};
-        [L2, L3, L4, T3, T6, T10, Tet4, Tet10, Tet20, Hex8, Hex27]
+        use Element::{Hex8, Hex27, L2, L3, L4, Q4, Q9, T3, T6, T10, Tet4, Tet10, Tet20};
+        [L2, L3, L4, T3, T6, T10, Q4, Q9, Tet4, Tet10, Tet20, Hex8, Hex27]
             .into_iter()
             .find(|e| number(*e) == self.number)
     }

@@ -138,7 +138,7 @@ impl MshError {
             Fault::NoName { what, names, .. } => format!("the physical {what}s are: {}", names.join(", ")),
             Fault::NoCells { .. } => "the name is defined, but no cell belongs to it".into(),
             Fault::Unsupported { .. } => {
-                "bodies consist of triangles or tetrahedra of order 1, 2 or 3 or of hexahedra of order 1 or 2, bars of lines".into()
+                "bodies consist of triangles or tetrahedra of order 1, 2 or 3, or of quadrilaterals of 4 or 9 or hexahedra of 8 or 27 nodes, bars of lines".into()
             },
             Fault::MixedOrders { .. } | Fault::MixedKinds { .. } => "all cells of a body must have the same type".into(),
             Fault::NotFlat { .. } => "a body of dimension 2 lies in a plane z = constant, a bar on the x axis".into(),
@@ -152,7 +152,7 @@ impl MshError {
             }
             Fault::FacetNodes { .. } => "neighbouring cells must share every node of their facet; otherwise the body would have a gap there".into(),
             Fault::Pinched { .. } => {
-                "two facets of the boundary meet at an edge; the body is held together there by a line without thickness".into()
+                "two facets of the boundary meet at an edge; the body is connected there along a line only".into()
             }
             Fault::EdgeNodes { .. } => "neighbouring cells must share every node of their edge; otherwise the body would have a gap there".into(),
             Fault::NoTriangle { .. } => "a rigid surface consists of triangles of three nodes".into(),
@@ -171,7 +171,7 @@ impl MshError {
                 "name groups in Gmsh, for example Physical Surface(\"body\") = {1}; and mesh again"
             }
             Fault::Unsupported { .. } => {
-                "mesh with triangles or tetrahedra (in Gmsh without Recombine), order at most 3"
+                "mesh with triangles or tetrahedra of order at most 3, or with quadrilaterals or hexahedra of order at most 2 (Mesh.SecondOrderIncomplete = 0)"
             }
             Fault::MixedOrders { .. } => "set one Mesh.ElementOrder for the whole mesh",
             Fault::NotFlat { .. } => "draw the geometry in the plane z = 0",
@@ -181,7 +181,9 @@ impl MshError {
             Fault::Coincident { .. } => {
                 "merge them in Gmsh: Coherence; in the geometry, or Coherence Mesh; or, if the body is to have a slit there, give slits = true"
             }
-            Fault::MixedKinds { .. } => "mesh the whole body with one kind of cell",
+            Fault::MixedKinds { .. } => {
+                "mesh the whole body with one kind of cell; Mesh.SubdivisionAlgorithm = 1 in Gmsh leaves only quadrilaterals, 2 in space only hexahedra"
+            }
             Fault::Crowded { .. } | Fault::SameSide { .. } => {
                 "look for volumes that overlap or are in the group twice"
             }

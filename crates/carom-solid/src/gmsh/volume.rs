@@ -1,20 +1,17 @@
 //! A physical volume as a body of dimension 3, with the named surfaces on its boundary as sides.
 //!
 //! A facet of one cell belongs to the boundary; one of two cells is traversed by them in opposite
-//! directions and has the same nodes in both. Cells are certified to be valid everywhere.
+//! directions and has the same nodes in both.
 
 use std::collections::{BTreeMap, HashMap};
 
-use carom_algebra::Vector;
-
+use super::checks::orient;
 use super::error::{Fault, MshError};
 use super::file::{Block, MshFile};
 use super::group::Group;
 use super::order;
 use crate::mesh::{Element, Facet, Mesh};
-use crate::reference::{gradient, interpolate};
-use crate::shape::{Domain, Hex8, Hex27, Shape, Tet4, Tet10, Tet20};
-use crate::validity::Validity;
+use crate::shape::{Hex8, Hex27, Tet4, Tet10, Tet20};
 
 impl MshFile {
     /// The mesh of a physical volume. Its sides are the physical surfaces with facets on its
@@ -29,11 +26,11 @@ impl MshFile {
         let element = group.element;
         group.cells.chunks_exact_mut(element.nodes()).for_each(|cell| order::read(element, cell));
         match element {
-            Element::Tet4 => orient::<4, Tet4>(&mut group)?,
-            Element::Tet10 => orient::<10, Tet10>(&mut group)?,
-            Element::Tet20 => orient::<20, Tet20>(&mut group)?,
-            Element::Hex8 => orient::<8, Hex8>(&mut group)?,
-            _ => orient::<27, Hex27>(&mut group)?,
+            Element::Tet4 => orient::<3, 4, Tet4>(&mut group)?,
+            Element::Tet10 => orient::<3, 10, Tet10>(&mut group)?,
+            Element::Tet20 => orient::<3, 20, Tet20>(&mut group)?,
+            Element::Hex8 => orient::<3, 8, Hex8>(&mut group)?,
+            _ => orient::<3, 27, Hex27>(&mut group)?,
         }
         let boundary = boundary(&group)?;
         if !self.slits {
@@ -43,42 +40,6 @@ impl MshFile {
         let (nodes, cells) = (std::mem::take(&mut group.positions), std::mem::take(&mut group.cells));
         Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: group.finish() })
     }
-}
-
-/// Reverses mirrored cells; a folded one is an error.
-fn orient<const N: usize, S: Shape<3, N>>(group: &mut Group<3>) -> Result<(), MshError> {
-    let validity = Validity::<3, N>::of::<S>();
-    let centre = S::gradients(&S::Domain::CENTRE);
-    // Two reference coordinates exchanged.
-    let mirror: [usize; N] = std::array::from_fn(|a| {
-        let [x, y, z] = S::NODES[a].0;
-        S::NODES.iter().position(|node| (*node - Vector([y, x, z])).norm() < 1e-9).unwrap_or(a)
-    });
-    let mut turned = 0;
-    for (cell, row) in group.cells.as_chunks_mut::<N>().0.iter_mut().zip(&group.rows) {
-        let place = |n: usize| Vector(group.positions[n]);
-        if gradient(&cell.map(place), &centre).det() < 0.0 {
-            turned += 1;
-            *cell = mirror.map(|a| cell[a]);
-        }
-        let x = cell.map(place);
-        if validity.margin(&x).is_err() {
-            // Named where it is worst among the nodes and the centre.
-            let slopes = S::NODES.iter().chain([&S::Domain::CENTRE]);
-            let jacobian = |xi: &Vector<3>| gradient(&x, &S::gradients(xi)).det();
-            let worst = slopes.min_by(|a, b| jacobian(a).total_cmp(&jacobian(b)));
-            let worst = worst.copied().unwrap_or(S::Domain::CENTRE);
-            let at = interpolate(&S::values(&worst), &x).0.to_vec();
-            let jacobian = jacobian(&worst);
-            let fault = Fault::Folded { name: group.name.to_owned(), cell: row.tag, jacobian, at };
-            return Err(group.file.at(row, fault));
-        }
-    }
-    if turned > 0 {
-        let all = group.rows.len();
-        group.repairs.push(format!("{turned} of {all} cells were mirrored; their nodes were reordered"));
-    }
-    Ok(())
 }
 
 /// Corners of a facet in ascending order: a key common to its cells.

@@ -2,6 +2,7 @@
 
 use carom_algebra::{Mat, Vector, wide};
 
+use super::rotation::angle;
 use super::{Place, Solid};
 use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
@@ -108,6 +109,16 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
             (0..points.count).map(move |l| self.law.volume_ratio_at(&get(&h, l)))
         });
         ratios.fold(f64::INFINITY, f64::min)
+    }
+
+    fn cell_rotation(&self, cell: usize, y: &[f64]) -> f64 {
+        let u = self.displacements(cell, y);
+        let Place { points, inverse, .. } = &self.places[cell];
+        let angles = self.points[points.clone()].iter().flat_map(|points| {
+            let h = points.gradient(&u, inverse);
+            (0..points.count).map(move |l| angle(&get(&h, l)))
+        });
+        angles.fold(0.0, f64::max)
     }
 
     fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted> {

@@ -193,6 +193,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> Body for 
         self.solid.cell_min_det_f(cell, y)
     }
 
+    fn cell_rotation(&self, cell: usize, y: &[f64]) -> f64 {
+        self.solid.cell_rotation(cell, y)
+    }
+
     fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted> {
         self.solid.cell_margin(cell, y)
     }

@@ -11,8 +11,8 @@ pub(super) enum Place {
     Corner(usize),
     /// Between two corners, counted from the smaller one.
     Edge([usize; 2], usize),
-    Inside(usize, [usize; 2]),
-    /// Between corners of a tetrahedron, in ascending order, with their weights.
+    Inside(usize, [usize; 3]),
+    /// Between corners, in ascending order, with their weights.
     Among(Vec<(usize, usize)>),
 }
 

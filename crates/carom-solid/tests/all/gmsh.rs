@@ -149,13 +149,37 @@ fn parameters_are_read_past() {
     }
 }
 
+/// Quadrangles and triangles in bodies of their own, and a curved quarter of a ring.
 #[test]
-fn quadrangles_concern_their_body_alone() {
+fn quadrangles() {
     let file = fixture("quadrangles.msh");
-    assert!(file.body("cylinder").is_ok());
-    let error = file.body("prism").unwrap_err();
-    assert!(error.to_string().contains("is a quadrangle of 4 nodes"), "{error}");
-    assert!(error.to_string().starts_with("line "), "{error}");
+    let [disc, prism] = ["cylinder", "prism"].map(|name| file.body(name).unwrap());
+    assert_eq!((disc.element, prism.element, prism.cell_count()), (Element::T3, Element::Q4, 11));
+    assert!((area(&prism) - 0.5).abs() < 1e-15, "{}", area(&prism));
+    let ends = |side| prism.side_nodes(side).map(|all| [all[0], all[all.len() - 1]]);
+    let corners = ["bottom", "right", "top"].map(|side| ends(side).unwrap());
+    assert!(corners[0][1] == corners[1][0] && corners[1][1] == corners[2][0]);
+
+    let exact = 0.75 * PI;
+    // A quarter of a circle has four edges.
+    let chord = 6.0 * (PI / 8.0).sin();
+    for (name, element, expected, tolerance) in [
+        ("sector_order1.msh", Element::Q4, chord, 1e-12),
+        ("sector_order2.msh", Element::Q9, exact, 3e-4),
+        ("sector_order2_22_binary.msh", Element::Q9, exact, 3e-4),
+    ] {
+        let mesh = fixture(name).body("sector").unwrap();
+        assert_eq!((mesh.element, mesh.cell_count()), (element, 12), "{name}");
+        assert!((area(&mesh) - expected).abs() < tolerance * expected, "{name}: {}", area(&mesh));
+        let names: Vec<_> = mesh.sides.keys().map(String::as_str).collect();
+        assert_eq!(names, ["inner", "outer", "plane_x", "plane_y"]);
+        assert_eq!(mesh.sides.values().map(Vec::len).sum::<usize>(), mesh.skin().len());
+        for (side, radius) in [("inner", 1.0), ("outer", 2.0)] {
+            for n in mesh.side_nodes(side).unwrap() {
+                assert!((mesh.nodes[n][0].hypot(mesh.nodes[n][1]) - radius).abs() < 1e-9);
+            }
+        }
+    }
 }
 
 #[test]

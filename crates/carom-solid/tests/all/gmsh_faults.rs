@@ -129,7 +129,10 @@ fn faults_say_where_and_what() {
         fault("3 2 2 8 1 1 3 4", "3 9 2 8 1 1 3 4 1 3 4"),
         (Line(21), Fault::MixedOrders { .. })
     ));
-    assert!(matches!(fault("3 2 2 8 1 1 3 4", "3 3 2 8 1 1 2 3 4"), (Line(21), Fault::Unsupported { .. })));
+    assert!(matches!(fault("3 2 2 8 1 1 3 4", "3 3 2 8 1 1 2 3 4"), (Line(21), Fault::MixedKinds { .. })));
+    let incomplete = "2\n1 1 2 7 1 2 1\n2 16 2 8 1 1 2 3 4 1 2 3 4\n";
+    let rows = "3\n1 1 2 7 1 2 1\n2 2 2 8 1 1 2 3\n3 2 2 8 1 1 3 4\n";
+    assert!(matches!(fault(rows, incomplete), (Line(20), Fault::Unsupported { .. })));
     assert!(matches!(fault("4 0 1 0", "4 0 1 0.5"), (Line(14), Fault::NotFlat { node: 4, axis: 'z', .. })));
     assert!(matches!(fault("4 0 1 0", "4 0.5 0.5 0"), (Line(21), Fault::Folded { cell: 3, .. })));
     assert!(matches!(fault("4 0 1 0", "4 2 0.5 0"), (Line(21), Fault::Overlap { a: 2, b: 3, .. })));
@@ -166,8 +169,20 @@ fn planes_and_clockwise_cells_are_put_right() {
 /// mirrored by hand.
 #[test]
 fn clockwise_cells_of_every_order() {
-    for element in [Element::T3, Element::T6, Element::T10] {
-        let disc = generate::half_disc(element, 0.5, [0.0, 1.0], 0.2).unwrap();
+    for element in [Element::T3, Element::T6, Element::T10, Element::Q4, Element::Q9] {
+        let disc = match element {
+            Element::Q4 | Element::Q9 => {
+                let mut mesh = generate::rectangle(element, [0.5, 0.0], [1.5, 1.0], [3, 2]).unwrap();
+                // A quarter of a ring: x is the radius, y a quarter of the angle.
+                mesh.nodes.iter_mut().for_each(|x| {
+                    let (sin, cos) = (x[1] * std::f64::consts::FRAC_PI_2).sin_cos();
+                    x.copy_from_slice(&[x[0] * cos, x[0] * sin]);
+                });
+                mesh.sides = [("arc".to_owned(), mesh.sides["right"].clone())].into();
+                mesh
+            }
+            _ => generate::half_disc(element, 0.5, [0.0, 1.0], 0.2).unwrap(),
+        };
         let mut mirrored = disc.clone();
         mirrored.nodes.iter_mut().for_each(|x| x[0] = -x[0]);
         let read =
@@ -190,9 +205,13 @@ fn clockwise_cells_of_every_order() {
 /// An edge node moved across the cell folds it; one moved too far along its edge does as well.
 #[test]
 fn folded_cells_are_found() {
-    for (element, pulled) in
-        [(Element::T6, [0.9, 0.9]), (Element::T10, [0.9, 0.2]), (Element::T10, [0.7, 0.0])]
-    {
+    for (element, pulled) in [
+        (Element::T6, [0.9, 0.9]),
+        (Element::T10, [0.9, 0.2]),
+        (Element::T10, [0.7, 0.0]),
+        (Element::Q9, [0.5, 0.6]),
+        (Element::Q9, [0.8, 0.0]),
+    ] {
         let mut mesh = generate::rectangle(element, [0.0, 0.0], [1.0, 1.0], [1, 1]).unwrap();
         let n = mesh.sides["bottom"][0].nodes[2];
         mesh.nodes[n].copy_from_slice(&pulled);
@@ -201,6 +220,20 @@ fn folded_cells_are_found() {
         assert!(matches!(error.fault, Fault::Folded { .. }), "{element:?} {error}");
         assert!(matches!(error.place, Place::Line(_)));
     }
+}
+
+/// A quadrilateral of degree 1 folds at a corner where it is not convex.
+#[test]
+fn folded_quadrilaterals_are_found() {
+    let mut mesh = generate::rectangle(Element::Q4, [0.0, 0.0], [1.0, 1.0], [1, 1]).unwrap();
+    let n = (0..4).find(|&n| mesh.nodes[n] == [1.0, 1.0]).unwrap();
+    let read = |mesh: &Mesh| gmsh::read(gmsh::write_msh41(&[("plate", mesh)]).as_bytes())?.body("plate");
+    mesh.nodes[n].copy_from_slice(&[0.51, 0.51]);
+    assert!(read(&mesh).is_ok());
+    mesh.nodes[n].copy_from_slice(&[0.49, 0.49]);
+    let error = read(&mesh).unwrap_err();
+    let Fault::Folded { jacobian, at, .. } = &error.fault else { panic!("{error}") };
+    assert!(*jacobian < 0.0 && at[..] == [0.49, 0.49], "{error}");
 }
 
 /// Neighbours of order 2 with different nodes on their common edge leave a gap.
@@ -221,6 +254,11 @@ fn edges_share_their_nodes() {
 /// Writing and reading back is bitwise exact.
 #[test]
 fn round_trip() {
+    for element in [Element::Q4, Element::Q9] {
+        let prism = generate::rectangle(element, [0.0, -1e-3 / 3.0], [1.0, 0.0], [7, 3]).unwrap();
+        let file = gmsh::read(gmsh::write_msh41(&[("prism", &prism)]).as_bytes()).unwrap();
+        assert_eq!(file.body("prism").unwrap(), prism);
+    }
     for element in [Element::T3, Element::T6, Element::T10] {
         let mut disc = generate::disc(element, 1.0 / 3.0, [0.1, 0.7], 0.11).unwrap();
         disc.nodes[0][0] += 1e-17;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use carom_solid::generate::{Frame, ball, cylinder};
+use carom_solid::generate::{Frame, ball, cylinder, extrusion};
 use carom_solid::gmsh::{self, Fault, MshError};
 use carom_solid::{Element, Facet, Mesh};
 
@@ -62,6 +62,47 @@ fn an_eighth_of_a_ball() {
             assert!((radius - 1.0).abs() < 1e-9, "{name}: {radius}");
         }
         assert!(mesh.scaled_jacobian().unwrap() > 0.1);
+    }
+}
+
+/// Hexahedra of Gmsh above a quarter of a ring: closed, with the volume of the ring, and the cells
+/// of our extrusion of the quadrangles below them.
+#[test]
+fn hexahedra_and_their_base() {
+    let exact = 0.375 * std::f64::consts::PI;
+    for (name, element, tolerance) in [
+        ("sector_order1", Element::Hex8, 0.03),
+        ("sector_order2", Element::Hex27, 3e-4),
+        ("sector_order2_22_binary", Element::Hex27, 3e-4),
+    ] {
+        let path = format!("{}/tests/msh/{name}.msh", env!("CARGO_MANIFEST_DIR"));
+        let file = gmsh::read(&std::fs::read(path).unwrap()).unwrap();
+        let (mesh, plane) = (file.volume("wedge").unwrap(), file.body("sector").unwrap());
+        assert_eq!((mesh.element, mesh.cell_count()), (element, 24));
+        assert!(mesh.repairs.iter().all(|repair| repair.contains("mirrored")), "{:?}", mesh.repairs);
+        let skin = mesh.skin();
+        let (found, open) = volume(&mesh, &skin);
+        assert!(open < 1e-13 && (found / exact - 1.0).abs() < tolerance, "{name}: {found}");
+        let made = extrusion(&plane, 0.5, 2).unwrap();
+        assert_eq!(made.element, element);
+        assert_eq!(made.nodes.len(), mesh.nodes.len());
+        let places = |mesh: &Mesh| {
+            let rounded = |&n: &usize| [0, 1, 2].map(|i| (mesh.nodes[n][i] * 1e7).round() as i64);
+            let cell = |c: usize| {
+                let mut nodes: Vec<_> = mesh.cell(c).iter().map(rounded).collect();
+                nodes.sort_unstable();
+                nodes
+            };
+            let mut cells: Vec<_> = (0..mesh.cell_count()).map(cell).collect();
+            cells.sort();
+            cells
+        };
+        assert_eq!(places(&made), places(&mesh), "{name}");
+        let lengths = |mesh: &Mesh, names: [&str; 6]| names.map(|name| mesh.sides[name].len());
+        assert_eq!(
+            lengths(&mesh, ["inner", "outer", "plane_x", "plane_y", "sector", "lid"]),
+            lengths(&made, ["inner", "outer", "plane_x", "plane_y", "bottom", "top"])
+        );
     }
 }
 

@@ -283,7 +283,7 @@ fn a_design_builds_its_arms_and_ranks_them() {
     let verdict = ranking.verdict.unwrap();
     assert_eq!(study.manifest.arms[verdict.arm].role.method.as_deref(), Some("CH"));
     assert!(out.join("ranking.csv").is_file() && out.join("reference.csv").is_file());
-    // Neither a finer mesh nor an ensemble: the ranking may be accidental.
+    // Neither a finer mesh nor an ensemble: the ranking may be due to chance.
     assert_eq!(verdict.confidence.word(), "low");
     // If the checks cannot be made, the study is still valid; later they are made.
     let (checked, repeated) = (out.join("checks.json"), out.join("checks"));

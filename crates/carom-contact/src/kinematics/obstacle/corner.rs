@@ -8,7 +8,7 @@ pub(super) const CORNER_COSINE: f64 = 0.87;
 pub(in super::super) enum AtCorner {
     /// It keeps its piece.
     Stays,
-    /// It goes on to another one.
+    /// It moves to another one.
     Goes(usize),
     /// It loses its contact.
     Leaves,

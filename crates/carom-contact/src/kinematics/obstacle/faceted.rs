@@ -1,4 +1,4 @@
-//! A rigid surface of triangles: faces, edges and vertices, of which the nearest one to a point
+//! A rigid triangulated surface: faces, edges and vertices, of which the nearest one to a point
 //! gives its distance.
 //!
 //! ```text
@@ -153,7 +153,7 @@ impl Faceted {
     pub(in super::super) fn at_corner(&self, face: usize, at: Point) -> AtCorner {
         let surface = &*self.0;
         for edge in 0..3 {
-            // In a groove the deeper wall holds it.
+            // In a groove the deeper wall constrains it.
             if let Some(next) = surface.triangles.across(face, edge)
                 && !surface.is_convex(face, edge)
                 && surface.height(next, at) < surface.height(face, at)

@@ -9,7 +9,7 @@
 //!          g = |s| − r               ∇g = s/|s|             ∇²g = (1 − n nᵀ − a aᵀ)/|s|
 //! ```
 //!
-//! Polylines and surfaces of triangles consist of such pieces. So ∇²g = h (1 − n nᵀ − a aᵀ) with
+//! Polylines and triangulated surfaces consist of such pieces. So ∇²g = h (1 − n nᵀ − a aᵀ) with
 //! one number h for every piece, and a direction a, which may be zero.
 
 mod corner;
@@ -64,7 +64,7 @@ impl Obstacle {
         Self::Circle { center: padded(center), axis: [0.0; 3], radius, inside }
     }
 
-    /// A cylinder without ends, around a line through `point` along `axis` (any length > 0), with
+    /// An infinite cylinder, around a line through `point` along `axis` (any length > 0), with
     /// bodies outside or `inside` it.
     pub fn cylinder(point: &[f64], axis: &[f64], radius: f64, inside: bool) -> Self {
         Self::Circle { center: padded(point), axis: unit(axis), radius, inside }

@@ -10,7 +10,7 @@
 //! corner is its vertex: outside, distance and gradient are continuous across the ends of its cone,
 //! while inside the cone is empty and a point belongs to one of the segments.
 //!
-//! An open chain has no ends: its first and last segment go on for ever.
+//! The first and last segment of an open chain continue to infinity.
 
 use super::corner::{AtCorner, CORNER_COSINE};
 use super::near::{Near, Point, distance, round};
@@ -228,7 +228,7 @@ impl Polyline {
             };
             let past = self.beyond(piece, at) == Some(corner);
             if side < 0.0 {
-                // In a concave corner the deeper wall holds it.
+                // In a concave corner the deeper wall constrains it.
                 if self.gap(next, at) < self.gap(piece, at) && self.faces(next, at) {
                     return AtCorner::Goes(next);
                 }

@@ -30,7 +30,8 @@ const SETTLED: f64 = 1e-9;
 /// Sine of the angle between edges below which they run along each other.
 const ALONG: f64 = 1e-3;
 
-/// A line at one of its points.
+/// A line at one of its points, relative to a place near it: differences are exact there, however
+/// far from the origin.
 #[derive(Clone, Copy, Debug)]
 struct LinePoint {
     position: Vector<3>,
@@ -39,10 +40,10 @@ struct LinePoint {
 }
 
 impl LinePoint {
-    fn new(nodes: &[usize], shape: &LineShape, y: &[f64]) -> Self {
+    fn new(nodes: &[usize], shape: &LineShape, from: Vector<3>, y: &[f64]) -> Self {
         let mut at = Self { position: Vector::ZERO, tangent: Vector::ZERO, second: Vector::ZERO };
         for (k, &node) in nodes.iter().enumerate() {
-            let x = place(y, node);
+            let x = place(y, node) - from;
             at.position += x * shape.values[k];
             at.tangent += x * shape.first[k];
             at.second += x * shape.second[k];
@@ -56,6 +57,8 @@ impl LinePoint {
 pub(super) struct EdgeGap {
     counts: [usize; 2],
     shapes: [LineShape; 2],
+    /// The place that the lines are relative to.
+    from: Vector<3>,
     lines: [LinePoint; 2],
     /// ξ on A and η on B.
     pub(super) xi: [f64; 2],
@@ -74,10 +77,10 @@ impl EdgeGap {
         y: &[f64],
         outwards: Vector<3>,
     ) -> Option<Self> {
-        let (mut xi, mut last) = (start, f64::INFINITY);
+        let (mut xi, mut last, from) = (start, f64::INFINITY, place(y, nodes[0][0]));
         for _ in 0..STEPS {
             let shapes = [0, 1].map(|i| line_shape(nodes[i].len(), xi[i]));
-            let lines = [0, 1].map(|i| LinePoint::new(nodes[i], &shapes[i], y));
+            let lines = [0, 1].map(|i| LinePoint::new(nodes[i], &shapes[i], from, y));
             let r = lines[0].position - lines[1].position;
             let [a, b] = lines.map(|line| line.tangent);
             let slope = Mat([
@@ -98,7 +101,7 @@ impl EdgeGap {
                 let sign = if across.dot(&outwards) < 0.0 { -1.0 } else { 1.0 };
                 let normal = across * (sign / size);
                 let counts = nodes.map(<[usize]>::len);
-                return Some(Self { counts, shapes, lines, xi, normal, distance: r.dot(&normal) });
+                return Some(Self { counts, shapes, from, lines, xi, normal, distance: r.dot(&normal) });
             }
             last = length;
             if length > 1.0 {
@@ -120,7 +123,7 @@ impl EdgeGap {
 
     /// The closest point on A or on B.
     pub(super) fn point(&self, of: usize) -> Vector<3> {
-        self.lines[of].position
+        self.from + self.lines[of].position
     }
 
     /// The tangent of A or B, of length one.

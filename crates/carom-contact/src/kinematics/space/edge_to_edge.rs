@@ -3,9 +3,9 @@
 //!
 //! Two edges are in contact where the normal along the product of their tangents points out of the
 //! body of the one and into that of the other, between the normals of the facets that meet at
-//! either edge: elsewhere a body rests on a facet, and nodes hold it. A pair arises once they cross
-//! in a step; it follows the contact point along edges that continue each other, and leaves at a
-//! corner, or where the normal leaves the facets' normals.
+//! either edge: elsewhere a body rests on a facet, and nodes constrain it. A pair is created once
+//! they cross in a step; it follows the contact point along edges that continue each other, and is
+//! removed at a corner, or where the normal leaves the facets' normals.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -25,21 +25,20 @@ use crate::rows::Rows;
 /// Sine of the angle between edges below which they form no pair.
 const ALONG: f64 = 0.1;
 /// Sine of the angle by which the normal of a new pair lies between the facets' normals, and by
-/// which that of a known one may lie outside them: an edge that lies on a facet is held at its end
-/// by the edge of the facet.
+/// which that of a known one may lie outside them: an edge that lies on a facet is constrained at
+/// its end by the edge of the facet.
 const BETWEEN: f64 = 0.02;
 const OUTSIDE: f64 = -0.4;
 /// Depth over the length of the shorter edge that two edges may have before the step in which they
 /// meet, if they approach by as much in it, and after it.
 const BEHIND: f64 = 0.05;
 const DEEP: f64 = 0.25;
-/// |ξ| beyond 1 at which a pair goes on to the next edge, up to which an edge is extrapolated if
-/// there is none to go on to, and by which a new pair is before a corner.
+/// |ξ| beyond 1 at which a pair is handed over to the next edge, up to which an edge is extrapolated if there is none, and by which a new pair is before a corner.
 const PAST: f64 = 0.02;
 const REACH: f64 = 0.2;
 const CORNER: f64 = 0.02;
 /// Distance over the length of an edge of contact points of edges that continue each other, and the
-/// cosine of the angle between their normals, below and above which one pair holds both.
+/// cosine of the angle between their normals, below and above which one pair constrains both.
 const TOGETHER: f64 = 0.1;
 const PARALLEL: f64 = 0.985;
 /// Share of its size by which the box of an edge's path is larger than it.
@@ -66,7 +65,7 @@ struct Tools {
 
 impl EdgeToEdge {
     /// Of both sides, the secondary one first, at reference positions; `others`: the nodes of sides
-    /// whose contacts hold the edges that they share with these.
+    /// whose contacts constrain the edges that they share with these.
     pub fn new(sides: [Boundary; 2], others: &[BTreeSet<usize>; 2], reference: &[f64]) -> Self {
         let [one, other] = sides;
         let sides = [Edges::new(one, &others[0], reference), Edges::new(other, &others[1], reference)];
@@ -161,7 +160,7 @@ impl EdgeToEdge {
         (start.distance >= -approach.max(NOISE * length).min(BEHIND * length)).then_some(gap)
     }
 
-    /// Where a pair past an end goes on, if an edge continues it there.
+    /// Where a pair past an end is handed over, if an edge continues there.
     fn next(&self, edges: [usize; 2], xi: [f64; 2], y: &[f64]) -> Option<([usize; 2], EdgeGap)> {
         let (mut to, mut start) = (edges, xi);
         for i in (0..2).filter(|&i| xi[i].abs() > 1.0 + PAST) {
@@ -176,8 +175,9 @@ impl EdgeToEdge {
         (self.is_on(to, gap.xi, PAST, PAST) && self.cross(to, &gap, OUTSIDE, y)).then_some((to, gap))
     }
 
-    /// Pairs go on to the next edges, or leave: at the start of a step from where they are, not
-    /// from where they would be without contact. Those that remain, at the positions `now`.
+    /// Pairs are handed over to the next edges, or removed: at the start of a step from where they
+    /// are, not from where they would be without contact. Those that remain, at the positions
+    /// `now`.
     fn follow(
         &self,
         [before, now]: [&[f64]; 2],

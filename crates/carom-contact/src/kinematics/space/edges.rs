@@ -27,7 +27,7 @@ pub(super) struct Edges {
 
 impl Edges {
     /// Of the side of a boundary at its reference positions; without those between nodes of other
-    /// sides, which hold them.
+    /// sides, which constrain them.
     pub(super) fn new(boundary: Boundary, others: &BTreeSet<usize>, reference: &[f64]) -> Self {
         let shape = boundary.shape();
         let nodes_of = |&(facet, edge): &(usize, usize)| {

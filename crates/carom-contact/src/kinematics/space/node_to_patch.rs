@@ -6,7 +6,7 @@
 //! ```text
 //! blunt edge       to the facet on which the nearest point lies; where that is the edge itself, the
 //!                  pair keeps its facet
-//! dent             a node that would be handed back within the step has a pair with either facet, and
+//! concave corner   a node that would be handed back within the step has a pair with either facet, and
 //!                  one below a crease also with the facet of which it is deepest
 //! sharp edge, end  nothing is faced past it; an active pair keeps its facet to the end of the step and
 //!                  leaves at the start of the next one
@@ -68,7 +68,7 @@ struct Tools {
 enum Next {
     Stay,
     HandOver(usize, [f64; 2]),
-    Dent(usize, [f64; 2]),
+    Concave(usize, [f64; 2]),
     Leave,
 }
 
@@ -144,11 +144,11 @@ impl NodeToPatch {
                     Next::Stay
                 }
             }
-            Some((facet, _, xi)) if came_from == Some(facet) => Next::Dent(facet, xi),
+            Some((facet, _, xi)) if came_from == Some(facet) => Next::Concave(facet, xi),
             Some((facet, _, xi)) => Next::HandOver(facet, xi),
             None => {
                 if let Some((facet, xi)) = self.in_crease(pair.facet, from, y) {
-                    return Next::Dent(facet, xi);
+                    return Next::Concave(facet, xi);
                 }
                 let bridged = patch.furthest(xi).1 <= REACH && !self.faces_nothing(pair.facet, xi, y);
                 if bridged { Next::Stay } else { Next::Leave }
@@ -239,14 +239,16 @@ impl Kinematics for NodeToPatch {
         let starts = std::mem::replace(fresh, false);
         // Facets of the pairs of every node, kept up to date: no node has two pairs with one facet.
         let mut held: Vec<(usize, usize)> = pairs.iter().map(|pair| (pair.node, pair.facet)).collect();
-        let mut dents = Vec::new();
+        let mut concave = Vec::new();
         pairs.retain_mut(|pair| {
             let node = self.secondary[pair.node];
             for _ in 0..=self.primary.facets() {
                 let came_from = left.get(&pair.node).copied();
                 match self.next_facet(pair, came_from, now) {
                     Next::Stay => return true,
-                    Next::HandOver(facet, _) | Next::Dent(facet, _) if held.contains(&(pair.node, facet)) => {
+                    Next::HandOver(facet, _) | Next::Concave(facet, _)
+                        if held.contains(&(pair.node, facet)) =>
+                    {
                         let beyond = self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1;
                         // In the joint the node has both pairs. Beyond the reach of this facet that
                         // of the other one is responsible: an extrapolated facet is not the
@@ -262,10 +264,10 @@ impl Kinematics for NodeToPatch {
                         held.retain(|&known| known != (pair.node, pair.facet));
                         return false;
                     }
-                    Next::Dent(facet, [xi, eta]) => {
+                    Next::Concave(facet, [xi, eta]) => {
                         changed |= pair.active;
                         held.push((pair.node, facet));
-                        dents.push(Pair { eta, ..Pair::open(pair.node, facet, xi) });
+                        concave.push(Pair { eta, ..Pair::open(pair.node, facet, xi) });
                         return true;
                     }
                     Next::HandOver(facet, [xi, eta]) => {
@@ -293,8 +295,8 @@ impl Kinematics for NodeToPatch {
             }
             true
         });
-        if !dents.is_empty() {
-            pairs.append(&mut dents);
+        if !concave.is_empty() {
+            pairs.append(&mut concave);
             pairs.sort_by_key(|pair| pair.node);
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);

@@ -104,7 +104,7 @@ pub(crate) fn explain(
         Stopped::NoStep { time, dt, rejected, .. } => (rejected.kind(), *time, *dt),
         Stopped::EnergyGuard { time, .. } => (advice::GUARD, *time, simulation.dt()),
         Stopped::Audit { time, .. } => (advice::AUDIT, *time, simulation.dt()),
-        Stopped::Interrupted { time } => ("interrupted", *time, simulation.dt()),
+        Stopped::Interrupted { time, .. } => ("interrupted", *time, simulation.dt()),
     };
     let finite = |x: f64| x.is_finite().then_some(x);
     let iterations = trace.iterations().map(|i| StopIteration {

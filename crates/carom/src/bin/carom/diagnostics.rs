@@ -13,7 +13,7 @@ pub(crate) fn print(failure: &Failure, json: bool) -> Exit {
     let text = match failure {
         Failure::Case(error) => text(error, coloured),
         Failure::Argument { help, .. } => plain(&failure.to_string(), &[("try", help)], coloured),
-        Failure::Stopped { help, directory, page, .. } => {
+        Failure::Stopped { tried, help, directory, page, .. } => {
             let place = directory.display();
             let note = if *page {
                 format!(
@@ -22,7 +22,7 @@ pub(crate) fn print(failure: &Failure, json: bool) -> Exit {
             } else {
                 format!("the last valid state is saved in {place}")
             };
-            plain(&failure.to_string(), &[("note", &note), ("try", help)], coloured)
+            plain(&failure.to_string(), &[("note", &note), ("note", tried), ("try", help)], coloured)
         }
         Failure::System { .. } => plain(&failure.to_string(), &[], coloured),
     };

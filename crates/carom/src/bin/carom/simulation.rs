@@ -194,9 +194,11 @@ pub(crate) fn seen(progress: &recording::Progress) -> Progress {
 fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failure> {
     let page = page(&done, options)?;
     if let recording::End::Stopped(reason) = &done.end {
+        let (tried, help) = help_after(&done.directory)?;
         return Err(Failure::Stopped {
             reason: reason.to_string(),
-            help: help_after(&done.directory)?,
+            tried,
+            help,
             page: page.is_some(),
             directory: done.directory,
         });
@@ -252,10 +254,13 @@ fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, 
     }
 }
 
-/// What to try after a stop: what was tried with success, or else the first advice.
-fn help_after(directory: &Path) -> Result<String, Failure> {
+/// What was tried after a stop without success, and what to try: what was tried with success, or
+/// else the first advice.
+fn help_after(directory: &Path) -> Result<(String, String), Failure> {
     let manifest = carom_record::Manifest::read(directory)?;
-    let Some(stop) = carom_record::Stop::read(directory, &manifest)? else { return Ok(String::new()) };
+    let Some(stop) = carom_record::Stop::read(directory, &manifest)? else {
+        return Ok((String::new(), String::new()));
+    };
     let option = |advice: &carom_record::Advice| {
         advice.sets.iter().map(|set| format!("--set '{set}'")).collect::<Vec<_>>().join(" ")
     };
@@ -266,27 +271,21 @@ fn help_after(directory: &Path) -> Result<String, Failure> {
         .filter(passed)
         .map(|advice| format!("{} gets past t = {} (tried)", option(advice), short(stop.time)))
         .collect();
+    let mut failed = String::new();
     if lines.is_empty() {
-        let tried = stop.advice.iter().filter(|advice| advice.trial.is_some()).count();
-        if tried > 0 {
-            lines.push(match tried {
-                1 => format!(
-                    "1 change was tried, and it does not get five steps past t = {}",
-                    short(stop.time)
-                ),
-                _ => format!(
-                    "{tried} changes were tried, and none gets five steps past t = {}",
-                    short(stop.time)
-                ),
-            });
-        }
+        let time = short(stop.time);
+        failed = match stop.advice.iter().filter(|advice| advice.trial.is_some()).count() {
+            0 => String::new(),
+            1 => format!("the only change tried does not get five steps past t = {time}"),
+            tried => format!("none of the {tried} changes tried gets five steps past t = {time}"),
+        };
         let untried = stop.advice.iter().filter(|advice| advice.trial.is_none());
         lines.extend(untried.take(3).map(|advice| match option(advice) {
             sets if sets.is_empty() => advice.what.clone(),
             sets => format!("{sets}: {}", advice.what),
         }));
     }
-    Ok(lines.join("\n"))
+    Ok((failed, lines.join("\n")))
 }
 
 /// Smallest and largest value of every probe's column.

@@ -161,7 +161,7 @@ fn table(case: &Case, facts: &Facts) -> String {
         if let Some(quality) = facts.and_then(|b| b.scaled_jacobian).filter(|_| case.dimension == 3) {
             lines.push(format!("           smallest scaled Jacobian {quality:.2}"));
         }
-        if let MeshSpec::File { file, repairs, .. } = &body.mesh {
+        if let MeshSpec::File { file, repairs, .. } = body.mesh.source() {
             lines.push(format!("           from {}", file.display()));
             lines.extend(repairs.iter().map(|repair| format!("           repaired: {repair}")));
         }

@@ -32,7 +32,8 @@ enum Format {
     Csv,
     /// Columns with name, unit, description and values
     Json,
-    /// Columns with unit and description as metadata; in released programs and the Python package
+    /// Columns with unit and description as metadata; needs a build with `--features parquet`, or
+    /// `python -m carom export`
     Parquet,
 }
 
@@ -94,8 +95,9 @@ fn write_parquet(run: &Run, path: Option<&Path>) -> Result<(), Failure> {
 fn write_parquet(_: &Run, _: Option<&Path>) -> Result<(), Failure> {
     Err(Failure::Argument {
         what: "this program was built without Parquet".to_owned(),
-        help: "python -m carom export DIR --format parquet --out FILE (pip install carom[parquet]), or a \
-               build with `--features parquet`"
+        help: "cargo install --path crates/carom --features parquet, in a clone of Carom; or there \
+               pip install \"./crates/carom-python[parquet]\", then python -m carom export DIR --format parquet \
+               --out FILE"
             .to_owned(),
     })
 }

@@ -20,7 +20,7 @@ Examples:
   carom report runs/impact --format png,pdf --scale 4
 
 Text of PNG and PDF is drawn with the first of Helvetica, Arial, Liberation Sans, DejaVu Sans
-and Noto Sans that is installed; signs that it lacks are taken from other installed fonts.")]
+and Noto Sans that is installed; characters that it lacks are taken from other installed fonts.")]
 pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,
@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     /// the files; of a study, without the figures of its arms
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FORMAT")]
     format: Vec<Format>,
-    /// Pixels of a PNG per pixel of the figure, 0.1 to 10; 3 are 288 per inch
+    /// Pixels of a PNG per pixel of the figure, 0.1 to 10; 3 gives 288 dpi
     #[arg(long, value_name = "X", default_value = "3", value_parser = scale)]
     scale: f32,
     /// Draw text with this TrueType or OpenType file alone

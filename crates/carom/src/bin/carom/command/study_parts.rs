@@ -23,8 +23,8 @@ Then compute every run, in any order and on any machine that shares the director
   seq N | parallel carom study arm DIR          with GNU parallel, for N runs
 and write the tables and the page with:
   carom study collect DIR
-A design of matched cost needs times: with --settle they are measured on this machine, and the other
-runs are refused on machines of another type.")]
+A design of matched cost needs times: with --settle they are measured on this machine, and runs on
+machines of another type are then refused.")]
     Plan {
         /// The study file, or - for standard input
         study: PathBuf,

@@ -21,7 +21,7 @@ use crate::{console, directory, out};
 /// The cases as they were when the program was built.
 static CASES: Dir = include_dir!("$CAROM_CASES");
 
-/// Run every case that has expectations and report which are met
+/// Run all cases and studies with expectations and report which of these are met
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -33,8 +33,8 @@ Examples:
 Exit codes: 0 all met · 1 an expectation was missed · 2 a case is invalid · 3 a run stopped unexpectedly")]
 #[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
-    /// Cases, studies, or folders of them [default: cases/, or without it the fast cases that are
-    /// built into the program]
+    /// Cases, studies, or folders of them [default: cases/, or, if there is none, the fast built-in
+    /// cases]
     paths: Vec<PathBuf>,
     /// Skip expectations marked slow, and cases that have no others
     #[arg(long)]

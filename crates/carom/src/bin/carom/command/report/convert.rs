@@ -13,9 +13,9 @@ use resvg::{tiny_skia, usvg};
 pub(super) enum Format {
     /// The figures as the page has them
     Svg,
-    /// Pixels; in released programs, or built with `--features figures`
+    /// Raster image; needs a build with `--features figures`
     Png,
-    /// A page of the size of the figure; as PNG
+    /// Page of the size of the figure; needs the same build as png
     Pdf,
 }
 
@@ -121,7 +121,7 @@ impl Converter {
     pub(super) fn new(_: f32, _: Option<&Path>) -> Result<Self, Failure> {
         Err(Failure::Argument {
             what: "this program was built without PNG and PDF, whose libraries take minutes to compile".to_owned(),
-            help: "cargo install carom --features figures (or --path crates/carom); or redraw a figure with its \
+            help: "cargo install --path crates/carom --features figures, in a clone of Carom; or redraw a figure with its \
                    script, python3 figures/NAME.py (matplotlib), or print report.html to PDF in a browser"
                 .to_owned(),
         })

@@ -1,0 +1,100 @@
+//! Friction in a state, between steps: the slips of the pairs, which a solved step adds to, the
+//! tractions q along H(y_s), and what pairs with friction did. About the normal, tangents of
+//! springs turn with the facet at the end of the step, by its least-squares rotation in it.
+
+use carom_contact::{Hold, Pair, Row, Rows, Tangential, length};
+
+use crate::equations::Equations;
+use crate::evaluation::Evaluation;
+use crate::model::{Contact, Model};
+use crate::state::State;
+
+/// Calls `visit(contact, pair, q, H)` for every tangent of the closed pairs of a state that have
+/// friction, with the traction along it and H at the positions of the state.
+pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usize, f64, Row)) {
+    let mut rows = Rows::new(model.dimension);
+    let rubs = |(_, contact): &(usize, &Contact)| contact.friction.is_some();
+    for (k, contact) in model.contacts.iter().enumerate().filter(rubs) {
+        for (p, pair) in state.pairs[k].iter().enumerate().filter(|(_, pair)| pair.active) {
+            let mut at = *pair;
+            rows.clear();
+            if contact.kinematics.measure(&mut at, &state.y, &mut rows).is_ok()
+                && contact.kinematics.slip(&at, &state.y, &[], &mut rows).is_ok()
+            {
+                let along = rows.iter().skip(1).zip(pair.tangential.traction);
+                along.for_each(|(row, traction)| visit(k, p, traction, row));
+            }
+        }
+    }
+}
+
+/// Adds the slips of a solved step to those of the closed pairs; open pairs have none.
+pub(crate) fn take_slips(equations: &Equations, solved: &Evaluation, state: &mut State) {
+    let mut rows = Rows::new(equations.model.dimension);
+    for (k, contact) in equations.model.contacts.iter().enumerate() {
+        if contact.friction.is_none() {
+            continue;
+        }
+        for (p, (pair, gap)) in state.pairs[k].iter_mut().zip(solved.rows[k].iter()).enumerate() {
+            if pair.active {
+                // On a spring, S is no more than what follows the touch.
+                let touches = equations.closes(k, pair) && equations.stick_spring(k, pair).is_none();
+                for (i, slip) in solved.slip_rows((k, p)).enumerate() {
+                    pair.tangential.slip[i] += if touches {
+                        equations.since_touch(k, pair, gap, &mut rows) * slip.along(&solved.at.increment)
+                    } else {
+                        slip.gap
+                    };
+                }
+                pair.tangential.before = pair.tangential.traction;
+                if equations.model.dimension == 3 && equations.stick_spring(k, pair).is_some() {
+                    turn_with_facet(contact, pair, [&equations.state.y, &solved.y]);
+                }
+            } else {
+                pair.tangential = Tangential::default();
+            }
+        }
+    }
+}
+
+/// Turns the tangents of a pair about the normal with its facet, which a rigid obstacle does not
+/// have.
+fn turn_with_facet(contact: &Contact, pair: &mut Pair, [before, now]: [&[f64]; 2]) {
+    let nodes = contact.kinematics.facet_nodes(pair);
+    if nodes.is_empty() {
+        return;
+    }
+    let [first, second] = pair.tangential.tangents;
+    let share = (nodes.len() as f64).recip();
+    // Components along the tangents of arms from the mean, before and after.
+    let [(from_x, from_y), (to_x, to_y)] = [before, now].map(|y| {
+        let along = |tangent: [f64; 3]| -> Vec<f64> {
+            let at = |node: &usize| (0..3).map(|i| tangent[i] * y[3 * node + i]).sum::<f64>();
+            let mean = share * nodes.iter().map(at).sum::<f64>();
+            nodes.iter().map(|node| at(node) - mean).collect()
+        };
+        (along(first), along(second))
+    });
+    let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (across, along) =
+        (sum(&from_x, &to_y) - sum(&from_y, &to_x), sum(&from_x, &to_x) + sum(&from_y, &to_y));
+    let (sin, cos) = across.atan2(along).sin_cos();
+    pair.tangential.tangents = [
+        std::array::from_fn(|i| cos * first[i] + sin * second[i]),
+        std::array::from_fn(|i| cos * second[i] - sin * first[i]),
+    ];
+}
+
+/// Adds a step of this size to what pairs with friction did.
+pub(crate) fn book_states(model: &Model, state: &mut State, dt: f64) {
+    let rubbed = &mut state.ledger.rubbed;
+    let rubs = model.contacts.iter().zip(&state.pairs).filter(|(contact, _)| contact.friction.is_some());
+    // Edges have none.
+    let nodes =
+        rubs.flat_map(|(contact, pairs)| pairs.iter().filter(|p| p.node < contact.kinematics.nodes()));
+    for pair in nodes.filter(|pair| pair.active) {
+        rubbed.closed += dt;
+        rubbed.stuck += if pair.tangential.hold == Hold::Stick { dt } else { 0.0 };
+        rubbed.farthest = rubbed.farthest.max(length(pair.tangential.slip));
+    }
+}

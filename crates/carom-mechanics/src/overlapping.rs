@@ -1,0 +1,17 @@
+//! What may overlap without a contact.
+
+use serde::{Deserialize, Serialize};
+
+/// What overlaps without a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Overlap {
+    /// Two bodies, or a body and itself: their indices.
+    Bodies(usize, usize),
+    /// A body and the rigid obstacle of one of its contacts, with nodes beside the contact's side.
+    Obstacle {
+        /// Index of the body.
+        body: usize,
+        /// Index of the contact.
+        contact: usize,
+    },
+}
