@@ -49,7 +49,7 @@ const THREE: &str = r#"
 name = "damped"
 [[arm]]
 name = "guarded"
-set = { "time.scheme" = { kind = "newmark", beta = 0.25, gamma = 0.5 }, "contact.wall.persistency" = "none", "time.energy_guard" = 1e-10 }
+set = { "time.scheme" = { kind = "newmark", beta = 0.25, gamma = 0.5 }, "contact.wall.persistency" = "none", "time.energy_guard" = 1e-13 }
 [grid]
 "time.step" = [0.005]
 "time.scheme" = [{ kind = "hu" }]

@@ -1,0 +1,121 @@
+//! Bodies that meet although no contact is declared where they do: seen before the run and after it.
+
+use super::common::DISCS;
+use super::warnings::{found, recorded};
+
+/// Bodies of a case without any contact, too: what is expected, and what happened.
+#[test]
+fn bodies_that_overlap_without_a_contact() {
+    assert_eq!(recorded(DISCS, &["contact=[]", "time.end=0.1"]), ["undeclared-contact"; 2]);
+}
+
+/// Three discs of radius ½: the one on the right flies at that on the left; the third is above.
+const THREE: &str = r#"
+dimension = 2
+material = [{ name = "rubber", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
+body = [
+    { name = "left", material = "rubber", element = "T6", mesh = { shape = "disc", radius = 0.5, center = [0.0, 0.0], size = 0.25 } },
+    { name = "right", material = "rubber", element = "T6", mesh = { shape = "disc", radius = 0.5, center = [2.0, 0.0], size = 0.25 }, velocity = [-1.0, 0.0] },
+    { name = "above", material = "rubber", element = "T6", mesh = { shape = "disc", radius = 0.5, center = [0.0, 5.0], size = 0.25 } },
+]
+[[contact]]
+name = "pair"
+secondary = "left.arc"
+primary = "above.arc"
+[time]
+end = 4.0
+step = 0.01
+scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
+"#;
+
+#[test]
+fn bodies_that_fly_at_each_other_without_a_contact() {
+    let id = "undeclared-contact".to_owned();
+    let meets = |sets: &[&str]| found(THREE, sets).into_iter().find(|(found, _)| *found == id);
+    // They are 1 apart. Extents along 16 directions are those of the discs.
+    let what = meets(&[]).unwrap().1;
+    assert_eq!(what, "bodies \"left\" and \"right\": as they move at the start, they meet at t = 1.00");
+    assert!(meets(&["time.end=0.9"]).is_none());
+    assert!(meets(&["body.right.velocity=[-1.0, 0.9]"]).is_none());
+    assert!(meets(&["body.left.velocity=[-1.0, 0.0]"]).is_none());
+    assert!(meets(&["contact.pair.primary=right.arc"]).is_none());
+    // Falling from 5: the gap of 4 takes √(8/g).
+    let falls = ["contact=[]", "body.above.gravity=[0.0, -8.0]", "body.right.velocity=[0.0, 0.0]"];
+    assert!(
+        meets(&falls)
+            .unwrap()
+            .1
+            .contains("bodies \"left\" and \"above\": as they move at the start, they meet at t = 1.00")
+    );
+    // What a declared contact does to a body is not known: with the third disc, or with a wall.
+    let thrown = ["body.above.mesh.center=[1.0, 5.0]", "body.above.velocity=[0.0, -5.0]"];
+    let middle = "contact.pair.secondary=right.arc";
+    assert!(meets(&[&thrown[..], &[middle, "body.left.mesh.center=[-3.0, 0.0]"]].concat()).is_none());
+    let wall = "contact.pair.primary={ plane = { point = [1.4, 0.0], normal = [1.0, 0.0] } }";
+    assert!(meets(&[middle, wall]).is_none());
+    assert!(meets(&[middle, &wall.replace("1.4", "-4.0")]).is_some());
+}
+
+/// Two blocks of which the right one flies at the left one; the contact names their far sides.
+const FAR_SIDES: &str = r#"
+dimension = 2
+material = [{ name = "pu", law = "neo-hookean", density = 1000.0, young = 1e6, poisson = 0.3 }]
+body = [
+    { name = "a", material = "pu", element = "Q4", mesh = { shape = "rectangle", min = [0.0, 0.0], max = [0.1, 0.1], cells = [4, 4] } },
+    { name = "b", material = "pu", element = "Q4", mesh = { shape = "rectangle", min = [0.11, 0.0], max = [0.2, 0.1], cells = [4, 4] }, velocity = [-1.0, 0.0] },
+]
+[[contact]]
+name = "c"
+secondary = "a.left"
+primary = "b.right"
+[time]
+end = 0.05
+step = 1e-3
+scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
+"#;
+
+fn findings(sets: &[&str]) -> Vec<String> {
+    found(FAR_SIDES, sets).into_iter().map(|(_, what)| what).collect()
+}
+
+#[test]
+fn bodies_that_meet_where_their_contact_does_not_act() {
+    // They are 0.01 apart; such a node is seen a tenth of a facet, 2.5e-3, deep at t = 0.0125.
+    let what = findings(&[]).swap_remove(0);
+    let rest = what.strip_prefix("bodies \"a\" and \"b\": as they move at the start, they meet at t = ");
+    let (time, elsewhere) = rest.unwrap().split_once(", elsewhere than where ").unwrap();
+    assert!((0.0125..0.0135).contains(&time.parse().unwrap()), "{what}");
+    assert_eq!(elsewhere, "\"c\" acts between a.left and b.right");
+    // Before the run, and after it.
+    assert_eq!(recorded(FAR_SIDES, &[]), ["undeclared-contact"; 2]);
+    // The sides that meet, in either order, or all of them.
+    let right = ["contact.c.secondary=a.right", "contact.c.primary=b.left"];
+    let swapped = ["contact.c.secondary=b.left", "contact.c.primary=a.right"];
+    for sets in [right, swapped, ["contact.c.secondary=a.skin", "contact.c.primary=b.skin"]] {
+        assert!(recorded(FAR_SIDES, &sets).is_empty(), "{sets:?}");
+    }
+    // Faster, the far sides meet each other's bodies, and the run stops there.
+    assert_eq!(recorded(FAR_SIDES, &["body.b.velocity=[-3.0, 0.0]"]), ["undeclared-contact"; 2]);
+}
+
+#[test]
+fn a_body_that_falls_into_an_obstacle_beside_the_side_of_its_contact() {
+    let floor = |side: &str| {
+        let secondary = format!("contact.c.secondary=b.{side}");
+        let sets = [
+            secondary.as_str(),
+            "contact.c.primary={ plane = { point = [0.0, -0.01], normal = [0.0, 1.0] } }",
+            "body.b.velocity=[0.0, -1.0]",
+            "time.end=0.04",
+        ];
+        (findings(&sets), recorded(FAR_SIDES, &sets))
+    };
+    let (before, after) = floor("top");
+    let [what] = &before[..] else { panic!("{before:?}") };
+    let start = "body \"b\": as it moves at the start, it meets the obstacle of contact \"c\" at t = 0.0";
+    assert!(what.starts_with(start) && what.ends_with("\"c\" acts on b.top"), "{what}");
+    assert_eq!(after, ["undeclared-contact"; 2]);
+    assert_eq!(floor("bottom"), (Vec::new(), Vec::new()));
+    // A side that reaches the floor with its corners.
+    assert_eq!(floor("left").0, Vec::<String>::new());
+}
