@@ -51,6 +51,11 @@ impl Pattern {
         self.rows.is_empty()
     }
 
+    /// Whether nothing but the diagonal is stored.
+    pub fn is_diagonal(&self) -> bool {
+        self.len() == self.size()
+    }
+
     /// Rows stored in a column, ascending; the first is the diagonal.
     pub fn column(&self, j: usize) -> &[usize] {
         &self.rows[self.starts[j]..self.starts[j + 1]]

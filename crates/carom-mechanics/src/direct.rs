@@ -29,6 +29,8 @@ pub(crate) struct Direct {
     pattern: Pattern,
     stiffness: Vec<f64>,
     mass: Vec<f64>,
+    /// The pattern of a lumped mass, which fills nothing when it is factored; else that of all.
+    diagonal: Option<Pattern>,
     /// Empty without follower loads.
     follower: Vec<f64>,
     /// Diagonals of both, cached.
@@ -76,11 +78,16 @@ impl Direct {
         });
         let follower = vec![0.0; if model.loads.follow_sides() { pattern.len() } else { 0 }];
         let diagonals = [diagonal_of(&pattern, &mass), vec![0.0; model.free.len()]];
+        let n = pattern.size();
+        let is_diagonal =
+            (0..n).all(|j| mass[pattern.starts[j] + 1..pattern.starts[j + 1]].iter().all(|m| *m == 0.0));
+        let diagonal = is_diagonal.then(|| Pattern::from_entries(n, (0..n).map(|i| (i, i))));
         let stiffness = vec![0.0; pattern.len()];
         Self {
             pattern,
             stiffness,
             mass,
+            diagonal,
             follower,
             diagonals,
             slots,
@@ -175,7 +182,11 @@ impl Preconditioner for Direct {
     }
 
     fn form_mass(&mut self, model: &Model, rows: &Constraints) -> Result<(), Rejected> {
-        self.factor.factor_mass(model, &self.pattern, &self.mass, rows)
+        let (pattern, mass) = match &self.diagonal {
+            Some(diagonal) => (diagonal, &self.diagonals[0]),
+            None => (&self.pattern, &self.mass),
+        };
+        self.factor.factor_mass(model, pattern, mass, rows)
     }
 
     fn boundary(&self, model: &Model, y: &[f64], rows: &Constraints, last: Option<&Point>) -> Vec<usize> {

@@ -28,9 +28,10 @@ pub(crate) struct TangentFactor {
     tangent: Option<Condensed>,
     mass: Option<Condensed>,
     of_mass: bool,
-    /// Interface nodes and structures, most recent first: tangent and mass usually share them, and
-    /// a rejected step returns to the previous one.
-    latest: VecDeque<(Vec<usize>, Arc<Elimination>)>,
+    /// Interface nodes and structures, most recent first, of matrices of the bodies' pattern and of
+    /// diagonal ones: tangent and mass usually share them, and a rejected step returns to the
+    /// previous one.
+    latest: [VecDeque<(Vec<usize>, Arc<Elimination>)>; 2],
     saddle: Saddle,
     /// The row of each constraint in the dense system; none for springs.
     places: Vec<Option<usize>>,
@@ -80,17 +81,18 @@ impl TangentFactor {
         pattern: &Pattern,
         boundary: &[usize],
     ) -> Result<Arc<Elimination>, LinearError> {
-        if let Some(known) = self.latest.iter().position(|(nodes, _)| nodes == boundary) {
-            self.latest.swap(0, known);
-            return Ok(self.latest[0].1.clone());
+        let latest = &mut self.latest[usize::from(pattern.is_diagonal())];
+        if let Some(known) = latest.iter().position(|(nodes, _)| nodes == boundary) {
+            latest.swap(0, known);
+            return Ok(latest[0].1.clone());
         }
         let groups: Vec<usize> = model.free.iter().map(|dof| dof / model.dimension).collect();
         let d = model.dimension;
         let dofs = boundary.iter().flat_map(|node| (0..d).map(move |i| node * d + i));
         let last: Vec<usize> = dofs.filter_map(|dof| model.unknown(dof)).collect();
         let elimination = Arc::new(Elimination::new(pattern, &groups, &last)?);
-        self.latest.truncate(REMEMBERED - 1);
-        self.latest.push_front((boundary.to_vec(), elimination.clone()));
+        latest.truncate(REMEMBERED - 1);
+        latest.push_front((boundary.to_vec(), elimination.clone()));
         Ok(elimination)
     }
 
@@ -104,8 +106,8 @@ impl TangentFactor {
         self.point.as_ref().is_some_and(|point| spans(&point.boundary, rows))
     }
 
-    /// Factors M with these rows, over the dofs with mass: the others have a unit diagonal and are
-    /// excluded from the rows.
+    /// Factors M, given in the slots of its pattern, with these rows, over the dofs with mass: the
+    /// others have a unit diagonal and are excluded from the rows.
     ///
     /// # Errors
     /// If M is not positive definite, or the rows are linearly dependent.
