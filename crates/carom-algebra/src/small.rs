@@ -1,9 +1,11 @@
 //! Vectors and matrices of the body's space: `D` is 1, 2 or 3 and known at compile time.
 //!
-//! Global nodal arrays are flat `Vec<f64>`, viewed per node as `&[[f64; D]]` (`slice::as_chunks`).
+//! Entries of matrices are numbers, or four in lanes (`real.rs`). Global nodal arrays are flat `Vec<f64>`, viewed per node as `&[[f64; D]]` (`slice::as_chunks`).
 //! A [`Vector`] is the copy of one node with arithmetic.
 
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
+
+use crate::real::Real;
 
 /// A vector of `D` components.
 ///
@@ -21,14 +23,14 @@ pub struct Vector<const D: usize>(pub [f64; D]);
 /// assert_eq!(Mat([[2.0, 1.0], [4.0, 5.0]]).det(), 6.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mat<const D: usize>(pub [[f64; D]; D]);
+pub struct Mat<const D: usize, T = f64>(pub [[T; D]; D]);
 
 /// Σ aᵢ b(i).
 #[inline(always)]
-fn product<const D: usize>(a: &[f64; D], b: impl Fn(usize) -> f64) -> f64 {
-    let mut sum = 0.0;
+fn product<const D: usize, T: Real>(a: &[T; D], b: impl Fn(usize) -> T) -> T {
+    let mut sum = T::ZERO;
     for i in 0..D {
-        sum += a[i] * b(i);
+        sum = sum + a[i] * b(i);
     }
     sum
 }
@@ -76,13 +78,13 @@ impl Vector<2> {
     }
 }
 
-impl<const D: usize> Mat<D> {
+impl<const D: usize, T: Real> Mat<D, T> {
     /// The zero matrix.
-    pub const ZERO: Self = Self([[0.0; D]; D]);
+    pub const ZERO: Self = Self([[T::ZERO; D]; D]);
 
     /// From its components.
     #[inline(always)]
-    fn of(component: impl Fn(usize, usize) -> f64) -> Self {
+    fn of(component: impl Fn(usize, usize) -> T) -> Self {
         let mut mat = Self::ZERO;
         for i in 0..D {
             for j in 0..D {
@@ -95,7 +97,7 @@ impl<const D: usize> Mat<D> {
     /// The identity.
     #[inline(always)]
     pub fn identity() -> Self {
-        Self::of(|i, j| f64::from(u8::from(i == j)))
+        Self::of(|i, j| T::of(f64::from(u8::from(i == j))))
     }
 
     /// Transpose.
@@ -104,24 +106,22 @@ impl<const D: usize> Mat<D> {
         Self::of(|i, j| self.0[j][i])
     }
 
-    /// Matrix times vector.
-    #[inline(always)]
-    pub fn apply(&self, v: &Vector<D>) -> Vector<D> {
-        Vector::of(|i| product(&self.0[i], |j| v.0[j]))
-    }
-
     /// Sum of the diagonal.
     #[inline(always)]
-    pub fn trace(&self) -> f64 {
-        (0..D).map(|i| self.0[i][i]).sum()
+    pub fn trace(&self) -> T {
+        let mut sum = self.0[0][0];
+        for i in 1..D {
+            sum = sum + self.0[i][i];
+        }
+        sum
     }
 
     /// Double contraction `A : B`.
     #[inline(always)]
-    pub fn double_dot(&self, other: &Self) -> f64 {
-        let mut sum = 0.0;
+    pub fn double_dot(&self, other: &Self) -> T {
+        let mut sum = T::ZERO;
         for i in 0..D {
-            sum += product(&self.0[i], |j| other.0[i][j]);
+            sum = sum + product(&self.0[i], |j| other.0[i][j]);
         }
         sum
     }
@@ -132,7 +132,7 @@ impl<const D: usize> Mat<D> {
         let a = &self.0;
         let mut c = Self::ZERO;
         match D {
-            1 => c.0[0][0] = 1.0,
+            1 => c.0[0][0] = T::of(1.0),
             2 => {
                 c.0[0][0] = a[1][1];
                 c.0[0][1] = -a[1][0];
@@ -153,9 +153,17 @@ impl<const D: usize> Mat<D> {
 
     /// Determinant.
     #[inline(always)]
-    pub fn det(&self) -> f64 {
+    pub fn det(&self) -> T {
         let c = self.cofactor();
         product(&self.0[0], |j| c.0[0][j])
+    }
+}
+
+impl<const D: usize> Mat<D> {
+    /// Matrix times vector.
+    #[inline(always)]
+    pub fn apply(&self, v: &Vector<D>) -> Vector<D> {
+        Vector::of(|i| product(&self.0[i], |j| v.0[j]))
     }
 
     /// Inverse; its entries are not finite if the determinant is zero.
@@ -226,7 +234,7 @@ impl<const D: usize> SubAssign for Vector<D> {
     }
 }
 
-impl<const D: usize> Add for Mat<D> {
+impl<const D: usize, T: Real> Add for Mat<D, T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -234,7 +242,7 @@ impl<const D: usize> Add for Mat<D> {
     }
 }
 
-impl<const D: usize> Sub for Mat<D> {
+impl<const D: usize, T: Real> Sub for Mat<D, T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -242,15 +250,15 @@ impl<const D: usize> Sub for Mat<D> {
     }
 }
 
-impl<const D: usize> Mul<f64> for Mat<D> {
+impl<const D: usize, T: Real> Mul<T> for Mat<D, T> {
     type Output = Self;
     #[inline(always)]
-    fn mul(self, factor: f64) -> Self {
+    fn mul(self, factor: T) -> Self {
         Self::of(|i, j| self.0[i][j] * factor)
     }
 }
 
-impl<const D: usize> Mul for Mat<D> {
+impl<const D: usize, T: Real> Mul for Mat<D, T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
@@ -258,7 +266,7 @@ impl<const D: usize> Mul for Mat<D> {
     }
 }
 
-impl<const D: usize> AddAssign for Mat<D> {
+impl<const D: usize, T: Real> AddAssign for Mat<D, T> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;

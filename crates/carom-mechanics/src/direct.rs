@@ -162,7 +162,9 @@ impl Preconditioner for Direct {
                     }
                 }
             };
-            cells::for_each(&model.threads, mesh.cell_count(), n + n * n, compute, add)
+            let (count, numbers) = (mesh.cell_count(), n + n * n);
+            let compute = cells::one_by_one(numbers, compute);
+            cells::for_each(&model.threads, count, numbers, compute, add)
                 .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
         }
         self.diagonals[1] = diagonal_of(&self.pattern, &self.stiffness);

@@ -124,7 +124,9 @@ impl Iterative {
                     }
                 }
             };
-            cells::for_each(&model.threads, mesh.cell_count(), n + n * n, compute, add)
+            let (count, numbers) = (mesh.cell_count(), n + n * n);
+            let compute = cells::one_by_one(numbers, compute);
+            cells::for_each(&model.threads, count, numbers, compute, add)
                 .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
         }
         Ok(())

@@ -67,7 +67,8 @@ fn margin(model: &Model, part: &BodyInstance, y: &[f64]) -> Result<f64, Rejected
         Ok(0.0)
     };
     let add = |_: usize, margin: &[f64]| least = least.min(margin[0]);
-    cells::for_each(&model.threads, part.body.mesh().cell_count(), 1, compute, add)
+    let (count, compute) = (part.body.mesh().cell_count(), cells::one_by_one(1, compute));
+    cells::for_each(&model.threads, count, 1, compute, add)
         .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
     Ok(least)
 }

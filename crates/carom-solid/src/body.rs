@@ -36,6 +36,18 @@ pub trait Body: Send + Sync {
     /// Returns the strain energy of a cell and overwrites `force` (`N·D`, node-major) with ∂U/∂y.
     fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted>;
 
+    /// [`Self::cell_force`] of consecutive cells from `first` on: overwrites `energies`, one per cell,
+    /// and `forces`, one after the other.
+    fn cell_forces(
+        &self,
+        first: usize,
+        y: &[f64],
+        forces: &mut [f64],
+        energies: &mut [f64],
+    ) -> Result<(), Inverted> {
+        one_by_one(self, first, y, forces, energies)
+    }
+
     /// As [`Self::cell_force`], and overwrites `tangent` (`(N·D)²`, row-major, symmetric, both
     /// triangles) with ∂²U/∂y².
     fn cell_tangent(
@@ -125,4 +137,19 @@ pub trait Body: Send + Sync {
 
     /// Density ρ₀.
     fn density(&self) -> f64;
+}
+
+/// [`Body::cell_forces`] by [`Body::cell_force`].
+pub(crate) fn one_by_one<B: Body + ?Sized>(
+    body: &B,
+    first: usize,
+    y: &[f64],
+    forces: &mut [f64],
+    energies: &mut [f64],
+) -> Result<(), Inverted> {
+    let dofs = body.mesh().element.dofs();
+    for (k, (force, energy)) in forces.chunks_exact_mut(dofs).zip(energies).enumerate() {
+        *energy = body.cell_force(first + k, y, force)?;
+    }
+    Ok(())
 }

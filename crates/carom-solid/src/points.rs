@@ -3,7 +3,7 @@
 //! Each lane is a point; lanes are added at the end, (0 + 1) + (2 + 3). The order of every sum is
 //! fixed, so results are bitwise equal on every machine.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::{Four, Mat, Vector};
 
 /// Number of lanes: doubles in a register of 256 bits.
 pub const LANES: usize = 4;
@@ -131,6 +131,30 @@ pub(crate) fn get<const D: usize>(mats: &Mats<D>, point: usize) -> Mat<D> {
         }
     }
     mat
+}
+
+/// A matrix of lanes.
+#[inline(always)]
+pub(crate) fn four<const D: usize>(mats: &Mats<D>) -> Mat<D, Four> {
+    let mut mat = Mat::ZERO;
+    for i in 0..D {
+        for j in 0..D {
+            mat.0[i][j] = Four(mats[i][j]);
+        }
+    }
+    mat
+}
+
+/// The lanes of a matrix.
+#[inline(always)]
+pub(crate) fn lanes<const D: usize>(mat: &Mat<D, Four>) -> Mats<D> {
+    let mut mats = [[[0.0; LANES]; D]; D];
+    for i in 0..D {
+        for j in 0..D {
+            mats[i][j] = mat.0[i][j].0;
+        }
+    }
+    mats
 }
 
 /// Sum over the points.

@@ -9,7 +9,8 @@
 //! each, ∇₀φ = (∂X/∂ξ)⁻ᵀ ∂φ/∂ξ, which saves memory bandwidth. Four points are computed at once
 //! (`points.rs`).
 //!
-//! Degrees of the rules for shape functions of degree k: straight cells 2k for force and mass;
+//! Degrees of the rules for shape functions of degree k: one point for the force of a cell with
+//! constant strain (`constant.rs`); other straight cells 2k for force and mass;
 //! cells with curved edges 2k (k ≤ 2) or 4(k − 1) for force, 4k − 2 for mass; at least m (k − 1)
 //! for a law whose energy is a polynomial of degree m in F.
 
@@ -98,7 +99,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     ) -> Result<Self, SolidError> {
         check::<D, N>(&mesh, density, thickness)?;
         let k = S::DEGREE;
-        let rule = |degree: usize| S::Domain::rule(degree.max(law.energy_degree() * (k - 1)));
+        let rule = |degree: usize| match Self::HAS_CONSTANT_STRAIN {
+            true => S::Domain::rule(0),
+            false => S::Domain::rule(degree.max(law.energy_degree() * (k - 1))),
+        };
         let force_rules = [rule(2 * k), rule((2 * k).max(4 * (k - 1)))];
         // The Jacobian of a curved quadrilateral or hexahedron has the degree Dk − 1 along each
         // axis, that of a simplex D(k − 1).
@@ -234,6 +238,7 @@ fn check<const D: usize, const N: usize>(
 }
 
 mod body;
+mod constant;
 mod integrals;
 mod mean;
 mod rotation;

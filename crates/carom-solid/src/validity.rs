@@ -31,6 +31,8 @@ const TOLERANCE: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct Validity<const D: usize, const N: usize> {
     tables: Bernstein<D, N>,
+    /// Whether control points are the nodes, and the determinant is that of the edges from the first.
+    is_affine: bool,
     /// Λ.
     amplification: f64,
     /// Largest change of a difference if every node moves by at most 1.
@@ -56,7 +58,12 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         let amplification = (0..N).map(|c| sum(&|a| control[a][c])).fold(0.0, f64::max);
         let change = |&(start, end): &(usize, usize)| sum(&|a| control[a][end] - control[a][start]);
         let sensitivity = tables.differences.iter().flatten().map(change).fold(0.0, f64::max);
-        Self { tables, amplification, sensitivity }
+        let is_node = |a: usize, c: usize| control[a][c] == f64::from(u8::from(a == c));
+        let is_edge = |i: usize| tables.differences[i] == [(0, i + 1)];
+        let is_affine = matches!(&tables.terms[..], [only] if only.weight == 1.0)
+            && (0..N * N).all(|k| is_node(k / N, k % N))
+            && (0..D).all(is_edge);
+        Self { tables, is_affine, amplification, sensitivity }
     }
 
     /// Distance by which every component of every node's position may change, relative to a common
@@ -70,6 +77,18 @@ impl<const D: usize, const N: usize> Validity<D, N> {
     /// A place where the determinant is not certified positive.
     #[inline(always)]
     pub fn margin(&self, nodes: &[Vector<D>; N]) -> Result<f64, Loss<D>> {
+        if self.is_affine {
+            let (mut edges, mut largest) = (Mat::<D>::ZERO, 0.0_f64);
+            for i in 0..D {
+                edges.0[i] = (nodes[i + 1] - nodes[0]).0;
+                edges.0[i].iter().for_each(|x| largest = largest.max(x.abs()));
+            }
+            let (det, error) = (edges.det(), self.round_off(largest));
+            if det > error {
+                let sizes = edges.0.map(|edge| edge.iter().map(|x| x.abs()).sum());
+                return Ok(self.distance(det - error, sizes));
+            }
+        }
         let (differences, error) = self.differences_of(nodes, nodes);
         // A comparison with a NaN certifies nothing.
         let (mut least, mut certified) = (f64::INFINITY, true);
@@ -92,22 +111,37 @@ impl<const D: usize, const N: usize> Validity<D, N> {
                     *sum = sum.max(d.0.iter().map(|x| x.abs()).sum());
                 }
             }
-            let (free, sum) = (least - error, sums.iter().sum::<f64>());
-            let change = match D {
-                1 => free,
-                2 => 2.0 * free / (sum + (sum * sum + 8.0 * free).sqrt()),
-                _ => {
-                    // With x = free/(D! Eᴰ), less than the exact (1 + x)^(1/D) − 1.
-                    let ratio = free / (factorial(D) * sum.powi(D as i32));
-                    sum * ratio / (D as f64 * (1.0 + ratio))
-                }
-            };
-            return Ok(0.999 * change / self.sensitivity);
+            return Ok(self.distance(least - error, sums));
         }
         match self.first_loss(vec![self.coefficients([&differences; 2], 0)], error) {
             None => Ok(0.0),
             Some(loss) => Err(Loss { theta: 1.0, ..loss }),
         }
+    }
+
+    /// Distance by which positions may change until a determinant falls by `free`, for differences
+    /// whose components have these largest sums.
+    #[inline(always)]
+    fn distance(&self, free: f64, sums: [f64; D]) -> f64 {
+        let sum = sums.iter().sum::<f64>();
+        let change = match D {
+            1 => free,
+            2 => 2.0 * free / (sum + (sum * sum + 8.0 * free).sqrt()),
+            _ => {
+                // With x = free/(D! Eᴰ), less than the exact (1 + x)^(1/D) − 1.
+                let ratio = free / (factorial(D) * sum.powi(D as i32));
+                sum * ratio / (D as f64 * (1.0 + ratio))
+            }
+        };
+        0.999 * change / self.sensitivity
+    }
+
+    /// Bound of the round-off of a determinant's coefficient for positions of magnitude `largest`
+    /// relative to the first node.
+    #[inline(always)]
+    fn round_off(&self, largest: f64) -> f64 {
+        let unit = 0.5 * f64::EPSILON * factorial(D) * (2.0 * self.amplification * largest).powi(D as i32);
+        unit * (D * (N + 4) + self.tables.terms.len()) as f64 + f64::MIN_POSITIVE
     }
 
     /// The first loss of validity while the nodes move on straight lines; `None` certifies that
@@ -149,8 +183,7 @@ impl<const D: usize, const N: usize> Validity<D, N> {
                 }
             }
         }
-        let unit = 0.5 * f64::EPSILON * factorial(D) * (2.0 * self.amplification * largest).powi(D as i32);
-        (differences, unit * (D * (N + 4) + self.tables.terms.len()) as f64 + f64::MIN_POSITIVE)
+        (differences, self.round_off(largest))
     }
 
     /// Bernstein coefficients in ξ of the coefficient `t` in θ: a mean over the choices of `t`

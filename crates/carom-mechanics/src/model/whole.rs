@@ -95,7 +95,9 @@ impl Model {
     /// # Errors
     /// The body's name and the inverted cell.
     pub fn internal_force(&self, y: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
-        self.add_cells(force, |part, cell, local| part.body.cell_force(cell, part.of(y), local))
+        self.add_cells(force, |part, first, local, energies| {
+            part.body.cell_forces(first, part.of(y), local, energies)
+        })
     }
 
     /// Discrete gradient of the strain energy between positions, overwriting `force`. Returns
@@ -109,8 +111,11 @@ impl Model {
         now: &[f64],
         force: &mut [f64],
     ) -> Result<f64, (String, Inverted)> {
-        self.add_cells(force, |part, cell, local| {
-            part.body.cell_between(cell, part.of(before), part.of(now), local)
+        self.add_cells(force, |part, first, local, energies| {
+            let between = |cell: usize, local: &mut [f64]| {
+                part.body.cell_between(cell, part.of(before), part.of(now), local)
+            };
+            cells::one_by_one(part.body.mesh().element.dofs(), between)(first, local, energies)
         })
     }
 
@@ -126,18 +131,20 @@ impl Model {
         change: &[f64],
         product: &mut [f64],
     ) -> Result<(), (String, Inverted)> {
-        let of_cell = |part: &BodyInstance, cell: usize, local: &mut [f64]| {
-            part.body
-                .cell_product(cell, before.map(|y| part.of(y)), part.of(y), part.of(change), local)
-                .map(|()| 0.0)
+        let products = |part: &BodyInstance, first: usize, local: &mut [f64], none: &mut [f64]| {
+            let of_cell = |cell: usize, local: &mut [f64]| {
+                let before = before.map(|y| part.of(y));
+                part.body.cell_product(cell, before, part.of(y), part.of(change), local).map(|()| 0.0)
+            };
+            cells::one_by_one(part.body.mesh().element.dofs(), of_cell)(first, local, none)
         };
-        self.add_cells(product, of_cell).map(|_| ())
+        self.add_cells(product, products).map(|_| ())
     }
 
     fn add_cells(
         &self,
         force: &mut [f64],
-        of_cell: impl Fn(&BodyInstance, usize, &mut [f64]) -> Result<f64, Inverted> + Sync,
+        of_cells: impl Fn(&BodyInstance, usize, &mut [f64], &mut [f64]) -> Result<(), Inverted> + Sync,
     ) -> Result<f64, (String, Inverted)> {
         force.fill(0.0);
         let mut strain = 0.0;
@@ -148,7 +155,9 @@ impl Model {
                     force[*dof as usize] += f;
                 }
             };
-            let compute = |cell: usize, local: &mut [f64]| of_cell(part, cell, local);
+            let compute = |first: usize, local: &mut [f64], energies: &mut [f64]| {
+                of_cells(part, first, local, energies)
+            };
             strain += cells::for_each(&self.threads, mesh.cell_count(), mesh.element.dofs(), compute, add)
                 .map_err(|inverted| (part.name.clone(), inverted))?;
         }

@@ -35,6 +35,24 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// The block Kᵢⱼ = Σ ∂Pᵢᴶ/∂Fⱼᴸ aᴶ bᴸ, bilinear in the reference gradients a and b.
     fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D>;
 
+    /// Ψ and P at the first `count` of four points, in lanes: `h` and P are `[i][j][point]`; H = 0
+    /// in the other lanes, whose results do not count.
+    #[inline(always)]
+    #[allow(clippy::type_complexity)]
+    fn at_points(
+        &self,
+        h: &[[[f64; LANES]; D]; D],
+        count: usize,
+    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
+        let (mut energies, mut stresses) = ([0.0; LANES], [[[0.0; LANES]; D]; D]);
+        for l in 0..count {
+            let point = self.at(&get(h, l))?;
+            energies[l] = self.energy(&point);
+            set(&mut stresses, l, &self.stress(&point), 1.0);
+        }
+        Ok((energies, stresses))
+    }
+
     /// ∂P/∂F : dF.
     #[inline(always)]
     fn change(&self, point: &Self::Point, df: &Mat<D>) -> Mat<D> {

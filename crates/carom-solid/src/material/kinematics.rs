@@ -1,11 +1,11 @@
 //! Functions of F = I + H without cancellation for small H: J − 1 = tr H + … + det H, cof F − I, x
 //! − ln(1 + x).
 
-use carom_algebra::Mat;
+use carom_algebra::{Four, Mat, Real};
 
 /// det(I + H) − 1.
 #[inline(always)]
-pub fn excess_det<const D: usize>(h: &Mat<D>) -> f64 {
+pub fn excess_det<const D: usize, T: Real>(h: &Mat<D, T>) -> T {
     match D {
         1 => h.0[0][0],
         2 => h.trace() + h.det(),
@@ -15,7 +15,7 @@ pub fn excess_det<const D: usize>(h: &Mat<D>) -> f64 {
 
 /// cof(I + H) − I.
 #[inline(always)]
-pub fn excess_cofactor<const D: usize>(h: &Mat<D>) -> Mat<D> {
+pub fn excess_cofactor<const D: usize, T: Real>(h: &Mat<D, T>) -> Mat<D, T> {
     match D {
         1 => Mat::ZERO,
         2 => h.cofactor(),
@@ -26,16 +26,26 @@ pub fn excess_cofactor<const D: usize>(h: &Mat<D>) -> Mat<D> {
 /// ln(1 + x), and x − ln(1 + x), which is x²/2 for small x. With s = x/(2 + x): ln(1 + x) = 2
 /// artanh s = 2s + r and x − 2s = x s.
 #[inline(always)]
-pub(crate) fn ln_1p(x: f64) -> [f64; 2] {
-    if x.abs() > 0.1 {
-        return [x.ln_1p(), x - x.ln_1p()];
+pub(crate) fn ln_1p<T: Real>(x: T) -> [T; 2] {
+    if x.find(|x| x.abs() > 0.1).is_some() {
+        let part = |k: usize| {
+            x.map(|x| if x.abs() > 0.1 { [x.ln_1p(), x - x.ln_1p()][k] } else { series_of_ln_1p(x)[k] })
+        };
+        return [part(0), part(1)];
     }
-    let s = x / (2.0 + x);
+    series_of_ln_1p(x)
+}
+
+#[inline(always)]
+fn series_of_ln_1p<T: Real>(x: T) -> [T; 2] {
+    let s = x / (T::of(2.0) + x);
     let t = s * s;
-    let series =
-        1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * (1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0)))));
-    let r = 2.0 * s * t * series;
-    [2.0 * s + r, x * s - r]
+    let mut series = T::of(1.0 / 13.0);
+    for divisor in [11.0, 9.0, 7.0, 5.0, 3.0] {
+        series = T::of(1.0 / divisor) + t * series;
+    }
+    let r = T::of(2.0) * s * t * series;
+    [T::of(2.0) * s + r, x * s - r]
 }
 
 /// ln(1 + x) of four numbers.
@@ -44,15 +54,7 @@ pub(crate) fn ln_1p_lanes(x: &[f64; 4]) -> [f64; 4] {
     if x.iter().any(|x| x.abs() > 0.1) {
         return x.map(f64::ln_1p);
     }
-    let mut ln = [0.0; 4];
-    for l in 0..4 {
-        let s = x[l] / (2.0 + x[l]);
-        let t = s * s;
-        let series = 1.0 / 3.0
-            + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * (1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0)))));
-        ln[l] = 2.0 * s + 2.0 * s * t * series;
-    }
-    ln
+    series_of_ln_1p(Four(*x))[0].0
 }
 
 #[cfg(test)]

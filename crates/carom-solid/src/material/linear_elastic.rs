@@ -5,9 +5,10 @@
 //! Reference and current configuration coincide: σ is both Piola–Kirchhoff and Cauchy stress, large
 //! rotations strain the body, and every H is valid.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::{Four, Mat, Real, Vector};
 
 use super::hyperelastic::{Material, NotPositive};
+use crate::points::{LANES, four, lanes};
 
 /// Linear elasticity with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,19 @@ pub struct LinearElastic {
 /// Small strain ε.
 pub struct Point<const D: usize>(Mat<D>);
 
+impl LinearElastic {
+    #[inline(always)]
+    fn stress_of<const D: usize, T: Real>(&self, strain: &Mat<D, T>) -> Mat<D, T> {
+        Mat::identity() * (T::of(self.lambda) * strain.trace()) + *strain * T::of(2.0 * self.mu)
+    }
+}
+
+/// ε of H.
+#[inline(always)]
+fn strain_of<const D: usize, T: Real>(h: &Mat<D, T>) -> Mat<D, T> {
+    (*h + h.transposed()) * T::of(0.5)
+}
+
 impl<const D: usize> Material<D> for LinearElastic {
     const ENERGY_DEGREE: usize = 2;
     const OBJECTIVE: bool = false;
@@ -28,7 +42,7 @@ impl<const D: usize> Material<D> for LinearElastic {
 
     #[inline(always)]
     fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
-        Ok(Point((*h + h.transposed()) * 0.5))
+        Ok(Point(strain_of(h)))
     }
 
     #[inline(always)]
@@ -42,13 +56,24 @@ impl<const D: usize> Material<D> for LinearElastic {
     }
 
     #[inline(always)]
+    fn at_points(
+        &self,
+        h: &[[[f64; LANES]; D]; D],
+        _: usize,
+    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
+        let strain = strain_of(&four(h));
+        let stress = self.stress_of(&strain);
+        Ok(((Four::of(0.5) * stress.double_dot(&strain)).0, lanes(&stress)))
+    }
+
+    #[inline(always)]
     fn tangent(&self, _: &Point<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
         Mat::identity() * (self.mu * a.dot(b)) + a.outer(b) * self.lambda + b.outer(a) * self.mu
     }
 
     #[inline(always)]
     fn cauchy(&self, p: &Point<D>) -> Mat<D> {
-        Mat::identity() * (self.lambda * p.0.trace()) + p.0 * (2.0 * self.mu)
+        self.stress_of(&p.0)
     }
 
     fn lateral(&self, p: &Point<D>) -> f64 {

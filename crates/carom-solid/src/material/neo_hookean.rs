@@ -7,11 +7,11 @@
 //! F)/J, tr E − ln J = (tr H − d) + H:H/2 + (d − ln(1 + d)), and tr H − d contains only terms of
 //! second and third order.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::{Mat, Real, Vector};
 
 use super::hyperelastic::{Material, NotPositive, changes_one_by_one};
 use super::kinematics::{excess_cofactor, excess_det, ln_1p, ln_1p_lanes};
-use crate::points::LANES;
+use crate::points::{LANES, four, lanes};
 
 /// Compressible neo-Hookean law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,29 +23,26 @@ pub struct NeoHookean {
 }
 
 /// F − I, F, F⁻ᵀ, F − F⁻ᵀ, J − 1, ln J, J − 1 − ln J.
-pub struct Point<const D: usize> {
-    h: Mat<D>,
-    f: Mat<D>,
-    inverse_transposed: Mat<D>,
-    difference: Mat<D>,
-    excess: f64,
-    ln_j: f64,
-    minus_ln: f64,
+pub struct Point<const D: usize, T = f64> {
+    h: Mat<D, T>,
+    f: Mat<D, T>,
+    inverse_transposed: Mat<D, T>,
+    difference: Mat<D, T>,
+    excess: T,
+    ln_j: T,
+    minus_ln: T,
 }
 
-impl<const D: usize> Material<D> for NeoHookean {
-    const ENERGY_DEGREE: usize = 0;
-    type Point = Point<D>;
-
+impl NeoHookean {
     #[inline(always)]
-    fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
+    fn kinematics<const D: usize, T: Real>(h: &Mat<D, T>) -> Result<Point<D, T>, NotPositive> {
         let excess = excess_det(h);
-        if excess <= -1.0 || excess.is_nan() {
+        if let Some(excess) = excess.find(|excess| excess <= -1.0 || excess.is_nan()) {
             return Err(NotPositive(1.0 + excess));
         }
         let c = excess_cofactor(h);
         let f = Mat::identity() + *h;
-        let inverse = 1.0 / (1.0 + excess);
+        let inverse = T::of(1.0) / (T::of(1.0) + excess);
         let [ln_j, minus_ln] = ln_1p(excess);
         Ok(Point {
             h: *h,
@@ -59,20 +56,50 @@ impl<const D: usize> Material<D> for NeoHookean {
     }
 
     #[inline(always)]
-    fn energy(&self, p: &Point<D>) -> f64 {
+    fn energy_of<const D: usize, T: Real>(&self, p: &Point<D, T>) -> T {
         // tr H − d without cancellation: the terms of d beyond the trace.
         let higher = match D {
-            1 => 0.0,
+            1 => T::ZERO,
             2 => p.h.det(),
             _ => p.h.cofactor().trace() + p.h.det(),
         };
-        let isochoric = 0.5 * p.h.double_dot(&p.h) - higher + p.minus_ln;
-        self.mu * isochoric + 0.5 * self.lambda * p.ln_j * p.ln_j
+        let isochoric = T::of(0.5) * p.h.double_dot(&p.h) - higher + p.minus_ln;
+        T::of(self.mu) * isochoric + T::of(0.5 * self.lambda) * p.ln_j * p.ln_j
+    }
+
+    #[inline(always)]
+    fn stress_of<const D: usize, T: Real>(&self, p: &Point<D, T>) -> Mat<D, T> {
+        p.difference * T::of(self.mu) + p.inverse_transposed * (T::of(self.lambda) * p.ln_j)
+    }
+}
+
+impl<const D: usize> Material<D> for NeoHookean {
+    const ENERGY_DEGREE: usize = 0;
+    type Point = Point<D>;
+
+    #[inline(always)]
+    fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
+        Self::kinematics(h)
+    }
+
+    #[inline(always)]
+    fn energy(&self, p: &Point<D>) -> f64 {
+        self.energy_of(p)
     }
 
     #[inline(always)]
     fn stress(&self, p: &Point<D>) -> Mat<D> {
-        p.difference * self.mu + p.inverse_transposed * (self.lambda * p.ln_j)
+        self.stress_of(p)
+    }
+
+    #[inline(always)]
+    fn at_points(
+        &self,
+        h: &[[[f64; LANES]; D]; D],
+        _: usize,
+    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
+        let point = Self::kinematics(&four(h))?;
+        Ok((self.energy_of(&point).0, lanes(&self.stress_of(&point))))
     }
 
     #[inline(always)]

@@ -21,7 +21,8 @@ pub(crate) struct Stress<const D: usize> {
     pub(crate) lateral: f64,
 }
 
-/// A [`Material`] at the first `count` of four points; unused lanes of results are zero.
+/// A [`Material`] at the first `count` of four points; H = 0 in the other lanes, whose results do
+/// not count.
 pub(crate) trait Pointwise<const D: usize>: Send + Sync {
     /// [`Material::ENERGY_DEGREE`].
     fn energy_degree(&self) -> usize;
@@ -78,12 +79,8 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         wide(
             #[inline(always)]
             || {
-                let mut energies = [0.0; LANES];
-                for l in 0..count {
-                    let point = self.at(&get(h, l))?;
-                    energies[l] = self.energy(&point);
-                    set(stress, l, &self.stress(&point), 1.0);
-                }
+                let (energies, stresses) = self.at_points(h, count)?;
+                *stress = stresses;
                 Ok(energies)
             },
         )

@@ -5,10 +5,11 @@
 //!
 //! The law itself is defined for J ≤ 0, but such a point is an error all the same.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::{Four, Mat, Real, Vector};
 
 use super::hyperelastic::{Material, NotPositive};
 use super::kinematics::excess_det;
+use crate::points::{LANES, four, lanes};
 
 /// St. Venant–Kirchhoff law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,12 +21,26 @@ pub struct SaintVenantKirchhoff {
 }
 
 /// F, F Fᵀ, E, second Piola–Kirchhoff stress, J.
-pub struct Point<const D: usize> {
-    f: Mat<D>,
-    left: Mat<D>,
-    e: Mat<D>,
-    second: Mat<D>,
-    det_f: f64,
+pub struct Point<const D: usize, T = f64> {
+    f: Mat<D, T>,
+    left: Mat<D, T>,
+    e: Mat<D, T>,
+    second: Mat<D, T>,
+    det_f: T,
+}
+
+impl SaintVenantKirchhoff {
+    #[inline(always)]
+    fn kinematics<const D: usize, T: Real>(&self, h: &Mat<D, T>) -> Result<Point<D, T>, NotPositive> {
+        let det_f = T::of(1.0) + excess_det(h);
+        if let Some(det_f) = det_f.find(|det_f| det_f <= 0.0 || det_f.is_nan()) {
+            return Err(NotPositive(det_f));
+        }
+        let f = Mat::identity() + *h;
+        let e = (*h + h.transposed() + h.transposed() * *h) * T::of(0.5);
+        let second = Mat::identity() * (T::of(self.lambda) * e.trace()) + e * T::of(2.0 * self.mu);
+        Ok(Point { f, left: f * f.transposed(), e, second, det_f })
+    }
 }
 
 impl<const D: usize> Material<D> for SaintVenantKirchhoff {
@@ -34,14 +49,7 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
 
     #[inline(always)]
     fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
-        let det_f = 1.0 + excess_det(h);
-        if det_f <= 0.0 || det_f.is_nan() {
-            return Err(NotPositive(det_f));
-        }
-        let f = Mat::identity() + *h;
-        let e = (*h + h.transposed() + h.transposed() * *h) * 0.5;
-        let second = Mat::identity() * (self.lambda * e.trace()) + e * (2.0 * self.mu);
-        Ok(Point { f, left: f * f.transposed(), e, second, det_f })
+        self.kinematics(h)
     }
 
     #[inline(always)]
@@ -52,6 +60,16 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
     #[inline(always)]
     fn stress(&self, p: &Point<D>) -> Mat<D> {
         p.f * p.second
+    }
+
+    #[inline(always)]
+    fn at_points(
+        &self,
+        h: &[[[f64; LANES]; D]; D],
+        _: usize,
+    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
+        let point = self.kinematics(&four(h))?;
+        Ok(((Four::of(0.5) * point.second.double_dot(&point.e)).0, lanes(&(point.f * point.second))))
     }
 
     #[inline(always)]

@@ -10,9 +10,11 @@
 //! Measures are laws themselves, with q as their energy, so that the kernels of forces, tangents
 //! and discrete gradients serve them too.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::{Mat, Real, Vector};
 
 use super::kinematics::{excess_cofactor, excess_det, ln_1p};
+use crate::points::{LANES, four, lanes};
+
 use super::{LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
 
 /// A law whose volumetric part can be averaged over a cell.
@@ -39,10 +41,21 @@ pub trait Volumetric<const D: usize>: Material<D> + Sized {
 #[derive(Clone, Copy, Debug)]
 pub struct Swelling;
 
-/// H, cof F, J.
-pub struct OfSwelling<const D: usize> {
-    cofactor: Mat<D>,
-    excess: f64,
+/// cof F and J − 1.
+pub struct OfSwelling<const D: usize, T = f64> {
+    cofactor: Mat<D, T>,
+    excess: T,
+}
+
+impl<const D: usize, T: Real> OfSwelling<D, T> {
+    #[inline(always)]
+    fn at(h: &Mat<D, T>) -> Result<Self, NotPositive> {
+        let excess = excess_det(h);
+        if let Some(excess) = excess.find(|excess| excess <= -1.0 || excess.is_nan()) {
+            return Err(NotPositive(1.0 + excess));
+        }
+        Ok(Self { cofactor: Mat::identity() + excess_cofactor(h), excess })
+    }
 }
 
 impl<const D: usize> Material<D> for Swelling {
@@ -51,11 +64,7 @@ impl<const D: usize> Material<D> for Swelling {
 
     #[inline(always)]
     fn at(&self, h: &Mat<D>) -> Result<OfSwelling<D>, NotPositive> {
-        let excess = excess_det(h);
-        if excess <= -1.0 || excess.is_nan() {
-            return Err(NotPositive(1.0 + excess));
-        }
-        Ok(OfSwelling { cofactor: Mat::identity() + excess_cofactor(h), excess })
+        OfSwelling::at(h)
     }
 
     #[inline(always)]
@@ -66,6 +75,16 @@ impl<const D: usize> Material<D> for Swelling {
     #[inline(always)]
     fn stress(&self, p: &OfSwelling<D>) -> Mat<D> {
         p.cofactor
+    }
+
+    #[inline(always)]
+    fn at_points(
+        &self,
+        h: &[[[f64; LANES]; D]; D],
+        _: usize,
+    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
+        let point = OfSwelling::at(&four(h))?;
+        Ok((point.excess.0, lanes(&point.cofactor)))
     }
 
     /// J (ã⊗b̃ − b̃⊗ã), ã = F⁻ᵀa.
@@ -89,9 +108,25 @@ impl<const D: usize> Material<D> for Swelling {
 pub struct TraceOfStrain;
 
 /// H and J.
-pub struct OfStrain<const D: usize> {
-    h: Mat<D>,
-    det_f: f64,
+pub struct OfStrain<const D: usize, T = f64> {
+    h: Mat<D, T>,
+    det_f: T,
+}
+
+impl<const D: usize, T: Real> OfStrain<D, T> {
+    #[inline(always)]
+    fn at(h: &Mat<D, T>) -> Result<Self, NotPositive> {
+        let det_f = T::of(1.0) + excess_det(h);
+        if let Some(det_f) = det_f.find(|det_f| det_f <= 0.0 || det_f.is_nan()) {
+            return Err(NotPositive(det_f));
+        }
+        Ok(Self { h: *h, det_f })
+    }
+
+    #[inline(always)]
+    fn trace(&self) -> T {
+        self.h.trace() + T::of(0.5) * self.h.double_dot(&self.h)
+    }
 }
 
 impl<const D: usize> Material<D> for TraceOfStrain {
@@ -100,21 +135,27 @@ impl<const D: usize> Material<D> for TraceOfStrain {
 
     #[inline(always)]
     fn at(&self, h: &Mat<D>) -> Result<OfStrain<D>, NotPositive> {
-        let det_f = 1.0 + excess_det(h);
-        if det_f <= 0.0 || det_f.is_nan() {
-            return Err(NotPositive(det_f));
-        }
-        Ok(OfStrain { h: *h, det_f })
+        OfStrain::at(h)
     }
 
     #[inline(always)]
     fn energy(&self, p: &OfStrain<D>) -> f64 {
-        p.h.trace() + 0.5 * p.h.double_dot(&p.h)
+        p.trace()
     }
 
     #[inline(always)]
     fn stress(&self, p: &OfStrain<D>) -> Mat<D> {
         Mat::identity() + p.h
+    }
+
+    #[inline(always)]
+    fn at_points(
+        &self,
+        h: &[[[f64; LANES]; D]; D],
+        _: usize,
+    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
+        let point = OfStrain::at(&four(h))?;
+        Ok((point.trace().0, lanes(&(Mat::identity() + point.h))))
     }
 
     #[inline(always)]

@@ -4,7 +4,7 @@ use carom_algebra::{Mat, Vector, wide};
 
 use super::rotation::angle;
 use super::{Place, Solid};
-use crate::body::{Body, Inverted, PointState};
+use crate::body::{Body, Inverted, PointState, one_by_one};
 use crate::bounds::Bounds;
 use crate::material::{NotPositive, Pointwise, Stress};
 use crate::mesh::Mesh;
@@ -20,6 +20,19 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
 
     fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
         self.force_of(&*self.law, cell, y, force)
+    }
+
+    fn cell_forces(
+        &self,
+        first: usize,
+        y: &[f64],
+        forces: &mut [f64],
+        energies: &mut [f64],
+    ) -> Result<(), Inverted> {
+        if Self::HAS_CONSTANT_STRAIN {
+            return self.constant_forces(first, y, forces, energies);
+        }
+        one_by_one(self, first, y, forces, energies)
     }
 
     fn cell_tangent(

@@ -203,7 +203,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
 
 /// Multiplies the matrices of the points by their weights.
 #[inline(always)]
-fn scale<const D: usize>(mats: &mut Mats<D>, weights: &Lanes) {
+pub(super) fn scale<const D: usize>(mats: &mut Mats<D>, weights: &Lanes) {
     for i in 0..D {
         for j in 0..D {
             for l in 0..LANES {

@@ -15,13 +15,20 @@
 //! The discrete gradient is p̄ ḡ with the quotient p̄ = ΔW/Δm and the discrete gradient ḡ of Σ w q,
 //! so that its work is V ΔW exactly.
 
+use carom_algebra::wide;
+
 use super::body::divergence_of;
-use super::{Solid, SolidError};
+use super::integrals::scale;
+use super::{Place, Solid, SolidError};
 use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
-use crate::material::Volumetric;
+use crate::material::{NotPositive, Pointwise, Volumetric};
 use crate::mesh::Mesh;
+use crate::points::{LANES, sum};
 use crate::shape::Shape;
+
+/// Blocks of quadrature points of a cell: eight points of Hex8, the largest that has this.
+const BLOCKS: usize = 2;
 
 /// A solid with mean dilatation.
 pub struct MeanDilatation<const D: usize, const N: usize, S, L: Volumetric<D>> {
@@ -63,6 +70,48 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> MeanDilat
         Ok(Swelling { gradient, measure: sum / self.volume(cell) })
     }
 
+    /// The force of a cell, from one pass over its points: the pressure is known at its end.
+    #[inline(always)]
+    fn force_of(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
+        let none = [[[0.0; LANES]; D]; D];
+        let (mut stresses, mut cofactors) = ([none; BLOCKS], [none; BLOCKS]);
+        let (mut energy, mut swollen, mut cell_volume) = (0.0, 0.0, 0.0);
+        let (u, Place { points, inverse, volume }) =
+            (self.solid.displacements(cell, y), &self.solid.places[cell]);
+        let points = &self.solid.points[points.clone()];
+        for ((points, stress), cofactor) in points.iter().zip(&mut stresses).zip(&mut cofactors) {
+            let (h, count) = (points.gradient(&u, inverse), points.count);
+            let inverted = |NotPositive(det_f)| Inverted { cell, det_f };
+            let densities = self.solid.law.stresses(&h, count, stress).map_err(inverted)?;
+            let measures = Pointwise::stresses(&self.measure, &h, count, cofactor).map_err(inverted)?;
+            let weights = points.weights.map(|weight| volume * weight);
+            for l in 0..count {
+                energy += weights[l] * densities[l];
+                swollen += weights[l] * measures[l];
+                cell_volume += weights[l];
+            }
+            scale(stress, &weights);
+            scale(cofactor, &weights);
+        }
+        let [swelling, pressure, _] = self.law.volumetric(swollen / cell_volume);
+        let mut f = [[[0.0; LANES]; D]; N];
+        for ((points, stress), cofactor) in points.iter().zip(&mut stresses).zip(&cofactors) {
+            for (stress, cofactor) in stress
+                .as_flattened_mut()
+                .as_flattened_mut()
+                .iter_mut()
+                .zip(cofactor.as_flattened().as_flattened())
+            {
+                *stress += pressure * cofactor;
+            }
+            points.add_force(stress, inverse, &mut f);
+        }
+        for (force, f) in force.iter_mut().zip(f.as_flattened()) {
+            *force = sum(f);
+        }
+        Ok(energy + cell_volume * swelling)
+    }
+
     /// The nodal vector of a cell from one over all nodes.
     fn of_cell(&self, cell: usize, vector: &[f64]) -> Vec<f64> {
         let vector = vector.as_chunks::<D>().0;
@@ -84,11 +133,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> Body for 
     }
 
     fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
-        let shear = self.solid.cell_force(cell, y, force)?;
-        let Swelling { gradient, measure } = self.swelling(cell, y, None)?;
-        let [energy, pressure, _] = self.law.volumetric(measure);
-        add(force, pressure, &gradient);
-        Ok(shear + self.volume(cell) * energy)
+        wide(
+            #[inline(always)]
+            || self.force_of(cell, y, force),
+        )
     }
 
     fn cell_tangent(

@@ -177,3 +177,26 @@ fn a_corner_of_a_square_may_move_to_the_other_diagonal() {
     let lost = test.lost_between(&by(0.0), &by(2.0)).unwrap();
     assert!(lost.theta <= 0.5 && lost.theta > 0.5 - 2e-6, "{lost:?}");
 }
+
+/// The determinant of edges alone gives the bits of the general formula.
+#[test]
+fn cells_of_degree_one_have_the_margin_of_their_edges() {
+    fn check<const D: usize, const N: usize, S: Shape<D, N>>(expected: bool) {
+        let test = Validity::<D, N>::of::<S>();
+        assert_eq!(test.is_affine, expected);
+        let general = Validity { is_affine: false, ..test.clone() };
+        let mut nodes = cell::<D, N, S>();
+        for (a, node) in nodes.iter_mut().enumerate() {
+            (0..D).for_each(|i| node[i] += 0.1 * (3.7 * a as f64 + 1.3 * i as f64).sin() + 5.0);
+        }
+        assert_eq!(test.margin(&nodes), general.margin(&nodes));
+        assert!(test.margin(&nodes).unwrap() > 0.0);
+        nodes.swap(0, 1);
+        assert!(test.margin(&nodes).is_err());
+        assert_eq!(test.margin(&nodes), general.margin(&nodes));
+    }
+    check::<2, 3, Tri3>(true);
+    check::<3, 4, Tet4>(true);
+    check::<2, 4, Quad4>(false);
+    check::<3, 10, Tet10>(false);
+}
