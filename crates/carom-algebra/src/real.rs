@@ -17,6 +17,10 @@ pub trait Real:
     #[must_use]
     fn map(self, function: impl Fn(f64) -> f64) -> Self;
 
+    /// The larger number of each lane.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+
     /// The first lane with a property.
     fn find(self, has: impl Fn(f64) -> bool) -> Option<f64>;
 }
@@ -32,6 +36,11 @@ impl Real for f64 {
     #[inline(always)]
     fn map(self, function: impl Fn(f64) -> f64) -> Self {
         function(self)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        f64::max(self, other)
     }
 
     #[inline(always)]
@@ -63,6 +72,15 @@ impl Real for Four {
         let mut lanes = self;
         for l in 0..4 {
             lanes.0[l] = function(self.0[l]);
+        }
+        lanes
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        let mut lanes = self;
+        for l in 0..4 {
+            lanes.0[l] = self.0[l].max(other.0[l]);
         }
         lanes
     }

@@ -4,15 +4,33 @@
 use carom_algebra::Threads;
 use carom_solid::Inverted;
 
-/// Cells computed before they are added: enough to share among threads, few enough for their
+/// Cells computed while those before are added: enough to share among threads, few enough for their
 /// caches.
-const BLOCK: usize = 1024;
-/// Cells per task of a thread.
+const BLOCK: usize = 4096;
+/// Numbers of a block, at most.
+const NUMBERS: usize = 1 << 17;
+/// Cells per task of a thread, at most.
 const SHARE: usize = 64;
 /// Cells below which a second thread does not pay.
 const FEW: usize = 512;
 /// Numbers that stay in the nearest cache between their computation and their addition.
 const NEAR: usize = 2048;
+
+/// Consecutive cells: the first, their numbers and values.
+#[derive(Default)]
+struct Block {
+    first: usize,
+    locals: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl Block {
+    fn resize(&mut self, first: usize, count: usize, numbers: usize) {
+        self.first = first;
+        self.locals.resize(count * numbers, 0.0);
+        self.values.resize(count, 0.0);
+    }
+}
 
 /// Calls `compute(first, numbers, values)` for consecutive cells on all threads, `count` in all,
 /// and `add(cell, numbers)` in the order of the cells. Returns the sum of the values in that order.
@@ -24,33 +42,39 @@ pub(crate) fn for_each(
     count: usize,
     numbers: usize,
     compute: impl Fn(usize, &mut [f64], &mut [f64]) -> Result<(), Inverted> + Sync,
-    mut add: impl FnMut(usize, &[f64]),
+    mut add: impl FnMut(usize, &[f64]) + Send,
 ) -> Result<f64, Inverted> {
     let mut sum = 0.0;
-    let mut add_all = |first: usize, locals: &[f64], values: &[f64]| {
-        for (k, (local, value)) in locals.chunks_exact(numbers).zip(values).enumerate() {
+    let mut add_all = |block: &Block| {
+        for (k, (local, value)) in block.locals.chunks_exact(numbers).zip(&block.values).enumerate() {
             sum += value;
-            add(first + k, local);
+            add(block.first + k, local);
         }
     };
     let is_serial = threads.count() == 1 || count < FEW;
-    let size = if is_serial { (NEAR / numbers).clamp(1, SHARE) } else { BLOCK }.min(count);
-    let (mut values, mut locals) = (vec![0.0; size], vec![0.0; size * numbers]);
-    let mut results = vec![Ok(()); size.div_ceil(SHARE)];
-    for first in (0..count).step_by(size.max(1)) {
-        let here = size.min(count - first);
-        let (values, locals) = (&mut values[..here], &mut locals[..here * numbers]);
+    let share = (NEAR / numbers).clamp(1, SHARE);
+    let size = if is_serial { share } else { (NUMBERS / numbers).clamp(1, BLOCK) };
+    let [mut done, mut next] = [Block::default(), Block::default()];
+    for first in (0..count).step_by(size) {
+        next.resize(first, size.min(count - first), numbers);
         if is_serial {
-            compute(first, locals, values)?;
-        } else {
-            let shares = locals.chunks_mut(SHARE * numbers).zip(values.chunks_mut(SHARE)).zip(&mut results);
-            threads.for_each(shares, |share, ((locals, values), result)| {
-                *result = compute(first + share * SHARE, locals, values);
-            });
-            results.iter().copied().collect::<Result<(), Inverted>>()?;
+            compute(first, &mut next.locals, &mut next.values)?;
+            add_all(&next);
+            continue;
         }
-        add_all(first, locals, values);
+        let Block { locals, values, .. } = &mut next;
+        let mut results = vec![Ok(()); values.len().div_ceil(share)];
+        let compute_all = || {
+            let shares = locals.chunks_mut(share * numbers).zip(values.chunks_mut(share)).zip(&mut results);
+            threads.for_each(shares, |k, ((locals, values), result)| {
+                *result = compute(first + k * share, locals, values);
+            });
+        };
+        threads.join(|| add_all(&done), compute_all);
+        results.into_iter().collect::<Result<(), Inverted>>()?;
+        std::mem::swap(&mut done, &mut next);
     }
+    add_all(&done);
     Ok(sum)
 }
 

@@ -62,13 +62,10 @@ impl ValidCells {
 /// The smallest margin of a body's cells.
 fn margin(model: &Model, part: &BodyInstance, y: &[f64]) -> Result<f64, Rejected> {
     let mut least = f64::INFINITY;
-    let compute = |cell: usize, margin: &mut [f64]| {
-        margin[0] = part.body.cell_margin(cell, y)?;
-        Ok(0.0)
-    };
+    let compute =
+        |first: usize, margins: &mut [f64], _: &mut [f64]| part.body.cell_margins(first, y, margins);
     let add = |_: usize, margin: &[f64]| least = least.min(margin[0]);
-    let (count, compute) = (part.body.mesh().cell_count(), cells::one_by_one(1, compute));
-    cells::for_each(&model.threads, count, 1, compute, add)
+    cells::for_each(&model.threads, part.body.mesh().cell_count(), 1, compute, add)
         .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
     Ok(least)
 }

@@ -114,6 +114,17 @@ pub trait Body: Send + Sync {
     /// J where it is not certified to be positive.
     fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted>;
 
+    /// [`Self::cell_margin`] of consecutive cells from `first` on; overwrites `margins`.
+    ///
+    /// # Errors
+    /// J of the first that is not certified.
+    fn cell_margins(&self, first: usize, y: &[f64], margins: &mut [f64]) -> Result<(), Inverted> {
+        for (k, margin) in margins.iter_mut().enumerate() {
+            *margin = self.cell_margin(first + k, y)?;
+        }
+        Ok(())
+    }
+
     /// Stress and strain at a point of a cell given in reference coordinates.
     fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted>;
 

@@ -99,9 +99,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     ) -> Result<Self, SolidError> {
         check::<D, N>(&mesh, density, thickness)?;
         let k = S::DEGREE;
-        let rule = |degree: usize| match Self::HAS_CONSTANT_STRAIN {
-            true => S::Domain::rule(0),
-            false => S::Domain::rule(degree.max(law.energy_degree() * (k - 1))),
+        let rule = |degree: usize| {
+            let exact = degree.max(law.energy_degree() * (k - 1));
+            S::Domain::rule(if Self::HAS_CONSTANT_STRAIN { 0 } else { exact })
         };
         let force_rules = [rule(2 * k), rule((2 * k).max(4 * (k - 1)))];
         // The Jacobian of a curved quadrilateral or hexahedron has the degree Dk − 1 along each

@@ -11,7 +11,7 @@
 //! by twice that, a determinant by D! (2Λm)ᴰ (D (N + 3) + D) u, and the sum over its n terms adds
 //! n. Every halving adds at most the degree.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::{Mat, Real, Vector};
 
 use crate::bernstein::{Bernstein, Direction, factorial, halves};
 use crate::earliest::{Earliest, Piece};
@@ -78,15 +78,12 @@ impl<const D: usize, const N: usize> Validity<D, N> {
     #[inline(always)]
     pub fn margin(&self, nodes: &[Vector<D>; N]) -> Result<f64, Loss<D>> {
         if self.is_affine {
-            let (mut edges, mut largest) = (Mat::<D>::ZERO, 0.0_f64);
+            let mut edges = Mat::ZERO;
             for i in 0..D {
                 edges.0[i] = (nodes[i + 1] - nodes[0]).0;
-                edges.0[i].iter().for_each(|x| largest = largest.max(x.abs()));
             }
-            let (det, error) = (edges.det(), self.round_off(largest));
-            if det > error {
-                let sizes = edges.0.map(|edge| edge.iter().map(|x| x.abs()).sum());
-                return Ok(self.distance(det - error, sizes));
+            if let Some(margin) = self.margin_of_edges(&edges) {
+                return Ok(margin);
             }
         }
         let (differences, error) = self.differences_of(nodes, nodes);
@@ -119,29 +116,50 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         }
     }
 
+    /// [`Self::margin`] of simplices of degree 1 from their edges from the first node; `None` if one
+    /// is not certified.
+    #[inline(always)]
+    pub(crate) fn margin_of_edges<T: Real>(&self, edges: &Mat<D, T>) -> Option<T> {
+        let (mut largest, mut sums) = (T::ZERO, [T::ZERO; D]);
+        for i in 0..D {
+            for j in 0..D {
+                let size = edges.0[i][j].map(f64::abs);
+                (largest, sums[i]) = (largest.max(size), sums[i] + size);
+            }
+        }
+        let free = edges.det() - self.round_off(largest);
+        let is_lost = free.find(|free| free <= 0.0 || free.is_nan()).is_some();
+        (self.is_affine && !is_lost).then(|| self.distance(free, sums))
+    }
+
     /// Distance by which positions may change until a determinant falls by `free`, for differences
     /// whose components have these largest sums.
     #[inline(always)]
-    fn distance(&self, free: f64, sums: [f64; D]) -> f64 {
-        let sum = sums.iter().sum::<f64>();
+    fn distance<T: Real>(&self, free: T, sums: [T; D]) -> T {
+        let mut sum = sums[0];
+        for i in 1..D {
+            sum = sum + sums[i];
+        }
+        let of = T::of;
         let change = match D {
             1 => free,
-            2 => 2.0 * free / (sum + (sum * sum + 8.0 * free).sqrt()),
+            2 => of(2.0) * free / (sum + (sum * sum + of(8.0) * free).map(f64::sqrt)),
             _ => {
                 // With x = free/(D! Eᴰ), less than the exact (1 + x)^(1/D) − 1.
-                let ratio = free / (factorial(D) * sum.powi(D as i32));
-                sum * ratio / (D as f64 * (1.0 + ratio))
+                let ratio = free / (of(factorial(D)) * power::<D, T>(sum));
+                sum * ratio / (of(D as f64) * (of(1.0) + ratio))
             }
         };
-        0.999 * change / self.sensitivity
+        of(0.999) * change / of(self.sensitivity)
     }
 
     /// Bound of the round-off of a determinant's coefficient for positions of magnitude `largest`
     /// relative to the first node.
     #[inline(always)]
-    fn round_off(&self, largest: f64) -> f64 {
-        let unit = 0.5 * f64::EPSILON * factorial(D) * (2.0 * self.amplification * largest).powi(D as i32);
-        unit * (D * (N + 4) + self.tables.terms.len()) as f64 + f64::MIN_POSITIVE
+    fn round_off<T: Real>(&self, largest: T) -> T {
+        let unit = power::<D, T>(T::of(2.0 * self.amplification) * largest);
+        let factor = 0.5 * f64::EPSILON * factorial(D) * (D * (N + 4) + self.tables.terms.len()) as f64;
+        T::of(factor) * unit + T::of(f64::MIN_POSITIVE)
     }
 
     /// The first loss of validity while the nodes move on straight lines; `None` certifies that
@@ -263,6 +281,16 @@ impl<const D: usize, const N: usize> Validity<D, N> {
 fn change(row: &[f64], direction: &Direction) -> f64 {
     let steps = direction.lines.iter().flat_map(|line| line.windows(2));
     steps.map(|step| (row[step[0]] - row[step[1]]).abs()).fold(0.0, f64::max)
+}
+
+/// xᴰ.
+#[inline(always)]
+fn power<const D: usize, T: Real>(x: T) -> T {
+    let mut power = x;
+    for _ in 1..D {
+        power = power * x;
+    }
+    power
 }
 
 /// The determinant over a part of the cell and an interval of θ.

@@ -8,7 +8,7 @@ use crate::body::{Body, Inverted, PointState, one_by_one};
 use crate::bounds::Bounds;
 use crate::material::{NotPositive, Pointwise, Stress};
 use crate::mesh::Mesh;
-use crate::points::get;
+use crate::points::{LANES, get};
 use crate::reference::{self, gradient};
 use crate::shape::Shape;
 use crate::tree::Tree;
@@ -149,6 +149,19 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
             });
         }
         Ok(f64::INFINITY)
+    }
+
+    fn cell_margins(&self, first: usize, y: &[f64], margins: &mut [f64]) -> Result<(), Inverted> {
+        for (block, margins) in margins.chunks_mut(LANES).enumerate() {
+            let first = first + block * LANES;
+            if Self::HAS_CONSTANT_STRAIN && !self.may_invert && self.constant_margins(first, y, margins) {
+                continue;
+            }
+            for (k, margin) in margins.iter_mut().enumerate() {
+                *margin = self.cell_margin(first + k, y)?;
+            }
+        }
+        Ok(())
     }
 
     fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted> {

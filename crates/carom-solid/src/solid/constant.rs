@@ -1,7 +1,7 @@
 //! Cells with constant strain, simplices of degree 1: they have one quadrature point, and four cells
 //! are computed at once. Each lane gives the bits of its cell alone.
 
-use carom_algebra::wide;
+use carom_algebra::{Four, Mat, wide};
 
 use super::Solid;
 use crate::body::{Inverted, one_by_one};
@@ -33,6 +33,32 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             }
         }
         Ok(())
+    }
+
+    /// [`Body::cell_margins`](crate::Body::cell_margins) of up to four cells with constant strain;
+    /// returns false if one is not certified.
+    pub(super) fn constant_margins(&self, first: usize, y: &[f64], margins: &mut [f64]) -> bool {
+        let y = y.as_chunks::<D>().0;
+        wide(
+            #[inline(always)]
+            || {
+                let mut edges = Mat::<D, Four>::ZERO;
+                for l in 0..LANES {
+                    // The last cell again in lanes that are left over.
+                    let nodes = self.nodes(first + l.min(margins.len() - 1));
+                    for i in 0..D {
+                        for j in 0..D {
+                            edges.0[i][j].0[l] = y[nodes[i + 1]][j] - y[nodes[0]][j];
+                        }
+                    }
+                }
+                let found = self.validity.margin_of_edges(&edges);
+                if let Some(found) = &found {
+                    margins.iter_mut().zip(found.0).for_each(|(margin, found)| *margin = found);
+                }
+                found.is_some()
+            },
+        )
     }
 
     /// Forces and energies of up to four cells; returns false if one is inverted.
