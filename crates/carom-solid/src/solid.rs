@@ -128,6 +128,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             shape: PhantomData,
         };
         let shared = 0..solid.points.len();
+        debug_assert!(!Self::HAS_CONSTANT_STRAIN || force_rules[0].points.len() == 1);
         for cell in 0..cells {
             let x = solid.reference(cell);
             let curved = reference::is_curved::<D, N, S>(&x);

@@ -11,3 +11,4 @@ mod mean_dilatation;
 mod plane_stress;
 mod space;
 mod subdivided;
+mod together;
