@@ -1,7 +1,8 @@
 //! Vectors and matrices of the body's space: `D` is 1, 2 or 3 and known at compile time.
 //!
-//! Entries of matrices are numbers, or four in lanes (`real.rs`). Global nodal arrays are flat `Vec<f64>`, viewed per node as `&[[f64; D]]` (`slice::as_chunks`).
-//! A [`Vector`] is the copy of one node with arithmetic.
+//! Entries of matrices are numbers, or four in lanes (`real.rs`). Global nodal arrays are flat
+//! `Vec<f64>`, viewed per node as `&[[f64; D]]` (`slice::as_chunks`). A [`Vector`] is the copy of
+//! one node with arithmetic.
 
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 

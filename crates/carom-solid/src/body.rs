@@ -36,8 +36,8 @@ pub trait Body: Send + Sync {
     /// Returns the strain energy of a cell and overwrites `force` (`N·D`, node-major) with ∂U/∂y.
     fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted>;
 
-    /// [`Self::cell_force`] of consecutive cells from `first` on: overwrites `energies`, one per cell,
-    /// and `forces`, one after the other.
+    /// [`Self::cell_force`] of consecutive cells from `first` on: overwrites `energies`, one per
+    /// cell, and `forces`, one after the other.
     fn cell_forces(
         &self,
         first: usize,

@@ -31,7 +31,8 @@ const TOLERANCE: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct Validity<const D: usize, const N: usize> {
     tables: Bernstein<D, N>,
-    /// Whether control points are the nodes, and the determinant is that of the edges from the first.
+    /// Whether control points are the nodes, and the determinant is that of the edges from the
+    /// first.
     is_affine: bool,
     /// Λ.
     amplification: f64,
@@ -116,8 +117,8 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         }
     }
 
-    /// [`Self::margin`] of simplices of degree 1 from their edges from the first node; `None` if one
-    /// is not certified.
+    /// [`Self::margin`] of simplices of degree 1 from their edges from the first node; `None` if
+    /// one is not certified.
     #[inline(always)]
     pub(crate) fn margin_of_edges<T: Real>(&self, edges: &Mat<D, T>) -> Option<T> {
         let (mut largest, mut sums) = (T::ZERO, [T::ZERO; D]);

@@ -1,4 +1,4 @@
-//! Bodies that meet although no contact is declared where they do: seen before the run and after it.
+//! Bodies that meet although no contact is declared where they do: seen before the run and after.
 
 use super::common::DISCS;
 use super::warnings::{found, recorded};

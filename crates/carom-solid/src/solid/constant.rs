@@ -1,5 +1,5 @@
-//! Cells with constant strain, simplices of degree 1: they have one quadrature point, and four cells
-//! are computed at once. Each lane gives the bits of its cell alone.
+//! Cells with constant strain, simplices of degree 1: they have one quadrature point, and four
+//! cells are computed at once. Each lane gives the bits of its cell alone.
 
 use carom_algebra::{Four, Mat, wide};
 
