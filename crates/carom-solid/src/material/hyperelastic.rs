@@ -1,14 +1,20 @@
 //! The interface of a hyperelastic law, and its only error.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::{Four, Mat, Vector};
 
 use super::kinematics::excess_det;
-use crate::points::{LANES, Moduli, get, set};
+use crate::points::{LANES, Moduli, four, get, lanes, set};
 
 /// A determinant J of the deformation gradient that is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("J = {0:.3e} is not positive")]
 pub struct NotPositive(pub f64);
+
+/// A matrix at each of four points: `[i][j][point]`.
+pub type InLanes<const D: usize> = [[[f64; LANES]; D]; D];
+
+/// Ψ and P at each of four points.
+pub type AtPoints<const D: usize> = ([f64; LANES], InLanes<D>);
 
 /// A hyperelastic law. [`Material::at`] computes common terms once. `at`, `energy`, `stress` and
 /// `tangent` are `#[inline(always)]`: they are compiled into the loop over quadrature points, for
@@ -35,15 +41,10 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// The block Kᵢⱼ = Σ ∂Pᵢᴶ/∂Fⱼᴸ aᴶ bᴸ, bilinear in the reference gradients a and b.
     fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D>;
 
-    /// Ψ and P at the first `count` of four points, in lanes: `h` and P are `[i][j][point]`; H = 0
-    /// in the other lanes, whose results do not count.
+    /// Ψ and P at the first `count` of four points, in lanes; H = 0 in the
+    /// other lanes, whose results do not count.
     #[inline(always)]
-    #[allow(clippy::type_complexity)]
-    fn at_points(
-        &self,
-        h: &[[[f64; LANES]; D]; D],
-        count: usize,
-    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
+    fn at_points(&self, h: &InLanes<D>, count: usize) -> Result<AtPoints<D>, NotPositive> {
         let (mut energies, mut stresses) = ([0.0; LANES], [[[0.0; LANES]; D]; D]);
         for l in 0..count {
             let point = self.at(&get(h, l))?;
@@ -77,13 +78,13 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// ∂P/∂F : dF at the first `count` of four points, in lanes: `h`, `dh` and the result are
     /// `[i][j][point]`.
     #[inline(always)]
-    fn changes(
-        &self,
-        h: &[[[f64; LANES]; D]; D],
-        dh: &[[[f64; LANES]; D]; D],
-        count: usize,
-    ) -> Result<[[[f64; LANES]; D]; D], NotPositive> {
-        changes_one_by_one(self, h, dh, count)
+    fn changes(&self, h: &InLanes<D>, dh: &InLanes<D>, count: usize) -> Result<InLanes<D>, NotPositive> {
+        let mut changes = [[[0.0; LANES]; D]; D];
+        for l in 0..count {
+            let point = self.at(&get(h, l))?;
+            set(&mut changes, l, &self.change(&point, &get(dh, l)), 1.0);
+        }
+        Ok(changes)
     }
 
     /// Cauchy stress within the dimensions of the body.
@@ -106,20 +107,14 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     }
 }
 
-/// [`Material::changes`] by [`Material::change`], for a law or dimension without a faster one.
+/// [`Material::at_points`] of a formula for any number.
 #[inline(always)]
-pub(super) fn changes_one_by_one<const D: usize>(
-    law: &(impl Material<D> + ?Sized),
-    h: &[[[f64; LANES]; D]; D],
-    dh: &[[[f64; LANES]; D]; D],
-    count: usize,
-) -> Result<[[[f64; LANES]; D]; D], NotPositive> {
-    let mut changes = [[[0.0; LANES]; D]; D];
-    for l in 0..count {
-        let point = law.at(&get(h, l))?;
-        set(&mut changes, l, &law.change(&point, &get(dh, l)), 1.0);
-    }
-    Ok(changes)
+pub(super) fn in_lanes<const D: usize>(
+    h: &InLanes<D>,
+    at: impl Fn(&Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive>,
+) -> Result<AtPoints<D>, NotPositive> {
+    let (energy, stress) = at(&four(h))?;
+    Ok((energy.0, lanes(&stress)))
 }
 
 /// ∂P/∂F of the law at a point.

@@ -1,7 +1,9 @@
 //! Functions of F = I + H without cancellation for small H: J − 1 = tr H + … + det H, cof F − I, x
 //! − ln(1 + x).
 
-use carom_algebra::{Four, Mat, Real};
+use carom_algebra::{Mat, Real};
+
+use super::NotPositive;
 
 /// det(I + H) − 1.
 #[inline(always)]
@@ -10,6 +12,16 @@ pub fn excess_det<const D: usize, T: Real>(h: &Mat<D, T>) -> T {
         1 => h.0[0][0],
         2 => h.trace() + h.det(),
         _ => h.trace() + h.cofactor().trace() + h.det(),
+    }
+}
+
+/// det(I + H) − 1 of a deformation that is one.
+#[inline(always)]
+pub(crate) fn valid_excess<const D: usize, T: Real>(h: &Mat<D, T>) -> Result<T, NotPositive> {
+    let excess = excess_det(h);
+    match excess.find(|excess| excess <= -1.0 || excess.is_nan()) {
+        Some(excess) => Err(NotPositive(1.0 + excess)),
+        None => Ok(excess),
     }
 }
 
@@ -46,15 +58,6 @@ fn series_of_ln_1p<T: Real>(x: T) -> [T; 2] {
     }
     let r = T::of(2.0) * s * t * series;
     [T::of(2.0) * s + r, x * s - r]
-}
-
-/// ln(1 + x) of four numbers.
-#[inline(always)]
-pub(crate) fn ln_1p_lanes(x: &[f64; 4]) -> [f64; 4] {
-    if x.iter().any(|x| x.abs() > 0.1) {
-        return x.map(f64::ln_1p);
-    }
-    series_of_ln_1p(Four(*x))[0].0
 }
 
 #[cfg(test)]

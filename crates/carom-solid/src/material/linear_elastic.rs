@@ -7,8 +7,7 @@
 
 use carom_algebra::{Four, Mat, Real, Vector};
 
-use super::hyperelastic::{Material, NotPositive};
-use crate::points::{LANES, four, lanes};
+use super::hyperelastic::{AtPoints, InLanes, Material, NotPositive, in_lanes};
 
 /// Linear elasticity with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,14 +55,16 @@ impl<const D: usize> Material<D> for LinearElastic {
     }
 
     #[inline(always)]
-    fn at_points(
-        &self,
-        h: &[[[f64; LANES]; D]; D],
-        _: usize,
-    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
-        let strain = strain_of(&four(h));
-        let stress = self.stress_of(&strain);
-        Ok(((Four::of(0.5) * stress.double_dot(&strain)).0, lanes(&stress)))
+    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
+        in_lanes(
+            h,
+            #[inline(always)]
+            |h| {
+                let strain = strain_of(h);
+                let stress = self.stress_of(&strain);
+                Ok(((Four::of(0.5) * stress.double_dot(&strain)), stress))
+            },
+        )
     }
 
     #[inline(always)]

@@ -9,9 +9,9 @@
 
 use carom_algebra::{Mat, Real, Vector};
 
-use super::hyperelastic::{Material, NotPositive, changes_one_by_one};
-use super::kinematics::{excess_cofactor, excess_det, ln_1p, ln_1p_lanes};
-use crate::points::{LANES, four, lanes};
+use super::hyperelastic::{AtPoints, InLanes, Material, NotPositive, in_lanes};
+use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
+use crate::points::{four, lanes};
 
 /// Compressible neo-Hookean law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,10 +36,7 @@ pub struct Point<const D: usize, T = f64> {
 impl NeoHookean {
     #[inline(always)]
     fn kinematics<const D: usize, T: Real>(h: &Mat<D, T>) -> Result<Point<D, T>, NotPositive> {
-        let excess = excess_det(h);
-        if let Some(excess) = excess.find(|excess| excess <= -1.0 || excess.is_nan()) {
-            return Err(NotPositive(1.0 + excess));
-        }
+        let excess = valid_excess(h)?;
         let c = excess_cofactor(h);
         let f = Mat::identity() + *h;
         let inverse = T::of(1.0) / (T::of(1.0) + excess);
@@ -71,6 +68,13 @@ impl NeoHookean {
     fn stress_of<const D: usize, T: Real>(&self, p: &Point<D, T>) -> Mat<D, T> {
         p.difference * T::of(self.mu) + p.inverse_transposed * (T::of(self.lambda) * p.ln_j)
     }
+
+    /// ∂P/∂F : dF = μ dF + Λ (F⁻ᵀ:dF) F⁻ᵀ + (μ − Λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ.
+    #[inline(always)]
+    fn change_of<const D: usize, T: Real>(&self, p: &Point<D, T>, df: &Mat<D, T>) -> Mat<D, T> {
+        let (g, lambda, mu) = (p.inverse_transposed, T::of(self.lambda), T::of(self.mu));
+        *df * mu + g * (lambda * g.double_dot(df)) + g * df.transposed() * g * (mu - lambda * p.ln_j)
+    }
 }
 
 impl<const D: usize> Material<D> for NeoHookean {
@@ -93,13 +97,15 @@ impl<const D: usize> Material<D> for NeoHookean {
     }
 
     #[inline(always)]
-    fn at_points(
-        &self,
-        h: &[[[f64; LANES]; D]; D],
-        _: usize,
-    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
-        let point = Self::kinematics(&four(h))?;
-        Ok((self.energy_of(&point).0, lanes(&self.stress_of(&point))))
+    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
+        in_lanes(
+            h,
+            #[inline(always)]
+            |h| {
+                let point = Self::kinematics(h)?;
+                Ok((self.energy_of(&point), self.stress_of(&point)))
+            },
+        )
     }
 
     #[inline(always)]
@@ -110,50 +116,14 @@ impl<const D: usize> Material<D> for NeoHookean {
             + a_tilde.outer(&b_tilde) * self.lambda
     }
 
-    /// ∂P/∂F : dF = μ dF + Λ (F⁻ᵀ:dF) F⁻ᵀ + (μ − Λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ; vectorised over the points in
-    /// the plane.
     #[inline(always)]
-    fn changes(
-        &self,
-        h: &[[[f64; LANES]; D]; D],
-        dh: &[[[f64; LANES]; D]; D],
-        count: usize,
-    ) -> Result<[[[f64; LANES]; D]; D], NotPositive> {
-        if D != 2 {
-            return changes_one_by_one(self, h, dh, count);
-        }
-        let mut changes = [[[0.0; LANES]; D]; D];
-        let mut excess = [0.0; LANES];
-        for l in 0..LANES {
-            excess[l] = h[0][0][l] + h[1][1][l] + (h[0][0][l] * h[1][1][l] - h[0][1][l] * h[1][0][l]);
-        }
-        if let Some(x) = excess.iter().find(|x| **x <= -1.0 || x.is_nan()) {
-            return Err(NotPositive(1.0 + x));
-        }
-        let logarithm = ln_1p_lanes(&excess);
-        for l in 0..LANES {
-            let inverse = 1.0 / (1.0 + excess[l]);
-            let g = [
-                [(1.0 + h[1][1][l]) * inverse, -h[1][0][l] * inverse],
-                [-h[0][1][l] * inverse, (1.0 + h[0][0][l]) * inverse],
-            ];
-            let d = [[dh[0][0][l], dh[0][1][l]], [dh[1][0][l], dh[1][1][l]]];
-            let trace =
-                self.lambda * (g[0][0] * d[0][0] + g[0][1] * d[0][1] + g[1][0] * d[1][0] + g[1][1] * d[1][1]);
-            let coefficient = self.mu - self.lambda * logarithm[l];
-            // dFᵀ F⁻ᵀ.
-            let m = [
-                [d[0][0] * g[0][0] + d[1][0] * g[1][0], d[0][0] * g[0][1] + d[1][0] * g[1][1]],
-                [d[0][1] * g[0][0] + d[1][1] * g[1][0], d[0][1] * g[0][1] + d[1][1] * g[1][1]],
-            ];
-            for i in 0..2 {
-                for j in 0..2 {
-                    let turned = g[i][0] * m[0][j] + g[i][1] * m[1][j];
-                    changes[i][j][l] = self.mu * d[i][j] + trace * g[i][j] + coefficient * turned;
-                }
-            }
-        }
-        Ok(changes)
+    fn change(&self, p: &Point<D>, df: &Mat<D>) -> Mat<D> {
+        self.change_of(p, df)
+    }
+
+    #[inline(always)]
+    fn changes(&self, h: &InLanes<D>, dh: &InLanes<D>, _: usize) -> Result<InLanes<D>, NotPositive> {
+        Ok(lanes(&self.change_of(&Self::kinematics(&four(h))?, &four(dh))))
     }
 
     fn cauchy(&self, p: &Point<D>) -> Mat<D> {

@@ -7,9 +7,8 @@
 
 use carom_algebra::{Four, Mat, Real, Vector};
 
-use super::hyperelastic::{Material, NotPositive};
-use super::kinematics::excess_det;
-use crate::points::{LANES, four, lanes};
+use super::hyperelastic::{AtPoints, InLanes, Material, NotPositive, in_lanes};
+use super::kinematics::valid_excess;
 
 /// St. Venant–Kirchhoff law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,10 +31,7 @@ pub struct Point<const D: usize, T = f64> {
 impl SaintVenantKirchhoff {
     #[inline(always)]
     fn kinematics<const D: usize, T: Real>(&self, h: &Mat<D, T>) -> Result<Point<D, T>, NotPositive> {
-        let det_f = T::of(1.0) + excess_det(h);
-        if let Some(det_f) = det_f.find(|det_f| det_f <= 0.0 || det_f.is_nan()) {
-            return Err(NotPositive(det_f));
-        }
+        let det_f = T::of(1.0) + valid_excess(h)?;
         let f = Mat::identity() + *h;
         let e = (*h + h.transposed() + h.transposed() * *h) * T::of(0.5);
         let second = Mat::identity() * (T::of(self.lambda) * e.trace()) + e * T::of(2.0 * self.mu);
@@ -63,13 +59,15 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
     }
 
     #[inline(always)]
-    fn at_points(
-        &self,
-        h: &[[[f64; LANES]; D]; D],
-        _: usize,
-    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
-        let point = self.kinematics(&four(h))?;
-        Ok(((Four::of(0.5) * point.second.double_dot(&point.e)).0, lanes(&(point.f * point.second))))
+    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
+        in_lanes(
+            h,
+            #[inline(always)]
+            |h| {
+                let point = self.kinematics(h)?;
+                Ok(((Four::of(0.5) * point.second.double_dot(&point.e)), (point.f * point.second)))
+            },
+        )
     }
 
     #[inline(always)]

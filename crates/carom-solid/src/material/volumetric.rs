@@ -12,9 +12,8 @@
 
 use carom_algebra::{Mat, Real, Vector};
 
-use super::kinematics::{excess_cofactor, excess_det, ln_1p};
-use crate::points::{LANES, four, lanes};
-
+use super::hyperelastic::{AtPoints, InLanes, in_lanes};
+use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
 use super::{LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
 
 /// A law whose volumetric part can be averaged over a cell.
@@ -50,10 +49,7 @@ pub struct OfSwelling<const D: usize, T = f64> {
 impl<const D: usize, T: Real> OfSwelling<D, T> {
     #[inline(always)]
     fn at(h: &Mat<D, T>) -> Result<Self, NotPositive> {
-        let excess = excess_det(h);
-        if let Some(excess) = excess.find(|excess| excess <= -1.0 || excess.is_nan()) {
-            return Err(NotPositive(1.0 + excess));
-        }
+        let excess = valid_excess(h)?;
         Ok(Self { cofactor: Mat::identity() + excess_cofactor(h), excess })
     }
 }
@@ -78,13 +74,15 @@ impl<const D: usize> Material<D> for Swelling {
     }
 
     #[inline(always)]
-    fn at_points(
-        &self,
-        h: &[[[f64; LANES]; D]; D],
-        _: usize,
-    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
-        let point = OfSwelling::at(&four(h))?;
-        Ok((point.excess.0, lanes(&point.cofactor)))
+    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
+        in_lanes(
+            h,
+            #[inline(always)]
+            |h| {
+                let point = OfSwelling::at(h)?;
+                Ok((point.excess, point.cofactor))
+            },
+        )
     }
 
     /// J (ã⊗b̃ − b̃⊗ã), ã = F⁻ᵀa.
@@ -116,10 +114,7 @@ pub struct OfStrain<const D: usize, T = f64> {
 impl<const D: usize, T: Real> OfStrain<D, T> {
     #[inline(always)]
     fn at(h: &Mat<D, T>) -> Result<Self, NotPositive> {
-        let det_f = T::of(1.0) + excess_det(h);
-        if let Some(det_f) = det_f.find(|det_f| det_f <= 0.0 || det_f.is_nan()) {
-            return Err(NotPositive(det_f));
-        }
+        let det_f = T::of(1.0) + valid_excess(h)?;
         Ok(Self { h: *h, det_f })
     }
 
@@ -149,13 +144,15 @@ impl<const D: usize> Material<D> for TraceOfStrain {
     }
 
     #[inline(always)]
-    fn at_points(
-        &self,
-        h: &[[[f64; LANES]; D]; D],
-        _: usize,
-    ) -> Result<([f64; LANES], [[[f64; LANES]; D]; D]), NotPositive> {
-        let point = OfStrain::at(&four(h))?;
-        Ok((point.trace().0, lanes(&(Mat::identity() + point.h))))
+    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
+        in_lanes(
+            h,
+            #[inline(always)]
+            |h| {
+                let point = OfStrain::at(h)?;
+                Ok((point.trace(), (Mat::identity() + point.h)))
+            },
+        )
     }
 
     #[inline(always)]
