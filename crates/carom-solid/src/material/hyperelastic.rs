@@ -1,14 +1,9 @@
-//! The interface of a hyperelastic law, and its only error.
+//! The interface of a hyperelastic law.
 
 use carom_algebra::{Four, Mat, Vector};
 
-use super::kinematics::excess_det;
+use super::kinematics::{NotPositive, excess_det};
 use crate::points::{LANES, Moduli, four, get, lanes, set};
-
-/// A determinant J of the deformation gradient that is not positive.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("J = {0:.3e} is not positive")]
-pub struct NotPositive(pub f64);
 
 /// A matrix at each of four points: `[i][j][point]`.
 pub type InLanes<const D: usize> = [[[f64; LANES]; D]; D];

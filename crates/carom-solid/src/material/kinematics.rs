@@ -3,7 +3,10 @@
 
 use carom_algebra::{Mat, Real};
 
-use super::NotPositive;
+/// A determinant J of the deformation gradient that is not positive.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("J = {0:.3e} is not positive")]
+pub struct NotPositive(pub f64);
 
 /// det(I + H) − 1.
 #[inline(always)]

@@ -7,7 +7,8 @@
 
 use carom_algebra::{Four, Mat, Real, Vector};
 
-use super::hyperelastic::{AtPoints, InLanes, Material, NotPositive, in_lanes};
+use super::NotPositive;
+use super::hyperelastic::{AtPoints, InLanes, Material, in_lanes};
 
 /// Linear elasticity with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]

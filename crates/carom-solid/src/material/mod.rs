@@ -20,7 +20,8 @@ mod saint_venant_kirchhoff;
 mod volumetric;
 
 pub(crate) use hyperelastic::moduli_of;
-pub use hyperelastic::{AtPoints, InLanes, Material, NotPositive};
+pub use hyperelastic::{AtPoints, InLanes, Material};
+pub use kinematics::NotPositive;
 pub use kinematics::{excess_cofactor, excess_det};
 pub use law::Law;
 pub use linear_elastic::LinearElastic;

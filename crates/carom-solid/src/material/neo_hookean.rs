@@ -9,7 +9,8 @@
 
 use carom_algebra::{Mat, Real, Vector};
 
-use super::hyperelastic::{AtPoints, InLanes, Material, NotPositive, in_lanes};
+use super::NotPositive;
+use super::hyperelastic::{AtPoints, InLanes, Material, in_lanes};
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
 use crate::points::{four, lanes};
 

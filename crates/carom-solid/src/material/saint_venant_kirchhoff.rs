@@ -7,7 +7,8 @@
 
 use carom_algebra::{Four, Mat, Real, Vector};
 
-use super::hyperelastic::{AtPoints, InLanes, Material, NotPositive, in_lanes};
+use super::NotPositive;
+use super::hyperelastic::{AtPoints, InLanes, Material, in_lanes};
 use super::kinematics::valid_excess;
 
 /// St. Venant–Kirchhoff law with Lamé's constants.
