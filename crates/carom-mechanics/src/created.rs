@@ -14,7 +14,7 @@
 //!
 //! Schemes with c = 0 have no such work.
 
-use crate::state::Ledger;
+use crate::state::{Created, Ledger};
 
 /// Round-off relative to the energies.
 const ROUND_OFF: f64 = 1e-12;
@@ -38,8 +38,18 @@ impl Ledger {
         self.largest.max(self.created.worked)
     }
 
-    /// Takes the energies at the end of a step into the running minimum and maximum.
+    /// Begins at the energies of a start.
+    pub(crate) fn begin(&mut self) {
+        self.total_at_start = self.total();
+        self.created = Created { lowest: self.total(), ..Created::default() };
+        self.largest = self.kinetic + self.strain;
+    }
+
+    /// Takes the energies at the end of a step into the running minimum and maxima. Not those within
+    /// it: velocities that ring before they are projected may have many times the energy of the
+    /// bodies, which would hide what is created.
     pub(crate) fn observe(&mut self) {
+        self.largest = self.largest.max(self.kinetic + self.strain);
         let energy = self.total() - self.external_work;
         self.created.worked += (self.external_work - self.created.work).abs();
         self.created.work = self.external_work;

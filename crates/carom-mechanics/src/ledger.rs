@@ -298,10 +298,9 @@ pub(crate) fn change_of_loads(state: &State, next: &State, increment: &[f64]) ->
     increment.iter().zip(forces).map(|(moved, (before, now))| moved * (now - before)).sum()
 }
 
-/// Updates the kinetic energy and the largest energy so far.
+/// Updates the kinetic energy.
 pub(crate) fn book_kinetic(model: &Model, state: &mut State) {
     state.ledger.kinetic = model.kinetic(&state.v);
-    state.ledger.largest = state.ledger.largest.max(state.ledger.kinetic + state.ledger.strain);
 }
 
 /// Updates the force on the secondary side of each contact at the state's positions.

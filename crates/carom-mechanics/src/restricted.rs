@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::renewal::FrozenTangent;
 use crate::start::press;
-use crate::state::{Created, Ledger, Previous, State};
+use crate::state::{Ledger, Previous, State};
 
 impl State {
     /// The state of a model with fewer bodies and contacts: `dofs` and `contacts` are their numbers
@@ -57,8 +57,7 @@ impl State {
             ..Ledger::default()
         };
         book_kinetic(model, &mut state);
-        state.ledger.total_at_start = state.ledger.total();
-        state.ledger.created = Created::at_start(&state.ledger);
+        state.ledger.begin();
         Ok(state)
     }
 }

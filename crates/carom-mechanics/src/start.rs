@@ -19,7 +19,7 @@ use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::{LoadsAt, Model};
 use crate::persistency::{self, averaged_contact_into};
 use crate::rejected::Rejected;
-use crate::state::{Carried, Created, State};
+use crate::state::{Carried, State};
 use crate::system::System;
 
 /// The start of a run, if not the initial positions.
@@ -112,8 +112,7 @@ pub(crate) fn start(
     state.carried = Carried::at_start(&state.contact_forces);
     book_kinetic(model, &mut state);
     state.ledger.potential = model.potential(&state.y);
-    state.ledger.total_at_start = state.ledger.total();
-    state.ledger.created = Created::at_start(&state.ledger);
+    state.ledger.begin();
     Ok(state)
 }
 

@@ -40,7 +40,7 @@ pub struct Ledger {
     /// Energy that conserving contact with a restitution has still to return; negative if it
     /// created some (`restitution.rs`).
     pub owed: f64,
-    /// Largest kinetic + strain energy so far.
+    /// Largest kinetic + strain energy at the end of a step so far.
     pub largest: f64,
     /// Energy created so far.
     pub created: Created,
@@ -91,11 +91,6 @@ pub struct Created {
 }
 
 impl Created {
-    /// Of the energies at the start.
-    pub(crate) fn at_start(ledger: &Ledger) -> Self {
-        Self { lowest: ledger.total(), ..Self::default() }
-    }
-
     /// The most that was created so far.
     pub fn most(&self) -> f64 {
         self.most

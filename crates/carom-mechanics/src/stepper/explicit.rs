@@ -68,10 +68,9 @@ impl Explicit {
         Self { inverse_mass: mass.iter().zip(&model.fixed).map(inverse).collect(), mass }
     }
 
-    /// Updates the kinetic energy ½ Σ m v², and the largest energy so far.
+    /// Updates the kinetic energy ½ Σ m v².
     fn book_kinetic(&self, state: &mut State) {
         state.ledger.kinetic = 0.5 * self.mass.iter().zip(&state.v).map(|(m, v)| m * v * v).sum::<f64>();
-        state.ledger.largest = state.ledger.largest.max(state.ledger.kinetic + state.ledger.strain);
     }
 }
 

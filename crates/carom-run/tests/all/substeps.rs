@@ -152,3 +152,53 @@ fn a_step_that_is_interrupted_leaves_the_state_of_the_last_grid_time() {
     }
     assert!(interrupted > 2, "{interrupted}");
 }
+
+/// Two cylinders that lie across each other, with friction and a step of ten crossings of a cell. The
+/// velocities before the projection grow as the step is shortened, up to fifteen times the energy of
+/// the bodies, and the guard must not be measured by them: 2.7 % were created that it let pass.
+const CYLINDERS: &str = r#"
+dimension = 3
+material = [
+    { name = "stiff", law = "neo-hookean", density = 1.0, young = 1815.1, poisson = 0.3 },
+    { name = "soft", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 },
+]
+[[body]]
+name = "lower"
+material = "stiff"
+element = "Tet4"
+mesh = { shape = "cylinder", radius = 0.29059, height = 0.92323, center = [0.0, 0.0, -0.46162], size = 0.11423 }
+place = { rotate = { axis = [0.0, 1.0, 0.0], angle = 90.0 }, shift = [0.0, 0.0, 0.0] }
+velocity = [0.0, 0.0, 0.2007]
+[[body]]
+name = "upper"
+material = "soft"
+element = "Tet4"
+mesh = { shape = "cylinder", radius = 0.32384, height = 1.0453, center = [0.0, 0.0, -0.52266], size = 0.1273 }
+place = { rotate = { axis = [0.0, 1.0, 0.0], angle = 90.0 }, shift = [-0.16743, -0.015725, 0.62442] }
+velocity = [0.27872, -0.49625, -1.3573]
+[[contact]]
+name = "strike"
+secondary = "upper.skin"
+primary = "lower.skin"
+mu = 1.0
+[time]
+end = 0.0672
+step = 0.0168
+scheme = { kind = "energy-momentum" }
+"#;
+
+#[test]
+fn velocities_within_a_step_do_not_raise_what_the_guard_allows() {
+    let mut sim = simulation(CYLINDERS, &[""; 0]);
+    let start = sim.state().ledger.total();
+    let mut stopped = None;
+    while stopped.is_none() && !sim.finished() {
+        stopped = sim.advance(&mut GridReport::default()).err();
+        // Nothing is supplied, and the strain at the start is none.
+        assert!(sim.state().ledger.scale() < start * (1.0 + 1e-9), "{}", sim.state().ledger.scale());
+    }
+    if let Some(stopped) = stopped {
+        let Stopped::EnergyGuard { scale, share, created, .. } = stopped else { panic!("{stopped}") };
+        assert!(scale < start * (1.0 + share) && created > share * scale, "{stopped}");
+    }
+}
