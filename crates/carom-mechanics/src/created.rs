@@ -45,9 +45,9 @@ impl Ledger {
         self.largest = self.kinetic + self.strain;
     }
 
-    /// Takes the energies at the end of a step into the running minimum and maxima. Not those within
-    /// it: velocities that ring before they are projected may have many times the energy of the
-    /// bodies, which would hide what is created.
+    /// Takes the energies at the end of a step into the running minimum and maxima. Not those
+    /// within it: velocities that ring before they are projected may have many times the energy of
+    /// the bodies, which would hide what is created.
     pub(crate) fn observe(&mut self) {
         self.largest = self.largest.max(self.kinetic + self.strain);
         let energy = self.total() - self.external_work;

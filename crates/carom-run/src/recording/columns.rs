@@ -45,7 +45,7 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
         ),
         (
             "energy_scale",
-            "largest kinetic + strain energy so far, or Σ |change of external_work| if that is larger",
+            "largest kinetic + strain energy at the end of a step so far, or Σ |change of external_work| if that is larger",
         ),
     ] {
         add(name.into(), &label.energy, what, false);

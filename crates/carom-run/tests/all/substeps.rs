@@ -153,9 +153,10 @@ fn a_step_that_is_interrupted_leaves_the_state_of_the_last_grid_time() {
     assert!(interrupted > 2, "{interrupted}");
 }
 
-/// Two cylinders that lie across each other, with friction and a step of ten crossings of a cell. The
-/// velocities before the projection grow as the step is shortened, up to fifteen times the energy of
-/// the bodies, and the guard must not be measured by them: 2.7 % were created that it let pass.
+/// Two cylinders that lie across each other, with friction and a step of ten crossings of a cell.
+/// The velocities before the projection grow as the step is shortened, up to fifteen times the
+/// energy of the bodies, and the guard must not be measured by them: 2.7 % were created that it let
+/// pass.
 const CYLINDERS: &str = r#"
 dimension = 3
 material = [
