@@ -55,6 +55,7 @@ impl Rejected {
             | Self::Unsettled { .. }
             | Self::Deep { .. }
             | Self::Energy { .. }
+            | Self::Unstable { .. }
             | Self::NotFinite { .. } => Place::default(),
         }
     }

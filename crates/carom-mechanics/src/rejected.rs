@@ -194,6 +194,14 @@ pub enum Rejected {
         /// Allowed rise.
         allowed: f64,
     },
+    /// An explicit step exceeds what is stable for the deformed bodies.
+    #[error(
+        "it exceeds the largest stable step of the bodies as they are deformed, which is at most {longest:.3e}"
+    )]
+    Unstable {
+        /// Bound of the stable step.
+        longest: f64,
+    },
     /// A number is not finite.
     #[error("{what} is not finite")]
     NotFinite {
@@ -241,6 +249,7 @@ impl Rejected {
             Self::Jump { .. } => "jump",
             Self::Deep { .. } | Self::Penetration { .. } | Self::Passed { .. } => "penetration",
             Self::Energy { .. } => "energy-created",
+            Self::Unstable { .. } => "unstable-step",
             Self::NotFinite { .. } => "not-finite",
         }
     }

@@ -44,13 +44,16 @@ use crate::independent::{independent, independent_rows};
 use crate::ledger::book_contact_forces;
 use crate::model::Model;
 use crate::rejected::Rejected;
-use crate::stability::lumped;
+use crate::stability::{SAFETY, lumped};
 use crate::state::{HalfStepVelocity, State};
 use crate::timings::timed;
 use crate::workspace::Workspace;
 
 /// Linearisations of the gaps in a step before it is rejected; two to five are typical.
 const ROUNDS: u32 = 60;
+
+/// Work of internal forces, relative to the energies, that may be round-off.
+const ROUND_OFF: f64 = 1e-12;
 
 /// The explicit stepper.
 pub struct Explicit {
@@ -98,6 +101,7 @@ impl Stepper for Explicit {
         next.ledger.strain =
             timed(&mut work.timings.assembly, || model.internal_force(&next.y, &mut next.f_internal))
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+        self.check_stability(start, &next, dt)?;
         model.loads_into(to, &next.y, &mut work.explicit.loads, &mut next.f_external)?;
         next.time = to;
         self.advance_half_step(model, &mut next, &start.half_step.velocity, dt, work, &mut report)?;
@@ -118,14 +122,28 @@ impl Stepper for Explicit {
 }
 
 impl Explicit {
+    /// Rejects a step that is certain to exceed the stability limit of the bodies as they are
+    /// deformed: Rayleigh's quotient Δy·Δf_int/Δy·MΔy of the mean tangent is at most its largest
+    /// ω², and beyond 4/Δt² only if that is. Motion that grows comes to consist of such modes.
+    fn check_stability(&self, start: &State, next: &State, dt: f64) -> Result<(), Rejected> {
+        let (mut stiffness, mut inertia) = (0.0, 0.0);
+        for i in (0..self.mass.len()).filter(|&i| self.inverse_mass[i] > 0.0) {
+            let moved = next.y[i] - start.y[i];
+            stiffness += moved * (next.f_internal[i] - start.f_internal[i]);
+            inertia += self.mass[i] * moved * moved;
+        }
+        let round_off = ROUND_OFF * (start.ledger.kinetic + start.ledger.strain);
+        if dt * dt * stiffness > 4.0 * inertia && stiffness > round_off {
+            return Err(Rejected::Unstable { longest: 2.0 * (inertia / stiffness).sqrt() });
+        }
+        Ok(())
+    }
+
     /// Works and the impulse of contact over a step, by the trapezoidal rule.
     fn record_work(&self, model: &Model, start: &State, next: &mut State, dt: f64) {
         let ledger = &mut next.ledger;
         if !model.loads.is_empty() {
             for (i, (before, now)) in start.f_external.iter().zip(&next.f_external).enumerate() {
-                // v_n is a mean of half steps: a load has contributed Δt²/8 f·M⁻¹f to M v·v/2
-                // before its work is recorded.
-                ledger.unbooked += 0.125 * dt * dt * self.inverse_mass[i] * (now * now - before * before);
                 ledger.external_work += dt * start.half_step.velocity[i] * 0.5 * (before + now);
             }
         }
@@ -149,8 +167,20 @@ impl Explicit {
         // Gaps are closed to a tolerance, over which the work of their forces is not known.
         let pressed = |state: &State| state.pairs.iter().flatten().map(|pair| -pair.lambda).sum::<f64>();
         next.ledger.unbooked += model.gap_tolerance * (pressed(start) + pressed(next));
+        next.ledger.unbooked += self.lent(next, dt) - self.lent(start, dt);
         next.ledger.potential = model.potential(&next.y);
         self.book_kinetic(next);
+    }
+
+    /// The part Δt²/8 a·M a of M v·v/2 that the works of a step do not contain: v_n is the mean of
+    /// the half steps, and v_{n−½}·M v_{n+½}/2 changes by the works. A step of a share of the limit
+    /// lends at most the square of that share of the strain energy, and Δt²/8 f·M⁻¹f of the loads:
+    /// what grows beyond is instability.
+    fn lent(&self, state: &State, dt: f64) -> f64 {
+        let factor = 0.125 * dt * dt;
+        let inertia: f64 = self.mass.iter().zip(&state.a).map(|(m, a)| m * a * a).sum();
+        let loads: f64 = self.inverse_mass.iter().zip(&state.f_external).map(|(m, f)| m * f * f).sum();
+        (factor * inertia).min(SAFETY * SAFETY * state.ledger.strain + factor * loads)
     }
 
     /// Initialises the half-step velocity for a step of this size, from positions and velocities.
@@ -166,6 +196,8 @@ impl Explicit {
             |i: usize| self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
         let before: Vec<f64> = (0..state.v.len()).map(|i| state.v[i] - 0.5 * dt * free(i)).collect();
         let (velocity, kinetic) = (state.v.clone(), state.ledger.kinetic);
+        let last = state.half_step.dt;
+        let lent = self.lent(state, last);
         self.advance_half_step(model, state, &before, dt, work, report)?;
         if state.pairs.iter().flatten().all(|p| !p.active) {
             // Without contact v_n remains bitwise unchanged.
@@ -173,6 +205,10 @@ impl Explicit {
         }
         // Half of the step of the contact force precedes t_n: a jump there.
         self.book_kinetic(state);
+        // A shorter step lends less, and what is not lent any more is created.
+        if last > 0.0 {
+            state.ledger.unbooked += self.lent(state, dt) - lent;
+        }
         report.projection = state.ledger.kinetic - kinetic;
         state.ledger.contact_work += report.projection;
         for (impulse, force) in state.impulses.iter_mut().zip(&state.contact_forces) {

@@ -9,6 +9,7 @@ mod common;
 mod conserving_contact;
 mod edges;
 mod energy_momentum;
+mod explicit_energy;
 mod fallback;
 mod fields;
 mod frequencies;

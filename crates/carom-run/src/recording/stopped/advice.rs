@@ -81,6 +81,7 @@ const TABLE: &[(&str, &[Remedy])] = &[
     ("unconstrained-body", &[(None, "a support for the body, or a scheme with inertia")]),
     ("jump", &[(None, "a `move` that starts at the positions of its nodes")]),
     ("penetration", &[SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
+    ("unstable-step", &[SHORTER, BATHE, FINER]),
     ("not-finite", &[SHORTER, BATHE, FALLBACK, FINER]),
     (AUDIT, &[SHORTER, (None, "a report of this run to the authors: one of the two methods is wrong")]),
     (GUARD, &[PROJECT, LONGER, SHORTER, BATHE, DAMPED, SOFTER, FALLBACK, FINER, GUARD_OFF]),
