@@ -1,5 +1,5 @@
-//! The energy of central differences: the guard lets a stable run pass, whose energy oscillates with
-//! the size of the step, and stops one that its own deformation makes unstable.
+//! The energy of central differences: the guard lets a stable run pass, whose energy oscillates
+//! with the size of the step, and stops one that its own deformation makes unstable.
 
 use carom_run::{GridReport, Stopped};
 
