@@ -14,6 +14,9 @@ const BEHIND: f64 = 1e-6;
 /// The same where the whole boundary is known: a node whose nearest facet is of the side has
 /// entered the body there.
 const RECAPTURED: f64 = 0.02;
+/// The same for a node past the end of the side, relative to its distance from the end: the sine of
+/// 10°, the angle up to which facets that meet there are parallel (`both_sides.rs`).
+pub(super) const AROUND: f64 = 0.17;
 
 impl NodeToFacet {
     /// Finds the facets that a node may meet.
@@ -91,7 +94,13 @@ impl NodeToFacet {
         if let Some((_, facet, xi)) = entered {
             return Some((facet, xi, true));
         }
-        let Closest { facet, xi, .. } = closest.filter(|c| self.primary.is_of_side(c.facet))?;
+        let beside = || {
+            let (_, facet, _) = first?;
+            let rest = entered_elsewhere && !self.primary.is_of_sibling(facet);
+            if rest { self.around_end(near, place, before, now) } else { None }
+        };
+        let of_side = closest.filter(|c| self.primary.is_of_side(c.facet));
+        let Some(Closest { facet, xi, .. }) = of_side else { return beside() };
         if first.is_some() && !entered_elsewhere {
             return Some((facet, xi, true));
         }
@@ -99,6 +108,30 @@ impl NodeToFacet {
         let behind_by = if self.primary.is_whole() { RECAPTURED } else { BEHIND };
         let depth = |length: f64| slack + behind_by * length;
         let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
-        (!start.map_or(entered_elsewhere, behind)).then_some((facet, xi, false))
+        if start.map_or(entered_elsewhere, behind) { beside() } else { Some((facet, xi, false)) }
+    }
+
+    /// The same of a node that has entered through the rest of the boundary, from past an end of
+    /// the side and in front of its facet there. Where the ends of two sides meet, nodes move to
+    /// and fro between being past the end and facing the side.
+    fn around_end(
+        &self,
+        near: &[usize],
+        place: usize,
+        before: Places,
+        now: Places,
+    ) -> Option<(usize, f64, bool)> {
+        let (node, slack) = (self.secondary[place], self.slack(place));
+        near.iter().filter(|&&facet| self.primary.is_of_side(facet)).find_map(|&facet| {
+            let shape = self.primary.facet(facet);
+            let xi = shape.closest_point(now, now.at(node), REACH)?;
+            let start = shape.closest_point(before, before.at(node), REACH)?;
+            let past = (start.abs() - 1.0) * 0.5 * self.primary.length(facet, before);
+            let enters = past > 0.0
+                && !self.primary.faces_nothing(facet, xi, now)
+                && self.gap(node, facet, xi, now) + slack < 0.0
+                && self.gap(node, facet, start, before) + slack >= -AROUND * past;
+            enters.then_some((facet, xi, false))
+        })
     }
 }

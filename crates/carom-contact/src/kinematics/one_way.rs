@@ -45,8 +45,9 @@ impl OneWay for NodeToFacet {
         self.primary.length(facet, self.places(y))
     }
 
-    fn distance(&self, a: usize, b: usize, _: [f64; 3], y: &[f64]) -> f64 {
+    fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64 {
         let y = self.places(y);
-        (y.at(a) - y.at(b)).norm()
+        let apart = y.at(a) - y.at(b);
+        (apart[0] * normal[1] - apart[1] * normal[0]).abs()
     }
 }

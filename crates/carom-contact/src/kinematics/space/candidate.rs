@@ -6,6 +6,7 @@ use carom_solid::{Bounds, Tree};
 use super::crossing::crossing;
 use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
 use super::patch::place;
+use crate::kinematics::candidate::AROUND;
 use crate::kinematics::{Kinematics, SweptPatch};
 
 /// A node this far behind a facet, relative to its length, at the start of a step has not crossed
@@ -113,13 +114,43 @@ impl NodeToPatch {
         if let Some((facet, xi)) = entered.and_then(|(_, facet)| Some((facet, faced(facet)?))) {
             return Some((facet, xi));
         }
-        let (_, facet, xi, _) = closest.filter(|&(_, facet, ..)| self.primary.is_of_side(facet))?;
+        let beside = || {
+            let (_, facet) = first?;
+            let rest = !self.primary.is_of_side(facet) && !self.primary.is_of_sibling(facet);
+            if rest { self.around_end(near, place_of, before, now) } else { None }
+        };
+        let of_side = closest.filter(|&(_, facet, ..)| self.primary.is_of_side(facet));
+        let Some((_, facet, xi, _)) = of_side else { return beside() };
         let patch = self.primary.patch(facet);
         let limit = slack + BEHIND * patch.length(before);
         let behind = match patch.closest_point(before, start, REACH) {
             Some(xi) => self.gap(facet, xi, start, before) < -limit,
             None => entered.is_none() && first.is_some(),
         };
-        (entered.is_some() || !behind).then_some((facet, xi))
+        if entered.is_none() && behind { beside() } else { Some((facet, xi)) }
+    }
+
+    /// The same of a node that has entered through the rest of the boundary, from past an end of
+    /// the side and in front of its facet there, as in the plane.
+    fn around_end(
+        &self,
+        near: &[usize],
+        place_of: usize,
+        before: &[f64],
+        now: &[f64],
+    ) -> Option<(usize, [f64; 2])> {
+        let (node, slack) = (self.secondary[place_of], self.slack(place_of));
+        let [start, end] = [before, now].map(|y| place(y, node));
+        near.iter().filter(|&&facet| self.primary.is_of_side(facet)).find_map(|&facet| {
+            let patch = self.primary.patch(facet);
+            let xi = patch.closest_point(now, end, REACH)?;
+            let from = patch.closest_point(before, start, REACH)?;
+            let past = patch.furthest(from).1 * patch.length(before);
+            let enters = past > 0.0
+                && !self.faces_nothing(facet, xi, now)
+                && self.gap(facet, xi, end, now) + slack < 0.0
+                && self.gap(facet, from, start, before) + slack >= -AROUND * past;
+            enters.then_some((facet, xi))
+        })
     }
 }
