@@ -10,6 +10,9 @@ use crate::model::Model;
 /// others.
 pub(crate) const DEPENDENT: f64 = 1e-8;
 
+/// The same of rows whose multipliers are found from G M⁻¹Gᵀ.
+const NEARLY: f64 = 1e-5;
+
 /// The same for a slip in space.
 const HELD: f64 = 1e-3;
 
@@ -27,6 +30,14 @@ pub(crate) fn independent_rows(
 /// facet, times the gap.
 pub(crate) fn slip_remainder(model: &Model) -> f64 {
     if model.dimension == 3 { HELD } else { DEPENDENT }
+}
+
+/// Whether a row depends on the others so nearly that G M⁻¹Gᵀ, which contains the square of its
+/// remainder, is singular in floating point.
+pub(crate) fn is_dependent<'a>(model: &Model, rows: impl Iterator<Item = Row<'a>>) -> bool {
+    let mut count = 0;
+    let counted = rows.inspect(|_| count += 1).map(|row| ((), row, NEARLY));
+    independent_above(model, counted).len() < count
 }
 
 /// The names of those rows that are linearly independent of the earlier ones on the free dofs.

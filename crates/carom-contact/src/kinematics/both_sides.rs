@@ -34,9 +34,12 @@ use super::surface::Surface;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
-/// Distance between a corner and a secondary node, relative to the corner's facet, below which the
-/// node's own pair is responsible: just where the node begins to face the primary side.
+/// Distance along the surface between a corner and a secondary node, relative to the corner's facet,
+/// below which the node's own pair is responsible: just where the node begins to face the primary
+/// side, or more if it is over the facet. Where all nodes of both sides meet, a corner's row depends
+/// on those of the nodes around it to second order in this distance.
 const NEAR_NODE: f64 = 0.5 * PAST_SIDE;
+pub(super) const NEAR_NODE_INSIDE: f64 = 0.01;
 /// Cosine of the angle up to which two facets are parallel: 10°.
 const PARALLEL: f64 = 0.985;
 
@@ -96,11 +99,15 @@ impl<K: OneWay> BothSides<K> {
         let normal = self.reverse.normal(corner.facet, [corner.xi, corner.eta], y);
         let faced = self.reverse.nodes_of(corner.facet);
         self.corners[corner.node].iter().any(|&(facet, xi)| {
-            // Where an overlap is kept, they meet at that distance.
-            let near = NEAR_NODE * self.forward.length(facet, y) + self.reverse.kept(corner.node);
             let own = self.forward.normal(facet, xi, y);
-            own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2] < -PARALLEL
-                && faced.iter().any(|&other| self.forward.distance(other, node, normal, y) < near)
+            let meets = |&other: &usize| {
+                let share = if self.forward.is_over(facet, other, y) { NEAR_NODE_INSIDE } else { NEAR_NODE };
+                // Where an overlap is kept, they meet at that distance.
+                let near = share * self.forward.length(facet, y) + self.reverse.kept(corner.node);
+                self.forward.distance(other, node, normal, y) < near
+            };
+            let cosine = own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2];
+            cosine < -PARALLEL && faced.iter().any(meets)
         })
     }
 

@@ -1,6 +1,7 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the closest one that it was not behind before.
 
+use super::both_sides::NEAR_NODE_INSIDE;
 use super::facing::{Closest, REACH};
 use super::node_to_facet::{Detection, NodeToFacet, Tools};
 use super::swept::SweptTest;
@@ -14,8 +15,9 @@ const BEHIND: f64 = 1e-6;
 /// The same where the whole boundary is known: a node whose nearest facet is of the side has
 /// entered the body there.
 const RECAPTURED: f64 = 0.02;
-/// The same for a node past the end of the side, relative to its distance from the end: the sine of
-/// 10°, the angle up to which facets that meet there are parallel (`both_sides.rs`).
+/// The same for a node past the end of the side, relative to its distance from the end, or that at
+/// which a corner is left to a node: the sine of 10°, the angle up to which facets that meet there
+/// are parallel (`both_sides.rs`).
 pub(super) const AROUND: f64 = 0.17;
 
 impl NodeToFacet {
@@ -95,9 +97,11 @@ impl NodeToFacet {
             return Some((facet, xi, true));
         }
         let beside = || {
-            let (_, facet, _) = first?;
-            let rest = entered_elsewhere && !self.primary.is_of_sibling(facet);
-            if rest { self.around_end(near, place, before, now) } else { None }
+            let of_sides = |facet| self.primary.is_of_side(facet) || self.primary.is_of_sibling(facet);
+            if first.is_some_and(|(_, facet, _)| of_sides(facet)) {
+                return None;
+            }
+            self.around_end(near, place, before, now)
         };
         let of_side = closest.filter(|c| self.primary.is_of_side(c.facet));
         let Some(Closest { facet, xi, .. }) = of_side else { return beside() };
@@ -112,8 +116,9 @@ impl NodeToFacet {
     }
 
     /// The same of a node that has entered through the rest of the boundary, from past an end of
-    /// the side and in front of its facet there. Where the ends of two sides meet, nodes move to
-    /// and fro between being past the end and facing the side.
+    /// the side and in front of its facet there, or is nearest to the rest and was just behind the
+    /// side. Where the ends of two sides meet, nodes move to and fro between being past the end and
+    /// facing the side, and corners between being left to a node or not.
     fn around_end(
         &self,
         near: &[usize],
@@ -126,9 +131,9 @@ impl NodeToFacet {
             let shape = self.primary.facet(facet);
             let xi = shape.closest_point(now, now.at(node), REACH)?;
             let start = shape.closest_point(before, before.at(node), REACH)?;
-            let past = (start.abs() - 1.0) * 0.5 * self.primary.length(facet, before);
-            let enters = past > 0.0
-                && !self.primary.faces_nothing(facet, xi, now)
+            let length = self.primary.length(facet, before);
+            let past = (0.5 * (start.abs() - 1.0)).max(NEAR_NODE_INSIDE) * length;
+            let enters = !self.primary.faces_nothing(facet, xi, now)
                 && self.gap(node, facet, xi, now) + slack < 0.0
                 && self.gap(node, facet, start, before) + slack >= -AROUND * past;
             enters.then_some((facet, xi, false))

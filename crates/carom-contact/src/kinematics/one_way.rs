@@ -17,8 +17,10 @@ pub trait OneWay: Kinematics {
     /// Distance between the first corners of a primary facet.
     fn length(&self, facet: usize, y: &[f64]) -> f64;
 
-    /// Distance between two nodes that meet; in space, where more of them meet before convergence,
-    /// that across the `normal`.
+    /// Whether the closest point of a node on a primary facet lies within it.
+    fn is_over(&self, facet: usize, node: usize, y: &[f64]) -> bool;
+
+    /// Distance between two nodes across a `normal`: before convergence they may lie deep.
     fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64;
 }
 
@@ -43,6 +45,11 @@ impl OneWay for NodeToFacet {
 
     fn length(&self, facet: usize, y: &[f64]) -> f64 {
         self.primary.length(facet, self.places(y))
+    }
+
+    fn is_over(&self, facet: usize, node: usize, y: &[f64]) -> bool {
+        let y = self.places(y);
+        self.primary.facet(facet).closest_point(y, y.at(node), 1.0).is_some()
     }
 
     fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64 {

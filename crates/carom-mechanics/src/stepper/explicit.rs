@@ -40,7 +40,7 @@ use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, mo
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::contact_update::search;
 use crate::friction_state::{book_states, each_slip};
-use crate::independent::{independent, independent_rows};
+use crate::independent::is_dependent;
 use crate::ledger::book_contact_forces;
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -374,9 +374,8 @@ impl Explicit {
             if !places.iter().map(named).eq(examined.iter().copied()) {
                 examined.clear();
                 examined.extend(places.iter().map(named));
-                dependent = independent_rows(model, places.iter().copied(), rows).len() < places.len()
-                    || model.dimension == 3
-                        && independent(model, acting.iter().enumerate()).len() < acting.len();
+                dependent = is_dependent(model, acting.iter().take(places.len()))
+                    || model.dimension == 3 && is_dependent(model, acting.iter());
             }
             if dependent {
                 proximal(&mut matrix, &mut right, impulses);

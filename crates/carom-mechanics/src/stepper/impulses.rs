@@ -17,7 +17,7 @@ use super::watch::{active, measure_into, moves, overconstrained};
 use crate::constraints::Constraints;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
-use crate::independent::{independent, independent_rows};
+use crate::independent::is_dependent;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
@@ -78,7 +78,7 @@ impl Impulses {
                 return Err(overconstrained(&model.contacts[place.0], pair_of(place), gap));
             }
         }
-        let dependent = independent_rows(model, places.iter().copied(), measured).len() < places.len();
+        let dependent = is_dependent(model, places.iter().map(|&(k, p)| measured[k].row(p)));
         let rows =
             Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
         let back: Vec<f64> = state.y.iter().zip(at).map(|(y, at)| y - at).collect();
@@ -122,7 +122,7 @@ impl Impulses {
                 return Err(overconstrained(&model.contacts[k], &pairings[k].pairs[p], row.gap));
             }
         }
-        let dependent = independent_rows(model, places.iter().copied(), &measured).len() < places.len();
+        let dependent = is_dependent(model, places.iter().map(|&(k, p)| measured[k].row(p)));
         let mut rows =
             Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
         let mut kinds = vec![Kind::Normal; places.len()];
@@ -146,8 +146,7 @@ impl Impulses {
                 restitution.push(0.0);
             }
         }
-        let dependent = dependent
-            || model.dimension == 3 && independent(model, rows.rows.iter().enumerate()).len() < rows.len();
+        let dependent = dependent || model.dimension == 3 && is_dependent(model, rows.rows.iter());
         let mut released = Vec::new();
         if !rows.is_empty() && (shares.velocity != 0.0 || shares.acceleration != 0.0) {
             work.system.mass_with(model, &Constraints::none(model.dimension))?;

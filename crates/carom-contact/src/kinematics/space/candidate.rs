@@ -6,6 +6,7 @@ use carom_solid::{Bounds, Tree};
 use super::crossing::crossing;
 use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
 use super::patch::place;
+use crate::kinematics::both_sides::NEAR_NODE_INSIDE;
 use crate::kinematics::candidate::AROUND;
 use crate::kinematics::{Kinematics, SweptPatch};
 
@@ -115,9 +116,11 @@ impl NodeToPatch {
             return Some((facet, xi));
         }
         let beside = || {
-            let (_, facet) = first?;
-            let rest = !self.primary.is_of_side(facet) && !self.primary.is_of_sibling(facet);
-            if rest { self.around_end(near, place_of, before, now) } else { None }
+            let of_sides = |facet| self.primary.is_of_side(facet) || self.primary.is_of_sibling(facet);
+            if first.is_some_and(|(_, facet)| of_sides(facet)) {
+                return None;
+            }
+            self.around_end(near, place_of, before, now)
         };
         let of_side = closest.filter(|&(_, facet, ..)| self.primary.is_of_side(facet));
         let Some((_, facet, xi, _)) = of_side else { return beside() };
@@ -131,7 +134,8 @@ impl NodeToPatch {
     }
 
     /// The same of a node that has entered through the rest of the boundary, from past an end of
-    /// the side and in front of its facet there, as in the plane.
+    /// the side and in front of its facet there, or is nearest to the rest and was just behind the
+    /// side, as in the plane.
     fn around_end(
         &self,
         near: &[usize],
@@ -145,9 +149,8 @@ impl NodeToPatch {
             let patch = self.primary.patch(facet);
             let xi = patch.closest_point(now, end, REACH)?;
             let from = patch.closest_point(before, start, REACH)?;
-            let past = patch.furthest(from).1 * patch.length(before);
-            let enters = past > 0.0
-                && !self.faces_nothing(facet, xi, now)
+            let past = patch.furthest(from).1.max(NEAR_NODE_INSIDE) * patch.length(before);
+            let enters = !self.faces_nothing(facet, xi, now)
                 && self.gap(facet, xi, end, now) + slack < 0.0
                 && self.gap(facet, from, start, before) + slack >= -AROUND * past;
             enters.then_some((facet, xi))

@@ -39,6 +39,9 @@ const HAND_BACK: f64 = 0.1;
 pub(super) const PAST: f64 = 1e-9;
 /// The same at a sharp edge or the end of a side.
 const PAST_SIDE: f64 = 1e-3;
+/// Difference between the gaps of two facets, relative to their length, up to which either keeps a
+/// node out that would be handed to and fro between them: two rows would depend on each other.
+const FLAT: f64 = 1e-9;
 /// Depth relative to the length of a facet that round-off feigns.
 pub(super) const NOISE: f64 = 1e-9;
 
@@ -144,7 +147,14 @@ impl NodeToPatch {
                     Next::Stay
                 }
             }
-            Some((facet, _, xi)) if came_from == Some(facet) => Next::Concave(facet, xi),
+            Some((facet, _, xi_there)) if came_from == Some(facet) => {
+                let gaps = [(pair.facet, xi), (facet, xi_there)].map(|(f, xi)| self.gap(f, xi, from, y));
+                if (gaps[0] - gaps[1]).abs() <= FLAT * patch.length(y) {
+                    Next::Stay
+                } else {
+                    Next::Concave(facet, xi_there)
+                }
+            }
             Some((facet, _, xi)) => Next::HandOver(facet, xi),
             None => {
                 if let Some((facet, xi)) = self.in_crease(pair.facet, from, y) {
@@ -177,6 +187,10 @@ impl OneWay for NodeToPatch {
 
     fn length(&self, facet: usize, y: &[f64]) -> f64 {
         self.primary.patch(facet).length(y)
+    }
+
+    fn is_over(&self, facet: usize, node: usize, y: &[f64]) -> bool {
+        self.primary.patch(facet).closest_point(y, place(y, node), 0.0).is_some()
     }
 
     fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64 {
