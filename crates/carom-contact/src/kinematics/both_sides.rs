@@ -25,7 +25,6 @@
 use std::sync::Arc;
 
 use super::Kinematics;
-use super::facing::PAST_SIDE;
 use super::folds::{Folds, Side};
 use super::node_to_facet::{Detection, NodeToFacet};
 use super::one_way::OneWay;
@@ -34,12 +33,6 @@ use super::surface::Surface;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
-/// Distance along the surface between a corner and a secondary node, relative to the corner's facet,
-/// below which the node's own pair is responsible: just where the node begins to face the primary
-/// side, or more if it is over the facet. Where all nodes of both sides meet, a corner's row depends
-/// on those of the nodes around it to second order in this distance.
-const NEAR_NODE: f64 = 0.5 * PAST_SIDE;
-pub(super) const NEAR_NODE_INSIDE: f64 = 0.01;
 /// Cosine of the angle up to which two facets are parallel: 10°.
 const PARALLEL: f64 = 0.985;
 
@@ -100,14 +93,10 @@ impl<K: OneWay> BothSides<K> {
         let faced = self.reverse.nodes_of(corner.facet);
         self.corners[corner.node].iter().any(|&(facet, xi)| {
             let own = self.forward.normal(facet, xi, y);
-            let meets = |&other: &usize| {
-                let share = if self.forward.is_over(facet, other, y) { NEAR_NODE_INSIDE } else { NEAR_NODE };
-                // Where an overlap is kept, they meet at that distance.
-                let near = share * self.forward.length(facet, y) + self.reverse.kept(corner.node);
-                self.forward.distance(other, node, normal, y) < near
-            };
-            let cosine = own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2];
-            cosine < -PARALLEL && faced.iter().any(meets)
+            // Where an overlap is kept, they meet at that distance.
+            let near = K::NEAR_END * self.forward.length(facet, y) + self.reverse.kept(corner.node);
+            own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2] < -PARALLEL
+                && faced.iter().any(|&other| self.forward.distance(other, node, normal, y) < near)
         })
     }
 

@@ -1,12 +1,11 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the closest one that it was not behind before.
 
-use super::both_sides::NEAR_NODE_INSIDE;
 use super::facing::{Closest, REACH};
 use super::node_to_facet::{Detection, NodeToFacet, Tools};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Kinematics, OneWay};
 use crate::places::Places;
 
 /// A node this far behind a facet (relative to its length) at the start of a step has not crossed
@@ -132,7 +131,7 @@ impl NodeToFacet {
             let xi = shape.closest_point(now, now.at(node), REACH)?;
             let start = shape.closest_point(before, before.at(node), REACH)?;
             let length = self.primary.length(facet, before);
-            let past = (0.5 * (start.abs() - 1.0)).max(NEAR_NODE_INSIDE) * length;
+            let past = (0.5 * (start.abs() - 1.0)).max(Self::NEAR_END) * length;
             let enters = !self.primary.faces_nothing(facet, xi, now)
                 && self.gap(node, facet, xi, now) + slack < 0.0
                 && self.gap(node, facet, start, before) + slack >= -AROUND * past;

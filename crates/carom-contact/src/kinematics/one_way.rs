@@ -1,10 +1,17 @@
 //! What contact in both directions asks of either of them.
 
 use super::Kinematics;
+use super::facing::PAST_SIDE;
 use super::node_to_facet::NodeToFacet;
 
 /// Secondary nodes against the facets of a primary side, one of the two directions.
 pub trait OneWay: Kinematics {
+    /// Distance along the surface between a corner and a node of the other side, relative to the
+    /// corner's facet, below which the node's own pair is responsible: just where the node begins to
+    /// face this side. Where all nodes of both sides meet, a corner's row depends on those of the
+    /// nodes around it to second order in this distance.
+    const NEAR_END: f64;
+
     /// Facets of the primary side of which a node is a corner, with its ξ there.
     fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])>;
 
@@ -17,14 +24,13 @@ pub trait OneWay: Kinematics {
     /// Distance between the first corners of a primary facet.
     fn length(&self, facet: usize, y: &[f64]) -> f64;
 
-    /// Whether the closest point of a node on a primary facet lies within it.
-    fn is_over(&self, facet: usize, node: usize, y: &[f64]) -> bool;
-
     /// Distance between two nodes across a `normal`: before convergence they may lie deep.
     fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64;
 }
 
 impl OneWay for NodeToFacet {
+    const NEAR_END: f64 = 0.5 * PAST_SIDE;
+
     fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
         let end = |facet: usize| {
             let nodes = self.primary.facet(facet).nodes;
@@ -45,11 +51,6 @@ impl OneWay for NodeToFacet {
 
     fn length(&self, facet: usize, y: &[f64]) -> f64 {
         self.primary.length(facet, self.places(y))
-    }
-
-    fn is_over(&self, facet: usize, node: usize, y: &[f64]) -> bool {
-        let y = self.places(y);
-        self.primary.facet(facet).closest_point(y, y.at(node), 1.0).is_some()
     }
 
     fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64 {

@@ -6,9 +6,8 @@ use carom_solid::{Bounds, Tree};
 use super::crossing::crossing;
 use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
 use super::patch::place;
-use crate::kinematics::both_sides::NEAR_NODE_INSIDE;
 use crate::kinematics::candidate::AROUND;
-use crate::kinematics::{Kinematics, SweptPatch};
+use crate::kinematics::{Kinematics, OneWay, SweptPatch};
 
 /// A node this far behind a facet, relative to its length, at the start of a step has not crossed
 /// it.
@@ -149,7 +148,7 @@ impl NodeToPatch {
             let patch = self.primary.patch(facet);
             let xi = patch.closest_point(now, end, REACH)?;
             let from = patch.closest_point(before, start, REACH)?;
-            let past = patch.furthest(from).1.max(NEAR_NODE_INSIDE) * patch.length(before);
+            let past = patch.furthest(from).1.max(Self::NEAR_END) * patch.length(before);
             let enters = !self.faces_nothing(facet, xi, now)
                 && self.gap(facet, xi, end, now) + slack < 0.0
                 && self.gap(facet, from, start, before) + slack >= -AROUND * past;

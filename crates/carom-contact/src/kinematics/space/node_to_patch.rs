@@ -37,8 +37,9 @@ const HAND_OVER: f64 = 0.02;
 const HAND_BACK: f64 = 0.1;
 /// The same above which a closest point is past an edge.
 pub(super) const PAST: f64 = 1e-9;
-/// The same at a sharp edge or the end of a side.
-const PAST_SIDE: f64 = 1e-3;
+/// The same at a sharp edge or the end of a side: blocks that are pressed together edge to edge bulge
+/// differently, and where two edges of either meet neither corner faces the other block.
+const PAST_SIDE: f64 = 2e-2;
 /// Difference between the gaps of two facets, relative to their length, up to which either keeps a
 /// node out that would be handed to and fro between them: two rows would depend on each other.
 const FLAT: f64 = 1e-9;
@@ -173,6 +174,8 @@ impl NodeToPatch {
 }
 
 impl OneWay for NodeToPatch {
+    const NEAR_END: f64 = 0.5 * PAST_SIDE;
+
     fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
         self.primary.facets_at(node)
     }
@@ -187,10 +190,6 @@ impl OneWay for NodeToPatch {
 
     fn length(&self, facet: usize, y: &[f64]) -> f64 {
         self.primary.patch(facet).length(y)
-    }
-
-    fn is_over(&self, facet: usize, node: usize, y: &[f64]) -> bool {
-        self.primary.patch(facet).closest_point(y, place(y, node), 0.0).is_some()
     }
 
     fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64 {
