@@ -131,7 +131,7 @@ impl NodeToFacet {
             let xi = shape.closest_point(now, now.at(node), REACH)?;
             let start = shape.closest_point(before, before.at(node), REACH)?;
             let length = self.primary.length(facet, before);
-            let past = (0.5 * (start.abs() - 1.0)).max(Self::NEAR_END) * length;
+            let past = Self::NEAR_END * length;
             let enters = !self.primary.faces_nothing(facet, xi, now)
                 && self.gap(node, facet, xi, now) + slack < 0.0
                 && self.gap(node, facet, start, before) + slack >= -AROUND * past;

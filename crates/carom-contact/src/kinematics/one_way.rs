@@ -7,9 +7,9 @@ use super::node_to_facet::NodeToFacet;
 /// Secondary nodes against the facets of a primary side, one of the two directions.
 pub trait OneWay: Kinematics {
     /// Distance along the surface between a corner and a node of the other side, relative to the
-    /// corner's facet, below which the node's own pair is responsible: just where the node begins to
-    /// face this side. Where all nodes of both sides meet, a corner's row depends on those of the
-    /// nodes around it to second order in this distance.
+    /// corner's facet, below which the node's own pair is responsible: just where the node begins
+    /// to face this side. Where all nodes of both sides meet, a corner's row depends on those of
+    /// the nodes around it to second order in this distance.
     const NEAR_END: f64;
 
     /// Facets of the primary side of which a node is a corner, with its ξ there.

@@ -10,6 +10,7 @@ mod conserving_contact;
 mod edges;
 mod energy_momentum;
 mod explicit_energy;
+mod faces;
 mod fallback;
 mod fields;
 mod frequencies;

@@ -26,7 +26,7 @@ pub struct Boundary {
     nodes: Vec<usize>,
     /// Across each edge: the facet there, and the number of the edge on it.
     neighbours: Vec<[Option<(usize, usize)>; 4]>,
-    /// Facets at each node of an edge.
+    /// Facets at each node that is a corner.
     around: HashMap<usize, Vec<usize>>,
     side: usize,
     siblings: usize,
@@ -44,9 +44,7 @@ impl Boundary {
         for (facet, nodes) in facets.iter().enumerate() {
             for e in 0..count {
                 edges.insert((nodes[e], nodes[(e + 1) % count]), (facet, e));
-            }
-            for &node in &nodes[..count * shape.degree()] {
-                around.entry(node).or_default().push(facet);
+                around.entry(nodes[e]).or_default().push(facet);
             }
         }
         let neighbours = |nodes: &&Vec<usize>| {
@@ -103,22 +101,13 @@ impl Boundary {
         self.patch(facet).nodes
     }
 
-    /// Facets of the side with a node on their edges, with its ξ there.
+    /// Facets of the side of which a node is a corner, with its ξ there.
     pub(crate) fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
         let around = self.around.get(&node).into_iter().flatten().filter(|&&facet| self.is_of_side(facet));
         let at = |&facet: &usize| {
             let patch = self.patch(facet);
-            let (count, degree) = (patch.corners(), self.shape.degree());
-            let place = patch.nodes[..count * degree].iter().position(|&n| n == node)?;
-            // Behind the corners come the inner nodes of edge after edge.
-            let xi = match place.checked_sub(count) {
-                None => patch.corner(place),
-                Some(inner) => {
-                    let (edge, k) = (inner / (degree - 1), inner % (degree - 1));
-                    patch.along(edge, (k + 1) as f64 / degree as f64)
-                }
-            };
-            Some((facet, xi))
+            let corner = patch.nodes[..patch.corners()].iter().position(|&n| n == node)?;
+            Some((facet, patch.corner(corner)))
         };
         around.filter_map(at).collect()
     }
@@ -173,18 +162,6 @@ impl Boundary {
         }
         let turns = |at: &Vec<Vector<3>>| at.iter().any(|along| along.dot(&at[0]).abs() < SHARP);
         directions.into_iter().filter(|(_, at)| turns(at)).map(|(node, _)| node).collect()
-    }
-
-    /// Nodes of the side on sharp convex edges, ascending.
-    pub fn nodes_of_sharp_edges(&self, y: &[f64]) -> Vec<usize> {
-        let of_edge = |(facet, edge): (usize, usize)| {
-            let (nodes, count) = self.shape.edge(edge);
-            nodes[..count].iter().map(|&node| self.patch(facet).nodes[node]).collect::<Vec<_>>()
-        };
-        let mut nodes: Vec<usize> = self.sharp_edges(y).into_iter().flat_map(of_edge).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
     }
 
     /// The side's sharp convex edges, as facets with the numbers of their edges: each from one of

@@ -148,7 +148,7 @@ impl NodeToPatch {
             let patch = self.primary.patch(facet);
             let xi = patch.closest_point(now, end, REACH)?;
             let from = patch.closest_point(before, start, REACH)?;
-            let past = patch.furthest(from).1.max(Self::NEAR_END) * patch.length(before);
+            let past = Self::NEAR_END * patch.length(before);
             let enters = !self.faces_nothing(facet, xi, now)
                 && self.gap(facet, xi, end, now) + slack < 0.0
                 && self.gap(facet, from, start, before) + slack >= -AROUND * past;

@@ -33,10 +33,13 @@ const OUTSIDE: f64 = -0.4;
 /// meet, if they approach by as much in it, and after it.
 const BEHIND: f64 = 0.05;
 const DEEP: f64 = 0.25;
-/// |ξ| beyond 1 at which a pair is handed over to the next edge, up to which an edge is extrapolated if there is none, and by which a new pair is before a corner.
+/// |ξ| beyond 1 at which a pair is handed over to the next edge, up to which an edge is
+/// extrapolated if there is none, and by which a new pair is before a corner.
 const PAST: f64 = 0.02;
 const REACH: f64 = 0.2;
-const CORNER: f64 = 0.02;
+const CORNER: f64 = 0.04;
+/// The same from a corner at which two corners meet.
+const NEAR_CORNER: f64 = 0.2;
 /// Distance over the length of an edge of contact points of edges that continue each other, and the
 /// cosine of the angle between their normals, below and above which one pair constrains both.
 const TOGETHER: f64 = 0.1;
@@ -146,12 +149,20 @@ impl EdgeToEdge {
         })
     }
 
+    /// Whether both closest points are near corners: each corner is past an edge of the other
+    /// body's facet there, and neither faces it, however nearly the normal is a facet's.
+    fn at_corners(&self, edges: [usize; 2], xi: [f64; 2]) -> bool {
+        let ends = |i: usize| self.sides[i].beyond(edges[i], xi[i].signum() * (1.0 + PAST)).is_none();
+        [0, 1].into_iter().all(|i| xi[i].abs() > 1.0 - NEAR_CORNER && ends(i))
+    }
+
     /// The gap of two edges that have met between these positions.
     fn candidate(&self, edges: [usize; 2], before: &[f64], now: &[f64]) -> Option<EdgeGap> {
         let gap = self.closest(edges, [0.0; 2], now)?;
         let length = self.shorter(edges, now);
         let met = gap.distance < 0.0 && gap.distance > -DEEP * length;
-        if !met || !self.is_on(edges, gap.xi, PAST, -CORNER) || !self.cross(edges, &gap, BETWEEN, now) {
+        let between = if self.at_corners(edges, gap.xi) { OUTSIDE } else { BETWEEN };
+        if !met || !self.is_on(edges, gap.xi, PAST, -CORNER) || !self.cross(edges, &gap, between, now) {
             return None;
         }
         let start = self.closest(edges, gap.xi, before)?;

@@ -37,8 +37,8 @@ const HAND_OVER: f64 = 0.02;
 const HAND_BACK: f64 = 0.1;
 /// The same above which a closest point is past an edge.
 pub(super) const PAST: f64 = 1e-9;
-/// The same at a sharp edge or the end of a side: blocks that are pressed together edge to edge bulge
-/// differently, and where two edges of either meet neither corner faces the other block.
+/// The same at a sharp edge or the end of a side: blocks that are pressed together edge to edge
+/// bulge differently, and where two edges of either meet neither corner faces the other block.
 const PAST_SIDE: f64 = 2e-2;
 /// Difference between the gaps of two facets, relative to their length, up to which either keeps a
 /// node out that would be handed to and fro between them: two rows would depend on each other.
