@@ -28,7 +28,7 @@ const MOST: usize = 5000;
 /// The frozen tangent of the bodies, and what solves with it.
 pub(crate) struct Iterative {
     matrix: NodeMatrix,
-    /// Slots of the blocks of each cell, by rows, cell after cell over all bodies.
+    /// Slots of the stored blocks of each cell, by rows, cell after cell over all bodies.
     slots: Vec<u32>,
     diagonals: [Vec<f64>; 2],
     /// The point of the matrix.
@@ -57,9 +57,9 @@ impl Iterative {
         for part in &model.parts {
             let mesh = part.body.mesh();
             for cell in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
-                for a in cell {
-                    let slot = |b| matrix.slot(part.first_node + a, part.first_node + b).unwrap_or_default();
-                    slots.extend(cell.iter().map(|b| slot(b) as u32));
+                for (a, b) in stored(cell) {
+                    let [a, b] = [cell[a], cell[b]].map(|node| part.first_node + node);
+                    slots.push(matrix.slot(a, b).unwrap_or_default() as u32);
                 }
             }
         }
@@ -110,7 +110,7 @@ impl Iterative {
             };
             let add = |cell: usize, local: &[f64]| {
                 let tangent = &local[n..];
-                for (a, b) in (0..n / d).flat_map(|a| (0..n / d).map(move |b| (a, b))) {
+                for (a, b) in stored(mesh.cell(cell)) {
                     let Some(slot) = slots.next() else { return };
                     for (i, row) in matrix.block_mut(*slot as usize).chunks_exact_mut(d).enumerate() {
                         let from = (a * d + i) * n + b * d;
@@ -178,7 +178,7 @@ impl Preconditioner for Iterative {
         self.assemble_times(model, &point.at, point.stiffness)?;
         let d = model.dimension;
         for node in 0..model.mass.nodes() {
-            for (other, mass) in model.mass.row(node) {
+            for (other, mass) in model.mass.row(node).filter(|(other, _)| *other >= node) {
                 let Some(slot) = self.matrix.slot(node, other) else { continue };
                 let diagonal = self.matrix.block_mut(slot).iter_mut().step_by(d + 1);
                 diagonal.for_each(|entry| *entry += (point.mass * mass) as f32);
@@ -343,6 +343,12 @@ impl Patches {
             from += n * n;
         }
     }
+}
+
+/// Places of a cell's nodes whose blocks are stored.
+fn stored(cell: &[usize]) -> impl Iterator<Item = (usize, usize)> + '_ {
+    let pairs = (0..cell.len()).flat_map(move |a| (0..cell.len()).map(move |b| (a, b)));
+    pairs.filter(|&(a, b)| cell[a] <= cell[b])
 }
 
 /// The nodes that share a cell with each node.

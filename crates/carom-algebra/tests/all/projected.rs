@@ -21,8 +21,10 @@ fn grid(m: usize, d: usize) -> (NodeMatrix, Vec<f64>) {
     let mut dense = vec![0.0; n * n];
     let mut set = |a: usize, b: usize, i: usize, j: usize, value: f32| {
         for (a, b, i, j) in [(a, b, i, j), (b, a, j, i)] {
-            let slot = matrix.slot(a, b).unwrap();
-            matrix.block_mut(slot)[i * d + j] = value;
+            if a <= b {
+                let slot = matrix.slot(a, b).unwrap();
+                matrix.block_mut(slot)[i * d + j] = value;
+            }
             dense[(a * d + i) * n + b * d + j] = f64::from(value);
         }
     };
@@ -37,6 +39,10 @@ fn grid(m: usize, d: usize) -> (NodeMatrix, Vec<f64>) {
         }
     }
     (matrix, dense)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn wave(i: usize) -> f64 {
@@ -86,9 +92,8 @@ fn eliminate(mut matrix: Vec<f64>, right: &mut [f64]) {
 }
 
 fn solve(d: usize, threads: usize) -> (Vec<f64>, Vec<f64>, usize) {
-    let (matrix, _) = grid(6, d);
-    let threads = Threads::new(threads);
-    let (matrix, blocks) = (matrix.on(&threads), blocks(&grid(6, d).0, d));
+    let (matrix, dense) = grid(6, d);
+    let (threads, blocks) = (Threads::new(threads), blocks(&matrix, d));
     let mut constraints = ConstraintRows::default();
     constraints.clear();
     rows(d).into_iter().for_each(|(compliance, entries)| constraints.push(compliance, entries));
@@ -97,7 +102,8 @@ fn solve(d: usize, threads: usize) -> (Vec<f64>, Vec<f64>, usize) {
     let gaps = [0.3, -0.2, 0.0, 0.1];
     let (mut x, mut multipliers) = (vec![0.0; forces.len()], vec![0.0; gaps.len()]);
     let product = |x: &[f64], out: &mut [f64]| {
-        matrix.multiply_into(x, out);
+        let rows_of_matrix = dense.chunks_exact(x.len());
+        out.iter_mut().zip(rows_of_matrix).for_each(|(out, row)| *out = dot(row, x));
         let (compliance, spring) = &rows(d)[2];
         let force = spring.iter().map(|(dof, slope)| slope * x[*dof]).sum::<f64>() / compliance;
         spring.iter().for_each(|(dof, slope)| out[*dof] += force * slope);
@@ -177,10 +183,10 @@ fn the_preconditioner_of_a_block_diagonal_matrix_is_its_inverse() {
             &mut constraints,
             [&forces, &[]],
             [&mut x, &mut []],
-            (1e-12, 9),
+            (1e-6, 9),
         );
         assert_eq!(ended.iterations, 1);
-        assert!(x.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-14));
+        assert!(x.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-6));
     }
 }
 
@@ -207,4 +213,51 @@ fn dependent_rows_and_indefinite_matrices_are_reported() {
         (1e-12, 50),
     );
     assert!(ended.is_indefinite);
+}
+
+/// More nodes than a section has, coupled near and far: the product of the stored half is that of
+/// the whole matrix, to single precision and with the same bits from every number of threads.
+#[test]
+fn a_product_with_the_stored_half_is_that_of_the_matrix() {
+    const NODES: usize = 5000;
+    let others = |node: usize| [(node + 1) % NODES, (node * 7 + 3) % NODES, (node * node + 11) % NODES];
+    let entry = |a: usize, b: usize, i: usize, j: usize| wave(a + 3 * b + 5 * i + 7 * j) as f32;
+    for d in 1..=3 {
+        let mut coupled = vec![Vec::new(); NODES];
+        for (a, b) in (0..NODES).flat_map(|a| others(a).map(|b| (a, b))) {
+            coupled[a].push(b as u32);
+            coupled[b].push(a as u32);
+        }
+        let mut matrix = NodeMatrix::new(d, coupled.clone());
+        let x: Vec<f64> = (0..NODES * d).map(wave).collect();
+        let (mut exact, mut scale) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+        for (a, others) in coupled.iter_mut().enumerate() {
+            others.push(a as u32);
+            others.sort_unstable();
+            others.dedup();
+            for b in others.iter().map(|b| *b as usize).filter(|b| *b >= a) {
+                let slot = matrix.slot(a, b).unwrap();
+                for (i, j) in (0..d).flat_map(|i| (0..d).map(move |j| (i, j))) {
+                    let value = if a == b { entry(a, a, i.min(j), i.max(j)) } else { entry(a, b, i, j) };
+                    matrix.block_mut(slot)[i * d + j] = value;
+                    let ends = [(a * d + i, b * d + j), (b * d + j, a * d + i)];
+                    for (row, column) in ends.into_iter().take(if a == b { 1 } else { 2 }) {
+                        exact[row] += f64::from(value) * x[column];
+                        scale[row] += (f64::from(value) * x[column]).abs();
+                    }
+                }
+            }
+        }
+        let product = |threads: usize| {
+            let mut matrix = matrix.clone().on(&Threads::new(threads));
+            let mut out = vec![f64::NAN; x.len()];
+            matrix.multiply_into(&x, &mut out);
+            out
+        };
+        let one = product(1);
+        for (k, (product, exact)) in one.iter().zip(&exact).enumerate() {
+            assert!((product - exact).abs() < 1e-6 * scale[k], "{d}, {k}: {product} {exact}");
+        }
+        [2, 3].iter().for_each(|&threads| assert_eq!(product(threads), one));
+    }
 }
