@@ -32,7 +32,7 @@ pub use one_way::OneWay;
 pub use passed::Passed;
 pub use space::{Boundary, ClosedSurface, EdgeToEdge, NodeToPatch, WithEdges};
 pub use surface::Surface;
-pub use swept::{Crossings, PatchHit, Swept, SweptPatch, SweptTest};
+pub use swept::{Crossings, EdgeHit, PatchHit, Swept, SweptEdges, SweptPatch, SweptTest};
 pub(crate) use way::amplification;
 
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
