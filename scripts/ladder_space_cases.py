@@ -358,12 +358,45 @@ def slide_off(r, draw):
     return Draft(f"a {kind} slides off the edge of a table", [b, t], skins(r, b, t), min(0.9, w / v + 0.3), [HOLD.format("table.bottom")], rough=0.6, gravity=(0, 0, -g))
 
 
+def slanting(r, draw):
+    """Within one step it would enter the plate at the top, leave at the bottom, and be past its end."""
+    size, share, young = r.uniform(0.02, 0.05), between(r, 0.03, 0.3), 100 * between(r, 1, 100)
+    t, angle = r.uniform(0.02, 0.06), radians(r.uniform(20, 45))
+    p = draw.box("plate", (1.0, 0.4, t), r.randint(6, 12), young=young).at((0, 0, -t / 2))
+    v = share * p.speed()
+    along, down = v * cos(angle), v * sin(angle)
+    step = r.uniform(0.8, 1.6) / along
+    start = r.uniform(0.4, 1.6) * down * step + 0.01
+    keys = {"young": young * between(r, 1, 30), "density": r.choice([1.0, 5.0])}
+    if r.random() < 0.6:
+        s = draw.ball("shot", size, r.choice([1, 2]), **keys)
+    else:
+        s = draw.box("shot", (2 * size, 2 * size, 2 * size), 2, **keys)
+    s.turned(direction(r), r.uniform(0, 180))
+    aim = r.uniform(-0.1, 0.35)
+    s.resting(aim - along / down * start, r.uniform(-0.1, 0.1), start).moving((along, 0, -down))
+    hold = r.choice([["left"], ["left", "right"], ["front", "back"]])
+    supports = [HOLD.format(f"plate.{x}") for x in hold]
+    what = f"a small body flies through a plate and past its end in a step, at {angle * 180 / pi:.0f} degrees"
+    return Draft(what, [s, p], skins(r, s, p, 0.6), 20 * step, supports, step=step)
+
+
 CATEGORIES = {
     "corner-landing": corner_landing, "edge-landing": edge_landing, "corner-corner": corner_corner, "edge-edge": edge_edge,
     "ball-edge": ball_edge, "balls": balls, "cylinders": cylinders, "thin-plate": thin_plate, "bullet": bullet,
     "tumble": tumble, "bowl": bowl, "stack": stack, "mesh-ratio": mesh_ratio, "press": press, "tube": tubes,
-    "pile": pile, "slide-off": slide_off,
+    "pile": pile, "slide-off": slide_off, "slanting": slanting,
 }  # fmt: skip
+# Categories of the first cases of a seed: those that were added later come after them, so that a
+# number keeps its case.
+FIRST, FIRST_CASES = 17, 340
+
+
+def category_of(k):
+    """The category of case k ≥ 1."""
+    if k <= FIRST_CASES:
+        return list(CATEGORIES)[(k - 1) % FIRST]
+    return list(CATEGORIES)[(k - FIRST_CASES - 1 + FIRST) % len(CATEGORIES)]
 
 
 def chosen_scheme(r, family):
@@ -374,7 +407,7 @@ def chosen_scheme(r, family):
 def case(seed, k):
     """(category, family, …; text) of case k ≥ 1."""
     r = random.Random(f"ladder in space {seed} {k}")
-    category = list(CATEGORIES)[(k - 1) % len(CATEGORIES)]
+    category = category_of(k)
     draft = CATEGORIES[category](r, Draw(r))
     refused = lambda f: draft.moved and f in IMPULSE or draft.step and f in EXPLICIT
     # Free bodies and gravity have no equilibrium: load steps are for tools between supports.

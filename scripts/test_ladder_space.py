@@ -328,7 +328,7 @@ class Records(unittest.TestCase):
 class Generator(unittest.TestCase):
     def test_cases_are_valid_toml_and_depend_on_seed_and_number_only(self):
         seen = set()
-        for k in range(1, 341):
+        for k in range(1, 381):
             meta, text = ladder_space_cases.case(7, k)
             self.assertEqual((meta, text), ladder_space_cases.case(7, k))
             case = tomllib.loads(text)
@@ -341,6 +341,11 @@ class Generator(unittest.TestCase):
             self.assertNotEqual(text, ladder_space_cases.case(8, k)[1])
         self.assertEqual({c for c, _ in seen}, set(ladder_space_cases.CATEGORIES))
         self.assertEqual({f for _, f in seen}, set(ladder_space_cases.FAMILIES))
+
+    def test_a_category_that_was_added_later_does_not_change_the_first_cases(self):
+        of = ladder_space_cases.category_of
+        self.assertEqual([of(k) for k in (1, 17, 18, 340)], ["corner-landing", "slide-off", "corner-landing", "slide-off"])
+        self.assertEqual([of(k) for k in (341, 342, 358, 359)], ["slanting", "corner-landing", "slide-off", "slanting"])
 
 
 if __name__ == "__main__":

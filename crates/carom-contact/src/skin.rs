@@ -7,7 +7,7 @@ use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull, Tree};
 
 use crate::depth::Depth;
-use crate::kinematics::{Folds, Side, Surface, Turns};
+use crate::kinematics::{Folds, Side, Surface, Turns, amplification};
 use crate::places::Places;
 
 /// The boundary of a body at given positions.
@@ -47,11 +47,7 @@ impl Skin {
 
     /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵅ|.
     pub fn amplification(&self) -> f64 {
-        match self.surface.shape().degree() {
-            0 | 1 => 1.0,
-            2 => 1.25,
-            _ => 1.6312,
-        }
+        amplification(self.surface.shape())
     }
 
     /// Moves the boundary to positions `y`, flat over all nodes.

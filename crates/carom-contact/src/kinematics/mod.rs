@@ -20,6 +20,7 @@ mod surface;
 mod swept;
 mod tangents;
 mod trajectory;
+mod way;
 
 pub use both_sides::BothSides;
 pub use folds::Side;
@@ -31,7 +32,8 @@ pub use one_way::OneWay;
 pub use passed::Passed;
 pub use space::{Boundary, ClosedSurface, EdgeToEdge, NodeToPatch, WithEdges};
 pub use surface::Surface;
-pub use swept::{Crossings, PatchHit, Swept, SweptPatch, SweptTest};
+pub use swept::{Crossings, EdgeHit, PatchHit, Swept, SweptEdges, SweptPatch, SweptTest};
+pub(crate) use way::amplification;
 
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;

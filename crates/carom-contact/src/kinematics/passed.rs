@@ -2,8 +2,8 @@
 //! `obstacle/path.rs`.
 //!
 //! At the end of such a step nothing penetrates, and no facet is faced where the node entered: it
-//! has moved past the end of the side. Its straight path relative to the body shows it. A node that
-//! only cuts off a corner does so by less the shorter the step is.
+//! has moved past the end of the side. Its straight path relative to the body shows it (`way.rs`).
+//! A node that only cuts off a corner does so by less the shorter the step is.
 
 use carom_algebra::Vector;
 use carom_solid::FacetShape;
@@ -11,20 +11,18 @@ use carom_solid::FacetShape;
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
-use crate::depth::Depth;
+use super::way::{Allowed, Between, Met, Seen, Way, amplification, through};
 use crate::places::Places;
 
 /// Depth, relative to the facet, that a path may have.
 pub(super) const SHARE: f64 = 0.01;
-/// Instants between entry and exit at which the depth is measured.
-const INSTANTS: usize = 7;
 
 /// A node that was inside a body between the start and the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passed {
     /// Its global number.
     pub node: usize,
-    /// Its largest depth of those measured on its way.
+    /// Its largest depth on its way, within an eighth.
     pub depth: f64,
     /// The depth that is allowed.
     pub limit: f64,
@@ -52,7 +50,7 @@ impl Paths<'_> {
         swept: &mut SweptTest,
         [before, now]: [&[f64]; 2],
     ) -> Option<Passed> {
-        let Self { surface, nodes, allowed, enters, bounds, bounce } = *self;
+        let Self { surface, nodes, enters, bounds, .. } = *self;
         let first = *nodes.first()?;
         if surface.shape() == FacetShape::Point || !surface.is_whole() {
             return None;
@@ -71,9 +69,9 @@ impl Paths<'_> {
             shortest = shortest.min(square(start.at(nodes[1]) - start.at(nodes[0])));
         }
         let of_nodes = nodes.iter().map(moved).fold(0.0, f64::max);
-        let shortest = shortest.sqrt();
+        let of_body = of_body.sqrt();
         // Entry, depth and exit need a path of twice the depth.
-        if of_body.sqrt() + of_nodes.sqrt() <= 2.0 * SHARE * shortest
+        if of_body + of_nodes.sqrt() <= 2.0 * SHARE * shortest.sqrt()
             || !search.update(surface, nodes, 0.0, start, end)
         {
             return None;
@@ -96,35 +94,21 @@ impl Paths<'_> {
                 let met = near.iter().filter(|&&facet| through(facet));
                 let crossings =
                     met.filter_map(|&f| Some((f, crossing(swept, surface.facet(f), from, to, node)?)));
-                crossings.min_by(|a, b| a.1.theta.total_cmp(&b.1.theta))
+                let (facet, met) = crossings.min_by(|a, b| a.1.theta.total_cmp(&b.1.theta))?;
+                Some(Met { theta: met.theta, facet, xi: [met.xi, 0.0] })
             };
             // The last exit is the first entry of the reversed motion.
-            let Some((entered, entry)) = earliest(start, end, &|facet| enters(node, facet)) else { continue };
-            let Some((left, back)) = earliest(end, start, &|_| true) else { continue };
-            let exit = 1.0 - back.theta;
-            if exit <= entry.theta {
-                continue;
-            }
-            let between = between.get_or_insert_with(|| Between { before, now, y: vec![0.0; now.len()] });
-            let normals = [(entered, entry.theta, entry.xi), (left, exit, back.xi)];
-            let share = share(normals.map(|(f, theta, xi)| between.normal(surface, f, theta, xi)), bounce);
-            for k in 0..INSTANTS {
-                let theta = entry.theta + (exit - entry.theta) * (k + 1) as f64 / (INSTANTS + 1) as f64;
-                let point = between.at(theta, node);
-                let mut distance = |facet: usize| between.distance(surface, facet, theta, point);
-                // No deeper than the facet that it entered is away, as nearly always where it
-                // slides.
-                if distance(entered) <= allowed(place) + share * shortest {
-                    continue;
-                }
-                let of_body = |facet: usize| bounds(node, facet).then(|| distance(facet));
-                let Some((facet, _)) = search.nearest(point, entered, of_body) else { continue };
-                let found = between.depth(surface, facet, theta, point);
-                let (depth, limit) =
-                    (-found.distance, allowed(place) + share * surface.length(found.facet, start));
-                if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
-                    worst = Some(Passed { node, depth, limit });
-                }
+            let entry = earliest(start, end, &|facet| enters(node, facet));
+            let exit = earliest(end, start, &|_| true).map(|back| Met { theta: 1.0 - back.theta, ..back });
+            let between = between.get_or_insert_with(|| Between::new([before, now]));
+            let from = entry.or(exit).map(|met| met.facet);
+            let allowed = Allowed::default();
+            let mut way = OnWay { paths: self, search, between, start, place, node, allowed, from };
+            let fastest = amplification(surface.shape()) * (of_body + moved(&node).sqrt());
+            let Some(found) = through(&mut way, [entry, exit], self.bounce, fastest) else { continue };
+            let (depth, limit) = (found.depth, found.limit);
+            if worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
+                worst = Some(Passed { node, depth, limit });
             }
         }
         worst
@@ -141,39 +125,62 @@ pub(super) fn share<const D: usize>([entered, left]: [Vector<D>; 2], bounce: f64
     if entered.dot(&left) > 0.0 { bounce.max(SHARE) } else { SHARE }
 }
 
-/// Positions at an instant of the motion, those of some nodes alone.
-struct Between<'a> {
-    before: &'a [f64],
-    now: &'a [f64],
-    y: Vec<f64>,
+/// A node between entry and exit.
+struct OnWay<'a, 'b> {
+    paths: &'a Paths<'a>,
+    search: &'a Search,
+    between: &'a mut Between<'b, 2>,
+    start: Places<'a>,
+    place: usize,
+    node: usize,
+    allowed: Allowed,
+    /// A facet near the node.
+    from: Option<usize>,
 }
 
-impl Between<'_> {
-    fn at(&self, theta: f64, node: usize) -> [f64; 2] {
-        [2 * node, 2 * node + 1].map(|i| self.before[i] + theta * (self.now[i] - self.before[i]))
-    }
-
-    fn places(&mut self, theta: f64, nodes: &[usize]) -> Places<'_> {
-        for &node in nodes {
-            [self.y[2 * node], self.y[2 * node + 1]] = self.at(theta, node);
+impl Way for OnWay<'_, '_> {
+    fn seen(&mut self, theta: f64) -> Option<Seen> {
+        let (surface, node) = (self.paths.surface, self.node);
+        let point = self.between.at(theta, node).0;
+        let distance = |facet: usize| {
+            (self.paths.bounds)(node, facet).then(|| {
+                let y = self.between.with(theta, surface.facet(facet).nodes);
+                surface.nearest(facet, point, Places::new(y, 2)).1
+            })
+        };
+        let (facet, _) = self.search.nearest(point, self.from, distance)?;
+        let near = [false, true].into_iter().filter_map(|forward| surface.neighbour(facet, forward));
+        for facet in near.chain([facet]) {
+            self.between.with(theta, surface.facet(facet).nodes);
         }
-        Places::new(&self.y, 2)
+        let found = surface.depth(facet, point, Places::new(self.between.flat(), 2));
+        self.from = Some(found.facet);
+        Some(self.on(theta, found.facet, found.xi, -found.distance))
     }
 
-    fn normal(&mut self, surface: &Surface, facet: usize, theta: f64, xi: f64) -> Vector<2> {
-        let facet = surface.facet(facet);
-        facet.at(self.places(theta, facet.nodes), xi).normal
+    fn on(&self, theta: f64, facet: usize, xi: [f64; 2], depth: f64) -> Seen {
+        let surface = self.paths.surface;
+        let speed = self.between.speed(self.node, surface.shape(), surface.facet(facet).nodes, xi);
+        let of_facet =
+            (self.paths.allowed)(self.place) + self.allowed.share * surface.length(facet, self.start);
+        let limit = of_facet.max(self.allowed.at_end);
+        Seen { theta, facet, xi, depth, speed, limit }
     }
 
-    fn distance(&mut self, surface: &Surface, facet: usize, theta: f64, point: [f64; 2]) -> f64 {
-        surface.nearest(facet, point, self.places(theta, surface.facet(facet).nodes)).1
+    fn normal(&mut self, at: &Seen) -> Vector<3> {
+        let facet = self.paths.surface.facet(at.facet);
+        let y = self.between.with(at.theta, facet.nodes);
+        let normal = facet.at(Places::new(y, 2), at.xi[0]).normal;
+        Vector([normal[0], normal[1], 0.0])
     }
 
-    fn depth(&mut self, surface: &Surface, facet: usize, theta: f64, point: [f64; 2]) -> Depth {
-        for near in [false, true].into_iter().filter_map(|forward| surface.neighbour(facet, forward)) {
-            self.places(theta, surface.facet(near).nodes);
-        }
-        surface.depth(facet, point, self.places(theta, surface.facet(facet).nodes))
+    fn between(&self, from: &Seen, to: &Seen) -> f64 {
+        let surface = self.paths.surface;
+        self.between.most(self.node, surface.shape(), surface.facet(from.facet).nodes, from, to)
+    }
+
+    fn allow(&mut self, allowed: Allowed) {
+        self.allowed = allowed;
     }
 }
 
@@ -238,5 +245,46 @@ mod tests {
         assert_eq!(bounce(0.25), None);
         // Through the plate, however much a bounce may have.
         assert!(bounced([0.1, 0.2], [2.5, -1.0], [0.0; 2], 0.25).is_some());
+    }
+
+    #[test]
+    fn thin_walls_of_a_hollow_body_are_not_missed() {
+        // It is outside for 94 % of its way from the first entry, x = 0, to the last exit, x = 2.06.
+        let channel = [
+            [0.0, 0.0],
+            [2.06, 0.0],
+            [2.06, 1.0],
+            [2.0, 1.0],
+            [2.0, 0.06],
+            [0.06, 0.06],
+            [0.06, 1.0],
+            [0.0, 1.0],
+        ];
+        let facet = |k: usize| vec![k, (k + 1) % 8];
+        let rest: Vec<_> = (0..7).map(facet).collect();
+        let surface = Surface::new(FacetShape::L2, &[facet(7)], &[1.0]).bounded_by(&rest, 0);
+        let contact = NodeToFacet::new(vec![8], surface, Detection::ClosestPoint);
+        let at = |x: f64, y: f64| [channel.as_flattened(), &[x, y]].concat();
+        let found = contact.passed(&at(-1.0, 0.5), &at(3.0, 0.5), 0.01).unwrap();
+        assert!((0.026..0.0301).contains(&found.depth), "{found:?}");
+        assert_eq!(contact.passed(&at(-1.0, 1.01), &at(3.0, 1.01), 0.01), None);
+    }
+
+    #[test]
+    fn a_node_that_starts_or_ends_at_a_depth_that_it_may_have_is_not_forgotten() {
+        // It may be 0.02 deep, is 0.015 deep at one end of its way, and 0.05 deep on it.
+        let plate = [[-1.0, -0.1], [0.0, -0.1], [1.0, -0.1], [1.0, 0.0], [0.0, 0.0], [-1.0, 0.0]];
+        let facet = |k: usize| vec![k, (k + 1) % 6];
+        let surface = Surface::new(FacetShape::L2, &[facet(3), facet(4)], &[1.0; 2]);
+        let surface = surface.bounded_by(&[facet(0), facet(1), facet(2), facet(5)], 0);
+        let contact = NodeToFacet::new(vec![6], surface, Detection::ClosestPoint).with_allowed(vec![0.02]);
+        let at = |x: f64, y: f64| [plate.as_flattened(), &[x, y]].concat();
+        let [inside, below] = [at(0.2, -0.015), at(0.4, -0.5)];
+        for [from, to] in [[&inside, &below], [&below, &inside]] {
+            let found = contact.passed(from, to, 0.01).unwrap();
+            assert!((0.044..0.0501).contains(&found.depth), "{found:?}");
+        }
+        assert_eq!(contact.passed(&inside, &at(0.4, 0.5), 0.01), None);
+        assert_eq!(contact.passed(&inside, &at(0.4, -0.01), 0.01), None);
     }
 }

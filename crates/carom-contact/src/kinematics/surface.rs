@@ -231,10 +231,10 @@ impl Search {
     pub(crate) fn nearest(
         &self,
         point: [f64; 2],
-        from: usize,
+        from: Option<usize>,
         distance: impl FnMut(usize) -> Option<f64>,
     ) -> Option<(usize, f64)> {
-        self.tree.as_ref()?.nearest(&point, Some(from), distance)
+        self.tree.as_ref()?.nearest(&point, from, distance)
     }
 
     /// Forgets found facets that are not possible.

@@ -13,6 +13,7 @@ use carom_solid::{Bounds, FacetShape, Hull, Tree};
 
 use super::patch::{Feature, Patch, cross, place};
 use crate::depth::Depth;
+use crate::kinematics::amplification;
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
 const SHARP: f64 = 0.87;
@@ -30,6 +31,7 @@ pub struct Boundary {
     around: HashMap<usize, Vec<usize>>,
     side: usize,
     siblings: usize,
+    is_whole: bool,
 }
 
 impl Boundary {
@@ -52,9 +54,11 @@ impl Boundary {
                 if e < count { edges.get(&(nodes[(e + 1) % count], nodes[e])).copied() } else { None }
             })
         };
+        let neighbours: Vec<[Option<(usize, usize)>; 4]> = facets.iter().map(neighbours).collect();
         Self {
             shape,
-            neighbours: facets.iter().map(neighbours).collect(),
+            is_whole: neighbours.iter().all(|across| across[..count].iter().all(Option::is_some)),
+            neighbours,
             nodes: facets.iter().flat_map(|nodes| nodes.iter().copied()).collect(),
             around,
             side: side.len(),
@@ -80,6 +84,11 @@ impl Boundary {
     /// Number of facets with those of the rest of the boundary.
     pub(crate) fn all(&self) -> usize {
         self.neighbours.len()
+    }
+
+    /// Whether the rest of the body's boundary is known, or there is none.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.is_whole
     }
 
     pub(crate) fn is_of_side(&self, facet: usize) -> bool {
@@ -289,11 +298,6 @@ impl ClosedSurface {
 
     /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵃ|.
     pub fn amplification(&self) -> f64 {
-        match self.boundary.shape() {
-            FacetShape::T6 => 5.0 / 3.0,
-            FacetShape::Q9 => 1.5625,
-            FacetShape::T10 => 2.28,
-            _ => 1.0,
-        }
+        amplification(self.boundary.shape())
     }
 }

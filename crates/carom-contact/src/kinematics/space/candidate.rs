@@ -58,7 +58,7 @@ impl NodeToPatch {
         let mut first = [None; 2];
         for &facet in near {
             let first = &mut first[usize::from(self.primary.is_of_side(facet))];
-            if let Some(theta) = crossing(swept, self.primary.patch(facet), before, now, node)
+            if let Some((theta, _)) = crossing(swept, self.primary.patch(facet), before, now, node)
                 && first.is_none_or(|(least, _)| theta < least)
             {
                 *first = Some((theta, facet));

@@ -19,14 +19,15 @@ const SEPARATION: f64 = 1e-6;
 /// Distance in θ and ξ from the isolated crossing at which Newton's method found another one.
 const ASTRAY: f64 = 0.05;
 
-/// Instant θ in [0, 1] at which a node's path first meets a facet's from outside, if it does.
+/// Instant θ in [0, 1] at which a node's path first meets a facet's from outside, and ξ there, if
+/// it does.
 pub(super) fn crossing(
     swept: &mut SweptPatch,
     patch: Patch,
     before: &[f64],
     now: &[f64],
     node: usize,
-) -> Option<f64> {
+) -> Option<(f64, [f64; 2])> {
     let mut places = [[Vector::ZERO; Net::POINTS]; 2];
     for (places, y) in places.iter_mut().zip([before, now]) {
         places.iter_mut().zip(patch.nodes).for_each(|(x, &n)| *x = place(y, n));
@@ -34,11 +35,17 @@ pub(super) fn crossing(
     let path = [before, now].map(|y| place(y, node));
     let facet = places.each_ref().map(|places| &places[..patch.nodes.len()]);
     let hit = swept.first(path, facet, SEPARATION * patch.length(before))?;
-    Some(polished(patch, before, now, node, hit).unwrap_or(hit.theta))
+    Some(polished(patch, before, now, node, hit).unwrap_or((hit.theta, hit.xi)))
 }
 
 /// Newton's method from an isolated crossing; none if it does not lead to one near it.
-fn polished(patch: Patch, before: &[f64], now: &[f64], node: usize, hit: PatchHit) -> Option<f64> {
+fn polished(
+    patch: Patch,
+    before: &[f64],
+    now: &[f64],
+    node: usize,
+    hit: PatchHit,
+) -> Option<(f64, [f64; 2])> {
     let PatchHit { mut theta, mut xi } = hit;
     // Relative to the node: exact differences, however far from the origin.
     let [from, to] = [before, now].map(|y| place(y, node));
@@ -67,7 +74,7 @@ fn polished(patch: Patch, before: &[f64], now: &[f64], node: usize, hit: PatchHi
             let valid = (-TOLERANCE..=1.0 + TOLERANCE).contains(&theta) && patch.furthest(xi).1 <= TOLERANCE;
             let moved = [theta - hit.theta, xi[0] - hit.xi[0], xi[1] - hit.xi[1]];
             let near = moved.iter().all(|x| x.abs() < ASTRAY);
-            return (inwards && valid && near).then_some(theta);
+            return (inwards && valid && near).then_some((theta, xi));
         }
     }
     None

@@ -10,6 +10,7 @@ mod edge_to_edge;
 mod edges;
 mod gap;
 mod node_to_patch;
+mod passed;
 mod patch;
 mod with_edges;
 

@@ -24,7 +24,7 @@ use super::gap::PatchGap;
 use super::patch::{Feature, cross, place};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::tangents::tangents;
-use crate::kinematics::{Kinematics, OneWay, SweptPatch};
+use crate::kinematics::{Kinematics, OneWay, Passed, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -61,11 +61,11 @@ pub struct NodeToPatch {
 
 /// Reused memory; results do not depend on its content.
 #[derive(Debug)]
-struct Tools {
+pub(super) struct Tools {
     /// Boxes of the facets' paths.
-    tree: Tree,
-    apart: Apart,
-    swept: SweptPatch,
+    pub(super) tree: Tree,
+    pub(super) apart: Apart,
+    pub(super) swept: SweptPatch,
 }
 
 /// Where a pair belongs.
@@ -358,6 +358,11 @@ impl Kinematics for NodeToPatch {
             (self.slack(k) == 0.0).then(|| theta.clamp(0.0, 1.0))
         };
         nodes.iter().map(&mut met).collect()
+    }
+
+    fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
+        let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
+        self.deepest(&mut tools, [before, now], bounce)
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {

@@ -1,5 +1,6 @@
 //! Certified swept tests of a node against a curved facet in the plane (`path.rs`) and in space
-//! (`patch_path.rs`), both moving on straight lines in 0 ≤ θ ≤ 1:
+//! (`patch_path.rs`), and of two curved edges in space (`edge_path.rs`), all of whose nodes move on
+//! straight lines in 0 ≤ θ ≤ 1:
 //!
 //! ```text
 //! f(ξ, θ) = y_N(θ) − y_S(ξ, θ) = Σᵢ Σⱼ cᵢⱼ Bᵢ³(ξ) Bⱼ¹(θ),    f = 0 where they meet
@@ -17,6 +18,9 @@
 //! (4δ + 2·separation)/v, v the normal velocity, where v does not vanish. Only a query that
 //! exhausts its budget may be coarser.
 
+mod edge_path;
+#[cfg(test)]
+mod edge_tests;
 mod patch_path;
 #[cfg(test)]
 mod patch_tests;
@@ -27,6 +31,7 @@ mod tests;
 use carom_algebra::Vector;
 use carom_solid::{Earliest, FacetShape, Net, Piece};
 
+use edge_path::EdgePath;
 use patch_path::PatchPath;
 use path::CurvePath;
 
@@ -153,5 +158,54 @@ impl SweptPatch {
         let (net, end) = (&self.net, path.stop(&self.net, self.tolerance));
         let found = self.queue.first(path, |piece| piece.only_separates(net), |piece| piece.split(net, &end));
         found.map(|piece| PatchHit { theta: piece.theta(), xi: piece.xi() })
+    }
+}
+
+/// A contact of two edges, or a distance below the tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeHit {
+    /// A lower bound of θ of the first contact.
+    pub theta: f64,
+    /// The coordinates of both edges there, −1..1, within the tolerance.
+    pub xi: [f64; 2],
+}
+
+/// Swept tests of edges of 2 to 4 nodes in space.
+#[derive(Clone, Debug)]
+pub struct SweptEdges {
+    tolerance: f64,
+    queue: Earliest<EdgePath>,
+}
+
+impl Default for SweptEdges {
+    /// With a tolerance of 1e-5.
+    fn default() -> Self {
+        Self { tolerance: 1e-5, queue: Earliest::new(BUDGET) }
+    }
+}
+
+impl SweptEdges {
+    /// First contact of two edges whose nodes, ends first, move from those of `start` to those of
+    /// `end`, A and B in turn, where A does not move out of the body of B; none is a proof. The
+    /// normal of both edges points to the side of `outwards`. A distance of at most `separation` is
+    /// contact. Positions that are not finite give a hit at θ = 0.
+    ///
+    /// # Panics
+    /// For an edge of one node or of more than four.
+    pub fn first(
+        &mut self,
+        [start, end]: [[&[Vector<3>]; 2]; 2],
+        outwards: Vector<3>,
+        separation: f64,
+    ) -> Option<EdgeHit> {
+        assert!(start.iter().all(|edge| (2..=4).contains(&edge.len())), "edges of 2 to 4 nodes");
+        let path = EdgePath::new([start, end], separation);
+        if path.is_clear() {
+            return None;
+        }
+        let end = path.stop(self.tolerance);
+        let separates = |piece: &EdgePath| piece.only_separates(&outwards);
+        let found = self.queue.first(path, separates, |piece| piece.split(&end));
+        found.map(|piece| EdgeHit { theta: piece.theta(), xi: piece.xi() })
     }
 }

@@ -41,13 +41,13 @@ pub(super) struct PatchPath {
 }
 
 /// A centre and the largest distance from it: a ball that contains what is averaged.
-struct Ball {
-    centre: Vector<3>,
-    radius: f64,
+pub(super) struct Ball {
+    pub(super) centre: Vector<3>,
+    pub(super) radius: f64,
 }
 
 impl Ball {
-    fn of(vectors: impl Iterator<Item = Vector<3>> + Clone) -> Self {
+    pub(super) fn of(vectors: impl Iterator<Item = Vector<3>> + Clone) -> Self {
         let (sum, count) = vectors.clone().fold((Vector::ZERO, 0.0), |(sum, n), v| (sum + v, n + 1.0));
         let centre = sum * f64::recip(count);
         let radius = vectors.map(|v| (v - centre).norm()).fold(0.0, f64::max);

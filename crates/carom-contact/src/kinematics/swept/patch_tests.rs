@@ -111,7 +111,7 @@ impl Query {
 }
 
 /// The rotation of a random unit quaternion.
-fn rotation(numbers: &mut Numbers) -> Mat<3> {
+pub(super) fn rotation(numbers: &mut Numbers) -> Mat<3> {
     let q: [f64; 4] = std::array::from_fn(|_| numbers.next());
     let norm = q.iter().map(|x| x * x).sum::<f64>().sqrt();
     let [w, x, y, z] = q.map(|q| q / norm);

@@ -1,0 +1,235 @@
+//! Nodes in space that enter a body and leave it again within one step (`../passed.rs`).
+
+use carom_algebra::Vector;
+use carom_solid::Tree;
+
+use super::boundary::Boundary;
+use super::crossing::crossing;
+use super::node_to_patch::{NodeToPatch, Tools};
+use super::patch::place;
+use crate::kinematics::passed::SHARE;
+use crate::kinematics::way::{Allowed, Between, Met, Seen, Way, amplification, through};
+use crate::kinematics::{Kinematics, Passed, SweptPatch};
+
+impl NodeToPatch {
+    /// The node that was deepest beyond its limit, if any; `bounce`: allowed depth, over the length
+    /// of a facet, of a node that leaves where it entered.
+    pub(super) fn deepest(
+        &self,
+        tools: &mut Tools,
+        [before, now]: [&[f64]; 2],
+        bounce: f64,
+    ) -> Option<Passed> {
+        let (nodes, boundary) = (self.secondary(), &self.primary);
+        let first = *nodes.first()?;
+        let Tools { tree, apart, swept } = tools;
+        if !boundary.is_whole() || apart.holds(0.0, [before, now]) {
+            return None;
+        }
+        let path = |node: usize| place(now, node) - place(before, node);
+        // Relative to one node: bodies that fly together do not count as moving.
+        let square = |v: Vector<3>| v.dot(&v);
+        let moved = |node: &usize| square(path(*node) - path(first));
+        let of_body = boundary.nodes().iter().map(moved).fold(0.0, f64::max).sqrt();
+        let of_nodes = nodes.iter().map(moved).fold(0.0, f64::max).sqrt();
+        let size = |facet: usize| {
+            let [a, b] = [0, 1].map(|k| place(before, boundary.facet_nodes(facet)[k]));
+            square(a - b)
+        };
+        let shortest = (0..boundary.all()).map(size).fold(f64::INFINITY, f64::min).sqrt();
+        // Entry, depth and exit need a path of twice the depth.
+        if of_body + of_nodes <= 2.0 * SHARE * shortest {
+            return None;
+        }
+        self.update(tree, 0.0, before, now);
+        let (mut between, mut near) = (None, Vec::new());
+        let mut worst: Option<Passed> = None;
+        for (k, &node) in nodes.iter().enumerate() {
+            self.find_into(tree, k, before, now, &mut near);
+            let relative = |&other: &usize| (path(node) - path(other)).norm();
+            let far = near.iter().any(|&facet| {
+                let most = boundary.facet_nodes(facet).iter().map(relative).fold(0.0, f64::max);
+                most > 2.0 * SHARE * boundary.patch(facet).length(before)
+            });
+            if !far {
+                continue;
+            }
+            // The last exit is the first entry of the reversed motion.
+            let entry = self.earliest(swept, &near, node, [before, now]);
+            let exit = self.earliest(swept, &near, node, [now, before]);
+            let exit = exit.map(|back| Met { theta: 1.0 - back.theta, ..back });
+            let mut way = OnWay {
+                boundary,
+                tree,
+                between: between.get_or_insert_with(|| Between::new([before, now])),
+                before,
+                node,
+                slack: self.slack(k),
+                allowed: Allowed::default(),
+                from: entry.or(exit).map(|met| met.facet),
+            };
+            let fastest = amplification(boundary.shape()) * (of_body + moved(&node).sqrt());
+            let Some(found) = through(&mut way, [entry, exit], bounce, fastest) else { continue };
+            let (depth, limit) = (found.depth, found.limit);
+            if worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
+                worst = Some(Passed { node, depth, limit });
+            }
+        }
+        worst
+    }
+
+    /// The first entry through any facet of the boundary.
+    fn earliest(
+        &self,
+        swept: &mut SweptPatch,
+        near: &[usize],
+        node: usize,
+        [from, to]: [&[f64]; 2],
+    ) -> Option<Met> {
+        let crossings = near.iter().filter_map(|&facet| {
+            let (theta, xi) = crossing(swept, self.primary.patch(facet), from, to, node)?;
+            Some(Met { theta, facet, xi })
+        });
+        crossings.min_by(|a, b| a.theta.total_cmp(&b.theta))
+    }
+}
+
+/// A node between entry and exit.
+struct OnWay<'a, 'b> {
+    boundary: &'a Boundary,
+    tree: &'a Tree,
+    between: &'a mut Between<'b, 3>,
+    before: &'a [f64],
+    node: usize,
+    slack: f64,
+    allowed: Allowed,
+    /// A facet near the node.
+    from: Option<usize>,
+}
+
+impl Way for OnWay<'_, '_> {
+    fn seen(&mut self, theta: f64) -> Option<Seen> {
+        let boundary = self.boundary;
+        let point = self.between.at(theta, self.node);
+        let distance = |facet: usize| {
+            let patch = boundary.patch(facet);
+            Some(patch.nearest(self.between.with(theta, patch.nodes), point).distance)
+        };
+        let (facet, _) = self.tree.nearest(&point.0, self.from, distance)?;
+        for facet in boundary.ring(facet) {
+            self.between.with(theta, boundary.facet_nodes(facet));
+        }
+        let found = boundary.depth(facet, point, self.between.with(theta, boundary.facet_nodes(facet)));
+        self.from = Some(facet);
+        Some(self.on(theta, facet, found.xi, -found.distance))
+    }
+
+    fn on(&self, theta: f64, facet: usize, xi: [f64; 2], depth: f64) -> Seen {
+        let patch = self.boundary.patch(facet);
+        let speed = self.between.speed(self.node, patch.shape, patch.nodes, xi);
+        let of_facet = self.slack + self.allowed.share * patch.length(self.before);
+        let limit = of_facet.max(self.allowed.at_end);
+        Seen { theta, facet, xi, depth, speed, limit }
+    }
+
+    fn between(&self, from: &Seen, to: &Seen) -> f64 {
+        let patch = self.boundary.patch(from.facet);
+        self.between.most(self.node, patch.shape, patch.nodes, from, to)
+    }
+
+    fn normal(&mut self, at: &Seen) -> Vector<3> {
+        let patch = self.boundary.patch(at.facet);
+        patch.at(self.between.with(at.theta, patch.nodes), at.xi).normal
+    }
+
+    fn allow(&mut self, allowed: Allowed) {
+        self.allowed = allowed;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_solid::FacetShape;
+
+    use super::*;
+
+    /// A prism 0 ≤ z ≤ 1 over a polygon, whose ends are divided into quadrilaterals, and whose
+    /// facets over some edges are the side; the last node moves from `start` to `end`, all of it
+    /// with another motion as well.
+    fn through_prism(
+        polygon: &[[f64; 2]],
+        ends: &[[usize; 4]],
+        side: &[usize],
+        [start, end, with]: [[f64; 3]; 3],
+    ) -> Option<Passed> {
+        let n = polygon.len();
+        let over = |k: usize| vec![k, (k + 1) % n, n + (k + 1) % n, n + k];
+        let below = ends.iter().map(|end| end.iter().rev().copied().collect());
+        let above = ends.iter().map(|end| end.iter().map(|k| n + k).collect());
+        let of_side: Vec<Vec<usize>> = side.iter().map(|&k| over(k)).collect();
+        let others = (0..n).filter(|k| !side.contains(k)).map(over);
+        let rest: Vec<Vec<usize>> = others.chain(below).chain(above).collect();
+        let boundary = Boundary::new(FacetShape::Q4, &of_side, &rest, 0);
+        assert!(boundary.is_whole());
+        let contact = NodeToPatch::new(vec![2 * n], boundary);
+        let layers = [0.0, 1.0].into_iter().flat_map(|z| polygon.iter().map(move |p| [p[0], p[1], z]));
+        let nodes: Vec<[f64; 3]> = layers.collect();
+        let before = [nodes.as_flattened(), &start[..]].concat();
+        let now: Vec<f64> = [nodes.as_flattened(), &end[..]].concat();
+        let now: Vec<f64> = now.iter().enumerate().map(|(dof, x)| x + with[dof % 3]).collect();
+        contact.passed(&before, &now, 0.01)
+    }
+
+    /// A plate −1 ≤ x ≤ 1, −0.1 ≤ y ≤ 0, of which the top is the side.
+    fn through_plate(start: [f64; 3], end: [f64; 3], with: [f64; 3]) -> Option<Passed> {
+        let plate = [[-1.0, -0.1], [0.0, -0.1], [1.0, -0.1], [1.0, 0.0], [0.0, 0.0], [-1.0, 0.0]];
+        through_prism(&plate, &[[0, 1, 4, 5], [1, 2, 3, 4]], &[3, 4], [start, end, with])
+    }
+
+    #[test]
+    fn a_node_that_leaves_past_the_end_of_the_side_is_found() {
+        for with in [[0.0; 3], [3.0, -7.0, 2.0]] {
+            // Through the plate from x = 0.5 to x = 0.7, and on to x = 2.5.
+            let found = through_plate([0.1, 0.2, 0.4], [2.5, -1.0, 0.6], with).unwrap();
+            assert_eq!(found.node, 12);
+            assert!((found.depth - 0.05).abs() < 1e-6, "{found:?}");
+            assert!((found.limit - 0.01).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_node_that_stays_outside_or_inside_or_cuts_off_a_corner_is_not() {
+        let passed = |from: [f64; 2], to: [f64; 2]| {
+            through_plate([from[0], from[1], 0.4], [to[0], to[1], 0.6], [0.0; 3])
+        };
+        assert_eq!(passed([1.01, 0.2], [1.01, -1.0]), None);
+        assert_eq!(passed([-3.0, 0.01], [3.0, 0.01]), None);
+        assert_eq!(passed([0.1, 0.2], [0.1, -0.05]), None);
+        // 0.001 of the top and of the end: 0.0005 deep at most.
+        assert_eq!(passed([0.899, 0.1], [1.1, -0.101]), None);
+        assert!(passed([0.8, 0.1], [1.1, -0.2]).is_some());
+        // Beside the plate in the third direction.
+        assert_eq!(through_plate([0.1, 0.2, 1.01], [2.5, -1.0, 1.2], [0.0; 3]), None);
+    }
+
+    #[test]
+    fn thin_walls_of_a_hollow_body_are_not_missed() {
+        // It is outside for 94 % of its way from the first entry, x = 0, to the last exit, x = 2.06.
+        let channel = [
+            [0.0, 0.0],
+            [2.06, 0.0],
+            [2.06, 1.0],
+            [2.0, 1.0],
+            [2.0, 0.06],
+            [0.06, 0.06],
+            [0.06, 1.0],
+            [0.0, 1.0],
+        ];
+        let ends = [[0, 5, 6, 7], [0, 1, 4, 5], [1, 2, 3, 4]];
+        let path = [[-1.0, 0.5, 0.45], [3.0, 0.5, 0.55], [0.0; 3]];
+        let found = through_prism(&channel, &ends, &[7], path).unwrap();
+        assert!((0.026..0.0301).contains(&found.depth), "{found:?}");
+        let above = [[-1.0, 1.01, 0.45], [3.0, 1.01, 0.55], [0.0; 3]];
+        assert_eq!(through_prism(&channel, &ends, &[7], above), None);
+    }
+}

@@ -1,0 +1,361 @@
+//! The largest depth of a node on its way through a body, between two instants of a step.
+//!
+//! With the distance s of the node to the boundary at one instant, and the speeds v relative to the
+//! nearest point and V ≥ that relative to every point, at another instant
+//!
+//! ```text
+//! inside     depth ≤ s + v |Δθ|      that point moves on a straight line
+//! outside    depth ≤ V |Δθ| − s      the node must come to the boundary first
+//! ```
+//!
+//! Where one facet is nearest at both ends of an interval, at ξ₀ and ξ₁, the depth is also at most
+//! the distance to its point ξ₀ + t (ξ₁ − ξ₀), t the share of the interval that has passed: a
+//! polynomial in t, which lies within the convex hull of its Bernstein coefficients. An interval in
+//! which neither bound excludes more than 9/8 of the allowed depth is divided where the first two
+//! meet (Piyavskii, USSR Comput. Math. Math. Phys. 12 (1972)). No greater depth is missed, up to
+//! round-off.
+
+use carom_algebra::Vector;
+use carom_solid::FacetShape;
+
+use super::passed::{SHARE, share};
+
+/// Depth relative to the allowed one, or to the largest that was found, within which it is known.
+const KNOWN: f64 = 1.125;
+/// Divisions after which the largest depth found so far is the answer, for boundaries that no
+/// longer have a size.
+const MOST: usize = 10_000;
+/// Share of an interval that a division leaves on either side at least.
+const LEAST: f64 = 0.05;
+
+/// A node at an instant of its way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub theta: f64,
+    /// The nearest facet, and its point.
+    pub facet: usize,
+    pub xi: [f64; 2],
+    /// Negative outside.
+    pub depth: f64,
+    /// Speed relative to that point, over the step.
+    pub speed: f64,
+    /// Allowed depth there.
+    pub limit: f64,
+}
+
+/// Where a node crosses the boundary.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met {
+    pub theta: f64,
+    pub facet: usize,
+    pub xi: [f64; 2],
+}
+
+/// Allowed depths on a way: a share of the length of a facet, or what the node has at an end.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Allowed {
+    pub share: f64,
+    pub at_end: f64,
+}
+
+/// What is asked about a way.
+pub(super) trait Way {
+    /// The node at an instant.
+    fn seen(&mut self, theta: f64) -> Option<Seen>;
+
+    /// The same where the nearest point is known.
+    fn on(&self, theta: f64, facet: usize, xi: [f64; 2], depth: f64) -> Seen;
+
+    /// A bound of the distance to the facet that is nearest at both instants, between them.
+    fn between(&self, from: &Seen, to: &Seen) -> f64;
+
+    /// The outward normal at an instant.
+    fn normal(&mut self, at: &Seen) -> Vector<3>;
+
+    /// Sets the allowed depths.
+    fn allow(&mut self, allowed: Allowed);
+}
+
+/// The instant at which a node exceeds the allowed depth most, if it does, between its first entry
+/// and its last exit, or the end of the step at which it is inside; `bounce`: allowed depth over
+/// the length of a facet if it leaves on the side on which it entered; `fastest`: V.
+pub(super) fn through(
+    way: &mut impl Way,
+    [entry, exit]: [Option<Met>; 2],
+    bounce: f64,
+    fastest: f64,
+) -> Option<Seen> {
+    let (first, last) = (entry.map_or(0.0, |met| met.theta), exit.map_or(1.0, |met| met.theta));
+    let known = entry.or(exit)?;
+    if last <= first {
+        return None;
+    }
+    // It is on the boundary at one end at least.
+    way.allow(Allowed { share: SHARE, at_end: 0.0 });
+    if fastest * (last - first) <= way.on(known.theta, known.facet, known.xi, 0.0).limit {
+        return None;
+    }
+    let mut end = |met: Option<Met>, theta: f64| match met {
+        Some(met) => Some(way.on(theta, met.facet, met.xi, 0.0)),
+        None => way.seen(theta).filter(|seen| seen.depth > 0.0),
+    };
+    let ends = [end(entry, first)?, end(exit, last)?];
+    let normals = ends.map(|end| way.normal(&end));
+    way.allow(Allowed { share: share(normals, bounce), at_end: ends[0].depth.max(ends[1].depth) });
+    let ends = ends.map(|end| way.on(end.theta, end.facet, end.xi, end.depth));
+    deepest(way, ends, fastest)
+}
+
+/// The instant between the `ends` of a way at which the node exceeds the allowed depth most, if it
+/// does; `fastest`: V.
+pub(super) fn deepest(way: &mut impl Way, ends: [Seen; 2], fastest: f64) -> Option<Seen> {
+    let mut worst: Option<Seen> = None;
+    let mut open = vec![ends];
+    for _ in 0..MOST {
+        let [from, to] = open.pop()?;
+        let least = from.limit.min(to.limit);
+        let enough = KNOWN * worst.map_or(least, |worst| worst.depth.max(least));
+        let (theta, bound) = bound(&from, &to, fastest);
+        let is_open = bound > enough && !(from.facet == to.facet && way.between(&from, &to) <= enough);
+        if is_open && let Some(seen) = way.seen(theta) {
+            let excess = |seen: &Seen| seen.depth - seen.limit;
+            if excess(&seen) > worst.as_ref().map_or(0.0, excess) {
+                worst = Some(seen);
+            }
+            open.extend([[seen, to], [from, seen]]);
+        }
+        if open.is_empty() {
+            break;
+        }
+    }
+    worst
+}
+
+/// Where the bounds from both ends of an interval meet, and the bound there.
+fn bound(from: &Seen, to: &Seen, fastest: f64) -> (f64, f64) {
+    let slope = |seen: &Seen| if seen.depth < 0.0 { fastest } else { seen.speed };
+    let (length, [up, down]) = (to.theta - from.theta, [slope(from), slope(to)]);
+    let along = ((to.depth - from.depth + down * length) / (up + down)).clamp(0.0, length);
+    let bound = (from.depth + up * along).min(to.depth + down * (length - along));
+    (from.theta + along.clamp(LEAST * length, (1.0 - LEAST) * length), bound)
+}
+
+/// The largest Σ |φᵃ| of a facet: how much further one of its points may move than each node.
+pub(crate) fn amplification(shape: FacetShape) -> f64 {
+    match shape {
+        FacetShape::L3 => 1.25,
+        FacetShape::L4 => 1.6312,
+        FacetShape::T6 => 5.0 / 3.0,
+        FacetShape::Q9 => 1.5625,
+        FacetShape::T10 => 2.28,
+        FacetShape::Point | FacetShape::L2 | FacetShape::T3 | FacetShape::Q4 => 1.0,
+    }
+}
+
+/// A bound of the length of a node's offset from a point of a facet that moves along it, from ξ₀ to
+/// ξ₁ of `ends`, while all nodes move on straight lines; `offset(end, ξ)`: from the point at ξ, at
+/// either end of the interval.
+pub(super) fn most_between<const D: usize>(
+    shape: FacetShape,
+    ends: [[f64; 2]; 2],
+    offset: impl Fn(usize, [f64; 2]) -> Vector<D>,
+) -> f64 {
+    // Of the product of both coordinates on a square.
+    let degree = shape.degree() * if shape.corners() == 4 { 2 } else { 1 };
+    let at = |k: usize| {
+        let t = k as f64 / degree as f64;
+        std::array::from_fn(|i| ends[0][i] + t * (ends[1][i] - ends[0][i]))
+    };
+    let control = [0, 1].map(|end| {
+        let mut values = [Vector::ZERO; 5];
+        values[..=degree].iter_mut().enumerate().for_each(|(k, value)| *value = offset(end, at(k)));
+        bernstein(degree, &values)
+    });
+    let last = degree + 1;
+    let mut most = 0.0_f64;
+    for k in 0..=last {
+        let late = k as f64 / last as f64;
+        let mut point = Vector::ZERO;
+        if k <= degree {
+            point += control[0][k] * (1.0 - late);
+        }
+        if k > 0 {
+            point += control[1][k - 1] * late;
+        }
+        let length = point.norm();
+        // A NaN bounds nothing.
+        most = if length > most || length.is_nan() { length } else { most };
+    }
+    most
+}
+
+/// Bernstein coefficients of a polynomial from its values at 0, 1/degree, …, 1.
+fn bernstein<const D: usize>(degree: usize, f: &[Vector<D>; 5]) -> [Vector<D>; 5] {
+    let mut c = *f;
+    let sum = |weights: &[f64], over: f64| {
+        weights.iter().zip(f).fold(Vector::ZERO, |sum, (&weight, &f)| sum + f * (weight / over))
+    };
+    match degree {
+        2 => c[1] = sum(&[-1.0, 4.0, -1.0], 2.0),
+        3 => {
+            c[1] = sum(&[-5.0, 18.0, -9.0, 2.0], 6.0);
+            c[2] = sum(&[2.0, -9.0, 18.0, -5.0], 6.0);
+        }
+        4 => {
+            c[1] = sum(&[-13.0, 48.0, -36.0, 16.0, -3.0], 12.0);
+            c[2] = sum(&[13.0, -64.0, 120.0, -64.0, 13.0], 18.0);
+            c[3] = sum(&[-3.0, 16.0, -36.0, 48.0, -13.0], 12.0);
+        }
+        _ => {}
+    }
+    c
+}
+
+/// Positions between the ends of a step.
+pub(super) struct Between<'a, const D: usize> {
+    ends: [&'a [f64]; 2],
+    /// At one instant, those of some nodes alone.
+    y: Vec<f64>,
+}
+
+impl<'a, const D: usize> Between<'a, D> {
+    pub(super) fn new([before, now]: [&'a [f64]; 2]) -> Self {
+        Self { ends: [before, now], y: vec![0.0; now.len()] }
+    }
+
+    /// A node at an instant.
+    pub(super) fn at(&self, theta: f64, node: usize) -> Vector<D> {
+        let [before, now] = self.ends;
+        Vector(std::array::from_fn(|i| {
+            let dof = D * node + i;
+            before[dof] + theta * (now[dof] - before[dof])
+        }))
+    }
+
+    /// Flat positions that contain some nodes at an instant.
+    pub(super) fn with(&mut self, theta: f64, nodes: &[usize]) -> &[f64] {
+        for &node in nodes {
+            let at = self.at(theta, node);
+            self.y[D * node..D * (node + 1)].copy_from_slice(&at.0);
+        }
+        &self.y
+    }
+
+    /// The same without more of them.
+    pub(super) fn flat(&self) -> &[f64] {
+        &self.y
+    }
+
+    /// Speed of a node relative to the point ξ of a facet, over the step.
+    pub(super) fn speed(&self, node: usize, shape: FacetShape, nodes: &[usize], xi: [f64; 2]) -> f64 {
+        let moved = |node: usize| self.at(1.0, node) - self.at(0.0, node);
+        let (own, functions) = (moved(node), shape.functions(xi));
+        let each = nodes.iter().zip(functions.values);
+        each.fold(Vector::ZERO, |sum, (&other, value)| sum + (own - moved(other)) * value).norm()
+    }
+
+    /// The bound of [`Way::between`].
+    pub(super) fn most(
+        &self,
+        node: usize,
+        shape: FacetShape,
+        nodes: &[usize],
+        from: &Seen,
+        to: &Seen,
+    ) -> f64 {
+        let thetas = [from.theta, to.theta];
+        most_between(shape, [from.xi, to.xi], |end, xi| {
+            let (own, functions) = (self.at(thetas[end], node), shape.functions(xi));
+            let each = nodes.iter().zip(functions.values);
+            each.fold(Vector::ZERO, |sum: Vector<D>, (&other, value)| {
+                sum + (own - self.at(thetas[end], other)) * value
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A depth as a function of θ.
+    struct Curve<F>(F, f64, usize);
+
+    impl<F: Fn(f64) -> f64> Way for Curve<F> {
+        fn seen(&mut self, theta: f64) -> Option<Seen> {
+            self.2 += 1;
+            Some(self.on(theta, self.2, [0.0; 2], (self.0)(theta)))
+        }
+
+        fn on(&self, theta: f64, facet: usize, xi: [f64; 2], depth: f64) -> Seen {
+            Seen { theta, facet, xi, depth, speed: self.1, limit: 0.01 }
+        }
+
+        fn between(&self, _: &Seen, _: &Seen) -> f64 {
+            f64::INFINITY
+        }
+
+        fn normal(&mut self, _: &Seen) -> Vector<3> {
+            Vector::ZERO
+        }
+
+        fn allow(&mut self, _: Allowed) {}
+    }
+
+    #[test]
+    fn a_short_depth_between_two_instants_is_found() {
+        // A spike of slope 8, and none of which the limit is 0.01.
+        for (at, height) in [(0.5, 0.02), (0.313, 0.02), (0.9117, 0.015), (0.02, 0.03)] {
+            let spike = |theta: f64| height - 8.0 * f64::abs(theta - at);
+            let mut way = Curve(spike, 8.0, 0);
+            let ends = [0.0, 1.0].map(|theta| way.seen(theta).unwrap());
+            let found = deepest(&mut way, ends, 8.0).unwrap();
+            assert!(found.depth > height / KNOWN && found.depth <= height, "{found:?}");
+            assert!(way.2 < 100, "{} instants", way.2);
+            let mut flat = Curve(|theta| spike(theta).min(0.0099), 8.0, 0);
+            let ends = [0.0, 1.0].map(|theta| flat.seen(theta).unwrap());
+            assert!(deepest(&mut flat, ends, 8.0).is_none());
+        }
+    }
+
+    #[test]
+    fn an_offset_is_bounded_by_its_polynomial() {
+        // The node slides along a facet that turns: the largest offset of a dense scan is below the
+        // bound, and the bound of a short interval is near it.
+        let shapes = [
+            FacetShape::L2,
+            FacetShape::L3,
+            FacetShape::L4,
+            FacetShape::T3,
+            FacetShape::T6,
+            FacetShape::T10,
+            FacetShape::Q4,
+            FacetShape::Q9,
+        ];
+        for (round, shape) in shapes.into_iter().enumerate() {
+            let number = |k: usize| (1.7 * (k + 31 * round) as f64).sin();
+            let places = |shift: usize| -> Vec<Vector<3>> {
+                (0..=shape.nodes()).map(|n| Vector([0, 1, 2].map(|i| number(shift + 3 * n + i)))).collect()
+            };
+            let both = [places(0), places(57)];
+            let ends = [[0.1, 0.2], [0.6, 0.3]];
+            let offset = |late: f64, xi: [f64; 2]| {
+                let at = |n: usize| both[0][n] * (1.0 - late) + both[1][n] * late;
+                let values = shape.functions(xi).values;
+                (0..shape.nodes()).fold(at(shape.nodes()), |sum, n| sum - at(n) * values[n])
+            };
+            let xi = |t: f64| [0, 1].map(|i: usize| ends[0][i] + t * (ends[1][i] - ends[0][i]));
+            let most = |[low, high]: [f64; 2]| {
+                let at = [xi(low), xi(high)];
+                most_between(shape, at, |end, xi| offset([low, high][end], xi))
+            };
+            let scan = |low: f64, high: f64| {
+                let at = |k: i32| low + (high - low) * f64::from(k) / 500.0;
+                (0..=500).map(|k| offset(at(k), xi(at(k))).norm()).fold(0.0, f64::max)
+            };
+            assert!(scan(0.0, 1.0) <= most([0.0, 1.0]) * (1.0 + 1e-12), "{shape:?}");
+            let (near, bound) = (scan(0.4, 0.41), most([0.4, 0.41]));
+            assert!(near <= bound * (1.0 + 1e-12) && bound < near * (1.0 + 1e-3), "{shape:?} {near} {bound}");
+        }
+    }
+}
