@@ -8,12 +8,14 @@ zoomed, cut and coloured, by mouse, touch and keys. Fails on any console message
 external request, and on text that is cut off, covered or hard to read at either of two widths and in
 either colour scheme (`page_layout.py`). Needs only `chromium` (apt-get install chromium). With
 --screenshots, it writes for every page NAME.png (as opened), NAME-playing.png (after the animation was
-played), NAME-WIDTH-SCHEME.png and NAME.pdf (printed), where NAME is the name of its folder.
+played), NAME-WIDTH-SCHEME.png (of tall pages in pieces -2, -3, …) and NAME.pdf (printed), where NAME is
+the name of its folder.
 """
 
 import argparse
 import base64
 import json
+import math
 import os
 import re
 import shutil
@@ -349,9 +351,19 @@ def check(browser, page, screenshots):
     return wrong + browser.said
 
 
+# Chromium repeats what is above 8192 pixels in a picture that is taller.
+TALLEST = 2000
+
+
 def picture(browser, path):
-    shot = browser("Page.captureScreenshot", captureBeyondViewport=True)["data"]
-    Path(path).write_bytes(base64.b64decode(shot))
+    """A screenshot of the whole page; of a tall one in pieces PATH, PATH-2, PATH-3, …"""
+    browser.value("window.scrollTo(0, 0)")
+    size = browser("Page.getLayoutMetrics")["cssContentSize"]
+    for piece, top in enumerate(range(0, math.ceil(size["height"]), TALLEST), start=1):
+        clip = {"x": 0, "y": top, "width": size["width"], "height": min(TALLEST, size["height"] - top), "scale": 1}
+        shot = browser("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)["data"]
+        name = path if piece == 1 else path.replace(".png", f"-{piece}.png")
+        Path(name).write_bytes(base64.b64decode(shot))
 
 
 def main():

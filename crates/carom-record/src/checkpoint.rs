@@ -1,4 +1,5 @@
-//! Two generations of a checkpoint, written in turn, so that one of them is always complete.
+//! Two generations of a checkpoint, written in turn, so that a killed process leaves one of them
+//! complete, and a link to the last one that was flushed to the disk, which a power failure leaves.
 //!
 //! ```text
 //! "CAROMCKP" | version u32 | header length u32 | header (postcard) | payload | blake3 of all before (32 bytes)
@@ -8,6 +9,7 @@
 //! of the row files, and the list of field files with theirs, so that a record altered later is not
 //! continued.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -36,22 +38,25 @@ pub(crate) struct Header {
     pub(crate) payload: u64,
 }
 
-/// One of the two checkpoints of a run.
+/// One of the checkpoints of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum Generation {
     A,
     B,
+    /// The last one that was flushed to the disk, under a second name until the run ends.
+    Flushed,
 }
 
 impl Generation {
-    /// Both of them.
-    pub const BOTH: [Self; 2] = [Self::A, Self::B];
+    /// All of them.
+    pub(crate) const ALL: [Self; 3] = [Self::A, Self::B, Self::Flushed];
 
-    pub(crate) fn other(self) -> Self {
+    /// The one to write after this one.
+    pub(crate) fn next(self) -> Self {
         match self {
             Self::A => Self::B,
-            Self::B => Self::A,
+            Self::B | Self::Flushed => Self::A,
         }
     }
 }
@@ -61,15 +66,18 @@ pub(crate) fn path(directory: &Path, generation: Generation) -> PathBuf {
     directory.join("checkpoint").join(match generation {
         Generation::A => "a.bin",
         Generation::B => "b.bin",
+        Generation::Flushed => "flushed.bin",
     })
 }
 
-/// Replaces one generation.
+/// Replaces one generation. If `flush`, it is flushed to the disk and named as flushed; what its
+/// header describes must have been flushed before.
 pub(crate) fn write(
     directory: &Path,
     generation: Generation,
     header: &Header,
     payload: &[u8],
+    flush: bool,
 ) -> Result<(), RecordError> {
     let path = path(directory, generation);
     let header =
@@ -79,7 +87,44 @@ pub(crate) fn write(
     head.extend((header.len() as u32).to_le_bytes());
     head.extend(header);
     let hash = blake3::Hasher::new().update(&head).update(payload).finalize();
-    files::write_atomically(&path, &[&head, payload, hash.as_bytes()])
+    let hash = hash.as_bytes();
+    if !flush {
+        return files::write_unsynced(&path, &[&head, payload, hash]);
+    }
+    files::write_atomically(&path, &[&head, payload, hash])?;
+    name_flushed(directory, generation)
+}
+
+/// Flushes a generation that was written without.
+pub(crate) fn sync(directory: &Path, generation: Generation) -> Result<(), RecordError> {
+    files::sync(&path(directory, generation))?;
+    files::sync_directory(&directory.join("checkpoint"))
+}
+
+/// Removes the second name of the last flushed generation: both generations stay as they are.
+pub(crate) fn forget_flushed(directory: &Path) -> Result<(), RecordError> {
+    let path = path(directory, Generation::Flushed);
+    match fs::remove_file(&path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(RecordError::io("remove", &path)(error))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Gives a flushed generation a second name, which the next checkpoints do not replace.
+fn name_flushed(directory: &Path, generation: Generation) -> Result<(), RecordError> {
+    let (from, to) = (path(directory, generation), path(directory, Generation::Flushed));
+    let partial = files::partial(&to);
+    // Left behind by a killed process, or by a rename to another name of the same file.
+    let _ = fs::remove_file(&partial);
+    // File systems without links are allowed.
+    fs::hard_link(&from, &partial)
+        .or_else(|_| fs::copy(&from, &partial).and_then(|_| files::flush(&fs::File::open(&partial)?)))
+        .and_then(|()| fs::rename(&partial, &to))
+        .map_err(RecordError::io("replace", &to))?;
+    let _ = fs::remove_file(&partial);
+    files::sync_directory(&directory.join("checkpoint"))
 }
 
 /// Reads and verifies one generation.

@@ -18,14 +18,27 @@ pub(crate) fn replace(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<(), RecordError> {
-    rename_after(path, |file| write(file).and_then(|()| file.sync_all()))?;
+    rename_after(path, |file| write(file).and_then(|()| flush(file)))?;
     sync_directory(path.parent().unwrap_or(Path::new(".")))
 }
 
 /// Replaces `path` without flushing it to the disk. A killed process leaves the old or the new
 /// file; until [`sync`] is called, a power failure may leave an empty one.
-pub(crate) fn write_unsynced(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
-    rename_after(path, |file| file.write_all(bytes))
+pub(crate) fn write_unsynced(path: &Path, parts: &[&[u8]]) -> Result<(), RecordError> {
+    rename_after(path, |file| parts.iter().try_for_each(|part| file.write_all(part)))
+}
+
+/// Flushes an open file to the disk. Every flush of this crate passes through here.
+pub(crate) fn flush(file: &File) -> io::Result<()> {
+    #[cfg(test)]
+    FLUSHES.with(|count| count.set(count.get() + 1));
+    file.sync_all()
+}
+
+#[cfg(test)]
+thread_local! {
+    /// Flushes of this thread.
+    pub(crate) static FLUSHES: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
 /// Flushes a file written earlier to the disk.
@@ -33,7 +46,7 @@ pub(crate) fn sync(path: &Path) -> Result<(), RecordError> {
     File::options()
         .write(true)
         .open(path)
-        .and_then(|file| file.sync_all())
+        .and_then(|file| flush(&file))
         .map_err(RecordError::io("write", path))
 }
 
@@ -66,7 +79,7 @@ pub(crate) fn sync_directory(directory: &Path) -> Result<(), RecordError> {
     // The parent of a bare name is the empty path.
     let directory = if directory.as_os_str().is_empty() { Path::new(".") } else { directory };
     if cfg!(unix) {
-        File::open(directory).and_then(|d| d.sync_all()).map_err(RecordError::io("write", directory))?;
+        File::open(directory).and_then(|d| flush(&d)).map_err(RecordError::io("write", directory))?;
     }
     Ok(())
 }

@@ -51,4 +51,4 @@ pub use run::{History, Run};
 pub use stop::{Advice, Stop, StopIteration, StopNode, StopPlace, Trial};
 pub use vtu::{Block, Cell, FieldSet, PointArray};
 pub use warning::Warning;
-pub use writer::{Reopened, RunWriter, checkpoints, last_checkpoint};
+pub use writer::{FLUSH_INTERVAL, Reopened, RunWriter, checkpoints, last_checkpoint};

@@ -48,7 +48,7 @@ pub(crate) fn write(directory: &Path, entries: &[FieldEntry]) -> Result<(), Reco
             writeln!(text, "  <DataSet timestep=\"{:?}\" part=\"0\" file=\"{}\"/>", entry.time, entry.file());
     }
     text.push_str(" </Collection>\n</VTKFile>\n");
-    files::write_unsynced(&directory.join(FILE), text.as_bytes())
+    files::write_unsynced(&directory.join(FILE), &[text.as_bytes()])
 }
 
 /// Reads `fields.pvd`; a run without field files has none.

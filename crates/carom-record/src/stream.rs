@@ -9,7 +9,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::RecordError;
+use crate::{RecordError, files};
 
 /// BLAKE3 hash.
 pub(crate) type Hash = [u8; blake3::OUT_LEN];
@@ -41,9 +41,13 @@ impl Stream {
     }
 
     /// Flushes the file to the disk.
-    pub(crate) fn sync(&self) -> io::Result<Extent> {
-        self.file.sync_all()?;
-        Ok(Extent { length: self.hasher.count(), hash: self.hasher.finalize().into() })
+    pub(crate) fn sync(&self) -> io::Result<()> {
+        files::flush(&self.file)
+    }
+
+    /// What has been written.
+    pub(crate) fn extent(&self) -> Extent {
+        Extent { length: self.hasher.count(), hash: self.hasher.finalize().into() }
     }
 }
 

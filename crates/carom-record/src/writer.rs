@@ -1,21 +1,29 @@
 //! Writing a run directory, so that a run can be killed at any time and resumed to the same bytes.
 //!
-//! A directory is created by one rename, with a first checkpoint in it. A checkpoint flushes the
-//! row files, and the field files written since the previous one, to the disk and then records
-//! their lengths and checksums. Reopening compares these with the files, truncates the row files to
-//! these lengths and removes later fields. Between checkpoints nothing is flushed, because a
-//! resumed run does not need it.
+//! A directory is created by one rename, with a first checkpoint in it. A checkpoint records the
+//! lengths and checksums of the row files and of the field files. Reopening compares these with the
+//! files, truncates the row files to these lengths and removes later fields.
+//!
+//! What a process has written survives its death. Only a power failure needs files that were
+//! flushed to the disk, and a flush costs more than a step: a checkpoint flushes what it describes
+//! if the last flush is [`FLUSH_INTERVAL`] ago, and the generations written since then do not
+//! replace the flushed one (`checkpoint.rs`). The fields of a finished run, which is not resumed,
+//! are left to the system.
 
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use crate::checkpoint::{self, Generation, Header};
 use crate::rows::{Table, contact_axes, contact_columns};
 use crate::stream::{self, Stream};
 use crate::{
-    ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, files, pvd, vtkhdf,
+    ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, Status, files, pvd, vtkhdf,
 };
+
+/// The time between two flushes, and so what a power failure costs.
+pub const FLUSH_INTERVAL: Duration = Duration::from_secs(5);
 
 const ROW_FILES: [&str; 3] = ["history.csv", "contact.csv", "log.jsonl"];
 
@@ -31,10 +39,13 @@ pub struct RunWriter {
     log: BufWriter<Stream>,
     /// Header of the next checkpoint; its streams are those of the last one.
     header: Header,
-    /// Generation that the next checkpoint replaces.
-    generation: Generation,
-    /// Field files written since the last checkpoint.
+    /// Generation of the last checkpoint.
+    newest: Generation,
+    /// Field files written since the last flush.
     unsynced: Vec<PathBuf>,
+    /// The last flush; none since the run was reopened.
+    flushed: Option<Instant>,
+    flush_interval: Duration,
     /// Locked as long as this writer exists.
     _lock: File,
 }
@@ -90,7 +101,9 @@ impl RunWriter {
             return Err(error);
         }
         files::sync_directory(parent)?;
-        Ok(Self::reopen(directory)?.writer)
+        let mut writer = Self::reopen(directory)?.writer;
+        writer.flushed = Some(Instant::now());
+        Ok(writer)
     }
 
     fn build(partial: &Path, manifest: &Manifest, payload: &[u8]) -> Result<(), RecordError> {
@@ -110,9 +123,10 @@ impl RunWriter {
             if !names.is_empty() {
                 table.end_row().map_err(failed)?;
             }
-            header.streams[i] = table.flush().and_then(|()| table.stream().sync()).map_err(failed)?;
+            table.flush().and_then(|()| table.stream().sync()).map_err(failed)?;
+            header.streams[i] = table.stream().extent();
         }
-        checkpoint::write(partial, Generation::A, &header, payload)
+        checkpoint::write(partial, Generation::A, &header, payload, true)
     }
 
     /// Reopens the directory at the newest intact checkpoint.
@@ -164,9 +178,16 @@ impl RunWriter {
             history: Table::new(history),
             contact: Table::new(contact),
             log: BufWriter::new(log),
-            generation: generation.other(),
+            newest: generation,
+            // The killed process may not have flushed what the checkpoint describes.
+            unsynced: match header.format {
+                FieldFormat::Vtu => header.fields.iter().map(|e| directory.join(e.file())).collect(),
+                FieldFormat::VtkHdf if header.fields.is_empty() => Vec::new(),
+                FieldFormat::VtkHdf => vec![vtkhdf::path(directory)],
+            },
             header,
-            unsynced: Vec::new(),
+            flushed: None,
+            flush_interval: FLUSH_INTERVAL,
             _lock: lock,
         };
         let (step, rows) = (writer.header.step, writer.header.rows);
@@ -176,6 +197,11 @@ impl RunWriter {
     /// Sets the format of the fields; the default is VTU. A run has one format.
     pub fn field_format(&mut self, format: FieldFormat) {
         self.header.format = format;
+    }
+
+    /// Sets the least time between two flushes to the disk; the default is [`FLUSH_INTERVAL`].
+    pub fn flush_interval(&mut self, interval: Duration) {
+        self.flush_interval = interval;
     }
 
     /// The directory.
@@ -238,21 +264,28 @@ impl RunWriter {
         fs::create_dir_all(&folder).map_err(RecordError::io("create", &folder))?;
         let path = self.directory.join(entry.file());
         let bytes = fields.to_vtu(time)?;
-        files::write_unsynced(&path, &bytes)?;
+        files::write_unsynced(&path, &[&bytes])?;
         self.unsynced.push(path);
         hashes.push(blake3::hash(&bytes).into());
         entries.push(entry);
         pvd::write(&self.directory, entries)
     }
 
-    /// Flushes everything to the disk, then replaces the older generation.
+    /// Replaces the older generation; flushes it, and before it all that it describes, to the disk
+    /// if the last flush is long ago.
     pub fn checkpoint(&mut self, step: u64, payload: &[u8]) -> Result<(), RecordError> {
-        self.sync()?;
+        let flush = self.flushed.is_none_or(|at| at.elapsed() >= self.flush_interval);
+        self.write_rows()?;
+        if flush {
+            self.sync_fields()?;
+            self.sync_rows()?;
+            self.flushed = Some(Instant::now());
+        }
         self.header.step = step;
         self.header.sequence += 1;
         self.header.payload = payload.len() as u64;
-        checkpoint::write(&self.directory, self.generation, &self.header, payload)?;
-        self.generation = self.generation.other();
+        self.newest = self.newest.next();
+        checkpoint::write(&self.directory, self.newest, &self.header, payload, flush)?;
         Ok(())
     }
 
@@ -261,18 +294,47 @@ impl RunWriter {
         manifest.write(&self.directory)
     }
 
-    /// Flushes everything to the disk; last the manifest, which says how the run ended, and takes
-    /// the hashes of the tables and the log.
+    /// Flushes to the disk tables, log, the last checkpoint and, if the run may be resumed, its
+    /// fields; last the manifest, which says how the run ended, and takes the hashes of the tables
+    /// and the log.
     pub fn finish(&mut self, manifest: &mut Manifest) -> Result<(), RecordError> {
-        self.sync()?;
+        self.write_rows()?;
         vtkhdf::finish(&self.directory)?;
+        if manifest.status != Status::Finished {
+            self.sync_fields()?;
+        }
+        self.sync_rows()?;
+        checkpoint::sync(&self.directory, self.newest)?;
+        if self.newest != Generation::Flushed {
+            checkpoint::forget_flushed(&self.directory)?;
+        }
         for (name, extent) in ROW_FILES.into_iter().zip(&self.header.streams) {
             manifest.hashes.insert(name.into(), blake3::Hash::from(extent.hash).to_hex().to_string());
         }
         manifest.write(&self.directory)
     }
 
-    fn sync(&mut self) -> Result<(), RecordError> {
+    /// Hands all rows to the system, and notes their lengths and checksums.
+    fn write_rows(&mut self) -> Result<(), RecordError> {
+        let flushed = [self.history.flush(), self.contact.flush(), self.log.flush()];
+        let streams = [self.history.stream(), self.contact.stream(), self.log.get_ref()];
+        for (i, (flushed, stream)) in flushed.into_iter().zip(streams).enumerate() {
+            flushed.map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[i]))(e))?;
+            self.header.streams[i] = stream.extent();
+        }
+        Ok(())
+    }
+
+    fn sync_rows(&self) -> Result<(), RecordError> {
+        let streams = [self.history.stream(), self.contact.stream(), self.log.get_ref()];
+        let path = |i: usize| self.directory.join(ROW_FILES[i]);
+        streams
+            .into_iter()
+            .enumerate()
+            .try_for_each(|(i, stream)| stream.sync().map_err(RecordError::io("write", &path(i))))
+    }
+
+    fn sync_fields(&mut self) -> Result<(), RecordError> {
         if !self.unsynced.is_empty() {
             self.unsynced.drain(..).try_for_each(|path| files::sync(&path))?;
             if self.header.format == FieldFormat::Vtu {
@@ -280,13 +342,6 @@ impl RunWriter {
                 files::sync(&self.directory.join(pvd::FILE))?;
             }
             files::sync_directory(&self.directory)?;
-        }
-        let flushed = [self.history.flush(), self.contact.flush(), self.log.flush()];
-        let streams = [self.history.stream(), self.contact.stream(), self.log.get_ref()];
-        for (i, (flushed, stream)) in flushed.into_iter().zip(streams).enumerate() {
-            self.header.streams[i] = flushed
-                .and_then(|()| stream.sync())
-                .map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[i]))(e))?;
         }
         Ok(())
     }
@@ -314,19 +369,21 @@ pub fn last_checkpoint(directory: &Path) -> Result<Vec<u8>, RecordError> {
 /// # Errors
 /// There is no intact checkpoint.
 pub fn checkpoints(directory: &Path) -> Result<Vec<(u64, Vec<u8>)>, RecordError> {
-    let found = newest_first(directory).into_iter().filter_map(|(_, found)| found.ok());
-    let found: Vec<_> = found.map(|(header, payload)| (header.step, payload)).collect();
+    let mut found: Vec<_> = newest_first(directory).into_iter().filter_map(|(_, found)| found.ok()).collect();
+    found.dedup_by_key(|(header, _)| header.sequence);
+    let found: Vec<_> = found.into_iter().map(|(header, payload)| (header.step, payload)).collect();
     if found.is_empty() { Err(no_checkpoint(directory)) } else { Ok(found) }
 }
 
 type Checkpoint = (Header, Vec<u8>);
 
-/// Both generations, the newest first; a damaged or missing one, whose age is unknown, comes before
-/// the other.
-fn newest_first(directory: &Path) -> [(Generation, Result<Checkpoint, RecordError>); 2] {
-    let [a, b] = Generation::BOTH.map(|generation| (generation, checkpoint::read(directory, generation)));
+/// All generations, the newest first; a damaged or missing one, whose age is unknown, comes before
+/// the others.
+fn newest_first(directory: &Path) -> [(Generation, Result<Checkpoint, RecordError>); 3] {
+    let mut found = Generation::ALL.map(|generation| (generation, checkpoint::read(directory, generation)));
     let age = |found: &Result<Checkpoint, RecordError>| found.as_ref().map_or(u64::MAX, |c| c.0.sequence);
-    if age(&a.1) > age(&b.1) { [a, b] } else { [b, a] }
+    found.sort_by_key(|(_, checkpoint)| std::cmp::Reverse(age(checkpoint)));
+    found
 }
 
 /// A checkpoint whose record is unchanged, with the running checksums of the row files.
@@ -405,4 +462,49 @@ fn drop_fields(directory: &Path, keep: &[FieldEntry]) -> Result<(), RecordError>
     }
     pvd::write(directory, keep)?;
     files::sync(&directory.join(pvd::FILE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Block, Cell, Column, Source};
+
+    /// A short run flushes its start and its end, however many checkpoints and fields it has; one
+    /// that may be resumed flushes its fields, too; and one that takes longer, every checkpoint
+    /// that is late enough.
+    #[test]
+    fn flushes_do_not_grow_with_fields_and_checkpoints() {
+        const FIELDS: usize = 201;
+        let flushes = |status, interval| {
+            let scratch = tempfile::tempdir().unwrap();
+            let column = |name: &str| Column {
+                name: name.into(),
+                unit: "s".into(),
+                description: String::new(),
+                integer: false,
+            };
+            let mut manifest =
+                Manifest::new("0.1.0", serde_json::json!({}), Source::default(), vec![column("time")], 1);
+            let before = files::FLUSHES.get();
+            let mut writer = RunWriter::create(&scratch.path().join("run"), &manifest, b"0").unwrap();
+            writer.flush_interval(interval);
+            let body = Block { body: "b".into(), cell: Cell::Curve, degree: 1, connectivity: vec![0, 1] };
+            let points = vec![[0.0; 3], [1.0, 0.0, 0.0]];
+            let fields = FieldSet { points, blocks: vec![body], arrays: Vec::new() };
+            for step in 0..FIELDS as u64 {
+                writer.history(&[step as f64]).unwrap();
+                writer.fields(step, step as f64, &fields).unwrap();
+                writer.checkpoint(step, b"0").unwrap();
+            }
+            manifest.status = status;
+            writer.finish(&mut manifest).unwrap();
+            files::FLUSHES.get() - before
+        };
+        let finished = flushes(Status::Finished, Duration::MAX);
+        assert!(finished <= 20, "{finished}");
+        // And each field file, their folder, their list and the run's directory.
+        let stopped = flushes(Status::Stopped, Duration::MAX);
+        assert_eq!(stopped, finished + FIELDS + if cfg!(unix) { 3 } else { 1 });
+        assert!(flushes(Status::Finished, Duration::ZERO) > 5 * FIELDS);
+    }
 }

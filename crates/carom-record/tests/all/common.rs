@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use carom_record::{
     Block, Cell, Column, ContactRow, Event, FieldFormat, FieldSet, Manifest, PointArray, RecordError,
@@ -104,10 +105,11 @@ pub(crate) fn all_bytes(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// A run at its start.
+/// A run at its start, which flushes every checkpoint.
 pub(crate) fn started(directory: &Path, format: FieldFormat) -> RunWriter {
     let mut writer = RunWriter::create(directory, &manifest(), &0u64.to_le_bytes()).unwrap();
     writer.field_format(format);
+    writer.flush_interval(Duration::ZERO);
     writer
 }
 

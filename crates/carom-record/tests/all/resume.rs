@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::time::Duration;
 
 use carom_record::{FieldFormat, Generation, RecordError, Run, RunWriter};
 
@@ -195,5 +196,45 @@ fn cut_and_missing_fields_are_refused_or_computed_again() {
             let text = altered(&directory, scratch.path()).unwrap_err().to_string();
             assert!(text.contains("the fields of step 10 have changed"), "{text}");
         }
+    }
+}
+
+/// A power failure leaves what was flushed to the disk; here, all written later is lost or empty.
+/// The run is resumed from the last flushed checkpoint, to the same record.
+#[test]
+fn a_power_failure_costs_what_was_written_since_the_last_flush() {
+    for format in [FieldFormat::Vtu, FieldFormat::VtkHdf] {
+        let scratch = scratch();
+        let expected = whole(&scratch.path().join("whole"), format);
+        let directory = scratch.path().join("cut");
+        let mut writer = advance(started(&directory, format), 0, 0, 18);
+        let flushed = all_bytes(&directory);
+        writer.flush_interval(Duration::MAX);
+        drop(advance(writer, 18, 19, STEPS));
+        for (name, bytes) in all_bytes(&directory) {
+            let kept = match flushed.get(&name) {
+                Some(kept)
+                    if ["csv", "jsonl", "vtkhdf"].iter().any(|e| name.extension() == Some(e.as_ref())) =>
+                {
+                    kept.clone()
+                }
+                // Neither replaced nor written since.
+                Some(kept) if *kept == bytes => bytes,
+                _ => Vec::new(),
+            };
+            fs::write(directory.join(&name), kept).unwrap();
+        }
+        let reopened = RunWriter::reopen(&directory).unwrap();
+        assert_eq!((reopened.step, reopened.rows), (18, 19));
+        assert!(reopened.fallback.unwrap().to_string().contains("is damaged"));
+        let mut writer = reopened.writer;
+        writer.flush_interval(Duration::MAX);
+        advance(writer, 18, 19, STEPS).finish(&mut manifest()).unwrap();
+        let mut got = all_bytes(&directory);
+        assert!(!got.contains_key(Path::new("checkpoint/flushed.bin")));
+        // Which of the two files has which step depends on where the run was reopened.
+        got.retain(|path, _| !path.starts_with("checkpoint"));
+        let kept = expected.into_iter().filter(|(path, _)| !path.starts_with("checkpoint"));
+        assert!(got == kept.collect(), "{format:?}");
     }
 }
