@@ -22,9 +22,9 @@ pub use interface::{
     Unilateral,
 };
 pub use kinematics::{
-    BothSides, Boundary, Carrier, ClosedSurface, ContactPoint, Crossings, Detection, EdgeToEdge, Faceted,
-    Kinematics, NodeToFacet, NodeToObstacle, NodeToPatch, Obstacle, OneWay, Passed, Polyline, PolylineError,
-    Side, Surface, Swept, SweptPatch, SweptTest, WithEdges,
+    BothSides, Boundary, Carrier, ClosedSurface, ContactPoint, Crossings, Detection, EdgeHit, EdgeToEdge,
+    Faceted, Kinematics, NodeToFacet, NodeToObstacle, NodeToPatch, Obstacle, OneWay, Passed, Polyline,
+    PolylineError, Side, Surface, Swept, SweptEdges, SweptPatch, SweptTest, WithEdges,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

@@ -169,14 +169,16 @@ pub enum Rejected {
         /// Allowed depth.
         limit: f64,
     },
-    /// A node enters the other body and leaves it within the step.
+    /// A node, or a sharp edge, enters the other body and leaves it within the step.
     #[error(
-        "contact \"{contact}\": node {node} passes through the other body within the step, {} deep, more than the allowed {}",
+        "contact \"{contact}\": {what} {node} passes through the other body within the step, {} deep, more than the allowed {}",
         apart(*depth, *limit)[0], apart(*depth, *limit)[1]
     )]
     Passed {
         /// Contact.
         contact: String,
+        /// What passes, in words that the node's number follows.
+        what: &'static str,
         /// Global number of the node.
         node: usize,
         /// Its largest depth on the way.

@@ -416,9 +416,10 @@ impl Simulation {
 /// That no node was inside a body between these positions.
 fn nothing_passed(model: &Model, before: &[f64], now: &[f64]) -> Result<(), Rejected> {
     for contact in &model.contacts {
-        if let Some(Passed { node, depth, limit }) = contact.kinematics.passed(before, now, contact.depths[0])
+        if let Some(Passed { what, node, depth, limit }) =
+            contact.kinematics.passed(before, now, contact.depths[0])
         {
-            return Err(Rejected::Passed { contact: contact.name.clone(), node, depth, limit });
+            return Err(Rejected::Passed { contact: contact.name.clone(), what, node, depth, limit });
         }
     }
     Ok(())

@@ -254,7 +254,7 @@ impl Kinematics for NodeToObstacle {
             let [from, to] = [before, now].map(|y| self.local(node, y).at);
             let (depth, normals) = self.shape.deepest_between(from, to, limit(SHARE))?;
             let limit = limit(share(normals, bounce));
-            (depth > limit).then_some(Passed { node, depth, limit })
+            (depth > limit).then_some(Passed { what: "node", node, depth, limit })
         };
         let beyond = |passed: &Passed| passed.depth - passed.limit;
         let passed = self.lengths.iter().enumerate().filter_map(through);

@@ -17,10 +17,12 @@ use crate::places::Places;
 /// Depth, relative to the facet, that a path may have.
 pub(super) const SHARE: f64 = 0.01;
 
-/// A node that was inside a body between the start and the end of a step.
+/// A node, or an edge, that was inside a body between the start and the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passed {
-    /// Its global number.
+    /// What it is, in words that the number follows.
+    pub what: &'static str,
+    /// Its global number, or that of a node of the edge.
     pub node: usize,
     /// Its largest depth on its way, within an eighth.
     pub depth: f64,
@@ -108,7 +110,7 @@ impl Paths<'_> {
             let Some(found) = through(&mut way, [entry, exit], self.bounce, fastest) else { continue };
             let (depth, limit) = (found.depth, found.limit);
             if worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
-                worst = Some(Passed { node, depth, limit });
+                worst = Some(Passed { what: "node", node, depth, limit });
             }
         }
         worst

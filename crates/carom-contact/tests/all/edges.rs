@@ -287,3 +287,36 @@ fn a_crossing_at_nodes_has_one_pair() {
     let pairs = found(&contact, &at(0.01), &at(-0.01));
     assert_eq!(pairs.len(), 1, "{pairs:?}");
 }
+
+#[test]
+fn an_edge_that_passes_through_an_edge_within_a_step_is_found() {
+    let (contact, y) = roofs(FacetShape::Q4, 3, 0.1, straight);
+    let upper = y.len() / 6;
+    let at = |by: [f64; 3]| placed(&y, upper, by, 0.0);
+    // Through the ridge, 0.5 deep, and out past its end along it: no pair at the end of the step.
+    // The upper ridge at x = 1.45 and z = 0.1 leaves the lower one, which ends at x = 3, at θ = 0.62.
+    let [start, end] = [at([0.0; 3]), at([2.5, 0.0, -0.6])];
+    assert!(found(&contact, &start, &end).is_empty());
+    let passed = contact.passed(&start, &end, 0.01).unwrap();
+    // A point counts up to 0.02 of ξ, 0.01 along the edge, past its end.
+    let exact = 0.6 * (1.56 / 2.5) - 0.1;
+    assert!(passed.what == "the edge at node" && (passed.limit - 0.1).abs() < 1e-12, "{passed:?}");
+    assert!(passed.depth <= exact + 1e-9 && passed.depth > exact / 1.126, "{passed:?} {exact}");
+    // Not so deep; above; outwards; to a pair at the end.
+    assert_eq!(contact.passed(&start, &at([2.5, 0.0, -0.25]), 0.01), None);
+    assert_eq!(contact.passed(&start, &at([2.5, 0.0, -0.09]), 0.01), None);
+    assert_eq!(contact.passed(&end, &start, 0.01), None);
+    assert_eq!(contact.passed(&start, &at([0.0, 0.0, -0.15]), 0.01), None);
+    assert!(contact.passed(&start, &at([0.0, 0.0, -0.4]), 0.01).is_some());
+}
+
+#[test]
+fn edges_that_come_from_past_an_end_form_a_pair() {
+    // At the start they are so far from each other that extended edges have no gap.
+    let (contact, y) = roofs(FacetShape::Q4, 1, 0.1, straight);
+    let upper = y.len() / 6;
+    let start = placed(&y, upper, [7.0, 0.0, 0.4], 0.0);
+    let end = placed(&y, upper, [0.0, 0.0, -0.12], 0.0);
+    // It passes over the lower ridge's end at a height of 0.02 and comes down onto it.
+    assert_eq!(found(&contact, &start, &end).len(), 1);
+}

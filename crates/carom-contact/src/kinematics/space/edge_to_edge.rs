@@ -8,7 +8,7 @@
 //! removed at a corner, or where the normal leaves the facets' normals.
 
 use std::collections::BTreeSet;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Tree};
@@ -17,6 +17,7 @@ use super::boundary::Boundary;
 use super::edge_gap::EdgeGap;
 use super::edges::Edges;
 use crate::friction::{Hold, Tangential};
+use crate::kinematics::SweptEdges;
 use crate::kinematics::apart::Apart;
 use crate::kinematics::tangents::tangents;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
@@ -56,6 +57,7 @@ pub struct EdgeToEdge {
     /// Of the secondary side and of the primary.
     sides: [Edges; 2],
     tools: Mutex<Tools>,
+    swept: Mutex<SweptEdges>,
 }
 
 /// Reused memory; results do not depend on its content.
@@ -76,7 +78,8 @@ impl EdgeToEdge {
         // The boxes of both sides grow.
         let weight = sides[0].weight() + sides[1].weight();
         let apart = Apart::new(nodes.copied(), 3, weight);
-        Self { sides, tools: Mutex::new(Tools { tree: Tree::default(), apart }) }
+        let tools = Mutex::new(Tools { tree: Tree::default(), apart });
+        Self { sides, tools, swept: Mutex::default() }
     }
 
     /// A node of every edge of the secondary side.
@@ -112,13 +115,33 @@ impl EdgeToEdge {
         pair
     }
 
-    fn closest(&self, edges: [usize; 2], start: [f64; 2], y: &[f64]) -> Option<EdgeGap> {
+    /// The certified test of crossings.
+    pub(super) fn swept(&self) -> MutexGuard<'_, SweptEdges> {
+        self.swept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Nodes of one of two edges, ends first.
+    pub(super) fn nodes(&self, edges: [usize; 2], of: usize) -> &[usize] {
+        self.sides[of].nodes(edges[of])
+    }
+
+    /// Nodes of the facets that meet at one of two edges.
+    pub(super) fn around(&self, edges: [usize; 2], of: usize) -> impl Iterator<Item = usize> {
+        self.sides[of].around(edges[of])
+    }
+
+    /// Out of the body of the primary's edge and into that of the other one.
+    pub(super) fn outwards(&self, edges: [usize; 2], xi: [f64; 2], y: &[f64]) -> Vector<3> {
         let sum = |i: usize| {
-            let [here, there] = self.sides[i].normals(edges[i], start[i], y);
+            let [here, there] = self.sides[i].normals(edges[i], xi[i], y);
             here + there
         };
-        let nodes = [0, 1].map(|i| self.sides[i].nodes(edges[i]));
-        EdgeGap::closest(nodes, start, y, sum(1) - sum(0))
+        sum(1) - sum(0)
+    }
+
+    pub(super) fn closest(&self, edges: [usize; 2], start: [f64; 2], y: &[f64]) -> Option<EdgeGap> {
+        let nodes = [0, 1].map(|i| self.nodes(edges, i));
+        EdgeGap::closest(nodes, start, y, self.outwards(edges, start, y))
     }
 
     fn gap_of(&self, pair: &Pair, y: &[f64]) -> Option<EdgeGap> {
@@ -127,7 +150,7 @@ impl EdgeToEdge {
 
     /// Whether the normal lies between those of the facets on both sides, with this margin, and the
     /// edges do not run along each other.
-    fn cross(&self, edges: [usize; 2], gap: &EdgeGap, margin: f64, y: &[f64]) -> bool {
+    pub(super) fn cross(&self, edges: [usize; 2], gap: &EdgeGap, margin: f64, y: &[f64]) -> bool {
         let out = |i: usize| {
             let direction = if i == 1 { gap.normal } else { -gap.normal };
             self.sides[i].outwards(edges[i], gap.xi[i], gap.tangent(i), direction, y)
@@ -135,7 +158,7 @@ impl EdgeToEdge {
         gap.sine() >= ALONG && out(0) >= margin && out(1) >= margin
     }
 
-    fn shorter(&self, edges: [usize; 2], y: &[f64]) -> f64 {
+    pub(super) fn shorter(&self, edges: [usize; 2], y: &[f64]) -> f64 {
         let [a, b] = [0, 1].map(|i| self.sides[i].length(edges[i], y));
         a.min(b)
     }
@@ -165,23 +188,29 @@ impl EdgeToEdge {
         if !met || !self.is_on(edges, gap.xi, PAST, -CORNER) || !self.cross(edges, &gap, between, now) {
             return None;
         }
-        let start = self.closest(edges, gap.xi, before)?;
         // A pair that takes edges out of each other faster than they approach would throw them.
-        let approach = start.distance - gap.distance;
-        (start.distance >= -approach.max(NOISE * length).min(BEHIND * length)).then_some(gap)
+        let came = self.closest(edges, gap.xi, before).is_some_and(|start| {
+            let approach = start.distance - gap.distance;
+            start.distance >= -approach.max(NOISE * length).min(BEHIND * length)
+        });
+        // Where they are past each other's ends at the start, that gap says nothing.
+        (came || self.crossing(&mut self.swept(), edges, before, now).is_some()).then_some(gap)
     }
 
-    /// Where a pair past an end is handed over, if an edge continues there.
-    fn next(&self, edges: [usize; 2], xi: [f64; 2], y: &[f64]) -> Option<([usize; 2], EdgeGap)> {
+    /// The edges that continue those of which these points are past an end, if there are any.
+    pub(super) fn beyond(&self, edges: [usize; 2], xi: [f64; 2]) -> Option<([usize; 2], [f64; 2])> {
         let (mut to, mut start) = (edges, xi);
         for i in (0..2).filter(|&i| xi[i].abs() > 1.0 + PAST) {
             if let Some((next, there)) = self.sides[i].beyond(edges[i], xi[i]) {
                 (to[i], start[i]) = (next, there);
             }
         }
-        if to == edges {
-            return None;
-        }
+        (to != edges).then_some((to, start))
+    }
+
+    /// Where a pair past an end is handed over, if an edge continues there.
+    fn next(&self, edges: [usize; 2], xi: [f64; 2], y: &[f64]) -> Option<([usize; 2], EdgeGap)> {
+        let (to, start) = self.beyond(edges, xi)?;
         let gap = self.closest(to, start, y)?;
         (self.is_on(to, gap.xi, PAST, PAST) && self.cross(to, &gap, OUTSIDE, y)).then_some((to, gap))
     }
@@ -262,7 +291,7 @@ impl EdgeToEdge {
     }
 
     /// Calls `visit` for the edges whose paths come near each other, in order.
-    fn each_near(&self, before: &[f64], now: &[f64], mut visit: impl FnMut([usize; 2])) {
+    pub(super) fn each_near(&self, before: &[f64], now: &[f64], mut visit: impl FnMut([usize; 2])) {
         if self.sides.iter().any(|side| side.len() == 0) {
             return;
         }
@@ -292,20 +321,27 @@ impl EdgeToEdge {
         }
     }
 
-    /// θ at which an edge of the secondary side first meets one of the primary, with gaps that are
-    /// linear in θ.
+    /// θ at which an edge of the secondary side first meets one of the primary: of the certified
+    /// crossing or, of edges that were in contact before, with gaps that are linear in θ.
     pub(super) fn met(&self, edge: usize, before: &[f64], now: &[f64]) -> Option<f64> {
         let mut first: Option<f64> = None;
         self.each_near(before, now, |edges| {
             if edges[0] == edge
                 && let Some(gap) = self.candidate(edges, before, now)
-                && let Some(start) = self.closest(edges, gap.xi, before)
-                && let Some(theta) = crate::kinematics::zero(start.distance, gap.distance)
+                && let Some(theta) = self.theta(edges, &gap, before, now)
             {
                 first = Some(first.map_or(theta, |first| first.min(theta)));
             }
         });
         first
+    }
+
+    fn theta(&self, edges: [usize; 2], gap: &EdgeGap, before: &[f64], now: &[f64]) -> Option<f64> {
+        if let Some(hit) = self.crossing(&mut self.swept(), edges, before, now) {
+            return Some(hit.theta);
+        }
+        let start = self.closest(edges, gap.xi, before)?;
+        crate::kinematics::zero(start.distance, gap.distance)
     }
 
     fn lost(&self, pair: &Pair) -> ContactError {

@@ -78,6 +78,13 @@ impl Edges {
         &self.nodes[edge]
     }
 
+    /// Nodes of the facets that meet at an edge.
+    pub(super) fn around(&self, edge: usize) -> impl Iterator<Item = usize> {
+        let (facet, of_facet) = self.places[edge];
+        let facets = std::iter::once(facet).chain(self.boundary.across(facet, of_facet));
+        facets.flat_map(|facet| self.boundary.facet_nodes(facet).iter().copied())
+    }
+
     /// What bounds the sum of weights of an edge's nodes in the points of its box.
     pub(super) fn weight(&self) -> f64 {
         self.hull.weight()

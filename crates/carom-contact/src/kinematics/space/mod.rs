@@ -5,6 +5,7 @@ mod boundary;
 mod candidate;
 mod crease;
 mod crossing;
+mod edge_crossing;
 mod edge_gap;
 mod edge_to_edge;
 mod edges;

@@ -72,7 +72,7 @@ impl NodeToPatch {
             let Some(found) = through(&mut way, [entry, exit], bounce, fastest) else { continue };
             let (depth, limit) = (found.depth, found.limit);
             if worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
-                worst = Some(Passed { node, depth, limit });
+                worst = Some(Passed { what: "node", node, depth, limit });
             }
         }
         worst

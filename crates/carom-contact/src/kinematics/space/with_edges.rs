@@ -92,7 +92,7 @@ impl Kinematics for WithEdges {
     }
 
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
-        self.nodes.passed(before, now, bounce)
+        self.nodes.passed(before, now, bounce).or_else(|| self.edges.passed(before, now, bounce))
     }
 
     fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {

@@ -1,0 +1,182 @@
+//! Edges that cross each other within a step: x_A(ξ, θ) = x_B(η, θ), all nodes moving on straight
+//! lines from θ = 0 to θ = 1.
+//!
+//! The certified test of `swept` isolates the first crossing into the body of the other edge;
+//! Newton's method polishes it. Edges that have crossed and form no pair at the end of the step,
+//! because they are past each other's ends, or one has gone through a thin body, overlap on their
+//! way by the depth −g of their closest points, examined as that of nodes is (`way.rs`).
+
+use carom_algebra::{Mat, Vector};
+use carom_solid::shape::line_shape;
+
+use super::edge_to_edge::EdgeToEdge;
+use super::patch::{cross, place};
+use crate::kinematics::way::{Allowed, Between, Seen, Way, deepest};
+use crate::kinematics::{EdgeHit, Passed, SweptEdges};
+
+/// Edges this close to each other, relative to the shorter one, meet.
+const SEPARATION: f64 = 1e-6;
+/// Sine of the angle between the chords below which edges are not tested: they form no pair.
+const ALONG: f64 = 0.1;
+/// Distance in θ and ξ from the isolated crossing at which Newton's method found another one.
+const ASTRAY: f64 = 0.05;
+/// Depth on the way over the length of the shorter edge that is allowed, as at the end of a step.
+const DEEP: f64 = 0.1;
+/// By how much points of an edge move at most, over the motion of its nodes.
+const AMPLIFIED: f64 = 1.6312;
+
+/// Edges along which closest points are followed.
+const MOST: usize = 100;
+/// |ξ| − 1 up to which a point is on its edge.
+const PAST: f64 = 0.02;
+
+/// Nodes of an edge, and their places at either end of a step.
+type Path = [Vec<Vector<3>>; 2];
+
+impl EdgeToEdge {
+    /// The first crossing of two edges into each other's bodies.
+    pub(super) fn crossing(
+        &self,
+        swept: &mut SweptEdges,
+        edges: [usize; 2],
+        before: &[f64],
+        now: &[f64],
+    ) -> Option<EdgeHit> {
+        let paths: [Path; 2] = [0, 1].map(|of| {
+            [before, now].map(|y| self.nodes(edges, of).iter().map(|&node| place(y, node)).collect())
+        });
+        let chord = |of: usize, end: usize| paths[of][end][1] - paths[of][end][0];
+        let crosses = |end: usize| {
+            let [a, b] = [chord(0, end), chord(1, end)];
+            cross(a, b).norm() >= ALONG * a.norm() * b.norm()
+        };
+        if !crosses(0) && !crosses(1) {
+            return None;
+        }
+        let outwards = self.outwards(edges, [0.0; 2], before);
+        let at = |end: usize| [0, 1].map(|of| paths[of][end].as_slice());
+        let separation = SEPARATION * self.shorter(edges, before);
+        let hit = swept.first([at(0), at(1)], outwards, separation)?;
+        Some(polished(&paths, hit).unwrap_or(hit))
+    }
+
+    /// The edge that was deepest beyond its limit in the body of another one; `bounce`: allowed
+    /// depth of a node, over the length of a facet.
+    pub(super) fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
+        let mut swept = self.swept();
+        let (mut between, mut worst): (Option<Between<3>>, Option<Passed>) = (None, None);
+        self.each_near(before, now, |edges| {
+            let limit = bounce.max(DEEP) * self.shorter(edges, before);
+            let moved = |node: usize| place(now, node) - place(before, node);
+            let [own, other] = [0, 1].map(|of| self.nodes(edges, of));
+            let first = moved(own[0]);
+            let most = own.iter().chain(other).map(|&node| (moved(node) - first).norm()).fold(0.0, f64::max);
+            let fastest = 2.0 * AMPLIFIED * most;
+            if fastest <= limit {
+                return;
+            }
+            let Some(EdgeHit { theta, xi }) = self.crossing(&mut swept, edges, before, now) else { return };
+            if fastest * (1.0 - theta) <= limit {
+                return;
+            }
+            let between = between.get_or_insert_with(|| Between::new([before, now]));
+            let mut way = OnWay { contact: self, edges, between, xi, fastest, limit };
+            let entry = way.on(theta, 0, xi, 0.0);
+            let Some(end) = way.seen(1.0) else { return };
+            let found = if end.depth > limit { Some(end) } else { deepest(&mut way, [entry, end], fastest) };
+            let Some(Seen { depth, limit, .. }) = found else { return };
+            if worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
+                worst = Some(Passed { what: "the edge at node", node: own[0], depth, limit });
+            }
+        });
+        worst
+    }
+}
+
+/// Newton's method from an isolated crossing; none if it does not lead to one near it.
+fn polished(paths: &[Path; 2], hit: EdgeHit) -> Option<EdgeHit> {
+    let EdgeHit { mut theta, mut xi } = hit;
+    for _ in 0..20 {
+        // Relative to a node of B: exact differences, however far from the origin.
+        let (mut miss, mut moved) = (Vector::ZERO, Vector::ZERO);
+        let mut tangents = [Vector::ZERO; 2];
+        for of in 0..2 {
+            let ([before, now], sign) = (&paths[of], [1.0, -1.0][of]);
+            let shape = line_shape(before.len(), xi[of]);
+            for (k, (before, now)) in before.iter().zip(now).enumerate() {
+                let [start, end] = [*before - paths[1][0][0], *now - paths[1][1][0]];
+                let x = start * (1.0 - theta) + end * theta;
+                miss += x * (sign * shape.values[k]);
+                moved += (end - start) * (sign * shape.values[k]);
+                tangents[of] += x * (sign * shape.first[k]);
+            }
+        }
+        let matrix = Mat([moved.0, tangents[0].0, tangents[1].0]).transposed();
+        let step = matrix.inverse().apply(&-miss);
+        (theta, xi) = (theta + step[0], [xi[0] + step[1], xi[1] + step[2]]);
+        let size = step.0.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let astray = [theta - hit.theta, xi[0] - hit.xi[0], xi[1] - hit.xi[1]];
+        let near = astray.iter().all(|x| x.abs() < ASTRAY);
+        // A NaN is not near.
+        if !size.is_finite() || !near {
+            return None;
+        }
+        if size <= 1e-12 {
+            let inside = (0.0..=1.0).contains(&theta) && xi.iter().all(|x| x.abs() <= 1.0 + SEPARATION);
+            return inside.then_some(EdgeHit { theta, xi });
+        }
+    }
+    None
+}
+
+/// Two edges after they have crossed.
+struct OnWay<'a, 'b> {
+    contact: &'a EdgeToEdge,
+    edges: [usize; 2],
+    between: &'a mut Between<'b, 3>,
+    /// Where the search for the closest points begins.
+    xi: [f64; 2],
+    fastest: f64,
+    limit: f64,
+}
+
+impl Way for OnWay<'_, '_> {
+    /// Outside where a body does not meet the other one with these edges or those that continue
+    /// them.
+    fn seen(&mut self, theta: f64) -> Option<Seen> {
+        let (mut edges, mut xi) = (self.edges, self.xi);
+        for _ in 0..MOST {
+            for of in 0..2 {
+                for node in self.contact.around(edges, of) {
+                    self.between.with(theta, &[node]);
+                }
+            }
+            let y = self.between.flat();
+            let Some(gap) = self.contact.closest(edges, xi, y) else { break };
+            if let Some((next, start)) = self.contact.beyond(edges, gap.xi) {
+                (edges, xi) = (next, start);
+                continue;
+            }
+            if gap.xi.iter().any(|xi| xi.abs() > 1.0 + PAST) || !self.contact.cross(edges, &gap, 0.0, y) {
+                break;
+            }
+            (self.edges, self.xi) = (edges, gap.xi);
+            return Some(self.on(theta, 0, gap.xi, -gap.distance));
+        }
+        Some(self.on(theta, 0, self.xi, 0.0))
+    }
+
+    fn on(&self, theta: f64, facet: usize, xi: [f64; 2], depth: f64) -> Seen {
+        Seen { theta, facet, xi, depth, speed: self.fastest, limit: self.limit }
+    }
+
+    fn between(&self, _: &Seen, _: &Seen) -> f64 {
+        f64::INFINITY
+    }
+
+    fn normal(&mut self, _: &Seen) -> Vector<3> {
+        Vector::ZERO
+    }
+
+    fn allow(&mut self, _: Allowed) {}
+}
