@@ -8,6 +8,7 @@ ring further inside. Surface `disc`; curve `arc`. fine-disc.msh: the same with 1
 
 belt.msh: a belt of thickness 0.01 along a quarter of a circle of radius 1 about the origin, from (1, 0)
 to (0, 1), with straight ends of length 0.1. Surface `belt`; curves `inner`, `low` and `far` (the ends).
+half-belt.msh and whole-belt.msh: the same along a half and a whole circle.
 
 cattaneo.msh: the disc again, with cells of 0.0061 where it is pressed below and above, |x| < 0.11, which
 grow by 0.45 of the distance from there. Triangles are bisected at their longest edge until they are small
@@ -61,7 +62,9 @@ def disc(name, edges, radii):
     write(name, nodes, {"disc": cells, "arc": arc})
 
 
-def belt(cells_of_arc=90, cells_of_end=6):
+def belt(name, angle, cells_of_arc, cells_of_end=6):
+    """Over quarters of a turn."""
+    end = (round(cos(angle)), round(sin(angle)))
     count = cells_of_arc + 2 * cells_of_end
     nodes = {}
 
@@ -71,10 +74,11 @@ def belt(cells_of_arc=90, cells_of_end=6):
         if s < 0:
             place = (r, 0.1 * s / cells_of_end)
         elif s > cells_of_arc:
-            place = (0.1 * (cells_of_arc - s) / cells_of_end, r)
+            beyond = 0.1 * (s - cells_of_arc) / cells_of_end
+            place = (r * end[0] - beyond * end[1], r * end[1] + beyond * end[0])
         else:
-            angle = pi / 2 * s / cells_of_arc
-            place = (r * cos(angle), r * sin(angle))
+            at = angle * s / cells_of_arc
+            place = (r * cos(at), r * sin(at))
         return nodes.setdefault((i, j), (len(nodes) + 1, place))[0]
 
     cells = []
@@ -85,7 +89,7 @@ def belt(cells_of_arc=90, cells_of_end=6):
     inner = [[node(i, 0), node(i + 2, 0), node(i + 1, 0)] for i in range(0, 2 * count, 2)]
     low = [[node(0, 0), node(0, 2), node(0, 1)]]
     far = [[node(2 * count, 0), node(2 * count, 2), node(2 * count, 1)]]
-    write("belt.msh", nodes, {"belt": cells, "inner": inner, "low": low, "far": far})
+    write(name, nodes, {"belt": cells, "inner": inner, "low": low, "far": far})
 
 
 class Bisected:
@@ -213,5 +217,7 @@ def write(name, nodes, groups):
 if __name__ == "__main__":
     disc("disc.msh", 256, RADII)
     disc("fine-disc.msh", 1024, FINE)
-    belt()
+    belt("belt.msh", pi / 2, 90)
+    belt("half-belt.msh", pi, 120)
+    belt("whole-belt.msh", 2 * pi, 240)
     cattaneo()
