@@ -269,8 +269,8 @@ impl MeshSpec {
         words.iter().map(ToString::to_string).collect()
     }
 
-    /// The sides of an extrusion that planes of symmetry across x, y and z replace; of other shapes,
-    /// none.
+    /// The sides of an extrusion that planes of symmetry across x, y and z replace; of other
+    /// shapes, none.
     pub fn cut_sides(&self) -> [Option<String>; 3] {
         let Self::Extrusion { of, symmetry, .. } = self else { return [None, None, None] };
         let low = if of.sides().iter().any(|side| side == "bottom") { "base" } else { "bottom" };

@@ -1,7 +1,7 @@
-//! Two blocks of one size that meet face to face: their corners and edges meet too, and each is past
-//! the end of the other side, over it, or past it again as the blocks bulge. With ν = 0 the impact
-//! is that of two bars, which exchange their velocities: J = m Δv, less what neo-Hooke's law and
-//! the coarse mesh leave in vibration.
+//! Two blocks of one size that meet face to face: their corners and edges meet too, and each is
+//! past the end of the other side, over it, or past it again as the blocks bulge. With ν = 0 the
+//! impact is that of two bars, which exchange their velocities: J = m Δv, less what neo-Hooke's law
+//! and the coarse mesh leave in vibration.
 
 use carom_run::GridReport;
 

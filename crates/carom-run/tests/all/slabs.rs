@@ -39,9 +39,9 @@ time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 4e-3, end = 
 newton = { tolerance = 1e-12 }
 "#;
 
-/// The corner strikes between two nodes of the block. A node at the rim of the slab, on a sharp edge,
-/// is not let into the other body at all, as that of the plane is by a fiftieth of a facet: where
-/// the corner meets one, the slab differs from the plane.
+/// The corner strikes between two nodes of the block. A node at the rim of the slab, on a sharp
+/// edge, is not let into the other body at all, as that of the plane is by a fiftieth of a facet:
+/// where the corner meets one, the slab differs from the plane.
 const CORNER: &str = r#"
 dimension = 2
 material = [{ name = "rubber", law = "neo-hookean", density = 0.25, lambda = 200.0, mu = 15.0 }]
