@@ -42,9 +42,18 @@ impl BodySpec {
                     |frame| generate::tube(self.element, [inner, outer], height, &frame, size, symmetry);
                 generate::Frame::along(axis, center).and_then(tube)?
             }
-            MeshSpec::Extrusion { ref of, height, layers } if dimension == 3 => {
+            MeshSpec::Extrusion { ref of, height, layers, symmetry } if dimension == 3 => {
                 let element = generate::plane_of(self.element).ok_or(NoMesh::Extrusion(self.element))?;
-                generate::extrusion(&plane_mesh(of, element)?, height, layers)?
+                let low = if symmetry[2] { 0.5 * height } else { 0.0 };
+                let mut mesh = generate::extrusion(&plane_mesh(of, element)?, height - low, layers)?;
+                mesh.nodes.iter_mut().for_each(|x| x[2] += low);
+                let planes = ["plane_x", "plane_y", "plane_z"];
+                for (side, plane) in self.mesh.cut_sides().into_iter().zip(planes) {
+                    if let Some(facets) = side.and_then(|side| mesh.sides.remove(&side)) {
+                        mesh.sides.insert(plane.to_owned(), facets);
+                    }
+                }
+                mesh
             }
             MeshSpec::Box { .. }
             | MeshSpec::Ball { .. }

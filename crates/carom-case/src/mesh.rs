@@ -56,7 +56,9 @@ pub(super) fn read(
             read(table, 2, None, folder, preset, &path, problems)?
         };
         let (height, layers) = (v.number("height")?, v.count("layers")?);
-        return Some(MeshSpec::Extrusion { of: Box::new(of), height, layers });
+        let symmetry = super::solids::symmetry(v)?;
+        let of = half(of, table, symmetry, preset, &path, problems)?;
+        return Some(MeshSpec::Extrusion { of: Box::new(of), height, layers, symmetry });
     }
     if dimension == 3 {
         return super::solids::read(v, shape, path, problems);
@@ -92,6 +94,36 @@ pub(super) fn read(
                 "disc" => MeshSpec::Disc { radius, center, size },
                 _ => MeshSpec::HalfDisc { radius, center, size },
             })
+        }
+    }
+}
+
+/// What planes of symmetry across x and y leave of a shape of the plane: the part with the larger
+/// coordinates.
+fn half(
+    of: MeshSpec,
+    table: &Table,
+    [x, y, _]: [bool; 3],
+    preset: Preset,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<MeshSpec> {
+    match of {
+        _ if !x && !y => Some(of),
+        MeshSpec::Rectangle { min, max, .. } => {
+            let middle = |i: usize, cut: bool| if cut { 0.5 * (min[i] + max[i]) } else { min[i] };
+            let min = [middle(0, x), middle(1, y)];
+            let v = View { table, keys: keys::shapes().table("rectangle")?.keys, preset };
+            Some(MeshSpec::Rectangle { min, max, cells: divided(v, min, max, path, problems)? })
+        }
+        MeshSpec::Disc { radius, center, size } if !y => Some(MeshSpec::HalfDisc { radius, center, size }),
+        _ => {
+            let across = if y { "y" } else { "x" };
+            let what = format!("`symmetry` has \"{across}\", and this plane shape is not cut by that plane");
+            let why = "a rectangle is cut across x and y, a disc across x, and every extrusion across z";
+            let help = "extrude a polygon or a plane mesh that is the half, and hold its side";
+            problems.push(Problem::new(format!("{path}.shape"), what, why, help));
+            None
         }
     }
 }

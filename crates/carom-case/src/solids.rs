@@ -44,7 +44,7 @@ pub(super) fn read(v: View, shape: &str, path: &str, problems: &mut Vec<Problem>
 }
 
 /// Directions across which planes of symmetry cut.
-fn symmetry(v: View) -> Option<[bool; 3]> {
+pub(super) fn symmetry(v: View) -> Option<[bool; 3]> {
     let words = if v.has("symmetry") { v.texts("symmetry")? } else { Vec::new() };
     Some(["x", "y", "z"].map(|direction| words.iter().any(|word| word == direction)))
 }

@@ -99,13 +99,23 @@ const SHAPES: Variants = Variants {
             Table {
                 name: "mesh of shape \"extrusion\"",
                 doc: "Dimension 3; a plane shape or a plane mesh of a file from z = 0 to its height; its sides, \
-                    and bottom, top (base, lid if it has sides of these names).",
+                    and bottom, top (base, lid if it has sides of these names), and plane_x, plane_y, plane_z \
+                    where planes of symmetry cut it.",
                 keys: &[
                     key("of", Variant(plane_shapes), "The plane shape, or a surface of a Gmsh file; its cells are \
                         the faces of the solid cells.")
                         .example("{ shape = \"ring\", inner = 0.4, outer = 0.5, center = [0.0, 0.0], size = 0.1 }"),
                     key("height", Number(POSITIVE), "Length along z.").unit("length").example("0.2"),
                     key("layers", Count(1), "Number of layers of cells.").example("2"),
+                    key(
+                        "symmetry",
+                        Choices(&["x", "y", "z"]),
+                        "Directions in which a plane of symmetry through the middle of the shape cuts it, as of \
+                            other shapes: z, which leaves the upper half of the height; x and y of a rectangle; x \
+                            of a disc.",
+                    )
+                    .optional()
+                    .example("[\"z\"]"),
                 ],
                 later: &[],
             },

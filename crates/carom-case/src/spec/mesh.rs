@@ -137,6 +137,10 @@ pub enum MeshSpec {
         height: f64,
         /// Number of layers of cells.
         layers: usize,
+        /// Planes of symmetry by which `of` is cut already, and across which its side is one of
+        /// theirs; that across z leaves the upper half.
+        #[serde(default, skip_serializing_if = "whole_shape")]
+        symmetry: [bool; 3],
     },
     /// A named physical surface (dimension 1: curve, dimension 3: volume) of a .msh file; sides are
     /// its named physical curves (points, surfaces).
@@ -244,13 +248,15 @@ impl MeshSpec {
             Self::Tube { symmetry, axis, .. } => {
                 return cut(&["inner", "outer", "bottom", "top"], symmetry, bottom(*axis));
             }
-            Self::Extrusion { of, .. } => {
+            Self::Extrusion { of, symmetry, .. } => {
                 let mut sides = of.sides();
                 for (end, other) in [("bottom", "base"), ("top", "lid")] {
                     let end = if sides.iter().any(|side| side == end) { other } else { end };
                     sides.push(end.to_owned());
                 }
-                return sides;
+                let words: Vec<&str> = sides.iter().map(String::as_str).collect();
+                let across = self.cut_sides();
+                return cut(&words, symmetry, std::array::from_fn(|i| across[i].as_deref()));
             }
             Self::File { sides, .. } => return sides.clone(),
             Self::Polygon { points, .. } => return (1..=points.len()).map(|k| format!("side{k}")).collect(),
@@ -261,6 +267,21 @@ impl MeshSpec {
             Self::Ring { .. } => &["inner", "outer"],
         };
         words.iter().map(ToString::to_string).collect()
+    }
+
+    /// The sides of an extrusion that planes of symmetry across x, y and z replace; of other
+    /// shapes, none.
+    pub fn cut_sides(&self) -> [Option<String>; 3] {
+        let Self::Extrusion { of, symmetry, .. } = self else { return [None, None, None] };
+        let low = if of.sides().iter().any(|side| side == "bottom") { "base" } else { "bottom" };
+        let of_plane = match **of {
+            Self::Rectangle { .. } => [Some("left"), Some("bottom")],
+            Self::HalfDisc { .. } => [Some("axis"), None],
+            _ => [None, None],
+        };
+        let [x, y] = of_plane;
+        let all = [x, y, Some(low)];
+        std::array::from_fn(|i| all[i].filter(|_| symmetry[i]).map(str::to_owned))
     }
 
     /// Estimated numbers of cells and nodes of the mesh, in floating point so that nothing

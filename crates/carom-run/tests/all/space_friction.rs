@@ -334,3 +334,24 @@ newton = {{ tolerance = 1e-12 }}
         }
     }
 }
+
+/// Where all of a contact slips, t = μp at every node, whatever the vibrations of the body, so that
+/// J_T = μ J_N.
+#[test]
+fn every_node_of_a_spinning_ball_has_the_force_of_slip() {
+    let text = include_str!("../../../../cases/space/spinning-ball.toml");
+    let mut sim = simulation(text, &["time.end=0.07", "newton.tolerance=1e-13"]);
+    let mut slips = 0;
+    while !sim.finished() {
+        sim.advance(&mut GridReport::default()).unwrap();
+        let active = || sim.state().pairs[0].iter().filter(|pair| pair.active);
+        let largest = active().map(|pair| -pair.lambda).fold(0.0, f64::max);
+        for pair in active() {
+            let q = length(pair.tangential.traction);
+            assert!(matches!(pair.tangential.hold, Hold::Slip(_)), "{pair:?}");
+            assert!((q + 0.2 * pair.lambda).abs() <= 1e-10 * 0.2 * largest, "{pair:?} {largest}");
+            slips += 1;
+        }
+    }
+    assert!(slips > 50, "{slips}");
+}

@@ -53,6 +53,8 @@ pub(crate) enum Feature {
 
 /// Steps of Newton's method; it needs fewer than ten from any good guess.
 const STEPS: usize = 40;
+/// How far beyond an edge, over the height of the facet, the search of a point on it may go.
+const PASSES: f64 = 0.25;
 /// Points between two corners from which the search of a closest point begins.
 const SAMPLES: usize = 4;
 
@@ -218,11 +220,9 @@ impl Patch<'_> {
     /// The nearest point of the facet with its edges and corners.
     pub(crate) fn nearest(&self, y: &[f64], from: Vector<3>) -> Nearest {
         let distance = |xi: [f64; 2]| self.offset(from, y, xi).norm();
-        let inside = self.closest_point(y, from, 0.0).map(|xi| Nearest {
-            xi,
-            at: Feature::Inside,
-            distance: distance(xi),
-        });
+        // On the way to a point beside an edge, Newton's method may pass it.
+        let inside = self.closest_point(y, from, PASSES).filter(|&xi| self.furthest(xi).1 <= 0.0);
+        let inside = inside.map(|xi| Nearest { xi, at: Feature::Inside, distance: distance(xi) });
         let mut nearest = inside;
         for edge in 0..self.corners() {
             let s = self.nearest_on_edge(y, from, edge);
@@ -302,6 +302,24 @@ mod tests {
             [0.0, 0.5, 0.05],
         ]
         .concat()
+    }
+
+    /// A facet of the end of a cylinder: plane, with an edge along the circle.
+    #[test]
+    fn points_beside_a_curved_edge_are_on_the_facet() {
+        let circle = |angle: f64| [angle.to_radians().cos(), angle.to_radians().sin(), 0.0];
+        let middle = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
+        let [a, b, centre] = [circle(0.0), circle(45.0), [0.6, 0.25, 0.0]];
+        let y = [a, b, centre, circle(22.5), middle(b, centre), middle(centre, a)].concat();
+        let patch = Patch { shape: FacetShape::T6, nodes: &[0, 1, 2, 3, 4, 5] };
+        for k in 1..40 {
+            for depth in [1e-3, 1e-5, 1e-7] {
+                let mut from = patch.at(&y, [f64::from(k) / 40.0 * (1.0 - depth), depth]).position;
+                from[2] += 1e-6;
+                let found = patch.nearest(&y, from);
+                assert!(found.distance < 1.001e-6, "{k} {depth}: {found:?}");
+            }
+        }
     }
 
     #[test]
