@@ -6,7 +6,7 @@
 Opens each page, plays its animation and drags its slider; a scene in space is also turned, moved,
 zoomed, cut and coloured, by mouse, touch and keys. Fails on any console message, missing part or
 external request, and on text that is cut off, covered or hard to read at either of two widths and in
-either colour scheme (`page_layout.py`). Needs only `chromium` (apt-get install chromium). With
+either colour scheme (`page_layout.py`); of a picture, NAME.svg, this alone. Needs only `chromium` (apt-get install chromium). With
 --screenshots, it writes for every page NAME.png (as opened), NAME-playing.png (after the animation was
 played), NAME-WIDTH-SCHEME.png (of tall pages in pieces -2, -3, …) and NAME.pdf (printed), where NAME is
 the name of its folder.
@@ -323,6 +323,9 @@ def scene(browser):
 def check(browser, page, screenshots):
     """The errors of a page, as sentences."""
     browser.open(page)
+    if page.suffix == ".svg":
+        to = screenshots and screenshots / page.stem
+        return layout(browser, picture, to) + browser.said
     text = page.read_text(encoding="utf-8")
     wrong = []
     if not browser.value("document.querySelector('h1')?.textContent"):
@@ -331,7 +334,6 @@ def check(browser, page, screenshots):
         wrong.append(f"an external request: {outside.group()}")
     to = None
     if screenshots:
-        screenshots.mkdir(parents=True, exist_ok=True)
         to = screenshots / page.resolve().parent.name
         picture(browser, f"{to}.png")
         print_data = browser("Page.printToPDF", printBackground=True)["data"]
@@ -372,6 +374,8 @@ def main():
     parser.add_argument("--screenshots", type=Path)
     arguments = parser.parse_args()
     failed = False
+    if arguments.screenshots:
+        arguments.screenshots.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = Browser(profile)
         try:

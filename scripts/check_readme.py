@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Checks what README.md says a command prints: the run of its first command, except for wall times,
-the numbers of set-ups of `carom verify`, of planted faults and of methods of the laboratory, and that
-every command of the tour has its options.
+"""Checks what README.md says a command prints: the run of its first command, except for wall times, and
+the energy that this run loses, with its step and with a quarter of it; the numbers of set-ups of
+`carom verify`, of planted faults and of methods of the laboratory; that every command of the tour has
+its options; and that what takes hours to measure is what the book says, with a date and a command.
 
     scripts/check_readme.py CAROM OUTPUT_OF_VERIFY
 """
@@ -32,6 +33,25 @@ def printed(carom):
         return done.stdout.replace(folder, "runs").rstrip("\n").split("\n")
 
 
+# What CI does not measure: words of README.md, and the page of the book with the same figures.
+MEASURED = [
+    (r"takes (2\.7 GiB) and (7) s per step on one core \(\d+ \w+ \d{4},\s+`carom run cases/perf/ball", "performance.md",
+     r"cases/perf/ball\.toml`\), ten steps \| – \| {1}\.\d s, {0} "),
+    (r"Of (400)\s+difficult random plane cases, (96) % .*\(\d+ \w+ \d{4}, `scripts/ladder\.py --seed 1 --count 400`\)",
+     "verification/ladder.md", r"first {0} cases of seed 1.*finished, correct \| [^|]* \| \d+ \({1} %\)"),
+]
+
+
+def lost(carom, step):
+    """The percentage of its energy that the impact loses with a time step."""
+    asked = 'expect=[{ what = "energy_lost", at_least = 0.0 }]'
+    with tempfile.TemporaryDirectory() as folder:
+        command = [carom, "run", "cases/impact/impact.toml", "--out", f"{folder}/impact", "--no-report"]
+        sets = ["--set", asked, "--set", "output.fields_every=0", "--set", f"time.step={step}"]
+        done = subprocess.run(command + sets, cwd=ROOT, capture_output=True, text=True, check=True)
+    return 100 * float(re.search(r"energy_lost: (\S+),", done.stdout)[1])
+
+
 def main():
     carom, verified = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -49,6 +69,20 @@ def main():
     set_ups = total[1] if total else "no"
     if f"Verified by {set_ups} cases and studies" not in readme:
         wrong.append(f"README.md does not say {set_ups} cases and studies")
+
+    for pattern, step in ((r"loses (\d+) % of its energy", 1.875e-3), (r"of the step it loses\s+([\d.]+) %", 4.6875e-4)):
+        claim = re.search(pattern, readme)
+        found = lost(carom, step)
+        decimals = len(claim[1].partition(".")[2]) if claim else 0
+        if not claim or claim[1] != f"{found:.{decimals}f}":
+            wrong.append(f"the impact with Δt = {step} loses {found:.2f} % of its energy, not {claim and claim[1]} %")
+    for pattern, page, source in MEASURED:
+        claim = re.search(pattern, readme, re.DOTALL)
+        text = (ROOT / "docs/book/src" / page).read_text(encoding="utf-8")
+        if not claim:
+            wrong.append(f"README.md does not say `{pattern}`")
+        elif not re.search(source.replace("{0}", claim[1]).replace("{1}", claim[2]), text, re.DOTALL):
+            wrong.append(f"{page} does not say {claim[1]} and {claim[2]}, as README.md does")
 
     faults = len(json.loads((ROOT / "scripts/faults.json").read_text(encoding="utf-8")))
     if not re.search(rf"\b{faults}\s+faults are planted", readme):

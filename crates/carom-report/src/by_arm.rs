@@ -21,7 +21,7 @@ pub(crate) fn tables(
                 thead { tr { th { "Metric" } th { "Unit" } @for arm in part { th.n { (arm + 1) } } } }
                 @for metric in metrics {
                     tr {
-                        td { code { (metric.name) } } td { (Label(&metric.unit)) }
+                        td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
                         @for arm in part { td.n { (cell(*arm, metric)) } }
                     }
                 }

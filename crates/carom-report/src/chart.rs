@@ -197,15 +197,7 @@ impl Chart<'_> {
         }
         y0 += if options.tracks.is_empty() { 0.0 } else { 10.0 };
         if options.time {
-            let (left, right) = (to_x(x_axis.low), to_x(x_axis.high));
-            let (low, high) = (x_axis.low, x_axis.high);
-            let _ = writeln!(
-                out,
-                "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} 8 {:.1} {} {:e}\"/>",
-                y0 - 12.0,
-                x_axis.exponent,
-                x_axis.offset
-            );
+            out.push_str(&time_axis((to_x(x_axis.low), to_x(x_axis.high)), &x_axis, (8.0, y0 - 12.0)));
         }
         let (words, unit) = unit_of(&self.x_label);
         let x_label = x_axis.label(words, unit);
@@ -213,6 +205,16 @@ impl Chart<'_> {
         out.push_str("</svg>\n");
         out
     }
+}
+
+/// The mark of an axis of time, along which the animation moves a line: left and right end, and top
+/// and bottom of the line.
+pub(crate) fn time_axis((left, right): (f64, f64), axis: &Axis, (top, bottom): (f64, f64)) -> String {
+    let (low, high, exponent, offset) = (axis.low, axis.high, axis.exponent, axis.offset);
+    format!(
+        "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} {top} {bottom:.1} {exponent} \
+         {offset:e}\"/>\n"
+    )
 }
 
 /// The opening of the part of a panel that zooming stretches: a window on the same coordinates.

@@ -57,7 +57,7 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
                 @let values: Vec<_> = group.arms.iter().map(|i| study.rows[*i].value(&metric.name)).collect();
                 @if values.iter().any(Option::is_some) {
                     tr {
-                        td { code { (metric.name) } } td { (Label(&metric.unit)) }
+                        td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
                         @for value in &values { td.n { (or_dash(*value, number)) } }
                         (observed(&group.steps, &values))
                     }

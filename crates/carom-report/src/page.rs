@@ -168,7 +168,7 @@ fn results(run: &Run) -> Markup {
                     tr {
                         td { code { (metric.name) } }
                         td.n { (or_dash(metric.value, shown)) }
-                        td { @if metric.unit.is_empty() { "–" } @else { (Label(&metric.unit)) } }
+                        td.unit { @if metric.unit.is_empty() { "–" } @else { (Label(&metric.unit)) } }
                         td { (metric.definition) }
                     }
                 }
@@ -206,7 +206,7 @@ fn expectations(run: &Run) -> Markup {
                     tr {
                         td { code { (e.what) } } td { (minus(&e.expected)) }
                         td.n { (or_dash(e.got, number)) }
-                        td { (Label(&unit_of_question(run, &e.what))) }
+                        td.unit { (Label(&unit_of_question(run, &e.what))) }
                         @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
                         td { @if let Some(source) = &e.source { (source) } }
                     }

@@ -17,11 +17,12 @@ const player = (root, frames, unit, draw, first) => {
   let shownFrom = null, shownTo = null;
   const axes = [...document.querySelectorAll("svg g.time")].map(axis => {
     const [x0, x1, t0, t1, top, bottom, exponent, offset] = axis.dataset.axis.split(" ").map(Number);
-    const range = () => shownFrom === null ? [t0, t1] : [shownFrom, shownTo];
+    const svg = axis.ownerSVGElement, ticks = svg.querySelector("g.ticks"), original = ticks?.innerHTML;
+    // A map over time has a cursor and takes clicks, but is not enlarged.
+    const range = () => shownFrom === null || !ticks ? [t0, t1] : [shownFrom, shownTo];
     const line = document.createElementNS("http://www.w3.org/2000/svg", "path");
-    for (const [key, value] of [["stroke", "#c0267e"], ["stroke-width", "1.2"], ["class", "cursor"]]) line.setAttribute(key, value);
+    for (const [key, value] of [["stroke", ticks ? "#c0267e" : "#0072b2"], ["stroke-width", ticks ? "1.2" : "1.6"], ["class", "cursor"]]) line.setAttribute(key, value);
     axis.append(line);
-    const svg = axis.ownerSVGElement;
     const at = event => {
       const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
       const [from, to] = range();
@@ -33,14 +34,13 @@ const player = (root, frames, unit, draw, first) => {
       if (!begun || begun[0] === null) return;
       const [t, x] = begun, other = at(event);
       begun = null;
-      if (Math.abs(event.clientX - x) > 8 && other !== null) zoom(Math.max(t0, Math.min(t, other)), Math.min(t1, Math.max(t, other)));
+      if (ticks && Math.abs(event.clientX - x) > 8 && other !== null) zoom(Math.max(t0, Math.min(t, other)), Math.min(t1, Math.max(t, other)));
       else { pause(); show(t); }
     });
     svg.addEventListener("dblclick", () => zoom(null, null));
     svg.style.cursor = "crosshair";
     svg.style.touchAction = "pan-y";
     svg.style.userSelect = "none";
-    const ticks = svg.querySelector("g.ticks"), original = ticks.innerHTML;
     const place = t => { const [from, to] = range(); return x0 + (x1 - x0) * (t - from) / (to - from); };
     return {
       move: t => {
@@ -48,6 +48,7 @@ const player = (root, frames, unit, draw, first) => {
         line.setAttribute("d", x < x0 - 1 || x > x1 + 1 ? "" : `M${x.toFixed(2)} ${top}V${bottom}`);
       },
       rescale: () => {
+        if (!ticks) return;
         const [from, to] = range(), width = (x1 - x0) / (t1 - t0);
         svg.querySelectorAll("svg.window").forEach(w => {
           const [, y, , height] = w.getAttribute("viewBox").split(" ");

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::arc::{Place, places};
 use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
-use crate::chart::{open_chart, write_text};
+use crate::chart::{open_chart, time_axis, write_text};
 use crate::figure::Figure;
 use crate::labels::with_unit;
 use crate::pen::{Pen, open_grid};
@@ -122,12 +122,15 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let y = sides.len() as f64 * step + 22.0;
     let label = x_axis.label("time t", run.history.unit("time"));
     write_text(&mut out, LEFT + 0.5 * plot, y, "text-anchor=\"middle\"", &label);
+    let bottom = 26.0 + (sides.len() - 1) as f64 * step + HEIGHT;
+    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, (26.0, bottom)));
     out.push_str("</svg>\n");
     let thinned =
         if stride > 1 { format!(" {} recorded instant is drawn.", every(stride)) } else { String::new() };
     let caption = format!(
         "Contact pressure p during contact, over time and the arc length s of the secondary side in the reference \
-         configuration; a band per node, nothing where it is open.{thinned} Data: `contact.csv`, column \
+         configuration; a band per node, nothing where it is open.{thinned} The line is at the instant of the \
+         animation, and a click goes to one. Data: `contact.csv`, column \
          `pressure`."
     );
     let labels = [

@@ -8,7 +8,7 @@ use carom_record::{ContactRow, Run};
 
 use crate::arc::{self, places};
 use crate::axis::{Axis, range};
-use crate::chart::{open_chart, write_text};
+use crate::chart::{open_chart, time_axis, write_text};
 use crate::figure::Figure;
 use crate::labels::with_unit;
 use crate::palette::LINES;
@@ -60,6 +60,8 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
             write_text(&mut out, LEFT + 0.5 * plot, top + HEIGHT + 40.0, "text-anchor=\"middle\"", &label);
         }
     }
+    let bottom = 40.0 + (contacts.len() - 1) as f64 * (HEIGHT + 44.0) + HEIGHT;
+    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, (40.0, bottom)));
     out.push_str("</svg>\n");
     let is_length = !run.fields.is_empty();
     let counted = if is_length {

@@ -79,7 +79,11 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         .enumerate()
         .collect::<Vec<_>>()
         .chunk_by(|a, b| a.1.case_path == b.1.case_path)
-        .flat_map(|same| same.chunks(MOST).map(|few| few.iter().map(|(i, _)| *i).collect()))
+        .flat_map(|same| {
+            // Nine arms are five and four, not eight and one.
+            let each = same.len().div_ceil(same.len().div_ceil(MOST));
+            same.chunks(each).map(|few| few.iter().map(|(i, _)| *i).collect())
+        })
         .collect();
     let keys = Keys::of(study.rows.iter().map(|row| row.name.as_str()));
     let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));

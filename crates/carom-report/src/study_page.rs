@@ -223,7 +223,7 @@ fn expectations(study: &Study) -> Markup {
                             td { (arm) }
                             td { (minus(&e.expected)) }
                             td.n { (or_dash(e.got, five)) }
-                            td { (Label(&unit_of_question(study, &e.what))) }
+                            td.unit { (Label(&unit_of_question(study, &e.what))) }
                             @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
                             td { @if let Some(source) = &e.source { (source) } }
                         }

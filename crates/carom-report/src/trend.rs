@@ -150,14 +150,14 @@ pub(crate) fn plots(study: &Study) -> Vec<Plot> {
 fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
     let all: Vec<f64> = groups.iter().flat_map(|group| group.steps.iter().copied()).collect();
     let (wide, single) = (spans(&all), groups.len() == 1);
-    let keys = Keys::of(groups.iter().map(|group| group.common.as_str()));
+    let labels = labels(groups);
     let pane = |metric: &&Metric| {
         let power = power(study, groups, &metric.name);
         // The title differs between panes only by numbers.
         let name = metric.name.clone().into_owned();
         let mut pane = Pane { y_label: with_unit(&name, &metric.unit), name, ..Pane::default() };
         for (style, group) in groups.iter().enumerate() {
-            let label = if single { "arms".to_owned() } else { keys.label(&group.common) };
+            let label = if single { "arms".to_owned() } else { labels[style].clone() };
             let trend = trend(study, group, &metric.name, power);
             if single {
                 pane.title = trend.words(&metric.unit, unit_of_key(study, key)).unwrap_or_default();
@@ -206,6 +206,19 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
     })
 }
 
+/// The labels of groups, without the settings that all of them have.
+fn labels(groups: &[Refinement]) -> Vec<String> {
+    let keys = Keys::of(groups.iter().map(|group| group.common.as_str()));
+    let is_shared = |part: &&str| {
+        groups.len() > 1 && groups.iter().all(|group| group.common.split(", ").any(|other| other == *part))
+    };
+    let own = |group: &Refinement| {
+        let parts: Vec<&str> = group.common.split(", ").filter(|part| !is_shared(part)).collect();
+        keys.label(&parts.join(", "))
+    };
+    groups.iter().map(own).collect()
+}
+
 /// Slopes and exponents with their intervals.
 pub(crate) fn section(study: &Study) -> Markup {
     let found = varied_keys(&study.manifest, LEAST);
@@ -213,18 +226,18 @@ pub(crate) fn section(study: &Study) -> Markup {
         @if !found.is_empty() {
             h2 { "Trends" }
             @for (key, groups) in &found {
-                @let keys = Keys::of(groups.iter().map(|group| group.common.as_str()));
+                @let labels = labels(groups);
                 details {
                     summary { "Slopes and exponents in " code { (key) } }
                     table.metrics {
                         thead { tr { th { "Metric" } th { "Unit" } th { "Arms" } th { "95 % interval" } } }
                         @for metric in metrics(study, groups) {
                             @let power = power(study, groups, &metric.name);
-                            @for group in groups {
+                            @for (group, label) in groups.iter().zip(&labels) {
                                 @if let Some(words) = trend(study, group, &metric.name, power).words(&metric.unit, unit_of_key(study, key)) {
                                     tr {
-                                        td { code { (metric.name) } } td { (Label(&metric.unit)) }
-                                        td { (keys.label(&group.common)) } td { (words) }
+                                        td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
+                                        td { (label) } td { (words) }
                                     }
                                 }
                             }

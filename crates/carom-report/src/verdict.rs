@@ -196,21 +196,23 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
     };
     html! {
         h3 { "The same at " (other) }
-        table {
-            thead {
-                tr {
-                    th { "Level" } th { "First in the table" } th { "Compared at" } th { "Smallest errors there" }
-                    th { "Conclusion" }
+        div.scroll {
+            table {
+                thead {
+                    tr {
+                        th { "Level" } th { "First in the table" } th { "Compared at" }
+                        th { "Smallest errors there" } th { "Conclusion" }
+                    }
                 }
-            }
-            @for check in &ranking.crosschecks {
-                tr {
-                    td { "Δt = " (or_dash(design.steps.get(check.level).copied(), |h| in_time(study, h))) }
-                    td { (check.first) } td { (value(check)) } td { (best(check)) }
-                    td {
-                        @match &check.better {
-                            Some(method) => { "changes: " (method) " is better" },
-                            None => "does not change",
+                @for check in &ranking.crosschecks {
+                    tr {
+                        td.unit { "Δt = " (or_dash(design.steps.get(check.level).copied(), |h| in_time(study, h))) }
+                        td { (check.first) } td { (value(check)) } td { (best(check)) }
+                        td {
+                            @match &check.better {
+                                Some(method) => { "changes: " (method) " is better" },
+                                None => "does not change",
+                            }
                         }
                     }
                 }
@@ -252,7 +254,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                 @for (metric, value, uncertainty) in yes {
                     @let estimate = reference.estimate(&metric.name).ok();
                     tr {
-                        td { code { (metric.name) } } td { (Label(&metric.unit)) }
+                        td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
                         td.n { (three(value)) } td.n { (three(uncertainty)) }
                         td.n { (or_dash(estimate.and_then(|e| e.order), |p| format!("{p:.2}"))) }
                         td.n { (or_dash(estimate.map(|e| e.spread).filter(|s| *s > 0.0), three)) }
