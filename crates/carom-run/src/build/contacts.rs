@@ -27,7 +27,7 @@ pub(super) fn contacts(
     case: &Case,
     parts: &[BodyInstance],
     obstacles: &[Moving],
-    massless: &[bool],
+    [massless, fixed]: [&[bool]; 2],
     problems: &mut Vec<Problem>,
 ) -> Vec<Contact> {
     let averages = case.time.scheme.is_alpha();
@@ -78,7 +78,8 @@ pub(super) fn contacts(
                     let side = boundary_of(&primary, &[&before[..], &after].concat(), parts);
                     let (of_earlier, of_later) = siblings(case, parts, k, secondary.part, Which::Secondary);
                     let opposite = boundary_of(&secondary, &[of_earlier, of_later].concat(), parts);
-                    let corners = side.corners(&reference);
+                    let is_fixed = |node: usize, axis: usize| fixed[3 * node + axis];
+                    let corners = side.nodes_of_sharp_edges(&reference, is_fixed);
                     let (others, allowed) = others(&primary, &before, &secondary, &corners, &reference, 3);
                     let of = |sides: &[Side]| sides.iter().flat_map(|side| side.nodes.clone()).collect();
                     let edges = EdgeToEdge::new(

@@ -113,7 +113,7 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     // The force on a prescribed carrier is averaged like that on the nodes that press on it.
     obstacles.iter().flat_map(obstacles::Moving::prescribed).for_each(|(dof, _)| massless[dof] = false);
     let gravity = gravity(case, &parts, &obstacles, &mass, dofs);
-    let contacts = contacts::contacts(case, &parts, &obstacles, &massless, &mut problems);
+    let contacts = contacts::contacts(case, &parts, &obstacles, [&massless, &fixed], &mut problems);
     let probes = probes(case, &parts, &mut problems);
     let unconstrained = free_motions(&parts, &fixed);
     if case.time.scheme.is_static() {

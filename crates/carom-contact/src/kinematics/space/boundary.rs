@@ -17,6 +17,8 @@ use crate::kinematics::amplification;
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
 const SHARP: f64 = 0.87;
+/// Component of a unit normal along an axis from which on a facet is a plane across it.
+const ALONG: f64 = 1.0 - 1e-9;
 /// Pieces into which points divide a sharp edge.
 const PIECES: usize = 8;
 
@@ -27,7 +29,7 @@ pub struct Boundary {
     nodes: Vec<usize>,
     /// Across each edge: the facet there, and the number of the edge on it.
     neighbours: Vec<[Option<(usize, usize)>; 4]>,
-    /// Facets at each node that is a corner.
+    /// Facets at each node of an edge.
     around: HashMap<usize, Vec<usize>>,
     side: usize,
     siblings: usize,
@@ -46,7 +48,9 @@ impl Boundary {
         for (facet, nodes) in facets.iter().enumerate() {
             for e in 0..count {
                 edges.insert((nodes[e], nodes[(e + 1) % count]), (facet, e));
-                around.entry(nodes[e]).or_default().push(facet);
+            }
+            for &node in &nodes[..count * shape.degree()] {
+                around.entry(node).or_default().push(facet);
             }
         }
         let neighbours = |nodes: &&Vec<usize>| {
@@ -110,13 +114,22 @@ impl Boundary {
         self.patch(facet).nodes
     }
 
-    /// Facets of the side of which a node is a corner, with its ξ there.
+    /// Facets of the side with a node on their edges, with its ξ there.
     pub(crate) fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
         let around = self.around.get(&node).into_iter().flatten().filter(|&&facet| self.is_of_side(facet));
         let at = |&facet: &usize| {
             let patch = self.patch(facet);
-            let corner = patch.nodes[..patch.corners()].iter().position(|&n| n == node)?;
-            Some((facet, patch.corner(corner)))
+            let (count, degree) = (patch.corners(), self.shape.degree());
+            let place = patch.nodes[..count * degree].iter().position(|&n| n == node)?;
+            // Behind the corners come the inner nodes of edge after edge.
+            let xi = match place.checked_sub(count) {
+                None => patch.corner(place),
+                Some(inner) => {
+                    let (edge, k) = (inner / (degree - 1), inner % (degree - 1));
+                    patch.along(edge, (k + 1) as f64 / degree as f64)
+                }
+            };
+            Some((facet, xi))
         };
         around.filter_map(at).collect()
     }
@@ -171,6 +184,32 @@ impl Boundary {
         }
         let turns = |at: &Vec<Vector<3>>| at.iter().any(|along| along.dot(&at[0]).abs() < SHARP);
         directions.into_iter().filter(|(_, at)| turns(at)).map(|(node, _)| node).collect()
+    }
+
+    /// Nodes of the side at corners and on sharp convex edges, ascending, but for those on an edge
+    /// between the side and a plane of symmetry: the mirror image continues the side there. Such
+    /// nodes are fixed across the plane, `is_fixed(node, axis)`, and free along it.
+    pub fn nodes_of_sharp_edges(&self, y: &[f64], is_fixed: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+        let of_edge = |(facet, edge): (usize, usize)| {
+            let (nodes, count) = self.shape.edge(edge);
+            let nodes = nodes[..count].iter().map(|&node| self.patch(facet).nodes[node]);
+            let nodes: Vec<usize> = nodes.collect();
+            let is_mirror = |normal: &Vector<3>| {
+                let is_along = |axis: &usize| normal[*axis].abs() > ALONG;
+                let axis = (0..3).find(is_along);
+                let is_held = |node: usize| (0..3).all(|axis| is_fixed(node, axis));
+                axis.is_some_and(|axis| {
+                    nodes.iter().all(|&node| is_fixed(node, axis)) && !nodes.iter().all(|&n| is_held(n))
+                })
+            };
+            let mirrored = self.normals_at_edge(facet, edge, 0.5, y).iter().any(is_mirror);
+            if mirrored { Vec::new() } else { nodes }
+        };
+        let mut nodes: Vec<usize> = self.sharp_edges(y).into_iter().flat_map(of_edge).collect();
+        nodes.extend(self.corners(y));
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
     }
 
     /// The side's sharp convex edges, as facets with the numbers of their edges: each from one of
