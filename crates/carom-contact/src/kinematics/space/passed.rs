@@ -214,7 +214,7 @@ mod tests {
 
     #[test]
     fn thin_walls_of_a_hollow_body_are_not_missed() {
-        // It is outside for 94 % of its way from the first entry, x = 0, to the last exit, x = 2.06.
+        // Of the way from the first entry, x = 0, to the last exit, x = 2.06, 94 % are outside.
         let channel = [
             [0.0, 0.0],
             [2.06, 0.0],
