@@ -273,6 +273,28 @@ mod tests {
     }
 
     #[test]
+    fn a_node_with_a_pair_that_enters_elsewhere_has_another_one() {
+        use crate::{Pair, Pairing};
+        // Between the inner walls of a channel, with an open pair with the left one.
+        let channel =
+            [[0.0, 0.0], [2.5, 0.0], [2.5, 1.0], [2.0, 1.0], [2.0, 0.5], [0.5, 0.5], [0.5, 1.0], [0.0, 1.0]];
+        let facet = |k: usize| vec![k, (k + 1) % 8];
+        let rest: Vec<_> = [0, 1, 2, 6, 7].map(facet).into();
+        let side = [facet(3), facet(4), facet(5)];
+        let surface = Surface::new(FacetShape::L2, &side, &[1.0; 3]).bounded_by(&rest, 0);
+        let contact = NodeToFacet::new(vec![8], surface, Detection::ClosestPoint);
+        let at = |x: f64, y: f64| [channel.as_flattened(), &[x, y]].concat();
+        let found = |to: Vec<f64>| {
+            let mut pairing = Pairing::new(vec![Pair::open(0, 2, 0.0)]);
+            let changed = contact.search(&at(0.6, 0.75), &to, &mut pairing, &mut Vec::new());
+            (changed, pairing.pairs.iter().map(|pair| pair.facet).collect::<Vec<_>>())
+        };
+        assert_eq!(found(at(2.1, 0.75)), (true, vec![2, 0]));
+        assert_eq!(found(at(1.9, 0.75)), (false, vec![2]));
+        assert_eq!(found(at(0.45, 0.75)), (false, vec![2]));
+    }
+
+    #[test]
     fn a_node_that_starts_or_ends_at_a_depth_that_it_may_have_is_not_forgotten() {
         // It may be 0.02 deep, is 0.015 deep at one end of its way, and 0.05 deep on it.
         let plate = [[-1.0, -0.1], [0.0, -0.1], [1.0, -0.1], [1.0, 0.0], [0.0, 0.0], [-1.0, 0.0]];
