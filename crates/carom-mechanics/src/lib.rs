@@ -31,6 +31,7 @@ mod linear_problem;
 mod mixing;
 pub mod model;
 mod newton;
+mod outline;
 mod overlap;
 mod overlapping;
 mod penetration;

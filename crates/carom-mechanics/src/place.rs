@@ -26,6 +26,9 @@ impl Rejected {
             Self::Inverted { body, inverted } => {
                 Place { body: Some(body), cell: Some(inverted.cell), ..Place::default() }
             }
+            Self::InvertedOnTheWay { body, cell, .. } => {
+                Place { body: Some(body), cell: Some(*cell), ..Place::default() }
+            }
             Self::Contact { contact, error } => {
                 let (node, facet) = match *error {
                     ContactError::Focal { node, facet, .. }

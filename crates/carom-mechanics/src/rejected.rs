@@ -20,6 +20,18 @@ pub enum Rejected {
         /// Cell and J.
         inverted: Inverted,
     },
+    /// A cell is inverted within the step, while its nodes move on straight lines.
+    #[error(
+        "body \"{body}\": cell {cell} is inverted within the step, at {theta:.4} of it, while its nodes move on straight lines"
+    )]
+    InvertedOnTheWay {
+        /// Body.
+        body: String,
+        /// The cell.
+        cell: usize,
+        /// Share of the step that has passed.
+        theta: f64,
+    },
     /// A gap is not usable.
     #[error("contact \"{contact}\": {error}")]
     Contact {
@@ -235,7 +247,7 @@ impl Rejected {
     /// Keyword for the log.
     pub fn kind(&self) -> &'static str {
         match self {
-            Self::Inverted { .. } => "inverted-cell",
+            Self::Inverted { .. } | Self::InvertedOnTheWay { .. } => "inverted-cell",
             Self::Contact { .. } => "contact-geometry",
             Self::NoConvergence { .. } | Self::NoMultipliers { .. } | Self::Unsettled { .. } => {
                 "no-convergence"

@@ -338,8 +338,11 @@ impl Simulation {
             let stepper = self.fallback.as_ref().filter(|_| falls_back).unwrap_or(&self.stepper);
             let stepped = stepper.step(&self.model, from, dt, to, &mut self.work);
             let stepped = stepped.and_then(|step| {
-                let check = || nothing_passed(&self.model, &from.y, &step.state().y);
-                timed(&mut self.work.timings.contact, check)?;
+                let (state, Workspace { timings, valid_cells, .. }) = (step.state(), &mut self.work);
+                let (times, positions) = ([from.time, state.time], [&from.y[..], &state.y[..]]);
+                let check = || valid_cells.check_paths(&self.model, times, positions);
+                timed(&mut timings.assembly, check)?;
+                timed(&mut timings.contact, || nothing_passed(&self.model, &from.y, &state.y))?;
                 Ok(step)
             });
             // A step that is returned to began earlier.

@@ -1,10 +1,12 @@
-//! The check that every cell is valid (J > 0) at the end of a step, everywhere and not only at its
-//! quadrature points.
+//! The check that every cell is valid (J > 0) at the end of a step and on the straight paths of its
+//! nodes in it, everywhere and not only at its quadrature points.
 //!
 //! A check of all cells also gives the distance that nodes may move, relative to their body, before
 //! one of them can become invalid ([`Body::cell_margin`](carom_solid::Body::cell_margin)). Until a
 //! node has moved so far, a step costs one pass over the positions. A result does not depend on
-//! when cells were checked: within the margin, the check would succeed.
+//! when cells were checked: within the margin, the check would succeed. What lies between two
+//! positions within the margin is within it, too: it is convex. Paths are therefore examined only
+//! of cells whose nodes left it.
 
 use crate::cells;
 use crate::model::{BodyInstance, Model};
@@ -17,6 +19,8 @@ const BLOCK: usize = 6;
 #[derive(Debug, Default)]
 pub(crate) struct ValidCells {
     checked: Vec<Checked>,
+    /// Time of the positions to which paths were examined last.
+    reached: Option<f64>,
 }
 
 /// A body that passed a check, and the distance that its nodes may move before it can fail.
@@ -24,6 +28,8 @@ pub(crate) struct ValidCells {
 pub(crate) struct Checked {
     y: Vec<f64>,
     margin: f64,
+    /// Since paths were examined.
+    is_new: bool,
 }
 
 impl Checked {
@@ -31,7 +37,7 @@ impl Checked {
     pub(crate) fn set(&mut self, y: &[f64], margin: f64) {
         self.y.clear();
         self.y.extend_from_slice(y);
-        self.margin = margin;
+        (self.margin, self.is_new) = (margin, true);
     }
 
     /// Whether the body would pass at positions `now`.
@@ -57,6 +63,60 @@ impl ValidCells {
         }
         Ok(())
     }
+
+    /// Checks the paths from the state at `start`, with positions `before`, to that at `end`, with
+    /// positions `now`, which have passed [`Self::check`].
+    ///
+    /// # Errors
+    /// The first cell that is not certified valid on the way.
+    pub(crate) fn check_paths(
+        &mut self,
+        model: &Model,
+        [start, end]: [f64; 2],
+        [before, now]: [&[f64]; 2],
+    ) -> Result<(), Rejected> {
+        let known = self.reached == Some(start);
+        self.reached = None;
+        for (part, checked) in model.parts.iter().zip(&mut self.checked) {
+            // Both are within the margin of the same positions.
+            if known && !checked.is_new {
+                continue;
+            }
+            let ([before, now], dimension) =
+                ([before, now].map(|y| part.of(y)), part.body.mesh().dimension());
+            if !checked.holds(before, dimension) {
+                check_paths(model, part, before, now)?;
+            }
+            checked.is_new = false;
+        }
+        self.reached = Some(end);
+        Ok(())
+    }
+}
+
+/// Checks the paths of a body's cells.
+fn check_paths(model: &Model, part: &BodyInstance, before: &[f64], now: &[f64]) -> Result<(), Rejected> {
+    let (body, d) = (&part.body, part.body.mesh().dimension());
+    let mut left = Vec::new();
+    let compute = |first: usize, margins: &mut [f64], _: &mut [f64]| body.cell_margins(first, now, margins);
+    let add = |cell: usize, margin: &[f64]| {
+        let nodes = body.mesh().cell(cell);
+        let moved = |node: usize, i: usize| now[d * node + i] - before[d * node + i];
+        let within = nodes
+            .iter()
+            .all(|&node| (0..d).all(|i| (moved(node, i) - moved(nodes[0], i)).abs() <= margin[0]));
+        if !within {
+            left.push(cell);
+        }
+    };
+    cells::for_each(&model.threads, body.mesh().cell_count(), 1, compute, add)
+        .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
+    for cell in left {
+        if let Some(theta) = body.cell_lost_between(cell, before, now) {
+            return Err(Rejected::InvertedOnTheWay { body: part.name.clone(), cell, theta });
+        }
+    }
+    Ok(())
 }
 
 /// The smallest margin of a body's cells.
@@ -90,7 +150,11 @@ fn is_within(before: &[f64], now: &[f64], dimension: usize, margin: f64) -> bool
 
 #[cfg(test)]
 mod tests {
+    use carom_solid::{Element, Law, generate};
+
     use super::*;
+    use crate::model::{Loads, Motions};
+    use crate::testing::{model, parts};
 
     #[test]
     fn motion_of_the_whole_body_counts_as_none() {
@@ -101,5 +165,45 @@ mod tests {
         assert!(is_within(&before, &now, 2, 0.5) && !is_within(&before, &now, 2, 0.4));
         now[13] = f64::NAN;
         assert!(!is_within(&before, &now, 2, f64::INFINITY) && !is_within(&[], &now, 2, 1.0));
+    }
+
+    /// The positions of a mesh turned about its first node.
+    fn turned(y: &[f64], dimension: usize, angle: f64) -> Vec<f64> {
+        let (s, c) = angle.sin_cos();
+        let nodes = y.chunks_exact(dimension).flat_map(|x| {
+            let [a, b] = [x[0] - y[0], x[1] - y[1]];
+            [y[0] + c * a - s * b, y[1] + s * a + c * b].into_iter().chain(x[2..].iter().copied())
+        });
+        nodes.collect()
+    }
+
+    #[test]
+    fn a_body_that_is_valid_at_both_ends_of_a_step_may_be_inverted_within_it() {
+        let flat = generate::rectangle(Element::T6, [1.0, 2.0], [2.0, 3.0], [3, 2]).unwrap();
+        let mut layers = Vec::new();
+        for element in [Element::Hex8, Element::Tet10] {
+            layers.push(generate::cuboid(element, [1.0, 2.0, 0.0], [2.0, 3.0, 1.0], [2, 1, 1]).unwrap());
+        }
+        let law = Law::NeoHookean { lambda: 1.0, mu: 1.0 };
+        for mesh in std::iter::once(flat).chain(layers) {
+            let model = model(parts([mesh], law, 1.0), &[], Motions::default(), Loads::default(), Vec::new());
+            let (d, start) = (model.dimension, &model.reference);
+            let mut cells = ValidCells::default();
+            let mut step = |times: [f64; 2], from: &[f64], to: &[f64]| {
+                cells.check(&model, to).and_then(|()| cells.check_paths(&model, times, [from, to]))
+            };
+            // Turned by φ, straight paths have the determinant (1 + cos φ)/2 in their middle.
+            let [little, much, most] = [0.01, 3.0, std::f64::consts::PI].map(|angle| turned(start, d, angle));
+            assert_eq!(step([0.0, 1.0], start, &little), Ok(()));
+            assert_eq!(step([0.0, 1.0], start, &much), Ok(()));
+            for _ in 0..2 {
+                let found = step([0.0, 1.0], start, &most);
+                let Err(Rejected::InvertedOnTheWay { theta, .. }) = found else { panic!("{found:?}") };
+                assert!(theta <= 0.5 && theta > 0.49, "{theta}");
+            }
+            // From where it was accepted, and from where it was not.
+            assert_eq!(step([1.0, 2.0], &much, &most), Ok(()));
+            assert!(step([0.0, 2.0], start, &most).is_err());
+        }
     }
 }

@@ -125,6 +125,11 @@ pub trait Body: Send + Sync {
         Ok(())
     }
 
+    /// A lower bound of the first θ at which J > 0 is not certified everywhere in a cell, while its
+    /// nodes move on straight lines from `before`, θ = 0, to `now`, θ = 1; none if it is certified,
+    /// or the law permits J ≤ 0.
+    fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64>;
+
     /// Stress and strain at a point of a cell given in reference coordinates.
     fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted>;
 

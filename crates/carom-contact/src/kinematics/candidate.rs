@@ -6,6 +6,7 @@ use super::node_to_facet::{Detection, NodeToFacet, Tools};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use crate::kinematics::{Kinematics, OneWay};
+use crate::pair::Pair;
 use crate::places::Places;
 
 /// A node this far behind a facet (relative to its length) at the start of a step has not crossed
@@ -112,6 +113,32 @@ impl NodeToFacet {
         let depth = |length: f64| slack + behind_by * length;
         let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
         if start.map_or(entered_elsewhere, behind) { beside() } else { Some((facet, xi, false)) }
+    }
+
+    /// Facet and ξ where a node that has pairs enters the side elsewhere: neither at their facets
+    /// nor at those next to them, which hand pairs over.
+    pub(super) fn elsewhere(
+        &self,
+        tools: &mut Tools,
+        place: usize,
+        held: &[Pair],
+        before: Places,
+        now: Places,
+    ) -> Option<(usize, f64)> {
+        let (node, side) = (self.secondary[place], &self.primary);
+        self.find(tools, node, before, now);
+        let is_next = |pair: &Pair, facet: usize| {
+            [false, true].iter().any(|&forward| side.neighbour(pair.facet, forward) == Some(facet))
+        };
+        let is_held = |facet: usize| held.iter().any(|pair| pair.facet == facet || is_next(pair, facet));
+        tools.search.retain(|facet| !is_held(facet));
+        let (_, facet, _) = self.first_of(&mut tools.swept, tools.search.found(), node, before, now)?;
+        let xi = side.facet(facet).closest_point(now, now.at(node), REACH)?;
+        let faces = side.is_of_side(facet) && !side.faces_nothing(facet, xi, now);
+        let enters = faces
+            && !self.ends_at(node, facet, xi)
+            && self.gap(node, facet, xi, now) + self.slack(place) < 0.0;
+        enters.then_some((facet, xi))
     }
 
     /// The same of a node that has entered through the rest of the boundary, from past an end of

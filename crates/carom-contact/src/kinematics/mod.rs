@@ -100,9 +100,9 @@ pub trait Kinematics: Send + Sync {
     fn search(&self, before: &[f64], now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>)
     -> bool;
 
-    /// The node, or edge, that was deepest inside the primary's body between `before` and `now`, and
-    /// outside it at both: its motion is that of a step without contact. `bounce`: allowed depth, over the
-    /// length of a facet, of a node that leaves on the side on which it entered.
+    /// The node, or edge, that was deepest inside the primary's body between `before` and `now`,
+    /// and outside it at both: its motion is that of a step without contact. `bounce`: allowed
+    /// depth, over the length of a facet, of a node that leaves on the side on which it entered.
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         let _ = (before, now, bounce);
         None

@@ -295,6 +295,13 @@ impl Kinematics for NodeToFacet {
                     next += 1;
                 }
                 if next > first {
+                    if self.detection == Detection::ClosestPoint
+                        && let Some((facet, xi)) =
+                            self.elsewhere(&mut tools, k, &pairs[first..next], before, now)
+                    {
+                        changed = true;
+                        pairs.push(Pair::open(k, facet, xi));
+                    }
                     continue;
                 }
                 let Some((facet, xi, crossed)) = self.candidate(&mut tools, k, before, now) else {

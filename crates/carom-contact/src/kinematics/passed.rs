@@ -251,7 +251,7 @@ mod tests {
 
     #[test]
     fn thin_walls_of_a_hollow_body_are_not_missed() {
-        // It is outside for 94 % of its way from the first entry, x = 0, to the last exit, x = 2.06.
+        // Of the way from the first entry, x = 0, to the last exit, x = 2.06, 94 % are outside.
         let channel = [
             [0.0, 0.0],
             [2.06, 0.0],
@@ -270,6 +270,28 @@ mod tests {
         let found = contact.passed(&at(-1.0, 0.5), &at(3.0, 0.5), 0.01).unwrap();
         assert!((0.026..0.0301).contains(&found.depth), "{found:?}");
         assert_eq!(contact.passed(&at(-1.0, 1.01), &at(3.0, 1.01), 0.01), None);
+    }
+
+    #[test]
+    fn a_node_with_a_pair_that_enters_elsewhere_has_another_one() {
+        use crate::{Pair, Pairing};
+        // Between the inner walls of a channel, with an open pair with the left one.
+        let channel =
+            [[0.0, 0.0], [2.5, 0.0], [2.5, 1.0], [2.0, 1.0], [2.0, 0.5], [0.5, 0.5], [0.5, 1.0], [0.0, 1.0]];
+        let facet = |k: usize| vec![k, (k + 1) % 8];
+        let rest: Vec<_> = [0, 1, 2, 6, 7].map(facet).into();
+        let side = [facet(3), facet(4), facet(5)];
+        let surface = Surface::new(FacetShape::L2, &side, &[1.0; 3]).bounded_by(&rest, 0);
+        let contact = NodeToFacet::new(vec![8], surface, Detection::ClosestPoint);
+        let at = |x: f64, y: f64| [channel.as_flattened(), &[x, y]].concat();
+        let found = |to: Vec<f64>| {
+            let mut pairing = Pairing::new(vec![Pair::open(0, 2, 0.0)]);
+            let changed = contact.search(&at(0.6, 0.75), &to, &mut pairing, &mut Vec::new());
+            (changed, pairing.pairs.iter().map(|pair| pair.facet).collect::<Vec<_>>())
+        };
+        assert_eq!(found(at(2.1, 0.75)), (true, vec![2, 0]));
+        assert_eq!(found(at(1.9, 0.75)), (false, vec![2]));
+        assert_eq!(found(at(0.45, 0.75)), (false, vec![2]));
     }
 
     #[test]

@@ -294,7 +294,7 @@ fn an_edge_that_passes_through_an_edge_within_a_step_is_found() {
     let upper = y.len() / 6;
     let at = |by: [f64; 3]| placed(&y, upper, by, 0.0);
     // Through the ridge, 0.5 deep, and out past its end along it: no pair at the end of the step.
-    // The upper ridge at x = 1.45 and z = 0.1 leaves the lower one, which ends at x = 3, at θ = 0.62.
+    // The upper ridge, at x = 1.45 and z = 0.1, leaves the lower one at its end, x = 3, θ = 0.62.
     let [start, end] = [at([0.0; 3]), at([2.5, 0.0, -0.6])];
     assert!(found(&contact, &start, &end).is_empty());
     let passed = contact.passed(&start, &end, 0.01).unwrap();

@@ -54,3 +54,58 @@ fn the_audit_finds_a_passage_that_the_contact_does_not_allow_and_says_what_it_le
     let left = unaudited(simulation(DISCS, &[floor]).model());
     assert_eq!(left[0], "contact \"strike\" with a rigid obstacle");
 }
+
+/// A ball that flies at a plate at a low angle: in a step of 0.1 from t = 0.2 it would enter at the
+/// top, leave at the bottom and be past the plate's end.
+const SLANTING: &str = r#"
+dimension = 3
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1.898e+04, poisson = 0.3 }]
+contact = [{ name = "strike", secondary = "ball.sphere", primary = "plate.top" }]
+time = { end = 0.3, step = 0.0125, scheme = { kind = "energy-momentum" } }
+
+[[body]]
+name = "ball"
+material = "m"
+element = "Tet4"
+mesh = { shape = "ball", radius = 0.025, center = [-1.81965, 0.0, 1.16956], size = 0.025 }
+velocity = [9.0, 0.0, -5.0]
+
+[[body]]
+name = "plate"
+material = "m"
+element = "Hex8"
+mesh = { shape = "box", min = [-0.5, -0.1, -0.01], max = [0.5, 0.1, 0.0], cells = [20, 4, 1] }
+
+[[support]]
+on = ["plate.left", "plate.right"]
+fix = ["x", "y", "z"]
+"#;
+
+#[test]
+fn in_space_the_audit_agrees_with_a_ball_that_rebounds_and_finds_one_that_has_passed() {
+    let curved = ["body.ball.element=Tet10", "body.plate.element=Hex27", "body.plate.mesh.cells=[10,2,1]"];
+    for changes in [&[""; 0][..], &curved[..]] {
+        let sim = simulation(SLANTING, changes);
+        let (model, nothing) = (sim.model(), carom_run::Depths::default());
+        let at = |time: f64| {
+            let mut y = sim.state().y.clone();
+            for node in model.parts[0].nodes() {
+                y[3 * node] += 9.0 * time;
+                y[3 * node + 2] -= 5.0 * time;
+            }
+            y
+        };
+        assert_eq!(audit(model, &at(0.1), &at(0.2), nothing), Ok(()));
+        let found = audit(model, &at(0.2), &at(0.3), nothing);
+        let Err(Doubt::Passed { depth, .. }) = found else { panic!("{found:?}") };
+        // The plate is 0.01 thick.
+        assert!(depth > 0.002 && depth <= 0.005 + 1e-12, "{depth}");
+        // At 0.238 its lowest node is 0.02 to 0.05 below the top, and others are within the plate.
+        let found = audit(model, &at(0.2), &at(0.238), nothing);
+        let Err(Doubt::Deeper { depth, .. }) = found else { panic!("{found:?}") };
+        assert!(depth > 0.0005 && depth <= 0.005 + 1e-12, "{depth}");
+        assert_eq!(unaudited(model), ["edges between their nodes", "bodies without a contact between them"]);
+    }
+    let sim = finish(simulation(SLANTING, &[""; 0]).audited());
+    assert!(sim.state().impulses[0][2] != 0.0);
+}

@@ -151,6 +151,15 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         Ok(f64::INFINITY)
     }
 
+    fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64> {
+        if self.may_invert {
+            return None;
+        }
+        let nodes = self.nodes(cell);
+        let [before, now] = [before, now].map(|y| nodes.map(|node| Vector(y.as_chunks::<D>().0[node])));
+        self.validity.lost_between(&before, &now).map(|loss| loss.theta)
+    }
+
     fn cell_margins(&self, first: usize, y: &[f64], margins: &mut [f64]) -> Result<(), Inverted> {
         for (block, margins) in margins.chunks_mut(LANES).enumerate() {
             let first = first + block * LANES;

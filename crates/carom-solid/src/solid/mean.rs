@@ -249,6 +249,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> Body for 
         self.solid.cell_margin(cell, y)
     }
 
+    fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64> {
+        self.solid.cell_lost_between(cell, before, now)
+    }
+
     fn shape(&self, xi: &[f64], values: &mut [f64]) {
         self.solid.shape(xi, values);
     }

@@ -8,6 +8,7 @@ use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
 use super::patch::place;
 use crate::kinematics::candidate::AROUND;
 use crate::kinematics::{Kinematics, OneWay, SweptPatch};
+use crate::pair::Pair;
 
 /// A node this far behind a facet, relative to its length, at the start of a step has not crossed
 /// it.
@@ -130,6 +131,32 @@ impl NodeToPatch {
             None => entered.is_none() && first.is_some(),
         };
         if entered.is_none() && behind { beside() } else { Some((facet, xi)) }
+    }
+
+    /// Facet and ξ where a node that has pairs enters the side elsewhere: neither at their facets
+    /// nor at those around them, which hand pairs over.
+    pub(super) fn elsewhere(
+        &self,
+        swept: &mut SweptPatch,
+        near: &mut Vec<usize>,
+        place_of: usize,
+        held: &[Pair],
+        [before, now]: [&[f64]; 2],
+    ) -> Option<(usize, [f64; 2])> {
+        near.retain(|&facet| held.iter().all(|pair| pair.facet != facet));
+        if near.is_empty() {
+            return None;
+        }
+        let around: Vec<usize> = held.iter().flat_map(|pair| self.primary.ring(pair.facet)).collect();
+        near.retain(|facet| !around.contains(facet));
+        let node = self.secondary[place_of];
+        let (_, facet) = self.first(swept, near, node, before, now)?;
+        let end = place(now, node);
+        let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
+        let enters = self.primary.is_of_side(facet)
+            && !self.faces_nothing(facet, xi, now)
+            && self.gap(facet, xi, end, now) + self.slack(place_of) < 0.0;
+        enters.then_some((facet, xi))
     }
 
     /// The same of a node that has entered through the rest of the boundary, from past an end of

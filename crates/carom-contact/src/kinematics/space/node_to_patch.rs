@@ -327,10 +327,15 @@ impl Kinematics for NodeToPatch {
             while next < known && pairs[next].node == k {
                 next += 1;
             }
+            self.find_into(tree, k, before, now, &mut near);
             if next > first {
+                let held = &pairs[first..next];
+                if let Some((facet, [xi, eta])) = self.elsewhere(swept, &mut near, k, held, [before, now]) {
+                    changed = true;
+                    pairs.push(Pair { eta, ..Pair::open(k, facet, xi) });
+                }
                 continue;
             }
-            self.find_into(tree, k, before, now, &mut near);
             if near.is_empty() {
                 continue;
             }

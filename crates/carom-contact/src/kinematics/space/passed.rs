@@ -214,7 +214,7 @@ mod tests {
 
     #[test]
     fn thin_walls_of_a_hollow_body_are_not_missed() {
-        // It is outside for 94 % of its way from the first entry, x = 0, to the last exit, x = 2.06.
+        // Of the way from the first entry, x = 0, to the last exit, x = 2.06, 94 % are outside.
         let channel = [
             [0.0, 0.0],
             [2.06, 0.0],
@@ -231,5 +231,27 @@ mod tests {
         assert!((0.026..0.0301).contains(&found.depth), "{found:?}");
         let above = [[-1.0, 1.01, 0.45], [3.0, 1.01, 0.55], [0.0; 3]];
         assert_eq!(through_prism(&channel, &ends, &[7], above), None);
+    }
+
+    #[test]
+    fn a_node_with_a_pair_that_enters_elsewhere_has_another_one() {
+        use crate::{Pair, Pairing};
+        // Between two walls x = 0 and x = 2 of one side.
+        let wall = |x: f64, inwards: bool| {
+            let corners = [[x, 0.0, 0.0], [x, 1.0, 0.0], [x, 1.0, 1.0], [x, 0.0, 1.0]];
+            if inwards { corners } else { [0, 3, 2, 1].map(|k| corners[k]) }
+        };
+        let nodes = [wall(0.0, true), wall(2.0, false)].concat();
+        let facets = [vec![0, 1, 2, 3], vec![4, 5, 6, 7]];
+        let contact = NodeToPatch::new(vec![8], Boundary::new(FacetShape::Q4, &facets, &[], 0));
+        let at = |x: f64| [nodes.as_flattened(), &[x, 0.4, 0.6]].concat();
+        let found = |to: f64| {
+            let mut pairing = Pairing::new(vec![Pair::open(0, 0, 0.0)]);
+            let changed = contact.search(&at(0.1), &at(to), &mut pairing, &mut Vec::new());
+            (changed, pairing.pairs.iter().map(|pair| pair.facet).collect::<Vec<_>>())
+        };
+        assert_eq!(found(2.1), (true, vec![0, 1]));
+        assert_eq!(found(1.9), (false, vec![0]));
+        assert_eq!(found(-0.1), (false, vec![0]));
     }
 }

@@ -5,9 +5,10 @@
 //! f(a, b, θ) = Σᵢ βᵢ(a) Aᵢ(θ) − Σⱼ βⱼ(b) Bⱼ(θ),    β the Bernstein polynomials,
 //! ```
 //!
-//! lies within the sum of the convex hulls of the control points of A and of −B: the control net has
-//! the points Aᵢ − Bⱼ, and a direction excludes zero if the smallest component of the Aᵢ exceeds the
-//! largest of the Bⱼ, at both ends of the interval of θ. Halving a divides the points of A alone.
+//! lies within the sum of the convex hulls of the control points of A and of −B: the control net
+//! has the points Aᵢ − Bⱼ, and a direction excludes zero if the smallest component of the Aᵢ
+//! exceeds the largest of the Bⱼ, at both ends of the interval of θ. Halving a divides the points
+//! of A alone.
 //!
 //! Round-off as in `path.rs`, positions relative to the first node of B at the same θ, with m = max
 //! |x|₁ and Λ ≤ 6: a control point is wrong by (8 + 3 level) u Λ m, a difference of two by twice
