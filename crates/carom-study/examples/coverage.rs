@@ -201,6 +201,7 @@ fn main() -> ExitCode {
         "{contained} of {values} bands contain the exact value; all bands of a set-up: {whole} of {set_ups}"
     );
     println!("median of half-width / actual error: {median:.2}");
-    let misses = f64::from(contained) < 0.95 * f64::from(values) || f64::from(whole) < 0.95 * f64::from(set_ups);
+    let misses =
+        f64::from(contained) < 0.95 * f64::from(values) || f64::from(whole) < 0.95 * f64::from(set_ups);
     ExitCode::from(u8::from(misses || median > 3.0))
 }

@@ -174,8 +174,8 @@ tolerance = 1e-14
         r#"{ kind = "energy-momentum" }"#,
         r#"{ kind = "moreau-jean", theta = 0.5 }"#,
     ];
-    // Neither impulses nor discrete gradients have springs with friction. A block on springs is held by its top: springs that are not
-    // compressed yet hold nobody.
+    // Neither impulses nor discrete gradients have springs with friction. A block on springs is
+    // held by its top: springs that are not compressed yet hold nobody.
     let load = |traction: &str| format!("[[load]]\non = [\"block.top\"]\ntraction = {traction}");
     let grip = |t: &str| {
         let motion = format!("{{ x = \"2e-4*{t}\", y = \"-1e-3*{t}\" }}");
