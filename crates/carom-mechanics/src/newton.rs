@@ -152,6 +152,7 @@ pub(crate) fn solve_stage(
                     .map(|r| r / now.measure.forces.max(f64::MIN_POSITIVE)),
                 gap: Some([now.measure.gap, model.gap_tolerance].map(|gap| gap / model.scale)),
                 unbalanced: !is_static && !are_balanced(equations, &now, noise),
+                changing: changed,
             });
         }
         let rows = Constraints::of(equations, &now);

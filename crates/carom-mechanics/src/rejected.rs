@@ -42,9 +42,10 @@ pub enum Rejected {
     },
     /// Newton did not converge.
     #[error(
-        "Newton's method did not converge in {iterations} iterations: last correction {:.2e} L (allowed: {:.1e}), residual {:.2e} of the sum of forces (allowed: {:.1e}){}{}",
+        "Newton's method did not converge in {iterations} iterations: last correction {:.2e} L (allowed: {:.1e}), residual {:.2e} of the sum of forces (allowed: {:.1e}){}{}{}",
         step[0], step[1], residual[0], residual[1], open(*gap),
-        if *unbalanced && residual[0] <= residual[1] { "; the forces on a body with friction do not balance as a whole" } else { "" }
+        if *unbalanced && residual[0] <= residual[1] { "; the forces on a body with friction do not balance as a whole" } else { "" },
+        if *changing { "; contacts still opened, closed or changed" } else { "" }
     )]
     NoConvergence {
         /// Number of iterations.
@@ -57,6 +58,9 @@ pub enum Rejected {
         gap: Option<[f64; 2]>,
         /// Whether the resultants of the forces do not balance, which friction requires.
         unbalanced: bool,
+        /// Whether a contact opened or closed, or changed its facet or its stick or slip, in the
+        /// last iteration.
+        changing: bool,
     },
     /// The multipliers of an augmented Lagrangian were not found.
     #[error(

@@ -12,7 +12,7 @@ use carom_solid::Element;
 
 use super::Check;
 use crate::machine::available_memory;
-use crate::{BodySpec, MeshSpec};
+use crate::{BodySpec, MeshSpec, Problem};
 
 /// Bytes that a body of n nodes needs, solved directly or by iteration.
 fn bytes(element: Element, nodes: f64, iterates: bool) -> f64 {
@@ -72,7 +72,8 @@ impl Check<'_> {
         let why =
             format!("the model needs about {}, and {} are available", gibibytes(total), gibibytes(available));
         let path = format!("body[{i}].mesh.{key}");
-        self.add(path, what, why, "use a coarser mesh or an element of lower degree");
+        let help = "use a coarser mesh or an element of lower degree, or give the process more memory";
+        self.problems.push(Problem::new(path, what, why, help).of_system());
     }
 }
 

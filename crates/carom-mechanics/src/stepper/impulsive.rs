@@ -214,6 +214,7 @@ pub(super) fn solve(
                 residual: [size, allowed].map(|r| r / forces.max(f64::MIN_POSITIVE)),
                 gap: None,
                 unbalanced: false,
+                changing: false,
             });
         }
         *iterations += 1;

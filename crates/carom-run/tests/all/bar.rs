@@ -2,6 +2,7 @@
 //! from the formulas alone), to its digits. (a) one impact at v₀ = −10; (b) bouncing under gravity
 //! for three periods.
 
+use carom_mechanics::{LogEvent, Rejected};
 use carom_run::GridReport;
 
 use super::common::simulation;
@@ -323,4 +324,51 @@ fn a_bar_far_from_the_origin_converges() {
         }
         assert!(sim.state().y[0] > 300.0, "{scheme}");
     }
+}
+
+/// A bar that bounces at a hundred and a thousand times the Courant step: whatever rejects a step
+/// says so. Its message had shown both measures below what is allowed.
+#[test]
+fn a_rejected_step_says_which_measure_is_too_large() {
+    let mut rejections = 0;
+    for scheme in [
+        "{ kind = \"newmark\", rho_inf = 1 }",
+        "{ kind = \"chung-hulbert\", rho_inf = 0.1 }",
+        "{ kind = \"bathe\", rho_inf = 0 }",
+        "{ kind = \"energy-momentum\" }",
+        "{ kind = \"moreau-jean\", theta = 0.5 }",
+    ] {
+        for step in ["0.33333333333333335", "3.3333333333333335"] {
+            let sets = [
+                format!("time.scheme={scheme}"),
+                format!("time.step={step}"),
+                "time.end=66.66666666666667".into(),
+                "time.energy_guard=false".into(),
+                "body.bar.gravity=[-10.0]".into(),
+            ];
+            let mut sim = simulation(BAR, &sets);
+            while !sim.finished() {
+                let mut report = GridReport::default();
+                let ended = sim.advance(&mut report).is_err();
+                for event in &report.events {
+                    let LogEvent::Rejected { rejected, .. } = event else { continue };
+                    rejections += 1;
+                    assert!(explains(rejected), "{scheme} {step}: {rejected}");
+                }
+                if ended {
+                    break;
+                }
+            }
+        }
+    }
+    assert!(rejections > 0);
+}
+
+/// Whether a measure of Newton's method is too large, or contacts were still changing.
+fn explains(rejected: &Rejected) -> bool {
+    let Rejected::NoConvergence { step, residual, gap, unbalanced, changing, .. } = rejected else {
+        return true;
+    };
+    let gap = gap.unwrap_or([0.0; 2]);
+    *unbalanced || *changing || [*step, *residual, gap].iter().any(|[found, allowed]| found > allowed)
 }

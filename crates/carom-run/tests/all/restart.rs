@@ -132,6 +132,97 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
     }
 }
 
+/// A block that is pressed and sheared in load steps stays as it is in motion: the tractions of
+/// every node and the anchors of springs are those of the other run, and all nodes stick.
+#[test]
+fn a_run_with_friction_begins_where_another_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |law: &str, pressed: &str, time: &str, initial: &str| {
+        format!(
+            r#"
+dimension = 2
+[[material]]
+name = "rubber"
+law = "neo-hookean"
+density = 1.0
+young = 100.0
+poisson = 0.0
+[[body]]
+name = "block"
+material = "rubber"
+element = "T6"
+mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 0.1], cells = [6, 2] }}
+{pressed}
+[[contact]]
+name = "floor"
+secondary = "block.bottom"
+primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
+mu = 0.5
+{law}
+[time]
+{time}
+[newton]
+tolerance = 1e-14
+{initial}
+"#
+        )
+    };
+    let schemes = [
+        r#"{ kind = "chung-hulbert", rho_inf = 0.5 }"#,
+        r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#,
+        r#"{ kind = "bathe", rho_inf = 0.5 }"#,
+        r#"{ kind = "energy-momentum" }"#,
+        r#"{ kind = "moreau-jean", theta = 0.5 }"#,
+    ];
+    // Neither impulses nor discrete gradients have springs with friction. A block on springs is
+    // held by its top: springs that are not compressed yet hold nobody.
+    let load = |traction: &str| format!("[[load]]\non = [\"block.top\"]\ntraction = {traction}");
+    let grip = |t: &str| {
+        let motion = format!("{{ x = \"2e-4*{t}\", y = \"-1e-3*{t}\" }}");
+        format!("[[support]]\nname = \"grip\"\non = [\"block.top\"]\nmove = {motion}")
+    };
+    let problems = [
+        ("", load(r#"["0.2*t", "-t"]"#), load(r#"["0.2", "-1"]"#), &schemes[..]),
+        ("enforcement = \"penalty\"", grip("t"), grip("1"), &schemes[..3]),
+    ];
+    for (k, (law, growing, constant, schemes)) in problems.into_iter().enumerate() {
+        let time = "end = 1.0\nstep = 0.25\nscheme = { kind = \"static\" }";
+        let statics = text(law, &growing, time, "");
+        let case = case_of(&statics, &[""; 0]);
+        let source = carom_record::Source { text: statics, sets: Vec::new(), folder: None };
+        let options = carom_run::recording::Options::default();
+        let stop = std::sync::atomic::AtomicBool::new(false);
+        let pressed = folder.path().join(format!("pressed-{k}"));
+        carom_run::recording::run(&case, source, &pressed, options, &mut |_| {}, &stop).unwrap();
+        let at_rest = finish(carom_run::Setup::new(&case).start().unwrap());
+        let forces = at_rest.state().contact_forces[0];
+        assert!(forces[0] < -0.05 && forces[1] > 0.5, "{forces:?}");
+
+        let initial = format!("[initial]\nfrom = {:?}\n", pressed.display().to_string());
+        for scheme in schemes {
+            let time = format!("end = 0.2\nstep = 0.01\nscheme = {scheme}");
+            let mut sim = simulation(&text(law, &constant, &time, &initial), &[""; 0]);
+            while !sim.finished() {
+                sim.advance(&mut GridReport::default()).unwrap();
+                let (now, rest) = (sim.state(), at_rest.state());
+                assert_eq!(now.pairs[0].len(), rest.pairs[0].len(), "{scheme}");
+                for (now, rest) in now.pairs[0].iter().zip(&rest.pairs[0]) {
+                    assert_eq!(now.tangential.hold, carom_contact::Hold::Stick, "{scheme}");
+                    let changes =
+                        [now.lambda - rest.lambda, now.tangential.traction[0] - rest.tangential.traction[0]];
+                    let largest = rest.lambda.abs();
+                    assert!(
+                        changes.iter().all(|change| change.abs() < 1e-12 * largest),
+                        "{law} {scheme}: {changes:?} of {largest}"
+                    );
+                }
+                let worked = now.ledger.friction_work;
+                assert!(worked.abs() < 1e-18, "{scheme}: {worked:e}");
+            }
+        }
+    }
+}
+
 /// A state of another model is refused with the difference, wherever it is given.
 #[test]
 fn states_of_other_models() {
