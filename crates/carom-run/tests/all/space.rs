@@ -97,9 +97,9 @@ newton = { tolerance = 1e-12 }
 /// By 120° about the diagonal, x → y → z → x, and by an angle that mixes all components.
 #[test]
 fn a_turned_case_moves_alike() {
+    type Rotation = fn([f64; 3]) -> [f64; 3];
     let load = "load=[{ on = [\"block.right\"], pressure = \"3*t\" }]";
     let still = finish(simulation(FREE, &[load]));
-    type Rotation = fn([f64; 3]) -> [f64; 3];
     let rotations: [(&str, Rotation, f64); 2] = [
         ("axis = [1.0, 1.0, 1.0], angle = 120.0", |x| [x[2], x[0], x[1]], 1e-12),
         ("axis = [2.0, 3.0, 6.0], angle = 50.0", turned, 1e-12),
