@@ -63,9 +63,9 @@ fn extruded(text: &str, elements: &str, place: Option<&str>) -> Vec<String> {
         let of = of.split("mesh = ").nth(1).unwrap().split_inclusive('}').next().unwrap();
         format!("body.{body}.mesh={{ shape = \"extrusion\", of = {of}, height = 0.25, layers = 1 }}")
     };
-    let ends = |body: &str| match text != CORNER && body == "upper" {
-        true => [format!("\"{body}.bottom\""), format!("\"{body}.top\"")].join(", "),
-        false => [format!("\"{body}.base\""), format!("\"{body}.lid\"")].join(", "),
+    let ends = |body: &str| {
+        let [low, high] = if text != CORNER && body == "upper" { ["bottom", "top"] } else { ["base", "lid"] };
+        format!("\"{body}.{low}\", \"{body}.{high}\"")
     };
     let velocity = text.split("velocity = [").nth(1).unwrap().split(']').next().unwrap();
     let mut sets = vec![
