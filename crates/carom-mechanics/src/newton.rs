@@ -146,7 +146,7 @@ pub(crate) fn solve_stage(
             work.trace.blame(&now.residual, &model.free);
             check_satisfiable(equations, &now)?;
             return Err(Rejected::NoConvergence {
-                iterations: effort.iterations,
+                iterations: iteration as u32,
                 step: [step / model.scale, tolerance],
                 residual: [now.measure.residual, enough]
                     .map(|r| r / now.measure.forces.max(f64::MIN_POSITIVE)),
