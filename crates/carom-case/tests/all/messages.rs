@@ -98,7 +98,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["body.cylinder.element=L2"], &["the element L2 has dimension 1", "use T3, T6, T10, Q4 or Q9"]),
     (&["dimension=4"], &["dimension 4 is not supported", "use dimension = 1, 2 or 3"]),
     (&["dimension=two"], &["`dimension` must be a whole number"]),
-    (&["newton.max_iterations=0"], &["integer ≥ 1"]),
+    (&["newton.max_iterations=0"], &["whole number ≥ 1"]),
     (&["time.energy_guard=true"], &["a number > 0, or false, not `true`"]),
     // schemes
     (&["time.scheme.kind=chung-hulber"], &["did you mean `chung-hulbert`?"]),
