@@ -290,8 +290,9 @@ mod tests {
                 (0..6).map(|i| (f64::from(k) * 1.7 + f64::from(i) * 2.3).sin() * 3.0).collect();
             if k % 3 == 0 {
                 // That of forces within the cone, disturbed.
-                let motion: [f64; 6] = [2.0, 1.5, 0.1, -0.3, 0.2, 0.25];
-                (0..6).for_each(|i| b[i] = 0.02 * b[i] - (0..6).map(|j| a[i * 6 + j] * motion[j]).sum::<f64>());
+                let forces: [f64; 6] = [2.0, 1.5, 0.1, -0.3, 0.2, 0.25];
+                (0..6)
+                    .for_each(|i| b[i] = 0.02 * b[i] - (0..6).map(|j| a[i * 6 + j] * forces[j]).sum::<f64>());
             }
             change(&mut a, &mut b);
             let mut z = Vec::new();

@@ -43,7 +43,9 @@ pub(crate) fn section(study: &Study) -> Markup {
     let confirmed = study.verdicts.iter().filter(|v| class(v) == "pass").count();
     let result = |v: &Verdict| match &v.ensemble {
         Some(Confirmed { count: 0, of, .. }) => format!("denied in all ({of} of {of})"),
-        Some(confirmed @ Confirmed { count: k, of, .. }) => format!("confirmed {} ({k} of {of})", confirmed.word()),
+        Some(confirmed @ Confirmed { count: k, of, .. }) => {
+            format!("confirmed {} ({k} of {of})", confirmed.word())
+        }
         None => v.word().to_owned(),
     };
     html! {

@@ -277,7 +277,10 @@ mod tests {
         let comparison = Comparison::parse(&claim.compare).unwrap();
         let verdict = Verdict::of(&claim, Some(&comparison), &members[0], &members);
         let confirmed = verdict.ensemble.unwrap();
-        assert_eq!((confirmed.count, confirmed.of, confirmed.word(), verdict.holds), (2, 3, "in some", Some(true)));
+        assert_eq!(
+            (confirmed.count, confirmed.of, confirmed.word(), verdict.holds),
+            (2, 3, "in some", Some(true))
+        );
         let ratio = confirmed.ratio.unwrap();
         assert_eq!((ratio.median(), ratio.range()), (1.5, (0.5, 2.0)));
     }

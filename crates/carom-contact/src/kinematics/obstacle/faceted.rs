@@ -219,8 +219,8 @@ impl Surface {
     }
 
     /// The piece that a part of a face is, and whether it is on a rim.
-    fn piece(&self, face: usize, part: Feature) -> (usize, bool) {
-        match part {
+    fn piece(&self, face: usize, feature: Feature) -> (usize, bool) {
+        match feature {
             Feature::Face => (face, false),
             Feature::Edge(edge) => {
                 let edge = self.edges_of[face][edge];
@@ -284,7 +284,7 @@ impl Surface {
         let on = |from: Point, along: Point, share: f64| -> Point {
             std::array::from_fn(|i| from[i] + share * along[i])
         };
-        let found = |part: Feature, point: Point| (part, distance(point, at), point);
+        let found = |feature: Feature, point: Point| (feature, distance(point, at), point);
         let slopes = |from: Point| {
             let arm = minus(at, from);
             (dot(ab, arm), dot(ac, arm))

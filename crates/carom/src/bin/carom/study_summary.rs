@@ -96,10 +96,13 @@ fn text(study: &Study) -> String {
         );
         let bound =
             v.bound.map_or_else(String::new, |(sign, bound)| format!(", claimed {sign} {}", short(bound)));
-        let ratio = v.ensemble.as_ref().and_then(|confirmed| confirmed.ratio.as_ref()).map_or_else(String::new, |ratio| {
-            let (low, high) = ratio.range();
-            format!("; ratio {}, {} to {}{bound}", short(ratio.median()), short(low), short(high))
-        });
+        let ratio = v.ensemble.as_ref().and_then(|confirmed| confirmed.ratio.as_ref()).map_or_else(
+            String::new,
+            |ratio| {
+                let (low, high) = ratio.range();
+                format!("; ratio {}, {} to {}{bound}", short(ratio.median()), short(low), short(high))
+            },
+        );
         lines.push(format!(
             "{word}  {}  ({} against {}{ratio})",
             v.claim.text,
