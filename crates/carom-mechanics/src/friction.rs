@@ -320,7 +320,7 @@ impl Equations<'_> {
         for held in self.held(contact, pair) {
             let open = inner(held, slip) - self.stretch(contact, pair, held, at.stiffer);
             let missed = self.weight_of_slip(pair, slip) * open.abs();
-            (measure.gap, measure.held) = (measure.gap.max(missed), true);
+            (measure.gap, measure.has_slip) = (measure.gap.max(missed), true);
         }
         Ok(())
     }
