@@ -50,7 +50,7 @@ struct Edge {
     is_rim: bool,
 }
 
-/// The part of a triangle that is nearest to a point.
+/// The feature of a triangle that is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Feature {
     Face,
@@ -121,8 +121,8 @@ impl Faceted {
         let Some((face, _)) = self.0.tree.nearest(&at, from, |face| Some(self.0.closest(face, at).1)) else {
             return 0;
         };
-        let (part, away, closest) = self.0.closest(face, at);
-        let (piece, is_rim) = self.0.piece(face, part);
+        let (feature, away, closest) = self.0.closest(face, at);
+        let (piece, is_rim) = self.0.piece(face, feature);
         let outward = dot(minus(at, closest), self.0.normals[piece]) >= 0.0;
         if away > 0.0 && (outward || is_rim) { piece } else { self.followed(piece, at) }
     }
@@ -218,7 +218,7 @@ impl Surface {
         }
     }
 
-    /// The piece that a part of a face is, and whether it is on a rim.
+    /// The piece that a feature of a face is, and whether it is on a rim.
     fn piece(&self, face: usize, feature: Feature) -> (usize, bool) {
         match feature {
             Feature::Face => (face, false),
@@ -276,7 +276,7 @@ impl Surface {
         faces.into_iter().min_by(order).unwrap_or(0)
     }
 
-    /// The part of a face that is nearest to a point, their distance, and the nearest point
+    /// The feature of a face that is nearest to a point, their distance, and the nearest point
     /// (Ericson, Real-Time Collision Detection, §5.1.5).
     fn closest(&self, face: usize, at: Point) -> (Feature, f64, Point) {
         let [a, b, c] = self.triangles.corners()[face].map(|node| self.triangles.points()[node]);
