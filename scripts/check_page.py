@@ -322,10 +322,15 @@ def scene(browser):
 
 def check(browser, page, screenshots):
     """The errors of a page, as sentences."""
-    browser.open(page)
     if page.suffix == ".svg":
-        to = screenshots and screenshots / page.stem
-        return layout(browser, picture, to) + browser.said
+        # As in a page, whose window it does not exceed.
+        with tempfile.TemporaryDirectory() as folder:
+            framed = Path(folder) / "page.html"
+            style = "<style>body { margin: 0 } svg { max-width: 100%; height: auto }</style>"
+            framed.write_text(f"<!doctype html>{style}{page.read_text(encoding='utf-8')}", encoding="utf-8")
+            browser.open(framed)
+            return layout(browser, picture, screenshots and screenshots / page.stem) + browser.said
+    browser.open(page)
     text = page.read_text(encoding="utf-8")
     wrong = []
     if not browser.value("document.querySelector('h1')?.textContent"):

@@ -3,8 +3,8 @@
 
     python3 scripts/check_redrawn.py CAROM
 
-Of a run in the plane, one with friction, one of bars with measured data, and a study of two groups of
-arms: every `figures/*.py` must run, write its PDF, and have a pane with a title for each one that its
+Of runs in the plane, in space, with friction, of bars with measured data and of one that stops, and of
+a study of two groups of arms: every `figures/*.py` must run, write its PDF, and have a pane with a title for each one that its
 table names. Needs matplotlib.
 """
 
@@ -91,9 +91,13 @@ def main():
             "impact": ["run", ROOT / "cases/impact/impact.toml", *few],
             "friction": ["run", ROOT / "cases/friction/block-to-rest.toml", *friction],
             "bars": ["run", place / "bars.toml"],
+            "space": ["run", ROOT / "cases/space/incline-sticks.toml", "--set", "expect=[]"],
+            "stops": ["run", ROOT / ".ci/pages/stops.toml", "--no-trials"],
             "study": ["study", place / "study.toml"],
         }.items():
-            subprocess.run([carom, *command, "--out", place / name], check=True, capture_output=True)
+            done = subprocess.run([carom, *command, "--out", place / name], capture_output=True, text=True)
+            if done.returncode != (3 if name == "stops" else 0):
+                sys.exit(done.stderr)
             scripts = sorted((place / name / "figures").glob("*.py"))
             count += len(scripts)
             for script in scripts:
@@ -105,6 +109,8 @@ def main():
             if not scripts:
                 wrong.append(f"{name} has no scripts")
         wanted = ["impact/figures/bodies.py", "impact/figures/pressure.py", "friction/figures/stick-slip.py"]
+        wanted += [f"{name}/figures/setup.py" for name in ("impact", "bars", "space", "stops")]
+        wanted += ["space/figures/bodies.py", "stops/figures/stopped.py"]
         wanted += ["bars/figures/bodies.py", "bars/figures/measured.py", "study/figures/trend-time.step.py"]
         wrong += [f"no {path}" for path in wanted if not (place / path).is_file()]
     if wrong:

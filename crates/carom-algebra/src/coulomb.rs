@@ -121,7 +121,7 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
                 if z[of] <= 0.0 || stiffness(a, n, [first, first + 1]) <= 0.0 {
                     State::Zero
                 } else if size < radius * (1.0 - EDGE) && !is_driven {
-                    if a[i * n + i] > 0.0 { State::Held } else { State::Zero }
+                    if a[i * n + i] > 0.0 { State::Fixed } else { State::Zero }
                 } else if i > first {
                     State::Follows
                 } else if size > 0.0 {
@@ -132,11 +132,11 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
                 }
             }
             _ if a[i * n + i] <= 0.0 => State::Zero,
-            Kind::Normal if z[i] > 0.0 => State::Held,
+            Kind::Normal if z[i] > 0.0 => State::Fixed,
             Kind::Normal => State::Zero,
             Kind::Tangential { of, .. } if z[of] <= 0.0 => State::Zero,
             Kind::Tangential { of, coefficient, limit } => match radius(coefficient, limit, z[of]) {
-                (radius, _) if z[i].abs() < radius => State::Held,
+                (radius, _) if z[i].abs() < radius => State::Fixed,
                 (_, limited) => State::Slips([-z[i].signum(), 0.0], limited),
             },
         };
@@ -151,9 +151,9 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
             None => [values[i], 0.0],
         };
         let holds = |i: usize| match (kinds[i], states[i]) {
-            (Kind::Normal, State::Held) => exact[i] >= -force,
+            (Kind::Normal, State::Fixed) => exact[i] >= -force,
             (Kind::Normal, _) => motions[i] >= -moved,
-            (Kind::Tangential { of, coefficient, limit }, State::Held) => {
+            (Kind::Tangential { of, coefficient, limit }, State::Fixed) => {
                 let [x, y] = pair(&exact, i);
                 x.hypot(y) <= radius(coefficient, limit, exact[of]).0 + force
             }
@@ -290,8 +290,9 @@ mod tests {
                 (0..6).map(|i| (f64::from(k) * 1.7 + f64::from(i) * 2.3).sin() * 3.0).collect();
             if k % 3 == 0 {
                 // That of forces within the cone, disturbed.
-                let held: [f64; 6] = [2.0, 1.5, 0.1, -0.3, 0.2, 0.25];
-                (0..6).for_each(|i| b[i] = 0.02 * b[i] - (0..6).map(|j| a[i * 6 + j] * held[j]).sum::<f64>());
+                let forces: [f64; 6] = [2.0, 1.5, 0.1, -0.3, 0.2, 0.25];
+                (0..6)
+                    .for_each(|i| b[i] = 0.02 * b[i] - (0..6).map(|j| a[i * 6 + j] * forces[j]).sum::<f64>());
             }
             change(&mut a, &mut b);
             let mut z = Vec::new();

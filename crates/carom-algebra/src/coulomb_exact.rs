@@ -29,7 +29,7 @@ pub enum Kind {
 pub(crate) enum State {
     Zero,
     /// Its motion is zero.
-    Held,
+    Fixed,
     /// −μ P d, or −limit d; of a vector, in the state of its first component.
     Slips([f64; 2], bool),
     /// The second component of a vector that slips.
@@ -112,7 +112,7 @@ fn solve(
     };
     for i in 0..n {
         match (states[i], second(kinds, i)) {
-            (State::Held, _) => {
+            (State::Fixed, _) => {
                 forces.push(vec![(i, 1.0)]);
                 motions.push(vec![(i, 1.0)]);
                 names.push((i, false));

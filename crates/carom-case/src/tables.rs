@@ -42,7 +42,8 @@ pub(super) fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Opti
             return None;
         }
     };
-    if mu > 0.0 && 3.0 * lambda + 2.0 * mu <= 0.0 {
+    // Of Young's modulus and Poisson's ratio, the ranges of the keys say the same.
+    if given[0] == "lambda" && mu > 0.0 && 3.0 * lambda + 2.0 * mu <= 0.0 {
         let what = format!("the elastic constants Λ = {lambda}, μ = {mu} are not positive definite");
         let why = format!("the bulk modulus Λ + 2μ/3 = {} must be > 0", lambda + 2.0 * mu / 3.0);
         let help = format!("lambda must be > {}", -2.0 * mu / 3.0);

@@ -99,7 +99,7 @@ impl Node {
             Value::Text(text) if text.chars().count() <= 40 => format!("the string {text:?}"),
             Value::Text(_) => "a string".to_owned(),
             Value::Integer(n) => format!("the integer {n}"),
-            Value::Float(x) => format!("the number {x}"),
+            Value::Float(x) => format!("the number {x:?}"),
             Value::Flag(flag) => format!("`{flag}`"),
             Value::Date(date) => format!("the date {date}"),
             Value::List(list) => format!("a list of {} values", list.len()),

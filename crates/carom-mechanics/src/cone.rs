@@ -95,7 +95,7 @@ impl Way {
 
     /// The components of the rows by which friction constrains a pair, and whether they are of a
     /// slip.
-    fn held(&self, tangents: usize) -> impl Iterator<Item = (Along, bool)> + use<> {
+    fn prevented(&self, tangents: usize) -> impl Iterator<Item = (Along, bool)> + use<> {
         match (self.hold, self.turns) {
             (Hold::Stick, _) => [([1.0, 0.0], false), ([0.0, 1.0], false)].into_iter().take(tangents),
             (Hold::Slip([along, other]), turns) => {
@@ -336,21 +336,21 @@ impl Closed {
                 along.for_each(|(along, h)| *along -= factor * h);
             }
         }
-        let (mut held, mut names) = (Rows::new(d), Vec::new());
+        let (mut slips, mut names) = (Rows::new(d), Vec::new());
         for &i in &rubs {
-            for (along, turns) in ways[i].held(d - 1) {
+            for (along, turns) in ways[i].prevented(d - 1) {
                 names.push((i, along, turns));
-                held.push_combined(&self.slips, i * (d - 1), &along[..d - 1]);
+                slips.push_combined(&self.slips, i * (d - 1), &along[..d - 1]);
             }
         }
         let normals = self.normals.rows.iter().map(|row| (None, row, DEPENDENT));
         let least = slip_remainder(model);
-        let tangents = held.iter().enumerate().map(|(name, row)| (Some(name), row, least));
+        let tangents = slips.iter().enumerate().map(|(name, row)| (Some(name), row, least));
         let holding: Vec<usize> =
             independent_above(model, normals.chain(tangents)).into_iter().flatten().collect();
         for &name in &holding {
             let (i, along, turns) = names[name];
-            rows.push_plain(self.places[i], held.row(name), Some(along));
+            rows.push_plain(self.places[i], slips.row(name), Some(along));
             targets.push(inner(along, right.slips[i]));
             if turns && let Some(compliance) = ways[i].turns {
                 let last = rows.yields.len() - 1;

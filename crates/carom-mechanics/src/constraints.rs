@@ -11,8 +11,8 @@ use carom_contact::{Along, Direction, DiscreteGradient, Hold, Pair, Row, Rows, i
 use crate::balance::contact_weights;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
-use crate::held::Held;
 use crate::model::Model;
+use crate::prevented_slips::PreventedSlips;
 use crate::slip_derivatives::SlipDerivatives;
 
 /// Largest gap per unit of a multiplier: of a slip whose traction is round-off.
@@ -95,13 +95,13 @@ impl Constraints {
         let mut constraints = Self::none(model.dimension);
         let (mut rows, mut gradient) = (Rows::new(model.dimension), DiscreteGradient::default());
         let mut derivatives = SlipDerivatives::new(model.dimension);
-        let held = Held::of(equations, evaluation);
-        let places = held.kept(equations, evaluation);
-        constraints.dropped = held.dropped(evaluation, &places);
+        let slips = PreventedSlips::of(equations, evaluation);
+        let places = slips.independent(equations, evaluation);
+        constraints.dropped = slips.dropped(evaluation, &places);
         for (k, p, number) in places {
             let place = (k, p);
             if number > 0 {
-                let slip = held.find((k, p, number));
+                let slip = slips.find((k, p, number));
                 constraints.push_slip(equations, evaluation, slip, place, &mut derivatives);
                 continue;
             }
@@ -178,7 +178,7 @@ impl Constraints {
     pub(crate) fn gap(equations: &Equations, evaluation: &Evaluation) -> f64 {
         let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
         let gaps = evaluation.pressing().map(of_pair).fold(0.0, f64::max);
-        let held = Held::of(equations, evaluation);
+        let slips = PreventedSlips::of(equations, evaluation);
         let open = |(k, p, number): (usize, usize, usize)| {
             let pair = &evaluation.at.pairings[k].pairs[p];
             let is_spring = number == 0 || equations.stick_spring(k, pair).is_some();
@@ -186,10 +186,10 @@ impl Constraints {
                 return 0.0;
             }
             let weight = equations.weight_of_slip(pair, evaluation.slip_of((k, p)));
-            let (along, slip) = held.find((k, p, number));
+            let (along, slip) = slips.find((k, p, number));
             weight * (slip.gap - equations.stretch(k, pair, along, evaluation.at.stiffer)).abs()
         };
-        held.kept(equations, evaluation).into_iter().map(open).fold(gaps, f64::max)
+        slips.independent(equations, evaluation).into_iter().map(open).fold(gaps, f64::max)
     }
 
     /// Number of rows.

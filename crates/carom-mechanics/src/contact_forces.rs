@@ -43,7 +43,7 @@ impl Equations<'_> {
             forces.friction.resize(dofs, 0.0);
             middle.extend(self.state.y.iter().zip(&at.increment).map(|(y, d)| y + 0.5 * d));
         }
-        (measure.gap, measure.held) = (0.0, false);
+        (measure.gap, measure.has_slip) = (0.0, false);
         (evaluation.springs, evaluation.stick_springs) = (0.0, 0.0);
     }
 

@@ -83,8 +83,8 @@ pub(crate) struct Measure {
     pub forces: f64,
     /// Largest |g| of the active constraints, and slip that friction prevents.
     pub gap: f64,
-    /// Whether it prevents any.
-    pub held: bool,
+    /// Whether `gap` contains a slip that friction prevents.
+    pub has_slip: bool,
 }
 
 /// Unused evaluations, whose memory is reused.

@@ -253,7 +253,7 @@ impl Equations<'_> {
 
     /// The components of the rows by which friction constrains a closed pair: every tangent of one
     /// that sticks, and in space what is across the direction of a slip with a traction.
-    pub(crate) fn held(&self, contact: usize, pair: &Pair) -> impl Iterator<Item = Along> {
+    pub(crate) fn prevented(&self, contact: usize, pair: &Pair) -> impl Iterator<Item = Along> {
         let tangents = self.model.dimension - 1;
         let rows = match pair.tangential.hold {
             Hold::Stick => [[1.0, 0.0], [0.0, 1.0]].into_iter().take(tangents),
@@ -317,10 +317,10 @@ impl Equations<'_> {
             evaluation.stick_springs += 0.5 * inner(traction, traction) / stiffness;
             return Ok(());
         }
-        for held in self.held(contact, pair) {
-            let open = inner(held, slip) - self.stretch(contact, pair, held, at.stiffer);
+        for along in self.prevented(contact, pair) {
+            let open = inner(along, slip) - self.stretch(contact, pair, along, at.stiffer);
             let missed = self.weight_of_slip(pair, slip) * open.abs();
-            (measure.gap, measure.held) = (measure.gap.max(missed), true);
+            (measure.gap, measure.has_slip) = (measure.gap.max(missed), true);
         }
         Ok(())
     }

@@ -71,6 +71,14 @@ pub enum LogEvent {
         /// Jump of kinetic energy.
         jump: f64,
     },
+    /// An explicit step with another length was begun in contact: the half step of the contact
+    /// force that precedes it has another length, too.
+    Begun {
+        /// Time.
+        time: f64,
+        /// Jump of kinetic energy.
+        jump: f64,
+    },
     /// Velocities of nodes that left contact were changed by its restitution.
     Restitution {
         /// Time.
@@ -120,6 +128,9 @@ impl GridReport {
         }
         if step.projection != 0.0 {
             self.events.push(LogEvent::Projection { time, jump: step.projection });
+        }
+        if step.begun != 0.0 {
+            self.events.push(LogEvent::Begun { time, jump: step.begun });
         }
         if step.restitution != 0.0 {
             self.events.push(LogEvent::Restitution { time, jump: step.restitution });

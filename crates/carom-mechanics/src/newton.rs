@@ -109,7 +109,7 @@ pub(crate) fn solve_stage(
         let settled = step * if is_static { 1.0 } else { ratio.min(1.0) } <= tolerance * model.scale
             && now.measure.residual <= enough
             && (now.measure.gap <= model.gap_tolerance
-                || now.measure.held && Constraints::gap(equations, &now) <= model.gap_tolerance)
+                || now.measure.has_slip && Constraints::gap(equations, &now) <= model.gap_tolerance)
             && (is_static || are_balanced(equations, &now, noise));
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
         work.trace.push(iterate(equations, &now, iteration, step, changed), &now.y);
@@ -146,7 +146,7 @@ pub(crate) fn solve_stage(
             work.trace.blame(&now.residual, &model.free);
             check_satisfiable(equations, &now)?;
             return Err(Rejected::NoConvergence {
-                iterations: effort.iterations,
+                iterations: iteration as u32,
                 step: [step / model.scale, tolerance],
                 residual: [now.measure.residual, enough]
                     .map(|r| r / now.measure.forces.max(f64::MIN_POSITIVE)),

@@ -1,16 +1,16 @@
 //! The claims of a study: each with the ratio of its two sides, its interval and whether it is
 //! confirmed.
 
-use carom_record::study::{Held, Study, Verdict};
+use carom_record::study::{Confirmed, Study, Verdict};
 use maud::{Markup, html};
 
 use crate::digits::three;
 use crate::document::or_dash;
 
 fn class(v: &Verdict) -> &'static str {
-    match (&v.held, v.holds) {
-        (Some(held), _) if held.held == held.of => "pass",
-        (Some(held), _) if held.held == 0 => "miss",
+    match (&v.ensemble, v.holds) {
+        (Some(confirmed), _) if confirmed.count == confirmed.of => "pass",
+        (Some(confirmed), _) if confirmed.count == 0 => "miss",
         (None, Some(true)) => "pass",
         (None, Some(false)) => "miss",
         _ => "undecided",
@@ -20,7 +20,7 @@ fn class(v: &Verdict) -> &'static str {
 /// The ratio of the sides, and what it is compared with: over an ensemble its median, and its range
 /// as the interval.
 fn ratio(v: &Verdict) -> Markup {
-    let spread = v.held.as_ref().and_then(|held| held.ratio.as_ref());
+    let spread = v.ensemble.as_ref().and_then(|confirmed| confirmed.ratio.as_ref());
     let bound = v.bound.map_or_else(String::new, |(sign, bound)| format!("{sign} {}", three(bound)));
     html! {
         @match spread {
@@ -41,9 +41,11 @@ pub(crate) fn section(study: &Study) -> Markup {
     }
     let all = study.manifest.ensemble.is_some();
     let confirmed = study.verdicts.iter().filter(|v| class(v) == "pass").count();
-    let result = |v: &Verdict| match &v.held {
-        Some(Held { held: 0, of, .. }) => format!("denied in all ({of} of {of})"),
-        Some(held @ Held { held: k, of, .. }) => format!("confirmed {} ({k} of {of})", held.word()),
+    let result = |v: &Verdict| match &v.ensemble {
+        Some(Confirmed { count: 0, of, .. }) => format!("denied in all ({of} of {of})"),
+        Some(confirmed @ Confirmed { count: k, of, .. }) => {
+            format!("confirmed {} ({k} of {of})", confirmed.word())
+        }
         None => v.word().to_owned(),
     };
     html! {

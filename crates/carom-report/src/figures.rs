@@ -10,11 +10,13 @@ use crate::chart::{Chart, Options, Panel, Series};
 use crate::collected::measured_label;
 use crate::figure::Figure;
 use crate::labels::{capitalised, instant_label, is_stress, listed, symbol, with_unit, words};
+use crate::meshes::Pane;
 use crate::obstacles;
 use crate::palette::LINES;
+use crate::quantity::stresses;
 use crate::redraw::of_chart;
 use crate::sheet::Legend;
-use crate::{animation, bars, contours, noise, pressure, setup, space, stick_slip, stopped};
+use crate::{animation, bars, contours, meshes, noise, pressure, setup, space, stick_slip, stopped};
 
 /// Everything that can be drawn from a record.
 #[derive(Clone, Debug, Default)]
@@ -34,7 +36,7 @@ pub(crate) fn all(run: &Run) -> Shown {
         return shown;
     }
     let place = stopped::picture(run);
-    shown.figures.extend(place.map(|(caption, svg)| Figure::new("stopped", caption, svg)));
+    shown.figures.extend(place);
     shown.figures.extend(setup(run));
     let place = shown.figures.len() + 1;
     if let Some((bodies, bands)) = instants(run, &mut shown.notes) {
@@ -74,7 +76,14 @@ fn setup(run: &Run) -> Option<Figure> {
     let caption = format!(
         "Initial configuration: bodies with {parts}.{view} Data: first field file; case and sides in `manifest.json`."
     );
-    Some(Figure::new("setup", caption, svg))
+    let pane = Pane {
+        title: "initial".to_owned(),
+        points: meshes::moved(&fields, "displacement"),
+        values: Vec::new(),
+    };
+    let length = fields.array("displacement").map_or("", |a| a.unit.as_str());
+    let figure = Figure::new("setup", caption, svg);
+    Some(meshes::with_files(figure, &fields, &[pane], length, String::new()))
 }
 
 /// Contact intervals to shade.
@@ -375,7 +384,17 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
     if bodies::fill_space(first) {
         let length = first.array("displacement").map_or("", |a| a.unit.as_str());
         let (svg, caption) = space::instants(run, &sets, length, during)?;
-        return Some((Figure::new("bodies", caption, svg), None));
+        let panes: Vec<Pane> = sets
+            .iter()
+            .filter_map(|(time, set)| {
+                let [values, _] = stresses(set)?;
+                let points = meshes::moved(set, "displacement");
+                Some(Pane { title: instant_label(run, *time), points, values })
+            })
+            .collect();
+        let value = with_unit("σ_{vM}", first.array("stress").map_or("", |a| a.unit.as_str()));
+        let figure = Figure::new("bodies", caption, svg);
+        return Some((meshes::with_files(figure, first, &panes, length, value), None));
     }
     let stress = first.array("stress")?.unit.clone();
     let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();

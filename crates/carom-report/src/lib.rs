@@ -28,6 +28,7 @@ mod fit;
 mod integrity;
 mod labels;
 mod laboratory;
+mod meshes;
 mod noise;
 mod obstacles;
 mod overlap;

@@ -32,7 +32,7 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, no
     let title = run.manifest.case.get("title").and_then(Value::as_str).unwrap_or("Carom run");
     let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &f.endings(), &f.caption, &f.svg);
     let named = |name: &'static str| figures.iter().enumerate().filter(move |(_, f)| f.name == name);
-    let place = named("stopped").next().map(|(i, f)| (i + 1, f.caption.as_str(), f.svg.as_str()));
+    let place = named("stopped").next().map(&figure);
     let others = figures.iter().enumerate().filter(|(_, f)| f.name != "setup" && f.name != "stopped");
     let body = html! {
         (status(run))

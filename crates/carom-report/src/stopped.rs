@@ -5,7 +5,8 @@ mod picture;
 use carom_record::{Advice, Run, Stop, StopIteration, StopNode, StopPlace};
 use maud::{Markup, html};
 
-use crate::document::{figure, file, joined, or_dash};
+use crate::document::{file, joined, or_dash};
+use crate::figure::Figure;
 use crate::labels::{capitalised, number};
 use crate::text::{Label, Prose, typeset};
 
@@ -13,20 +14,20 @@ const ITERATIONS: &str = "Newton's iterations of the last attempt, each before i
     a fraction of the sum of the forces. Gap and correction: as fractions of the length of the model. \
     Damping: the fraction of the correction that was applied. Data: `stopped.json`.";
 
-/// Caption and picture of the place.
-pub(crate) fn picture(run: &Run) -> Option<(String, String)> {
+/// The picture of the place.
+pub(crate) fn picture(run: &Run) -> Option<Figure> {
     picture::figure(run, run.stop.as_ref()?)
 }
 
-/// The section, with number, caption and picture of its figure.
-pub(crate) fn section(run: &Run, picture: Option<(usize, &str, &str)>) -> Markup {
+/// The section, with its figure.
+pub(crate) fn section(run: &Run, picture: Option<Markup>) -> Markup {
     let Some(stop) = &run.stop else { return html! {} };
     let unit = run.history.unit("time");
     html! {
         h2 { "Why it stopped" }
         p.reason { (capitalised(&typeset(&stop.reason))) "." }
         @if let Some(place) = &stop.place { (where_table(place, length_unit(run))) }
-        @if let Some((i, caption, svg)) = picture { (figure(i, "stopped", &["svg"], caption, svg)) }
+        @if let Some(picture) = picture { (picture) }
         (advice(stop, unit))
         (iterations(&stop.iterations))
         p.small {

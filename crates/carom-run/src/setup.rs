@@ -308,8 +308,10 @@ pub fn too_long(case: &Case, model: &Model) -> Vec<Problem> {
     if step <= longest {
         return Vec::new();
     }
-    let what =
-        format!("the step {step} is too long for {}: at most {longest:.4e} is stable", case.time.scheme.kind);
+    let what = format!(
+        "the step {step} is too long for {}: at most {longest:.4e} is accepted",
+        case.time.scheme.kind
+    );
     let why = format!(
         "the step of an explicit scheme must be less than 2/ω_max = {:.4e} (estimate from single cells: {:.4e}); at most {SAFETY} of it is accepted",
         stable.power, stable.cell

@@ -103,8 +103,9 @@ pub trait Body: Send + Sync {
     /// Smallest J over the quadrature points of a cell.
     fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64;
 
-    /// Largest angle, in [0, π], of the rotation R of F = R U over the quadrature points of a cell.
-    fn cell_rotation(&self, cell: usize, y: &[f64]) -> f64;
+    /// Largest angle, in [0, π], of the rotation R of F = R U over the quadrature points of a cell,
+    /// and the largest norm ‖E‖ of the strain E = (FᵀF − 1)/2.
+    fn cell_turn(&self, cell: usize, y: &[f64]) -> [f64; 2];
 
     /// Certifies that J > 0 everywhere in a cell, not only at its quadrature points. Returns the
     /// distance by which every component of its nodes' positions may change, relative to a common

@@ -230,7 +230,7 @@ impl Check {
         if usize::try_from(n).is_ok_and(|n| n >= least) {
             return;
         }
-        let what = format!("`{}` must be an integer ≥ {least}, not {}", key.name, node.described());
+        let what = format!("`{}` must be a whole number ≥ {least}, not {}", key.name, node.described());
         self.add(
             path,
             what,

@@ -165,7 +165,8 @@ const NEWTON: Table = Table {
             "Convergence tolerance on ‖Δy‖∞/L and ‖r‖/Σ‖f‖.",
         )
         .default("1e-9"),
-        key("max_iterations", Count(1), "Largest number of iterations before a step is rejected.").default("40"),
+        key("max_iterations", Count(1), "Largest number of Newton iterations before a step is rejected. Each may take several linear solves, \
+             which the column `newton` counts.").default("40"),
         key(
             "linear",
             Choice(&["auto", "direct", "iterative"], &[]),

@@ -65,8 +65,8 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["body.prism.mesh={ shape = \"rectangle\", min = [0.1, -0.5], max = [0.3, 0.0], size = 0.6 }"],
         &["`size` = 0.6 is larger than the longer side, 0.5"],
     ),
-    (&["body.prism.mesh.cells=[8, 0]"], &["must be an integer ≥ 1, not the integer 0"]),
-    (&["body.prism.mesh.cells=[8, 4.0]"], &["must be a list of 2 integers ≥ 1, not the number 4"]),
+    (&["body.prism.mesh.cells=[8, 0]"], &["must be a whole number ≥ 1, not the integer 0"]),
+    (&["body.prism.mesh.cells=[8, 4.0]"], &["must be a list of 2 whole numbers ≥ 1, not the number 4.0"]),
     (
         &["refine=1.3"],
         &[
@@ -97,8 +97,8 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["contact.strike.friction={ mu = 0.3 }"], &["unknown key `friction`", "did you mean `mu`?"]),
     (&["body.cylinder.element=L2"], &["the element L2 has dimension 1", "use T3, T6, T10, Q4 or Q9"]),
     (&["dimension=4"], &["dimension 4 is not supported", "use dimension = 1, 2 or 3"]),
-    (&["dimension=two"], &["`dimension` must be an integer"]),
-    (&["newton.max_iterations=0"], &["integer ≥ 1"]),
+    (&["dimension=two"], &["`dimension` must be a whole number"]),
+    (&["newton.max_iterations=0"], &["whole number ≥ 1"]),
     (&["time.energy_guard=true"], &["a number > 0, or false, not `true`"]),
     // schemes
     (&["time.scheme.kind=chung-hulber"], &["did you mean `chung-hulbert`?"]),

@@ -202,11 +202,13 @@ impl Model {
         -(0..y.len()).map(|i| self.gravity[i] * (y[i] - self.reference[i])).sum::<f64>()
     }
 
-    /// Largest angle by which a quadrature point of a body has turned.
-    pub fn rotation(&self, body: usize, y: &[f64]) -> f64 {
+    /// Largest angle by which a quadrature point of a body has turned, and largest norm of the
+    /// strain.
+    pub fn turn(&self, body: usize, y: &[f64]) -> [f64; 2] {
         let part = &self.parts[body];
         let cells = 0..part.body.mesh().cell_count();
-        cells.map(|cell| part.body.cell_rotation(cell, part.of(y))).fold(0.0, f64::max)
+        let turns = cells.map(|cell| part.body.cell_turn(cell, part.of(y)));
+        turns.fold([0.0; 2], |most, one| [0, 1].map(|i| f64::max(most[i], one[i])))
     }
 
     /// Smallest J over all quadrature points.

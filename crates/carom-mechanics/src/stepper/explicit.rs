@@ -209,8 +209,8 @@ impl Explicit {
         if last > 0.0 {
             state.ledger.unbooked += self.lent(state, dt) - lent;
         }
-        report.projection = state.ledger.kinetic - kinetic;
-        state.ledger.contact_work += report.projection;
+        report.begun = state.ledger.kinetic - kinetic;
+        state.ledger.contact_work += report.begun;
         for (impulse, force) in state.impulses.iter_mut().zip(&state.contact_forces) {
             for i in 0..3 {
                 impulse[i] += 0.5 * dt * force[i];

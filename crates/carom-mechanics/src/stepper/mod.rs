@@ -44,6 +44,8 @@ pub struct StepReport {
     pub ambiguity: Option<f64>,
     /// Jump of kinetic energy at activation.
     pub projection: f64,
+    /// Change of kinetic energy where an explicit step with another length is begun.
+    pub begun: f64,
     /// Jump of kinetic energy by restitution where contact ends.
     pub restitution: f64,
     /// Penetration at the end.

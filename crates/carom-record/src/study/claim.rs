@@ -39,27 +39,27 @@ pub struct Verdict {
     /// negative, and there is none where its sign differs between members.
     pub bound: Option<(&'static str, f64)>,
     /// How it fares over an ensemble, if the study has one.
-    pub held: Option<Held>,
+    pub ensemble: Option<Confirmed>,
 }
 
 /// A claim over the members of an ensemble in which it can be decided.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Held {
+pub struct Confirmed {
     /// Members in which it holds.
-    pub held: usize,
+    pub count: usize,
     /// Members in which it can be decided.
     pub of: usize,
     /// The left quantity divided by the right one, without the constant factors of the sides.
     pub ratio: Option<Spread>,
 }
 
-impl Held {
+impl Confirmed {
     /// `in all`, `in most`, `in some` or `in none` of the members; most are three quarters.
     pub fn word(&self) -> &'static str {
-        match self.held {
-            held if held == self.of => "in all",
+        match self.count {
+            count if count == self.of => "in all",
             0 => "in none",
-            held if 4 * held >= 3 * self.of => "in most",
+            count if 4 * count >= 3 * self.of => "in most",
             _ => "in some",
         }
     }
@@ -94,8 +94,8 @@ impl Verdict {
             () if rights.iter().all(|r| turned(*r).0) => Some((c.operator.turned().symbol(), fr / fl)),
             () => None,
         });
-        let held = || Held {
-            held: decided.iter().filter(|(l, r)| holds((Some(*l), Some(*r))) == Some(true)).count(),
+        let confirmed = || Confirmed {
+            count: decided.iter().filter(|(l, r)| holds((Some(*l), Some(*r))) == Some(true)).count(),
             of: decided.len(),
             ratio: Spread::of(decided.iter().copied().map(ratio)),
         };
@@ -106,7 +106,7 @@ impl Verdict {
             holds: holds((left, right)),
             ratio: left.zip(right).map(ratio).filter(|ratio| ratio.is_finite()),
             bound,
-            held: (decided.len() > 1).then(held),
+            ensemble: (decided.len() > 1).then(confirmed),
         }
     }
 
@@ -276,9 +276,12 @@ mod tests {
         let claim = Claim { text: String::new(), compare: "r of 'a' > r of 'b'".into() };
         let comparison = Comparison::parse(&claim.compare).unwrap();
         let verdict = Verdict::of(&claim, Some(&comparison), &members[0], &members);
-        let held = verdict.held.unwrap();
-        assert_eq!((held.held, held.of, held.word(), verdict.holds), (2, 3, "in some", Some(true)));
-        let ratio = held.ratio.unwrap();
+        let confirmed = verdict.ensemble.unwrap();
+        assert_eq!(
+            (confirmed.count, confirmed.of, confirmed.word(), verdict.holds),
+            (2, 3, "in some", Some(true))
+        );
+        let ratio = confirmed.ratio.unwrap();
         assert_eq!((ratio.median(), ratio.range()), (1.5, (0.5, 2.0)));
     }
 

@@ -41,7 +41,7 @@ use crate::{Expectation, RecordError, Run, Status, Warning, judge};
 pub use arm::{Arm, sets_step, step};
 pub use arms::ArmRecords;
 use checks::Checks;
-pub use claim::{Claim, Comparison, Held, Verdict};
+pub use claim::{Claim, Comparison, Confirmed, Verdict};
 use compared::{Compared, PhaseOrders, orders_by_phase};
 use design::Goal;
 use ensemble::{Ensemble, Spread};

@@ -68,9 +68,9 @@ impl Study {
             "bound",
         ];
         let line = |v: &Verdict| {
-            let held = v.held.as_ref();
+            let confirmed = v.ensemble.as_ref();
             let count = |n: Option<usize>| n.map_or_else(String::new, |n| n.to_string());
-            let ratio = held.and_then(|held| held.ratio.as_ref());
+            let ratio = confirmed.and_then(|confirmed| confirmed.ratio.as_ref());
             let bound = v.bound.map_or_else(String::new, |(sign, bound)| format!("{sign} {bound}"));
             vec![
                 v.claim.text.clone(),
@@ -78,8 +78,8 @@ impl Study {
                 cell(v.left),
                 cell(v.right),
                 v.word().to_string(),
-                count(held.map(|held| held.held)),
-                count(held.map(|held| held.of)),
+                count(confirmed.map(|confirmed| confirmed.count)),
+                count(confirmed.map(|confirmed| confirmed.of)),
                 cell(ratio.map(Spread::median).or(v.ratio)),
                 cell(ratio.map(|r| r.range().0)),
                 cell(ratio.map(|r| r.range().1)),

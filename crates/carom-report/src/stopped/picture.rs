@@ -9,7 +9,9 @@ use carom_record::{FieldSet, Run, Stop, StopPlace};
 use crate::axis::round_step;
 use crate::bodies::{Instant, bezier, corners, edge_nodes, edges, is_plane, places};
 use crate::chart::{open, write_text};
+use crate::figure::Figure;
 use crate::labels::instant_label;
+use crate::meshes::{self, Pane};
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::{Pen, Point};
@@ -28,8 +30,8 @@ const CELL: &str = LINES[5];
 const REJECTED: &str = LINES[4];
 const FILLS: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
 
-/// Caption and picture; none in dimension 1 and without fields or a place.
-pub(super) fn figure(run: &Run, stop: &Stop) -> Option<(String, String)> {
+/// The figure; none in dimension 1 and without fields or a place.
+pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
     let fields = carom_record::Stop::fields(&run.directory, &run.manifest).ok()??;
     let place = stop.place.as_ref()?;
     if fields.blocks.iter().any(|block| !is_plane(block)) {
@@ -42,7 +44,16 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<(String, String)> {
          facet or cell, where the next step failed.{rejected} Data: `stopped.vtu`, `stopped.json`.",
         instant_label(run, stop.last)
     );
-    Some((caption, svg))
+    let pane = |title: &str, array: &str| Pane {
+        title: title.to_owned(),
+        points: meshes::moved(&fields, array),
+        values: Vec::new(),
+    };
+    let mut panes = vec![pane("accepted", "displacement")];
+    panes.extend(fields.array("rejected").map(|_| pane("rejected", "rejected")));
+    let length = fields.array("displacement").map_or("", |u| u.unit.as_str());
+    let figure = Figure::new("stopped", caption, svg);
+    Some(meshes::with_files(figure, &fields, &panes, length, String::new()))
 }
 
 /// The picture, and whether the rejected positions differ visibly.

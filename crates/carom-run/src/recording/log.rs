@@ -114,6 +114,13 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
                 format!("velocities projected at contact activation: kinetic energy changes by {jump:.6e}");
             Event::new(step, *time, "projection", message).with("kinetic_jump", *jump)
         }
+        LogEvent::Begun { time, jump } => {
+            let message = format!(
+                "an explicit step of another length is begun in contact: the contact force of the half step before it \
+                 changes the kinetic energy by {jump:.6e}, booked as its work"
+            );
+            Event::new(step, *time, "step-begun", message).with("kinetic_jump", *jump)
+        }
         LogEvent::Restitution { time, jump } => {
             let message = format!("restitution where contact ends: kinetic energy changes by {jump:.6e}");
             Event::new(step, *time, "restitution", message).with("kinetic_jump", *jump)

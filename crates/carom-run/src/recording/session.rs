@@ -18,7 +18,7 @@ use super::rows::contact_rows;
 use super::stopped::{FEW, Found, Record};
 use super::tally::{Busy, Tally, checkpoint};
 use super::verdicts::judged;
-use crate::warnings::{LARGE_ROTATION, warnings_of_record};
+use crate::warnings::{LARGE_ROTATION, LARGE_STRAIN, warnings_of_record};
 
 /// Time between signs of life while a step is bisected.
 const HEARTBEAT: Duration = Duration::from_secs(1);
@@ -39,8 +39,8 @@ pub(super) struct Session<'a> {
     pub(super) since: Since,
     /// What earlier processes counted up to the checkpoint that this one began from.
     pub(super) earlier: Tally,
-    /// Largest rotation of each linear-elastic body in a row so far, and its time.
-    pub(super) rotations: BTreeMap<usize, [f64; 2]>,
+    /// Largest rotation and strain of each linear-elastic body in a row so far, with their times.
+    pub(super) rotations: BTreeMap<usize, [[f64; 2]; 2]>,
     /// Wall seconds spent on writing.
     output: f64,
     /// Processor seconds in steps.
@@ -214,9 +214,10 @@ impl<'a> Session<'a> {
         row(model, state, dt, (&self.since, fallbacks), &self.weights, &mut self.values);
         self.since = Since::default();
         for (body, largest) in &mut self.rotations {
-            let angle = model.rotation(*body, &state.y);
-            if angle > largest[0] {
-                *largest = [angle, state.time];
+            for (largest, now) in largest.iter_mut().zip(model.turn(*body, &state.y)) {
+                if now > largest[0] {
+                    *largest = [now, state.time];
+                }
             }
         }
         self.writer.history(&self.values)?;
@@ -232,13 +233,18 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Logs the largest rotations of bodies whose strain is that of small displacements, once: the
-    /// last checkpoint has none.
+    /// Logs large rotations and strains of bodies whose strain is that of small displacements,
+    /// once: the last checkpoint has none.
     fn log_rotations(&mut self) -> Result<(), RunError> {
         let step = self.simulation.state().step;
-        for (body, [angle, time]) in std::mem::take(&mut self.rotations) {
+        for (body, [[angle, time], [strain, strained]]) in std::mem::take(&mut self.rotations) {
+            let name = self.case.bodies[body].name.as_str();
+            if strain > LARGE_STRAIN {
+                let message = format!("a point of body \"{name}\" has the strain {strain:.3e}");
+                let event = Event::new(step, strained, "strain", message);
+                self.writer.log(&event.with("body", name).with("strain", strain))?;
+            }
             if angle > LARGE_ROTATION {
-                let name = self.case.bodies[body].name.as_str();
                 let message = format!("a point of body \"{name}\" has turned by {angle:.3e} rad");
                 let event = Event::new(step, time, "rotation", message);
                 self.writer.log(&event.with("body", name).with("angle", angle))?;
@@ -400,7 +406,7 @@ impl<'a> Session<'a> {
 }
 
 /// The bodies whose rotation is watched, not turned yet: one that is fixed is as it was given.
-fn rotations(case: &Case, model: &Model) -> BTreeMap<usize, [f64; 2]> {
+fn rotations(case: &Case, model: &Model) -> BTreeMap<usize, [[f64; 2]; 2]> {
     let moves = |k: usize| {
         let d = model.dimension;
         model.parts[k].nodes().any(|node| model.fixed[node * d..(node + 1) * d].contains(&false))
@@ -410,7 +416,7 @@ fn rotations(case: &Case, model: &Model) -> BTreeMap<usize, [f64; 2]> {
         law == Some(Law::LinearElastic) && case.dimension > 1
     };
     let bodies = case.bodies.iter().enumerate().filter(|(k, body)| is_linear(body) && moves(*k));
-    bodies.map(|(k, _)| (k, [0.0; 2])).collect()
+    bodies.map(|(k, _)| (k, [[0.0; 2]; 2])).collect()
 }
 
 fn stressed(simulation: &Simulation) -> Vec<bool> {

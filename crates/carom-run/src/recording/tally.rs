@@ -15,8 +15,8 @@ use super::outcome::RunError;
 pub(super) struct Tally {
     pub(super) counters: BTreeMap<String, u64>,
     pub(super) timings: BTreeMap<String, f64>,
-    /// Largest rotation of each linear-elastic body in a row, and its time.
-    pub(super) rotations: BTreeMap<usize, [f64; 2]>,
+    /// Largest rotation and strain of each linear-elastic body in a row, with their times.
+    pub(super) rotations: BTreeMap<usize, [[f64; 2]; 2]>,
 }
 
 impl Tally {

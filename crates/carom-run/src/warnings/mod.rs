@@ -17,7 +17,7 @@ use carom_mechanics::model::Model;
 use carom_record::{Run, Warning};
 
 pub use found::Found;
-pub(crate) use record::LARGE_ROTATION;
+pub(crate) use record::{LARGE_ROTATION, LARGE_STRAIN};
 
 /// How a warning is found.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +44,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 14] = [
+pub const WARNINGS: [Entry; 15] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -108,6 +108,12 @@ pub const WARNINGS: [Entry; 14] = [
         why: "linear elasticity takes rotations for strains, and a body that turns is stretched and resists",
         advice: "law = \"neo-hookean\" or \"saint-venant-kirchhoff\" with the same constants",
         rule: Rule::Record(record::large_rotation),
+    },
+    Entry {
+        id: "large-strain",
+        why: "linear elasticity is that of small strain: what is reported as Cauchy stress is P, and differs from P Fᵀ/J by as much as the strain",
+        advice: "law = \"neo-hookean\" or \"saint-venant-kirchhoff\" with the same constants",
+        rule: Rule::Record(record::large_strain),
     },
     Entry {
         id: "ambiguous-friction",

@@ -11,6 +11,8 @@ use super::found::{Found, covered_by, short};
 /// Rotation in rad from which a body of linear elasticity is warned about: it makes strains of half
 /// a per cent.
 pub(crate) const LARGE_ROTATION: f64 = 0.1;
+/// Strain beyond which linear elasticity is doubtful.
+pub(crate) const LARGE_STRAIN: f64 = 0.05;
 
 /// A contact in the plane in which no row has more than one active node, of several. A node in a
 /// concave corner has several pairs; a corner of the primary side is a node, too.
@@ -69,6 +71,16 @@ pub(super) fn large_rotation(_: &Case, run: &Run) -> Vec<Found> {
             short(event.time),
             short(angle.cos() - 1.0)
         );
+        Some(Found::of_body(name, what))
+    });
+    found.collect()
+}
+
+/// Bodies of linear elasticity that are strained by more than [`LARGE_STRAIN`].
+pub(super) fn large_strain(_: &Case, run: &Run) -> Vec<Found> {
+    let found = run.log.iter().filter(|event| event.kind == "strain").filter_map(|event| {
+        let (name, strain) = (event.data.get("body")?.as_str()?, event.data.get("strain")?.as_f64()?);
+        let what = format!("the strain reached {} at t = {}", short(strain), short(event.time));
         Some(Found::of_body(name, what))
     });
     found.collect()

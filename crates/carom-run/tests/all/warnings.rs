@@ -285,12 +285,10 @@ fn bars_that_cannot_widen() {
     assert!(given.is_empty() && (modulus - 1000.0).abs() < 1e-6, "{given:?} {modulus}");
 }
 
-/// A square that is turned at its start, by an angle that the formulas give exactly.
-#[test]
-fn linear_elasticity_that_turns() {
-    let turned = |angle: f64, law: &str| {
-        let case = format!(
-            r#"
+/// The warnings of a free square of a law, from given positions on.
+fn placed(law: &str, [x, y]: [&str; 2]) -> Vec<Warning> {
+    let case = format!(
+        r#"
 dimension = 2
 material = [{{ name = "soft", law = "{law}", density = 1.0, young = 1.0, poisson = 0.3 }}]
 [[body]]
@@ -298,14 +296,33 @@ name = "block"
 material = "soft"
 element = "Q4"
 mesh = {{ shape = "rectangle", min = [-0.5, -0.5], max = [0.5, 0.5], cells = [2, 2] }}
-position = ["X*cos({angle}) - Y*sin({angle})", "X*sin({angle}) + Y*cos({angle})"]
+position = ["{x}", "{y}"]
 [time]
 end = 1e-3
 step = 1e-3
 scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }}
 "#
-        );
-        recorded_in_full(&case, &[])
+    );
+    recorded_in_full(&case, &[])
+}
+
+/// A square that is stretched along x by λ at its start: E₁₁ = (λ² − 1)/2, 0.105 at λ = 1.1.
+#[test]
+fn linear_elasticity_that_is_strained() {
+    let given = placed("linear-elastic", ["1.1*X", "Y"]);
+    let [warning] = &given[..] else { panic!("{given:?}") };
+    let stated = "the strain reached 0.105 at t = 0";
+    assert_eq!((warning.id.as_str(), warning.what.as_str()), ("large-strain", stated));
+    assert!(placed("linear-elastic", ["1.04*X", "Y"]).is_empty());
+    assert!(placed("neo-hookean", ["1.1*X", "Y"]).is_empty());
+}
+
+/// A square that is turned at its start, by an angle that the formulas give exactly.
+#[test]
+fn linear_elasticity_that_turns() {
+    let turned = |angle: f64, law: &str| {
+        let x = format!("X*cos({angle}) - Y*sin({angle})");
+        placed(law, [&x, &format!("X*sin({angle}) + Y*cos({angle})")])
     };
     let given = turned(0.5, "linear-elastic");
     let [warning] = &given[..] else { panic!("{given:?}") };

@@ -2,7 +2,7 @@
 
 use carom_algebra::{Mat, Vector, wide};
 
-use super::rotation::angle;
+use super::rotation::{angle, strain};
 use super::{Place, Solid};
 use crate::body::{Body, Inverted, PointState, one_by_one};
 use crate::bounds::Bounds;
@@ -124,14 +124,14 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         ratios.fold(f64::INFINITY, f64::min)
     }
 
-    fn cell_rotation(&self, cell: usize, y: &[f64]) -> f64 {
+    fn cell_turn(&self, cell: usize, y: &[f64]) -> [f64; 2] {
         let u = self.displacements(cell, y);
         let Place { points, inverse, .. } = &self.places[cell];
-        let angles = self.points[points.clone()].iter().flat_map(|points| {
+        let found = self.points[points.clone()].iter().flat_map(|points| {
             let h = points.gradient(&u, inverse);
-            (0..points.count).map(move |l| angle(&get(&h, l)))
+            (0..points.count).map(move |l| [angle(&get(&h, l)), strain(&get(&h, l))])
         });
-        angles.fold(0.0, f64::max)
+        found.fold([0.0; 2], |most, one| [0, 1].map(|i| f64::max(most[i], one[i])))
     }
 
     fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted> {

@@ -241,8 +241,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> Body for 
         self.solid.cell_min_det_f(cell, y)
     }
 
-    fn cell_rotation(&self, cell: usize, y: &[f64]) -> f64 {
-        self.solid.cell_rotation(cell, y)
+    fn cell_turn(&self, cell: usize, y: &[f64]) -> [f64; 2] {
+        self.solid.cell_turn(cell, y)
     }
 
     fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted> {

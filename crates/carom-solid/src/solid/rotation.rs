@@ -27,6 +27,12 @@ pub(super) fn angle<const D: usize>(h: &Mat<D>) -> f64 {
     }
 }
 
+/// ‖E‖ = ‖H + Hᵀ + HᵀH‖/2 of Green's strain, which a rotation does not change.
+pub(super) fn strain<const D: usize>(h: &Mat<D>) -> f64 {
+    let e = (*h + h.transposed() + h.transposed() * *h) * 0.5;
+    e.double_dot(&e).sqrt()
+}
+
 fn orthogonal<const D: usize>(f: Mat<D>) -> Mat<D> {
     let mut r = f;
     if f.det() <= 0.0 {

@@ -317,8 +317,8 @@ fn a_reference_refines_its_mesh_and_an_ensemble_repeats_every_arm() {
     assert_eq!((plan.manifest.members[0].steps, plan.manifest.members[1].steps), (41, 40));
     let out = folder.path().join("out");
     let study = start(&plan, &out, 2, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
-    let held = study.verdicts[0].held.as_ref().unwrap();
-    assert_eq!((held.held, held.of), (4, 4));
+    let confirmed = study.verdicts[0].ensemble.as_ref().unwrap();
+    assert_eq!((confirmed.count, confirmed.of), (4, 4));
     let reference = study.reference.as_ref().unwrap();
     assert!(reference.refines_mesh() && reference.has_ensemble() && reference.what.contains("2 members"));
     assert_eq!(study.spread(0, "energy_lost").unwrap().count(), 4);

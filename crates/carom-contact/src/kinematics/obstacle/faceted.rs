@@ -50,9 +50,9 @@ struct Edge {
     is_rim: bool,
 }
 
-/// The part of a triangle that is nearest to a point.
+/// The feature of a triangle that is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Part {
+enum Feature {
     Face,
     Edge(usize),
     Corner(usize),
@@ -121,8 +121,8 @@ impl Faceted {
         let Some((face, _)) = self.0.tree.nearest(&at, from, |face| Some(self.0.closest(face, at).1)) else {
             return 0;
         };
-        let (part, away, closest) = self.0.closest(face, at);
-        let (piece, is_rim) = self.0.piece(face, part);
+        let (feature, away, closest) = self.0.closest(face, at);
+        let (piece, is_rim) = self.0.piece(face, feature);
         let outward = dot(minus(at, closest), self.0.normals[piece]) >= 0.0;
         if away > 0.0 && (outward || is_rim) { piece } else { self.followed(piece, at) }
     }
@@ -218,15 +218,15 @@ impl Surface {
         }
     }
 
-    /// The piece that a part of a face is, and whether it is on a rim.
-    fn piece(&self, face: usize, part: Part) -> (usize, bool) {
-        match part {
-            Part::Face => (face, false),
-            Part::Edge(edge) => {
+    /// The piece that a feature of a face is, and whether it is on a rim.
+    fn piece(&self, face: usize, feature: Feature) -> (usize, bool) {
+        match feature {
+            Feature::Face => (face, false),
+            Feature::Edge(edge) => {
                 let edge = self.edges_of[face][edge];
                 (self.faces() + edge, self.edges[edge].is_rim)
             }
-            Part::Corner(corner) => {
+            Feature::Corner(corner) => {
                 let node = self.triangles.corners()[face][corner];
                 (self.faces() + self.edges.len() + node, self.corners[node].1)
             }
@@ -276,46 +276,46 @@ impl Surface {
         faces.into_iter().min_by(order).unwrap_or(0)
     }
 
-    /// The part of a face that is nearest to a point, their distance, and the nearest point
+    /// The feature of a face that is nearest to a point, their distance, and the nearest point
     /// (Ericson, Real-Time Collision Detection, §5.1.5).
-    fn closest(&self, face: usize, at: Point) -> (Part, f64, Point) {
+    fn closest(&self, face: usize, at: Point) -> (Feature, f64, Point) {
         let [a, b, c] = self.triangles.corners()[face].map(|node| self.triangles.points()[node]);
         let (ab, ac) = (minus(b, a), minus(c, a));
         let on = |from: Point, along: Point, share: f64| -> Point {
             std::array::from_fn(|i| from[i] + share * along[i])
         };
-        let found = |part: Part, point: Point| (part, distance(point, at), point);
+        let found = |feature: Feature, point: Point| (feature, distance(point, at), point);
         let slopes = |from: Point| {
             let arm = minus(at, from);
             (dot(ab, arm), dot(ac, arm))
         };
         let (d1, d2) = slopes(a);
         if d1 <= 0.0 && d2 <= 0.0 {
-            return found(Part::Corner(0), a);
+            return found(Feature::Corner(0), a);
         }
         let (d3, d4) = slopes(b);
         if d3 >= 0.0 && d4 <= d3 {
-            return found(Part::Corner(1), b);
+            return found(Feature::Corner(1), b);
         }
         let vc = d1 * d4 - d3 * d2;
         if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-            return found(Part::Edge(0), on(a, ab, d1 / (d1 - d3)));
+            return found(Feature::Edge(0), on(a, ab, d1 / (d1 - d3)));
         }
         let (d5, d6) = slopes(c);
         if d6 >= 0.0 && d5 <= d6 {
-            return found(Part::Corner(2), c);
+            return found(Feature::Corner(2), c);
         }
         let vb = d5 * d2 - d1 * d6;
         if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-            return found(Part::Edge(2), on(a, ac, d2 / (d2 - d6)));
+            return found(Feature::Edge(2), on(a, ac, d2 / (d2 - d6)));
         }
         let va = d3 * d6 - d5 * d4;
         if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-            return found(Part::Edge(1), on(b, minus(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6))));
+            return found(Feature::Edge(1), on(b, minus(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6))));
         }
         // The foot of the perpendicular: exact in a plane of which this is a part.
         let height = self.height(face, at);
         let foot = on(at, self.normals[face], -height);
-        (Part::Face, height.abs(), foot)
+        (Feature::Face, height.abs(), foot)
     }
 }

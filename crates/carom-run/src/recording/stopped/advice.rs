@@ -1,6 +1,6 @@
 //! What to try, by the keyword of the reason: one line per remedy, the most promising first.
 
-use carom_case::Case;
+use carom_case::{Case, Law};
 use carom_record::{Advice, Source, StopPlace};
 
 use super::change::{Change, Kind, Original};
@@ -36,6 +36,12 @@ const FALLBACK: Remedy = (
      stop; it dissipates energy there",
 );
 const FINER: Remedy = (None, "a finer mesh there (`refine` of a polygon, or a mesh file), or a smaller load");
+const OTHER_LAW: Remedy = (
+    None,
+    "another law, `neo-hookean` for example, where the body is compressed: the stress of `saint-venant-kirchhoff` \
+     decreases again beyond a limit load (a bar at 0.58 of its length), which is a loss of stability of the law that \
+     neither mesh nor step removes",
+);
 const ROUNDED: Remedy = (None, "a rounded corner there, or the other side as the primary one");
 const DEGREE: Remedy = (None, "an element of lower degree (T3) there: its cells invert later");
 const GUARD_OFF: Remedy = (
@@ -46,9 +52,9 @@ const GUARD_OFF: Remedy = (
 
 /// The remedies of each reason.
 const TABLE: &[(&str, &[Remedy])] = &[
-    ("inverted-cell", &[SHORTER, DAMPED, BATHE, FALLBACK, FINER, DEGREE]),
+    ("inverted-cell", &[OTHER_LAW, SHORTER, DAMPED, BATHE, FALLBACK, FINER, DEGREE]),
     ("contact-geometry", &[SHORTER, BATHE, PENALTY, FALLBACK, FINER, ROUNDED]),
-    ("no-convergence", &[SHORTER, FULL, PENALTY, MULTIPLIER, BATHE, FALLBACK, FINER]),
+    ("no-convergence", &[OTHER_LAW, SHORTER, FULL, PENALTY, MULTIPLIER, BATHE, FALLBACK, FINER]),
     ("active-set-cycle", &[SHORTER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
     (
         "linear-solver",
@@ -104,9 +110,16 @@ pub(super) fn of(
         let mut there = case.bodies.iter().filter(|b| body.is_none_or(|body| body == b.name));
         there.all(|body| body.element.degree() == 1)
     };
+    let softens = case.bodies.iter().filter(|b| body.is_none_or(|body| body == b.name)).any(|b| {
+        let law = case.materials.iter().find(|m| m.name == b.material).map(|m| m.law);
+        law == Some(Law::SaintVenantKirchhoff)
+    });
     let advice = |&(change, what): &Remedy| {
         let of_contact = [LONGER.1, PROJECT.1, ROUNDED.1].contains(&what);
-        if what == DEGREE.1 && lowest() || of_contact && case.contacts.is_empty() {
+        if what == OTHER_LAW.1 && !softens
+            || what == DEGREE.1 && lowest()
+            || of_contact && case.contacts.is_empty()
+        {
             return None;
         }
         let change = match change {

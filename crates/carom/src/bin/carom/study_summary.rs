@@ -43,8 +43,8 @@ pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool, json: bool)
             .verdicts
             .iter()
             .map(|v| {
-                let held = v.held.as_ref().map(|held| json!({ "held": held.held, "of": held.of }));
-                json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word(), "ensemble": held })
+                let ensemble = v.ensemble.as_ref().map(|confirmed| json!({ "held": confirmed.count, "of": confirmed.of }));
+                json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word(), "ensemble": ensemble })
             });
         let claims: Vec<_> = claims.collect();
         let event = if outcome.interrupted { "interrupted" } else { "done" };
@@ -90,16 +90,19 @@ fn text(study: &Study) -> String {
     }
     for v in &study.verdicts {
         let value = |x: Option<f64>| x.map_or("–".into(), short);
-        let word = v.held.as_ref().map_or_else(
+        let word = v.ensemble.as_ref().map_or_else(
             || format!("{:9}", v.word()),
-            |held| format!("confirmed in {} of {}", held.held, held.of),
+            |confirmed| format!("confirmed in {} of {}", confirmed.count, confirmed.of),
         );
         let bound =
             v.bound.map_or_else(String::new, |(sign, bound)| format!(", claimed {sign} {}", short(bound)));
-        let ratio = v.held.as_ref().and_then(|held| held.ratio.as_ref()).map_or_else(String::new, |ratio| {
-            let (low, high) = ratio.range();
-            format!("; ratio {}, {} to {}{bound}", short(ratio.median()), short(low), short(high))
-        });
+        let ratio = v.ensemble.as_ref().and_then(|confirmed| confirmed.ratio.as_ref()).map_or_else(
+            String::new,
+            |ratio| {
+                let (low, high) = ratio.range();
+                format!("; ratio {}, {} to {}{bound}", short(ratio.median()), short(low), short(high))
+            },
+        );
         lines.push(format!(
             "{word}  {}  ({} against {}{ratio})",
             v.claim.text,

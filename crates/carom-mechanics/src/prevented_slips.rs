@@ -10,25 +10,25 @@ use crate::independent::{DEPENDENT, independent_above, slip_remainder};
 pub(crate) type Name = (usize, usize, usize);
 
 /// The slips that friction prevents.
-pub(crate) struct Held {
+pub(crate) struct PreventedSlips {
     /// Their names, ascending, and their components.
     names: Vec<(Name, Along)>,
     rows: Rows,
 }
 
-impl Held {
+impl PreventedSlips {
     /// Of the closed pairs of an iterate.
     pub(crate) fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
         let d = equations.model.dimension;
-        let mut held = Self { names: Vec::new(), rows: Rows::new(d) };
+        let mut slips = Self { names: Vec::new(), rows: Rows::new(d) };
         for (k, p) in evaluation.pressing() {
             let pair = &evaluation.at.pairings[k].pairs[p];
-            for (number, along) in equations.held(k, pair).enumerate() {
-                held.names.push(((k, p, number + 1), along));
-                held.rows.push_combined(&evaluation.slips[k], p * (d - 1), &along[..d - 1]);
+            for (number, along) in equations.prevented(k, pair).enumerate() {
+                slips.names.push(((k, p, number + 1), along));
+                slips.rows.push_combined(&evaluation.slips[k], p * (d - 1), &along[..d - 1]);
             }
         }
-        held
+        slips
     }
 
     fn iter(&self) -> impl Iterator<Item = (Name, Row<'_>)> {
@@ -43,7 +43,7 @@ impl Held {
 
     /// The gaps and slips that are rows, ascending. Springs may depend on each other, because each
     /// adds its stiffness, and so may rows that yield.
-    pub(crate) fn kept(&self, equations: &Equations, evaluation: &Evaluation) -> Vec<Name> {
+    pub(crate) fn independent(&self, equations: &Equations, evaluation: &Evaluation) -> Vec<Name> {
         let model = equations.model;
         let is_elastic = |&(k, p, number): &Name| {
             let (contact, pair) = (&model.contacts[k], &evaluation.at.pairings[k].pairs[p]);
@@ -55,20 +55,20 @@ impl Held {
         let least = slip_remainder(model);
         let rows = gaps().map(|(name, row)| (name, row, DEPENDENT));
         let rows = rows.chain(self.iter().map(|(name, row)| (name, row, least)));
-        let mut kept = independent_above(model, rows.filter(|(name, ..)| !is_elastic(name)));
+        let mut chosen = independent_above(model, rows.filter(|(name, ..)| !is_elastic(name)));
         let acts = |row: Row| row.entries().any(|(dof, slope)| slope != 0.0 && !model.fixed[dof]);
         let elastic = gaps().chain(self.iter()).filter(|(name, _)| is_elastic(name));
-        kept.extend(elastic.filter(|(_, row)| acts(*row)).map(|(name, _)| name));
-        kept.sort_unstable();
-        kept
+        chosen.extend(elastic.filter(|(_, row)| acts(*row)).map(|(name, _)| name));
+        chosen.sort_unstable();
+        chosen
     }
 
     /// Contact, pair and components of the slips of sticks that are not among these.
-    pub(crate) fn dropped(&self, evaluation: &Evaluation, kept: &[Name]) -> Vec<((usize, usize), Along)> {
+    pub(crate) fn dropped(&self, evaluation: &Evaluation, rows: &[Name]) -> Vec<((usize, usize), Along)> {
         let sticks = |&&((k, p, _), _): &&(Name, Along)| {
             evaluation.at.pairings[k].pairs[p].tangential.hold == Hold::Stick
         };
-        let dropped = self.names.iter().filter(sticks).filter(|(name, _)| kept.binary_search(name).is_err());
+        let dropped = self.names.iter().filter(sticks).filter(|(name, _)| rows.binary_search(name).is_err());
         dropped.map(|&((k, p, _), along)| ((k, p), along)).collect()
     }
 }
