@@ -65,19 +65,16 @@ impl Outline {
         }
         let point = Vector(point);
         let pieces = || self.corners.chunks_exact(self.of_piece);
-        let (inside, nearest) = match self.of_piece {
-            2 => {
-                let turn: f64 = pieces().map(|piece| turn(piece[0] - point, piece[1] - point)).sum();
-                (turn > PI, pieces().map(|p| to_chord(p[0] - point, p[1] - point)).fold(f64::MAX, f64::min))
+        let (inside, nearest) = if self.of_piece == 2 {
+            let turn: f64 = pieces().map(|piece| turn(piece[0] - point, piece[1] - point)).sum();
+            (turn > PI, pieces().map(|p| to_chord(p[0] - point, p[1] - point)).fold(f64::MAX, f64::min))
+        } else {
+            let seen = |p: &[Vector<3>]| solid_angle([p[0] - point, p[1] - point, p[2] - point]);
+            if pieces().map(seen).sum::<f64>() <= 2.0 * PI {
+                return 0.0;
             }
-            _ => {
-                let seen = |p: &[Vector<3>]| solid_angle([p[0] - point, p[1] - point, p[2] - point]);
-                if pieces().map(seen).sum::<f64>() <= 2.0 * PI {
-                    return 0.0;
-                }
-                let away = |p: &[Vector<3>]| to_triangle([p[0] - point, p[1] - point, p[2] - point]);
-                (true, pieces().map(away).fold(f64::MAX, f64::min))
-            }
+            let away = |p: &[Vector<3>]| to_triangle([p[0] - point, p[1] - point, p[2] - point]);
+            (true, pieces().map(away).fold(f64::MAX, f64::min))
         };
         if inside { nearest } else { 0.0 }
     }
