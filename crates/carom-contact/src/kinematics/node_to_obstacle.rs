@@ -26,8 +26,9 @@
 use carom_algebra::Vector;
 
 use super::obstacle::{AtCorner, Near, Obstacle, Point};
-use super::passed::{Passed, SHARE, share};
+use super::passed::Passed;
 use super::tangents::tangents;
+use super::way::{SHARE, share};
 use super::{Kinematics, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;

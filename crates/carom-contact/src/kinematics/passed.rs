@@ -11,11 +11,8 @@ use carom_solid::FacetShape;
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
-use super::way::{Allowed, Between, Met, Seen, Way, amplification, through};
+use super::way::{Allowed, Between, Met, SHARE, Seen, Way, amplification, through};
 use crate::places::Places;
-
-/// Depth, relative to the facet, that a path may have.
-pub(super) const SHARE: f64 = 0.01;
 
 /// A node, or an edge, that was inside a body between the start and the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,12 +116,6 @@ impl Paths<'_> {
 
 fn square(v: Vector<2>) -> f64 {
     v.dot(&v)
-}
-
-/// Allowed depth over the length of a facet, from the normals where a node enters and leaves: on
-/// the same side it has bounced, and may be as deep as at the end of a step.
-pub(super) fn share<const D: usize>([entered, left]: [Vector<D>; 2], bounce: f64) -> f64 {
-    if entered.dot(&left) > 0.0 { bounce.max(SHARE) } else { SHARE }
 }
 
 /// A node between entry and exit.

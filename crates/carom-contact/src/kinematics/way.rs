@@ -18,7 +18,8 @@
 use carom_algebra::Vector;
 use carom_solid::FacetShape;
 
-use super::passed::{SHARE, share};
+/// Depth, relative to the facet, that a path may have.
+pub(super) const SHARE: f64 = 0.01;
 
 /// Depth relative to the allowed one, or to the largest that was found, within which it is known.
 const KNOWN: f64 = 1.125;
@@ -272,6 +273,12 @@ impl<'a, const D: usize> Between<'a, D> {
             })
         })
     }
+}
+
+/// Allowed depth over the length of a facet, from the normals where a node enters and leaves: on
+/// the same side it has bounced, and may be as deep as at the end of a step.
+pub(super) fn share<const D: usize>([entered, left]: [Vector<D>; 2], bounce: f64) -> f64 {
+    if entered.dot(&left) > 0.0 { bounce.max(SHARE) } else { SHARE }
 }
 
 #[cfg(test)]

@@ -7,8 +7,7 @@ use super::boundary::Boundary;
 use super::crossing::crossing;
 use super::node_to_patch::{NodeToPatch, Tools};
 use super::patch::place;
-use crate::kinematics::passed::SHARE;
-use crate::kinematics::way::{Allowed, Between, Met, Seen, Way, amplification, through};
+use crate::kinematics::way::{Allowed, Between, Met, SHARE, Seen, Way, amplification, through};
 use crate::kinematics::{Kinematics, Passed, SweptPatch};
 
 impl NodeToPatch {
