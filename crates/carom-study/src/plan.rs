@@ -76,6 +76,9 @@ impl Plan {
         }
         let bases = bases(study, folder, case, &file, &drafts)?;
         let mut checked = Checked { study, found: Vec::new() };
+        // A misspelt key of one arm is told before the models of the others are built.
+        checked.read(&file, &drafts, &bases)?;
+        checked.end()?;
         let planned = checked.arms(&file, drafts, &bases)?;
         let known: Vec<(&str, &Case)> = planned.iter().map(|p| (p.draft.name.as_str(), &p.case)).collect();
         expects::overlays(&file.overlays, &known, &mut problems);
@@ -141,25 +144,44 @@ impl Checked<'_> {
         if found.is_empty() { Ok(()) } else { Err(CaseError::Wrong(found)) }
     }
 
+    /// Reads the cases of drafts; their models are not built.
+    fn read(
+        &mut self,
+        file: &StudyFile,
+        drafts: &[Draft],
+        bases: &BTreeMap<String, Base>,
+    ) -> Result<(), CaseError> {
+        for draft in drafts {
+            if let Some(base) = base_of(file, draft, bases)
+                && let Err(error) = read_with(&base.name, &base.text, &changes(draft))
+            {
+                self.add(draft, base, error)?;
+            }
+        }
+        Ok(())
+    }
+
     /// The changes of a draft, its case and warnings; none if the case is wrong.
     fn resolved(&mut self, draft: &Draft, base: &Base) -> Result<Option<Resolved>, CaseError> {
-        let mut sets: Vec<String> = draft.sets.iter().map(|(set, _)| set.clone()).collect();
-        sets.push(draft.expect.0.clone());
+        let mut sets = changes(draft);
         match resolved(&base.name, &base.text, &sets) {
             Ok((case, warnings)) => {
                 sets.pop();
                 Ok(Some((sets, case, warnings)))
             }
-            Err(error) => {
-                for diagnostic in diagnostics(error)? {
-                    let placed = arms::placed(self.study, draft, &diagnostic, &base.diagnostics);
-                    if !self.found.contains(&placed) {
-                        self.found.push(placed);
-                    }
-                }
-                Ok(None)
+            Err(error) => self.add(draft, base, error).map(|()| None),
+        }
+    }
+
+    /// Adds what is wrong with a draft, at its place in the study.
+    fn add(&mut self, draft: &Draft, base: &Base, error: CaseError) -> Result<(), CaseError> {
+        for diagnostic in diagnostics(error)? {
+            let placed = arms::placed(self.study, draft, &diagnostic, &base.diagnostics);
+            if !self.found.contains(&placed) {
+                self.found.push(placed);
             }
         }
+        Ok(())
     }
 
     /// The arms, then the runs of the computed reference, whose step depends on those of all arms.
@@ -191,8 +213,7 @@ impl Checked<'_> {
         planned: &mut Vec<Planned<'a>>,
     ) -> Result<(), CaseError> {
         for draft in drafts {
-            let base = draft.case.as_ref().or(file.case.as_ref()).and_then(|name| bases.get(name));
-            if let Some(base) = base
+            if let Some(base) = base_of(file, &draft, bases)
                 && let Some((sets, case, warnings)) = self.resolved(&draft, base)?
             {
                 planned.push(Planned { draft, sets, case, warnings, base });
@@ -215,6 +236,16 @@ impl Checked<'_> {
         }
         Ok(members)
     }
+}
+
+/// The case file of a draft.
+fn base_of<'a>(file: &StudyFile, draft: &Draft, bases: &'a BTreeMap<String, Base>) -> Option<&'a Base> {
+    draft.case.as_ref().or(file.case.as_ref()).and_then(|name| bases.get(name))
+}
+
+/// The changes of a draft, the last of which are its expectations.
+fn changes(draft: &Draft) -> Vec<String> {
+    draft.sets.iter().map(|(set, _)| set).chain([&draft.expect.0]).cloned().collect()
 }
 
 /// A run as it is stored.
@@ -406,11 +437,17 @@ fn names(file: &StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) {
 /// A case with changes, and its warnings; its model is built once, to find what only the model
 /// shows. Its text is read once: a pipe cannot be read again.
 pub(crate) fn resolved(name: &str, text: &str, sets: &[String]) -> Result<(Case, Vec<Warning>), CaseError> {
-    let document = Document::parse(name, text, sets)?;
-    let case = read(&document).map_err(|problems| document.diagnose_all(&problems))?;
+    let (document, case) = read_with(name, text, sets)?;
     let simulation = Setup::new(&case).start().map_err(|problems| document.diagnose_all(&problems))?;
     let given = warnings(&case, simulation.model());
     Ok((case, given))
+}
+
+/// A case with changes, of which no model is built.
+fn read_with(name: &str, text: &str, sets: &[String]) -> Result<(Document, Case), CaseError> {
+    let document = Document::parse(name, text, sets)?;
+    let case = read(&document).map_err(|problems| document.diagnose_all(&problems))?;
+    Ok((document, case))
 }
 
 /// The diagnostics of a wrong case; input/output and system errors are returned as errors.

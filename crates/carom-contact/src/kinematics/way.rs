@@ -23,8 +23,8 @@ pub(super) const SHARE: f64 = 0.01;
 
 /// Depth relative to the allowed one, or to the largest that was found, within which it is known.
 const KNOWN: f64 = 1.125;
-/// Divisions after which the largest depth found so far is the answer, for boundaries that no
-/// longer have a size.
+/// Divisions after which what is undecided counts as deep, for boundaries that no longer have a
+/// size.
 const MOST: usize = 10_000;
 /// Share of an interval that a division leaves on either side at least.
 const LEAST: f64 = 0.05;
@@ -126,10 +126,11 @@ pub(super) fn deepest(way: &mut impl Way, ends: [Seen; 2], fastest: f64) -> Opti
             open.extend([[seen, to], [from, seen]]);
         }
         if open.is_empty() {
-            break;
+            return worst;
         }
     }
-    worst
+    let undecided = open.pop().map(|[from, to]| Seen { depth: bound(&from, &to, fastest).1, ..from });
+    worst.or(undecided)
 }
 
 /// Where the bounds from both ends of an interval meet, and the bound there.
