@@ -122,7 +122,7 @@ fn bases(
     for (name, place) in std::iter::once((file.case.as_ref(), "case".to_owned())).chain(named) {
         if let Some(name) = name.filter(|name| !bases.contains_key(*name)) {
             let base = match given.filter(|case| case.name() == name) {
-                Some(case) => Base::of(case)?,
+                Some(case) => Base::of(case),
                 None => Base::read(study, folder, name, &place)?,
             };
             bases.insert(name.clone(), base);
@@ -155,7 +155,7 @@ impl Checked<'_> {
             if let Some(base) = base_of(file, draft, bases)
                 && let Err(error) = read_with(&base.name, &base.text, &changes(draft))
             {
-                self.add(draft, base, error)?;
+                self.add(draft, base, error, read_with)?;
             }
         }
         Ok(())
@@ -169,14 +169,23 @@ impl Checked<'_> {
                 sets.pop();
                 Ok(Some((sets, case, warnings)))
             }
-            Err(error) => self.add(draft, base, error).map(|()| None),
+            Err(error) => self.add(draft, base, error, resolved).map(|()| None),
         }
     }
 
     /// Adds what is wrong with a draft, at its place in the study.
-    fn add(&mut self, draft: &Draft, base: &Base, error: CaseError) -> Result<(), CaseError> {
-        for diagnostic in diagnostics(error)? {
-            let placed = arms::placed(self.study, draft, &diagnostic, &base.diagnostics);
+    /// `of` gives what was wrong, and is asked the same of the case without changes.
+    fn add<T>(
+        &mut self,
+        draft: &Draft,
+        base: &Base,
+        error: CaseError,
+        of: impl Fn(&str, &str, &[String]) -> Result<T, CaseError>,
+    ) -> Result<(), CaseError> {
+        let found = diagnostics(error)?;
+        let own = of(&base.name, &base.text, &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
+        for diagnostic in found {
+            let placed = arms::placed(self.study, draft, &diagnostic, &own);
             if !self.found.contains(&placed) {
                 self.found.push(placed);
             }
@@ -330,8 +339,6 @@ fn no_steps() -> Problem {
 struct Base {
     name: String,
     text: String,
-    /// Its problems without any change.
-    diagnostics: Vec<Diagnostic>,
 }
 
 impl Base {
@@ -346,13 +353,11 @@ impl Base {
             }
             error => error,
         })?;
-        Self::of(&document)
+        Ok(Self::of(&document))
     }
 
-    fn of(document: &Document) -> Result<Self, CaseError> {
-        let (name, text) = (document.name().to_owned(), document.text().to_owned());
-        let diagnostics = resolved(&name, &text, &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
-        Ok(Self { name, text, diagnostics })
+    fn of(document: &Document) -> Self {
+        Self { name: document.name().to_owned(), text: document.text().to_owned() }
     }
 }
 

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use carom_contact::{Row, Rows};
-use carom_run::case::Case;
+use carom_run::case::{Case, Document, read};
 use carom_run::model::{BodyInstance, Model};
 use carom_run::{Setup, Simulation, State};
 
@@ -92,27 +92,26 @@ impl Balance {
     }
 }
 
-/// Largest moment of a force between two bodies at the positions of a state, over Σ|y − c||f| with
-/// the centre c of the nodes on which it acts.
-fn largest_moment(sim: &Simulation) -> f64 {
+/// Number of rows between two bodies at a state, and the largest moment of their forces, over
+/// Σ|y − c||f| with the centre c of the nodes on which they act.
+fn moments(sim: &Simulation) -> (usize, f64) {
     let (model, y) = (sim.model(), &sim.state().y);
-    let mut largest = 0.0_f64;
+    let (mut count, mut largest) = (0, 0.0_f64);
     for (k, contact) in model.contacts.iter().enumerate() {
         if contact.primary_part.is_none() || model.dimension == 1 {
             continue;
         }
         for pair in sim.state().pairs[k].iter().filter(|pair| pair.active) {
             let (mut at, mut rows) = (*pair, Rows::new(model.dimension));
-            if contact.kinematics.measure(&mut at, y, &mut rows).is_err() {
-                continue;
-            }
+            contact.kinematics.measure(&mut at, y, &mut rows).unwrap();
             if contact.friction.is_some() {
-                let _ = contact.kinematics.slip(&at, y, &[], &mut rows);
+                contact.kinematics.slip(&at, y, &[], &mut rows).unwrap();
             }
+            count += rows.iter().count();
             largest = rows.iter().map(|row| moment(row, y)).fold(largest, f64::max);
         }
     }
-    largest
+    (count, largest)
 }
 
 /// |Σ (y − c) × f| / Σ |y − c||f| of a row f.
@@ -139,36 +138,62 @@ fn moment(row: Row, y: &[f64]) -> f64 {
     size(moment) / scale
 }
 
-/// Steps after which a body has met itself for long enough, and those in which it may not.
-const FOLDED: u64 = 20;
-const UNFOLDED: u64 = 420;
+/// What a run has shown.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seen {
+    /// Largest error of the balance of a body, relative to the largest momentum of any body.
+    missing: f64,
+    /// Largest moment of a row between two bodies, and how many were looked at.
+    turning: f64,
+    rows: usize,
+    has_touched: bool,
+}
 
-/// Largest error of the balance over so many steps, relative to the largest momentum of any body,
-/// and largest moment of a contact; none where no body can be balanced or nothing touches. A body
-/// that can meet itself goes on until it has. A run that stops is judged up to there.
-fn worst(case: &Case, steps: u64) -> Option<[f64; 2]> {
-    let mut sim = Setup::new(case).start().ok()?;
+/// How long a run is followed, in steps or parts of steps: for so many after contact has begun, and
+/// so many at most.
+#[derive(Clone, Copy)]
+struct Span {
+    after: u64,
+    at_most: u64,
+}
+
+const WHOLE: Span = Span { after: u64::MAX, at_most: u64::MAX };
+
+/// The balances of a run; moments where its first rows close and where it is left. A run that stops
+/// is judged up to there.
+fn seen(case: &Case, span: Span) -> Seen {
+    let mut sim = Setup::new(case).start().unwrap_or_else(|e| panic!("{}: {e:?}", case.title));
     if sim.has_fallback() {
         sim.limit_bisections(0);
     }
     let balances = Balance::all(case, &sim);
-    let folds: Vec<usize> = (0..case.contacts.len()).filter(|&k| case.contacts[k].is_of_itself()).collect();
-    let mut until = if folds.is_empty() { steps } else { steps.max(UNFOLDED) };
-    let (mut worst, mut turns, mut contact_began) = (0.0_f64, 0.0_f64, false);
-    while !balances.is_empty() && !sim.finished() && sim.state().step < until {
-        if folds.iter().any(|&k| sim.state().pairs[k].iter().any(|pair| pair.active)) {
-            until = until.min(steps.max(sim.state().step + FOLDED));
+    let (mut seen, mut began, mut left) = (Seen::default(), false, span.at_most);
+    // Of bodies that are all supported, the first rows are looked at.
+    let has_rows = sim.model().contacts.iter().any(|contact| contact.primary_part.is_some());
+    if balances.is_empty() && (!has_rows || case.contacts.iter().any(|contact| contact.is_of_itself())) {
+        return seen;
+    }
+    let look = |sim: &Simulation, seen: &mut Seen| {
+        let (rows, turning) = moments(sim);
+        (seen.rows, seen.turning) = (seen.rows + rows, seen.turning.max(turning));
+        rows > 0
+    };
+    while !sim.finished() && left > 0 && sim.step().is_ok() {
+        left -= 1;
+        if !seen.has_touched && sim.state().impulses.as_flattened().iter().any(|impulse| *impulse != 0.0) {
+            seen.has_touched = true;
+            left = left.min(span.after);
         }
-        if sim.step().is_err() {
-            break;
+        began = began || look(&sim, &mut seen);
+        if balances.is_empty() && began {
+            return seen;
         }
-        contact_began |= sim.state().impulses.as_flattened().iter().any(|impulse| *impulse != 0.0);
         let errors = balances.iter().map(|balance| balance.error(&sim));
         let [missing, scale] = errors.fold([0.0; 2], |[a, b], [c, d]| [f64::max(a, c), f64::max(b, d)]);
-        worst = worst.max(missing / scale);
-        turns = turns.max(largest_moment(&sim));
+        seen.missing = seen.missing.max(missing / scale.max(f64::MIN_POSITIVE));
     }
-    contact_began.then_some([worst, turns])
+    look(&sim, &mut seen);
+    seen
 }
 
 /// The balance closes as far as the equations of a step are solved.
@@ -195,10 +220,9 @@ fn every_scheme_law_and_enforcement() {
             let sets = [&[scheme.as_str(), TIGHT][..], law].concat();
             // Not every scheme has every law.
             let Ok(case) = Case::from_text(BAR, &sets) else { continue };
-            if let Some([worst, _]) = worst(&case, u64::MAX) {
-                checked += 1;
-                assert!(worst < 1e-12, "{scheme} {law:?}: {worst:e}");
-            }
+            let seen = seen(&case, WHOLE);
+            checked += usize::from(seen.has_touched);
+            assert!(seen.missing < 1e-12, "{scheme} {law:?}: {seen:?}");
         }
     }
     assert!(checked > 60, "{checked}");
@@ -217,28 +241,31 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Steps of a case that takes long.
-const SLOW: u64 = 20;
-
-/// What is missing in the balances of a case; none if no contact could be judged.
-fn missing(path: &Path) -> Option<[f64; 2]> {
-    // Studies are other runs of the cases beside them.
-    let case = Case::from_file(path, &[TIGHT]).ok()?;
-    let dofs_too_many = path.to_string_lossy().contains("perf");
-    let is_slow = case.expects.iter().any(|expect| expect.slow);
-    // Their equilibrium at the start is not found to the tolerance.
-    let has_no_start = path.ends_with("overlap/rings.toml");
-    if case.contacts.is_empty() || dofs_too_many || has_no_start {
+/// The case of a file; none of a study (other runs of the cases beside it), of a case without
+/// contact, or where it cannot be judged.
+/// The contact of those that take long is judged while it begins.
+fn contact_case(path: &Path) -> Option<(Case, Span)> {
+    let document = Document::open(path, &[TIGHT.to_owned()]).unwrap();
+    let is_in = |folder: &str| path.components().any(|part| part.as_os_str() == folder);
+    let is_one_of = |cases: &[&str]| cases.iter().any(|case| path.ends_with(case));
+    let left_out = [
+        // Their equilibrium at the start is not found to the tolerance.
+        "overlap/rings.toml",
+        // Their steps are bisected a thousandfold; what they expect is this balance.
+        "space/slanting.toml",
+        "space/bullet.toml",
+    ];
+    if document.is_study() || is_one_of(&left_out) || is_in("perf") {
         return None;
     }
-    // These are long; what they have of contact they have early.
-    let is_long = ["ladder", "self"].iter().any(|folder| path.to_string_lossy().contains(folder));
-    let steps = match (is_slow, is_long) {
-        (true, _) => SLOW,
-        (_, true) => 100,
-        _ => 300,
+    let case = read(&document).unwrap();
+    let is_slow = case.expects.iter().any(|expect| expect.slow);
+    let span = match ["ladder", "space", "self"].iter().any(|folder| is_in(folder)) {
+        _ if is_slow => Span { after: 3, at_most: 60 },
+        true => Span { after: 20, at_most: 420 },
+        false => Span { after: 300, at_most: 300 },
     };
-    worst(&case, steps)
+    (!case.contacts.is_empty()).then_some((case, span))
 }
 
 #[test]
@@ -246,16 +273,22 @@ fn every_case_of_the_repository() {
     let mut cases = Vec::new();
     files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases"), &mut cases);
     let next = AtomicUsize::new(0);
-    let work = || -> Vec<(&PathBuf, [f64; 2])> {
+    let work = || -> Vec<(&PathBuf, Seen)> {
         std::iter::from_fn(|| cases.get(next.fetch_add(1, Ordering::Relaxed)))
-            .filter_map(|path| Some((path, missing(path)?)))
+            .filter_map(|path| {
+                let (case, span) = contact_case(path)?;
+                Some((path, seen(&case, span)))
+            })
             .collect()
     };
-    let judged = std::thread::scope(|scope| {
+    let all = std::thread::scope(|scope| {
         let other = scope.spawn(work);
         [work(), other.join().unwrap()].concat()
     });
-    assert!(judged.len() > 20);
-    let wrong: Vec<_> = judged.iter().filter(|(_, missing)| missing.iter().any(|x| *x >= 1e-12)).collect();
+    let count = |of: fn(&Seen) -> bool| all.iter().filter(|(_, seen)| of(seen)).count();
+    // What touches, and what touches another body.
+    let counts = [count(|seen| seen.has_touched), count(|seen| seen.rows > 0)];
+    assert!(counts[0] > 95 && counts[1] > 45, "{counts:?}");
+    let wrong: Vec<_> = all.iter().filter(|(_, seen)| seen.missing.max(seen.turning) >= 1e-12).collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
