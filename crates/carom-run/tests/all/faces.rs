@@ -16,6 +16,8 @@ fn blocks(element: &str, scheme: &str, mass: &str, step: f64) -> String {
     let vector = |values: [f64; 3]| format!("{:?}", &values[..dimension]);
     let point = |x: f64, y: f64| if dimension == 1 { format!("{x:?}") } else { vector([x, y, y]) };
     let (shape, cells) = [("interval", "8"), ("rectangle", "[8, 3]"), ("box", "[4, 2, 2]")][dimension - 1];
+    // Cells with nodes at the middles of their edges have as many along the block.
+    let cells = if matches!(element, "Tet10" | "Hex27") { "[2, 1, 1]" } else { cells };
     let body = |name: &str, x: f64, speed: f64| {
         format!(
             r#"

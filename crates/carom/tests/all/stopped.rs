@@ -141,14 +141,17 @@ fn what_gets_past_in_a_trial_gets_past_in_a_run() {
 fn a_stop_among_contacts_between_bodies() {
     let place = Place::new("between");
     place.file("all.toml", include_str!("../../../../cases/self/all.toml"));
-    let run = ["run", "all.toml", "--out", "run", "--set", "newton.max_iterations=4"];
+    // Coarse, so that it stops where contact begins.
+    let keys = ["newton.max_iterations=4", "time.step=5e-3", "body.ring.mesh.size=0.25"];
+    let sets: Vec<&str> = keys.iter().flat_map(|set| ["--set", *set]).collect();
+    let run = [&["run", "all.toml", "--out", "run"][..], &sets].concat();
     assert_eq!(place.carom(&run).status.code(), Some(3));
     let stop = stop(&place, "run");
     assert!(stop.place.unwrap().contact.unwrap().starts_with("all-"));
     let optional: Vec<_> = stop.advice.iter().filter(|advice| !advice.sets.is_empty()).collect();
     assert!(optional.iter().any(|advice| advice.sets[0] == "contact.all.enforcement=penalty"));
     for advice in optional {
-        let mut check = vec!["check", "all.toml", "--set", "newton.max_iterations=4"];
+        let mut check = [&["check", "all.toml"][..], &sets].concat();
         advice.sets.iter().for_each(|set| check.extend(["--set", set]));
         let checked = place.carom(&check);
         assert_eq!(checked.status.code(), Some(0), "{advice:?}: {}", text(&checked.stderr));
