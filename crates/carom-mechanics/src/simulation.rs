@@ -5,9 +5,8 @@
 use std::ops::ControlFlow;
 
 use carom_contact::Passed;
-use carom_formula::instant;
 
-use crate::audit::{Doubt, audit};
+use crate::audit::audit;
 use crate::grid::Grid;
 use crate::grid_report::{Attempt, GridReport, LogEvent};
 use crate::model::Model;
@@ -15,92 +14,11 @@ use crate::rejected::Rejected;
 use crate::start::{Before, Inertia, start};
 use crate::state::{FEW, OtherModel, State};
 use crate::stepper::Stepper;
+use crate::stopped::Stopped;
 use crate::substeps::{Limits, MOST, Next, Progress, decide};
 use crate::timings::{Timings, timed};
 use crate::trace::Trace;
 use crate::workspace::Workspace;
-
-/// Why a simulation stopped before its end; the state of the last grid time is preserved.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Stopped {
-    /// No step from here is accepted, however small.
-    #[error(
-        "the step at t = {} {} rejected: {rejected}", at(*time, *dt * f64::from(*halvings).exp2()), tried(*halvings, *dt)
-    )]
-    NoStep {
-        /// Time of the last accepted state.
-        time: f64,
-        /// Smallest step tried.
-        dt: f64,
-        /// Bisections of the grid's step.
-        halvings: u32,
-        /// The reason for its rejection.
-        rejected: Rejected,
-    },
-    /// The caller ended it within a grid step.
-    #[error("interrupted in the step that begins at t = {}", at(*time, *dt))]
-    Interrupted {
-        /// Time of the last grid time.
-        time: f64,
-        /// The grid step.
-        dt: f64,
-    },
-    /// A second method contradicts the contact of a step.
-    #[error("the audit of the step that ends at t = {} contradicts its contact: {doubt}", at(*time, *dt))]
-    Audit {
-        /// Time.
-        time: f64,
-        /// The grid step.
-        dt: f64,
-        /// What it found.
-        doubt: Doubt,
-    },
-    /// The scheme created energy.
-    #[error(
-        "energy was created at t = {}: {created:.4e}, which is {} % of the energy scale {scale:.4e}; the limit is {} %", at(*time, *dt), percent(created / scale), percent(*share)
-    )]
-    EnergyGuard {
-        /// Time.
-        time: f64,
-        /// The grid step.
-        dt: f64,
-        /// Rise of total − external work above its running minimum.
-        created: f64,
-        /// Allowed fraction.
-        share: f64,
-        /// Largest kinetic + strain energy so far, or Σ |ΔW| of the external work.
-        scale: f64,
-    },
-}
-
-impl Stopped {
-    /// Whether another method might take the step.
-    fn is_of_the_method(&self, end: f64) -> bool {
-        match self {
-            Self::NoStep { rejected, .. } => !rejected.is_final(end),
-            Self::EnergyGuard { .. } => true,
-            Self::Interrupted { .. } | Self::Audit { .. } => false,
-        }
-    }
-}
-
-/// A time with the digits of the grid step.
-fn at(time: f64, step: f64) -> String {
-    instant(time, step, 6)
-}
-
-fn tried(halvings: u32, dt: f64) -> String {
-    match halvings {
-        0 => format!("of Δt = {dt:.3e} is"),
-        _ => format!("was bisected {halvings} times, to Δt = {dt:.3e}, and is still"),
-    }
-}
-
-/// A fraction in per cent, to three significant digits.
-fn percent(fraction: f64) -> f64 {
-    let percent = 100.0 * fraction;
-    format!("{percent:.2e}").parse().unwrap_or(percent)
-}
 
 /// What is called between the trial steps of a grid step.
 type Watch<'a> = dyn FnMut(&Attempt) -> ControlFlow<()> + Send + 'a;
@@ -426,26 +344,4 @@ fn nothing_passed(model: &Model, before: &[f64], now: &[f64]) -> Result<(), Reje
         }
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn percentages_have_three_digits() {
-        let stopped =
-            Stopped::EnergyGuard { time: 0.5, dt: 0.01, created: 0.0123456, share: 5e-6, scale: 0.1 };
-        let message = "energy was created at t = 0.500000: 1.2346e-2, which is 12.3 % of the energy scale 1.0000e-1; the limit is 0.0005 %";
-        assert_eq!(stopped.to_string(), message);
-    }
-
-    #[test]
-    fn times_have_the_digits_of_the_step() {
-        let stopped = Stopped::Interrupted { time: 1.02e-6, dt: 2e-8 };
-        assert_eq!(stopped.to_string(), "interrupted in the step that begins at t = 0.00000102");
-        let rejected = Rejected::NegativeMass;
-        let stopped = Stopped::NoStep { time: 1.02e-6, dt: 2e-8 / 8.0, halvings: 3, rejected };
-        assert!(stopped.to_string().starts_with("the step at t = 0.00000102 was bisected 3 times"));
-    }
 }
