@@ -250,7 +250,7 @@ const OUTPUT: Table = Table {
             .unit("time")
             .default("[]"),
         key("history_every", Count(1), "Steps between two rows of history.csv.").default("1"),
-        key("checkpoint_every", Count(1), "Steps between two checkpoints.").default("50"),
+        key("checkpoint_every", Count(1), "Steps between two checkpoints, from which a run that is killed is continued; after a power failure, from the last one that was flushed to the disk (at most one in five seconds).").default("50"),
     ],
     later: &[],
 };
