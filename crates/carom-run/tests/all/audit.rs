@@ -57,35 +57,15 @@ fn the_audit_finds_a_passage_that_the_contact_does_not_allow_and_says_what_it_le
 
 /// A ball that flies at a plate at a low angle: in a step of 0.1 from t = 0.2 it would enter at the
 /// top, leave at the bottom and be past the plate's end.
-const SLANTING: &str = r#"
-dimension = 3
-material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1.898e+04, poisson = 0.3 }]
-contact = [{ name = "strike", secondary = "ball.sphere", primary = "plate.top" }]
-time = { end = 0.3, step = 0.0125, scheme = { kind = "energy-momentum" } }
-
-[[body]]
-name = "ball"
-material = "m"
-element = "Tet4"
-mesh = { shape = "ball", radius = 0.025, center = [-1.81965, 0.0, 1.16956], size = 0.025 }
-velocity = [9.0, 0.0, -5.0]
-
-[[body]]
-name = "plate"
-material = "m"
-element = "Hex8"
-mesh = { shape = "box", min = [-0.5, -0.1, -0.01], max = [0.5, 0.1, 0.0], cells = [20, 4, 1] }
-
-[[support]]
-on = ["plate.left", "plate.right"]
-fix = ["x", "y", "z"]
-"#;
+const SLANTING: &str = include_str!("../../../../cases/space/slanting.toml");
+const COARSE: [&str; 3] = ["body.ball.mesh.size=0.025", "time.step=0.0125", "time.end=0.3"];
 
 #[test]
 fn in_space_the_audit_agrees_with_a_ball_that_rebounds_and_finds_one_that_has_passed() {
     let curved = ["body.ball.element=Tet10", "body.plate.element=Hex27", "body.plate.mesh.cells=[10,2,1]"];
-    for changes in [&[""; 0][..], &curved[..]] {
-        let sim = simulation(SLANTING, changes);
+    for elements in [&[""; 0][..], &curved[..]] {
+        let changes = [&COARSE, elements].concat();
+        let sim = simulation(SLANTING, &changes);
         let (model, nothing) = (sim.model(), carom_run::Depths::default());
         let at = |time: f64| {
             let mut y = sim.state().y.clone();
@@ -106,6 +86,6 @@ fn in_space_the_audit_agrees_with_a_ball_that_rebounds_and_finds_one_that_has_pa
         assert!(depth > 0.0005 && depth <= 0.005 + 1e-12, "{depth}");
         assert_eq!(unaudited(model), ["edges between their nodes", "bodies without a contact between them"]);
     }
-    let sim = finish(simulation(SLANTING, &[""; 0]).audited());
+    let sim = finish(simulation(SLANTING, &COARSE).audited());
     assert!(sim.state().impulses[0][2] != 0.0);
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use carom_contact::{Row, Rows};
-use carom_run::case::{Case, Document, read};
+use carom_run::case::{Case, ContactSpec, Document, read};
 use carom_run::model::{BodyInstance, Model};
 use carom_run::{Setup, Simulation, State};
 
@@ -170,7 +170,7 @@ fn seen(case: &Case, span: Span) -> Seen {
     let (mut seen, mut began, mut left) = (Seen::default(), false, span.at_most);
     // Of bodies that are all supported, the first rows are looked at.
     let has_rows = sim.model().contacts.iter().any(|contact| contact.primary_part.is_some());
-    if balances.is_empty() && (!has_rows || case.contacts.iter().any(|contact| contact.is_of_itself())) {
+    if balances.is_empty() && (!has_rows || case.contacts.iter().any(ContactSpec::is_of_itself)) {
         return seen;
     }
     let look = |sim: &Simulation, seen: &mut Seen| {

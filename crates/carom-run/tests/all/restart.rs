@@ -1,10 +1,22 @@
 //! Resumed runs, and runs that start where another ended.
 
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
 use carom_contact::Pair;
-use carom_run::{GridReport, Simulation, State};
+use carom_record::Source;
+use carom_run::{GridReport, Simulation, State, recording};
 
 use super::common::{DISCS, case as case_of, finish, simulation};
 use super::loads::time;
+
+/// Records the run of a case; returns the table of a case that begins where it ends.
+fn initial_state(text: &str, directory: &Path) -> String {
+    let source = Source { text: text.to_owned(), sets: Vec::new(), folder: None };
+    let (options, stop) = (recording::Options::default(), AtomicBool::new(false));
+    recording::run(&case_of(text, &[""; 0]), source, directory, options, &mut |_| {}, &stop).unwrap();
+    format!("[initial]\nfrom = {:?}\n", directory.display().to_string())
+}
 
 /// A run resumed from a state in the middle ends bitwise equal, including loads, motions and
 /// bisected steps.
@@ -94,15 +106,8 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
         )
     };
     let statics = text(&time(1.0, 0.25, r#"{ kind = "static" }"#), "", "-0.1*t");
-    let case = case_of(&statics, &[""; 0]);
-    let source = carom_record::Source { text: statics.clone(), sets: Vec::new(), folder: None };
-    let options = carom_run::recording::Options::default();
-    let stop = std::sync::atomic::AtomicBool::new(false);
-    let preload = folder.path().join("preload");
-    carom_run::recording::run(&case, source, &preload, options, &mut |_| {}, &stop).unwrap();
-    let pressed = finish(carom_run::Setup::new(&case).start().unwrap());
-
-    let initial = format!("[initial]\nfrom = {:?}\n", preload.display().to_string());
+    let initial = initial_state(&statics, &folder.path().join("preload"));
+    let pressed = finish(simulation(&statics, &[""; 0]));
     let again = |motion: &str| {
         text(&time(0.1, 1e-3, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#), &initial, motion)
     };
@@ -188,17 +193,10 @@ tolerance = 1e-14
     for (k, (law, growing, constant, schemes)) in problems.into_iter().enumerate() {
         let time = "end = 1.0\nstep = 0.25\nscheme = { kind = \"static\" }";
         let statics = text(law, &growing, time, "");
-        let case = case_of(&statics, &[""; 0]);
-        let source = carom_record::Source { text: statics, sets: Vec::new(), folder: None };
-        let options = carom_run::recording::Options::default();
-        let stop = std::sync::atomic::AtomicBool::new(false);
-        let pressed = folder.path().join(format!("pressed-{k}"));
-        carom_run::recording::run(&case, source, &pressed, options, &mut |_| {}, &stop).unwrap();
-        let at_rest = finish(carom_run::Setup::new(&case).start().unwrap());
+        let initial = initial_state(&statics, &folder.path().join(format!("pressed-{k}")));
+        let at_rest = finish(simulation(&statics, &[""; 0]));
         let forces = at_rest.state().contact_forces[0];
         assert!(forces[0] < -0.05 && forces[1] > 0.5, "{forces:?}");
-
-        let initial = format!("[initial]\nfrom = {:?}\n", pressed.display().to_string());
         for scheme in schemes {
             let time = format!("end = 0.2\nstep = 0.01\nscheme = {scheme}");
             let mut sim = simulation(&text(law, &constant, &time, &initial), &[""; 0]);
@@ -260,17 +258,17 @@ fn states_of_other_models() {
 fn a_run_is_finished_even_if_its_record_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let directory = folder.path().join("run");
-    let source = carom_record::Source { text: DISCS.to_owned(), sets: Vec::new(), folder: None };
-    let options = carom_run::recording::Options::default();
-    let stop = std::sync::atomic::AtomicBool::new(false);
-    let damage = &mut |progress: &carom_run::recording::Progress| {
+    let source = Source { text: DISCS.to_owned(), sets: Vec::new(), folder: None };
+    let options = recording::Options::default();
+    let stop = AtomicBool::new(false);
+    let damage = &mut |progress: &recording::Progress| {
         if progress.step == progress.steps {
             std::fs::write(directory.join("contact.csv"), "no columns\n").unwrap();
         }
     };
     let case = case_of(DISCS, &["time.end=0.01"]);
-    let run = carom_run::recording::run(&case, source, &directory, options, damage, &stop);
-    assert!(matches!(run, Err(carom_run::recording::RunError::Record(_))), "{run:?}");
+    let run = recording::run(&case, source, &directory, options, damage, &stop);
+    assert!(matches!(run, Err(recording::RunError::Record(_))), "{run:?}");
     let manifest = carom_record::Manifest::read(&directory).unwrap();
     assert_eq!(manifest.status, carom_record::Status::Finished);
 }
@@ -351,13 +349,7 @@ fn multipliers_start_from_a_run_with_springs() {
         )
     };
     let springs = strips("enforcement = \"penalty\"\nstiffness = 10.0", "");
-    let source = carom_record::Source { text: springs.clone(), sets: Vec::new(), folder: None };
-    let options = carom_run::recording::Options::default();
-    let stop = std::sync::atomic::AtomicBool::new(false);
-    let pressed = folder.path().join("pressed");
-    carom_run::recording::run(&case_of(&springs, &[""; 0]), source, &pressed, options, &mut |_| {}, &stop)
-        .unwrap();
-    let initial = format!("[initial]\nfrom = {:?}\n", pressed.display().to_string());
+    let initial = initial_state(&springs, &folder.path().join("pressed"));
     let case = case_of(&strips("", &initial), &[""; 0]);
     let mut run = carom_run::Setup::new(&case).start().unwrap();
     run.step().unwrap();

@@ -25,8 +25,9 @@ const SLAB: [&str; 7] = [
     "load=[{ on = [\"beam.back\"], pressure = \"5*sin(20*t)\" }]",
 ];
 
-/// Largest distance of a node of the slab from that of the plane at the same reference place.
-pub(crate) fn apart(plane: &Simulation, slab: &Simulation) -> f64 {
+/// Largest distance of a node of the slab from that of the plane at the same reference place, and
+/// how many nodes of the slab have one.
+pub(crate) fn distance(plane: &Simulation, slab: &Simulation) -> (f64, usize) {
     let (flat, solid) = (plane.model(), slab.model());
     let (mut worst, mut seen) = (0.0_f64, 0);
     for (k, x) in solid.reference.as_chunks::<3>().0.iter().enumerate() {
@@ -36,7 +37,13 @@ pub(crate) fn apart(plane: &Simulation, slab: &Simulation) -> f64 {
         worst = worst.max((here[0] - there[0]).hypot(here[1] - there[1])).max((there[2] - x[2]).abs());
         seen += 1;
     }
-    assert_eq!(seen, solid.reference.len() / 3);
+    (worst, seen)
+}
+
+/// The distance of a slab whose nodes all stand above those of the plane.
+pub(crate) fn apart(plane: &Simulation, slab: &Simulation) -> f64 {
+    let (worst, seen) = distance(plane, slab);
+    assert_eq!(seen, slab.model().reference.len() / 3);
     worst
 }
 
