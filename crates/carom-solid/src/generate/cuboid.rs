@@ -49,7 +49,7 @@ pub fn cuboid(element: Element, min: [f64; 3], max: [f64; 3], cells: [usize; 3])
             }
         }
     }
-    let pieces = pieces(element);
+    let pieces = pieces(element)?;
     let mut numbers = Vec::new();
     let mut sides: BTreeMap<String, Vec<Facet>> =
         SIDES.iter().map(|(name, ..)| ((*name).to_owned(), Vec::new())).collect();
@@ -79,13 +79,14 @@ pub fn cuboid_nodes(element: Element, cells: [usize; 3]) -> usize {
 }
 
 /// The cells that fill one box, by their nodes in its lattice.
-fn pieces(element: Element) -> Vec<Vec<[usize; 3]>> {
+fn pieces(element: Element) -> Result<Vec<Vec<[usize; 3]>>, MeshError> {
     let simplex = match element {
-        Element::Hex8 => return vec![lattice::<8, Hex8>(-1.0)],
-        Element::Hex27 => return vec![lattice::<27, Hex27>(-1.0)],
+        Element::Hex8 => return Ok(vec![lattice::<8, Hex8>(-1.0)]),
+        Element::Hex27 => return Ok(vec![lattice::<27, Hex27>(-1.0)]),
         Element::Tet4 => lattice::<4, Tet4>(0.0),
         Element::Tet10 => lattice::<10, Tet10>(0.0),
-        _ => lattice::<20, Tet20>(0.0),
+        Element::Tet20 => lattice::<20, Tet20>(0.0),
+        _ => return Err(MeshError::Dimension { element, dimension: 3 }),
     };
     let tetrahedron = |(path, order): (usize, &[usize; 3])| {
         let mut corners = [[0; 3]; 4];
@@ -102,7 +103,7 @@ fn pieces(element: Element) -> Vec<Vec<[usize; 3]>> {
         };
         simplex.iter().map(node).collect()
     };
-    PATHS.iter().enumerate().map(tetrahedron).collect()
+    Ok(PATHS.iter().enumerate().map(tetrahedron).collect())
 }
 
 /// The nodes of a shape in the lattice of its degree; its reference cell begins at `low` and ends

@@ -43,7 +43,8 @@ pub fn extrusion(plane: &Mesh, height: f64, layers: usize) -> Result<Mesh, MeshE
         Element::T6 => plane_lattice::<6, Tri6>(0.0),
         Element::T10 => plane_lattice::<10, Tri10>(0.0),
         Element::Q4 => plane_lattice::<4, Quad4>(-1.0),
-        _ => plane_lattice::<9, Quad9>(-1.0),
+        Element::Q9 => plane_lattice::<9, Quad9>(-1.0),
+        element => return Err(MeshError::Dimension { element, dimension: 2 }),
     };
     let local: HashMap<[usize; 2], usize> = places.into_iter().enumerate().map(|(a, at)| (at, a)).collect();
     let solid = if plane.element.facets().len() == 3 { &PRISM } else { &HEXAHEDRON };

@@ -20,7 +20,8 @@ impl MshFile {
         match group.element {
             Element::L2 => orient::<1, 2, Line2>(&mut group)?,
             Element::L3 => orient::<1, 3, Line3>(&mut group)?,
-            _ => orient::<1, 4, Line4>(&mut group)?,
+            Element::L4 => orient::<1, 4, Line4>(&mut group)?,
+            _ => return Err(MshError::whole(Fault::NoCells { what: "curve", name: curve.to_owned() })),
         }
         let mut cells_at = vec![Vec::new(); group.used.len()];
         for (cell, nodes) in group.cells.chunks_exact(group.element.nodes()).enumerate() {

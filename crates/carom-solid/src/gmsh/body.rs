@@ -27,7 +27,8 @@ impl MshFile {
             Element::T6 => orient::<2, 6, Tri6>(&mut group)?,
             Element::T10 => orient::<2, 10, Tri10>(&mut group)?,
             Element::Q4 => orient::<2, 4, Quad4>(&mut group)?,
-            _ => orient::<2, 9, Quad9>(&mut group)?,
+            Element::Q9 => orient::<2, 9, Quad9>(&mut group)?,
+            _ => return Err(MshError::whole(Fault::NoCells { what: "surface", name: surface.to_owned() })),
         }
         let boundary = boundary(&group)?;
         let sides = group.sides(&boundary)?;

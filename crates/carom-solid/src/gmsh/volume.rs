@@ -30,7 +30,8 @@ impl MshFile {
             Element::Tet10 => orient::<3, 10, Tet10>(&mut group)?,
             Element::Tet20 => orient::<3, 20, Tet20>(&mut group)?,
             Element::Hex8 => orient::<3, 8, Hex8>(&mut group)?,
-            _ => orient::<3, 27, Hex27>(&mut group)?,
+            Element::Hex27 => orient::<3, 27, Hex27>(&mut group)?,
+            _ => return Err(MshError::whole(Fault::NoCells { what: "volume", name: name.to_owned() })),
         }
         let boundary = boundary(&group)?;
         if !self.slits {
