@@ -7,6 +7,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
+use carom_algebra::principal;
 use carom_case::Case;
 use carom_contact::{Pair, Rows};
 use carom_mechanics::State;
@@ -14,7 +15,6 @@ use carom_mechanics::model::{Contact, Model, von_mises};
 use carom_record::{Block, Cell, FieldSet, PointArray};
 use carom_solid::{Element, FacetShape};
 
-use super::principal::{logarithmic, principal};
 use super::units::labels;
 
 /// Fields of a state.
@@ -52,6 +52,12 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     set.points.truncate(nodes);
     set.arrays.iter_mut().for_each(|array| array.values.truncate(nodes * array.components));
     set
+}
+
+/// Principal logarithmic (Hencky) strains ln λᵢ from the principal Green–Lagrange strains
+/// Eᵢ = (λᵢ² − 1)/2, in their order; NaN where a stretch is zero.
+fn logarithmic(green: [f64; 3]) -> [f64; 3] {
+    green.map(|e| Some(0.5 * (2.0 * e).ln_1p()).filter(|x| x.is_finite()).unwrap_or(f64::NAN))
 }
 
 /// The initial positions of a model, without other fields.

@@ -4,7 +4,6 @@ mod columns;
 mod fields;
 mod log;
 mod outcome;
-mod principal;
 mod rows;
 mod session;
 mod start;

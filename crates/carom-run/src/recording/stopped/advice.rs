@@ -134,16 +134,3 @@ pub(super) fn of(
     };
     remedies.iter().filter_map(advice).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_reason_has_a_remedy_of_its_own() {
-        for (kind, remedies) in TABLE {
-            assert!(!remedies.is_empty(), "{kind}");
-            assert_eq!(TABLE.iter().filter(|(other, _)| other == kind).count(), 1, "{kind}");
-        }
-    }
-}

@@ -4,8 +4,14 @@
 /// More than are ever needed: convergence is quadratic.
 const SWEEPS: usize = 12;
 
-/// The eigenvalues in descending order; NaN if a component is.
-pub(super) fn principal(mut a: [[f64; 3]; 3]) -> [f64; 3] {
+/// The eigenvalues of a symmetric 3 × 3 tensor in descending order, in its unit; NaN if a component is.
+///
+/// ```
+/// // Pure shear 3 on a pressure of 2.
+/// let stress = [[-2.0, 0.0, 3.0], [0.0, -2.0, 0.0], [3.0, 0.0, -2.0]];
+/// assert_eq!(carom_algebra::principal(stress), [1.0, -2.0, -5.0]);
+/// ```
+pub fn principal(mut a: [[f64; 3]; 3]) -> [f64; 3] {
     if a.iter().flatten().any(|x| !x.is_finite()) {
         return [f64::NAN; 3];
     }
@@ -20,12 +26,6 @@ pub(super) fn principal(mut a: [[f64; 3]; 3]) -> [f64; 3] {
     let mut values = [a[0][0], a[1][1], a[2][2]];
     values.sort_by(|x, y| y.total_cmp(x));
     values
-}
-
-/// Principal logarithmic (Hencky) strains ln λᵢ from the principal Green–Lagrange strains
-/// Eᵢ = (λᵢ² − 1)/2, in their order; NaN where a stretch is zero.
-pub(super) fn logarithmic(green: [f64; 3]) -> [f64; 3] {
-    green.map(|e| Some(0.5 * (2.0 * e).ln_1p()).filter(|x| x.is_finite()).unwrap_or(f64::NAN))
 }
 
 /// The rotation in the plane p, q after which its off-diagonal component is zero.
