@@ -3,6 +3,7 @@
 //! velocities: P = Σ M [v + (1 − γ − α_m) Δt (a − a_loads)] of a body that nothing supports changes
 //! by the impulses of its contacts and of its constant loads. Forces between two bodies have no
 //! moment either: Σ y × ∇g = 0 and Σ y × H = 0 for the rows of every closed pair and of its slips.
+//! And no contact pulls: λ ≤ 0 at the end of every step.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -144,9 +145,10 @@ const FOLDED: u64 = 20;
 const UNFOLDED: u64 = 420;
 
 /// Largest error of the balance over so many steps, relative to the largest momentum of any body,
-/// and largest moment of a contact; none where no body can be balanced or nothing touches. A body
-/// that can meet itself goes on until it has. A run that stops is judged up to there.
-fn worst(case: &Case, steps: u64) -> Option<[f64; 2]> {
+/// largest moment of a contact, and largest multiplier that pulls, relative to the largest so far;
+/// none where no body can be balanced or nothing touches. A body that can meet itself goes on until
+/// it has. A run that stops is judged up to there.
+fn worst(case: &Case, steps: u64) -> Option<[f64; 3]> {
     let mut sim = Setup::new(case).start().ok()?;
     if sim.has_fallback() {
         sim.limit_bisections(0);
@@ -155,6 +157,7 @@ fn worst(case: &Case, steps: u64) -> Option<[f64; 2]> {
     let folds: Vec<usize> = (0..case.contacts.len()).filter(|&k| case.contacts[k].is_of_itself()).collect();
     let mut until = if folds.is_empty() { steps } else { steps.max(UNFOLDED) };
     let (mut worst, mut turns, mut contact_began) = (0.0_f64, 0.0_f64, false);
+    let (mut pulls, mut strongest) = (0.0_f64, f64::MIN_POSITIVE);
     while !balances.is_empty() && !sim.finished() && sim.state().step < until {
         if folds.iter().any(|&k| sim.state().pairs[k].iter().any(|pair| pair.active)) {
             until = until.min(steps.max(sim.state().step + FOLDED));
@@ -167,8 +170,11 @@ fn worst(case: &Case, steps: u64) -> Option<[f64; 2]> {
         let [missing, scale] = errors.fold([0.0; 2], |[a, b], [c, d]| [f64::max(a, c), f64::max(b, d)]);
         worst = worst.max(missing / scale);
         turns = turns.max(largest_moment(&sim));
+        let multipliers = || sim.state().pairs.iter().flatten().map(|pair| pair.lambda);
+        strongest = multipliers().fold(strongest, |most, lambda| most.max(lambda.abs()));
+        pulls = multipliers().fold(pulls, |most, lambda| most.max(lambda / strongest));
     }
-    contact_began.then_some([worst, turns])
+    contact_began.then_some([worst, turns, pulls])
 }
 
 /// The balance closes as far as the equations of a step are solved.
@@ -195,9 +201,9 @@ fn every_scheme_law_and_enforcement() {
             let sets = [&[scheme.as_str(), TIGHT][..], law].concat();
             // Not every scheme has every law.
             let Ok(case) = Case::from_text(BAR, &sets) else { continue };
-            if let Some([worst, _]) = worst(&case, u64::MAX) {
+            if let Some([worst, _, pulls]) = worst(&case, u64::MAX) {
                 checked += 1;
-                assert!(worst < 1e-12, "{scheme} {law:?}: {worst:e}");
+                assert!(worst < 1e-12 && pulls < 1e-9, "{scheme} {law:?}: {worst:e} {pulls:e}");
             }
         }
     }
@@ -220,8 +226,8 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 /// Steps of a case that takes long.
 const SLOW: u64 = 20;
 
-/// What is missing in the balances of a case; none if no contact could be judged.
-fn missing(path: &Path) -> Option<[f64; 2]> {
+/// What is wrong in a case, as above; none if no contact could be judged.
+fn missing(path: &Path) -> Option<[f64; 3]> {
     // Studies are other runs of the cases beside them.
     let case = Case::from_file(path, &[TIGHT]).ok()?;
     let dofs_too_many = path.to_string_lossy().contains("perf");
@@ -246,7 +252,7 @@ fn every_case_of_the_repository() {
     let mut cases = Vec::new();
     files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases"), &mut cases);
     let next = AtomicUsize::new(0);
-    let work = || -> Vec<(&PathBuf, [f64; 2])> {
+    let work = || -> Vec<(&PathBuf, [f64; 3])> {
         std::iter::from_fn(|| cases.get(next.fetch_add(1, Ordering::Relaxed)))
             .filter_map(|path| Some((path, missing(path)?)))
             .collect()
@@ -256,6 +262,7 @@ fn every_case_of_the_repository() {
         [work(), other.join().unwrap()].concat()
     });
     assert!(judged.len() > 20);
-    let wrong: Vec<_> = judged.iter().filter(|(_, missing)| missing.iter().any(|x| *x >= 1e-12)).collect();
+    let is_wrong = |[worst, turns, pulls]: [f64; 3]| worst >= 1e-12 || turns >= 1e-12 || pulls >= 1e-9;
+    let wrong: Vec<_> = judged.iter().filter(|(_, missing)| is_wrong(*missing)).collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
