@@ -10,9 +10,9 @@
 //! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations
 //! it is the rate of change of the slip rate, which decides for pairs that have none; others slip
 //! in their direction, or in that of the step before. All rows are equalities, as without friction:
-//! a closed gap stays closed (`persistency.rs`), and one whose p is tensile remains closed: it
-//! sticks, or slips with q = −sμp. So the solution depends continuously on μ, and tangential
-//! impulses that slip are μ times the normal ones.
+//! a closed gap stays closed, and one whose p is tensile remains closed: it sticks, or slips with
+//! q = −sμp. So the solution depends continuously on μ, and tangential impulses that slip are μ
+//! times the normal ones. For accelerations `persistency.rs` chooses pairs of which none pulls.
 
 use carom_contact::{Along, Hold, Law, Pair, Row, Rows, Rub, StickSlip, Tangential, inner, length};
 

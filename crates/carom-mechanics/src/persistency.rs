@@ -2,16 +2,20 @@
 //! the active constraints (g ġ = 0).
 //!
 //! ```text
-//! M Δv + Gᵀp = 0,   G (v + Δv) = 0            then       M a + Gᵀλ = f_ext − f_int,   G a = −v·∇²g·v
+//! M Δv + Gᵀp = 0,   G (v + Δv) = 0            then       M a + Gᵀλ = f_ext − f_int,
+//!                                                        λ ≤ 0,  g̈ ≥ 0,  λ g̈ = 0,   g̈ = G a + v·∇²g·v
 //! ```
 //!
-//! with all active rows as equalities. Projecting v alone would retain the accelerations of the
-//! impact and does not remove the oscillations (theory.md §5.3). Massless dofs keep their velocity:
-//! they follow the massive side. With friction both systems have its impulses and forces
+//! with all active rows as equalities of the velocities. Projecting v alone would retain the
+//! accelerations of the impact and does not remove the oscillations (theory.md §5.3). A multiplier
+//! that would pull is zero, and its gap may open; the others keep g̈ = 0. Massless dofs keep their
+//! velocity: they follow the massive side. With friction both systems have its impulses and forces
 //! (`cone.rs`). With a restitution, energy is returned (`restitution.rs`) before the accelerations
 //! are solved for.
 
-use carom_contact::{Along, Row, Rows, inner, length};
+use std::collections::BTreeMap;
+
+use carom_contact::{ActiveSet, Along, Contender, Row, Rows, inner, length};
 
 use crate::active_rows::{measure_all, pressing};
 use crate::cone::{AT_REST, Closed, Right};
@@ -25,6 +29,16 @@ use crate::state::State;
 use crate::sums::max_abs;
 use crate::system::System;
 
+/// Contact and pair.
+type Place = (usize, usize);
+
+/// Solves in which pairs that were let go may be held again; after that they are only let go, so
+/// that in the end none pulls.
+const ROUNDS: usize = 50;
+/// Multiplier, as a fraction of the largest force, and acceleration, as a fraction of the largest
+/// one, that are round-off.
+const ROUND_OFF: f64 = 1e-12;
+
 /// Projects `state`, the end of the step `impact`, if one of the new contacts (contact, node)
 /// requires it. The jump of kinetic energy is recorded as contact work and returned.
 pub(crate) fn project(
@@ -34,13 +48,13 @@ pub(crate) fn project(
     activations: &[(usize, usize)],
     system: &mut System,
 ) -> Result<Option<f64>, Rejected> {
-    let asks = |k: usize| model.contacts[k].projects;
-    if !activations.iter().any(|&(k, _)| asks(k)) {
+    let asks = |&(k, _): &(usize, usize)| model.contacts[k].projects;
+    if !activations.iter().any(asks) {
         return Ok(None);
     }
     let gaps = measure_all(model, state)?;
     let mut places = independent_rows(model, pressing(state), &gaps);
-    places.retain(|&(k, _)| asks(k));
+    places.retain(asks);
     let closed = Closed::new(model, state, places, &gaps)?;
     let rows = &closed.normals;
     let dofs = model.dofs();
@@ -66,12 +80,13 @@ pub(crate) fn project(
     // the direction of its slip, unless the impulse turns it round.
     let still = AT_REST * max_abs(&state.v);
     let goes_on = slips.iter().zip(&after).map(|(a, b)| length(*a) > still && inner(*a, *b) > 0.0);
-    let slid: Vec<Option<Along>> = slid.into_iter().zip(goes_on).map(|(d, on)| d.filter(|_| on)).collect();
+    let slid = slid.into_iter().zip(goes_on).map(|(d, on)| d.filter(|_| on));
+    let slid = closed.places.iter().zip(slid).filter_map(|(place, d)| Some((*place, d?))).collect();
 
     let before = state.ledger.kinetic;
     take(model, state, before - model.kinetic(&state.v) + rubbed);
     rubbed += impact.restitute(model, state, &closed, system)?;
-    accelerate(model, state, &gaps, &closed, &slid, system)?;
+    accelerate(model, state, &gaps, asks, &slid, system)?;
 
     averaged_contact_into(model, state, &gaps);
     book_contact_forces(model, state);
@@ -82,42 +97,85 @@ pub(crate) fn project(
     Ok(Some(jump))
 }
 
-/// Accelerations and multipliers of a state with these closed pairs; `slid`: directions in which
-/// they slip, of the others those of their slip rates.
+/// Accelerations and multipliers of a state with closed pairs, of those that are asked for; `slid`:
+/// directions in which pairs slip, of the others those of their slip rates.
+///
+/// A pair that pulls is let go, with its friction, and one whose gap would close is held again, by
+/// the rules for the pairs of a step (`carom-contact/src/active_set.rs`): ties change together.
 pub(crate) fn accelerate(
     model: &Model,
     state: &mut State,
     gaps: &[Rows],
-    closed: &Closed,
-    slid: &[Option<Along>],
+    asks: impl Fn(&Place) -> bool,
+    slid: &BTreeMap<Place, Along>,
     system: &mut System,
 ) -> Result<(), Rejected> {
-    let (forces, bending) = drive(model, state, gaps, closed);
-    let turning: Vec<Along> =
-        closed.slip_curvatures(model, state).iter().map(|bent| bent.map(|b| -b)).collect();
-    let right = Right { forces: &forces, gaps: &bending, slips: &turning };
-    let motion = closed.accelerate(model, state, &right, slid, system)?;
-    for &i in &model.free {
-        // Moving supports keep theirs.
-        state.a[i] = if model.massless[i] { 0.0 } else { motion.x[i] };
-    }
-    for (&(k, p), lambda) in closed.places.iter().zip(&motion.normal) {
-        state.pairs[k][p].lambda = *lambda;
+    let pairs: Vec<Place> = pressing(state).filter(&asks).collect();
+    let bent = bending(model, state, gaps, &pairs);
+    let mut held = vec![true; pairs.len()];
+    let mut set = ActiveSet::new(0.0, true);
+    for round in 0.. {
+        let is_held = |place: &Place| pairs.binary_search(place).is_ok_and(|i| held[i]);
+        // Of rows that depend on each other the next one takes over where one is let go.
+        let candidates = pressing(state).filter(|place| !asks(place) || is_held(place));
+        let mut places = independent_rows(model, candidates, gaps);
+        places.retain(&asks);
+        let closed = Closed::new(model, state, places, gaps)?;
+        let of_place = |place: &Place| pairs.binary_search(place).map_or(0.0, |i| bent[i]);
+        let bending: Vec<f64> = closed.places.iter().map(of_place).collect();
+        let forces = drive(model, state, gaps, &closed);
+        let turning: Vec<Along> =
+            closed.slip_curvatures(model, state).iter().map(|bent| bent.map(|b| -b)).collect();
+        let right = Right { forces: &forces, gaps: &bending, slips: &turning };
+        let along: Vec<Option<Along>> = closed.places.iter().map(|place| slid.get(place).copied()).collect();
+        let motion = closed.accelerate(model, state, &right, &along, system)?;
+
+        let [force, acceleration] = [&forces, &motion.x].map(|x| ROUND_OFF * max_abs(x));
+        let contender = |(i, &(k, p)): (usize, &Place)| {
+            let row = closed.places.binary_search(&(k, p));
+            let lambda = row.map_or(0.0, |row| motion.normal[row]);
+            let apart = gaps[k].row(p).along(&motion.x) - bent[i];
+            Contender {
+                active: held[i],
+                gap: if apart < -acceleration { apart } else { 0.0 },
+                lambda: if lambda.abs() > force { lambda } else { 0.0 },
+                // Compares a force with an acceleration where one pair changes at a time.
+                stiffness: force.max(f64::MIN_POSITIVE) / acceleration.max(f64::MIN_POSITIVE),
+            }
+        };
+        let contenders: Vec<Contender> = pairs.iter().enumerate().map(contender).collect();
+        let pulls = |i: &usize| held[*i] && contenders[*i].lambda > 0.0;
+        let changes = if round < ROUNDS { set.changes(&contenders, true).ok() } else { None };
+        let changes = changes.unwrap_or_else(|| (0..pairs.len()).filter(pulls).collect());
+        if changes.is_empty() {
+            for (&(k, p), lambda) in closed.places.iter().zip(&motion.normal) {
+                state.pairs[k][p].lambda = *lambda;
+            }
+            for &i in &model.free {
+                // Moving supports keep theirs.
+                state.a[i] = if model.massless[i] { 0.0 } else { motion.x[i] };
+            }
+            break;
+        }
+        changes.iter().for_each(|&i| held[i] = !held[i]);
+        for &(k, p) in &pairs {
+            let pair = &mut state.pairs[k][p];
+            (pair.lambda, pair.tangential.traction) = (0.0, [0.0; 2]);
+        }
     }
     Ok(())
 }
 
-/// Right-hand sides of M a + Gᵀλ = f_ext − f_int, G a = −v·∇²g·v for these constraints, minus the
-/// contributions of the accelerations of moving supports, in `state`, and of the forces of all
-/// other active pairs, including springs.
-fn drive(model: &Model, state: &State, gaps: &[Rows], closed: &Closed) -> (Vec<f64>, Vec<f64>) {
+/// Right-hand side of M a + Gᵀλ = f_ext − f_int for these constraints, minus the contributions of
+/// the accelerations of moving supports, in `state`, and of the forces of all other active pairs,
+/// including springs.
+fn drive(model: &Model, state: &State, gaps: &[Rows], closed: &Closed) -> Vec<f64> {
     let dofs = model.dofs();
-    let (mut moved, mut carried) = (vec![0.0; dofs], vec![0.0; dofs]);
-    if !model.motions.is_empty() {
-        model.motions.dofs().for_each(|dof| moved[dof] = state.a[dof]);
+    let mut carried = vec![0.0; dofs];
+    if let Some(moved) = moved(model, state) {
         model.mass.multiply_into(&moved, &mut carried);
     }
-    let others = |place: (usize, usize)| !closed.places.contains(&place);
+    let others = |place: Place| !closed.places.contains(&place);
     for (k, p) in pressing(state).filter(|&place| others(place)) {
         gaps[k].row(p).add_to(state.pairs[k][p].lambda, &mut carried);
     }
@@ -127,14 +185,27 @@ fn drive(model: &Model, state: &State, gaps: &[Rows], closed: &Closed) -> (Vec<f
         }
     });
     let force = |i: usize| model.gravity[i] + state.f_external[i] - state.f_internal[i] - carried[i];
-    let forces = (0..dofs).map(|i| if model.massless[i] { 0.0 } else { force(i) }).collect();
+    (0..dofs).map(|i| if model.massless[i] { 0.0 } else { force(i) }).collect()
+}
+
+/// −v·∇²g·v of these pairs, minus the acceleration of the gap by moving supports.
+fn bending(model: &Model, state: &State, gaps: &[Rows], pairs: &[Place]) -> Vec<f64> {
+    let moved = moved(model, state);
     let mut second = Vec::new();
-    let bending = |(&(k, p), row): (&(usize, usize), Row)| {
+    let of_pair = |&(k, p): &Place| {
+        let row = gaps[k].row(p);
         second.resize(row.gradient.len().pow(2), 0.0);
         model.contacts[k].kinematics.curvature_into(&state.pairs[k][p], &state.y, &mut second);
-        -curvature(row, &second, &state.v) - row.along(&moved)
+        -curvature(row, &second, &state.v) - moved.as_ref().map_or(0.0, |moved| row.along(moved))
     };
-    (forces, closed.places.iter().zip(closed.normals.rows.iter()).map(bending).collect())
+    pairs.iter().map(of_pair).collect()
+}
+
+/// Accelerations of moving supports, zero elsewhere, if there are any.
+fn moved(model: &Model, state: &State) -> Option<Vec<f64>> {
+    let mut moved = vec![0.0; model.dofs()];
+    model.motions.dofs().for_each(|dof| moved[dof] = state.a[dof]);
+    (!model.motions.is_empty()).then_some(moved)
 }
 
 /// Σ Gᵀλ over the contacts with averaged forces, for the next step.
@@ -165,4 +236,75 @@ fn curvature(row: Row, second: &[f64], v: &[f64]) -> f64 {
     let along: Vec<f64> = row.entries().map(|(dof, _)| v[dof]).collect();
     let rows = second.chunks_exact(along.len());
     along.iter().zip(rows).map(|(v, row)| v * row.iter().zip(&along).map(|(c, w)| c * w).sum::<f64>()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_contact::{Pair, length};
+    use carom_solid::{Element, Law, generate};
+
+    use crate::active_rows::{measure_all, pressing};
+    use crate::friction_state::each_slip;
+    use crate::model::{Friction, Loads, Model, Motions};
+    use crate::settings::Linear;
+    use crate::start::{Before, Inertia, start};
+    use crate::sums::max_abs;
+    use crate::system::System;
+    use crate::testing::{contact, model, nodes, parts};
+
+    /// A block on a base, with so many contacts between the same nodes, and friction.
+    fn block_on_base(contacts: usize, mu: f64) -> Model {
+        let block = generate::rectangle(Element::Q4, [0.0, 0.0], [2.0, 1.0], [4, 1]).unwrap();
+        let base = generate::rectangle(Element::Q4, [-1.0, -1.0], [3.0, 0.0], [1, 1]).unwrap();
+        let parts = parts([block, base], Law::NeoHookean { lambda: 200.0, mu: 15.0 }, 0.25);
+        let fixed: Vec<usize> =
+            nodes(&parts[1], "bottom").into_iter().flat_map(|node| [2 * node, 2 * node + 1]).collect();
+        let strikes = (0..contacts).map(|_| contact(&parts, (0, "bottom"), (1, "top"))).collect();
+        let mut model = model(parts, &fixed, Motions::default(), Loads::default(), strikes);
+        for contact in model.contacts.iter_mut().filter(|_| mu > 0.0) {
+            contact.friction = Some(Friction::coulomb(mu, contact.kinematics.nodes()));
+        }
+        model
+    }
+
+    /// Under forces of any sign closed pairs at rest press or part: M a + Gᵀλ + Hᵀq = f with λ ≤ 0,
+    /// G a ≥ 0, λ G a = 0 and |q| ≤ −μλ. Without friction that has one solution a. To find it, some
+    /// pairs have to be let go, and some of these held again.
+    #[test]
+    fn closed_pairs_press_or_accelerate_apart() {
+        for (contacts, mu) in [(1, 0.0), (2, 0.0), (1, 0.3)] {
+            let mut model = block_on_base(contacts, mu);
+            let open = |node| Pair { active: true, ..Pair::open(node, 0, 0.0) };
+            let pairs: Vec<Vec<Pair>> =
+                model.contacts.iter().map(|c| (0..c.kinematics.nodes()).map(open).collect()).collect();
+            let (mut let_go, mut kept) = (0, 0);
+            for seed in 0..100 {
+                let wave = |dof: usize| ((dof * 7 + seed * 31) as f64 * 12.9898).sin();
+                model.gravity = (0..model.dofs()).map(wave).collect();
+                let (y, v) = (model.initial_position.clone(), vec![0.0; model.dofs()]);
+                let before = Before { y, v, pairs: pairs.clone() };
+                let mut system = System::new(&model, Linear::Direct);
+                let mut state = start(&model, Inertia::Constrained, Some(before), &mut system).unwrap();
+                let gaps = measure_all(&model, &mut state).unwrap();
+
+                let mut forces = vec![0.0; model.dofs()];
+                model.mass.multiply_into(&state.a, &mut forces);
+                forces.iter_mut().zip(&model.gravity).for_each(|(sum, f)| *sum -= f);
+                let size = max_abs(&state.a);
+                for (k, p) in pressing(&state) {
+                    let (row, pair) = (gaps[k].row(p), &state.pairs[k][p]);
+                    row.add_to(pair.lambda, &mut forces);
+                    let apart = row.along(&state.a);
+                    assert!(pair.lambda <= 1e-12 && apart >= -1e-11 * size, "{seed}: {apart} {pair:?}");
+                    assert!((pair.lambda * apart).abs() < 1e-11 * size, "{seed}: {apart} {pair:?}");
+                    assert!(length(pair.tangential.traction) <= -mu * pair.lambda + 1e-11, "{pair:?}");
+                    *(if pair.lambda < 0.0 { &mut kept } else { &mut let_go }) += 1;
+                }
+                each_slip(&model, &state, |_, _, traction, row| row.add_to(traction, &mut forces));
+                let missing = model.free.iter().map(|&dof| forces[dof].abs()).fold(0.0, f64::max);
+                assert!(missing < 1e-11, "{contacts} {mu} {seed}: {missing:e}");
+            }
+            assert!(kept > 100 && let_go > 100, "{kept} {let_go}");
+        }
+    }
 }

@@ -1,20 +1,20 @@
 //! The state before the first step, in the reference configuration or at the end of another run:
 //!
 //! ```text
-//! M a₀ + Gᵀλ₀ = f_ext − f_int,   G a₀ = −v₀·∇²g·v₀        at t = 0
+//! M a₀ + Gᵀλ₀ = f_ext − f_int,   λ₀ ≤ 0,  g̈₀ ≥ 0,  λ₀ g̈₀ = 0,   g̈₀ = G a₀ + v₀·∇²g·v₀   at t = 0
 //! ```
 //!
-//! Contacts active at the end of the other run remain active; in the reference configuration there
-//! are none (λ₀ = 0). A moving support has its own v₀, a₀ and must start at the position of its
-//! body. Schemes whose contact forces are impulses carry the acceleration of all other forces,
-//! M a₀ = f_ext − f_int. Without inertia v₀ and a₀ are zero, and the first load step finds the
-//! equilibrium.
+//! Contacts active at the end of the other run remain active, but do not pull (`persistency.rs`);
+//! in the reference configuration there are none (λ₀ = 0). A moving support has its own v₀, a₀ and
+//! must start at the position of its body. Schemes whose contact forces are impulses carry the
+//! acceleration of all other forces, M a₀ = f_ext − f_int. Without inertia v₀ and a₀ are zero, and
+//! the first load step finds the equilibrium.
+
+use std::collections::BTreeMap;
 
 use carom_contact::{Pair, Point, Rows};
 
-use crate::active_rows::{measure_all, pressing};
-use crate::cone::Closed;
-use crate::independent::independent_rows;
+use crate::active_rows::measure_all;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::{LoadsAt, Model};
 use crate::persistency::{self, averaged_contact_into};
@@ -150,8 +150,5 @@ fn accelerate(model: &Model, state: &mut State, gaps: &[Rows], system: &mut Syst
         let has_mass = |n: &usize| !model.massless[n * model.dimension];
         model.contacts[k].interface.is_constraint() && gaps[k].row(p).nodes.iter().any(has_mass)
     };
-    let mut places = independent_rows(model, pressing(state), gaps);
-    places.retain(asks);
-    let closed = Closed::new(model, state, places, gaps)?;
-    persistency::accelerate(model, state, gaps, &closed, &[], system)
+    persistency::accelerate(model, state, gaps, asks, &BTreeMap::new(), system)
 }
