@@ -4,12 +4,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use carom_contact::Skin;
-
 use crate::model::{BodyInstance, Contact, Model};
 use crate::overlapping::Overlap;
 use crate::penetration::Penetration;
-use crate::skins::{part_of, plane_skin, skin, skin_facets};
+use crate::skins::{BodySkin, part_of, skin, skin_facets};
 use crate::valid_cells::Checked;
 use crate::watched::{Watched, Way, has_gaps, kept_depths, lengths};
 
@@ -39,14 +37,14 @@ struct Beside {
 #[derive(Debug)]
 struct Own {
     body: usize,
-    skin: Skin,
+    skin: BodySkin,
     /// The contact of each facet with its own body.
     declared: Vec<Option<usize>>,
     checked: Checked,
 }
 
 impl Undeclared {
-    /// For all bodies in the plane or in space; in space none is asked whether it crosses itself.
+    /// For all bodies in the plane or in space.
     pub fn new(model: &Model) -> Self {
         let mut ways = Vec::new();
         let covered = Covered::all(model);
@@ -207,7 +205,7 @@ fn own(model: &Model) -> Vec<Own> {
         if in_one {
             None
         } else {
-            Some(Own { body, skin: plane_skin(part)?, declared, checked: Checked::default() })
+            Some(Own { body, skin: skin(part)?, declared, checked: Checked::default() })
         }
     });
     skins.collect()
