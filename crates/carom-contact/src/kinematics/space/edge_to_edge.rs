@@ -102,8 +102,10 @@ impl EdgeToEdge {
     /// Whether a path of one edge across another one can be examined: two edges of one piece may
     /// begin and end on either side of its boundary.
     pub(super) fn may_pass(&self, [own, other]: [usize; 2]) -> bool {
-        let facets = [own, other].map(|edge| self.sides[0].facet(edge));
-        self.folds.as_ref().is_none_or(|folds| folds.are_of_different_pieces(facets[0], facets[1]))
+        self.folds.as_ref().is_none_or(|folds| {
+            let [here, there] = [own, other].map(|edge| self.sides[0].facet(edge));
+            folds.are_of_different_pieces(here, there)
+        })
     }
 
     /// A node of every edge of the secondary side.

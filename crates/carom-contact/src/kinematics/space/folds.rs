@@ -3,8 +3,8 @@
 //! reference configuration, negative behind it:
 //!
 //! ```text
-//! they meet across free space        n_node · n_facet < −cos 80°, and the node was not behind
-//! they lie side by side              n_node · n_facet ≥ −cos 80°
+//! they meet across free space        n_node · n_facet < −cos 60°, and the node was not behind
+//! they lie side by side              n_node · n_facet ≥ −cos 60°
 //! they are two faces of one wall     h < 0 close by: never, however thin the wall becomes
 //! ```
 //!
@@ -26,8 +26,8 @@ use super::boundary::Boundary;
 use super::patch::place;
 use crate::kinematics::Side;
 
-/// −cos 80°.
-const OPPOSED: f64 = -0.173_648_177_666_930_33;
+/// −cos 60°.
+const OPPOSED: f64 = -0.5;
 /// Distance up to which what lies behind a node is its own wall, over its longest facet.
 const WALL: f64 = 3.0;
 /// Height over the length of a facet below which a node is behind it: the flanks of a slit coincide.
