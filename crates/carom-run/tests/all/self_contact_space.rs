@@ -6,7 +6,7 @@ use std::path::Path;
 use carom_run::case::Case;
 use carom_run::{Setup, Simulation};
 
-const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/self/");
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/space/");
 
 fn simulation(case: &Case) -> Simulation {
     Setup::new(case).start().unwrap()
@@ -168,7 +168,7 @@ fn a_piece_that_would_pass_another_one_within_a_step_strikes_it() {
 
 #[test]
 fn a_run_that_is_continued_from_its_state_is_the_same_with_other_threads() {
-    let case = Case::from_file(format!("{ROOT}arms.toml"), &[]).unwrap();
+    let case = Case::from_file(format!("{ROOT}spring.toml"), &[]).unwrap();
     let mut whole = simulation(&case);
     while whole.state().time < 0.0999 {
         whole.step().unwrap();
