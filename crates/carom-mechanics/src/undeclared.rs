@@ -44,7 +44,7 @@ struct Own {
 }
 
 impl Undeclared {
-    /// For all bodies in the plane or in space.
+    /// For all bodies in the plane or in space; in space none is asked whether it crosses itself.
     pub fn new(model: &Model) -> Self {
         let mut ways = Vec::new();
         let covered = Covered::all(model);
@@ -205,7 +205,8 @@ fn own(model: &Model) -> Vec<Own> {
         if in_one {
             None
         } else {
-            Some(Own { body, skin: skin(part)?, declared, checked: Checked::default() })
+            let skin = skin(part).filter(|_| model.dimension == 2)?;
+            Some(Own { body, skin, declared, checked: Checked::default() })
         }
     });
     skins.collect()

@@ -142,8 +142,8 @@ fn edges_of_pieces_of_one_body_hold_like_those_of_bodies() {
     assert!(one.state().pairs[0].iter().any(|pair| pair.node >= one.model().contacts[0].kinematics.nodes()));
 }
 
-/// A small block strikes the edge of a plate of one cell at a slant, fast enough to be past it after
-/// a step: nothing penetrates at its ends.
+/// A small block strikes the edge of a plate of one cell at a slant, fast enough to be past it
+/// after a step: nothing penetrates at its ends.
 #[test]
 fn a_piece_that_would_pass_another_one_within_a_step_strikes_it() {
     let folder = tempfile::tempdir().unwrap();

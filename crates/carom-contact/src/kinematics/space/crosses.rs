@@ -119,7 +119,7 @@ impl ClosedSurface {
             let mut others: Vec<usize> =
                 self.apart_from(a, &bounds).filter(|&b| b > a && !known(a, b)).collect();
             others.sort_unstable();
-            let own = if others.is_empty() { Vec::new() } else { self.triangles(a, y) };
+            let own = if others.is_empty() { Triangles::default() } else { self.triangles(a, y) };
             others.retain(|&b| {
                 let other = self.triangles(b, y);
                 own.iter().any(|one| other.iter().any(|two| crosses(one, two)))
@@ -141,26 +141,26 @@ impl ClosedSurface {
         let from = place(y, node);
         let others = (0..self.boundary.all()).filter(|&facet| !self.facet_nodes(facet).contains(&node));
         let of_facet = |facet: usize| -> f64 {
-            let triangles = self.triangles(facet, y).into_iter();
-            triangles.map(|corners| solid_angle(corners.map(|corner| corner - from))).sum()
+            let triangles = self.triangles(facet, y);
+            triangles.iter().map(|corners| solid_angle(corners.map(|corner| corner - from))).sum()
         };
         others.map(of_facet).sum()
     }
 
     /// The triangles of a facet between its nodes.
-    fn triangles(&self, facet: usize, y: &[f64]) -> Vec<Triangle> {
+    fn triangles(&self, facet: usize, y: &[f64]) -> Triangles {
         let patch = self.boundary.patch(facet);
         let (count, is_square) = (patch.shape.degree(), patch.corners() == 4);
         let at = |i: usize, j: usize| {
             let [s, t] = [i, j].map(|k| k as f64 / count as f64);
             patch.at(y, if is_square { [2.0 * s - 1.0, 2.0 * t - 1.0] } else { [s, t] }).position
         };
-        let mut triangles = Vec::new();
+        let mut triangles = Triangles::default();
         for i in 0..count {
             for j in 0..if is_square { count } else { count - i } {
-                triangles.push([at(i, j), at(i + 1, j), at(i, j + 1)]);
+                triangles.add([at(i, j), at(i + 1, j), at(i, j + 1)]);
                 if is_square || i + j + 1 < count {
-                    triangles.push([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+                    triangles.add([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
                 }
             }
         }
@@ -168,7 +168,26 @@ impl ClosedSurface {
     }
 }
 
-/// Whether an edge of one triangle crosses the inside of the other one, ends and edges not included.
+/// The triangles of a facet, of which a cubic triangle has most.
+#[derive(Clone, Copy, Default)]
+struct Triangles {
+    all: [Option<Triangle>; 9],
+    count: usize,
+}
+
+impl Triangles {
+    fn add(&mut self, triangle: Triangle) {
+        self.all[self.count] = Some(triangle);
+        self.count += 1;
+    }
+
+    fn iter(&self) -> impl Iterator<Item = &Triangle> {
+        self.all.iter().flatten()
+    }
+}
+
+/// Whether an edge of one triangle crosses the inside of the other one, ends and edges not
+/// included.
 fn crosses(one: &Triangle, other: &Triangle) -> bool {
     let bounds = |triangle: &Triangle| triangle.iter().map(|corner| corner.0).collect::<Bounds>();
     bounds(one).meets(&bounds(other)) && (pierces(one, other) || pierces(other, one))

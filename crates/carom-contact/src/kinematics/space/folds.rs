@@ -9,11 +9,11 @@
 //! ```
 //!
 //! At a node where several facets meet, the most opposed of their normals and of their mean counts.
-//! The flanks of a closed slit have h = 0 and opposed normals: they meet up to the tip. A turn along
-//! the boundary, by which the plane tells a wall from a pocket (`../folds.rs`), does not exist in
-//! space; whether a node was behind is told from the start of a step (`candidate.rs`), and the two
-//! faces of a wall from the reference configuration. Unconnected pieces can always meet, by the
-//! rules of two bodies.
+//! The flanks of a closed slit have h = 0 and opposed normals: they meet up to the tip. A turn
+//! along the boundary, by which the plane tells a wall from a pocket (`../folds.rs`), does not
+//! exist in space; whether a node was behind is told from the start of a step (`candidate.rs`), and
+//! the two faces of a wall from the reference configuration. Unconnected pieces can always meet, by
+//! the rules of two bodies.
 //!
 //! Of two places that meet, one is the secondary: that of the later piece; within a piece that of
 //! the later smooth part of the boundary, parts being separated by kinks of more than 30°; within a
@@ -30,7 +30,7 @@ use crate::kinematics::Side;
 const OPPOSED: f64 = -0.5;
 /// Distance up to which what lies behind a node is its own wall, over its longest facet.
 const WALL: f64 = 3.0;
-/// Height over the length of a facet below which a node is behind it: the flanks of a slit coincide.
+/// Height over the length of a facet below which a node is behind it: flanks of a slit coincide.
 const BEHIND: f64 = 1e-6;
 /// Cosine between the normals of a node and of a facet above which a wall has no such two faces.
 const ALIKE: f64 = 0.5;

@@ -1,6 +1,6 @@
 //! A boundary in space against itself, in the two directions of `../both_sides.rs`: all nodes as
-//! those of the later place, with the facets that come before them, and as those of the earlier one,
-//! with the facets that come after them. Of two sharp edges the later one follows the nodes.
+//! those of the later place, with the facets that come before them, and as those of the earlier
+//! one, with the facets that come after them. Of two sharp edges the later one is secondary.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -45,8 +45,8 @@ impl NodeToPatch {
         self.folds.as_ref().is_some_and(|(folds, side)| !folds.admits(*side, node, facet))
     }
 
-    /// Whether ξ lies past an edge of a facet across which an excluded one follows. Sharp edges have
-    /// their own tolerance, whatever follows.
+    /// Whether ξ lies past an edge of a facet across which an excluded one follows. Sharp edges
+    /// have their own tolerance, whatever follows.
     pub(super) fn ends_at(&self, node: usize, facet: usize, xi: [f64; 2], y: &[f64]) -> bool {
         let patch = self.primary.patch(facet);
         self.folds.is_some()

@@ -1,6 +1,6 @@
 //! Contact of curved facets in space: facets and their closest points, the boundary that they form,
-//! gaps with their derivatives, and the pairs of secondary nodes with them; pairs of sharp edges; where a
-//! boundary can meet itself.
+//! gaps with their derivatives, and the pairs of secondary nodes with them; pairs of sharp edges;
+//! where a boundary can meet itself.
 
 mod boundary;
 mod candidate;
