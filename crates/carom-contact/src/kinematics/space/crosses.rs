@@ -283,6 +283,7 @@ mod tests {
             y[3 * node + 1] = 2.1;
         }
         surface.update(&y);
-        assert_eq!(depth(&surface, 6, &y), [None, None]);
+        let found = depth(&surface, 6, &y);
+        assert!(found.iter().flatten().all(|distance| *distance > 1.0), "{found:?}");
     }
 }
