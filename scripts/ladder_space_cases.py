@@ -3,9 +3,9 @@
 A category draws shapes, meshes, places, stiffnesses, speeds and roles; a scheme family draws the
 integrator and the enforcement. Bodies are boxes, balls, cylinders and tubes of Tet4, Tet10, Hex8 or
 Hex27, turned about random axes. They do not overlap at the start, and the motion brings them
-together. Sides are whole boundaries (`body.skin`), or contact is `between = "all"`. Contact of a
-body with itself is not available in space. Units: lengths of order 1, density of order 1, the
-softest body has E = 100, so that its waves travel at about 12.
+together. Sides are whole boundaries (`body.skin`), or contact is `between = "all"` without contact
+of a body with itself. Units: lengths of order 1, density of order 1, the softest body has E = 100,
+so that its waves travel at about 12.
 
 Time. The step is C h/c for the softest body, Courant number C = 0.2 … 4, 30 to 250 steps; explicit
 schemes: by the smallest cell of the fastest body, at most 2500 steps. In the category `bullet` the

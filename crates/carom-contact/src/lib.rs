@@ -12,6 +12,7 @@ mod pair;
 mod places;
 mod rows;
 mod skin;
+mod solid_angle;
 
 pub use active_set::{ActiveSet, Contender, Cycle};
 pub use depth::Depth;
@@ -29,3 +30,4 @@ pub use kinematics::{
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};
 pub use skin::Skin;
+pub use solid_angle::solid_angle;

@@ -5,14 +5,11 @@
 //! inside    the outline turns around the point by 2π, or covers 4π of the directions from it
 //! depth     the smallest distance to a piece
 //! ```
-//!
-//! The solid angle Ω of a triangle with corners a, b, c seen from the point: tan(Ω/2) = a·(b × c) /
-//! (|a||b||c| + (a·b)|c| + (b·c)|a| + (c·a)|b|) (Van Oosterom and Strackee, IEEE Trans. Biomed.
-//! Eng. 30 (1983)).
 
 use std::f64::consts::PI;
 
 use carom_algebra::Vector;
+use carom_contact::solid_angle;
 use carom_solid::{Bounds, FacetShape};
 
 use crate::model::BodyInstance;
@@ -143,13 +140,6 @@ fn cross(a: Vector<3>, b: Vector<3>) -> Vector<3> {
 
 fn turn(a: Vector<3>, b: Vector<3>) -> f64 {
     cross(a, b)[2].atan2(a.dot(&b))
-}
-
-/// Solid angle of a triangle seen from the origin, negative from its outer side.
-fn solid_angle([a, b, c]: [Vector<3>; 3]) -> f64 {
-    let [p, q, r] = [a.norm(), b.norm(), c.norm()];
-    let across = p * q * r + a.dot(&b) * r + b.dot(&c) * p + c.dot(&a) * q;
-    2.0 * a.dot(&cross(b, c)).atan2(across)
 }
 
 /// Distance of the origin to a chord.

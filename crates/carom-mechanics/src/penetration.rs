@@ -121,7 +121,7 @@ impl Penetration {
                 return None;
             }
             let folds = of_body.any(|way| way.itself.is_some());
-            if folds { folding_skin(model, part).map(BodySkin::Plane) } else { skin(part) }
+            if folds { folding_skin(model, part) } else { skin(part) }
         };
         Self { skins: (0..model.parts.len()).map(skin).collect(), ways, tips, ..Self::default() }
     }
@@ -183,7 +183,6 @@ impl Penetration {
         if !std::mem::replace(&mut self.current[body], true) {
             skin.update(y);
         }
-        let skin = skin.plane()?;
         if !skin.crosses_itself(y, |_, _| false) {
             return None;
         }
@@ -250,7 +249,7 @@ impl Penetration {
             // An active pair on its facet is no deeper than its gap.
             let rows = rows.get_or_insert_with(|| Rows::new(model.dimension));
             let contact = &model.contacts[k];
-            let half = contact.kinematics.secondary().len() / 2;
+            let half = contact.kinematics.nodes() / 2;
             let of_way = |node: usize| itself.is_none_or(|side| (side == Side::Later) == (node < half));
             for pair in state.pairs[k].iter().filter(|pair| {
                 pair.active
@@ -290,7 +289,7 @@ impl Penetration {
                 }
                 let entered = |facet: usize| length(model, skin.facet_nodes(facet));
                 if let Some(side) = *itself {
-                    let found = skin.plane().and_then(|skin| skin.depth_of(node, side, watched.reach, y));
+                    let found = skin.depth_of(node, side, watched.reach, y);
                     watched.clearance = found.map_or(watched.reach, |found| found.distance);
                     found.map_or((0.0, 0.0), |found| (-found.distance - watched.kept, entered(found.facet)))
                 } else {

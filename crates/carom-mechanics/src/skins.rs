@@ -1,6 +1,6 @@
 //! Boundaries of the bodies of a model, in global node numbers.
 
-use carom_contact::{Boundary, ClosedSurface, Depth, Skin, Surface};
+use carom_contact::{Boundary, ClosedSurface, Depth, Side, Skin, Surface};
 
 use crate::model::{BodyInstance, Model};
 
@@ -52,9 +52,38 @@ impl BodySkin {
         }
     }
 
-    /// In the plane, where a boundary may be in contact with itself.
-    pub(crate) fn plane(&self) -> Option<&Skin> {
-        if let Self::Plane(skin) = self { Some(skin) } else { None }
+    /// Where a node of the boundary lies relative to those parts of it that it may meet, if one is
+    /// nearer than `reach`.
+    pub(crate) fn depth_of(&self, node: usize, side: Side, reach: f64, y: &[f64]) -> Option<Depth> {
+        match self {
+            Self::Plane(skin) => skin.depth_of(node, side, reach, y),
+            Self::Space(surface) => surface.depth_of(node, side, reach, y),
+        }
+    }
+
+    /// Whether two facets that do not meet each other's nodes cross. Pairs that are `known` do not
+    /// count.
+    pub(crate) fn crosses_itself(&self, y: &[f64], known: impl Fn(usize, usize) -> bool) -> bool {
+        match self {
+            Self::Plane(skin) => skin.crosses_itself(y, known),
+            Self::Space(surface) => surface.crosses_itself(y, known),
+        }
+    }
+
+    /// How far a coordinate of a node may change before two facets can cross.
+    pub(crate) fn clearance_to_itself(&self, y: &[f64]) -> f64 {
+        match self {
+            Self::Plane(skin) => skin.clearance_to_itself(y),
+            Self::Space(surface) => surface.clearance_to_itself(y),
+        }
+    }
+
+    /// The node that lies deepest inside its own body, the nearest facet and the distance to it.
+    pub(crate) fn deepest_in_itself(&self, y: &[f64]) -> Option<(usize, usize, f64)> {
+        match self {
+            Self::Plane(skin) => skin.deepest_in_itself(y),
+            Self::Space(surface) => surface.deepest_in_itself(y),
+        }
     }
 }
 
@@ -89,22 +118,31 @@ pub(crate) fn skin_nodes(part: &BodyInstance) -> Vec<usize> {
 
 /// The boundary of a body in the plane or in space.
 pub(crate) fn skin(part: &BodyInstance) -> Option<BodySkin> {
-    let shape = part.body.mesh().element.facet_shape();
-    match shape.dimension() {
+    match part.body.mesh().element.facet_shape().dimension() {
         2 => plane_skin(part).map(BodySkin::Plane),
-        3 => Some(BodySkin::Space(ClosedSurface::new(Boundary::new(shape, &skin_facets(part), &[], 0)))),
+        3 => Some(BodySkin::Space(surface(part))),
         _ => None,
     }
 }
 
 /// The boundary of a body in the plane.
-pub(crate) fn plane_skin(part: &BodyInstance) -> Option<Skin> {
+fn plane_skin(part: &BodyInstance) -> Option<Skin> {
     let shape = Some(part.body.mesh().element.facet_shape()).filter(|shape| shape.dimension() == 2)?;
     let facets = skin_facets(part);
     Some(Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()])))
 }
 
-/// The same for its own nodes too.
-pub(crate) fn folding_skin(model: &Model, part: &BodyInstance) -> Option<Skin> {
-    Some(plane_skin(part)?.with_pieces(&part.body.mesh().pieces(), part.first_node, &model.reference))
+/// The boundary of a body in space.
+fn surface(part: &BodyInstance) -> ClosedSurface {
+    let shape = part.body.mesh().element.facet_shape();
+    ClosedSurface::new(Boundary::new(shape, &skin_facets(part), &[], 0))
+}
+
+/// The same as [`skin`] for its own nodes too.
+pub(crate) fn folding_skin(model: &Model, part: &BodyInstance) -> Option<BodySkin> {
+    let (pieces, first, reference) = (part.body.mesh().pieces(), part.first_node, &model.reference);
+    Some(match skin(part)? {
+        BodySkin::Plane(skin) => BodySkin::Plane(skin.with_pieces(&pieces, first, reference)),
+        BodySkin::Space(surface) => BodySkin::Space(surface.with_pieces(&pieces, first, reference)),
+    })
 }

@@ -4,12 +4,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use carom_contact::Skin;
-
 use crate::model::{BodyInstance, Contact, Model};
 use crate::overlapping::Overlap;
 use crate::penetration::Penetration;
-use crate::skins::{part_of, plane_skin, skin, skin_facets};
+use crate::skins::{BodySkin, part_of, skin, skin_facets};
 use crate::valid_cells::Checked;
 use crate::watched::{Watched, Way, has_gaps, kept_depths, lengths};
 
@@ -39,7 +37,7 @@ struct Beside {
 #[derive(Debug)]
 struct Own {
     body: usize,
-    skin: Skin,
+    skin: BodySkin,
     /// The contact of each facet with its own body.
     declared: Vec<Option<usize>>,
     checked: Checked,
@@ -207,7 +205,8 @@ fn own(model: &Model) -> Vec<Own> {
         if in_one {
             None
         } else {
-            Some(Own { body, skin: plane_skin(part)?, declared, checked: Checked::default() })
+            let skin = skin(part).filter(|_| model.dimension == 2)?;
+            Some(Own { body, skin, declared, checked: Checked::default() })
         }
     });
     skins.collect()

@@ -54,7 +54,9 @@ impl Way {
     /// The nodes of a side against the places of their own body that they may meet.
     pub(crate) fn of_itself(model: &Model, contact: usize, side: Side) -> Self {
         let Contact { kinematics, facets, depths, primary_part, .. } = &model.contacts[contact];
-        let (nodes, half) = (kinematics.secondary(), kinematics.secondary().len() / 2);
+        // Edges follow the nodes.
+        let nodes = &kinematics.secondary()[..kinematics.nodes()];
+        let half = nodes.len() / 2;
         let facets = &facets[0].1;
         let earlier: HashMap<usize, usize> = nodes[half..].iter().copied().zip(half..).collect();
         let mut shortest: HashMap<usize, f64> = HashMap::new();

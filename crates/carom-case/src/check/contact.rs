@@ -115,21 +115,10 @@ impl Check<'_> {
         if self.draft.dimension != Some(3) {
             return;
         }
-        let later = "it is planned for a later version of Carom";
         if contact.detection == Detection::Trajectory {
             let what = "detection = \"trajectory\" cannot be used in dimension 3";
             let why = "it is the method of the paper, for the plane";
             self.add_unique(contact.path("detection"), what, why, "leave it out");
-        }
-        if contact.is_of_itself() && !self.is_misspelt("contact", contact.entry, "self") {
-            let (key, help) = if contact.between {
-                ("between", "add `self = false`: contact between bodies alone")
-            } else {
-                ("primary", "give a side of another body")
-            };
-            let what = "contact of a body with itself cannot be used in dimension 3";
-            let why = format!("it is not implemented in space: {later}");
-            self.add_unique(contact.path(key), what, why, help);
         }
     }
 

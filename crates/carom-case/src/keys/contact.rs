@@ -23,7 +23,7 @@ pub(super) const CONTACT: Table = Table {
         )
         .optional()
         .example("\"all\""),
-        key("self", Truth, "With `between`: whether bodies are in contact with themselves, where their boundary folds. Dimension 3: only `false`.").default("true"),
+        key("self", Truth, "With `between`: whether bodies are in contact with themselves, where their boundary folds.").default("true"),
         key("method", Choice(&["node-to-segment"], &["mortar"]), "Discretisation of the contact.")
             .default("\"node-to-segment\""),
         key(

@@ -30,6 +30,7 @@ pub use node_to_obstacle::{Carrier, NodeToObstacle};
 pub use obstacle::{Faceted, Obstacle, Polyline, PolylineError};
 pub use one_way::OneWay;
 pub use passed::Passed;
+pub(crate) use space::cross;
 pub use space::{Boundary, ClosedSurface, EdgeToEdge, NodeToPatch, WithEdges};
 pub use surface::Surface;
 pub use swept::{Crossings, EdgeHit, PatchHit, Swept, SweptEdges, SweptPatch, SweptTest};

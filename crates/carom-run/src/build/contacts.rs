@@ -69,7 +69,12 @@ pub(super) fn contacts(
             (None, name) => match side(parts, name.unwrap_or(""), &spec.path("primary")) {
                 Ok(primary) if primary.part == secondary.part => {
                     primary_part = Some(primary.part);
-                    Box::new(itself(&secondary, parts, &reference))
+                    if case.dimension == 3 {
+                        let is_fixed = |node: usize, axis: usize| fixed[3 * node + axis];
+                        Box::new(itself_in_space(&secondary, parts, &reference, is_fixed))
+                    } else {
+                        Box::new(itself(&secondary, parts, &reference))
+                    }
                 }
                 Ok(primary) if case.dimension == 3 => {
                     primary_part = Some(primary.part);
@@ -273,6 +278,21 @@ fn itself(side: &Side, parts: &[BodyInstance], reference: &[f64]) -> BothSides<N
         part.first_node,
         reference,
     )
+}
+
+/// The same in space.
+fn itself_in_space(
+    side: &Side,
+    parts: &[BodyInstance],
+    reference: &[f64],
+    is_fixed: impl Fn(usize, usize) -> bool,
+) -> WithEdges {
+    let boundary = boundary_of(side, &[], parts);
+    let sharp = boundary.nodes_of_sharp_edges(reference, is_fixed);
+    let earlier = others(side, &[], side, &sharp, reference, 3);
+    let part = &parts[side.part];
+    let pieces = part.body.mesh().pieces();
+    WithEdges::of_itself(&boundary, side.nodes.clone(), earlier, &pieces, part.first_node, reference)
 }
 
 /// The nodes of the primary side in `d` dimensions, each with the depth to which it may enter

@@ -34,6 +34,7 @@ mod probe;
 mod restart;
 mod reversal;
 mod self_contact;
+mod self_contact_space;
 mod slabs;
 mod space;
 mod space_contact;

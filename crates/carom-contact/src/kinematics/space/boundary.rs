@@ -9,16 +9,18 @@
 use std::collections::{BTreeMap, HashMap};
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, FacetShape, Hull, Tree};
+use carom_solid::{Bounds, FacetShape, Hull};
 
-use super::patch::{Feature, Patch, cross, place};
+use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
 use crate::depth::Depth;
-use crate::kinematics::amplification;
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
 const SHARP: f64 = 0.87;
 /// Component of a unit normal along an axis from which on a facet is a plane across it.
 const ALONG: f64 = 1.0 - 1e-9;
+/// Length of the sum of two normals, or of several with their angles, below which they cancel: at
+/// the tip of a slit.
+const FOLDED: f64 = 1e-6;
 /// Pieces into which points divide a sharp edge.
 const PIECES: usize = 8;
 
@@ -114,6 +116,12 @@ impl Boundary {
         self.patch(facet).nodes
     }
 
+    /// The middle of a facet.
+    pub(super) fn middle(&self, facet: usize, y: &[f64]) -> PatchPoint {
+        let patch = self.patch(facet);
+        patch.at(y, if patch.corners() == 3 { [1.0 / 3.0; 2] } else { [0.0; 2] })
+    }
+
     /// Facets of the side with a node on their edges, with its ξ there.
     pub(crate) fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
         let around = self.around.get(&node).into_iter().flatten().filter(|&&facet| self.is_of_side(facet));
@@ -137,6 +145,11 @@ impl Boundary {
     /// The facet across an edge.
     pub(crate) fn across(&self, facet: usize, edge: usize) -> Option<usize> {
         self.neighbours[facet][edge].map(|(neighbour, _)| neighbour)
+    }
+
+    /// The facets at a corner of a facet.
+    pub(super) fn around(&self, facet: usize, corner: usize) -> &[usize] {
+        self.around.get(&self.patch(facet).nodes[corner]).map_or(&[], Vec::as_slice)
     }
 
     /// The facets that share a corner with a facet, without itself, ascending.
@@ -244,6 +257,28 @@ impl Boundary {
 
     /// Where a point lies whose nearest facet is known.
     pub(crate) fn depth(&self, facet: usize, point: Vector<3>, y: &[f64]) -> Depth {
+        let (nearest, d, normal) = self.nearest(facet, point, y);
+        let distance = if d.dot(&normal) >= 0.0 { nearest.distance } else { -nearest.distance };
+        Depth { distance, facet, xi: nearest.xi }
+    }
+
+    /// Distance between a point and a facet, and its height along the normal of the boundary at the
+    /// nearest point.
+    pub(super) fn height(&self, facet: usize, point: Vector<3>, y: &[f64]) -> (f64, f64) {
+        let (nearest, d, normal) = self.nearest(facet, point, y);
+        let size = normal.norm();
+        // Where two normals are opposite, none points outwards.
+        (nearest.distance, if size > FOLDED { d.dot(&normal) / size } else { 0.0 })
+    }
+
+    /// The point of a facet nearest to a given one, the way from the first to the second, and the
+    /// normal of the boundary there, not of length one.
+    pub(super) fn nearest(
+        &self,
+        facet: usize,
+        point: Vector<3>,
+        y: &[f64],
+    ) -> (Nearest, Vector<3>, Vector<3>) {
         let patch = self.patch(facet);
         let nearest = patch.nearest(y, point);
         let at = patch.at(y, nearest.xi);
@@ -261,8 +296,7 @@ impl Boundary {
             }
             Feature::Corner(corner) => self.normal_at_corner(patch.nodes[corner], y),
         };
-        let distance = if d.dot(&normal) >= 0.0 { nearest.distance } else { -nearest.distance };
-        Depth { distance, facet, xi: nearest.xi }
+        (nearest, d, normal)
     }
 
     /// Sum of the normals at a corner, weighted with the facets' angles.
@@ -288,55 +322,5 @@ impl Boundary {
     /// A hierarchy of the boxes of all facets; filled by the caller.
     pub(crate) fn hull(&self) -> Hull {
         Hull::facet(self.shape)
-    }
-}
-
-/// The whole boundary of a body in space: how deep a point lies inside.
-#[derive(Debug)]
-pub struct ClosedSurface {
-    boundary: Boundary,
-    hull: Hull,
-    tree: Tree,
-}
-
-impl ClosedSurface {
-    /// All facets of a body's boundary.
-    pub fn new(boundary: Boundary) -> Self {
-        let hull = boundary.hull();
-        Self { boundary, hull, tree: Tree::default() }
-    }
-
-    /// Global numbers of the nodes of a facet.
-    pub fn facet_nodes(&self, facet: usize) -> &[usize] {
-        self.boundary.facet_nodes(facet)
-    }
-
-    /// Moves the boundary to positions `y`, flat over all nodes.
-    pub fn update(&mut self, y: &[f64]) {
-        let bounds = |facet: usize| self.boundary.bounds(&self.hull, facet, y);
-        if self.tree.is_empty() {
-            self.tree = Tree::new(self.boundary.all(), bounds);
-        } else {
-            self.tree.update(bounds);
-        }
-    }
-
-    /// Where a point lies at the positions of the last update, searched from a facet near it if one
-    /// is known; `None` without a boundary.
-    pub fn depth(&self, point: [f64; 3], from: Option<usize>, y: &[f64]) -> Option<Depth> {
-        let at = Vector(point);
-        let distance = |facet: usize| Some(self.boundary.patch(facet).nearest(y, at).distance);
-        let (facet, _) = self.tree.nearest(&at.0, from, distance)?;
-        Some(self.boundary.depth(facet, at, y))
-    }
-
-    /// Distance between a point and the boundary at ξ of a facet.
-    pub fn distance(&self, facet: usize, xi: [f64; 2], point: [f64; 3], y: &[f64]) -> f64 {
-        (Vector(point) - self.boundary.patch(facet).at(y, xi).position).norm()
-    }
-
-    /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵃ|.
-    pub fn amplification(&self) -> f64 {
-        amplification(self.boundary.shape())
     }
 }

@@ -1,6 +1,7 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the nearest one that it was not behind before.
 
+use carom_algebra::Vector;
 use carom_solid::{Bounds, Tree};
 
 use super::crossing::crossing;
@@ -16,6 +17,9 @@ const BEHIND: f64 = 0.02;
 /// Difference in θ below which facets are reached together: where they meet, and a path lies in the
 /// neighbouring side.
 const TOGETHER: f64 = 1e-4;
+
+/// Facets near a node, ascending, and the normals of all facets if the side may meet itself.
+pub(super) type Near<'a> = (&'a [usize], &'a [Vector<3>]);
 
 impl NodeToPatch {
     /// Finds the facets that a secondary node, given by index, may meet.
@@ -51,14 +55,14 @@ impl NodeToPatch {
     pub(super) fn first(
         &self,
         swept: &mut SweptPatch,
-        near: &[usize],
+        (near, normals): Near,
         node: usize,
         before: &[f64],
         now: &[f64],
     ) -> Option<(f64, usize)> {
         let mut first = [None; 2];
         for &facet in near {
-            let first = &mut first[usize::from(self.primary.is_of_side(facet))];
+            let first = &mut first[usize::from(self.is_met(node, facet, normals))];
             if let Some((theta, _)) = crossing(swept, self.primary.patch(facet), before, now, node)
                 && first.is_none_or(|(least, _)| theta < least)
             {
@@ -75,23 +79,25 @@ impl NodeToPatch {
     pub(super) fn candidate(
         &self,
         swept: &mut SweptPatch,
-        near: &[usize],
+        (near, normals): Near,
         place_of: usize,
         before: &[f64],
         now: &[f64],
     ) -> Option<(usize, [f64; 2])> {
         let (node, slack) = (self.secondary[place_of], self.slack(place_of));
         let [start, end] = [before, now].map(|y| place(y, node));
+        let is_met = |facet: usize| self.is_met(node, facet, normals);
         let mut closest: Option<(f64, usize, [f64; 2], f64)> = None;
-        let first = self.first(swept, near, node, before, now);
+        let first = self.first(swept, (near, normals), node, before, now);
         for &facet in near {
             let patch = self.primary.patch(facet);
             let Some(xi) = patch.closest_point(now, end, REACH) else { continue };
             let gap = self.gap(facet, xi, end, now);
-            let (of_side, length) = (self.primary.is_of_side(facet), patch.length(now));
+            let (of_side, length) = (is_met(facet), patch.length(now));
             let beyond = patch.furthest(xi).1.max(0.0);
             let is_other = !of_side && (gap >= -NOISE * length || beyond > 0.0);
-            if is_other || of_side && self.faces_nothing(facet, xi, now) {
+            let is_past = || self.faces_nothing(facet, xi, now) || self.ends_at(node, facet, xi, now);
+            if is_other || of_side && is_past() {
                 continue;
             }
             let distance = gap.abs() + beyond * length;
@@ -109,25 +115,29 @@ impl NodeToPatch {
         }
         let faced = |facet: usize| {
             let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
-            (!self.faces_nothing(facet, xi, now)).then_some(xi)
+            (!self.faces_nothing(facet, xi, now) && !self.ends_at(node, facet, xi, now)).then_some(xi)
         };
-        let entered = first.filter(|&(_, facet)| self.primary.is_of_side(facet));
+        let entered = first.filter(|&(_, facet)| is_met(facet));
         if let Some((facet, xi)) = entered.and_then(|(_, facet)| Some((facet, faced(facet)?))) {
             return Some((facet, xi));
         }
         let beside = || {
-            let of_sides = |facet| self.primary.is_of_side(facet) || self.primary.is_of_sibling(facet);
+            let of_sides = |facet| {
+                self.folds.is_some() || self.primary.is_of_side(facet) || self.primary.is_of_sibling(facet)
+            };
             if first.is_some_and(|(_, facet)| of_sides(facet)) {
                 return None;
             }
-            self.around_end(near, place_of, before, now)
+            self.around_end((near, normals), place_of, before, now)
         };
-        let of_side = closest.filter(|&(_, facet, ..)| self.primary.is_of_side(facet));
+        let of_side = closest.filter(|&(_, facet, ..)| is_met(facet));
         let Some((_, facet, xi, _)) = of_side else { return beside() };
         let patch = self.primary.patch(facet);
         let limit = slack + BEHIND * patch.length(before);
         let behind = match patch.closest_point(before, start, REACH) {
             Some(xi) => self.gap(facet, xi, start, before) < -limit,
+            // Of its own boundary a node is beside most facets that it may meet, or behind them.
+            None if self.folds.is_some() => self.primary.height(facet, start, before).1 < -limit,
             None => entered.is_none() && first.is_some(),
         };
         if entered.is_none() && behind { beside() } else { Some((facet, xi)) }
@@ -138,7 +148,7 @@ impl NodeToPatch {
     pub(super) fn elsewhere(
         &self,
         swept: &mut SweptPatch,
-        near: &mut Vec<usize>,
+        (near, normals): (&mut Vec<usize>, &[Vector<3>]),
         place_of: usize,
         held: &[Pair],
         [before, now]: [&[f64]; 2],
@@ -150,11 +160,12 @@ impl NodeToPatch {
         let around: Vec<usize> = held.iter().flat_map(|pair| self.primary.ring(pair.facet)).collect();
         near.retain(|facet| !around.contains(facet));
         let node = self.secondary[place_of];
-        let (_, facet) = self.first(swept, near, node, before, now)?;
+        let (_, facet) = self.first(swept, (near, normals), node, before, now)?;
         let end = place(now, node);
         let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
-        let enters = self.primary.is_of_side(facet)
+        let enters = self.is_met(node, facet, normals)
             && !self.faces_nothing(facet, xi, now)
+            && !self.ends_at(node, facet, xi, now)
             && self.gap(facet, xi, end, now) + self.slack(place_of) < 0.0;
         enters.then_some((facet, xi))
     }
@@ -164,14 +175,14 @@ impl NodeToPatch {
     /// side, as in the plane.
     fn around_end(
         &self,
-        near: &[usize],
+        (near, normals): Near,
         place_of: usize,
         before: &[f64],
         now: &[f64],
     ) -> Option<(usize, [f64; 2])> {
         let (node, slack) = (self.secondary[place_of], self.slack(place_of));
         let [start, end] = [before, now].map(|y| place(y, node));
-        near.iter().filter(|&&facet| self.primary.is_of_side(facet)).find_map(|&facet| {
+        near.iter().filter(|&&facet| self.is_met(node, facet, normals)).find_map(|&facet| {
             let patch = self.primary.patch(facet);
             let xi = patch.closest_point(now, end, REACH)?;
             let from = patch.closest_point(before, start, REACH)?;

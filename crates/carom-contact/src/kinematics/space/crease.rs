@@ -1,22 +1,23 @@
 //! Creases of the primary: concave edges, and the points where several of them meet. The nearest
 //! point of a node below one is on an edge, and its own facet is not the only one that it enters.
 
-use carom_algebra::Vector;
-
 use super::node_to_patch::{NOISE, NodeToPatch, REACH, WANDER};
+use super::patch::place;
 
 impl NodeToPatch {
     /// Of a node below a crease, where its nearest point is on an edge: the facet of which it is
     /// deepest, of those that face its own one. On the extrapolation of its own it would sink into
     /// them.
-    pub(super) fn in_crease(&self, own: usize, from: Vector<3>, y: &[f64]) -> Option<(usize, [f64; 2])> {
+    pub(super) fn in_crease(&self, node: usize, own: usize, y: &[f64]) -> Option<(usize, [f64; 2])> {
+        let from = place(y, node);
         if self.primary.depth(own, from, y).distance >= 0.0 {
             return None;
         }
         let xi = self.primary.patch(own).closest_point(y, from, WANDER)?;
         let mut least = self.gap(own, xi, from, y) - NOISE * self.primary.patch(own).length(y);
         let mut deepest = None;
-        for facet in self.primary.ring(own).into_iter().filter(|&facet| self.primary.is_of_side(facet)) {
+        let is_met = |&facet: &usize| self.primary.is_of_side(facet) && self.may_take(node, facet, y);
+        for facet in self.primary.ring(own).into_iter().filter(is_met) {
             let patch = self.primary.patch(facet);
             let Some(xi) = patch.closest_point(y, from, REACH) else { continue };
             let gap = self.gap(facet, xi, from, y);
@@ -29,12 +30,7 @@ impl NodeToPatch {
 
     /// Whether the middle of a facet lies in front of another one.
     fn rises(&self, behind: usize, facet: usize, y: &[f64]) -> bool {
-        let middle = |facet: usize| {
-            let patch = self.primary.patch(facet);
-            let at = if patch.corners() == 3 { [1.0 / 3.0; 2] } else { [0.0; 2] };
-            patch.at(y, at)
-        };
-        let base = middle(behind);
-        (middle(facet).position - base.position).dot(&base.normal) > 0.0
+        let base = self.primary.middle(behind, y);
+        (self.primary.middle(facet, y).position - base.position).dot(&base.normal) > 0.0
     }
 }

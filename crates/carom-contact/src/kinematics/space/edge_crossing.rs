@@ -66,6 +66,9 @@ impl EdgeToEdge {
         let mut swept = self.swept();
         let (mut between, mut worst): (Option<Between<3>>, Option<Passed>) = (None, None);
         self.each_near(before, now, |edges| {
+            if !self.may_pass(edges) {
+                return;
+            }
             let limit = bounce.max(DEEP) * self.shorter(edges, before);
             let moved = |node: usize| place(now, node) - place(before, node);
             let [own, other] = [0, 1].map(|of| self.nodes(edges, of));

@@ -8,7 +8,7 @@
 //! removed at a corner, or where the normal leaves the facets' normals.
 
 use std::collections::BTreeSet;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Tree};
@@ -16,6 +16,7 @@ use carom_solid::{Bounds, Tree};
 use super::boundary::Boundary;
 use super::edge_gap::EdgeGap;
 use super::edges::Edges;
+use super::folds::PatchFolds;
 use crate::friction::{Hold, Tangential};
 use crate::kinematics::SweptEdges;
 use crate::kinematics::apart::Apart;
@@ -56,6 +57,8 @@ type Held = ([usize; 2], Option<EdgeGap>);
 pub struct EdgeToEdge {
     /// Of the secondary side and of the primary.
     sides: [Edges; 2],
+    /// Of a side against itself: the order of its places.
+    folds: Option<Arc<PatchFolds>>,
     tools: Mutex<Tools>,
     swept: Mutex<SweptEdges>,
 }
@@ -79,7 +82,30 @@ impl EdgeToEdge {
         let weight = sides[0].weight() + sides[1].weight();
         let apart = Apart::new(nodes.copied(), 3, weight);
         let tools = Mutex::new(Tools { tree: Tree::default(), apart });
-        Self { sides, tools, swept: Mutex::default() }
+        Self { sides, folds: None, tools, swept: Mutex::default() }
+    }
+
+    /// The same for a side against itself: both sides are equal.
+    pub(super) fn folding(self, folds: Arc<PatchFolds>) -> Self {
+        Self { folds: Some(folds), ..self }
+    }
+
+    /// Whether two edges may meet, in this order: always, but for those of one body. Of these the
+    /// first is the later one, and no facet has nodes of both.
+    pub(super) fn may_meet(&self, [own, other]: [usize; 2]) -> bool {
+        let Some(folds) = &self.folds else { return true };
+        let [here, there] = [own, other].map(|edge| self.sides[0].facet(edge));
+        let is_later = folds.is_later(here, there) || here == there && own > other;
+        is_later && !self.sides[0].around(own).any(|node| self.sides[0].nodes(other).contains(&node))
+    }
+
+    /// Whether a path of one edge across another one can be examined: two edges of one piece may
+    /// begin and end on either side of its boundary.
+    pub(super) fn may_pass(&self, [own, other]: [usize; 2]) -> bool {
+        self.folds.as_ref().is_none_or(|folds| {
+            let [here, there] = [own, other].map(|edge| self.sides[0].facet(edge));
+            folds.are_of_different_pieces(here, there)
+        })
     }
 
     /// A node of every edge of the secondary side.
@@ -212,7 +238,8 @@ impl EdgeToEdge {
     fn next(&self, edges: [usize; 2], xi: [f64; 2], y: &[f64]) -> Option<([usize; 2], EdgeGap)> {
         let (to, start) = self.beyond(edges, xi)?;
         let gap = self.closest(to, start, y)?;
-        (self.is_on(to, gap.xi, PAST, PAST) && self.cross(to, &gap, OUTSIDE, y)).then_some((to, gap))
+        let goes_on = self.may_meet(to) && self.is_on(to, gap.xi, PAST, PAST);
+        (goes_on && self.cross(to, &gap, OUTSIDE, y)).then_some((to, gap))
     }
 
     /// Pairs are handed over to the next edges, or removed: at the start of a step from where they
@@ -317,7 +344,7 @@ impl EdgeToEdge {
         for (a, bounds) in own.iter().enumerate() {
             tree.find_into(bounds, &mut near);
             near.sort_unstable();
-            near.iter().for_each(|&b| visit([a, b]));
+            near.iter().map(|&b| [a, b]).filter(|edges| self.may_meet(*edges)).for_each(&mut visit);
         }
     }
 

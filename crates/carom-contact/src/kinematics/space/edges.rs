@@ -78,6 +78,11 @@ impl Edges {
         &self.nodes[edge]
     }
 
+    /// One of the facets that meet at an edge.
+    pub(super) fn facet(&self, edge: usize) -> usize {
+        self.places[edge].0
+    }
+
     /// Nodes of the facets that meet at an edge.
     pub(super) fn around(&self, edge: usize) -> impl Iterator<Item = usize> {
         let (facet, of_facet) = self.places[edge];

@@ -1,22 +1,28 @@
 //! Contact of curved facets in space: facets and their closest points, the boundary that they form,
-//! gaps with their derivatives, and the pairs of secondary nodes with them; pairs of sharp edges.
+//! gaps with their derivatives, and the pairs of secondary nodes with them; pairs of sharp edges;
+//! where a boundary can meet itself.
 
 mod boundary;
 mod candidate;
+mod closed_surface;
 mod crease;
+mod crosses;
 mod crossing;
 mod edge_crossing;
 mod edge_gap;
 mod edge_to_edge;
 mod edges;
+mod folds;
 mod gap;
+mod itself;
 mod node_to_patch;
 mod passed;
 mod patch;
 mod with_edges;
 
-pub use boundary::{Boundary, ClosedSurface};
+pub use boundary::Boundary;
+pub use closed_surface::ClosedSurface;
 pub use edge_to_edge::EdgeToEdge;
 pub use node_to_patch::NodeToPatch;
-pub(super) use patch::cross;
+pub(crate) use patch::cross;
 pub use with_edges::WithEdges;

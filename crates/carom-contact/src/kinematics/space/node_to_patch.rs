@@ -14,17 +14,18 @@
 //!
 //! Which facet a node without a pair meets is in `candidate.rs`.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::Boundary;
+use super::folds::{PatchFolds, update_normals};
 use super::gap::PatchGap;
 use super::patch::{Feature, cross, place};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::tangents::tangents;
-use crate::kinematics::{Kinematics, OneWay, Passed, SweptPatch};
+use crate::kinematics::{Kinematics, OneWay, Passed, Side, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -56,6 +57,9 @@ pub struct NodeToPatch {
     allowed: Vec<f64>,
     /// Depth that each node keeps; empty if none does.
     kept: Vec<f64>,
+    /// Of nodes of the primary side itself: which facets they may meet, and which of two places
+    /// that meet is the node's.
+    pub(super) folds: Option<(Arc<PatchFolds>, Side)>,
     tools: Mutex<Tools>,
 }
 
@@ -66,6 +70,8 @@ pub(super) struct Tools {
     pub(super) tree: Tree,
     pub(super) apart: Apart,
     pub(super) swept: SweptPatch,
+    /// Normals of the facets at the start of a step, if the side may meet itself.
+    pub(super) normals: Vec<Vector<3>>,
 }
 
 /// Where a pair belongs.
@@ -83,14 +89,19 @@ impl NodeToPatch {
         let both = primary.nodes().iter().chain(&secondary).copied();
         let apart = Apart::new(both, 3, hull.weight());
         let swept = SweptPatch::new(primary.shape());
-        let tools = Mutex::new(Tools { tree: Tree::default(), apart, swept });
-        Self { secondary, primary, hull, allowed: Vec::new(), kept: Vec::new(), tools }
+        let tools = Mutex::new(Tools { tree: Tree::default(), apart, swept, normals: Vec::new() });
+        Self { secondary, primary, hull, allowed: Vec::new(), kept: Vec::new(), folds: None, tools }
     }
 
     /// The same with a depth for each node that it may have without contact.
     #[must_use]
     pub fn with_allowed(self, allowed: Vec<f64>) -> Self {
         Self { allowed, ..self }
+    }
+
+    /// The same for nodes of the primary side itself.
+    pub(super) fn folding(self, folds: Arc<PatchFolds>, side: Side) -> Self {
+        Self { folds: Some((folds, side)), ..self }
     }
 
     pub(super) fn slack(&self, place: usize) -> f64 {
@@ -130,10 +141,17 @@ impl NodeToPatch {
         if patch.furthest(xi).1 <= PAST {
             return Next::Stay;
         }
-        let from = place(y, self.secondary[pair.node]);
+        let node = self.secondary[pair.node];
+        if self.ends_at(node, pair.facet, xi, y) {
+            return Next::Leave;
+        }
+        let from = place(y, node);
         let own = patch.nearest(y, from);
         let mut best = None;
         for facet in self.primary.ring(pair.facet) {
+            if !self.may_take(node, facet, y) {
+                continue;
+            }
             let found = self.primary.patch(facet).nearest(y, from);
             let least = best.map_or((1.0 - PAST) * own.distance, |(_, least, _)| least);
             if found.at == Feature::Inside && found.distance < least {
@@ -158,7 +176,7 @@ impl NodeToPatch {
             }
             Some((facet, _, xi)) => Next::HandOver(facet, xi),
             None => {
-                if let Some((facet, xi)) = self.in_crease(pair.facet, from, y) {
+                if let Some((facet, xi)) = self.in_crease(node, pair.facet, y) {
                     return Next::Concave(facet, xi);
                 }
                 let bridged = patch.furthest(xi).1 <= REACH && !self.faces_nothing(pair.facet, xi, y);
@@ -313,11 +331,14 @@ impl Kinematics for NodeToPatch {
             pairs.sort_by_key(|pair| pair.node);
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { tree, apart, swept } = &mut *tools;
+        let Tools { tree, apart, swept, normals } = &mut *tools;
         if apart.holds(*margin, [before, now]) {
             return changed;
         }
         self.update(tree, *margin, before, now);
+        if self.folds.is_some() {
+            update_normals(&self.primary, before, normals);
+        }
         let ends = |&node: &usize| [place(before, node).0, place(now, node).0];
         let paths: Bounds = self.secondary.iter().flat_map(ends).collect();
         apart.searched([&tree.bounds(), &paths.grown(NOISE * paths.size())], [*margin, NOISE], now);
@@ -328,9 +349,12 @@ impl Kinematics for NodeToPatch {
                 next += 1;
             }
             self.find_into(tree, k, before, now, &mut near);
+            self.retain_met(node, normals, &mut near);
             if next > first {
                 let held = &pairs[first..next];
-                if let Some((facet, [xi, eta])) = self.elsewhere(swept, &mut near, k, held, [before, now]) {
+                if let Some((facet, [xi, eta])) =
+                    self.elsewhere(swept, (&mut near, normals), k, held, [before, now])
+                {
                     changed = true;
                     pairs.push(Pair { eta, ..Pair::open(k, facet, xi) });
                 }
@@ -339,7 +363,9 @@ impl Kinematics for NodeToPatch {
             if near.is_empty() {
                 continue;
             }
-            let Some((facet, [xi, eta])) = self.candidate(swept, &near, k, before, now) else { continue };
+            let Some((facet, [xi, eta])) = self.candidate(swept, (&near, normals), k, before, now) else {
+                continue;
+            };
             let gap = self.gap(facet, [xi, eta], place(now, node), now) + self.slack(k);
             if self.allowed(k) > 0.0 && gap >= 0.0 {
                 continue;
@@ -353,13 +379,18 @@ impl Kinematics for NodeToPatch {
 
     fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { tree, swept, .. } = &mut *tools;
+        let Tools { tree, swept, normals, .. } = &mut *tools;
         self.update(tree, Pairing::default().margin, before, now);
+        if self.folds.is_some() {
+            update_normals(&self.primary, before, normals);
+        }
         let mut near = Vec::new();
         let mut met = |&k: &usize| {
             self.find_into(tree, k, before, now, &mut near);
-            let first = self.first(swept, &near, self.secondary[k], before, now);
-            let (theta, _) = first.filter(|&(_, facet)| self.primary.is_of_side(facet))?;
+            self.retain_met(self.secondary[k], normals, &mut near);
+            let node = self.secondary[k];
+            let first = self.first(swept, (&near, normals), node, before, now);
+            let (theta, _) = first.filter(|&(_, facet)| self.is_met(node, facet, normals))?;
             (self.slack(k) == 0.0).then(|| theta.clamp(0.0, 1.0))
         };
         nodes.iter().map(&mut met).collect()
@@ -401,7 +432,7 @@ impl Kinematics for NodeToPatch {
         let lost = ContactError::Lost { node, facet: pair.facet, xi: pair.xi };
         let xi = self.closest(pair, y).ok_or(lost)?;
         [pair.xi, pair.eta] = xi;
-        if !pair.active && self.faces_nothing(pair.facet, xi, y) {
+        if !pair.active && (self.faces_nothing(pair.facet, xi, y) || self.ends_at(node, pair.facet, xi, y)) {
             rows.push_open();
             return Ok(());
         }

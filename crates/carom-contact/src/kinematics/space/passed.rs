@@ -21,7 +21,14 @@ impl NodeToPatch {
     ) -> Option<Passed> {
         let (nodes, boundary) = (self.secondary(), &self.primary);
         let first = *nodes.first()?;
-        let Tools { tree, apart, swept } = tools;
+        let Tools { tree, apart, swept, .. } = tools;
+        // Within one piece, a path may begin and end on either side of its own boundary.
+        let folds = self.folds.as_ref();
+        if folds.is_some_and(|(folds, _)| !folds.has_pieces()) {
+            return None;
+        }
+        let bounds =
+            |node: usize, facet: usize| folds.is_none_or(|(folds, _)| folds.is_of_another_piece(node, facet));
         if !boundary.is_whole() || apart.holds(0.0, [before, now]) {
             return None;
         }
@@ -45,6 +52,7 @@ impl NodeToPatch {
         let mut worst: Option<Passed> = None;
         for (k, &node) in nodes.iter().enumerate() {
             self.find_into(tree, k, before, now, &mut near);
+            near.retain(|&facet| bounds(node, facet));
             let relative = |&other: &usize| (path(node) - path(other)).norm();
             let far = near.iter().any(|&facet| {
                 let most = boundary.facet_nodes(facet).iter().map(relative).fold(0.0, f64::max);
@@ -54,11 +62,13 @@ impl NodeToPatch {
                 continue;
             }
             // The last exit is the first entry of the reversed motion.
-            let entry = self.earliest(swept, &near, node, [before, now]);
             let exit = self.earliest(swept, &near, node, [now, before]);
+            near.retain(|&facet| !self.excludes(node, facet));
+            let entry = self.earliest(swept, &near, node, [before, now]);
             let exit = exit.map(|back| Met { theta: 1.0 - back.theta, ..back });
             let mut way = OnWay {
                 boundary,
+                bounds: &bounds,
                 tree,
                 between: between.get_or_insert_with(|| Between::new([before, now])),
                 before,
@@ -96,6 +106,8 @@ impl NodeToPatch {
 /// A node between entry and exit.
 struct OnWay<'a, 'b> {
     boundary: &'a Boundary,
+    /// Whether a facet bounds what a node enters.
+    bounds: &'a dyn Fn(usize, usize) -> bool,
     tree: &'a Tree,
     between: &'a mut Between<'b, 3>,
     before: &'a [f64],
@@ -111,6 +123,9 @@ impl Way for OnWay<'_, '_> {
         let boundary = self.boundary;
         let point = self.between.at(theta, self.node);
         let distance = |facet: usize| {
+            if !(self.bounds)(self.node, facet) {
+                return None;
+            }
             let patch = boundary.patch(facet);
             Some(patch.nearest(self.between.with(theta, patch.nodes), point).distance)
         };

@@ -1,0 +1,65 @@
+//! The whole boundary of a body in space: how deep a point lies inside. Independent of pairs, sides
+//! and history, so that it can judge them.
+
+use carom_algebra::Vector;
+use carom_solid::{Hull, Tree};
+
+use super::boundary::Boundary;
+use super::folds::{PatchFolds, update_normals};
+use crate::depth::Depth;
+use crate::kinematics::amplification;
+
+/// The whole boundary of a body in space: how deep a point lies inside.
+#[derive(Debug)]
+pub struct ClosedSurface {
+    pub(super) boundary: Boundary,
+    pub(super) hull: Hull,
+    pub(super) tree: Tree,
+    /// For its own nodes: which of them meet which facets, and the facets' normals.
+    pub(super) folds: Option<(PatchFolds, Vec<Vector<3>>)>,
+}
+
+impl ClosedSurface {
+    /// All facets of a body's boundary.
+    pub fn new(boundary: Boundary) -> Self {
+        let hull = boundary.hull();
+        Self { boundary, hull, tree: Tree::default(), folds: None }
+    }
+
+    /// Global numbers of the nodes of a facet.
+    pub fn facet_nodes(&self, facet: usize) -> &[usize] {
+        self.boundary.facet_nodes(facet)
+    }
+
+    /// Moves the boundary to positions `y`, flat over all nodes.
+    pub fn update(&mut self, y: &[f64]) {
+        let bounds = |facet: usize| self.boundary.bounds(&self.hull, facet, y);
+        if self.tree.is_empty() {
+            self.tree = Tree::new(self.boundary.all(), bounds);
+        } else {
+            self.tree.update(bounds);
+        }
+        if let Some((_, normals)) = &mut self.folds {
+            update_normals(&self.boundary, y, normals);
+        }
+    }
+
+    /// Where a point lies at the positions of the last update, searched from a facet near it if one
+    /// is known; `None` without a boundary.
+    pub fn depth(&self, point: [f64; 3], from: Option<usize>, y: &[f64]) -> Option<Depth> {
+        let at = Vector(point);
+        let distance = |facet: usize| Some(self.boundary.patch(facet).nearest(y, at).distance);
+        let (facet, _) = self.tree.nearest(&at.0, from, distance)?;
+        Some(self.boundary.depth(facet, at, y))
+    }
+
+    /// Distance between a point and the boundary at ξ of a facet.
+    pub fn distance(&self, facet: usize, xi: [f64; 2], point: [f64; 3], y: &[f64]) -> f64 {
+        (Vector(point) - self.boundary.patch(facet).at(y, xi).position).norm()
+    }
+
+    /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵃ|.
+    pub fn amplification(&self) -> f64 {
+        amplification(self.boundary.shape())
+    }
+}

@@ -1,0 +1,289 @@
+//! A boundary in space that crosses itself, and where its nodes lie relative to those parts of it
+//! that they may meet (`folds.rs`).
+//!
+//! The solid angle under which a node sees the oriented boundary, without the facets that contain
+//! it, is that of the body at the node, in (0, 4π), and 4π more where another part of the body
+//! covers it. Facets are cut into triangles between their nodes.
+
+use std::f64::consts::PI;
+
+use carom_algebra::Vector;
+use carom_solid::Bounds;
+
+use super::closed_surface::ClosedSurface;
+use super::folds::PatchFolds;
+use super::patch::{Feature, cross, place};
+use crate::depth::Depth;
+use crate::kinematics::Side;
+use crate::solid_angle::solid_angle;
+
+/// Smallest solid angle of a body at a node that is told from that of a fold.
+const SHARPEST: f64 = 0.2;
+/// Distance up to which a facet is near another one, over its size.
+const NEAR: f64 = 0.25;
+
+type Triangle = [Vector<3>; 3];
+
+impl ClosedSurface {
+    /// The same, to measure its own nodes too; `piece`: the connected piece of the body to which
+    /// each node belongs, from `first_node` on; `reference`: the reference positions, flat over all
+    /// nodes.
+    #[must_use]
+    pub fn with_pieces(self, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
+        let folds = PatchFolds::new(&self.boundary, piece, first_node, reference);
+        Self { folds: Some((folds, Vec::new())), ..self }
+    }
+
+    /// Where a node of the boundary lies relative to those parts of it that it may meet and that
+    /// lie on one side of it in the order of its places, if one is nearer than `reach`. Where the
+    /// nearest part lies on the other side, or ends there, the node counts as outside.
+    pub fn depth_of(&self, node: usize, side: Side, reach: f64, y: &[f64]) -> Option<Depth> {
+        let (folds, normals) = self.folds.as_ref()?;
+        let point = place(y, node);
+        let meets = |facet: usize| folds.met(node, facet, |facet| normals[facet]).is_some();
+        let mut nearest: Option<(usize, f64)> = None;
+        for facet in self.tree.meeting(&Bounds::of(&point.0).grown(reach)).filter(|&facet| meets(facet)) {
+            let distance = self.boundary.patch(facet).nearest(y, point).distance;
+            let least = nearest.map_or(reach, |(_, least)| least);
+            // The first of equals, in whatever order the tree finds them.
+            if distance < least || distance == least && nearest.is_some_and(|(first, _)| facet < first) {
+                nearest = Some((facet, distance));
+            }
+        }
+        let (facet, _) = nearest?;
+        // An end next to what the node cannot meet, such as its own facet, is no place to enter.
+        let is_open = match self.boundary.patch(facet).nearest(y, point).at {
+            Feature::Inside => true,
+            Feature::Edge(edge) => self.boundary.across(facet, edge).is_some_and(meets),
+            Feature::Corner(corner) => self.boundary.around(facet, corner).iter().all(|&f| meets(f)),
+        };
+        let found = self.boundary.depth(facet, point, y);
+        let counts = is_open && folds.met(node, facet, |facet| normals[facet]) == Some(side);
+        Some(Depth { distance: if counts { found.distance } else { found.distance.abs() }, ..found })
+    }
+
+    /// Whether two facets without a common node cross each other at the positions of the last
+    /// update. Pairs that are `known` do not count.
+    pub fn crosses_itself(&self, y: &[f64], known: impl Fn(usize, usize) -> bool) -> bool {
+        self.crossings(y, known).next().is_some()
+    }
+
+    /// The node that lies deepest inside its own body, of those of facets that cross others; the
+    /// nearest facet that does not contain it, and the distance to it.
+    pub fn deepest_in_itself(&self, y: &[f64]) -> Option<(usize, usize, f64)> {
+        let facets = self.crossings(y, |_, _| false).flat_map(|(a, b)| [a, b]);
+        let mut nodes: Vec<usize> = facets.flat_map(|facet| self.facet_nodes(facet)).copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let mut deepest: Option<(usize, usize, f64)> = None;
+        for node in nodes.into_iter().filter(|&node| self.seen_from(node, y) >= 4.0 * PI + SHARPEST) {
+            let point = place(y, node);
+            let distance = |facet: usize| {
+                let is_other = !self.facet_nodes(facet).contains(&node);
+                is_other.then(|| self.boundary.patch(facet).nearest(y, point).distance)
+            };
+            if let Some((facet, distance)) = self.tree.nearest(&point.0, None, distance)
+                && deepest.is_none_or(|(.., most)| distance > most)
+            {
+                deepest = Some((node, facet, distance));
+            }
+        }
+        deepest
+    }
+
+    /// How far a coordinate of a node may change, apart from a motion of all nodes together, before
+    /// two facets without a common node can cross; 0 where two are near at the positions of the
+    /// last update.
+    pub fn clearance_to_itself(&self, y: &[f64]) -> f64 {
+        let mut least = f64::INFINITY;
+        for a in 0..self.boundary.all() {
+            let bounds = self.boundary.bounds(&self.hull, a, y);
+            let around = NEAR * bounds.size();
+            if self.apart_from(a, &bounds.grown(around)).next().is_some() {
+                return 0.0;
+            }
+            least = least.min(around);
+        }
+        // Either box grows.
+        least / (2.0 * self.hull.weight())
+    }
+
+    /// The pairs of facets that cross each other, the first of each ascending.
+    fn crossings(
+        &self,
+        y: &[f64],
+        known: impl Fn(usize, usize) -> bool,
+    ) -> impl Iterator<Item = (usize, usize)> {
+        let of_facet = move |a: usize| {
+            let bounds = self.boundary.bounds(&self.hull, a, y);
+            let mut others: Vec<usize> =
+                self.apart_from(a, &bounds).filter(|&b| b > a && !known(a, b)).collect();
+            others.sort_unstable();
+            let own = if others.is_empty() { Triangles::default() } else { self.triangles(a, y) };
+            others.retain(|&b| {
+                let other = self.triangles(b, y);
+                own.iter().any(|one| other.iter().any(|two| crosses(one, two)))
+            });
+            others.into_iter().map(move |b| (a, b))
+        };
+        (0..self.boundary.all()).flat_map(of_facet)
+    }
+
+    /// The facets without a node of this one whose boxes meet another box.
+    fn apart_from(&self, facet: usize, bounds: &Bounds) -> impl Iterator<Item = usize> {
+        let nodes = self.facet_nodes(facet);
+        let joined = |b: usize| self.facet_nodes(b).iter().any(|node| nodes.contains(node));
+        self.tree.meeting(bounds).filter(move |&b| !joined(b))
+    }
+
+    /// The solid angle under which a node sees the facets that do not contain it.
+    fn seen_from(&self, node: usize, y: &[f64]) -> f64 {
+        let from = place(y, node);
+        let others = (0..self.boundary.all()).filter(|&facet| !self.facet_nodes(facet).contains(&node));
+        let of_facet = |facet: usize| -> f64 {
+            let triangles = self.triangles(facet, y);
+            triangles.iter().map(|corners| solid_angle(corners.map(|corner| corner - from))).sum()
+        };
+        others.map(of_facet).sum()
+    }
+
+    /// The triangles of a facet between its nodes.
+    fn triangles(&self, facet: usize, y: &[f64]) -> Triangles {
+        let patch = self.boundary.patch(facet);
+        let (count, is_square) = (patch.shape.degree(), patch.corners() == 4);
+        let at = |i: usize, j: usize| {
+            let [s, t] = [i, j].map(|k| k as f64 / count as f64);
+            patch.at(y, if is_square { [2.0 * s - 1.0, 2.0 * t - 1.0] } else { [s, t] }).position
+        };
+        let mut triangles = Triangles::default();
+        for i in 0..count {
+            for j in 0..if is_square { count } else { count - i } {
+                triangles.add([at(i, j), at(i + 1, j), at(i, j + 1)]);
+                if is_square || i + j + 1 < count {
+                    triangles.add([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+                }
+            }
+        }
+        triangles
+    }
+}
+
+/// The triangles of a facet, of which a cubic triangle has most.
+#[derive(Clone, Copy, Default)]
+struct Triangles {
+    all: [Option<Triangle>; 9],
+    count: usize,
+}
+
+impl Triangles {
+    fn add(&mut self, triangle: Triangle) {
+        self.all[self.count] = Some(triangle);
+        self.count += 1;
+    }
+
+    fn iter(&self) -> impl Iterator<Item = &Triangle> {
+        self.all.iter().flatten()
+    }
+}
+
+/// Whether an edge of one triangle crosses the inside of the other one, ends and edges not
+/// included.
+fn crosses(one: &Triangle, other: &Triangle) -> bool {
+    let bounds = |triangle: &Triangle| triangle.iter().map(|corner| corner.0).collect::<Bounds>();
+    bounds(one).meets(&bounds(other)) && (pierces(one, other) || pierces(other, one))
+}
+
+fn pierces(edges: &Triangle, [a, b, c]: &Triangle) -> bool {
+    let normal = cross(*b - *a, *c - *a);
+    (0..3).any(|k| {
+        let [p, q] = [edges[k], edges[(k + 1) % 3]];
+        let [from, to] = [p, q].map(|x| (x - *a).dot(&normal));
+        if from * to >= 0.0 {
+            return false;
+        }
+        let along = q - p;
+        let volume = |u: &Vector<3>, v: &Vector<3>| cross(*u - p, *v - p).dot(&along);
+        let volumes = [volume(a, b), volume(b, c), volume(c, a)];
+        volumes.iter().all(|v| *v > 0.0) || volumes.iter().all(|v| *v < 0.0)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_solid::FacetShape;
+
+    use super::*;
+    use crate::Boundary;
+
+    /// A C of hexahedra with its mouth to the right, one cell deep: the outline of the plane
+    /// (`inside_itself.rs`), from z = 0 to 1.
+    fn c() -> (ClosedSurface, Vec<f64>) {
+        let outline: [[f64; 2]; 8] =
+            [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 2.0], [3.5, 2.0], [3.5, 3.0], [0.0, 3.0]];
+        let layers = [0.0, 1.0].into_iter().flat_map(|z| outline.map(|[x, y]| [x, y, z]));
+        let y: Vec<f64> = layers.flatten().collect();
+        let over = |k: usize| vec![k, (k + 1) % 8, 8 + (k + 1) % 8, 8 + k];
+        let ends = [[0, 1, 2, 3], [0, 3, 4, 7], [4, 5, 6, 7]];
+        let below = ends.iter().map(|end| end.iter().rev().copied().collect());
+        let above = ends.iter().map(|end| end.iter().map(|k| 8 + k).collect());
+        let facets: Vec<Vec<usize>> = (0..8).map(over).chain(below).chain(above).collect();
+        let boundary = Boundary::new(FacetShape::Q4, &facets, &[], 0);
+        assert!(boundary.is_whole());
+        let mut surface = ClosedSurface::new(boundary).with_pieces(&[0; 16], 0, &y);
+        surface.update(&y);
+        (surface, y)
+    }
+
+    #[test]
+    fn an_arm_pushed_through_the_side_of_its_own_body_is_found_with_its_depth() {
+        let (mut surface, mut y) = c();
+        assert!(!surface.crosses_itself(&y, |_, _| false));
+        assert_eq!(surface.deepest_in_itself(&y), None);
+        // The end of the upper arm is bent down by 1.3 into the lower one.
+        for node in [5, 6, 13, 14] {
+            y[3 * node + 1] -= 1.3;
+        }
+        surface.update(&y);
+        assert!(surface.crosses_itself(&y, |_, _| false));
+        let (node, facet, distance) = surface.deepest_in_itself(&y).unwrap();
+        // The sides of both arms lie in the same planes, where no depth is larger than zero.
+        assert!([5, 13].contains(&node) && distance < 1e-12, "{node} {facet} {distance}");
+        // Moved inwards, the arm is as deep as it is below the face of the lower one.
+        for (node, z) in [(5, 0.35), (6, 0.35), (13, 0.65), (14, 0.65)] {
+            y[3 * node + 2] = z;
+        }
+        surface.update(&y);
+        let (node, facet, distance) = surface.deepest_in_itself(&y).unwrap();
+        assert!([5, 13].contains(&node) && facet == 2, "{node} {facet}");
+        assert!((distance - 0.3).abs() < 1e-15, "{distance}");
+    }
+
+    #[test]
+    fn a_node_is_measured_against_the_arm_that_it_faces_and_not_against_its_own() {
+        let (mut surface, start) = c();
+        let mut y = start.clone();
+        let depth = |surface: &ClosedSurface, node: usize, y: &[f64]| {
+            [Side::Later, Side::Earlier].map(|side| surface.depth_of(node, side, 5.0, y).map(|d| d.distance))
+        };
+        // Node 5 lies 1 above the lower arm, whose face comes before that of its own.
+        for node in [5, 13] {
+            y[3 * node + 2] = 0.5;
+            assert_eq!(depth(&surface, node, &y), [Some(1.0), Some(1.0)]);
+        }
+        // Below the face of the lower arm.
+        for node in [5, 13] {
+            y[3 * node + 1] = 0.9;
+        }
+        surface.update(&y);
+        let [later, earlier] = depth(&surface, 5, &y).map(Option::unwrap);
+        assert!((later + 0.1).abs() < 1e-15 && earlier == -later, "{later} {earlier}");
+        // Pressed to a tenth of its thickness, the upper arm has no depth in itself.
+        let mut y = start;
+        for node in [6, 7, 14, 15] {
+            y[3 * node + 1] = 2.1;
+        }
+        surface.update(&y);
+        let found = depth(&surface, 6, &y);
+        assert!(found.iter().flatten().all(|distance| *distance > 1.0), "{found:?}");
+    }
+}

@@ -1,0 +1,239 @@
+//! Which parts of a body's boundary in space can meet each other. With n the outward normals at a
+//! node and at a facet of the same piece, and h the height of the node over the facet in the
+//! reference configuration, negative behind it:
+//!
+//! ```text
+//! they meet across free space        n_node · n_facet < −cos 60°, and the node was not behind
+//! they lie side by side              n_node · n_facet ≥ −cos 60°
+//! they are two faces of one wall     h < 0 close by: never, however thin the wall becomes
+//! ```
+//!
+//! At a node where several facets meet, the most opposed of their normals and of their mean counts.
+//! The flanks of a closed slit have h = 0 and opposed normals: they meet up to the tip. A turn
+//! along the boundary, by which the plane tells a wall from a pocket (`../folds.rs`), does not
+//! exist in space; whether a node was behind is told from the start of a step (`candidate.rs`), and
+//! the two faces of a wall from the reference configuration. Unconnected pieces can always meet, by
+//! the rules of two bodies.
+//!
+//! Of two places that meet, one is the secondary: that of the later piece; within a piece that of
+//! the later smooth part of the boundary, parts being separated by kinks of more than 30°; within a
+//! part that which lies further along a direction in which no symmetry of a usual mesh lies.
+
+use carom_algebra::Vector;
+use carom_solid::{Bounds, Tree};
+
+use super::boundary::Boundary;
+use super::patch::place;
+use crate::kinematics::Side;
+
+/// −cos 60°.
+const OPPOSED: f64 = -0.5;
+/// Distance up to which what lies behind a node is its own wall, over its longest facet.
+const WALL: f64 = 3.0;
+/// Height over the length of a facet below which a node is behind it: flanks of a slit coincide.
+const BEHIND: f64 = 1e-6;
+/// Cosine between the normals of a node and of a facet above which a wall has no such two faces.
+const ALIKE: f64 = 0.5;
+/// Cosine of the kink that separates smooth parts: 30°.
+const SHARP: f64 = 0.87;
+/// The direction that orders the places of a smooth part.
+const ALONG: Vector<3> = Vector([1.0, 0.618, 0.382]);
+
+/// The order of the places of a boundary, and the faces of its walls, in global node numbers.
+#[derive(Debug)]
+pub(super) struct PatchFolds {
+    /// Smallest node.
+    first: usize,
+    /// Facets that contain each node, ascending.
+    own: Lists,
+    /// Facets behind each node across its wall, ascending.
+    walls: Lists,
+    /// Piece and smooth part of each facet, and how far along the direction of the order it lies.
+    places: Vec<(usize, usize, f64)>,
+    /// The last of each node.
+    along: Vec<f64>,
+}
+
+/// Ascending numbers for each of several items.
+#[derive(Debug, Default)]
+struct Lists {
+    starts: Vec<usize>,
+    all: Vec<usize>,
+}
+
+impl Lists {
+    fn new(lists: Vec<Vec<usize>>) -> Self {
+        let mut found = Self { starts: vec![0], all: Vec::new() };
+        for list in lists {
+            found.all.extend(list);
+            found.starts.push(found.all.len());
+        }
+        found
+    }
+
+    fn of(&self, item: usize) -> &[usize] {
+        match self.starts.get(item..item + 2) {
+            Some(ends) => &self.all[ends[0]..ends[1]],
+            None => &[],
+        }
+    }
+}
+
+impl PatchFolds {
+    /// Of all facets of a boundary at reference positions, flat over all nodes; `piece`: the
+    /// connected piece of the body to which each node belongs, from `first_node` on.
+    pub(super) fn new(boundary: &Boundary, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
+        let nodes = boundary.nodes();
+        let first = nodes.iter().min().copied().unwrap_or(0);
+        let count = nodes.iter().max().map_or(0, |last| last + 1 - first);
+        let mut own = vec![Vec::new(); count];
+        for facet in 0..boundary.all() {
+            boundary.facet_nodes(facet).iter().for_each(|node| own[node - first].push(facet));
+        }
+        let parts = smooth_parts(boundary, reference);
+        let along = |x: Vector<3>| x.dot(&ALONG);
+        let places = |facet: usize| {
+            let nodes = boundary.facet_nodes(facet);
+            let middle = boundary.middle(facet, reference).position;
+            (piece[nodes[0] - first_node], parts[facet], along(middle))
+        };
+        let along = (first..first + count).map(|node| along(place(reference, node))).collect();
+        let (own, places) = (Lists::new(own), (0..boundary.all()).map(places).collect());
+        let mut folds = Self { first, own, walls: Lists::default(), places, along };
+        folds.walls = folds.walls_of(boundary, reference);
+        folds
+    }
+
+    /// The facets behind every node.
+    fn walls_of(&self, boundary: &Boundary, reference: &[f64]) -> Lists {
+        let hull = boundary.hull();
+        let tree = Tree::new(boundary.all(), |facet| boundary.bounds(&hull, facet, reference));
+        let mut normals = Vec::new();
+        update_normals(boundary, reference, &mut normals);
+        let of_node = |k: usize| {
+            let node = self.first + k;
+            let own = self.own.of(k);
+            let longest =
+                own.iter().map(|&facet| boundary.patch(facet).length(reference)).fold(0.0, f64::max);
+            let Some(&one) = own.first() else { return Vec::new() };
+            let point = place(reference, node);
+            let reach = WALL * longest;
+            let is_behind = |&facet: &usize| {
+                let alike = || own.iter().all(|&own| normals[own].dot(&normals[facet]) > ALIKE);
+                if own.contains(&facet) || self.places[facet].0 != self.places[one].0 || alike() {
+                    return false;
+                }
+                let (distance, height) = boundary.height(facet, point, reference);
+                distance < reach && height < -BEHIND * boundary.patch(facet).length(reference)
+            };
+            let mut walls = Vec::new();
+            tree.find_into(&Bounds::of(&point.0).grown(reach), &mut walls);
+            walls.retain(is_behind);
+            walls
+        };
+        Lists::new((0..self.along.len()).map(of_node).collect())
+    }
+
+    /// Facets that contain a node, and those behind it.
+    fn around(&self, node: usize) -> [&[usize]; 2] {
+        match node.checked_sub(self.first) {
+            Some(k) => [self.own.of(k), self.walls.of(k)],
+            None => [&[], &[]],
+        }
+    }
+
+    /// Which of two places is that of a node on a facet `own` when it meets another facet.
+    fn side(&self, node: usize, own: usize, facet: usize) -> Side {
+        let (here, there) = (self.places[own], self.places[facet]);
+        let order = (here.0, here.1).cmp(&(there.0, there.1));
+        let later = order.then(self.along[node - self.first].total_cmp(&there.2)).is_ge();
+        if later { Side::Later } else { Side::Earlier }
+    }
+
+    /// Whether a pair of a node and a facet is possible with the node on that side, as far as the
+    /// reference configuration tells.
+    pub(super) fn admits(&self, side: Side, node: usize, facet: usize) -> bool {
+        let [own, walls] = self.around(node);
+        own.iter().any(|&own| self.side(node, own, facet) == side)
+            && own.binary_search(&facet).is_err()
+            && walls.binary_search(&facet).is_err()
+    }
+
+    /// The side of a node that may meet a facet at positions with this normal of every facet's
+    /// middle; none if the two places cannot meet, or do not face each other.
+    pub(super) fn met(&self, node: usize, facet: usize, normal: impl Fn(usize) -> Vector<3>) -> Option<Side> {
+        let [own, walls] = self.around(node);
+        let &one = own.first()?;
+        if own.binary_search(&facet).is_ok() || walls.binary_search(&facet).is_ok() {
+            return None;
+        }
+        if self.are_of_different_pieces(one, facet) {
+            return Some(self.side(node, one, facet));
+        }
+        let mut most = (one, f64::INFINITY);
+        let (mut mean, there) = (Vector::ZERO, normal(facet));
+        for &own in own {
+            let cosine = normal(own).dot(&there);
+            mean += normal(own);
+            if cosine < most.1 {
+                most = (own, cosine);
+            }
+        }
+        let opposed = most.1 < OPPOSED || mean.dot(&there) < OPPOSED * mean.norm();
+        opposed.then(|| self.side(node, most.0, facet))
+    }
+
+    /// Whether two facets bound different pieces.
+    pub(super) fn are_of_different_pieces(&self, one: usize, other: usize) -> bool {
+        self.places[one].0 != self.places[other].0
+    }
+
+    /// Whether a facet bounds another piece than that of a node.
+    pub(super) fn is_of_another_piece(&self, node: usize, facet: usize) -> bool {
+        let [own, _] = self.around(node);
+        own.first().is_some_and(|&own| self.are_of_different_pieces(own, facet))
+    }
+
+    /// Whether there are several pieces.
+    pub(super) fn has_pieces(&self) -> bool {
+        self.places.iter().any(|place| place.0 != self.places[0].0)
+    }
+
+    /// Whether the place of a facet comes later than that of another one.
+    pub(super) fn is_later(&self, facet: usize, other: usize) -> bool {
+        let (here, there) = (self.places[facet], self.places[other]);
+        (here.0, here.1).cmp(&(there.0, there.1)).then(here.2.total_cmp(&there.2)).is_gt()
+    }
+}
+
+/// Outward normals at the middles of all facets.
+pub(super) fn update_normals(boundary: &Boundary, y: &[f64], normals: &mut Vec<Vector<3>>) {
+    normals.clear();
+    normals.extend((0..boundary.all()).map(|facet| boundary.middle(facet, y).normal));
+}
+
+/// The smooth part of each facet, named by its first one.
+fn smooth_parts(boundary: &Boundary, reference: &[f64]) -> Vec<usize> {
+    let mut part = vec![usize::MAX; boundary.all()];
+    let mut next = Vec::new();
+    for begin in 0..boundary.all() {
+        if part[begin] == usize::MAX {
+            part[begin] = begin;
+            next.push(begin);
+        }
+        while let Some(facet) = next.pop() {
+            for edge in 0..boundary.shape().corners() {
+                let Some(other) = boundary.across(facet, edge) else { continue };
+                let [here, there] = boundary.normals_at_edge(facet, edge, 0.5, reference);
+                if part[other] == usize::MAX && here.dot(&there) > SHARP {
+                    part[other] = begin;
+                    next.push(other);
+                }
+            }
+        }
+    }
+    part
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,82 @@
+//! A boundary in space against itself, in the two directions of `../both_sides.rs`: all nodes as
+//! those of the later place, with the facets that come before them, and as those of the earlier
+//! one, with the facets that come after them. Of two sharp edges the later one is secondary.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use carom_algebra::Vector;
+
+use super::boundary::Boundary;
+use super::edge_to_edge::EdgeToEdge;
+use super::folds::PatchFolds;
+use super::node_to_patch::{NodeToPatch, PAST};
+use super::with_edges::WithEdges;
+use crate::kinematics::{BothSides, Side};
+
+impl WithEdges {
+    /// A side against itself: its nodes, and the same with the depth that each may have where its
+    /// place is the earlier one, none at sharp edges; `piece`: the connected piece of its body to
+    /// which each node belongs, from `first_node` on; `reference`: the reference positions, flat
+    /// over all nodes.
+    pub fn of_itself(
+        side: &Boundary,
+        nodes: Vec<usize>,
+        (earlier, allowed): (Vec<usize>, Vec<f64>),
+        piece: &[usize],
+        first_node: usize,
+        reference: &[f64],
+    ) -> Self {
+        let folds = Arc::new(PatchFolds::new(side, piece, first_node, reference));
+        let of = |nodes: Vec<usize>, which: Side| {
+            NodeToPatch::new(nodes, side.clone()).folding(folds.clone(), which)
+        };
+        let others = [BTreeSet::new(), BTreeSet::new()];
+        let edges = EdgeToEdge::new([side.clone(), side.clone()], &others, reference).folding(folds.clone());
+        let both = BothSides::new(of(nodes, Side::Later), of(earlier, Side::Earlier).with_allowed(allowed));
+        Self::new(both, edges, side.facets())
+    }
+}
+
+impl NodeToPatch {
+    /// Whether a node has no business on a facet: one of its own, one across its wall, or one that
+    /// is the node's in the other direction.
+    pub(super) fn excludes(&self, node: usize, facet: usize) -> bool {
+        self.folds.as_ref().is_some_and(|(folds, side)| !folds.admits(*side, node, facet))
+    }
+
+    /// Whether ξ lies past an edge of a facet across which an excluded one follows. Sharp edges
+    /// have their own tolerance, whatever follows.
+    pub(super) fn ends_at(&self, node: usize, facet: usize, xi: [f64; 2], y: &[f64]) -> bool {
+        let patch = self.primary.patch(facet);
+        self.folds.is_some()
+            && (0..patch.corners()).zip(patch.beyond(xi)).any(|(edge, beyond)| {
+                let next = || self.primary.across(facet, edge);
+                beyond > PAST
+                    && next().is_some_and(|next| self.excludes(node, next))
+                    && !self.primary.is_sharp(facet, edge, y)
+            })
+    }
+
+    /// Whether a pair of a node may be handed over to a facet at positions `y`.
+    pub(super) fn may_take(&self, node: usize, facet: usize, y: &[f64]) -> bool {
+        let normal = |facet: usize| self.primary.middle(facet, y).normal;
+        self.folds.as_ref().is_none_or(|(folds, side)| folds.met(node, facet, normal) == Some(*side))
+    }
+
+    /// Of facets near a node, those that it may meet at positions with these normals, in either
+    /// direction: those of the other one tell where it enters.
+    pub(super) fn retain_met(&self, node: usize, normals: &[Vector<3>], near: &mut Vec<usize>) {
+        if let Some((folds, _)) = &self.folds {
+            near.retain(|&facet| folds.met(node, facet, |facet| normals[facet]).is_some());
+        }
+    }
+
+    /// Whether a node may have a pair with a facet near it.
+    pub(super) fn is_met(&self, node: usize, facet: usize, normals: &[Vector<3>]) -> bool {
+        let of_fold = |(folds, side): &(Arc<PatchFolds>, Side)| {
+            folds.met(node, facet, |facet| normals[facet]) == Some(*side)
+        };
+        self.primary.is_of_side(facet) && self.folds.as_ref().is_none_or(of_fold)
+    }
+}
