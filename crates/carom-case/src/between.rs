@@ -67,7 +67,8 @@ impl Bodies<'_> {
             }
         }
         match &mut contacts[..] {
-            // An empty list is an error of its own.
+            // A case without bodies and an empty list are errors of their own.
+            [] if self.bodies.is_empty() => return None,
             [] if problems.iter().any(|p| p.path == format!("{path}.between")) => return None,
             [] => {
                 let what = format!("contact `{}` has no pair of sides", one.name);

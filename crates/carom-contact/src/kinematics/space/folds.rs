@@ -1,6 +1,6 @@
 //! Which parts of a body's boundary in space can meet each other. With n the outward normals at a
-//! node and at a facet of the same piece, and h the height of the node over the facet in the
-//! reference configuration, negative behind it:
+//! node and at a facet of the same piece, and h the height of the middle of the node's facet over
+//! the other one in the reference configuration, negative behind it:
 //!
 //! ```text
 //! they meet across free space        n_node · n_facet < −cos 60°, and the node was not behind
@@ -8,7 +8,7 @@
 //! they are two faces of one wall     h < 0 close by: never, however thin the wall becomes
 //! ```
 //!
-//! At a node where several facets meet, the most opposed of their normals and of their mean counts.
+//! At a node where several facets meet, the most opposed one counts, and the mean of their normals.
 //! The flanks of a closed slit have h = 0 and opposed normals: they meet up to the tip. A turn
 //! along the boundary, by which the plane tells a wall from a pocket (`../folds.rs`), does not
 //! exist in space; whether a node was behind is told from the start of a step (`candidate.rs`), and
@@ -28,7 +28,7 @@ use crate::kinematics::Side;
 
 /// −cos 60°.
 const OPPOSED: f64 = -0.5;
-/// Distance up to which what lies behind a node is its own wall, over its longest facet.
+/// Distance up to which what lies behind a facet is its own wall, over its length.
 const WALL: f64 = 3.0;
 /// Height over the length of a facet below which a node is behind it: flanks of a slit coincide.
 const BEHIND: f64 = 1e-6;
@@ -46,7 +46,7 @@ pub(super) struct PatchFolds {
     first: usize,
     /// Facets that contain each node, ascending.
     own: Lists,
-    /// Facets behind each node across its wall, ascending.
+    /// Facets behind the middle of each facet, across its wall, ascending.
     walls: Lists,
     /// Piece and smooth part of each facet, and how far along the direction of the order it lies.
     places: Vec<(usize, usize, f64)>,
@@ -104,23 +104,18 @@ impl PatchFolds {
         folds
     }
 
-    /// The facets behind every node.
+    /// The facets behind the middle of every facet.
     fn walls_of(&self, boundary: &Boundary, reference: &[f64]) -> Lists {
         let hull = boundary.hull();
         let tree = Tree::new(boundary.all(), |facet| boundary.bounds(&hull, facet, reference));
         let mut normals = Vec::new();
         update_normals(boundary, reference, &mut normals);
-        let of_node = |k: usize| {
-            let node = self.first + k;
-            let own = self.own.of(k);
-            let longest =
-                own.iter().map(|&facet| boundary.patch(facet).length(reference)).fold(0.0, f64::max);
-            let Some(&one) = own.first() else { return Vec::new() };
-            let point = place(reference, node);
-            let reach = WALL * longest;
+        let of_facet = |own: usize| {
+            let point = boundary.middle(own, reference).position;
+            let reach = WALL * boundary.patch(own).length(reference);
             let is_behind = |&facet: &usize| {
-                let alike = || own.iter().all(|&own| normals[own].dot(&normals[facet]) > ALIKE);
-                if own.contains(&facet) || self.places[facet].0 != self.places[one].0 || alike() {
+                let alike = normals[own].dot(&normals[facet]) > ALIKE;
+                if facet == own || alike || self.are_of_different_pieces(own, facet) {
                     return false;
                 }
                 let (distance, height) = boundary.height(facet, point, reference);
@@ -131,15 +126,17 @@ impl PatchFolds {
             walls.retain(is_behind);
             walls
         };
-        Lists::new((0..self.along.len()).map(of_node).collect())
+        Lists::new((0..boundary.all()).map(of_facet).collect())
     }
 
-    /// Facets that contain a node, and those behind it.
-    fn around(&self, node: usize) -> [&[usize]; 2] {
-        match node.checked_sub(self.first) {
-            Some(k) => [self.own.of(k), self.walls.of(k)],
-            None => [&[], &[]],
-        }
+    /// Facets that contain a node.
+    fn own(&self, node: usize) -> &[usize] {
+        node.checked_sub(self.first).map_or(&[], |k| self.own.of(k))
+    }
+
+    /// Whether a facet lies behind another one across its wall.
+    fn is_behind(&self, own: usize, facet: usize) -> bool {
+        self.walls.of(own).binary_search(&facet).is_ok()
     }
 
     /// Which of two places is that of a node on a facet `own` when it meets another facet.
@@ -153,18 +150,17 @@ impl PatchFolds {
     /// Whether a pair of a node and a facet is possible with the node on that side, as far as the
     /// reference configuration tells.
     pub(super) fn admits(&self, side: Side, node: usize, facet: usize) -> bool {
-        let [own, walls] = self.around(node);
-        own.iter().any(|&own| self.side(node, own, facet) == side)
-            && own.binary_search(&facet).is_err()
-            && walls.binary_search(&facet).is_err()
+        let own = self.own(node);
+        own.binary_search(&facet).is_err()
+            && own.iter().any(|&own| self.side(node, own, facet) == side && !self.is_behind(own, facet))
     }
 
     /// The side of a node that may meet a facet at positions with this normal of every facet's
     /// middle; none if the two places cannot meet, or do not face each other.
     pub(super) fn met(&self, node: usize, facet: usize, normal: impl Fn(usize) -> Vector<3>) -> Option<Side> {
-        let [own, walls] = self.around(node);
+        let own = self.own(node);
         let &one = own.first()?;
-        if own.binary_search(&facet).is_ok() || walls.binary_search(&facet).is_ok() {
+        if own.binary_search(&facet).is_ok() {
             return None;
         }
         if self.are_of_different_pieces(one, facet) {
@@ -180,7 +176,7 @@ impl PatchFolds {
             }
         }
         let opposed = most.1 < OPPOSED || mean.dot(&there) < OPPOSED * mean.norm();
-        opposed.then(|| self.side(node, most.0, facet))
+        (opposed && !self.is_behind(most.0, facet)).then(|| self.side(node, most.0, facet))
     }
 
     /// Whether two facets bound different pieces.
@@ -190,8 +186,7 @@ impl PatchFolds {
 
     /// Whether a facet bounds another piece than that of a node.
     pub(super) fn is_of_another_piece(&self, node: usize, facet: usize) -> bool {
-        let [own, _] = self.around(node);
-        own.first().is_some_and(|&own| self.are_of_different_pieces(own, facet))
+        self.own(node).first().is_some_and(|&own| self.are_of_different_pieces(own, facet))
     }
 
     /// Whether there are several pieces.
