@@ -4,7 +4,8 @@
 /// More than are ever needed: convergence is quadratic.
 const SWEEPS: usize = 12;
 
-/// The eigenvalues of a symmetric 3 × 3 tensor in descending order, in its unit; NaN if a component is.
+/// The eigenvalues of a symmetric 3 × 3 tensor in descending order, in its unit; NaN if a component
+/// is.
 ///
 /// ```
 /// // Pure shear 3 on a pressure of 2.

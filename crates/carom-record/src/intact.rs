@@ -1,5 +1,5 @@
-//! The checkpoints of a run directory that can be continued: the newest whose own checksum is right,
-//! and whose record beside it has not changed since.
+//! The checkpoints from which a run can be continued: their own checksum is right, and the record
+//! beside them has not changed since.
 
 use std::fs;
 use std::path::Path;

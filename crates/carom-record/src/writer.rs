@@ -23,8 +23,8 @@ use crate::{
     ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, Status, files, pvd, vtkhdf,
 };
 
-/// The least time between two flushes. Only checkpoints flush: a power failure costs what was computed
-/// since the last one that did.
+/// The least time between two flushes. Only checkpoints flush: a power failure costs what was
+/// computed since the last one that did.
 pub const FLUSH_INTERVAL: Duration = Duration::from_secs(5);
 
 /// A run directory being written. If it is dropped without `finish`, the run can be reopened.
