@@ -60,7 +60,8 @@ impl BothSides<NodeToFacet> {
     ) -> Self {
         let folds = Arc::new(Folds::new(side, piece, first_node, reference));
         let of = |nodes: Vec<usize>, which: Side| {
-            NodeToFacet::new(nodes, side.clone(), Detection::ClosestPoint).folding(folds.clone(), which)
+            let nodes = NodeToFacet::new(nodes, side.clone(), Detection::ClosestPoint);
+            nodes.of_body(side.clone()).folding(folds.clone(), which)
         };
         Self::new(of(nodes, Side::Later), of(earlier, Side::Earlier).with_allowed(allowed))
     }

@@ -28,6 +28,7 @@ impl NodeToFacet {
             let Tools { search, turns, .. } = tools;
             search.retain(|facet| folds.admits(*side, node, facet) && folds.face(turns, node, facet));
         }
+        tools.search.retain(|facet| self.may_press(node, facet, before));
     }
 
     /// θ, facet and ξ of the first crossing of trajectories of a node.

@@ -13,6 +13,7 @@ mod node_to_facet;
 mod node_to_obstacle;
 mod obstacle;
 mod one_way;
+mod opposed;
 mod passed;
 mod projection;
 mod space;

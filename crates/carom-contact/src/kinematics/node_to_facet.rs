@@ -9,6 +9,7 @@
 //! Which facet a node faces, at joints and ends, is in `facing.rs`. A pair is handed to the
 //! neighbour only between solves.
 
+use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use carom_solid::FacetShape;
@@ -16,6 +17,7 @@ use carom_solid::FacetShape;
 use super::facing::{Next, PAST, REACH};
 use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
+use super::opposed::is_left;
 use super::passed::{Passed, Paths};
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
@@ -62,6 +64,8 @@ pub struct NodeToFacet {
     /// Of nodes of the primary side itself: where its boundary folds, and which of two places that
     /// meet is the node's.
     pub(super) folds: Option<(Arc<Folds>, Side)>,
+    /// The boundary of the nodes' own body, and its facets at their ends.
+    own: Option<(Surface, HashMap<usize, Vec<usize>>)>,
     tools: Mutex<Tools>,
 }
 
@@ -87,6 +91,7 @@ impl NodeToFacet {
             allowed: Vec::new(),
             kept: Vec::new(),
             folds: None,
+            own: None,
             tools: Mutex::new(tools),
         }
     }
@@ -103,6 +108,32 @@ impl NodeToFacet {
     #[must_use]
     pub fn with_allowed(self, allowed: Vec<f64>) -> Self {
         Self { allowed, ..self }
+    }
+
+    /// The same for nodes of a body with this boundary.
+    #[must_use]
+    pub fn of_body(self, own: Surface) -> Self {
+        let mut around: HashMap<usize, Vec<usize>> = HashMap::new();
+        for facet in 0..own.all() {
+            let ends = own.facet(facet).nodes.iter().take(2);
+            ends.for_each(|&node| around.entry(node).or_default().push(facet));
+        }
+        Self { own: Some((own, around)), ..self }
+    }
+
+    /// Whether a node can press on a facet, rather than on one beside it (`opposed.rs`).
+    pub(super) fn may_press(&self, node: usize, facet: usize, y: Places) -> bool {
+        let Some((own, around)) = &self.own else { return true };
+        let Some(around) = around.get(&node) else { return true };
+        let most_opposed = |facet: usize| {
+            let there = self.primary.facet(facet).at(y, 0.0).normal;
+            let cosines = around.iter().map(|&own_facet| own.facet(own_facet).at(y, 0.0).normal.dot(&there));
+            cosines.fold(f64::INFINITY, f64::min)
+        };
+        let here = self.primary.facet(facet).at(y, 0.0);
+        let height = (y.at(node) - here.position).dot(&here.normal);
+        let sized = |other: usize| (other, self.primary.length(other, y));
+        !is_left(facet, height, || self.primary.across_corners(facet, y).map(sized), most_opposed)
     }
 
     /// The same for nodes of the primary side itself.
@@ -230,6 +261,13 @@ impl Kinematics for NodeToFacet {
                     Next::Leave
                 } else {
                     self.primary.next_facet(pair, placed.at(node), came_from, placed)
+                };
+                let next = match next {
+                    Next::HandOver(facet, _) if !self.may_press(node, facet, placed) => {
+                        let leaves = self.primary.faces_nothing(pair.facet, pair.xi, placed);
+                        if leaves { Next::Leave } else { Next::Stay }
+                    }
+                    next => next,
                 };
                 match next {
                     Next::Stay => return true,
@@ -390,7 +428,7 @@ impl Kinematics for NodeToFacet {
                 let node = self.secondary[pair.node];
                 let next = self.primary.next_facet(pair, now.at(node), previous, now);
                 let Next::HandOver(facet, xi) = next else { break };
-                if self.excludes(node, facet) {
+                if self.excludes(node, facet) || !self.may_press(node, facet, now) {
                     break;
                 }
                 previous = Some(pair.facet);

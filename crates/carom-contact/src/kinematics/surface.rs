@@ -140,6 +140,19 @@ impl Surface {
         sine > 0.0 && cosine < CORNER_COSINE
     }
 
+    /// The facets next to a facet at a convex corner.
+    pub(crate) fn across_corners<'a>(
+        &'a self,
+        facet: usize,
+        y: Places<'a>,
+    ) -> impl Iterator<Item = usize> + 'a {
+        [false, true].into_iter().filter_map(move |forward| {
+            let next = self.neighbour(facet, forward)?;
+            let [first, second] = if forward { [facet, next] } else { [next, facet] };
+            self.is_corner(first, second, y).then_some(next)
+        })
+    }
+
     /// Cosine and sine of the turn from a facet to the one that follows it.
     pub(crate) fn kink(&self, facet: usize, next: usize, y: Places) -> (f64, f64) {
         let here = self.facet(facet).at(y, 1.0).tangent;

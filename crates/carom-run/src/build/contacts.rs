@@ -94,8 +94,8 @@ pub(super) fn contacts(
                     );
                     let facets = primary.facets.len();
                     primary_facets = Some((primary.shape, primary.facets));
-                    let nodes = NodeToPatch::new(nodes, side);
-                    let others = NodeToPatch::new(others, opposite).with_allowed(allowed);
+                    let nodes = NodeToPatch::new(nodes, side.clone()).of_body(opposite.clone());
+                    let others = NodeToPatch::new(others, opposite).with_allowed(allowed).of_body(side);
                     Box::new(WithEdges::new(BothSides::new(nodes, others), edges, facets))
                 }
                 Ok(primary) => {
@@ -117,12 +117,14 @@ pub(super) fn contacts(
                     let corners = side.corners(&reference);
                     let (others, allowed) = others(&primary, &before, &secondary, &corners, &reference, 2);
                     primary_facets = Some((primary.shape, primary.facets));
-                    let nodes = NodeToFacet::new(nodes, side, detection).with_point(point);
+                    let nodes = NodeToFacet::new(nodes, side.clone(), detection)
+                        .with_point(point)
+                        .of_body(opposite.clone());
                     if case.dimension == 1 || point == ContactPoint::Frozen {
                         Box::new(nodes)
                     } else {
                         let others = NodeToFacet::new(others, opposite, Detection::ClosestPoint);
-                        Box::new(BothSides::new(nodes, others.with_allowed(allowed)))
+                        Box::new(BothSides::new(nodes, others.with_allowed(allowed).of_body(side)))
                     }
                 }
                 Err(problem) => {

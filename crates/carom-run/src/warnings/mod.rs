@@ -6,7 +6,6 @@
 
 mod courses;
 mod elements;
-mod flush;
 mod found;
 mod masses;
 mod meshes;
@@ -45,7 +44,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 16] = [
+pub const WARNINGS: [Entry; 15] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -59,14 +58,6 @@ pub const WARNINGS: [Entry; 16] = [
               10 % or more",
         advice: "matching meshes, resultants, or probes a few cells away from the contact",
         rule: Rule::Model(meshes::unmatched_pressure),
-    },
-    Entry {
-        id: "flush-outlines",
-        why: "a node at the outline that they share may be taken for one beside the other body: edges may overlap, and bodies of one or two \
-              cells may pass through each other",
-        advice: "sides that meet instead of whole boundaries (secondary = \"BODY.SIDE\", primary = \"OTHER.SIDE\"), or bodies of which one stands \
-              out by more than a hundredth of a facet",
-        rule: Rule::Model(flush::flush_outlines),
     },
     Entry {
         id: "long-step",

@@ -100,6 +100,20 @@ pub(crate) fn on_threads(text: &str, sets: &[impl AsRef<str>], threads: usize) -
     carom_run::Setup::new(&case(text, sets)).threads(threads).start().unwrap_or_else(|p| panic!("{p:?}"))
 }
 
+/// Continues a run from its state with two threads, for so many steps, in which it touches.
+pub(crate) fn continues_with_the_same_bits(case: &Case, mut whole: Simulation, steps: usize) {
+    let setup = carom_run::Setup::new(case).threads(2);
+    let mut resumed = setup.resume(whole.state().clone()).unwrap();
+    let mut touched = false;
+    for _ in 0..steps {
+        whole.step().unwrap();
+        resumed.step().unwrap();
+        touched |= whole.state().pairs[0].iter().any(|pair| pair.active);
+    }
+    assert!(touched);
+    assert_eq!(whole.state(), resumed.state());
+}
+
 /// Runs to the end.
 pub(crate) fn finish(mut sim: Simulation) -> Simulation {
     while !sim.finished() {

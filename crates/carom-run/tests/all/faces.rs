@@ -62,10 +62,11 @@ const SCHEMES: [(&str, &str, f64); 6] = [
     (r#"{ kind = "moreau-jean", theta = 0.5 }"#, "consistent", 2e-3),
 ];
 
-fn exchange(element: &str, scheme: &str, mass: &str, step: f64) {
+/// The impulse of the contact between these sides.
+fn exchange(element: &str, (scheme, mass, step): (&str, &str, f64), sides: &[&str]) -> f64 {
     let fine = matches!(element, "L4" | "T10" | "Q9" | "Hex27") && scheme.contains("central");
     let step = if fine { 0.5 * step } else { step };
-    let mut sim = simulation(&blocks(element, scheme, mass, step), &[""; 0]);
+    let mut sim = simulation(&blocks(element, scheme, mass, step), sides);
     let mut report = GridReport::default();
     while !sim.finished() {
         sim.advance(&mut report).unwrap_or_else(|e| panic!("{element}, {scheme}: {e}"));
@@ -78,11 +79,27 @@ fn exchange(element: &str, scheme: &str, mass: &str, step: f64) {
     model.mass.multiply_into(&state.v, &mut momentum);
     let along: f64 = momentum.iter().step_by(model.dimension).sum();
     assert!((along - 0.5 * mass).abs() < 1e-12, "{element}, {scheme}: {along:e}");
+    impulse
 }
+
+/// Whole boundaries, of which the faces beside those that meet are flush, and as near.
+const SKINS: [&str; 2] = ["contact.faces.secondary=one.skin", "contact.faces.primary=two.skin"];
 
 fn exchange_in_every_scheme(elements: &[&str]) {
     for element in elements {
-        SCHEMES.iter().for_each(|(scheme, mass, step)| exchange(element, scheme, mass, *step));
+        for scheme in SCHEMES {
+            exchange(element, scheme, &[]);
+        }
+    }
+}
+
+#[test]
+fn flush_boundaries_exchange_them_like_the_sides_that_meet() {
+    for element in ["T3", "T6", "Q4", "Q9", "Tet4", "Tet10", "Hex8", "Hex27"] {
+        for scheme in [SCHEMES[0], SCHEMES[4]] {
+            let [named, whole] = [&[][..], &SKINS].map(|sides| exchange(element, scheme, sides));
+            assert!((whole / named - 1.0).abs() < 1e-9, "{element}, {}: {named} {whole}", scheme.0);
+        }
     }
 }
 
@@ -99,6 +116,8 @@ fn solid_blocks_exchange_their_velocities_in_every_scheme() {
 #[test]
 fn curved_solids_exchange_their_velocities() {
     for element in ["Tet10", "Hex27"] {
-        SCHEMES[2..4].iter().for_each(|(scheme, mass, step)| exchange(element, scheme, mass, *step));
+        for scheme in &SCHEMES[2..4] {
+            exchange(element, *scheme, &[]);
+        }
     }
 }

@@ -6,6 +6,8 @@ use std::path::Path;
 use carom_run::case::Case;
 use carom_run::{Setup, Simulation};
 
+use super::common::continues_with_the_same_bits;
+
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/space/");
 
 fn simulation(case: &Case) -> Simulation {
@@ -173,14 +175,5 @@ fn a_run_that_is_continued_from_its_state_is_the_same_with_other_threads() {
     while whole.state().time < 0.0999 {
         whole.step().unwrap();
     }
-    let mut resumed = Setup::new(&case).threads(2).resume(whole.state().clone()).unwrap();
-    let mut touched = false;
-    for _ in 0..4 {
-        whole.step().unwrap();
-        resumed.step().unwrap();
-        touched |= whole.state().pairs[0].iter().any(|pair| pair.active);
-    }
-    assert!(touched);
-    assert_eq!(whole.state().y, resumed.state().y);
-    assert_eq!(whole.state().pairs, resumed.state().pairs);
+    continues_with_the_same_bits(&case, whole, 4);
 }

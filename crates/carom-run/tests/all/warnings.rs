@@ -112,56 +112,6 @@ fn a_secondary_side_coarser_than_the_primary() {
     assert!(ids(IMPACT, &["body.cylinder.element=T3"]).contains(&id));
 }
 
-/// Two blocks of one width, one beside the other, whose whole boundaries are in contact: the faces
-/// beside those that meet lie in common planes. Named sides, and a block that stands out, do not.
-#[test]
-fn outlines_that_are_flush() {
-    let block = |name: &str, x: f64, [shape, width]: [&str; 2]| {
-        format!(
-            r#"
-[[body]]
-name = "{name}"
-material = "m"
-element = "{}"
-mesh = {{ shape = "{shape}", min = [{x:?}, {width}], max = [{:?}, {}], cells = {} }}
-"#,
-            if shape == "box" { "Hex8" } else { "Q4" },
-            x + 1.0,
-            if shape == "box" { "1.0, 1.0" } else { "1.0" },
-            if shape == "box" { "[2, 2, 2]" } else { "[2, 2]" },
-        )
-    };
-    let case = |shape: &str, [low, beside]: [&str; 2], contact: &str| {
-        let dimension = if shape == "box" { 3 } else { 2 };
-        let (one, two) = (block("one", -1.0, [shape, low]), block("two", 0.01, [shape, beside]));
-        format!(
-            r#"
-dimension = {dimension}
-material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.0 }}]
-{one}{two}
-[[contact]]
-name = "strike"
-{contact}
-[time]
-end = 0.1
-step = 0.01
-scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }}
-"#
-        )
-    };
-    let between = "between = \"all\"\nself = false";
-    let named = "secondary = \"one.right\"\nprimary = \"two.left\"";
-    let has = |text: &str| ids(text, &[]).contains(&"flush-outlines".to_owned());
-    for (shape, same, other) in [("rectangle", "0.0", "-0.1"), ("box", "0.0, 0.0", "-0.1, -0.1")] {
-        assert!(has(&case(shape, [same, same], between)), "{shape}");
-        assert!(!has(&case(shape, [same, same], named)), "{shape}");
-        let lower = case(shape, [same, other], between);
-        let apart =
-            lower.replacen("max = [1.01, 1.0", "max = [1.01, 1.1", 1).replace("1.1, 1.0]", "1.1, 1.1]");
-        assert!(has(&lower) && !has(&apart), "{shape}");
-    }
-}
-
 #[test]
 fn pressures_on_meshes_that_do_not_match() {
     let unmatched = "unmatched-pressure".to_owned();

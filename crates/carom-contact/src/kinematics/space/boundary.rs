@@ -15,7 +15,7 @@ use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
 use crate::depth::Depth;
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
-const SHARP: f64 = 0.87;
+pub(super) const SHARP: f64 = 0.87;
 /// Component of a unit normal along an axis from which on a facet is a plane across it.
 const ALONG: f64 = 1.0 - 1e-9;
 /// Length of the sum of two normals, or of several with their angles, below which they cancel: at
@@ -147,9 +147,14 @@ impl Boundary {
         self.neighbours[facet][edge].map(|(neighbour, _)| neighbour)
     }
 
+    /// The facets at a node of an edge.
+    pub(super) fn facets_around(&self, node: usize) -> &[usize] {
+        self.around.get(&node).map_or(&[], Vec::as_slice)
+    }
+
     /// The facets at a corner of a facet.
     pub(super) fn around(&self, facet: usize, corner: usize) -> &[usize] {
-        self.around.get(&self.patch(facet).nodes[corner]).map_or(&[], Vec::as_slice)
+        self.facets_around(self.patch(facet).nodes[corner])
     }
 
     /// The facets that share a corner with a facet, without itself, ascending.
@@ -180,6 +185,18 @@ impl Boundary {
         let along = place(y, nodes[(edge + 1) % self.shape.corners()]) - place(y, nodes[edge]);
         // Counter-clockwise seen from outside: at a convex edge the normals turn about it.
         here.dot(&there) < SHARP && cross(here, there).dot(&along) > 0.0
+    }
+
+    /// The facets that share a corner with a facet and bend away from it by more than 30°.
+    pub(super) fn bent_away(&self, facet: usize, y: &[f64]) -> impl Iterator<Item = usize> {
+        let here = self.middle(facet, y);
+        self.ring(facet).into_iter().filter(move |&other| {
+            let there = self.middle(other, y);
+            let way = there.position - here.position;
+            here.normal.dot(&there.normal) < SHARP
+                && way.dot(&here.normal) < 0.0
+                && way.dot(&there.normal) > 0.0
+        })
     }
 
     /// Nodes of the side where sharp convex edges of different directions meet, ascending.

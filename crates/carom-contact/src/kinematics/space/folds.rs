@@ -22,7 +22,7 @@
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Tree};
 
-use super::boundary::Boundary;
+use super::boundary::{Boundary, SHARP};
 use super::patch::place;
 use crate::kinematics::Side;
 
@@ -34,8 +34,6 @@ const WALL: f64 = 3.0;
 const BEHIND: f64 = 1e-6;
 /// Cosine between the normals of a node and of a facet above which a wall has no such two faces.
 const ALIKE: f64 = 0.5;
-/// Cosine of the kink that separates smooth parts: 30°.
-const SHARP: f64 = 0.87;
 /// The direction that orders the places of a smooth part.
 const ALONG: Vector<3> = Vector([1.0, 0.618, 0.382]);
 

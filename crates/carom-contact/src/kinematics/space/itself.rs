@@ -29,7 +29,7 @@ impl WithEdges {
     ) -> Self {
         let folds = Arc::new(PatchFolds::new(side, piece, first_node, reference));
         let of = |nodes: Vec<usize>, which: Side| {
-            NodeToPatch::new(nodes, side.clone()).folding(folds.clone(), which)
+            NodeToPatch::new(nodes, side.clone()).of_body(side.clone()).folding(folds.clone(), which)
         };
         let others = [BTreeSet::new(), BTreeSet::new()];
         let edges = EdgeToEdge::new([side.clone(), side.clone()], &others, reference).folding(folds.clone());
@@ -62,6 +62,7 @@ impl NodeToPatch {
     pub(super) fn may_take(&self, node: usize, facet: usize, y: &[f64]) -> bool {
         let normal = |facet: usize| self.primary.middle(facet, y).normal;
         self.folds.as_ref().is_none_or(|(folds, side)| folds.met(node, facet, normal) == Some(*side))
+            && self.may_press(node, facet, y)
     }
 
     /// Of facets near a node, those that it may meet at positions with these normals, in either

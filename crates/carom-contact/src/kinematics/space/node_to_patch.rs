@@ -24,6 +24,7 @@ use super::folds::{PatchFolds, update_normals};
 use super::gap::PatchGap;
 use super::patch::{Feature, cross, place};
 use crate::kinematics::apart::Apart;
+use crate::kinematics::opposed::is_left;
 use crate::kinematics::tangents::tangents;
 use crate::kinematics::{Kinematics, OneWay, Passed, Side, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
@@ -60,6 +61,8 @@ pub struct NodeToPatch {
     /// Of nodes of the primary side itself: which facets they may meet, and which of two places
     /// that meet is the node's.
     pub(super) folds: Option<(Arc<PatchFolds>, Side)>,
+    /// The boundary of the nodes' own body.
+    own: Option<Boundary>,
     tools: Mutex<Tools>,
 }
 
@@ -90,13 +93,43 @@ impl NodeToPatch {
         let apart = Apart::new(both, 3, hull.weight());
         let swept = SweptPatch::new(primary.shape());
         let tools = Mutex::new(Tools { tree: Tree::default(), apart, swept, normals: Vec::new() });
-        Self { secondary, primary, hull, allowed: Vec::new(), kept: Vec::new(), folds: None, tools }
+        Self {
+            secondary,
+            primary,
+            hull,
+            allowed: Vec::new(),
+            kept: Vec::new(),
+            folds: None,
+            own: None,
+            tools,
+        }
     }
 
     /// The same with a depth for each node that it may have without contact.
     #[must_use]
     pub fn with_allowed(self, allowed: Vec<f64>) -> Self {
         Self { allowed, ..self }
+    }
+
+    /// The same for nodes of a body with this boundary.
+    #[must_use]
+    pub fn of_body(self, own: Boundary) -> Self {
+        Self { own: Some(own), ..self }
+    }
+
+    /// Whether a node can press on a facet, rather than on one beside it (`opposed.rs`).
+    pub(super) fn may_press(&self, node: usize, facet: usize, y: &[f64]) -> bool {
+        let Some(own) = &self.own else { return true };
+        let around = own.facets_around(node);
+        let most_opposed = |facet: usize| {
+            let there = self.primary.middle(facet, y).normal;
+            let cosines = around.iter().map(|&own_facet| own.middle(own_facet, y).normal.dot(&there));
+            cosines.fold(f64::INFINITY, f64::min)
+        };
+        let here = self.primary.middle(facet, y);
+        let height = (place(y, node) - here.position).dot(&here.normal);
+        let sized = |other: usize| (other, self.primary.patch(other).length(y));
+        !is_left(facet, height, || self.primary.bent_away(facet, y).map(sized), most_opposed)
     }
 
     /// The same for nodes of the primary side itself.
@@ -350,6 +383,7 @@ impl Kinematics for NodeToPatch {
             }
             self.find_into(tree, k, before, now, &mut near);
             self.retain_met(node, normals, &mut near);
+            near.retain(|&facet| self.may_press(node, facet, before));
             if next > first {
                 let held = &pairs[first..next];
                 if let Some((facet, [xi, eta])) =
@@ -387,8 +421,9 @@ impl Kinematics for NodeToPatch {
         let mut near = Vec::new();
         let mut met = |&k: &usize| {
             self.find_into(tree, k, before, now, &mut near);
-            self.retain_met(self.secondary[k], normals, &mut near);
             let node = self.secondary[k];
+            self.retain_met(node, normals, &mut near);
+            near.retain(|&facet| self.may_press(node, facet, before));
             let first = self.first(swept, (&near, normals), node, before, now);
             let (theta, _) = first.filter(|&(_, facet)| self.is_met(node, facet, normals))?;
             (self.slack(k) == 0.0).then(|| theta.clamp(0.0, 1.0))

@@ -1,0 +1,31 @@
+//! Which facets of another body a node can press on. With the outward normals nᵢ of the facets at a
+//! node of one body, a plane with the outward normal n keeps the node's body in front of it only if
+//! (Farkas' lemma)
+//!
+//! ```text
+//! {x : nᵢ·x ≤ 0} ⊂ {x : n·x ≥ 0}    ⇔    −n = Σ λᵢ nᵢ,  λᵢ ≥ 0,    so that min nᵢ·n < 0
+//! ```
+//!
+//! Where two bodies are flush, the nodes of their common outline lie on the faces beside the edges
+//! that they meet, as near as on the faces that they press on, and only the normals tell which. Both
+//! turn as bodies deform. A facet is left to one across a sharp edge of its body if no normal of the
+//! node opposes the first, one opposes the second, and the node is not clearly in front of the first.
+
+/// Cosine above which a normal does not oppose another one: 11° from perpendicular.
+const ASIDE: f64 = -0.2;
+/// Cosine below which it does: within 45° of opposite.
+const OPPOSED: f64 = -0.7;
+/// Height over a facet, in lengths of the one beside it, up to which the node may be before that one.
+const FLUSH: f64 = 0.02;
+
+/// Whether a facet over which a node has this height is left to one beside it. `beside` gives those
+/// across sharp edges, each with its length; `most_opposed` is the least nᵢ·n for the normal of a facet.
+pub(super) fn is_left<I: Iterator<Item = (usize, f64)>>(
+    facet: usize,
+    height: f64,
+    beside: impl Fn() -> I,
+    most_opposed: impl Fn(usize) -> f64,
+) -> bool {
+    most_opposed(facet) > ASIDE
+        && beside().any(|(other, length)| height <= FLUSH * length && most_opposed(other) < OPPOSED)
+}
