@@ -32,6 +32,7 @@ mod schema;
 mod scheme;
 mod solids;
 mod spec;
+mod stored;
 mod suggest;
 mod surface_file;
 mod tables;

@@ -56,7 +56,7 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
     }
     let payload = last_checkpoint(&spec.from).map_err(|e| unreadable(e.to_string()))?;
     let version = |e: String| unreadable(format!("it was written by Carom {}: {e}", manifest.version));
-    let old: Case = serde_json::from_value(manifest.case.clone()).map_err(|e| version(e.to_string()))?;
+    let old = Case::from_json(manifest.case.clone()).map_err(|e| version(e.to_string()))?;
     let state: State = postcard::from_bytes(&payload).map_err(|e| version(e.to_string()))?;
     let steps = old.time.steps();
     if state.step as usize != steps {

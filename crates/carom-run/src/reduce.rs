@@ -81,7 +81,7 @@ pub fn reduce(directory: &Path, out: &Path) -> Result<Reduced, ReduceError> {
             format!("{place} has no stopped.json: the run has not stopped, or an earlier version made it");
         return Err(unusable(what, "reduce a run that ended with exit code 3"));
     };
-    let case: Case = serde_json::from_value(manifest.case.clone())
+    let case = Case::from_json(manifest.case.clone())
         .map_err(|e| unusable(format!("the case in {place} does not fit this version: {e}"), AGAIN))?;
     if case.manufactured.is_some() {
         let what = "a case with [manufactured] cannot continue from a state";

@@ -3,7 +3,7 @@
 
 use carom_case::*;
 
-use super::resolved_as;
+use super::{resolved_as, stored};
 
 const GMSH: &str = include_str!("../../../../cases/gmsh/gmsh.toml");
 
@@ -26,8 +26,7 @@ fn the_shipped_case_stores_its_meshes() {
     assert_eq!((surface.as_str(), hash.len(), repairs.len()), ("prism", 64, 0));
     assert_eq!(*sides, ["axis", "bottom", "right", "top"]);
     assert!(case.bodies[1].mesh.estimate(carom_solid::Element::T10).1 > 300.0);
-    let back: Case = serde_json::from_str(&serde_json::to_string(&case).unwrap()).unwrap();
-    assert_eq!(back, case);
+    assert_eq!(stored(&case), case);
     assert_eq!(case.bodies[1].mesh.verify(), Ok(()));
 }
 
@@ -130,8 +129,7 @@ fn a_plane_mesh_is_extruded() {
         let whole = format!("body.part.mesh={{ file = \"sector_order{order}.msh\", volume = \"wedge\" }}");
         let made = |sets: &[&str]| {
             let case = part(sets).unwrap_or_else(|p| panic!("{}", p[0]));
-            let written = serde_json::to_string(&case).unwrap();
-            assert_eq!(serde_json::from_str::<Case>(&written).unwrap(), case);
+            assert_eq!(stored(&case), case);
             assert_eq!(case.bodies[0].mesh.verify(), Ok(()));
             let mesh = case.bodies[0].make_mesh(3).unwrap();
             let (cells, nodes) = case.bodies[0].mesh.estimate(mesh.element);

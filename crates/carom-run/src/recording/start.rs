@@ -67,7 +67,7 @@ pub fn run_in_memory(
 fn started(case: &Case, source: Source, options: Options) -> Result<(Simulation, Manifest), RunError> {
     let simulation = Setup::new(case).threads(options.threads).start().map_err(RunError::Case)?;
     let simulation = if options.audit { simulation.audited() } else { simulation };
-    let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
+    let resolved = case.to_json().map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
     let mut manifest =
         Manifest::new(version, resolved, source, columns(case, simulation.model()), options.threads);
@@ -110,14 +110,13 @@ pub fn resume_with(
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
     let manifest = Manifest::read(directory)?;
-    let mut case: Case =
-        serde_json::from_value(manifest.case.clone()).map_err(|error| RunError::Incompatible {
-            what: format!(
-                "the case in {} was resolved by Carom {} and does not fit this version: {error}",
-                directory.join("manifest.json").display(),
-                manifest.version
-            ),
-        })?;
+    let mut case = Case::from_json(manifest.case.clone()).map_err(|error| RunError::Incompatible {
+        what: format!(
+            "the case in {} was resolved by Carom {} and does not fit this version: {error}",
+            directory.join("manifest.json").display(),
+            manifest.version
+        ),
+    })?;
     case.functions = functions;
     let case = &case;
     if manifest.status == Status::Finished {

@@ -275,8 +275,8 @@ fn contact_case(path: &Path) -> Option<(Case, Span)> {
     let is_slow = case.expects.iter().any(|expect| expect.slow);
     let span = match ["ladder", "space", "self"].iter().any(|folder| is_in(folder)) {
         _ if is_slow => Span { after: 3, at_most: 60 },
-        true => Span { after: 20, at_most: 420 },
-        false => Span { after: 300, at_most: 300 },
+        true => Span { after: 8, at_most: 420 },
+        false => Span { after: 150, at_most: 250 },
     };
     (!case.contacts.is_empty()).then_some((case, span))
 }
