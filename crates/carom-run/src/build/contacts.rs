@@ -15,6 +15,7 @@ use carom_contact::{
 use carom_mechanics::model::{Augmentation, BodyInstance, Contact, Friction, Model};
 use carom_solid::FacetShape;
 
+use super::branching::branching;
 use super::obstacles::{self, Moving};
 use super::side::{Side, coordinates, side};
 use crate::recording::consistent_weights;
@@ -55,6 +56,12 @@ pub(super) fn contacts(
                 continue;
             }
         };
+        // Of a rigid obstacle's contact only the nodes are needed.
+        if let Ok(primary) = side(parts, spec.primary.side().unwrap_or(""), "") {
+            let keys = [(&primary, "primary"), (&secondary, "secondary")];
+            let both = &keys[..if primary.part == secondary.part { 1 } else { 2 }];
+            problems.extend(both.iter().filter_map(|(side, key)| branching(side, parts, spec.path(key))));
+        }
         let obstacle = obstacles.iter().find(|obstacle| obstacle.contact == k);
         let kinematics: Box<dyn Kinematics> = match (shape, spec.primary.side()) {
             (Some(shape), _) => {

@@ -1,6 +1,7 @@
 //! Builds a model from a resolved case. Names that the meshes lack are reported as a [`Problem`]
 //! with their key.
 
+mod branching;
 mod contacts;
 mod given;
 mod loads;

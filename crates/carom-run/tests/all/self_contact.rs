@@ -147,6 +147,36 @@ fn rectangles(of: [(&str, [f64; 4], [usize; 2]); 2]) -> String {
         + &list("Elements", cells)
 }
 
+/// Two squares with one node in common: which facet follows which is not known there.
+#[test]
+fn a_boundary_that_meets_itself_in_a_node_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let apart = rectangles([("low", [0.0, 1.0, 0.0, 1.0], [1, 1]), ("high", [1.0, 2.0, 1.0, 2.0], [1, 1])]);
+    // The corners at (1, 1) are the nodes 4 and 5.
+    let joined = apart.replace(" 5 7 8\n", " 4 7 8\n").replace(" 5 8 6\n", " 4 8 6\n");
+    let refused = "the boundary of body \"squares\" meets itself in the single node at [1, 1]";
+    for (text, expected) in [(apart, None), (joined, Some(refused))] {
+        let mesh = folder.path().join("squares.msh");
+        std::fs::write(&mesh, text).unwrap();
+        let text = format!(
+            r#"
+            dimension = 2
+            material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 1.0, poisson = 0.3 }}]
+            contact = [{{ name = "itself", between = "all" }}]
+            time = {{ end = 0.1, step = 0.1, scheme = {{ kind = "newmark", rho_inf = 1 }} }}
+            [[body]]
+            name = "squares"
+            material = "m"
+            element = "T3"
+            mesh = {{ file = '{}', surface = "both", slits = true }}
+            "#,
+            mesh.display()
+        );
+        let problems = Setup::new(&Case::from_text(&text, &[]).unwrap()).start().err();
+        assert_eq!(problems.as_ref().map(|problems| problems[0].what.as_str()), expected);
+    }
+}
+
 /// A small box strikes the end of a plate of one cell at a slant, fast enough to be past it after a
 /// step: nothing penetrates at its ends.
 #[test]
