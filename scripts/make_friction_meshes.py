@@ -8,7 +8,8 @@ ring further inside. Surface `disc`; curve `arc`. fine-disc.msh: the same with 1
 
 belt.msh: a belt of thickness 0.01 along a quarter of a circle of radius 1 about the origin, from (1, 0)
 to (0, 1), with straight ends of length 0.1. Surface `belt`; curves `inner`, `low` and `far` (the ends).
-half-belt.msh and whole-belt.msh: the same along a half and a whole circle.
+half-belt.msh and whole-belt.msh: the same along a half and a whole circle. running-belt.msh: along a
+quarter, half as thick, with cells twice as long and a low end of length 1.6 that runs onto the circle.
 
 cattaneo.msh: the disc again, with cells of 0.0061 where it is pressed below and above, |x| < 0.11, which
 grow by 0.45 of the distance from there. Triangles are bisected at their longest edge until they are small
@@ -62,17 +63,18 @@ def disc(name, edges, radii):
     write(name, nodes, {"disc": cells, "arc": arc})
 
 
-def belt(name, angle, cells_of_arc, cells_of_end=6):
-    """Over quarters of a turn."""
+def belt(name, angle, cells_of_arc, cells_of_end=6, low_end=(0.1, 6), half=0.005):
+    """Over quarters of a turn; `low_end`: the length of that end and its cells; `half`: of the thickness."""
     end = (round(cos(angle)), round(sin(angle)))
-    count = cells_of_arc + 2 * cells_of_end
+    (length, cells_of_low) = low_end
+    count = cells_of_low + cells_of_arc + cells_of_end
     nodes = {}
 
     def node(i, j):
         """Node i of 2 count along the belt and j of 2 through its thickness."""
-        r, s = 1 + 0.005 * j, i / 2 - cells_of_end
+        r, s = 1 + half * j, i / 2 - cells_of_low
         if s < 0:
-            place = (r, 0.1 * s / cells_of_end)
+            place = (r, length * s / cells_of_low)
         elif s > cells_of_arc:
             beyond = 0.1 * (s - cells_of_arc) / cells_of_end
             place = (r * end[0] - beyond * end[1], r * end[1] + beyond * end[0])
@@ -220,4 +222,5 @@ if __name__ == "__main__":
     belt("belt.msh", pi / 2, 90)
     belt("half-belt.msh", pi, 120)
     belt("whole-belt.msh", 2 * pi, 240)
+    belt("running-belt.msh", pi / 2, 45, low_end=(1.6, 46), half=0.0025)
     cattaneo()

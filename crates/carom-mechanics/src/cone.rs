@@ -208,35 +208,33 @@ impl Closed {
         self.solve(model, state, right, system, (ways, &laws))
     }
 
-    /// The direction in which each pair slipped in the step, but those not closed `before`.
-    pub(crate) fn directions(&self, state: &State, before: &[Vec<Pair>]) -> Vec<Option<Along>> {
+    /// Whether each pair stuck in the step, or in which direction it slipped if it was closed
+    /// `before`.
+    pub(crate) fn holds(&self, state: &State, before: &[Vec<Pair>]) -> Vec<Option<Hold>> {
         let of = |&(k, p): &(usize, usize)| {
             let pair = &state.pairs[k][p];
             let is_new = !before[k].iter().any(|old| old.active && old.node == pair.node);
-            match pair.tangential.hold {
-                Hold::Slip(direction) if !is_new => Some(direction),
-                _ => None,
-            }
+            Some(pair.tangential.hold).filter(|hold| *hold == Hold::Stick || !is_new)
         };
         self.places.iter().map(of).collect()
     }
 
-    /// The accelerations: pairs slip in the direction in which they `slid`, others with a slip rate
-    /// in that of it.
+    /// The accelerations: pairs with a slip rate slip in the direction in which they `slid`, or in
+    /// that of the rate; those that `slid` says stuck have none.
     pub(crate) fn accelerate(
         &self,
         model: &Model,
         state: &mut State,
         right: &Right,
-        slid: &[Option<Along>],
+        slid: &[Option<Hold>],
         system: &mut System,
     ) -> Result<Motion, Rejected> {
         let mut ways = self.ways(state);
         let (rates, still) = (self.slip_rates(&state.v), AT_REST * max_abs(&state.v));
         for (i, way) in ways.iter_mut().enumerate() {
             let hold = Hold::of(rates[i], still);
-            if hold != Hold::Stick {
-                let known = slid.get(i).copied().flatten().map(Hold::Slip);
+            let known = slid.get(i).copied().flatten();
+            if hold != Hold::Stick && known != Some(Hold::Stick) {
                 (way.hold, way.is_free) = (known.unwrap_or(hold), false);
             }
         }

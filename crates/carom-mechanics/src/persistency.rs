@@ -15,7 +15,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_contact::{ActiveSet, Along, Contender, Row, Rows, inner, length};
+use carom_contact::{ActiveSet, Along, Contender, Hold, Row, Rows, inner, length};
 
 use crate::active_rows::{measure_all, pressing};
 use crate::cone::{AT_REST, Closed, Right};
@@ -63,7 +63,7 @@ pub(crate) fn project(
     let slips = closed.slip_rates(&state.v);
     let stopping: Vec<Along> = slips.iter().map(|rate| rate.map(|rate| -rate)).collect();
     let right = Right { forces: &vec![0.0; dofs], gaps: &closing, slips: &stopping };
-    let slid = closed.directions(state, impact.pairs);
+    let slid = closed.holds(state, impact.pairs);
     let jump = closed.impulse(model, state, &right, system)?;
     for i in (0..dofs).filter(|&i| !model.massless[i]) {
         state.v[i] += jump.x[i];
@@ -77,11 +77,16 @@ pub(crate) fn project(
     let mut rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| inner(rate, *q)).sum::<f64>();
 
     // Velocities at the end of a step ring from node to node, its slips do not: a pair slips on in
-    // the direction of its slip, unless the impulse turns it round.
+    // the direction of its slip, unless the impulse turns it round. One that sticks has slip rates
+    // of the size that the step's tolerance leaves, which are none.
     let still = AT_REST * max_abs(&state.v);
-    let goes_on = slips.iter().zip(&after).map(|(a, b)| length(*a) > still && inner(*a, *b) > 0.0);
-    let slid = slid.into_iter().zip(goes_on).map(|(d, on)| d.filter(|_| on));
-    let slid = closed.places.iter().zip(slid).filter_map(|(place, d)| Some((*place, d?))).collect();
+    let left = still.max(model.gap_tolerance * impact.slope);
+    let goes_on = slips.iter().zip(&after).map(|(a, b)| [length(*a), length(*b), inner(*a, *b)]);
+    let slid = slid.into_iter().zip(goes_on).map(|(hold, [before, now, along])| match hold? {
+        Hold::Stick => Some(Hold::Stick).filter(|_| now <= left),
+        slip @ Hold::Slip(_) => Some(slip).filter(|_| before > still && along > 0.0),
+    });
+    let slid = closed.places.iter().zip(slid).filter_map(|(place, hold)| Some((*place, hold?))).collect();
 
     let before = state.ledger.kinetic;
     take(model, state, before - model.kinetic(&state.v) + rubbed);
@@ -98,7 +103,7 @@ pub(crate) fn project(
 }
 
 /// Accelerations and multipliers of a state with closed pairs, of those that are asked for; `slid`:
-/// directions in which pairs slip, of the others those of their slip rates.
+/// which pairs stick, and directions in which pairs slip, of the others those of their slip rates.
 ///
 /// A pair that pulls is let go, with its friction, and one whose gap would close is held again, by
 /// the rules for the pairs of a step (`carom-contact/src/active_set.rs`): ties change together.
@@ -107,7 +112,7 @@ pub(crate) fn accelerate(
     state: &mut State,
     gaps: &[Rows],
     asks: impl Fn(&Place) -> bool,
-    slid: &BTreeMap<Place, Along>,
+    slid: &BTreeMap<Place, Hold>,
     system: &mut System,
 ) -> Result<(), Rejected> {
     let pairs: Vec<Place> = pressing(state).filter(&asks).collect();
@@ -127,8 +132,8 @@ pub(crate) fn accelerate(
         let turning: Vec<Along> =
             closed.slip_curvatures(model, state).iter().map(|bent| bent.map(|b| -b)).collect();
         let right = Right { forces: &forces, gaps: &bending, slips: &turning };
-        let along: Vec<Option<Along>> = closed.places.iter().map(|place| slid.get(place).copied()).collect();
-        let motion = closed.accelerate(model, state, &right, &along, system)?;
+        let known: Vec<Option<Hold>> = closed.places.iter().map(|place| slid.get(place).copied()).collect();
+        let motion = closed.accelerate(model, state, &right, &known, system)?;
 
         let [force, acceleration] = [&forces, &motion.x].map(|x| ROUND_OFF * max_abs(x));
         let contender = |(i, &(k, p)): (usize, &Place)| {

@@ -6,21 +6,26 @@
 //! ```text
 //! Δy·M Δv/Δt − ΔK + Δy·F̄_int − ΔU                             stages, with their mean internal force
 //! (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa + Δt² (β−γ/2) Δa·M(a_s + γΔa)      α family (Krenk 2006)
+//! (Δy·F̄_int − ΔU) + Δy·M((1−α_m) a_s+1 + α_m a_s) − Δt v̄·M((1−γ) a_s + γ a_s+1)     with jumps of v
+//! Δy·F_int(y_½) − ΔU                                             Moreau and Jean's rule with θ = ½
+//! Δy·(F_int,s + F_int,s+1)/2 − ΔU − Δ((v − Δy/Δt)·M(v − Δy/Δt))/2             central differences
 //! Δy·F_int,s+1 − Δy·(F_ext,s+1 − F_ext,s)/2 − ΔU                 load steps, whose contact works at their end
 //! Δy·(F_int,s + F_int,s+1)/2 − Δy·(F_c,s+1 − F_c,s)/2             of their moved nodes instead
 //! ```
 //!
-//! with v before projections. Intermediate stages, of which a state knows nothing, follow from the
-//! velocity at the end of the step, where no projection has changed it.
+//! with v before projections, v̄ the mean of those at both ends, and a without impulses.
+//! Intermediate stages, of which a state knows nothing, follow from the velocity at the end of the
+//! step, where no projection has changed it.
 
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use carom_run::case::Case;
+use carom_run::case::{BodySpec, Case};
 use carom_run::model::Model;
+use carom_run::stability::stable_step;
 use carom_run::{GridReport, Setup, Simulation, State};
-use carom_time::{Kernel, Memory, Scheme, Stage};
+use carom_time::{Impulse, Integrator, Kernel, Memory, Nonsmooth, Scheme, Stage};
 
 use super::common::dot;
 
@@ -128,6 +133,36 @@ fn of_stages(
     )
 }
 
+/// What a step of Chung and Hulbert's scheme with jumps of the velocity dissipates, or one of
+/// Moreau and Jean's rule with θ = ½.
+fn of_impulses(model: &Model, scheme: &dyn Impulse, before: &State, now: &State, dt: f64) -> f64 {
+    let moved = sum(&now.y, -1.0, &before.y);
+    let strain = |y: &[f64]| Energies::of(model, y, &now.v);
+    let [start, end] = [strain(&before.y), strain(&now.y)];
+    let stored = end.strain - start.strain;
+    let Some(alpha) = scheme.alpha() else {
+        return dot(&moved, &strain(&sum(&before.y, 0.5, &moved)).internal) - stored;
+    };
+    let mixed = |old: f64, x: &[f64], y: &[f64]| -> Vec<f64> {
+        x.iter().zip(y).map(|(x, y)| old * x + (1.0 - old) * y).collect()
+    };
+    let inertia = times_mass(model, &mixed(alpha.alpha_m, &before.a, &now.a));
+    let smooth = times_mass(model, &mixed(1.0 - alpha.gamma, &before.a, &now.a));
+    dot(&moved, &mixed(alpha.alpha_f, &start.internal, &end.internal)) - stored + dot(&moved, &inertia)
+        - 0.5 * dt * dot(&sum(&before.v, 1.0, &now.v), &smooth)
+}
+
+/// What an explicit step dissipates. Its increment is that of its velocity: a step from rest can be
+/// shorter than the last digit of positions.
+fn of_central(model: &Model, before: &State, now: &State, dt: f64) -> f64 {
+    let velocity = &before.half_step.velocity;
+    let [start, end] =
+        [before, now].map(|state| Energies::of(model, &state.y, &sum(&state.v, -1.0, velocity)));
+    0.5 * dt * dot(velocity, &sum(&start.internal, 1.0, &end.internal))
+        - (end.strain - start.strain)
+        - (end.kinetic - start.kinetic)
+}
+
 /// What a load step dissipates: the mean of the loads that are in equilibrium at its ends works,
 /// whatever was in equilibrium at the start of the run.
 fn of_statics(model: &Model, before: &State, now: &State) -> f64 {
@@ -144,6 +179,8 @@ fn of_statics(model: &Model, before: &State, now: &State) -> f64 {
     moved.map(|(i, (y, old))| (y - old) * work(i)).sum::<f64>() - (end.strain - start.strain)
 }
 
+/// Newton's tolerance.
+const TIGHT: &str = "newton.tolerance=1e-13";
 /// Number of steps of a case.
 const STEPS: u64 = 16;
 
@@ -165,12 +202,10 @@ struct Judged {
 fn judge(case: &Case) -> Option<Judged> {
     let mut sim: Simulation = Setup::new(case).start().ok()?;
     let (scheme, is_static) = (&case.time.scheme, case.time.scheme.is_static());
-    let alpha = scheme.integrator().ok().and_then(|scheme| scheme.alpha());
+    let integrator = scheme.integrator().ok();
+    let alpha = integrator.as_ref().and_then(Integrator::alpha);
     let kernel = scheme.kernel();
-    if !is_static && kernel.is_none() {
-        return None;
-    }
-    let mut judged = Judged::default();
+    let (mut judged, mut bisected) = (Judged::default(), false);
     while !sim.finished() && sim.state().step < STEPS {
         let before = sim.state().clone();
         let mut report = GridReport::default();
@@ -190,9 +225,16 @@ fn judge(case: &Case) -> Option<Judged> {
         let work = changed.iter().zip(&sum(&now.y, -1.0, &before.y)).map(|(f, d)| (f * d).abs()).sum::<f64>();
         let weight: f64 = model.gravity.iter().zip(&now.y).map(|(f, y)| (f * y).abs()).sum();
         judged.noise = judged.noise.max(work + f64::EPSILON * weight);
+        if scheme.conserves() {
+            // Its internal forces are quotients of changes of energy.
+            let digits: f64 = energies.internal.iter().map(|f| f64::EPSILON * reach * f.abs()).sum();
+            judged.noise = judged.noise.max(digits);
+        }
         // A grid step that was bisected, now or where the last one was, is several steps.
         let dt = now.time - before.time;
-        if report.rejected > 0 || now.carried.dt().is_some_and(|last| (last - dt).abs() > 1e-9 * dt) {
+        let was_bisected = std::mem::replace(&mut bisected, report.rejected > 0);
+        let another = now.carried.dt().is_some_and(|last| (last - dt).abs() > 1e-9 * dt);
+        if bisected || was_bisected || another {
             continue;
         }
         let projected = now.pairs.iter().zip(&before.pairs).any(|(now, before)| {
@@ -200,10 +242,17 @@ fn judge(case: &Case) -> Option<Judged> {
                 .filter(|pair| pair.active)
                 .any(|pair| !before.iter().any(|old| old.active && old.node == pair.node))
         });
-        let predicted = match (&alpha, &kernel) {
+        let predicted = match (&integrator, &alpha, &kernel) {
             _ if is_static => Some(of_statics(model, &before, now)),
-            (Some(alpha), _) => Some(of_alpha(model, alpha, &before, &now.y, dt)),
-            (None, Some(kernel)) if !kernel.two_step() => {
+            (_, Some(alpha), _) => Some(of_alpha(model, alpha, &before, &now.y, dt)),
+            (Some(Integrator::Nonsmooth(Nonsmooth::Impulse(scheme), _)), ..) => {
+                Some(of_impulses(model, &**scheme, &before, now, dt))
+            }
+            // The first step also begins: its contact force acts before the start, too.
+            (Some(Integrator::Nonsmooth(Nonsmooth::Explicit(_), _)), ..) => {
+                (before.half_step.dt == now.half_step.dt).then(|| of_central(model, &before, now, dt))
+            }
+            (_, None, Some(kernel)) if !kernel.two_step() => {
                 of_stages(model, &**kernel, &before, now, dt, projected)
             }
             _ => None,
@@ -217,18 +266,43 @@ fn judge(case: &Case) -> Option<Judged> {
 }
 
 /// Schemes by which every dynamic case is run, besides its own.
-const OTHERS: [&str; 2] = [
+const OTHERS: [&str; 7] = [
     r#"time.scheme={ kind = "chung-hulbert", rho_inf = 0.5 }"#,
     r#"time.scheme={ kind = "newmark", beta = 0.25, gamma = 0.5 }"#,
+    r#"time.scheme={ kind = "energy-momentum" }"#,
+    r#"time.scheme={ kind = "moreau-jean", theta = 0.5 }"#,
+    r#"time.scheme={ kind = "nonsmooth-generalized-alpha", rho_inf = 0.5 }"#,
+    r#"time.scheme={ kind = "central-difference" }"#,
+    r#"time.scheme={ kind = "paoli-schatzman" }"#,
 ];
+
+/// A case with one of these schemes, if it allows it: explicit ones with lumped masses, and a step
+/// that is stable.
+fn with_scheme(path: &Path, own: &Case, scheme: &str) -> Option<Case> {
+    let mut sets = vec![TIGHT.to_owned(), scheme.to_owned()];
+    let lumped = |body: &BodySpec| format!(r#"body.{}.mass="lumped""#, body.name);
+    let read = |sets: &[String]| {
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        Case::from_file(path, &sets).ok()
+    };
+    if let Some(case) = read(&sets).filter(|case| !case.time.scheme.is_explicit()) {
+        return Some(case);
+    }
+    sets.extend(own.bodies.iter().map(lumped));
+    let longest = 0.9 * stable_step(&Setup::new(&read(&sets)?).build().ok()?)?.power;
+    if longest < own.time.step {
+        let end = (STEPS + 1) as f64 * longest;
+        sets.extend([format!("time.step={longest:e}"), format!("time.end={end:e}")]);
+    }
+    read(&sets)
+}
 
 /// The case with its own scheme and with others; studies are other runs of the same cases.
 fn variants(path: &Path) -> Vec<(String, Case)> {
-    const TIGHT: &str = "newton.tolerance=1e-13";
     let name = |scheme: &str| format!("{} {scheme}", path.file_name().unwrap().to_string_lossy());
     let Ok(own) = Case::from_file(path, &[TIGHT]) else { return Vec::new() };
     let others = OTHERS.iter().filter(|_| !own.time.scheme.is_static());
-    let others = others.filter_map(|other| Some((name(other), Case::from_file(path, &[TIGHT, other]).ok()?)));
+    let others = others.filter_map(|other| Some((name(other), with_scheme(path, &own, other)?)));
     let others: Vec<_> = others.collect();
     std::iter::once((name(""), own)).chain(others).collect()
 }

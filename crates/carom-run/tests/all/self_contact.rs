@@ -64,17 +64,24 @@ fn pieces_of_one_body_move_like_bodies() {
 }
 
 /// They also rub, because the first one moves across. They are flush: contact of the sides that
-/// meet has no choice of what else to press on.
+/// meet has no choice of what else to press on. When the first one moves slowly all nodes stick at
+/// first, with slips that are round-off.
 #[test]
 fn pieces_of_one_body_rub_like_bodies() {
-    let across = |body: String| body.replace(r#""0"]"#, r#""if(X < 0, 0.06, 0)"]"#);
+    for (speed, work) in [("0.06", -1.9e-4), ("0.02", -1.95e-7)] {
+        rub_like_bodies(speed, work);
+    }
+}
+
+fn rub_like_bodies(speed: &str, work: f64) {
+    let across = |body: String| body.replace(r#""0"]"#, &format!(r#""if(X < 0, {speed}, 0)"]"#));
     let one = strips(&across(body("both", "both")), r#"between = ["both"], mu = 0.2"#);
     let two = strips(
         &across(body("first", "first") + &body("second", "second")),
         r#"secondary = "second.joint", primary = "first.face", mu = 0.2"#,
     );
     let [a, b] = same(&one, &two, 1e-10).map(|simulation| simulation.state().ledger.friction_work);
-    assert!(a < -1e-5 && (a - b).abs() < 1e-12, "{a} {b}");
+    assert!((a / work - 1.0).abs() < 0.01 && (a - b).abs() < 1e-12, "{a} {b}");
 }
 
 /// Runs both, which must end with the same positions; slips are found to 1e-10.
