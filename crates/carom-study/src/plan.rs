@@ -59,22 +59,25 @@ impl Plan {
         Self::with_case(study, folder, None)
     }
 
+    /// The cases of all arms, without those of a computed reference and the members of an ensemble;
+    /// no model is built.
+    ///
+    /// # Errors
+    /// As [`Self::of`], as far as there are such without models.
+    pub fn cases(study: &Document, folder: &Path) -> Result<Vec<Case>, CaseError> {
+        let (file, drafts, bases) = opened(study, folder, None)?;
+        let mut checked = Checked { study, found: Vec::new() };
+        let cases = checked.read(&file, &drafts, &bases)?;
+        checked.end().map(|()| cases)
+    }
+
     /// As [`Self::of`], with a case that has been read, and need not be a file: that of its name.
     ///
     /// # Errors
     /// As [`Self::of`].
     pub fn with_case(study: &Document, folder: &Path, case: Option<&Document>) -> Result<Self, CaseError> {
+        let (file, drafts, bases) = opened(study, folder, case)?;
         let mut problems = Vec::new();
-        let file = file::read(study, folder, &mut problems);
-        let drafts = arms::all(&file);
-        // Parts that could not be read would give misleading errors about unknown names.
-        if problems.is_empty() {
-            names(&file, &drafts, &mut problems);
-        }
-        if !problems.is_empty() {
-            return Err(study.diagnose_all(&problems));
-        }
-        let bases = bases(study, folder, case, &file, &drafts)?;
         let mut checked = Checked { study, found: Vec::new() };
         // A misspelt key of one arm is told before the models of the others are built.
         checked.read(&file, &drafts, &bases)?;
@@ -107,6 +110,26 @@ struct Planned<'a> {
     case: Case,
     warnings: Vec<Warning>,
     base: &'a Base,
+}
+
+/// A study file that has been read, its arms, and the case files that they change.
+fn opened(
+    study: &Document,
+    folder: &Path,
+    case: Option<&Document>,
+) -> Result<(StudyFile, Vec<Draft>, BTreeMap<String, Base>), CaseError> {
+    let mut problems = Vec::new();
+    let file = file::read(study, folder, &mut problems);
+    let drafts = arms::all(&file);
+    // Parts that could not be read would give misleading errors about unknown names.
+    if problems.is_empty() {
+        names(&file, &drafts, &mut problems);
+    }
+    if !problems.is_empty() {
+        return Err(study.diagnose_all(&problems));
+    }
+    let bases = bases(study, folder, case, &file, &drafts)?;
+    Ok((file, drafts, bases))
 }
 
 /// The case files of a study, by their names in it.
@@ -144,21 +167,22 @@ impl Checked<'_> {
         if found.is_empty() { Ok(()) } else { Err(CaseError::Wrong(found)) }
     }
 
-    /// Reads the cases of drafts; their models are not built.
+    /// The cases of drafts; their models are not built.
     fn read(
         &mut self,
         file: &StudyFile,
         drafts: &[Draft],
         bases: &BTreeMap<String, Base>,
-    ) -> Result<(), CaseError> {
+    ) -> Result<Vec<Case>, CaseError> {
+        let mut cases = Vec::new();
         for draft in drafts {
-            if let Some(base) = base_of(file, draft, bases)
-                && let Err(error) = read_with(&base.name, &base.text, &changes(draft))
-            {
-                self.add(draft, base, error, read_with)?;
+            let Some(base) = base_of(file, draft, bases) else { continue };
+            match read_with(&base.name, &base.text, &changes(draft)) {
+                Ok((_, case)) => cases.push(case),
+                Err(error) => self.add(draft, base, error, read_with)?,
             }
         }
-        Ok(())
+        Ok(cases)
     }
 
     /// The changes of a draft, its case and warnings; none if the case is wrong.

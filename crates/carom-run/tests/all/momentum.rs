@@ -5,14 +5,17 @@
 //! moment either: Σ y × ∇g = 0 and Σ y × H = 0 for the rows of every closed pair and of its slips.
 //! And no contact pulls: λ ≤ 0 at the end of every step.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use carom_contact::{Row, Rows};
-use carom_run::case::{Case, ContactSpec, Document, read};
+use carom_run::case::{Case, ContactSpec, Document, MeshSpec, read};
 use carom_run::model::{BodyInstance, Model};
 use carom_run::{Setup, Simulation, State};
+
+use carom_study::Plan;
 
 use super::common::{BAR, schemes};
 
@@ -254,8 +257,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The case of a file; none of a study (other runs of the cases beside it), of a case without
-/// contact, or where it cannot be judged.
+/// The case of a file; none of a study, of a case without contact, or where it cannot be judged.
 /// The contact of those that take long is judged while it begins.
 fn contact_case(path: &Path) -> Option<(Case, Span)> {
     let document = Document::open(path, &[TIGHT.to_owned()]).unwrap();
@@ -281,27 +283,84 @@ fn contact_case(path: &Path) -> Option<(Case, Span)> {
     (!case.contacts.is_empty()).then_some((case, span))
 }
 
-#[test]
-fn every_case_of_the_repository() {
+/// Every file below `cases`.
+fn repository() -> Vec<PathBuf> {
     let mut cases = Vec::new();
     files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases"), &mut cases);
+    cases
+}
+
+/// What all runs show, on two threads.
+fn all_seen<'a, T: Sync>(runs: &'a [T], of: impl Fn(&T) -> Option<Seen> + Sync) -> Vec<(&'a T, Seen)> {
     let next = AtomicUsize::new(0);
-    let work = || -> Vec<(&PathBuf, Seen)> {
-        std::iter::from_fn(|| cases.get(next.fetch_add(1, Ordering::Relaxed)))
-            .filter_map(|path| {
-                let (case, span) = contact_case(path)?;
-                Some((path, seen(&case, span)))
-            })
+    let work = || -> Vec<(&'a T, Seen)> {
+        std::iter::from_fn(|| runs.get(next.fetch_add(1, Ordering::Relaxed)))
+            .filter_map(|run| Some((run, of(run)?)))
             .collect()
     };
-    let all = std::thread::scope(|scope| {
+    std::thread::scope(|scope| {
         let other = scope.spawn(work);
         [work(), other.join().unwrap()].concat()
-    });
-    let count = |of: fn(&Seen) -> bool| all.iter().filter(|(_, seen)| of(seen)).count();
-    // What touches, and what touches another body.
-    let counts = [count(|seen| seen.has_touched), count(|seen| seen.rows > 0)];
-    assert!(counts[0] > 95 && counts[1] > 45, "{counts:?}");
+    })
+}
+
+/// Numbers of runs that touch, and that touch another body; none is wrong.
+fn checked<T: Debug>(all: &[(T, Seen)]) -> [usize; 2] {
     let wrong: Vec<_> = all.iter().filter(|(_, seen)| seen.is_wrong()).collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
+    let count = |of: fn(&Seen) -> bool| all.iter().filter(|(_, seen)| of(seen)).count();
+    [count(|seen| seen.has_touched), count(|seen| seen.rows > 0)]
+}
+
+#[test]
+fn every_case_of_the_repository() {
+    let all = repository();
+    let all = all_seen(&all, |path| contact_case(path).map(|(case, span)| seen(&case, span)));
+    let counts = checked(&all);
+    assert!(counts[0] > 95 && counts[1] > 45, "{counts:?}");
+}
+
+/// Scheme, law and enforcement of a case, in words.
+fn method(case: &Case) -> String {
+    let of = |contact: &ContactSpec| {
+        let friction = (contact.friction.mu.is_some(), contact.friction.stick_stiffness.is_some());
+        let law = (contact.law, contact.enforcement, contact.persistency, contact.force);
+        format!("{law:?} {:?} {:?} friction {friction:?}", contact.xi, contact.active_set)
+    };
+    let contacts: Vec<String> = case.contacts.iter().map(of).collect();
+    format!("{}: {:?} {contacts:?}", case.title, case.time.scheme)
+}
+
+/// The arms of all studies, while contact begins: each scheme, law and enforcement once on each
+/// case, where the case itself does not have them.
+#[test]
+fn every_arm_of_the_repository() {
+    let (mut known, mut arms) = (BTreeSet::new(), Vec::new());
+    for path in repository() {
+        let document = Document::open(&path, &[]).unwrap();
+        if document.is_study() {
+            arms.extend(Plan::cases(&document, path.parent().unwrap()).unwrap());
+        } else {
+            known.insert(method(&read(&document).unwrap()));
+        }
+    }
+    // With loads there is no balance, and on rigid planes no moment.
+    let has_balance = |case: &Case| {
+        case.contacts.iter().any(|contact| case.loads.is_empty() || contact.primary.side().is_some())
+    };
+    arms.retain(|case| has_balance(case) && known.insert(method(case)));
+    for case in &mut arms {
+        case.newton.tolerance = 1e-14;
+        // The paper's cylinder need not fall first.
+        for body in &mut case.bodies {
+            if let MeshSpec::HalfDisc { center, radius, .. } = &mut body.mesh {
+                center[1] = *radius + 1e-5;
+                case.probes.clear();
+            }
+        }
+    }
+    let all = all_seen(&arms, |case| Some(seen(case, Span { after: 20, at_most: 420 })));
+    let all: Vec<_> = all.into_iter().map(|(case, seen)| (method(case), seen)).collect();
+    let counts = checked(&all);
+    assert!(counts[0] > 115 && counts[1] > 28, "{counts:?}");
 }
