@@ -8,6 +8,7 @@ use carom_run::case::{Case, Diagnostic, Document, Problem};
 use toml_edit::Value;
 
 use crate::file::{FINE_NAME, StudyFile};
+use crate::typed::{assignment, one_line};
 
 /// Default factor by which the step of the computed reference is smaller than the smallest one.
 const REFINE: u32 = 8;
@@ -157,7 +158,7 @@ pub(crate) fn fine(file: &StudyFile, step: f64, end: f64, refine: f64) -> Option
 
 /// The members of an arm's ensemble, except for itself, with the changes that make them from the
 /// arm's case. Sides cannot be swapped against a rigid primary: a case that has no others has no
-/// swapped members. The meshes of the reference are its own.
+/// swapped members. The meshes of the reference are its own, and so is what an arm itself sets.
 pub(crate) fn members(ensemble: &Ensemble, draft: &Draft, case: &Case) -> Vec<(Member, Draft)> {
     let swaps: Vec<String> = case
         .contacts
@@ -173,10 +174,17 @@ pub(crate) fn members(ensemble: &Ensemble, draft: &Draft, case: &Case) -> Vec<(M
         })
         .flatten()
         .collect();
-    let possible =
-        |member: &Member| !(member.swapped && swaps.is_empty() || draft.role.fine && member.mesh != 1.0);
+    let is_own = |change: &String| {
+        let mut own = draft.sets.iter().filter(|(_, path)| !path.starts_with("set."));
+        own.any(|(set, _)| replaces(key_of(set), key_of(change)) || replaces(key_of(change), key_of(set)))
+    };
+    let possible = |member: &Member| {
+        !(member.swapped && swaps.is_empty()
+            || draft.role.fine && member.mesh != 1.0
+            || ensemble.changes(member).iter().any(is_own))
+    };
     let member = |member: Member| {
-        let mut sets = Vec::new();
+        let mut sets = ensemble.changes(&member).to_vec();
         if member.phase != 0.0 {
             sets.push(format!("time.phase={:?}", (case.time.phase + member.phase).fract()));
         }
@@ -188,7 +196,7 @@ pub(crate) fn members(ensemble: &Ensemble, draft: &Draft, case: &Case) -> Vec<(M
         }
         let sets = sets.into_iter().map(|set| (set, "ensemble".to_owned()));
         let sets = draft.sets.iter().cloned().chain(sets).collect();
-        let name = format!("{} ({})", draft.name, member.name());
+        let name = format!("{} ({})", draft.name, ensemble.name(&member));
         (
             member,
             Draft { name, sets, expect: ("expect=[]".to_owned(), "ensemble".to_owned()), ..draft.clone() },
@@ -199,28 +207,26 @@ pub(crate) fn members(ensemble: &Ensemble, draft: &Draft, case: &Case) -> Vec<(M
 
 /// What every arm changes, except for what this one changes itself, then its own.
 fn with_common(file: &StudyFile, own: Vec<(String, String)>) -> Vec<(String, String)> {
-    let key = |set: &str| set.split('=').next().unwrap_or_default().trim().to_owned();
-    let overridden = |set: &str| {
-        let common = key(set);
-        own.iter().any(|(own, _)| common == key(own) || common.starts_with(&format!("{}.", key(own))))
-    };
+    let overridden = |set: &str| own.iter().any(|(own, _)| replaces(key_of(own), key_of(set)));
     let common = file.set.iter().map(|entry| entry_at(entry, ""));
     let mut sets: Vec<_> = common.filter(|(set, _)| !overridden(set)).collect();
     sets.extend(own);
     sets
 }
 
+/// The key of an assignment.
+fn key_of(set: &str) -> &str {
+    set.split('=').next().unwrap_or_default().trim()
+}
+
+/// Whether a value of `key` replaces that of `other`: the same key, or its table.
+fn replaces(key: &str, other: &str) -> bool {
+    other.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
 fn entry_at((key, value): &(String, Value), path: &str) -> (String, String) {
     let dot = if path.is_empty() { "" } else { "." };
     (assignment(key, value), format!("{path}{dot}set.\"{key}\""))
-}
-
-fn assignment(key: &str, value: &Value) -> String {
-    format!("{key}={}", one_line(value))
-}
-
-fn one_line(value: &Value) -> String {
-    value.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// A value for names: a table by its kind and numbers, `chung-hulbert 0.6`.

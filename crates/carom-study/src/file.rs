@@ -10,7 +10,7 @@ use carom_record::study::ensemble::Ensemble;
 use carom_run::case::{Asked, Document, OverlaySpec, Problem, read_expects, read_overlays};
 use toml_edit::{Item, TableLike, Value};
 
-use crate::typed::{flatten, known, not, one_of, tables, text, values};
+use crate::typed::{assignment, flatten, known, not, one_of, tables, text, values};
 
 pub(crate) const KEYS: [&str; 16] = [
     "title",
@@ -31,7 +31,7 @@ pub(crate) const KEYS: [&str; 16] = [
     "expect",
 ];
 pub(crate) const FINE: [&str; 3] = ["set", "refine", "mesh"];
-pub(crate) const ENSEMBLE: [&str; 3] = ["phases", "swapped", "mesh"];
+pub(crate) const ENSEMBLE: [&str; 4] = ["phases", "swapped", "mesh", "sets"];
 pub(crate) const ARM: [&str; 5] = ["name", "case", "set", "expect", "match"];
 pub(crate) const CLAIM: [&str; 2] = ["text", "compare"];
 
@@ -271,7 +271,8 @@ fn ensemble(root: &dyn TableLike, problems: &mut Vec<Problem>) -> Option<Ensembl
             "write for example `mesh = [1, 1.5, 2]`",
         ));
     }
-    let ensemble = Ensemble { phases: phases?, swapped: swapped?, mesh };
+    let sets = changes(table, problems);
+    let ensemble = Ensemble { phases: phases?, swapped: swapped?, mesh, sets };
     if ensemble.members().len() < 2 && problems.is_empty() {
         problems.push(
             Problem::new(
@@ -284,6 +285,23 @@ fn ensemble(root: &dyn TableLike, problems: &mut Vec<Problem>) -> Option<Ensembl
         );
     }
     Some(ensemble)
+}
+
+/// `sets` of an ensemble: each a table of values, as `key=value`.
+fn changes(table: &dyn TableLike, problems: &mut Vec<Problem>) -> Vec<Vec<String>> {
+    let Some(item) = table.get("sets") else { return Vec::new() };
+    let of = |value: &Value| {
+        let mut entries = Vec::new();
+        flatten(value.as_inline_table()?, "", &mut entries);
+        let set: Vec<String> = entries.iter().map(|(key, value)| assignment(key, value)).collect();
+        (!set.is_empty()).then_some(set)
+    };
+    let list = item.as_array().and_then(|list| list.iter().map(of).collect::<Option<Vec<_>>>());
+    list.unwrap_or_else(|| {
+        let example = "sets = [{ \"contact.NAME.persistency\" = \"none\" }]";
+        problems.push(not("ensemble.sets", "a list of tables of values", example));
+        Vec::new()
+    })
 }
 
 /// `mesh`, a list of increasing factors of at least 1; empty if it is not given.

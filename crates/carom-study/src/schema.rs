@@ -69,6 +69,7 @@ pub fn schema() -> Value {
                 json!({ "type": "integer", "minimum": 1, "maximum": 100, "description": "Number of phases: shifts of the instants of the steps by 0, 1/n, … of a step (time.phase). Default: 1." }),
                 json!({ "type": "boolean", "description": "Whether every run is repeated with secondary and primary sides swapped. Default: false." }),
                 factors("Factors by which all meshes are refined; the first one is 1. Default: [1]."),
+                json!({ "type": "array", "items": set(case::changes(), "Values of the case."), "description": "Changes of the case with each of which every run is repeated; an arm that sets one of their keys itself is not. Default: []." }),
             ],
             &[],
         ),

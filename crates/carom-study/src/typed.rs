@@ -62,6 +62,16 @@ pub(crate) fn flatten(table: &dyn TableLike, before: &str, out: &mut Vec<(String
     }
 }
 
+/// `key=value`.
+pub(crate) fn assignment(key: &str, value: &Value) -> String {
+    format!("{key}={}", one_line(value))
+}
+
+/// A value as it is written, on one line.
+pub(crate) fn one_line(value: &Value) -> String {
+    value.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// The tables of a list.
 pub(crate) fn tables<'a>(
     root: &'a dyn TableLike,

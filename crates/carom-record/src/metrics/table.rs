@@ -184,9 +184,9 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 28] = [
         d(
             "energy_created",
             Unit::None,
-            "max_t [E(t) − min_{s ≤ t} E(s)] / max(E*, Σ |ΔW|), E = total − W, W = external_work to second order in Δt",
+            "max_t [E(t) − E(s) − m⁺] / max(E*, Σ |ΔW|), E = total − external_work, at its minimum before t at s; m = −Σ c Δy·ΔF from s to t",
             "Krenk 2006",
-            "largest rise of the energy above its running minimum, divided by the larger of the largest kinetic + strain energy and Σ |ΔW|",
+            "largest rise of the energy above its running minimum, beyond work that means over steps have missed, divided by the larger of the largest kinetic + strain energy and Σ |ΔW|",
         ),
         ledger::created,
     ),

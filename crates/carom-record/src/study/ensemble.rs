@@ -7,6 +7,7 @@
 //! phases    the grid of times shifted by 0, 1/n, … of a step
 //! roles     secondary and primary sides as given, and swapped
 //! mesh      all meshes refined by these factors
+//! sets      the case as given, and with each of these changes: the impact law, other nodes
 //! ```
 //!
 //! The members of an arm are all combinations; the first one is the arm itself. Of n members the
@@ -25,6 +26,9 @@ pub struct Ensemble {
     pub swapped: bool,
     /// Factors of mesh refinement; the first one is 1.
     pub mesh: Vec<f64>,
+    /// Changes of the case, `key=value`, besides none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sets: Vec<Vec<String>>,
 }
 
 /// A member of every arm.
@@ -36,6 +40,9 @@ pub struct Member {
     pub swapped: bool,
     /// Factor of mesh refinement.
     pub mesh: f64,
+    /// Number of its changes of the case, from one; zero: none.
+    #[serde(default)]
+    pub set: usize,
 }
 
 impl Ensemble {
@@ -44,13 +51,31 @@ impl Ensemble {
         let roles: &[bool] = if self.swapped { &[false, true] } else { &[false] };
         let phases = self.phases.max(1);
         let mut members = Vec::new();
-        for &mesh in &self.mesh {
-            for &swapped in roles {
-                let phase = |k: u32| f64::from(k) / f64::from(phases);
-                members.extend((0..phases).map(|k| Member { phase: phase(k), swapped, mesh }));
+        for set in 0..=self.sets.len() {
+            for &mesh in &self.mesh {
+                for &swapped in roles {
+                    let phase = |k: u32| f64::from(k) / f64::from(phases);
+                    members.extend((0..phases).map(|k| Member { phase: phase(k), swapped, mesh, set }));
+                }
             }
         }
         members
+    }
+
+    /// The changes of the case that a member makes.
+    pub fn changes(&self, member: &Member) -> &[String] {
+        member.set.checked_sub(1).and_then(|i| self.sets.get(i)).map_or(&[], Vec::as_slice)
+    }
+
+    /// `contact.strike.persistency="none", swapped, phase 0.2`; empty for the arm itself.
+    pub fn name(&self, member: &Member) -> String {
+        let parts = [
+            (member.set != 0).then(|| self.changes(member).join(", ")),
+            (member.mesh != 1.0).then(|| format!("mesh {}", member.mesh)),
+            member.swapped.then(|| "swapped".to_owned()),
+            (member.phase != 0.0).then(|| format!("phase {}", member.phase)),
+        ];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
     /// In words.
@@ -66,19 +91,11 @@ impl Ensemble {
         if self.swapped {
             parts.push("both choices of the secondary side".to_owned());
         }
+        if !self.sets.is_empty() {
+            let sets: Vec<String> = self.sets.iter().map(|set| set.join(" and ")).collect();
+            parts.push(format!("{} settings (as given; {})", sets.len() + 1, sets.join("; ")));
+        }
         parts.join(" × ")
-    }
-}
-
-impl Member {
-    /// `phase 0.2, swapped, mesh 1.5`; empty for the arm itself.
-    pub fn name(&self) -> String {
-        let parts = [
-            (self.mesh != 1.0).then(|| format!("mesh {}", self.mesh)),
-            self.swapped.then(|| "swapped".to_owned()),
-            (self.phase != 0.0).then(|| format!("phase {}", self.phase)),
-        ];
-        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -126,13 +143,18 @@ mod tests {
 
     #[test]
     fn members_are_all_combinations_and_the_first_changes_nothing() {
-        let ensemble = Ensemble { phases: 5, swapped: true, mesh: vec![1.0, 1.5, 2.0] };
+        let sets = vec![vec!["contact.wall.persistency=\"none\"".to_owned()]];
+        let ensemble = Ensemble { phases: 5, swapped: true, mesh: vec![1.0, 1.5, 2.0], sets };
         let members = ensemble.members();
-        assert_eq!((members.len(), members[0].name().as_str()), (30, ""));
-        assert_eq!(members[29].name(), "mesh 2, swapped, phase 0.8");
-        let names: std::collections::BTreeSet<String> = members.iter().map(Member::name).collect();
-        assert_eq!(names.len(), 30);
-        assert!(ensemble.words().contains("3 meshes") && ensemble.words().contains("5 phases"));
+        let name = |i: usize| ensemble.name(&members[i]);
+        assert_eq!((members.len(), name(0)), (60, String::new()));
+        assert_eq!(name(29), "mesh 2, swapped, phase 0.8");
+        assert_eq!(name(30), "contact.wall.persistency=\"none\"");
+        assert_eq!([ensemble.changes(&members[29]).len(), ensemble.changes(&members[59]).len()], [0, 1]);
+        let names: std::collections::BTreeSet<String> = (0..60).map(name).collect();
+        assert_eq!(names.len(), 60);
+        let words = ensemble.words();
+        assert!(words.contains("3 meshes") && words.contains("5 phases") && words.contains("2 settings"));
     }
 
     #[test]

@@ -329,6 +329,35 @@ fn a_reference_refines_its_mesh_and_an_ensemble_repeats_every_arm() {
     assert_eq!(again.members, study.members);
 }
 
+/// The impact law and the mesh vary in the members of every arm that does not set them itself, and
+/// in those of the reference, whose interval contains what they change.
+#[test]
+fn an_ensemble_varies_the_impact_law() {
+    let study = |sets: &str| {
+        let (folder, path) = folder(&format!(
+            "goal = \"force\"\nreference = \"fine\"\n[fine]\nrefine = 2\nmesh = [1, 2]\n[ensemble]\nphases = 2\n{sets}\
+             [[arm]]\nname = \"CH\"\n[[arm]]\nname = \"none\"\nset = {{ \"contact.wall.persistency\" = \"none\" }}\n"
+        ));
+        let plan = Plan::read(&path).unwrap();
+        let run = start(&plan, &folder.path().join("out"), 2, &mut |_| (), &AtomicBool::new(false));
+        (plan, run.unwrap().study)
+    };
+    let (_, alone) = study("");
+    let (plan, varied) = study("sets = [{ \"contact.wall.persistency\" = \"none\" }]\n");
+    let members: Vec<&str> = plan.manifest.members.iter().map(|m| m.name.as_str()).collect();
+    let other = "contact.wall.persistency=\"none\"";
+    assert_eq!(
+        members[..3],
+        ["CH (phase 0.5)", &format!("CH ({other})"), &format!("CH ({other}, phase 0.5)")]
+    );
+    assert_eq!(members[3..5], ["none (phase 0.5)", "fine, 2 Δt, mesh 1 (phase 0.5)"]);
+    assert_eq!(members.len(), 10);
+    // Both laws are in the reference: its interval reaches the values of the law left out before.
+    let [alone, varied] = [&alone, &varied].map(|study| study.reference.as_ref().unwrap());
+    let [alone, varied] = [alone, varied].map(|reference| reference.estimate("peak_force").unwrap());
+    assert!(varied.uncertainty > alone.uncertainty, "{varied:?} {alone:?}");
+}
+
 #[test]
 fn wrong_ensembles_are_reported() {
     let first = |table: &str| wrong(&format!("[[arm]]\nname = \"a\"\n[ensemble]\n{table}\n"))[0].clone();
@@ -337,6 +366,8 @@ fn wrong_ensembles_are_reported() {
     assert!(first("mesh = [1, 1]").what.contains("not a list of increasing numbers"));
     assert!(first("phases = 1").help.contains("phases = 5"));
     assert_eq!(first("phase = 5").help, "did you mean `phases`?");
+    assert!(first("sets = [{}]").what.contains("not a list of tables of values"));
+    assert!(first("sets = [{ \"contact.wall.persistance\" = \"none\" }]").help.contains("persistency"));
 }
 
 /// Two methods of similar cost: the second starts at twice the step of the case, and matched cost

@@ -130,11 +130,11 @@ fn a_refusal_is_true() {
 fn with_members(study: (StudyManifest, Vec<Row>), members: &[&[(f64, f64)]]) -> (StudyManifest, Vec<Row>) {
     let (mut manifest, mut rows) = study;
     let phases = 1 + members.iter().map(|of| of.len()).max().unwrap() as u32;
-    manifest.ensemble = Some(Ensemble { phases, swapped: false, mesh: vec![1.0] });
+    manifest.ensemble = Some(Ensemble { phases, swapped: false, mesh: vec![1.0], sets: Vec::new() });
     for (i, members) in members.iter().enumerate() {
         for (k, (error, cost)) in members.iter().enumerate() {
             let phase = (1.0 + k as f64) / f64::from(phases);
-            let member = MemberOf { arm: i, member: Member { phase, swapped: false, mesh: 1.0 } };
+            let member = MemberOf { arm: i, member: Member { phase, swapped: false, mesh: 1.0, set: 0 } };
             let arm = manifest.arms[i].clone();
             manifest.members.push(Arm { role: Role { member: Some(member), ..arm.role.clone() }, ..arm });
             rows.push(row("member", &[("energy_drift", *error), ("cpu_time", *cost)]));
