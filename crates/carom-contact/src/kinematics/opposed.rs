@@ -7,19 +7,22 @@
 //! ```
 //!
 //! Where two bodies are flush, the nodes of their common outline lie on the faces beside the edges
-//! that they meet, as near as on the faces that they press on, and only the normals tell which. Both
-//! turn as bodies deform. A facet is left to one across a sharp edge of its body if no normal of the
-//! node opposes the first, one opposes the second, and the node is not clearly in front of the first.
+//! that they meet, as near as on the faces that they press on, and only the normals tell which.
+//! Both turn as bodies deform. A facet is left to one across a sharp edge of its body if no normal
+//! of the node opposes the first, one opposes the second, and the node is not clearly in front of
+//! the first.
 
 /// Cosine above which a normal does not oppose another one: 11° from perpendicular.
 const ASIDE: f64 = -0.2;
 /// Cosine below which it does: within 45° of opposite.
 const OPPOSED: f64 = -0.7;
-/// Height over a facet, in lengths of the one beside it, up to which the node may be before that one.
+/// Height over a facet, in lengths of the one beside it, up to which the node may be before that
+/// one.
 const FLUSH: f64 = 0.02;
 
 /// Whether a facet over which a node has this height is left to one beside it. `beside` gives those
-/// across sharp edges, each with its length; `most_opposed` is the least nᵢ·n for the normal of a facet.
+/// across sharp edges, each with its length; `most_opposed` is the least nᵢ·n for the normal of a
+/// facet.
 pub(super) fn is_left<I: Iterator<Item = (usize, f64)>>(
     facet: usize,
     height: f64,

@@ -1,5 +1,5 @@
-//! Bodies of the plane whose boundary has no order: where two parts of it meet in a single node, the
-//! facets around the node do not say which of them follows which, so contact cannot follow it.
+//! Bodies of the plane whose boundary has no order: where two parts of it meet in a single node,
+//! the facets around the node do not say which of them follows which, so contact cannot follow it.
 
 use std::collections::HashSet;
 
