@@ -367,7 +367,7 @@ fn wrong_ensembles_are_reported() {
     assert!(first("phases = 1").help.contains("phases = 5"));
     assert_eq!(first("phase = 5").help, "did you mean `phases`?");
     assert!(first("sets = [{}]").what.contains("not a list of tables of values"));
-    assert!(first("sets = [{ \"contact.wall.persistance\" = \"none\" }]").help.contains("persistency"));
+    assert!(first("sets = [{ \"contact.wall.persistencies\" = \"none\" }]").help.contains("persistency"));
 }
 
 /// Two methods of similar cost: the second starts at twice the step of the case, and matched cost
