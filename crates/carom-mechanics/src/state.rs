@@ -236,7 +236,8 @@ pub struct State {
 }
 
 impl State {
-    /// Whether every vector, and node and facet of every pair, exist in this model.
+    /// Whether every vector, and node and facet of every pair, exist in this model, and all
+    /// positions, velocities and accelerations are finite.
     ///
     /// # Errors
     /// What does not.
@@ -249,6 +250,10 @@ impl State {
         is("positions", self.y.len(), dofs)?;
         is("velocities", self.v.len(), dofs)?;
         is("accelerations", self.a.len(), dofs)?;
+        if let Some(dof) = (0..dofs).find(|&dof| !(self.y[dof] + self.v[dof] + self.a[dof]).is_finite()) {
+            let what = format!("position, velocity or acceleration {dof} is not finite");
+            return Err(OtherModel { what });
+        }
         is("internal forces", self.f_internal.len(), dofs)?;
         is("loads", self.f_external.len(), dofs)?;
         is("averaged contact forces", self.f_contact.len(), dofs)?;
@@ -278,6 +283,10 @@ impl State {
             let nodes = contact.kinematics.secondary().len();
             if let Some(pair) = pairs.iter().find(|pair| pair.node >= nodes) {
                 let what = format!("node {} of contact \"{}\" with {nodes} nodes", pair.node, contact.name);
+                return Err(OtherModel { what });
+            }
+            if !pairs.is_sorted_by_key(|pair| pair.node) {
+                let what = format!("the pairs of contact \"{}\" are not in the order of nodes", contact.name);
                 return Err(OtherModel { what });
             }
             let facets = |pair: &Pair| contact.kinematics.facets(pair.node);

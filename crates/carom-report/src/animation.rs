@@ -16,7 +16,7 @@ use serde_json::json;
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::bodies::{Instant, frame, triangles};
 use crate::chart::{Chart, Options, Panel, Series, Track};
-use crate::labels::{is_stress, number, symbol, with_unit};
+use crate::labels::{amount, is_stress, symbol, with_unit};
 use crate::noise;
 use crate::obstacles;
 use crate::palette::LINES;
@@ -333,7 +333,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                 "; frames are " (every) ", without interpolation."
                 @if largest > 0.0 {
                     (Prose(" Arrows: contact forces −λn on the secondary nodes (`contact.csv`), at most "))
-                    (number(largest)) " " (Label(run.history.unit("contact_force_x"))) "."
+                    (Label(&amount(largest, run.history.unit("contact_force_x")))) "."
                 }
                 (Prose(" Ticks below the histories: events in `log.jsonl`. Space: play or pause. ← and →: \
                         previous or next frame. A click in a time history goes to that instant; a drag across one enlarges all of them, a double \

@@ -62,6 +62,16 @@ pub(crate) fn scaled(unit: &str, exponent: i32) -> String {
     }
 }
 
+/// A number with its unit, whose prefix is chosen so that the number is from 1 to 1000 where there is
+/// such a prefix: 524.548 µN.
+pub(crate) fn amount(x: f64, unit: &str) -> String {
+    let exponent = if x == 0.0 || !x.is_finite() { 0 } else { 3 * (x.abs().log10() / 3.0).floor() as i32 };
+    match prefixed(unit, exponent) {
+        Some(unit) => format!("{} {unit}", number(x / 10f64.powi(exponent))),
+        None => format!("{} {unit}", number(x)).trim_end().to_owned(),
+    }
+}
+
 /// The unit with the prefix that stands for its own times 10^exponent: 10^{-6} MPa is Pa.
 fn prefixed(unit: &str, exponent: i32) -> Option<String> {
     const PREFIXES: [(&str, i32); 8] =
@@ -114,7 +124,16 @@ pub(crate) fn number(x: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{number, scaled};
+    use super::{amount, number, scaled};
+
+    #[test]
+    fn amounts_have_the_prefix_of_their_size() {
+        let cases = [(5.24548e-4, "N", "524.548 µN"), (0.0, "N", "0 N"), (2.5e-3, "kg", "0.0025 kg")];
+        for (x, unit, text) in cases {
+            assert_eq!(amount(x, unit), text);
+        }
+        assert_eq!(amount(-31.25e6, "kPa"), "−31.25 GPa");
+    }
 
     /// 10^-6 MPa = 1 Pa, 10^3 N = 1 kN, 10^-3 m/s = 1 mm/s.
     #[test]

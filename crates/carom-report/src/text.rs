@@ -164,6 +164,33 @@ pub(crate) fn fitted(label: &str, most: f64) -> String {
     (0..characters.len()).rev().find(fits).map_or_else(String::new, cut)
 }
 
+/// A label in lines of at most this width in units of the font size, broken after spaces and, in
+/// long formulas, after operators, never within a subscript or superscript.
+pub(crate) fn broken(label: &str, most: f64) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    let mut depth = 0;
+    let mut piece = String::new();
+    let mut after = label.chars().peekable();
+    while let Some(c) = after.next() {
+        piece.push(c);
+        depth += i32::from(c == '{') - i32::from(c == '}');
+        let ends = depth == 0 && matches!(c, ' ' | ',' | '+' | '-' | '*' | '/' | '(');
+        if !ends && after.peek().is_some() {
+            continue;
+        }
+        let line = lines.last().map_or("", String::as_str);
+        let joined = format!("{line}{piece}");
+        if line.is_empty() || width(joined.trim_end()) <= most {
+            lines.pop();
+            lines.push(joined);
+        } else {
+            lines.push(piece);
+        }
+        piece = String::new();
+    }
+    lines.iter().map(|line| line.trim_end().to_owned()).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -194,6 +221,15 @@ mod tests {
         assert_eq!(fitted("abc", 9.0), "abc");
         let cut = fitted("chung-hulbert 0.6, step = 0.001875", 10.0);
         assert!(cut.starts_with("chung-") && cut.ends_with("1875") && width(&cut) <= 10.0, "{cut}");
+    }
+
+    #[test]
+    fn long_labels_are_broken() {
+        assert_eq!(broken("u_{x} = 0", 9.0), ["u_{x} = 0"]);
+        let formula = "floor.top: u_{y} = 0.5*(1-cos(2*pi*t/0.25))*exp(-t/0.125)*X^2";
+        let lines = broken(formula, 12.0);
+        assert!(lines.len() > 2 && lines.iter().all(|line| width(line) <= 12.0), "{lines:?}");
+        assert_eq!(lines.concat().replace(' ', ""), formula.replace(' ', ""));
     }
 
     #[test]

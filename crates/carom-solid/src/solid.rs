@@ -21,7 +21,7 @@ use std::sync::OnceLock;
 use carom_algebra::{Mat, Vector};
 
 use crate::material::Pointwise;
-use crate::mesh::{Element, Mesh};
+use crate::mesh::{Element, Facet, Mesh};
 use crate::points::{LANES, Points};
 use crate::quadrature::Rule;
 use crate::reference::{self, Degenerate, gradient};
@@ -39,6 +39,8 @@ pub enum SolidError {
     Ragged { length: usize, nodes: usize },
     #[error("cell {cell} refers to node {node}, but there are {count} nodes")]
     MissingNode { cell: usize, node: usize, count: usize },
+    #[error("a facet of side \"{side}\" refers to cell {cell} and nodes {nodes:?}, which the mesh lacks")]
+    MissingFacet { side: String, cell: usize, nodes: Vec<usize> },
     #[error("the coordinates of node {node} are not finite")]
     NotFinite { node: usize },
     #[error(
@@ -231,6 +233,13 @@ fn check<const D: usize, const N: usize>(
     let count = mesh.nodes.len();
     if let Some(i) = mesh.cells.iter().position(|&node| node >= count) {
         return Err(SolidError::MissingNode { cell: i / N, node: mesh.cells[i], count });
+    }
+    for (side, facets) in &mesh.sides {
+        let lacks =
+            |facet: &&Facet| facet.cell >= mesh.cell_count() || facet.nodes.iter().any(|n| *n >= count);
+        if let Some(Facet { cell, nodes }) = facets.iter().find(lacks) {
+            return Err(SolidError::MissingFacet { side: side.clone(), cell: *cell, nodes: nodes.clone() });
+        }
     }
     match mesh.nodes.iter().position(|x| x.iter().any(|c| !c.is_finite())) {
         Some(node) => Err(SolidError::NotFinite { node }),

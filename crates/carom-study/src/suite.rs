@@ -7,7 +7,7 @@ use carom_record::{Expect, Source};
 use carom_run::case::{Case, CaseError, Diagnostic, Document};
 
 use crate::Plan;
-use crate::plan::resolved;
+use crate::resolved::resolved;
 
 /// Cases and studies to verify.
 #[derive(Clone, Debug, Default)]

@@ -14,6 +14,9 @@ use crate::labels::number;
 use crate::symbols::{plus, rollers, wall};
 use crate::text;
 
+/// The smallest size of letters in pixels.
+const SMALLEST: f64 = 11.0;
+
 impl Setup<'_> {
     /// Draws the key and returns its height.
     pub(super) fn key(&self, out: &mut String, left: f64) -> f64 {
@@ -30,10 +33,13 @@ impl Setup<'_> {
             }
             let (x, extra) =
                 (if bold { left } else { left + 30.0 }, if bold { "font-weight=\"bold\"" } else { "" });
-            // Smaller where it is wider than the key.
-            let width = text::width(content).max(1e-9);
-            let size = (KEY - 12.0 - (x - left)).min(13.0 * width) / width;
-            write_text(out, x, y, &format!("font-size=\"{size:.1}\" {extra}"), content);
+            // Smaller where it is wider than the key, and in several lines where it were too small.
+            let room = KEY - 12.0 - (x - left);
+            for (k, part) in text::broken(content, room / SMALLEST).iter().enumerate() {
+                let size = (room / text::width(part).max(1e-9)).min(13.0);
+                y += if k == 0 { 0.0 } else { 15.0 };
+                write_text(out, x, y, &format!("font-size=\"{size:.1}\" {extra}"), part);
+            }
         };
         line("", "Bodies", true);
         for (k, body) in list(self.case(), "bodies").iter().enumerate() {

@@ -1,5 +1,5 @@
-//! The drawing of a case in space: bodies with their cells, supported and loaded sides, loads,
-//! gravity, initial velocities and probes.
+//! The drawing of a case in space: bodies with their cells, rigid obstacles, supported and loaded
+//! sides, loads, gravity, initial velocities and probes.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
@@ -13,7 +13,8 @@ use crate::axis::round_step;
 use crate::chart::{open, write_text};
 use crate::pen::Point;
 use crate::space::{
-    DRAWN, Facet, Paint, Place, View, corners, cross, draw, frame, minus, pieces, places, skin,
+    DRAWN, Facet, Paint, Place, View, box_of, corners, cross, draw, frame, minus, pieces, places, skin,
+    underlay, wires,
 };
 use crate::symbols::{arrow, direction, plus};
 
@@ -36,7 +37,14 @@ struct Solid<'a> {
 /// The figure; nothing without extent.
 pub(super) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     let (view, places, skin) = (View::axonometric(), places(fields), skin(fields));
-    let [x0, x1, y0, y1] = frame(&skin, &places, &view);
+    let rigid: Vec<[Place; 2]> = wires(run, box_of(&skin, std::iter::once(&places)))
+        .iter()
+        .flat_map(|wire| wire.at_first().to_vec())
+        .collect();
+    let [mut x0, mut x1, mut y0, mut y1] = frame(&skin, &places, &view);
+    for [x, y, _] in rigid.iter().flatten().map(|place| view.of(*place)) {
+        (x0, x1, y0, y1) = (x0.min(x), x1.max(x), y0.min(y), y1.max(y));
+    }
     if !(x1 > x0 && y1 > y0) {
         return None;
     }
@@ -57,6 +65,7 @@ pub(super) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
         numbers.entry(facet.face.clone()).or_default().push(k);
     }
     let solid = Solid { setup, view, places, skin, numbers };
+    underlay(&mut out, &rigid, &view, &|p| solid.setup.to(p));
     solid.bodies(&mut out, ([left, top], size));
     solid.sides(&mut out);
     solid.loads(&mut out);

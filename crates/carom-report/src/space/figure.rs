@@ -97,7 +97,7 @@ pub(crate) fn instants(
 }
 
 /// Corners of the box of all places of a skin.
-fn box_of<'a>(skin: &[Facet], all: impl Iterator<Item = &'a Vec<Place>>) -> [Place; 2] {
+pub(crate) fn box_of<'a>(skin: &[Facet], all: impl Iterator<Item = &'a Vec<Place>>) -> [Place; 2] {
     let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for places in all {
         for place in skin.iter().flat_map(|facet| &facet.nodes).map(|&node| places[node]) {
@@ -111,7 +111,7 @@ fn box_of<'a>(skin: &[Facet], all: impl Iterator<Item = &'a Vec<Place>>) -> [Pla
 }
 
 /// Draws the lines of rigid obstacles, over which bodies are drawn.
-fn underlay(out: &mut String, lines: &[[Place; 2]], view: &View, to: &dyn Fn(Point) -> Point) {
+pub(crate) fn underlay(out: &mut String, lines: &[[Place; 2]], view: &View, to: &dyn Fn(Point) -> Point) {
     if lines.is_empty() {
         return;
     }

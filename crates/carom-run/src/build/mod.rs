@@ -1,12 +1,14 @@
 //! Builds a model from a resolved case. Names that the meshes lack are reported as a [`Problem`]
 //! with their key.
 
+mod between_sides;
 mod branching;
 mod contacts;
 mod given;
 mod loads;
 mod motions;
 mod obstacles;
+mod overlaps;
 pub(crate) mod side;
 mod unsolvable;
 
@@ -21,7 +23,7 @@ use carom_solid::{Constitutive, Law, mean_dilatation_body};
 
 use side::side;
 
-pub use contacts::overlaps;
+pub use overlaps::overlaps;
 
 /// Laws given in place of those of materials, by the material's name.
 pub(crate) type Materials = BTreeMap<String, Box<dyn Constitutive>>;

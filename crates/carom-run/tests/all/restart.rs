@@ -250,6 +250,14 @@ fn states_of_other_models() {
     assert!(changed(|state| state.f_contact.truncate(1)).contains("averaged contact forces"));
     assert!(changed(|state| state.impulses.clear()).contains("it has 0 contacts with impulses, this one 1"));
     let foreign = changed(|state| state.pairs[0].push(Pair::open(1000, 0, 0.0)));
+    let unordered = changed(|state| state.pairs[0] = [1, 0].map(|node| Pair::open(node, 0, 0.0)).to_vec());
+    assert!(
+        unordered.contains("the pairs of contact \"strike\" are not in the order of nodes"),
+        "{unordered}"
+    );
+    assert!(
+        changed(|state| state.v[1] = f64::NAN).contains("position, velocity or acceleration 1 is not finite")
+    );
     assert!(foreign.contains(&format!("node 1000 of contact \"strike\" with {nodes} nodes")), "{foreign}");
 }
 

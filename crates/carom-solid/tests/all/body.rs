@@ -334,6 +334,10 @@ fn bad_bodies_are_refused_with_cell_and_place() {
     let mut missing = mesh();
     missing.cells[4] = 9;
     assert_eq!(error(missing, 1.0, 1.0), SolidError::MissingNode { cell: 1, node: 9, count: 4 });
+    let mut loose = mesh();
+    loose.sides.get_mut("top").unwrap()[0].cell = 2;
+    let message = error(loose, 1.0, 1.0).to_string();
+    assert!(message.starts_with("a facet of side \"top\" refers to cell 2 and nodes ["), "{message}");
     let mut wrong = mesh();
     wrong.element = Element::L3;
     assert!(matches!(error(wrong, 1.0, 1.0), SolidError::Dimension { dimension: 2, .. }));

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use std::sync::OnceLock;
 
 use anstream::ColorChoice;
+use carom_record::Warning;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Redraws a second.
@@ -84,6 +85,13 @@ pub(crate) fn in_colour() -> bool {
 /// Writes a line to standard error. A closed standard error must not stop a run.
 pub(crate) fn say(line: impl Display) {
     let _ = writeln!(anstream::stderr().lock(), "{line}");
+}
+
+/// A warning in three lines: what was found, why it matters, what to try. `place` precedes it.
+pub(crate) fn warning(head: &str, place: &str, warning: &Warning) -> String {
+    let Warning { id, place: own, what, why, advice } = warning;
+    let indent = " ".repeat(head.len());
+    format!("{head}{place}{own}: {what} ({id})\n{indent}why: {why}\n{indent}try: {advice}")
 }
 
 /// A progress bar; hidden with `--quiet`, and if standard error is not a terminal.

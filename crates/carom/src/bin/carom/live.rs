@@ -61,7 +61,7 @@ impl Live {
                 let event = serde_json::json!({ "event": "warning", "message": warning.to_string(), "warning": warning });
                 let _ = out::event(&event);
             } else if !console::is_quiet() {
-                self.bar.suspend(|| console::say(format_args!("warning: {warning}")));
+                self.bar.suspend(|| console::say(console::warning("warning: ", "", warning)));
             }
         }
         self.warned = Some(warnings.len());

@@ -55,7 +55,7 @@ pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool, json: bool)
         let study = &outcome.study;
         out::line(&text(study))?;
         for (warning, arms) in study.warnings() {
-            console::say(format_args!("warning: {}{warning}", of_arms(&arms, &study.manifest)));
+            console::say(console::warning("warning: ", &of_arms(&arms, &study.manifest), warning));
         }
         out::line(&page.as_deref().unwrap_or(directory).display().to_string())?;
     }

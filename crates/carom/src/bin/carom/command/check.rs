@@ -143,8 +143,9 @@ fn study(arguments: &Arguments, document: &Document) -> Result<Exit, Failure> {
         let runs = arms.len() + manifest.members.len();
         lines.push(format!("  ensemble {}: {runs} runs in all", ensemble.words()));
     }
-    lines
-        .extend(plan.warnings().iter().map(|(w, arms)| format!("  warning  {}{w}", of_arms(arms, manifest))));
+    lines.extend(
+        plan.warnings().iter().map(|(w, arms)| console::warning("  warning  ", &of_arms(arms, manifest), w)),
+    );
     if !console::is_quiet() {
         out::line(&lines.join("\n"))?;
     }
@@ -216,7 +217,7 @@ fn table(case: &Case, facts: &Facts) -> String {
             SAFETY
         ));
     }
-    lines.extend(facts.warnings.iter().map(|warning| format!("  warning  {warning}")));
+    lines.extend(facts.warnings.iter().map(|warning| console::warning("  warning  ", "", warning)));
     lines.join("\n")
 }
 

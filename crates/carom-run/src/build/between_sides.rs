@@ -1,0 +1,192 @@
+//! The kinematics of contacts between sides of bodies: each side with its siblings, which are sides
+//! that other contacts have in its place, and with the rest of its body's boundary.
+
+use std::collections::{HashMap, HashSet};
+
+use carom_case::{self as case, Case, ContactSpec};
+use carom_contact::{
+    BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Kinematics, NodeToFacet, NodeToPatch, Surface,
+    WithEdges,
+};
+use carom_mechanics::model::BodyInstance;
+
+use super::side::{Side, side};
+
+/// Depth of smooth nodes of the primary in edges of the secondary, over its shortest facet.
+const ALLOWED: f64 = 0.02;
+
+/// A model as far as the contacts between its sides need it.
+pub(super) struct Bodies<'a> {
+    pub(super) case: &'a Case,
+    pub(super) parts: &'a [BodyInstance],
+    pub(super) reference: &'a [f64],
+    pub(super) fixed: &'a [bool],
+}
+
+/// A side of a contact.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Which {
+    Primary,
+    Secondary,
+}
+
+impl Bodies<'_> {
+    /// Kinematics of contact `k` between two sides, of which one may be the other.
+    pub(super) fn kinematics(&self, k: usize, secondary: &Side, primary: &Side) -> Box<dyn Kinematics> {
+        match (self.case.dimension, primary.part == secondary.part) {
+            (3, true) => Box::new(self.itself_in_space(secondary)),
+            (_, true) => Box::new(self.itself(secondary)),
+            (3, false) => Box::new(self.in_space(k, secondary, primary)),
+            (_, false) => self.in_the_plane(k, secondary, primary),
+        }
+    }
+
+    fn in_the_plane(&self, k: usize, secondary: &Side, primary: &Side) -> Box<dyn Kinematics> {
+        let spec = &self.case.contacts[k];
+        let detection = match spec.detection {
+            case::Detection::ClosestPoint => Detection::ClosestPoint,
+            case::Detection::Trajectory => Detection::Trajectory,
+        };
+        let point = match spec.xi {
+            case::ContactPoint::Closest => ContactPoint::Closest,
+            case::ContactPoint::Frozen => ContactPoint::Frozen,
+        };
+        let of_secondary = self.siblings(k, secondary.part, Which::Secondary);
+        let of_primary = self.siblings(k, primary.part, Which::Primary);
+        let side = self.surface(primary, &of_primary.concat());
+        let opposite = self.surface(secondary, &of_secondary.concat());
+        let nodes = NodeToFacet::new(without(&secondary.nodes, &of_secondary[0]), side.clone(), detection)
+            .with_point(point)
+            .of_body(opposite.clone());
+        if self.case.dimension == 1 || point == ContactPoint::Frozen {
+            return Box::new(nodes);
+        }
+        let (others, allowed) =
+            self.others(primary, &of_primary[0], secondary, &side.corners(self.reference));
+        let others = NodeToFacet::new(others, opposite, Detection::ClosestPoint);
+        Box::new(BothSides::new(nodes, others.with_allowed(allowed).of_body(side)))
+    }
+
+    fn in_space(&self, k: usize, secondary: &Side, primary: &Side) -> WithEdges {
+        let of_secondary = self.siblings(k, secondary.part, Which::Secondary);
+        let of_primary = self.siblings(k, primary.part, Which::Primary);
+        let side = self.boundary(primary, &of_primary.concat());
+        let opposite = self.boundary(secondary, &of_secondary.concat());
+        let corners = side.nodes_of_sharp_edges(self.reference, self.is_fixed());
+        let (others, allowed) = self.others(primary, &of_primary[0], secondary, &corners);
+        let earlier =
+            [&of_secondary, &of_primary].map(|of| of[0].iter().flat_map(|s| s.nodes.clone()).collect());
+        let edges = EdgeToEdge::new([opposite.clone(), side.clone()], &earlier, self.reference);
+        let nodes = NodeToPatch::new(without(&secondary.nodes, &of_secondary[0]), side.clone())
+            .of_body(opposite.clone());
+        let others = NodeToPatch::new(others, opposite).with_allowed(allowed).of_body(side);
+        WithEdges::new(BothSides::new(nodes, others), edges, primary.facets.len())
+    }
+
+    fn itself(&self, side: &Side) -> BothSides<NodeToFacet> {
+        let surface = self.surface(side, &[]);
+        let earlier = self.others(side, &[], side, &surface.corners(self.reference));
+        let part = &self.parts[side.part];
+        let pieces = part.body.mesh().pieces();
+        BothSides::of_itself(&surface, side.nodes.clone(), earlier, &pieces, part.first_node, self.reference)
+    }
+
+    fn itself_in_space(&self, side: &Side) -> WithEdges {
+        let boundary = self.boundary(side, &[]);
+        let sharp = boundary.nodes_of_sharp_edges(self.reference, self.is_fixed());
+        let earlier = self.others(side, &[], side, &sharp);
+        let part = &self.parts[side.part];
+        let pieces = part.body.mesh().pieces();
+        WithEdges::of_itself(&boundary, side.nodes.clone(), earlier, &pieces, part.first_node, self.reference)
+    }
+
+    fn is_fixed(&self) -> impl Fn(usize, usize) -> bool {
+        |node, axis| self.fixed[3 * node + axis]
+    }
+
+    /// The nodes of the primary side, each with the depth to which it may enter facets of the
+    /// secondary side: none at corners.
+    fn others(
+        &self,
+        primary: &Side,
+        earlier: &[Side],
+        secondary: &Side,
+        corners: &[usize],
+    ) -> (Vec<usize>, Vec<f64>) {
+        let lengths = lengths(&secondary.facets, self.reference, self.case.dimension);
+        let shortest = lengths.map(|(_, length)| length).fold(f64::INFINITY, f64::min);
+        let mut nodes = without(&primary.nodes, earlier);
+        nodes.sort_unstable();
+        let allowed = |node| if corners.contains(node) { 0.0 } else { ALLOWED * shortest };
+        let allowed = nodes.iter().map(allowed).collect();
+        (nodes, allowed)
+    }
+
+    /// The sides of a body that other contacts have in the place of this one's, with the same
+    /// opposite side: of earlier contacts, and of later ones. Together they are one surface.
+    pub(super) fn siblings(&self, k: usize, part: usize, which: Which) -> [Vec<Side>; 2] {
+        let spec = &self.case.contacts[k];
+        let of = |other: &ContactSpec| {
+            let (same, name) = match which {
+                Which::Primary => (other.secondary == spec.secondary, other.primary.side()?),
+                Which::Secondary => (other.primary == spec.primary, other.secondary.as_str()),
+            };
+            // There may be a contact per pair of bodies: few of them need their nodes.
+            if same { side(self.parts, name, "").ok().filter(|side| side.part == part) } else { None }
+        };
+        let (earlier, later) = (&self.case.contacts[..k], &self.case.contacts[k + 1..]);
+        [earlier, later].map(|contacts| contacts.iter().filter_map(of).collect())
+    }
+
+    /// A side of the plane with its siblings and the rest of its body's boundary.
+    fn surface(&self, side: &Side, siblings: &[Side]) -> Surface {
+        let (rest, count) = self.rest(side, siblings);
+        Surface::new(side.shape, &side.facets, &side.orientations).bounded_by(&rest, count)
+    }
+
+    /// The same in space.
+    fn boundary(&self, side: &Side, siblings: &[Side]) -> Boundary {
+        let (rest, count) = self.rest(side, siblings);
+        Boundary::new(side.shape, &side.facets, &rest, count)
+    }
+
+    /// The rest of the boundary of a side's body, the facets of its siblings first, and their
+    /// number.
+    fn rest(&self, side: &Side, siblings: &[Side]) -> (Vec<Vec<usize>>, usize) {
+        let own: HashSet<&Vec<usize>> = siblings.iter().flat_map(|sibling| &sibling.facets).collect();
+        let mut rest = side.rest(self.parts);
+        rest.sort_by_key(|facet| !own.contains(facet));
+        let count = rest.iter().filter(|facet| own.contains(facet)).count();
+        (rest, count)
+    }
+}
+
+/// Nodes that belong to none of these sides.
+pub(super) fn without(nodes: &[usize], sides: &[Side]) -> Vec<usize> {
+    let belongs = |node: &usize| sides.iter().any(|side| side.nodes.contains(node));
+    nodes.iter().copied().filter(|node| !belongs(node)).collect()
+}
+
+/// The length of the longest facet of each node of a side, in `d` dimensions.
+pub(super) fn longest(nodes: &[usize], facets: &[Vec<usize>], reference: &[f64], d: usize) -> Vec<f64> {
+    let mut of: HashMap<usize, f64> = HashMap::new();
+    for (facet, length) in lengths(facets, reference, d) {
+        for &node in facet {
+            let longest = of.entry(node).or_default();
+            *longest = longest.max(length);
+        }
+    }
+    nodes.iter().filter_map(|node| of.get(node).copied()).collect()
+}
+
+/// The facets of a side in `d` dimensions with the distances between their first corners.
+fn lengths<'a>(
+    facets: &'a [Vec<usize>],
+    reference: &[f64],
+    d: usize,
+) -> impl Iterator<Item = (&'a Vec<usize>, f64)> {
+    facets.iter().filter(|facet| facet.len() > 1).map(move |facet| {
+        let [start, end] = [facet[0], facet[1]].map(|node| &reference[d * node..d * node + d]);
+        (facet, start.iter().zip(end).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt())
+    })
+}

@@ -1,0 +1,48 @@
+//! Bodies that overlap at the start.
+
+use carom_case::{Case, Overlap, PrimarySpec, Problem};
+use carom_mechanics::model::Model;
+
+use super::side::coordinates;
+
+/// Initial overlaps of the bodies of a case deeper than round-off: a problem per contact with the
+/// deepest point.
+///
+/// Closing an overlap within one step would drive the bodies apart, so it is an error.
+pub fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
+    let x = &model.initial_position;
+    let problem = |(k, node, depth): (usize, usize, f64)| {
+        let place = coordinates(&x[node * model.dimension..(node + 1) * model.dimension]);
+        let name = &model.contacts[k].name;
+        let owner = model.parts.iter().find(|part| part.nodes().contains(&node));
+        let owner = owner.map_or("", |part| part.name.as_str());
+        let (inside, turn) = match &case.contacts[k].primary {
+            PrimarySpec::Plane { .. } => ("behind the rigid plane", "reverse its normal, "),
+            PrimarySpec::Polyline { .. } => {
+                ("to the left of the polyline, which is rigid", "reverse the order of its points, ")
+            }
+            PrimarySpec::Surface(_) => ("behind the rigid surface", "give the surface the other `reverse`, "),
+            _ => ("inside the other side's body", ""),
+        };
+        Problem::new(
+            format!("contact[{}]", case.contacts[k].entry),
+            format!("the bodies of contact \"{name}\" overlap at the start by {depth:.6e}"),
+            format!(
+                "the node of \"{owner}\" at {place} lies {inside}; closing the overlap within one step would drive the bodies apart"
+            ),
+            format!(
+                "move a body by at least {depth:.6e}, {turn}or give the contact overlap = \"relax\" or \"keep-gap\""
+            ),
+        )
+    };
+    let found = carom_mechanics::inside(model, x, 1e-9 * model.scale).into_iter();
+    let kept = |k: usize| {
+        model.contacts[k]
+            .kinematics
+            .secondary()
+            .iter()
+            .enumerate()
+            .any(|(n, _)| model.contacts[k].kinematics.kept(n) > 0.0)
+    };
+    found.filter(|(k, ..)| case.contacts[*k].overlap != Overlap::Relax || kept(*k)).map(problem).collect()
+}

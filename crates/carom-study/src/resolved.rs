@@ -1,0 +1,258 @@
+//! The cases of a study: that of every arm is resolved, and its model built once; what is wrong is
+//! reported at its place in the study, or in the case file if it is wrong without any arm.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use carom_record::Warning;
+use carom_record::study::Arm;
+use carom_record::study::design::{MemberOf, Role};
+use carom_run::case::{Case, CaseError, Diagnostic, Document, Problem, read};
+use carom_run::{Setup, warnings};
+
+use crate::arms::{self, Draft};
+use crate::file::StudyFile;
+
+/// Changes of a case, the case and its warnings.
+type Resolved = (Vec<String>, Case, Vec<Warning>);
+
+/// An arm whose case is valid.
+pub(crate) struct Planned<'a> {
+    pub(crate) draft: Draft,
+    pub(crate) sets: Vec<String>,
+    pub(crate) case: Case,
+    pub(crate) warnings: Vec<Warning>,
+    pub(crate) base: &'a Base,
+}
+
+/// The case files of a study, by their names in it.
+pub(crate) fn bases(
+    study: &Document,
+    folder: &Path,
+    given: Option<&Document>,
+    file: &StudyFile,
+    drafts: &[Draft],
+) -> Result<BTreeMap<String, Base>, CaseError> {
+    let mut bases = BTreeMap::new();
+    let named = drafts.iter().map(|d| (d.case.as_ref(), format!("{}.case", d.path)));
+    for (name, place) in std::iter::once((file.case.as_ref(), "case".to_owned())).chain(named) {
+        if let Some(name) = name.filter(|name| !bases.contains_key(*name)) {
+            let base = match given.filter(|case| case.name() == name) {
+                Some(case) => Base::of(case),
+                None => Base::read(study, folder, name, &place)?,
+            };
+            bases.insert(name.clone(), base);
+        }
+    }
+    Ok(bases)
+}
+
+/// The check of the arms of a study, and the problems found so far.
+pub(crate) struct Checked<'a> {
+    study: &'a Document,
+    found: Vec<Diagnostic>,
+}
+
+impl<'s> Checked<'s> {
+    pub(crate) fn new(study: &'s Document) -> Self {
+        Self { study, found: Vec::new() }
+    }
+
+    /// Adds problems of the study file.
+    pub(crate) fn problems(&mut self, problems: &[Problem]) -> Result<(), CaseError> {
+        self.found.extend(diagnostics(self.study.diagnose_all(problems))?);
+        Ok(())
+    }
+
+    /// An error if there are problems.
+    pub(crate) fn end(&mut self) -> Result<(), CaseError> {
+        let found = std::mem::take(&mut self.found);
+        if found.is_empty() { Ok(()) } else { Err(CaseError::Wrong(found)) }
+    }
+
+    /// The cases of drafts; their models are not built.
+    pub(crate) fn read(
+        &mut self,
+        file: &StudyFile,
+        drafts: &[Draft],
+        bases: &BTreeMap<String, Base>,
+    ) -> Result<Vec<Case>, CaseError> {
+        let mut cases = Vec::new();
+        for draft in drafts {
+            let Some(base) = base_of(file, draft, bases) else { continue };
+            match read_with(&base.name, &base.text, &changes(draft)) {
+                Ok((_, case)) => cases.push(case),
+                Err(error) => self.add(draft, base, error, read_with)?,
+            }
+        }
+        Ok(cases)
+    }
+
+    /// The changes of a draft, its case and warnings; none if the case is wrong.
+    fn resolved(&mut self, draft: &Draft, base: &Base) -> Result<Option<Resolved>, CaseError> {
+        let mut sets = changes(draft);
+        match resolved(&base.name, &base.text, &sets) {
+            Ok((case, warnings)) => {
+                sets.pop();
+                Ok(Some((sets, case, warnings)))
+            }
+            Err(error) => self.add(draft, base, error, resolved).map(|()| None),
+        }
+    }
+
+    /// Adds what is wrong with a draft, at its place in the study.
+    /// `of` gives what was wrong, and is asked the same of the case without changes.
+    fn add<T>(
+        &mut self,
+        draft: &Draft,
+        base: &Base,
+        error: CaseError,
+        of: impl Fn(&str, &str, &[String]) -> Result<T, CaseError>,
+    ) -> Result<(), CaseError> {
+        let found = diagnostics(error)?;
+        let own = of(&base.name, &base.text, &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
+        for diagnostic in found {
+            let placed = arms::placed(self.study, draft, &diagnostic, &own);
+            if !self.found.contains(&placed) {
+                self.found.push(placed);
+            }
+        }
+        Ok(())
+    }
+
+    /// The arms, then the runs of the computed reference, whose step depends on those of all arms.
+    pub(crate) fn arms<'a>(
+        &mut self,
+        file: &StudyFile,
+        drafts: Vec<Draft>,
+        bases: &'a BTreeMap<String, Base>,
+    ) -> Result<Vec<Planned<'a>>, CaseError> {
+        let (computed, count) = (arms::computes_reference(file, &drafts), drafts.len());
+        let mut planned = Vec::new();
+        self.plan(file, drafts, bases, &mut planned)?;
+        if computed && planned.len() == count {
+            let step = planned.iter().map(|p| p.case.time.step).fold(f64::INFINITY, f64::min);
+            let first = &planned[0].case;
+            match arms::fine(file, step, first.time.end, first.refine) {
+                Some(levels) => self.plan(file, levels, bases, &mut planned)?,
+                None => self.found.push(self.study.diagnose(&no_steps())),
+            }
+        }
+        Ok(planned)
+    }
+
+    fn plan<'a>(
+        &mut self,
+        file: &StudyFile,
+        drafts: Vec<Draft>,
+        bases: &'a BTreeMap<String, Base>,
+        planned: &mut Vec<Planned<'a>>,
+    ) -> Result<(), CaseError> {
+        for draft in drafts {
+            if let Some(base) = base_of(file, &draft, bases)
+                && let Some((sets, case, warnings)) = self.resolved(&draft, base)?
+            {
+                planned.push(Planned { draft, sets, case, warnings, base });
+            }
+        }
+        Ok(())
+    }
+
+    /// The members of all arms, except for the arms themselves.
+    pub(crate) fn members(&mut self, file: &StudyFile, planned: &[Planned]) -> Result<Vec<Arm>, CaseError> {
+        let mut members = Vec::new();
+        for (i, arm) in planned.iter().enumerate() {
+            let all = file.ensemble.iter().flat_map(|e| arms::members(e, &arm.draft, &arm.case));
+            for (j, (member, draft)) in all.enumerate() {
+                let Some((sets, case, _)) = self.resolved(&draft, arm.base)? else { continue };
+                let role = Role { member: Some(MemberOf { arm: i, member }), ..draft.role.clone() };
+                let directory = format!("members/{:02}-{:03}", i + 1, j + 1);
+                members.push(Arm { role, ..stored(&draft, directory, sets, &case) });
+            }
+        }
+        Ok(members)
+    }
+}
+
+/// A run as it is stored.
+pub(crate) fn stored(draft: &Draft, directory: String, sets: Vec<String>, case: &Case) -> Arm {
+    Arm {
+        name: draft.name.clone(),
+        directory,
+        sets,
+        steps: case.time.steps() as u64,
+        role: draft.role.clone(),
+        case_path: draft.case.clone(),
+        case: serde_json::to_value(case).unwrap_or_default(),
+    }
+}
+
+/// The case file of a draft.
+fn base_of<'a>(file: &StudyFile, draft: &Draft, bases: &'a BTreeMap<String, Base>) -> Option<&'a Base> {
+    draft.case.as_ref().or(file.case.as_ref()).and_then(|name| bases.get(name))
+}
+
+/// The changes of a draft, the last of which are its expectations.
+fn changes(draft: &Draft) -> Vec<String> {
+    draft.sets.iter().map(|(set, _)| set).chain([&draft.expect.0]).cloned().collect()
+}
+
+/// The steps of the computed reference do not divide the end time in the ratios of its meshes.
+fn no_steps() -> Problem {
+    Problem::new(
+        "fine.mesh",
+        "no steps of the reference are in the ratios of these factors",
+        "step and mesh are refined together, and every step divides the end time",
+        "choose simple ratios, for example `mesh = [1, 1.5, 2]`",
+    )
+}
+
+/// A case file that arms change.
+pub(crate) struct Base {
+    name: String,
+    pub(crate) text: String,
+}
+
+impl Base {
+    /// Reads the case file `name`; errors are reported at `place` of the study.
+    fn read(study: &Document, folder: &Path, name: &str, place: &str) -> Result<Self, CaseError> {
+        let path = folder.join(name);
+        let document = Document::open(&path, &[]).map_err(|error| match error {
+            CaseError::Wrong(found) if !path.is_file() => {
+                let what = format!("the case `{name}` cannot be read: {}", found[0].what);
+                let why = "the path is relative to the study file";
+                study.diagnose_all(&[Problem::new(place, what, why, "correct the path")])
+            }
+            error => error,
+        })?;
+        Ok(Self::of(&document))
+    }
+
+    fn of(document: &Document) -> Self {
+        Self { name: document.name().to_owned(), text: document.text().to_owned() }
+    }
+}
+
+/// A case with changes, and its warnings; its model is built once, to find what only the model
+/// shows. Its text is read once: a pipe cannot be read again.
+pub(crate) fn resolved(name: &str, text: &str, sets: &[String]) -> Result<(Case, Vec<Warning>), CaseError> {
+    let (document, case) = read_with(name, text, sets)?;
+    let simulation = Setup::new(&case).start().map_err(|problems| document.diagnose_all(&problems))?;
+    let given = warnings(&case, simulation.model());
+    Ok((case, given))
+}
+
+/// A case with changes, of which no model is built.
+fn read_with(name: &str, text: &str, sets: &[String]) -> Result<(Document, Case), CaseError> {
+    let document = Document::parse(name, text, sets)?;
+    let case = read(&document).map_err(|problems| document.diagnose_all(&problems))?;
+    Ok((document, case))
+}
+
+/// The diagnostics of a wrong case; input/output and system errors are returned as errors.
+fn diagnostics(error: CaseError) -> Result<Vec<Diagnostic>, CaseError> {
+    match error {
+        CaseError::Wrong(found) => Ok(found),
+        error @ CaseError::Refused { .. } => Err(error),
+    }
+}
