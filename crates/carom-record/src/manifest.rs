@@ -168,6 +168,9 @@ pub struct Manifest {
     /// boundary, facet by facet, with interior points between the end points of a facet.
     #[serde(default)]
     pub sides: BTreeMap<String, Vec<Vec<usize>>>,
+    /// Edges that show the rigid triangulated surfaces, by contact, where they are at first.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub surfaces: BTreeMap<String, Vec<[[f64; 3]; 2]>>,
     /// Doubts about the case, and, once the run has finished, about its results.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,
@@ -217,6 +220,7 @@ impl Manifest {
             threads,
             columns,
             sides: BTreeMap::new(),
+            surfaces: BTreeMap::new(),
             warnings: Vec::new(),
             timings: BTreeMap::new(),
             counters: BTreeMap::new(),

@@ -133,6 +133,32 @@ impl Triangles {
         self.across.iter().flatten().filter(|across| across.is_none()).count()
     }
 
+    /// The edges that show the surface in a drawing, at most so many: its rim, then those at which
+    /// it has the sharpest kinks. Edges within a plane are none of them.
+    pub fn outline(&self, most: usize) -> Vec<[[f64; 3]; 2]> {
+        let normal = |triangle: usize| {
+            let [a, b, c] = self.corners[triangle].map(|node| self.points[node]);
+            let n = cross(minus(b, a), minus(c, a));
+            n.map(|x| x / length(n))
+        };
+        let mut found = Vec::new();
+        for triangle in 0..self.corners.len() {
+            for edge in 0..3 {
+                let kink = match self.across(triangle, edge) {
+                    None => f64::INFINITY,
+                    // Each edge once.
+                    Some(other) if other < triangle => continue,
+                    Some(other) => length(minus(normal(triangle), normal(other))),
+                };
+                if kink > FLAT {
+                    found.push((kink, self.edge(triangle, edge).map(|node| self.points[node])));
+                }
+            }
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.into_iter().take(most).map(|(_, ends)| ends).collect()
+    }
+
     /// The same surface with coordinates times a factor > 0, and with the other orientation if it
     /// is `reversed`.
     #[must_use]
@@ -166,6 +192,18 @@ mod tests {
     fn tetrahedron() -> (Vec<[f64; 3]>, Vec<[usize; 3]>) {
         let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         (points, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    }
+
+    /// A cube of twelve triangles has twelve edges; the diagonals of its faces are none.
+    #[test]
+    fn the_outline_is_where_the_surface_has_kinks() {
+        let points: Vec<[f64; 3]> = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2].map(f64::from)).collect();
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let corners = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        let cube = Triangles::new(points, corners).unwrap();
+        let outline = cube.outline(100);
+        assert_eq!((outline.len(), cube.outline(5).len()), (12, 5));
+        assert!(outline.iter().all(|&[a, b]| length(minus(a, b)) == 1.0));
     }
 
     #[test]

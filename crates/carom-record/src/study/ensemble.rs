@@ -132,8 +132,13 @@ impl Spread {
 
     /// Largest distance of a value from the median.
     pub fn half_width(&self) -> f64 {
-        let (median, (low, high)) = (self.median(), self.range());
-        (high - median).max(median - low)
+        self.farthest(self.median())
+    }
+
+    /// Largest distance of a value from `x`.
+    pub fn farthest(&self, x: f64) -> f64 {
+        let (low, high) = self.range();
+        (high - x).max(x - low)
     }
 }
 

@@ -3,8 +3,8 @@
 //! Every goal has measures in order of preference, and the first established one is used. The error
 //! of a run is |m − r|/|r| (|m| if r = 0) for a metric m, or the root mean square deviation of
 //! columns; that of an arm is the median over its ensemble, with the largest distance of a member
-//! from it as its uncertainty. Arms are ranked within a level only, that is, at the same step or
-//! the same cost. Two arms of a level are not distinguished if their errors differ by no more than
+//! from it as its uncertainty; members that failed count for that if only one did not. Arms are
+//! ranked within a level only, that is, at the same step or the same cost. Two arms of a level are not distinguished if their errors differ by no more than
 //! the sum of their uncertainties, than that of the reference, or than 5 %. The place of an arm is
 //! one plus the number of arms that are distinguishably better; within a place arms are in the
 //! order of their cost. An arm that created so much energy that the default guard would have
@@ -92,9 +92,14 @@ impl Ranking {
             let one = |(i, _): (usize, &Arm)| {
                 errors[i]?;
                 let sound = |run: &usize| !rows[*run].is_unsound();
-                let members = manifest.runs_of(i).into_iter().filter(|run| *run == i || sound(run));
-                let members = Spread::of(members.filter_map(|run| errors[run]))?;
-                let (error, uncertainty) = (members.median(), members.half_width());
+                let runs = || manifest.runs_of(i).into_iter();
+                let spread =
+                    |runs: &mut dyn Iterator<Item = usize>| Spread::of(runs.filter_map(|run| errors[run]));
+                let members = spread(&mut runs().filter(|run| *run == i || sound(run)))?;
+                // One run alone tells nothing of the scatter: that of the failed ones is counted.
+                let all = spread(&mut runs()).filter(|_| members.count() == 1);
+                let error = members.median();
+                let uncertainty = all.as_ref().unwrap_or(&members).farthest(error);
                 Some(Ranked {
                     arm: i,
                     error,

@@ -1,5 +1,5 @@
 //! Rigid obstacles in space as lines on their surfaces, near the bodies: a grid on a plane, circles
-//! on a sphere, circles and lines on a cylinder.
+//! on a sphere, circles and lines on a cylinder, edges of a triangulated surface.
 
 use carom_record::Run;
 use serde_json::Value;
@@ -24,7 +24,11 @@ pub(crate) struct Wire {
 /// The obstacles of a run whose bodies fill a box.
 pub(crate) fn wires(run: &Run, [low, high]: [Place; 2]) -> Vec<Wire> {
     let contacts = run.manifest.case.get("contacts").and_then(Value::as_array);
-    contacts.into_iter().flatten().filter_map(|contact| one(contact, [low, high])).collect()
+    let of = |contact: &Value| {
+        let name = contact.get("name").and_then(Value::as_str).unwrap_or_default();
+        one(contact, run.manifest.surfaces.get(name).map_or(&[], Vec::as_slice), [low, high])
+    };
+    contacts.into_iter().flatten().filter_map(of).collect()
 }
 
 fn vector(value: Option<&Value>) -> Option<Place> {
@@ -49,7 +53,8 @@ fn across(n: Place) -> [Place; 2] {
     [first, cross(n, first)]
 }
 
-fn one(contact: &Value, [low, high]: [Place; 2]) -> Option<Wire> {
+/// `surface`: the edges of a triangulated one.
+fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Option<Wire> {
     let primary = contact.get("primary")?;
     let diagonal = dot(minus(high, low), minus(high, low)).sqrt();
     let middle = plus(low, 0.5, minus(high, low));
@@ -76,6 +81,15 @@ fn one(contact: &Value, [low, high]: [Place; 2]) -> Option<Wire> {
         let circle = |k: usize| (0..=POINTS).map(|i| at(share(k, LINES), angle(i, POINTS))).collect();
         let line = |k: usize| (0..=POINTS).map(|i| at(share(i, POINTS), angle(k, 2 * LINES))).collect();
         ((0..=LINES).map(circle).chain((0..2 * LINES).map(line)).collect(), point)
+    } else if primary.get("surface").is_some() {
+        // In pieces, of which those that are near are drawn.
+        let pieces = |&[a, b]: &[Place; 2]| -> Vec<Place> {
+            let along = minus(b, a);
+            let count =
+                (20.0 * dot(along, along).sqrt() / diagonal).ceil().clamp(1.0, POINTS as f64) as usize;
+            (0..=count).map(|k| plus(a, share(k, count), along)).collect()
+        };
+        (surface.iter().map(pieces).collect(), [0.0; 3])
     } else {
         let sphere = primary.get("circle")?;
         let (center, radius) = (vector(sphere.get("center"))?, sphere.get("radius")?.as_f64()?);
@@ -139,7 +153,7 @@ mod tests {
         ];
         for (k, (primary, radius)) in primaries.into_iter().enumerate() {
             let box_of = [[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]];
-            let wire = one(&json!({ "name": "strike", "primary": primary }), box_of).unwrap();
+            let wire = one(&json!({ "name": "strike", "primary": primary }), &[], box_of).unwrap();
             assert!(wire.at_first().len() > 100, "{k}");
             for p in wire.at_first().iter().flatten() {
                 let distance = match k {
@@ -151,6 +165,12 @@ mod tests {
                 assert!(p.iter().all(|x| x.abs() < 1.5), "{k}: {p:?}");
             }
         }
-        assert!(one(&json!({ "name": "a", "primary": { "side": "b.top" } }), [[0.0; 3], [1.0; 3]]).is_none());
+        let of = |primary, surface: &[_]| {
+            one(&json!({ "name": "a", "primary": primary }), surface, [[0.0; 3], [1.0; 3]])
+        };
+        assert!(of(json!({ "side": "b.top" }), &[]).is_none());
+        let wire = of(json!({ "surface": {} }), &[[[0.0; 3], [9.0, 0.0, 0.0]]]).unwrap();
+        let reach = wire.at_first().iter().flatten().map(|p| p[0]).fold(0.0, f64::max);
+        assert!(reach > 1.0 && reach < 1.3, "{reach}");
     }
 }

@@ -1,9 +1,10 @@
 //! `run` and `resume`: a session from the start of a case, or from the checkpoint of a run.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use carom_case::{Case, Functions};
+use carom_case::{Case, ContactSpec, Functions, PrimarySpec};
 use carom_mechanics::Simulation;
 use carom_record::{Manifest, MemoryRecord, Run, RunWriter, Source, Status, Stop};
 
@@ -72,8 +73,23 @@ fn started(case: &Case, source: Source, options: Options) -> Result<(Simulation,
     let mut manifest =
         Manifest::new(version, resolved, source, columns(case, simulation.model()), options.threads);
     manifest.sides = sides(simulation.model());
+    manifest.surfaces = surfaces(case);
     manifest.warnings = warnings(case, simulation.model());
     Ok((simulation, manifest))
+}
+
+/// Edges of a surface that pages draw.
+const DRAWN: usize = 3000;
+
+/// The edges of the triangulated surfaces of a case.
+fn surfaces(case: &Case) -> BTreeMap<String, Vec<[[f64; 3]; 2]>> {
+    let one = |contact: &ContactSpec| match &contact.primary {
+        PrimarySpec::Surface(surface) => {
+            Some((contact.name.clone(), surface.triangles().ok()?.outline(DRAWN)))
+        }
+        _ => None,
+    };
+    case.contacts.iter().filter_map(one).collect()
 }
 
 /// What an audit leaves out.

@@ -258,8 +258,8 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// The case of a file; none of a study, of a case without contact, or where it cannot be judged.
-/// The contact of those that take long is judged while it begins.
-fn contact_case(path: &Path) -> Option<(Case, Span)> {
+/// Its contact is judged while it begins, and for longer in the tests of every night.
+fn contact_case(path: &Path, at_night: bool) -> Option<(Case, Span)> {
     let document = Document::open(path, &[TIGHT.to_owned()]).unwrap();
     let is_in = |folder: &str| path.components().any(|part| part.as_os_str() == folder);
     let is_one_of = |cases: &[&str]| cases.iter().any(|case| path.ends_with(case));
@@ -277,8 +277,8 @@ fn contact_case(path: &Path) -> Option<(Case, Span)> {
     let is_slow = case.expects.iter().any(|expect| expect.slow);
     let span = match ["ladder", "space", "self"].iter().any(|folder| is_in(folder)) {
         _ if is_slow => Span { after: 3, at_most: 60 },
-        true => Span { after: 8, at_most: 420 },
-        false => Span { after: 150, at_most: 250 },
+        true => Span { after: if at_night { 20 } else { 3 }, at_most: 420 },
+        false => Span { after: if at_night { 300 } else { 50 }, at_most: if at_night { 600 } else { 250 } },
     };
     (!case.contacts.is_empty()).then_some((case, span))
 }
@@ -314,8 +314,18 @@ fn checked<T: Debug>(all: &[(T, Seen)]) -> [usize; 2] {
 
 #[test]
 fn every_case_of_the_repository() {
+    every_case(false);
+}
+
+#[test]
+#[ignore = "takes minutes: .ci/nightly"]
+fn every_case_of_the_repository_for_longer() {
+    every_case(true);
+}
+
+fn every_case(at_night: bool) {
     let all = repository();
-    let all = all_seen(&all, |path| contact_case(path).map(|(case, span)| seen(&case, span)));
+    let all = all_seen(&all, |path| contact_case(path, at_night).map(|(case, span)| seen(&case, span)));
     let counts = checked(&all);
     assert!(counts[0] > 95 && counts[1] > 45, "{counts:?}");
 }

@@ -190,6 +190,23 @@ fn failed_members_are_no_evidence() {
     assert!(confidence == Confidence::Low && why.contains("the value of a single run"), "{why}");
 }
 
+/// Two of three members created energy. The scatter of an arm with one sound member is not zero, but
+/// that of all: 0.03 from 0.01.
+#[test]
+fn one_sound_member_has_the_scatter_of_all() {
+    let members: [&[(f64, f64)]; 2] = [&[(0.02, 1.0), (0.04, 1.0)], &[(0.03, 1.0); 2]];
+    let (manifest, mut rows) = with_members(study(&[("a", 0, 0.01, 1.0), ("b", 0, 0.03, 1.0)]), &members);
+    for row in &mut rows[2..4] {
+        let created = Metric { name: "energy_created".into(), value: Some(0.5), ..row.metrics[0].clone() };
+        row.metrics.push(created);
+    }
+    let ranking = by_energy(&(manifest, rows));
+    let found: Vec<_> = ranking.levels[0].iter().map(|r| (r.arm, r.place, r.members)).collect();
+    assert_eq!(found, [(0, 1, 1), (1, 1, 3)]);
+    let of_a = &ranking.levels[0][0];
+    assert!((of_a.error - 0.01).abs() < 1e-15 && (of_a.uncertainty - 0.03).abs() < 1e-15);
+}
+
 /// Of three arms the one with the smallest drift created 3 % of energy; the guard allows 2 %.
 #[test]
 fn an_arm_that_creates_energy_is_last_and_not_recommended() {
