@@ -69,7 +69,7 @@ impl Document {
             }
             std::io::ErrorKind::NotFound => wrong(
                 "there is no such file",
-                "a relative path starts at the working directory",
+                "relative paths are resolved from the working directory",
                 "check the path and the working directory",
             ),
             _ => CaseError::Refused { path: name.clone(), source },

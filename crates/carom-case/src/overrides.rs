@@ -33,7 +33,7 @@ pub(super) fn apply(root: &mut Node, set: &str, source: usize) -> Result<(), Box
         let key = key.get();
         let described = node.described();
         node = match &mut node.value {
-            Value::Table(table) => table.get_or_insert(key, &here),
+            Value::Table(table) => table.given(key, &here, depth + 1 == keys.len()),
             Value::List(list) => {
                 let names: Vec<String> =
                     list.iter().filter_map(|n| Some(n.table()?.get("name")?.text()?.to_owned())).collect();

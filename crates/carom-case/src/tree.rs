@@ -51,14 +51,18 @@ impl Table {
         self.entry(key).map(|e| &e.node)
     }
 
-    /// The value of a key, added as an empty table if it is not there.
-    pub(super) fn get_or_insert(&mut self, key: &str, origin: &Origin) -> &mut Node {
+    /// The value of a key that is given at `origin`, as a whole (`replaced`) or in part; added as an
+    /// empty table if it is not there.
+    pub(super) fn given(&mut self, key: &str, origin: &Origin, replaced: bool) -> &mut Node {
         let found = self.0.iter().position(|e| e.key == key);
         let at = found.unwrap_or_else(|| {
             let node = Node { value: Value::Table(Self::default()), origin: origin.clone() };
             self.0.push(Entry { key: key.to_owned(), origin: origin.clone(), node });
             self.0.len() - 1
         });
+        if replaced {
+            self.0[at].origin = origin.clone();
+        }
         &mut self.0[at].node
     }
 }

@@ -166,7 +166,7 @@ pub(crate) fn accuracy_of(kernel: &dyn Kernel, steps_per_period: u32) -> Accurac
 pub(crate) fn constrained_of(kernel: &dyn Kernel) -> Constrained {
     let radius = map::spectral_radius_at_infinity(kernel);
     if radius >= 1.0 - NOTHING {
-        let text = "its velocity and acceleration do not settle: use persistency = \"project\", law = \"predictor\" or a penalty";
+        let text = "its velocity and acceleration keep oscillating: use persistency = \"project\", law = \"predictor\" or a penalty";
         return Constrained { radius, steps: None, text: text.to_owned() };
     }
     let share = if radius < NOTHING { NOTHING } else { 0.01 };
@@ -208,7 +208,7 @@ fn conventions(scheme: &Scheme, names: &[Name]) -> Vec<Convention> {
     let is = |kind: &str| names.iter().any(|name| name.kind == kind);
     let mut list = vec![
         Convention {
-            name: "index s + 1 − α: weights of the old terms (Carom, Chung and Hulbert)",
+            name: "index n + 1 − α: weights of the old terms (Carom, Chung and Hulbert)",
             values: vec![("α_m", alpha_m), ("α_f", alpha_f), ("β", beta), ("γ", gamma)],
         },
         Convention {
@@ -275,8 +275,9 @@ pub(crate) fn constrained(scheme: &Scheme) -> Constrained {
     } else if radius < 1.0 - NOTHING {
         let steps = ringing(scheme, 0.01);
         let text = format!(
-            "after an impact at speed v₀, its acceleration and contact force oscillate in proportion to {}({})ⁿ v₀/Δt, where n is \
-             the number of steps, and are below 1 % of v₀/Δt after {steps} steps; a smaller Δt makes this transient shorter and higher",
+            "after an impact at speed v₀, its acceleration, and its contact force divided by its mass, oscillate like \
+             {}({})ⁿ v₀/Δt after n steps and fall below 1 % of v₀/Δt after {steps} steps; with a smaller Δt the transient lasts the \
+             same number of steps, thus less time, and its amplitude is larger",
             ["", "n ", "n² "][power],
             short(-radius)
         );
@@ -289,7 +290,7 @@ pub(crate) fn constrained(scheme: &Scheme) -> Constrained {
         (
             None,
             format!(
-                "its velocity and acceleration do not settle (largest root {radius:.3} in modulus): use persistency = \"project\""
+                "its velocity and acceleration keep oscillating (largest root {radius:.3} in modulus): use persistency = \"project\""
             ),
         )
     };
@@ -359,7 +360,7 @@ impl Scheme {
         }
         let overshoot = self.velocity_overshoot();
         if overshoot > NOTHING {
-            list.push(format!("overshoot: a stiff mode released from rest at displacement u₀ has the velocity {overshoot:.3} Ω ω u₀ after one step; displacements remain bounded"));
+            list.push(format!("overshoot: after one step, a stiff mode of frequency ω released from rest at displacement u₀ has the velocity {overshoot:.3} Ω ω u₀, with Ω = ωΔt ≫ 1; its displacement remains bounded"));
         }
         if self.forces == ForceRule::AverageState && alpha_f != 0.0 {
             list.push("averaging the state differs from averaging the forces where forces are nonlinear; the linear analysis above is the same for both".to_owned());

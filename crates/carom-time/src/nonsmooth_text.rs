@@ -42,11 +42,11 @@ pub(crate) fn explain_nonsmooth(scheme: &Nonsmooth, name: &Name) -> NonsmoothExp
     let (contact, energy) = match scheme {
         Nonsmooth::Explicit(scheme) => (
             scheme.contact,
-            "energy: below the stability limit no mode of linear motion is damped; each impact of a node dissipates some energy",
+            "energy: below the stability limit no mode of linear motion is damped; with e = 0 each impact of a node dissipates some energy",
         ),
         Nonsmooth::Impulse(_) if lossless => (
             IMPULSES,
-            "energy: no mode of linear motion is damped; an impact with e = 0 removes the energy of the node's impact velocity",
+            "energy: no mode of linear motion is damped; an impact with e = 0 dissipates the kinetic energy of the node's normal velocity",
         ),
         Nonsmooth::Impulse(_) => {
             (IMPULSES, "energy: dissipated, most strongly at high frequencies (damping ratio above)")
@@ -67,7 +67,7 @@ pub(crate) fn explain_nonsmooth(scheme: &Nonsmooth, name: &Name) -> NonsmoothExp
 }
 
 const IMPULSES: &[&str] = &[
-    "an impulse P per step where the gap is predicted to be closed: 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0; it is recorded as the force P/Δt",
+    "where the gap is predicted to be closed, an impulse P acts in the step: 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0, with the gap rate G v and the coefficient of restitution e; it is recorded as the force P/Δt",
     "velocities are constrained, not positions: a penetration of the order of Δt·speed remains",
 ];
 

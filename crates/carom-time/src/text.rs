@@ -127,10 +127,11 @@ fn row(kind: &'static str, parameters: &[(&str, f64)], explanation: Explanation)
 const ACCURACY: &str = "     order        ρ∞   ξ(T/10)  PE(T/10)";
 
 const NOTES: &str = "\
-α_m, α_f: weights of the old terms (index s + 1 − α)
-ρ∞: spectral radius at infinite frequency; ωΔt ≤ 2: explicit, stable up to this step only
+α_m, α_f: weights of the terms at the start of the step (index n + 1 − α)
+ρ∞: spectral radius at infinite frequency; ωΔt ≤ 2: explicit, conditionally stable with this limit
 ξ(T/10), PE(T/10): damping ratio and period error of a mode with ten steps per period
-constrained: number of steps for which the transient of a dof constrained by contact exceeds 1 % of v₀/Δt";
+constrained: number of steps until the transient of a dof stopped by contact at the speed v₀ is below
+1 % of v₀/Δt; ∞: it does not decay";
 
 /// Order, ρ∞, damping ratio and period error of a scheme, as columns.
 fn at_ten_steps(order: u8, rho_inf: &str, accuracy: Option<&Accuracy>) -> String {

@@ -58,6 +58,11 @@ impl Check<'_> {
         let available = available_memory();
         let largest = bodies().max_by(|(_, a), (_, b)| need(a).total_cmp(&need(b)));
         let Some((i, body)) = largest.filter(|_| total > available) else { return };
+        let mesh = format!("body[{i}].mesh");
+        // A size of zero is an error by itself.
+        if self.problems.iter().any(|problem| problem.path.starts_with(&mesh)) {
+            return;
+        }
         let (cells, nodes) = body.mesh.estimate(body.element);
         let key = match body.mesh {
             MeshSpec::File { .. } => "file",
@@ -71,7 +76,7 @@ impl Check<'_> {
         );
         let why =
             format!("the model needs about {}, and {} are available", gibibytes(total), gibibytes(available));
-        let path = format!("body[{i}].mesh.{key}");
+        let path = format!("{mesh}.{key}");
         let help = "use a coarser mesh or an element of lower degree, or give the process more memory";
         self.problems.push(Problem::new(path, what, why, help).of_system());
     }

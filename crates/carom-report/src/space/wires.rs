@@ -12,6 +12,8 @@ const POINTS: usize = 96;
 const LINES: usize = 8;
 /// How far beyond the box of the bodies obstacles are drawn, over its diagonal.
 const MARGIN: f64 = 0.15;
+/// Extent of a triangulated surface, over the same diagonal, up to which all of it is drawn.
+const WHOLE: f64 = 8.0;
 
 /// The lines of an obstacle, and how it moves.
 pub(crate) struct Wire {
@@ -104,8 +106,13 @@ fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Opti
     };
     let is_near =
         |p: &Place| (0..3).all(|i| p[i] >= low[i] - MARGIN * diagonal && p[i] <= high[i] + MARGIN * diagonal);
+    let extent = |i: usize| {
+        let along = surface.iter().flatten().map(|p| p[i]);
+        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+    };
+    let is_whole = !surface.is_empty() && (0..3).all(|i| extent(i) <= WHOLE * diagonal);
     let pieces = lines.iter().flat_map(|line: &Vec<Place>| line.windows(2)).map(|w| [w[0], w[1]]);
-    let segments: Vec<[Place; 2]> = pieces.filter(|piece| piece.iter().all(is_near)).collect();
+    let segments: Vec<[Place; 2]> = pieces.filter(|piece| is_whole || piece.iter().all(is_near)).collect();
     let name = contact.get("name").and_then(Value::as_str).unwrap_or_default();
     let center = ["x", "y", "z"].map(|axis| format!("{name}.center_{axis}"));
     (!segments.is_empty()).then_some(Wire { segments, center, origin })
@@ -169,8 +176,10 @@ mod tests {
             one(&json!({ "name": "a", "primary": primary }), surface, [[0.0; 3], [1.0; 3]])
         };
         assert!(of(json!({ "side": "b.top" }), &[]).is_none());
+        let wire = of(json!({ "surface": {} }), &[[[0.0; 3], [99.0, 0.0, 0.0]]]).unwrap();
+        let reach = |wire: &Wire| wire.at_first().iter().flatten().map(|p| p[0]).fold(0.0, f64::max);
+        assert!(reach(&wire) > 1.0 && reach(&wire) < 1.3, "{}", reach(&wire));
         let wire = of(json!({ "surface": {} }), &[[[0.0; 3], [9.0, 0.0, 0.0]]]).unwrap();
-        let reach = wire.at_first().iter().flatten().map(|p| p[0]).fold(0.0, f64::max);
-        assert!(reach > 1.0 && reach < 1.3, "{reach}");
+        assert_eq!(reach(&wire), 9.0);
     }
 }

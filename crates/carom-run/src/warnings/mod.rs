@@ -54,16 +54,16 @@ pub const WARNINGS: [Entry; 15] = [
     },
     Entry {
         id: "unmatched-pressure",
-        why: "node-to-segment contact fails the patch test where nodes do not match, so that pressures and stresses at the surface are wrong by \
-              10 % or more",
-        advice: "matching meshes, resultants, or probes a few cells away from the contact",
+        why: "node-to-segment contact fails the patch test on non-matching meshes: pressures and stresses at the \
+              contact surface have errors of 10 % or more",
+        advice: "matching meshes, or resultants, or probes a few cells away from the contact",
         rule: Rule::Model(meshes::unmatched_pressure),
     },
     Entry {
         id: "long-step",
-        why: "the contact force is the change of momentum in a step divided by the step, and depends on the \
-            step more than on the body",
-        advice: "a shorter step, or reading only impulse, duration and motion",
+        why: "the contact force is then the momentum transferred in a step divided by Δt, and depends more on Δt \
+            than on the body",
+        advice: "a shorter step; otherwise evaluate only the impulse, the contact duration and the motion",
         rule: Rule::Model(steps::long_step),
     },
     Entry {
@@ -130,7 +130,7 @@ pub const WARNINGS: [Entry; 15] = [
     },
     Entry {
         id: "energy-created",
-        why: "an elastic body cannot do that; motion, forces and stresses afterwards are artefacts of the \
+        why: "an elastic body cannot create energy; motion, forces and stresses afterwards are artefacts of the \
             scheme",
         advice: "persistency = \"project\", a scheme with more damping, another step, or the energy guard, which stops such a run",
         rule: Rule::Record(record::energy_created),

@@ -20,7 +20,7 @@ pub(super) const KIND: KindInfo = KindInfo {
         order: 2,
         restitution: false,
         contact: &[
-            "the force at the start of a step prevents penetration at its end (forward increment), except where a node changes facets",
+            "the force at the start of a step prevents penetration at its end (forward increment), except in a step in which a node moves to another facet",
             LUMPED,
         ],
     }),

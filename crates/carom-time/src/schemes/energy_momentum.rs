@@ -37,7 +37,7 @@ impl Kernel for EnergyMomentum {
         &[
             "in free motion energy, momentum and angular momentum are conserved exactly, also with nonlinear forces",
             "in contact momentum and angular momentum are conserved exactly, except with law = \"predictor\"",
-            "energy is conserved exactly in contact with enforcement = \"penalty\", and with multipliers while gaps stay closed",
+            "energy is conserved exactly in contact with enforcement = \"penalty\", and with multipliers as long as no contact begins or ends",
         ]
     }
 

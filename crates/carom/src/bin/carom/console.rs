@@ -19,7 +19,7 @@ static JSON: OnceLock<bool> = OnceLock::new();
 #[derive(clap::Args)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct Options {
-    /// Print more: rejected steps, changes of contact, every row of a table
+    /// Print more: rejected steps, contacts that begin or end, every row of a table
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     verbose: bool,
     /// Print errors only

@@ -31,7 +31,7 @@ Examples:
 
 Exit codes:
   0    success
-  1    an expectation was missed (verify, or --strict), or arms of a study are missing or damaged
+  1    an expectation was missed (verify, or --strict); study collect: runs are missing or damaged
   2    the case or an argument is invalid
   3    the simulation stopped; its last valid state is saved
   4    input/output or system error

@@ -20,7 +20,7 @@ use crate::{console, out};
 /// Nodes listed without `--verbose`.
 const LISTED: usize = 10;
 
-/// Read a case or a study and report its errors without running it; draw bodies that overlap
+/// Report the errors of a case or study without running it; draw overlapping bodies (SVG)
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  carom check impact.toml --set time.scheme.rho_inf=0.5\n  carom check laboratory.toml"
@@ -93,7 +93,7 @@ impl Overlap {
         for node in self.nodes.iter().take(shown) {
             let at: Vec<String> = node.at.iter().map(|x| short(*x)).collect();
             lines.push(format!(
-                "  contact  {:12} node {} of {} at [{}]: {} deep",
+                "  contact  {:12} node {} of {} at [{}] penetrates by {}",
                 node.contact,
                 node.node,
                 node.body,
@@ -206,9 +206,14 @@ fn table(case: &Case, facts: &Facts) -> String {
     }
     lines.push(format!("  scheme   {}", scheme_text(&case.time.scheme)));
     let steps = case.time.steps();
-    lines.push(format!("  time     {steps} steps of {} to {}", short(case.time.step), short(case.time.end)));
+    lines.push(format!(
+        "  time     {}, Δt = {}, to t = {}",
+        several(steps, "step"),
+        short(case.time.step),
+        short(case.time.end)
+    ));
     if let Some(transit) = facts.transit_steps.map(short) {
-        lines.push(format!("           a pressure wave takes {transit} steps to cross the smallest body"));
+        lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
     }
     if let Some(stable) = facts.stable_step {
         lines.push(format!(
@@ -249,7 +254,13 @@ fn load_text(load: &LoadSpec) -> String {
 fn counted(body: &BodyFacts) -> String {
     let sides: Vec<_> = body.sides.iter().map(|(side, n)| format!("{side} {n}")).collect();
     let BodyFacts { nodes, cells, dofs, .. } = body;
-    format!("{nodes} nodes, {cells} cells, {dofs} free dofs; nodes of sides: {}", sides.join(", "))
+    let (nodes, cells) = (several(*nodes, "node"), several(*cells, "cell"));
+    format!("{nodes}, {cells}, {dofs} free dofs; nodes per side: {}", sides.join(", "))
+}
+
+/// `1 cell`, `2 cells`.
+fn several(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// What the scheme's parameters imply.

@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             what:
                 "the scheme `static` is not a time integrator: every step is a static equilibrium, with t as the load parameter"
                     .into(),
-            help: "list the time integrators with carom explain".into(),
+            help: "run `carom explain` without arguments to list the time integrators".into(),
         });
     }
     let scheme =

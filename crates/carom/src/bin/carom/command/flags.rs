@@ -16,11 +16,11 @@ pub(crate) struct Flags {
     /// Do not write figures and report page
     #[arg(long)]
     pub(crate) no_report: bool,
-    /// If a run stops, do not try changes that may get it past the stop
+    /// If a run stops, do not test which changes of the case would let it continue
     #[arg(long)]
     pub(crate) no_trials: bool,
-    /// Check the contact of every step by a second method, which compares every node with the whole
-    /// outline of the other body, and stop where the two methods disagree; slow
+    /// Check the contact of every step by a second, independent method, which compares every node
+    /// with the entire boundary of the other body, and stop if the two methods disagree; slow
     #[arg(long)]
     pub(crate) audit: bool,
     /// Print a timing profile of a run

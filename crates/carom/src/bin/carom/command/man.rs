@@ -14,7 +14,8 @@ Examples:
   carom man --out ~/.local/share/man/man1
   carom man | man -l -")]
 pub(crate) struct Arguments {
-    /// Folder for carom.1, carom-run.1, …; without it, carom.1 is printed
+    /// Folder for carom.1, carom-run.1, …; without it, carom.1 is printed to standard
+    /// output
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

@@ -10,7 +10,8 @@ use crate::{console, directory, out, summary};
 /// Make a smaller case that starts just before the stop of a run and stops in the same way
 #[derive(clap::Args)]
 #[command(after_help = "\
-The reduced case is run: exit code 0 means that it stops for the same reason at the same place.
+`carom reduce` runs the reduced case: its exit code is 0 if the case stops for the same reason at
+the same place.
 
 Example:
   carom reduce runs/impact

@@ -24,14 +24,14 @@ and Noto Sans that is installed; characters that it lacks are taken from other i
 pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,
-    /// Also write every figure of the page in these formats, beside its SVG, and print the names of
-    /// the files; of a study, without the figures of its arms
+    /// Also write every figure of the page in these formats, beside its SVG, and print the file
+    /// names; for a study, the figures of its individual runs are not written
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FORMAT")]
     format: Vec<Format>,
     /// Pixels of a PNG per pixel of the figure, 0.1 to 10; 3 gives 288 dpi
     #[arg(long, value_name = "X", default_value = "3", value_parser = scale)]
     scale: f32,
-    /// Draw text with this TrueType or OpenType file alone
+    /// Use only this TrueType or OpenType font file for text
     #[arg(long, value_name = "FILE")]
     font: Option<PathBuf>,
 }

@@ -23,7 +23,7 @@ Examples:
   carom study cases/paper/fair.toml --jobs 4 --out runs/fair
   carom study plan sweep.toml --out runs/sweep --slurm
 
-An arm that fails is marked in the table; the exit code is then still 0.")]
+An arm (variant) that fails is marked in the table; the exit code is then still 0.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     command: Option<StudyCommand>,

@@ -23,8 +23,8 @@ Then compute every run, in any order and on any machine that shares the director
   seq N | parallel carom study arm DIR          with GNU parallel, for N runs
 and write the tables and the page with:
   carom study collect DIR
-A design of matched cost needs times: with --settle they are measured on this machine, and runs on
-machines of another type are then refused.")]
+A study at matched cost needs timings to choose the time steps: --settle measures them on this
+machine; `carom study arm` then refuses to run on a machine of another type.")]
     Plan {
         /// The study file, or - for standard input
         study: PathBuf,
@@ -34,11 +34,11 @@ machines of another type are then refused.")]
         /// Also write DIR/slurm.sh, a job array for Slurm
         #[arg(long)]
         slurm: bool,
-        /// Find the steps of matched cost now, by timing runs on this machine one after the other
+        /// Choose the steps of equal cost now, by timing runs on this machine one after the other
         #[arg(long)]
         settle: bool,
     },
-    /// Compute one run of a planned study, or continue it; nothing is done if it has ended
+    /// Compute or continue one run (arm) of a planned study; a finished run is left unchanged
     Arm {
         /// Directory of the study
         directory: PathBuf,
@@ -47,8 +47,9 @@ machines of another type are then refused.")]
     },
     /// Write the tables and the page of what has been computed, and list what is missing
     ///
-    /// Once all runs of a study with a goal have ended, one of them is computed twice more, with
-    /// two threads and resumed, to check that the results are bitwise identical.
+    /// When all runs of a study with a goal have ended, one of them is computed twice more, once
+    /// with two threads and once interrupted and resumed, to check that the results are bitwise
+    /// identical.
     Collect {
         /// Directory of the study
         directory: PathBuf,

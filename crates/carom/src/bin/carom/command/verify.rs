@@ -33,13 +33,13 @@ Examples:
 Exit codes: 0 all met · 1 an expectation was missed · 2 a case is invalid · 3 a run stopped unexpectedly")]
 #[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
-    /// Cases, studies, or folders of them [default: cases/, or, if there is none, the fast built-in
-    /// cases]
+    /// Cases, studies, or folders of them [default: the folder cases/ if it exists, otherwise
+    /// the fast built-in cases]
     paths: Vec<PathBuf>,
     /// Skip expectations marked slow, and cases that have no others
     #[arg(long)]
     fast: bool,
-    /// Stop at the first set-up that misses an expectation; short set-ups are run first
+    /// Stop at the first case or study that misses an expectation; short ones are run first
     #[arg(long, conflicts_with = "report")]
     fail_fast: bool,
     /// Number of concurrent runs; results are bitwise identical for any number;
