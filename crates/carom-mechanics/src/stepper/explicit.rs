@@ -357,7 +357,7 @@ impl Explicit {
                     impulses.push(-inner(part, pair.tangential.traction));
                 }
             }
-            let (mut matrix, mut right) = self.matrix(acting);
+            let (mut matrix, mut right) = self.matrix(acting, at);
             for (i, &(k, p)) in places.iter().enumerate() {
                 let leaves = pairings[k].pairs[p].start.is_some();
                 let restitution = if leaves { 0.0 } else { model.contacts[k].restitution };
@@ -388,7 +388,6 @@ impl Explicit {
             for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
                 (pair.lambda, pair.tangential.traction) = (0.0, [0.0; 2]);
             }
-            at.fill(0.0);
             for (row, force) in acting.iter().zip(impulses.iter()) {
                 row.add_to(*force, at);
             }
@@ -432,17 +431,17 @@ impl Explicit {
         Ok(is_behind)
     }
 
-    /// G M⁻¹Gᵀ over these rows, and room for a right-hand side.
-    fn matrix(&self, rows: &Rows) -> (Vec<f64>, Vec<f64>) {
+    /// G M⁻¹Gᵀ over these rows, and room for a right-hand side. `column` is overwritten by zeros.
+    fn matrix(&self, rows: &Rows, column: &mut [f64]) -> (Vec<f64>, Vec<f64>) {
         let count = rows.len();
         let mut matrix = vec![0.0; count * count];
-        let mut column = vec![0.0; self.inverse_mass.len()];
+        column.fill(0.0);
         for (j, row) in rows.iter().enumerate() {
             for (dof, slope) in row.entries() {
                 column[dof] = self.inverse_mass[dof] * slope;
             }
             for (i, other) in rows.iter().enumerate() {
-                matrix[i * count + j] = other.along(&column);
+                matrix[i * count + j] = other.along(column);
             }
             row.entries().for_each(|(dof, _)| column[dof] = 0.0);
         }
