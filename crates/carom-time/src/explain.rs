@@ -208,7 +208,7 @@ fn conventions(scheme: &Scheme, names: &[Name]) -> Vec<Convention> {
     let is = |kind: &str| names.iter().any(|name| name.kind == kind);
     let mut list = vec![
         Convention {
-            name: "index n + 1 − α: weights of the old terms (Carom, Chung and Hulbert)",
+            name: "index n + 1 − α: weights of the terms at the start of the step (Carom, Chung and Hulbert)",
             values: vec![("α_m", alpha_m), ("α_f", alpha_f), ("β", beta), ("γ", gamma)],
         },
         Convention {
