@@ -212,7 +212,7 @@ fn conventions(scheme: &Scheme, names: &[Name]) -> Vec<Convention> {
             values: vec![("α_m", alpha_m), ("α_f", alpha_f), ("β", beta), ("γ", gamma)],
         },
         Convention {
-            name: "index n + α: weights of the new terms",
+            name: "index n + α: weights of the terms at the end of the step",
             values: vec![("α_m", 1.0 - alpha_m), ("α_f", 1.0 - alpha_f), ("β", beta), ("γ", gamma)],
         },
     ];
