@@ -17,8 +17,6 @@ HEAD = "| Statement | Members that confirm it | Ratio |\n| --- | --- | --- |\n"
 
 def ratio(claim: dict) -> str:
     """Median, least and largest ratio, with two digits, or as many as tell them apart."""
-    if "+" in claim["compare"]:  # r + 1/r says nothing that the ratio of the claim would
-        return "–"
     values = [float(claim[key]) for key in ("ratio", "ratio_low", "ratio_high")]
     digits = 5 if max(values) - min(values) < 0.01 * max(values) else 2
     median, low, high = (f"{value:#.{digits}g}".rstrip(".") for value in values)

@@ -12,7 +12,7 @@ explain/       `carom explain` for each scheme shown in the pages
 first-run.*    output and figure of `carom run cases/impact/impact.toml`
 columns.md     columns of its history.csv, from its manifest
 metrics.md     the table of metrics, from crates/carom-record/src/metrics/table.rs
-activation.md, coarse-steps.md, flagship.md, peak.md     results of docs/book/studies/
+activation.md, coarse-steps.md, transits.md, flagship.md, peak.md     results of docs/book/studies/
 spins.md, refine.md        tables of cases/free/spins.toml and cases/impact/refine-*.toml
 solid-*.svg, contact-*.svg     figures of the examples in space
 FAMILY.md, FAMILY.svg      `carom verify --report --out DIR --markdown DIR`, and a figure of one of
@@ -66,6 +66,7 @@ FIGURES = {
 STUDIES = {
     "activation": ["peak_force", "force_roughness", "restitution", "energy_lost", "energy_created", "rejected_steps"],
     "coarse-steps": ["energy_created", "energy_lost", "restitution"],
+    "transits": ["energy_created", "energy_lost", "restitution"],
     "flagship": ["energy_lost", "dissipated_integrator", "dissipated_contact", "A.uy:min", "contact_end", "peak_mean_force"],
     "peak": ["peak_force", "peak_mean_force", "impulse_x", "restitution", "energy_lost"],
 }

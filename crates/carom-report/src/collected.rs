@@ -18,7 +18,7 @@ const OTHERS: [(&str, &str, &str); 5] = [
     ("contact_impulse_x", "P_{x}", "contact impulse in x direction"),
     ("contact_impulse_y", "P_{y}", "contact impulse in y direction"),
     ("contact_impulse_z", "P_{z}", "contact impulse in z direction"),
-    ("dissipation", "dissipation", "accumulated dissipation (negative: energy created)"),
+    ("dissipation", "dissipation", "accumulated dissipation of the scheme"),
 ];
 
 /// A column of all arms, thinned.

@@ -61,7 +61,11 @@ fn setup(run: &Run) -> Option<Figure> {
     let fields = run.field(run.fields.first()?).ok()?;
     let svg = setup::figure(run, &fields)?;
     let view = if bodies::fill_space(&fields) {
-        format!(" View: {}. Dashed: outlines of sides that are turned away.", space::View::words())
+        let contacts = run.manifest.case.get("contacts").and_then(|v| v.as_array());
+        let is_rigid = |contact: &serde_json::Value| contact.pointer("/primary/side").is_none();
+        let rigid = contacts.is_some_and(|contacts| contacts.iter().any(is_rigid));
+        let rigid = if rigid { " Light lines, behind the bodies: rigid obstacles." } else { "" };
+        format!(" View: {}. Dashed: outlines of sides that are turned away.{rigid}", space::View::words())
     } else {
         String::new()
     };

@@ -168,6 +168,7 @@ fn error_cost(study: &Study) -> Option<Plot> {
     }
     panes.retain(|p| !p.curves.is_empty());
     (!panes.is_empty()).then(|| Plot {
+        group: String::new(),
         name: "error-cost".into(),
         caption: format!(
             "Error against cost: one point per arm, one curve per method. Broad line: Pareto front.{}{} \
@@ -212,6 +213,7 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
     ];
     panes.retain(|p| !p.curves.is_empty());
     (!panes.is_empty()).then(|| Plot {
+        group: String::new(),
         name: "roughness-dissipation".into(),
         caption: format!(
             "Roughness of the contact force against energy drift: one point per arm, one curve per method. \
@@ -296,6 +298,7 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
         if band.is_some() { " Grey: the reference; the width of the band is its uncertainty." } else { "" };
     let when = if span.is_some() { " during the first contact" } else { "" };
     Some(Plot {
+        group: String::new(),
         name: multiples_name(&column.name),
         caption: format!(
             "{}{when}, for each method at its finest level.{grey}{}{} All panels have the same axes.",
@@ -376,6 +379,7 @@ fn theory(study: &Study) -> Option<Plot> {
         pane("relative period error", "(T − T_{0})/T_{0}", 4, (-0.1, 1.0)),
     ];
     Some(Plot {
+        group: String::new(),
         name: "theory".into(),
         caption: format!(
             "Properties of the schemes for an undamped oscillator of angular frequency ω. Vertical lines: \

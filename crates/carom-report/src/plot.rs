@@ -58,6 +58,8 @@ pub(crate) struct Plot {
     pub(crate) same: bool,
     /// Whether labels stand beside the curves, instead of a legend below.
     pub(crate) direct: bool,
+    /// Title of the figures that it is folded away with on the page; empty: it stands by itself.
+    pub(crate) group: String,
     pub(crate) panes: Vec<Pane>,
 }
 
@@ -151,6 +153,7 @@ pub(crate) mod tests {
             ..Curve::default()
         };
         Plot {
+            group: String::new(),
             name: "error-cost".into(),
             caption: String::new(),
             x_label: "time t_{c} (s)".into(),

@@ -199,6 +199,7 @@ pub(crate) fn of_chart(name: &str, chart: &Chart) -> Plot {
         ..Pane::default()
     };
     Plot {
+        group: String::new(),
         name: name.to_owned(),
         caption: String::new(),
         x_label: chart.x_label.clone(),

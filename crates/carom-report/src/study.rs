@@ -15,6 +15,8 @@ use crate::{curves, laboratory, setup, study_page, trend};
 
 /// Curves in one figure; more arms need more figures.
 const MOST: usize = 8;
+/// Figures of one column that are shown; more of them are folded away.
+const FEW: usize = 2;
 
 /// Writes the figures, tables and page of a study directory, from the records alone. Arms are read
 /// one by one to limit the memory that long histories need.
@@ -165,6 +167,7 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         };
         let panes: Vec<Pane> = panes.into_iter().chain(aside).map(with_points).collect();
         Some(Plot {
+            group: if groups.len() > FEW { capitalised(&what) } else { String::new() },
             name,
             caption: format!(
                 "{}{enlarged}{part}.{}{apart}{}",

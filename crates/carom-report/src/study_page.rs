@@ -52,9 +52,7 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         (self::expectations(study))
         (warnings(study))
         h2 { "Figures" }
-        @for (i, plot) in plots.iter().enumerate() {
-            (figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &plot.svg()))
-        }
+        (figures(plots))
         (metrics(study))
         (trend::section(study))
         (convergence::section(study))
@@ -63,6 +61,26 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         (reproduce(study))
     };
     document(&study.manifest.title, "", &body)
+}
+
+/// The figures; those of many arms are folded away.
+fn figures(plots: &[Plot]) -> Markup {
+    let numbered: Vec<(usize, &Plot)> = plots.iter().enumerate().collect();
+    let one = |(i, plot): &(usize, &Plot)| {
+        figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &plot.svg())
+    };
+    html! {
+        @for together in numbered.chunk_by(|a, b| !a.1.group.is_empty() && a.1.group == b.1.group) {
+            @if together.len() > 1 {
+                details {
+                    summary { (Label(&together[0].1.group)) " of all arms (" (together.len()) " figures)" }
+                    @for plot in together { (one(plot)) }
+                }
+            } @else {
+                @for plot in together { (one(plot)) }
+            }
+        }
+    }
 }
 
 /// The drawing of the case, the values that differ between arms, and the design.

@@ -189,6 +189,7 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
         "Metrics".to_owned()
     };
     (!panes.is_empty()).then(|| Plot {
+        group: String::new(),
         name: format!("trend-{}", file_name(key)),
         caption: format!(
             "{which} against `{key}`{}. Lines: least squares{}.{} Arms that failed or created energy are left \

@@ -194,6 +194,11 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
         let shown = check.errors.iter().take(5).map(|(method, error)| format!("{method} {}", three(*error)));
         shown.collect::<Vec<_>>().join(" · ")
     };
+    let judged = |level: &usize| ranking.crosschecks.iter().any(|check| check.level == *level);
+    let unknown: Vec<String> = (0..ranking.levels.len())
+        .filter(|level| !judged(level))
+        .map(|level| or_dash(design.steps.get(level).copied(), |h| in_time(study, h)))
+        .collect();
     html! {
         h3 { "The same at " (other) }
         div.scroll {
@@ -221,6 +226,9 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
         p.small {
             "Errors of every method interpolated between its levels (linearly in logarithms) at the value of \
              the arm that stands first in the table of its level; a method whose levels do not reach it is left out."
+            @if !unknown.is_empty() {
+                " Not known at Δt = " (unknown.join(", ")) ": no other method reaches that value."
+            }
         }
     }
 }
@@ -297,6 +305,9 @@ fn other_goals(study: &Study) -> Markup {
                                 (arm.method())
                                 @if !verdict.alike.is_empty() {
                                     br; span.small { "tied with " (verdict.alike.join(" · ")) }
+                                }
+                                @if let Some(depth) = verdict.penetration {
+                                    br; span.small { "a penalty: it penetrates by up to " (five(depth)) }
                                 }
                             }
                             td.n { (or_dash(step(arm, "time.step"), five)) }

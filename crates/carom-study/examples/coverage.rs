@@ -167,9 +167,8 @@ impl Count {
             let inside = error <= estimate.uncertainty;
             self.contained += i32::from(inside);
             all &= inside;
-            if error > 0.0 {
-                self.ratios.push(estimate.uncertainty / error);
-            }
+            // Of a value without an error the ratio is infinite, and counts as that.
+            self.ratios.push(if error > 0.0 { estimate.uncertainty / error } else { f64::INFINITY });
             println!(
                 "{:17} {scheme:17} {metric:16} {exact:10.5} {:10.5} {:9.2e} {error:9.2e} {:6.2}{}",
                 problem.name,

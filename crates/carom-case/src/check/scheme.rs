@@ -152,7 +152,10 @@ impl Check<'_> {
             if e != 0.0 {
                 let what = format!("{} has no restitution, but e = {e} is given", spec.kind);
                 let help = "leave restitution out, or use scheme energy-momentum, moreau-jean, nonsmooth-generalized-alpha or paoli-schatzman";
-                self.add_unique(contact.path("restitution"), what, why, help);
+                // Another value would not be accepted either.
+                let path = contact.path("restitution");
+                self.problems.retain(|problem| problem.path != path);
+                self.add_unique(path, what, why, help);
             }
         }
     }

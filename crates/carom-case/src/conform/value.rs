@@ -179,8 +179,8 @@ impl Check {
             // A sign is easily lost, or of another convention.
             let help = if x < 0.0 && range.contains(-x) {
                 format!("did you mean `{} = {}`?", key.name, -x)
-            } else if let Some(end) = range.end_next_to(x) {
-                format!("write for example `{} = {end}`", key.name)
+            } else if let Some(near) = range.value_next_to(x) {
+                format!("write for example `{} = {near}`", key.name)
             } else {
                 format!("write for example `{} = {}`", key.name, self.names.example(key, self.dimension))
             };
@@ -231,12 +231,12 @@ impl Check {
             return;
         }
         let what = format!("`{}` must be a whole number ≥ {least}, not {}", key.name, node.described());
-        self.add(
-            path,
-            what,
-            key.meaning(),
-            format!("write for example `{} = {}`", key.name, self.names.example(key, self.dimension)),
-        );
+        let help = if n.checked_neg().and_then(|n| usize::try_from(n).ok()).is_some_and(|n| n >= least) {
+            format!("did you mean {}?", -n)
+        } else {
+            format!("write for example `{} = {}`", key.name, self.names.example(key, self.dimension))
+        };
+        self.add(path, what, key.meaning(), help);
     }
 
     fn wrong(&mut self, node: &Node, key: &Key, path: &str) {

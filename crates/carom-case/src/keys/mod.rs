@@ -161,10 +161,22 @@ impl Range {
             && self.high.is_none_or(|(high, closed)| x < high || closed && x == high)
     }
 
-    /// The end nearest to a number outside, if that end is included.
-    pub fn end_next_to(&self, x: f64) -> Option<f64> {
-        let closed = |end: Option<(f64, bool)>| end.filter(|end| end.1).map(|end| end.0);
-        closed(self.high).filter(|high| x > *high).or_else(|| closed(self.low).filter(|low| x < *low))
+    /// The end that a number outside is beyond or, if that end is not included, a number near it in
+    /// a range of finite width.
+    pub fn value_next_to(&self, x: f64) -> Option<f64> {
+        let inwards = match (self.low, self.high) {
+            (Some((low, _)), Some((high, _))) => Some(0.01 * (high - low).min(1.0)),
+            _ => None,
+        };
+        let value = |(end, closed): (f64, bool), sign: f64| {
+            let near = |inwards: f64| ((end + sign * inwards) * 1e6).round() / 1e6;
+            if closed { Some(end) } else { inwards.map(near) }
+        };
+        match (self.low, self.high) {
+            (_, Some(high)) if x >= high.0 => value(high, -1.0),
+            (Some(low), _) if x <= low.0 => value(low, 1.0),
+            _ => None,
+        }
     }
 
     /// `a number > 0`, `a number in [0, 1]`.

@@ -139,7 +139,7 @@ const TIME: Table = Table {
         key(
             "energy_guard",
             NumberOrFalse(POSITIVE),
-            "The run stops if total − external_work rises above its running minimum by more than this fraction of the energy scale so far, the largest kinetic + strain energy or Σ |ΔW| of the external work; false: the run never stops for this reason.",
+            "The run stops if total − external_work rises above its running minimum, beyond the work that the means of a step miss, by more than this fraction of the energy scale so far, the largest kinetic + strain energy or Σ |ΔW| of the external work; false: the run never stops for this reason.",
         )
         .default("0.02")
         .paper("false"),

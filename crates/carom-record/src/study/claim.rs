@@ -110,8 +110,15 @@ impl Verdict {
         }
     }
 
-    /// `confirmed`, `denied` or `undecided`.
+    /// `confirmed`, `denied` or `undecided`; over an ensemble that is not of one mind, `in most` or
+    /// `in some` of its members.
     pub fn word(&self) -> &'static str {
+        match self.ensemble.as_ref().map(Confirmed::word) {
+            Some("in all") => return "confirmed",
+            Some("in none") => return "denied",
+            Some(word) => return word,
+            None => {}
+        }
         match self.holds {
             Some(true) => "confirmed",
             Some(false) => "denied",

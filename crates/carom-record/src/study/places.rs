@@ -23,6 +23,13 @@ pub struct Ranked {
     pub place: usize,
 }
 
+impl Ranked {
+    /// Whether its error is at most this, and its members scatter by no more.
+    pub(super) fn has_accuracy(&self, accuracy: f64) -> bool {
+        self.error.max(self.uncertainty) <= accuracy
+    }
+}
+
 /// Whether two errors with their uncertainties are not distinguished, if the reference has this
 /// uncertainty.
 pub(super) fn alike(a: (f64, f64), b: (f64, f64), reference: f64) -> bool {

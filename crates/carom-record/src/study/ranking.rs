@@ -11,7 +11,8 @@
 //! so much energy that the default guard would have stopped it is placed behind all others; a
 //! member that did counts as failed.
 //!
-//! The goal of least cost ranks the arms with the required accuracy by their own processor times,
+//! An arm has the required accuracy if neither its error nor its uncertainty exceeds that. The goal
+//! of least cost ranks the arms that have it by their own processor times,
 //! of which differences of up to 10 % are not distinguished.
 
 use super::arm::Arm;
@@ -114,7 +115,7 @@ impl Ranking {
             let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);
             ranked.sort_by(|a, b| a.error.total_cmp(&b.error));
             if goal == Goal::Cost {
-                ranked.retain(|r| r.error <= manifest.accuracy() && cost(r).is_finite());
+                ranked.retain(|r| r.has_accuracy(manifest.accuracy()) && cost(r).is_finite());
                 places(&mut ranked, |a, b| cheaper(cost(a), cost(b)));
             } else {
                 places(&mut ranked, |a, b| more_accurate(a, b, measure.uncertainty));

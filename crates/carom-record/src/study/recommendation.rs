@@ -43,6 +43,8 @@ pub struct Verdict {
     pub arm: usize,
     /// Methods (arms in a study without methods) that are not distinguished from it.
     pub alike: Vec<String>,
+    /// Its penetration if its contact is enforced by a penalty.
+    pub penetration: Option<f64>,
     /// Reasons for the recommendation.
     pub reasons: Vec<String>,
     /// Confidence in it.
@@ -85,13 +87,27 @@ pub(super) fn recommended(
             .find_map(|l| l.iter().find(|r| name(r.arm) == method))
             .map_or(f64::INFINITY, |r| r.error)
     };
-    methods.sort_by(|a, b| places(a).total_cmp(&places(b)).then(finest(a).total_cmp(&finest(b))));
-    let without = if any_unsound { "no arm that did not create energy" } else { "no arm" };
-    let nothing = || vec![format!("{without} has a value for: {}", measure.words)];
-    let least = places(methods.first().ok_or_else(nothing)?);
-    let tied: Vec<&str> = methods.into_iter().filter(|m| places(m) <= least).collect();
     let accuracy = manifest.accuracy();
     let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);
+    // The cheapest arm of a method that has the accuracy, at any level.
+    let least_cost = |method: &str| {
+        let arms = full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == method));
+        arms.map(cost).fold(f64::INFINITY, f64::min)
+    };
+    let order = |method: &str| if goal == Goal::Cost { least_cost(method) } else { places(method) };
+    methods.sort_by(|a, b| order(a).total_cmp(&order(b)).then(finest(a).total_cmp(&finest(b))));
+    let without = if any_unsound { "no arm that did not create energy" } else { "no arm" };
+    let nothing = || match goal {
+        Goal::Cost => vec![measure.words.replacen("processor time of arms", without, 1)],
+        _ => vec![format!("{without} has a value for: {}", measure.words)],
+    };
+    let first = methods.first().ok_or_else(nothing)?;
+    let most = if goal == Goal::Cost { (1.0 + EQUAL_COST) * order(first) } else { order(first) };
+    let mut tied: Vec<&str> = methods.iter().copied().filter(|m| order(m) <= most).collect();
+    if goal == Goal::Cost {
+        // Of those that cost the same, the more accurate one goes first.
+        tied.sort_by(|a, b| finest(a).total_cmp(&finest(b)));
+    }
     // What the goal minimises.
     let minimised = |r: &Ranked| if goal == Goal::Cost { cost(r) } else { r.error };
     // The arm of a method that would be recommended.
@@ -103,13 +119,13 @@ pub(super) fn recommended(
             // Without an accurate one, the most accurate.
             _ => arms
                 .iter()
-                .find(|r| r.error <= accuracy)
+                .find(|r| r.has_accuracy(accuracy))
                 .or(arms.iter().min_by(|a, b| a.error.total_cmp(&b.error)))
                 .copied(),
         }
     };
     // Among equals, one that is accurate enough goes before a cheaper one that is not.
-    let accurate = |m: &&str| goal == Goal::Cost || arm_of(m).is_some_and(|r| r.error <= accuracy);
+    let accurate = |m: &&str| goal == Goal::Cost || arm_of(m).is_some_and(|r| r.has_accuracy(accuracy));
     let (fit, unfit): (Vec<&str>, Vec<&str>) = tied.iter().copied().partition(accurate);
     let field = if fit.is_empty() { &unfit } else { &fit };
     let costs: Vec<Option<f64>> =
@@ -119,29 +135,44 @@ pub(super) fn recommended(
     let alike_ones: Vec<String> = tied.iter().filter(|m| **m != best).map(|m| (*m).to_owned()).collect();
     let chosen = arm_of(best).ok_or_else(nothing)?;
     let mut against = Vec::new();
-    if let Some((name, _)) = measure.passed_over.first() {
+    if !measure.passed_over.is_empty() {
+        let names: Vec<&str> = measure.passed_over.iter().map(|(name, _)| name.as_str()).collect();
         against.push(format!(
-            "the reference does not establish {name}, the measure of this goal; the arms are ranked by a substitute, {}",
+            "the reference does not establish {}, the measure of this goal; the arms are ranked by a substitute, {}",
+            names.join(" or "),
             measure.name
         ));
     }
-    if goal != Goal::Cost && chosen.error > accuracy {
+    if goal != Goal::Cost && !chosen.has_accuracy(accuracy) {
         against.push(inaccurate(manifest, &full, best, chosen));
     }
     if !against.is_empty() {
+        let first = |r: &&Ranked| r.place == 1;
+        for r in full.iter().flat_map(|l| l.iter()).filter(first) {
+            against.extend(penetration(manifest, r.arm, rows).map(|depth| {
+                let arm = &manifest.arms[r.arm].name;
+                format!("{arm} ranks first with a penalty: it penetrates by up to {}", short(depth))
+            }));
+        }
         return Err(against);
     }
     let first_at = full.iter().filter(|l| l.iter().any(|r| r.place == 1 && name(r.arm) == best)).count();
     let unit = if goal == Goal::Cost { " s" } else { "" };
     let mut reasons = vec![format!("{}: {}{unit}", measure.words, short(minimised(chosen)))];
+    let level = |arm: usize| manifest.arms[arm].role.level;
     let others = full
         .iter()
         .flat_map(|l| l.iter())
-        .filter(|r| manifest.arms[r.arm].role.level == manifest.arms[chosen.arm].role.level);
-    let others = others.filter(|r| name(r.arm) != best);
+        .filter(|r| goal == Goal::Cost || level(r.arm) == level(chosen.arm))
+        .filter(|r| name(r.arm) != best);
     if let Some(next) = others.min_by(|a, b| minimised(a).total_cmp(&minimised(b))) {
+        let which = if goal == Goal::Cost {
+            "cheapest of the other methods"
+        } else {
+            "best of the other methods at the same level"
+        };
         reasons.push(format!(
-            "best of the other methods at the same level, {}: {}{unit}{}",
+            "{which}, {}: {}{unit}{}",
             name(next.arm),
             short(minimised(next)),
             if goal != Goal::Cost && next.error.max(chosen.error) <= measure.uncertainty {
@@ -151,10 +182,14 @@ pub(super) fn recommended(
             }
         ));
     }
-    reasons.push(format!(
-        "no method is distinguishably better at {first_at} of {}",
-        if full.len() == 1 { "1 level".to_owned() } else { format!("{} levels", full.len()) }
-    ));
+    // The least cost is that of any level.
+    let first_at = if goal == Goal::Cost { full.len() } else { first_at };
+    if goal != Goal::Cost {
+        reasons.push(format!(
+            "no method is distinguishably better at {first_at} of {}",
+            if full.len() == 1 { "1 level".to_owned() } else { format!("{} levels", full.len()) }
+        ));
+    }
     let next = costs.iter().enumerate().filter(|(i, _)| *i != picked).filter_map(|(i, c)| Some((i, (*c)?)));
     let next = next.min_by(|a, b| a.1.total_cmp(&b.1));
     // Cost of the cheapest of the others, relative to that of the recommended one.
@@ -175,7 +210,8 @@ pub(super) fn recommended(
     if goal != Goal::Cost {
         reasons.push(format!("the coarsest level at which its error is at most {accuracy}"));
     }
-    if let Some(depth) = penetration(manifest, chosen.arm, rows) {
+    let penetration = penetration(manifest, chosen.arm, rows);
+    if let Some(depth) = penetration {
         reasons.push(format!("its contact is a penalty: it penetrates by up to {}", short(depth)));
     }
     if !measure.left_out.is_empty() {
@@ -206,7 +242,7 @@ pub(super) fn recommended(
             design.cost_of
         ));
     }
-    Ok(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
+    Ok(Verdict { arm: chosen.arm, alike: alike_ones, penetration, reasons, confidence, confidence_reasons })
 }
 
 /// Why a method without the required accuracy is not recommended: no arm has it, or only arms of
@@ -216,6 +252,15 @@ fn inaccurate(manifest: &StudyManifest, levels: &[&Vec<Ranked>], method: &str, c
     let name = |r: &Ranked| &manifest.arms[r.arm].name;
     let least = levels.iter().flat_map(|l| l.iter()).min_by(|a, b| a.error.total_cmp(&b.error));
     let least = least.unwrap_or(chosen);
+    if chosen.error <= accuracy {
+        return format!(
+            "the error of {}, {}, is that of the median of its members, one of which is off it by {}, \
+             more than the required accuracy, {accuracy}",
+            name(chosen),
+            short(chosen.error),
+            short(chosen.uncertainty)
+        );
+    }
     if least.error > accuracy {
         return format!(
             "no arm has the required accuracy, {accuracy}; the best one, {}, has an error of {}",

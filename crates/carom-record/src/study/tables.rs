@@ -121,7 +121,10 @@ impl Study {
                 "order",
                 "members_half_width",
                 "why not",
+                "refined",
             ];
+            // A band on the given mesh says nothing of the error of that mesh.
+            let refined = if reference.refines_mesh() { "mesh and step" } else { "step only" };
             let metrics = self.metrics().into_iter().filter(|m| !m.is_work());
             let line = |m: &Metric| {
                 let estimate = reference.estimate(&m.name).ok();
@@ -140,6 +143,7 @@ impl Study {
                     cell(estimate.and_then(|e| e.order)),
                     cell(estimate.map(|e| e.spread)),
                     why,
+                    refined.to_owned(),
                 ]
             };
             self.write("reference.csv", &header, metrics.map(line))?;

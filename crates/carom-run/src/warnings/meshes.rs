@@ -13,44 +13,69 @@ const ALIKE: f64 = 1.1;
 /// Distance between nodes along the surface, relative to their spacing, up to which they match.
 const MATCH: f64 = 0.01;
 
-type Place = [f64; 2];
+/// Pairs of facets that are compared to find those that are near; larger sides are not judged.
+const MOST: usize = 100_000_000;
+
+type Place = [f64; 3];
 
 /// The facets of a contact's sides that are near the other side.
 struct Zone {
     /// Of the secondary and the primary side.
     sides: [Vec<Near>; 2],
-    /// Direction along the surfaces where they are closest.
-    along: Place,
+    /// Unit normal of the surfaces where they are closest.
+    normal: Place,
 }
 
 /// A facet near the other side.
 struct Near {
+    /// Its corners first.
     nodes: Vec<Place>,
+    corners: usize,
+    /// Mean length of its edges.
     length: f64,
+    degree: usize,
+}
+
+fn minus(a: Place, b: Place) -> Place {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+fn dot(a: Place, b: Place) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 fn distance(a: Place, b: Place) -> f64 {
-    (b[0] - a[0]).hypot(b[1] - a[1])
+    dot(minus(b, a), minus(b, a)).sqrt()
 }
 
-/// The zone of a contact of deformable sides in the plane: facets whose middle is at most two facet
-/// lengths further from the other side than the nearest one.
+/// The zone of a contact of deformable sides in the plane or in space: facets whose middle is at
+/// most two facet lengths further from the other side than the nearest one.
 fn zone(case: &Case, model: &Model, contact: usize) -> Option<Zone> {
     let spec = &case.contacts[contact];
     let PrimarySpec::Side(primary) = &spec.primary else { return None };
-    if case.dimension != 2 {
+    let d = case.dimension;
+    if d < 2 {
         return None;
     }
-    let at = |n: usize| [model.initial_position[2 * n], model.initial_position[2 * n + 1]];
+    let at = |n: usize| -> Place {
+        std::array::from_fn(|i| if i < d { model.initial_position[d * n + i] } else { 0.0 })
+    };
     let facets = |name: &str| -> Option<Vec<Near>> {
         let side = side(&model.parts, name, "").ok()?;
+        let (corners, degree) = (side.shape.corners(), side.shape.degree());
         let near = |nodes: &Vec<usize>| {
             let nodes: Vec<Place> = nodes.iter().map(|&n| at(n)).collect();
-            Near { length: distance(nodes[0], nodes[1]), nodes }
+            let edges = if corners == 2 { 1 } else { corners };
+            let edge = |k: usize| distance(nodes[k], nodes[(k + 1) % corners]);
+            let length = (0..edges).map(edge).sum::<f64>() / edges as f64;
+            Near { nodes, corners, length, degree }
         };
         Some(side.facets.iter().map(near).collect())
     };
     let sides = [facets(&spec.secondary)?, facets(primary)?];
+    if sides[0].len().saturating_mul(sides[1].len()) > MOST {
+        return None;
+    }
     let middles = sides.each_ref().map(|side| side.iter().map(Near::middle).collect::<Vec<_>>());
     let mean = |side: &[Near]| side.iter().map(|f| f.length).sum::<f64>() / side.len() as f64;
     let reach = 2.0 * f64::max(mean(&sides[0]), mean(&sides[1]));
@@ -61,27 +86,35 @@ fn zone(case: &Case, model: &Model, contact: usize) -> Option<Zone> {
         [0, 1].map(|s| middles[s].iter().map(|&middle| gap(middle, &middles[1 - s])).collect());
     let (closest, least) =
         gaps[1].iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).filter(|g| g.1.is_finite())?;
-    let [a, b] = [sides[1][closest].nodes[0], sides[1][closest].nodes[1]];
-    let length = distance(a, b);
-    let along = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+    let normal = sides[1][closest].normal();
     let mut gaps = gaps.into_iter();
     let sides = sides.map(|side| {
         let near = side.into_iter().zip(gaps.next().unwrap_or_default());
         near.filter(|(_, gap)| *gap <= least + reach).map(|(facet, _)| facet).collect()
     });
-    Some(Zone { sides, along })
+    Some(Zone { sides, normal })
 }
 
 impl Near {
     fn middle(&self) -> Place {
-        [0, 1].map(|i| 0.5 * (self.nodes[0][i] + self.nodes[1][i]))
+        let corners = &self.nodes[..self.corners];
+        std::array::from_fn(|i| corners.iter().map(|x| x[i]).sum::<f64>() / corners.len() as f64)
+    }
+
+    fn normal(&self) -> Place {
+        let a = minus(self.nodes[1], self.nodes[0]);
+        // In the plane z is across.
+        let b = if self.corners == 2 { [0.0, 0.0, 1.0] } else { minus(self.nodes[2], self.nodes[0]) };
+        let n = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        let size = dot(n, n).sqrt();
+        n.map(|x| x / size)
     }
 }
 
 impl Zone {
     /// Mean distance between neighbouring nodes of a side.
     fn spacing(&self, side: usize) -> f64 {
-        let spacing = |facet: &Near| facet.length / (facet.nodes.len() - 1) as f64;
+        let spacing = |facet: &Near| facet.length / facet.degree as f64;
         self.sides[side].iter().map(spacing).sum::<f64>() / self.sides[side].len() as f64
     }
 
@@ -89,10 +122,11 @@ impl Zone {
     fn matches(&self) -> bool {
         let along = |side: usize| {
             let places = self.sides[side].iter().flat_map(|facet| &facet.nodes);
-            places.map(|y| y[0] * self.along[0] + y[1] * self.along[1]).collect::<Vec<f64>>()
+            let flat = |y: &Place| minus(*y, self.normal.map(|n| n * dot(*y, self.normal)));
+            places.map(flat).collect::<Vec<Place>>()
         };
         let (near, tolerance) = (along(1), MATCH * self.spacing(1));
-        along(0).iter().all(|s| near.iter().any(|p| (s - p).abs() <= tolerance))
+        along(0).iter().all(|s| near.iter().any(|p| distance(*s, *p) <= tolerance))
     }
 }
 
@@ -116,7 +150,8 @@ pub(super) fn coarse_secondary(case: &Case, model: &Model) -> Vec<Found> {
 /// facet's length of the contact.
 pub(super) fn unmatched_pressure(case: &Case, model: &Model) -> Vec<Found> {
     let stress = |q: &Quantity| {
-        matches!(q, Quantity::SigmaXx | Quantity::SigmaYy | Quantity::SigmaXy | Quantity::VonMises)
+        use Quantity::{SigmaXx, SigmaXy, SigmaXz, SigmaYy, SigmaYz, SigmaZz, VonMises};
+        matches!(q, SigmaXx | SigmaYy | SigmaZz | SigmaXy | SigmaYz | SigmaXz | VonMises)
     };
     let probes: Vec<_> = case.probes.iter().filter(|probe| probe.record.iter().any(stress)).collect();
     let expected = case.expects.iter().any(|expect| expect.what.contains("pressure"));
@@ -133,9 +168,7 @@ pub(super) fn unmatched_pressure(case: &Case, model: &Model) -> Vec<Found> {
             facets.into_iter().any(|facet| facet.nodes.iter().any(|&y| distance(at, y) <= facet.length))
         };
         for probe in &probes {
-            if let [x, y] = probe.at[..]
-                && near([x, y])
-            {
+            if near(std::array::from_fn(|i| probe.at.get(i).copied().unwrap_or(0.0))) {
                 readers.push(format!("probe \"{}\"", probe.name));
             }
         }

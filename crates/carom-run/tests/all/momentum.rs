@@ -215,11 +215,12 @@ fn seen(case: &Case, span: Span) -> Seen {
 /// The balance closes as far as the equations of a step are solved.
 const TIGHT: &str = "newton.tolerance=1e-14";
 
-const LAWS: [&[&str]; 7] = [
+const LAWS: [&[&str]; 8] = [
     &["contact.wall.persistency=\"project\""],
     &["contact.wall.persistency=\"none\""],
     &["contact.wall.law=\"predictor\""],
     &["contact.wall.enforcement=\"penalty\"", "contact.wall.stiffness=1e4"],
+    &["contact.wall.enforcement=\"augmented\""],
     &["contact.wall.force=\"end\""],
     &["time.phase=0.3"],
     // The fallback takes every step that creates energy.

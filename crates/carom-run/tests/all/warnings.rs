@@ -163,6 +163,42 @@ scheme = {{ kind = "static" }}
     assert_eq!(ids(&blocks(5), &[]), ["coarse-secondary".to_owned(), unmatched]);
 }
 
+/// Faces of 1/4 on faces of 1/4, 1/5 and, shifted by half a face, 1/4; the probe is near them.
+#[test]
+fn sides_in_space_are_compared_as_in_the_plane() {
+    let blocks = |element: &str, cells: usize, shift: f64| {
+        let box_of = |name: &str, [x0, x1, z0, z1]: [f64; 4], cells: usize| {
+            format!(
+                r#"
+[[body]]
+name = "{name}"
+material = "rubber"
+element = "{element}"
+mesh = {{ shape = "box", min = [{x0}, 0.0, {z0}], max = [{x1}, 1.0, {z1}], cells = [{cells}, {cells}, 2] }}
+"#
+            )
+        };
+        format!(
+            r#"
+dimension = 3
+material = [{{ name = "rubber", law = "neo-hookean", density = 1.0, lambda = 1.0, mu = 1.0 }}]
+contact = [{{ name = "press", secondary = "upper.bottom", primary = "lower.top" }}]
+probe = [{{ name = "P", body = "lower", at = [0.5, 0.5, -0.1], record = ["sigma_zz"] }}]
+time = {{ end = 1.0, step = 1.0, scheme = {{ kind = "static" }} }}
+{}{}"#,
+            box_of("upper", [shift, 1.0 + shift, 0.0, 1.0], 4),
+            box_of("lower", [0.0, 1.0, -1.0, 0.0], cells)
+        )
+    };
+    let unmatched = "unmatched-pressure".to_owned();
+    for element in ["Hex8", "Tet10"] {
+        assert!(ids(&blocks(element, 4, 0.0), &[]).is_empty(), "{element}");
+        let coarse = ids(&blocks(element, 5, 0.0), &[]);
+        assert_eq!(coarse, ["coarse-secondary".to_owned(), unmatched.clone()], "{element}");
+        assert_eq!(ids(&blocks(element, 4, 0.125), &[]), [unmatched.clone()], "{element}");
+    }
+}
+
 #[test]
 fn a_step_in_which_a_wave_crosses_many_cells() {
     // √((200 + 2·15)/0.25) = 30.3; the prism's cells are squares of 0.125.

@@ -160,6 +160,24 @@ fn cost_is_that_of_the_arm_and_accuracy_that_of_the_median() {
     assert!(verdict.reasons[0].ends_with("is at most 0.05: 1.08 s"), "{:?}", verdict.reasons);
 }
 
+/// The median of A is accurate, but one of its members is off by 0.09, more than the accuracy of
+/// 0.05: it is not recommended, and B is not distinguished from it.
+#[test]
+fn an_arm_that_scatters_by_more_than_the_accuracy_does_not_have_it() {
+    let of = |arms: &[Made], members: &[&[(f64, f64)]]| by_energy(&with_members(study(arms), members));
+    let (a, b) = (("a", 0, 0.01, 1.0), ("b", 0, 0.03, 2.0));
+    let (scatters, agrees): (&[_], &[_]) = (&[(0.01, 1.0), (0.1, 1.0)], &[(0.03, 2.0); 2]);
+    assert_eq!(of(&[a, b], &[scatters, agrees]).verdict.unwrap().arm, 1);
+    let why = of(&[a], &[scatters]).verdict.unwrap_err();
+    assert!(
+        why[0].contains("one of which is off it by 0.09, more than the required accuracy, 0.05"),
+        "{why:?}"
+    );
+    let (manifest, rows) = with_members(study(&[a, b]), &[scatters, agrees]);
+    let ranking = by_cost(&(manifest, rows));
+    assert_eq!(ranking.levels[0].iter().map(|r| r.arm).collect::<Vec<_>>(), [1]);
+}
+
 /// What an ensemble shows is in the members that have a value: all three, two of three, or one.
 #[test]
 fn failed_members_are_no_evidence() {
