@@ -12,7 +12,7 @@ import pathlib
 import sys
 
 PAGE = pathlib.Path(__file__).parent.parent / "docs/book/src/verification/paper.md"
-HEAD = "| Statement | Confirmed in | Ratio |\n| --- | --- | --- |\n"
+HEAD = "| Statement | Members that confirm it | Ratio |\n| --- | --- | --- |\n"
 
 
 def ratio(claim: dict) -> str:

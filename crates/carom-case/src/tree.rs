@@ -51,8 +51,8 @@ impl Table {
         self.entry(key).map(|e| &e.node)
     }
 
-    /// The value of a key that is given at `origin`, as a whole (`replaced`) or in part; added as an
-    /// empty table if it is not there.
+    /// The value of a key that is given at `origin`, as a whole (`replaced`) or in part; added as
+    /// an empty table if it is not there.
     pub(super) fn given(&mut self, key: &str, origin: &Origin, replaced: bool) -> &mut Node {
         let found = self.0.iter().position(|e| e.key == key);
         let at = found.unwrap_or_else(|| {

@@ -62,8 +62,8 @@ pub(crate) fn scaled(unit: &str, exponent: i32) -> String {
     }
 }
 
-/// A number with its unit, whose prefix is chosen so that the number is from 1 to 1000 where there is
-/// such a prefix: 524.548 µN.
+/// A number with its unit, whose prefix is chosen so that the number is from 1 to 1000 where there
+/// is such a prefix: 524.548 µN.
 pub(crate) fn amount(x: f64, unit: &str) -> String {
     let exponent = if x == 0.0 || !x.is_finite() { 0 } else { 3 * (x.abs().log10() / 3.0).floor() as i32 };
     match prefixed(unit, exponent) {

@@ -208,11 +208,11 @@ fn conventions(scheme: &Scheme, names: &[Name]) -> Vec<Convention> {
     let is = |kind: &str| names.iter().any(|name| name.kind == kind);
     let mut list = vec![
         Convention {
-            name: "index n + 1 − α: weights of the old terms (Carom, Chung and Hulbert)",
+            name: "index n + 1 − α: weights of the terms at the start of the step (Carom, Chung and Hulbert)",
             values: vec![("α_m", alpha_m), ("α_f", alpha_f), ("β", beta), ("γ", gamma)],
         },
         Convention {
-            name: "index n + α: weights of the new terms",
+            name: "index n + α: weights of the terms at the end of the step",
             values: vec![("α_m", 1.0 - alpha_m), ("α_f", 1.0 - alpha_f), ("β", beta), ("γ", gamma)],
         },
     ];

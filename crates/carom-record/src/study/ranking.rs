@@ -4,11 +4,12 @@
 //! of a run is |m − r|/|r| (|m| if r = 0) for a metric m, or the root mean square deviation of
 //! columns; that of an arm is the median over its ensemble, with the largest distance of a member
 //! from it as its uncertainty; members that failed count for that if only one did not. Arms are
-//! ranked within a level only, that is, at the same step or the same cost. Two arms of a level are not distinguished if their errors differ by no more than
-//! the sum of their uncertainties, than that of the reference, or than 5 %. The place of an arm is
-//! one plus the number of arms that are distinguishably better; within a place arms are in the
-//! order of their cost. An arm that created so much energy that the default guard would have
-//! stopped it is placed behind all others; a member that did counts as failed.
+//! ranked within a level only, that is, at the same step or the same cost. Two arms of a level are
+//! not distinguished if their errors differ by no more than the sum of their uncertainties, than
+//! that of the reference, or than 5 %. The place of an arm is one plus the number of arms that are
+//! distinguishably better; within a place arms are in the order of their cost. An arm that created
+//! so much energy that the default guard would have stopped it is placed behind all others; a
+//! member that did counts as failed.
 //!
 //! An arm has the required accuracy if neither its error nor its uncertainty exceeds that. The goal
 //! of least cost ranks the arms that have it by their own processor times,

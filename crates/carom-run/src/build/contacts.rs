@@ -140,7 +140,8 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
         itself,
         facets,
         surface,
-        // Other schemes evaluate the contact force at the ends of their stages: nothing is averaged.
+        // Other schemes evaluate the contact force at the ends of their stages: nothing is
+        // averaged.
         at_the_end: averages && spec.force == ForceTime::End,
         projects,
         within: spec.active_set == ActiveSetRule::Within,

@@ -123,8 +123,8 @@ pub const WARNINGS: [Entry; 15] = [
     },
     Entry {
         id: "fallback-steps",
-        why: "the scheme has no solution there that Carom accepts; the fallback is of first order, dissipates what a step does not resolve, and its \
-              contact is inelastic",
+        why: "in these steps the scheme had no acceptable solution; the fallback is of first order, dissipates modes that the step does not resolve, \
+              and its contact is inelastic",
         advice: "a shorter step, a finer mesh at the contact or a scheme with more damping; `log.jsonl` has the reason of each step",
         rule: Rule::Record(record::fallback_steps),
     },
@@ -137,8 +137,8 @@ pub const WARNINGS: [Entry; 15] = [
     },
     Entry {
         id: "hidden-energy",
-        why: "the balance of energy as a whole does not show it where friction takes as much: bodies may hop, and \
-              friction may take more than there was",
+        why: "the total energy does not rise, because friction dissipates as much as was created: bodies may hop, and \
+              friction may dissipate more than the energy that was available",
         advice: "a scheme with damping at high frequencies or one that conserves energy; a shorter step does not always help",
         rule: Rule::Record(record::hidden_energy),
     },

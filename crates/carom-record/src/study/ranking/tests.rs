@@ -208,8 +208,8 @@ fn failed_members_are_no_evidence() {
     assert!(confidence == Confidence::Low && why.contains("the value of a single run"), "{why}");
 }
 
-/// Two of three members created energy. The scatter of an arm with one sound member is not zero, but
-/// that of all: 0.03 from 0.01.
+/// Two of three members created energy. The scatter of an arm with one sound member is not zero,
+/// but that of all: 0.03 from 0.01.
 #[test]
 fn one_sound_member_has_the_scatter_of_all() {
     let members: [&[(f64, f64)]; 2] = [&[(0.02, 1.0), (0.04, 1.0)], &[(0.03, 1.0); 2]];
