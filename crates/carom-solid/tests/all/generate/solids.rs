@@ -5,11 +5,14 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use carom_algebra::Vector;
+use carom_solid::generate::{
+    Frame, MeshError, ball, ball_hexahedra, cylinder, cylinder_hexahedra, disc, extrusion, half_disc,
+    interval, rectangle, tube, tube_hexahedra,
+};
+use carom_solid::shape::{Domain, Hex8, Hex27, Shape, Tet4, Tet10, Tet20};
+use carom_solid::{Element, Facet, Mesh, Validity};
 
-use super::super::*;
-use crate::reference::gradient;
-use crate::shape::{Domain, Hex8, Hex27, Shape, Tet4, Tet10, Tet20};
-use crate::validity::Validity;
+use super::gradient;
 
 const SOLIDS: [Element; 5] = [Element::Tet4, Element::Tet10, Element::Tet20, Element::Hex8, Element::Hex27];
 
@@ -21,7 +24,7 @@ pub(crate) fn volume(mesh: &Mesh) -> f64 {
         let cell = |nodes: &[usize; N]| {
             let x = nodes.map(|n| Vector(positions[n]));
             assert!(validity.margin(&x).is_ok(), "{x:?}");
-            rule.iter().map(|(xi, w)| w * gradient(&x, &S::gradients(xi)).det()).sum::<f64>()
+            rule.iter().map(|(xi, w)| w * gradient::<3, N, S>(&x, xi).det()).sum::<f64>()
         };
         mesh.cells.as_chunks::<N>().0.iter().map(cell).sum()
     }

@@ -2,9 +2,8 @@
 //! undeformed state, small displacements, J ≤ 0.
 
 use carom_algebra::{Mat, Vector};
+use carom_solid::material::{LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
 use proptest::prelude::*;
-
-use super::*;
 
 mod plane_stress;
 

@@ -1,6 +1,8 @@
 //! Laws in plane stress: derivatives, objectivity, zero out-of-plane stress, uniaxial tension in
 //! closed form.
 
+use carom_solid::material::{PlaneStress, Thickness, excess_det};
+
 use super::*;
 
 const YOUNG: f64 = MU * (3.0 * LAMBDA + 2.0 * MU) / (LAMBDA + MU);
