@@ -91,7 +91,7 @@ fn intervals() {
             (&[2.0][..], 4)
         );
         let mut places: Vec<f64> = mesh.nodes.iter().map(|x| x[0]).collect();
-        places.sort_by(f64::total_cmp);
+        places.sort_unstable_by(f64::total_cmp);
         let step = 3.0 / (5 * element.degree()) as f64;
         assert!(places.windows(2).all(|w| (w[1] - w[0] - step).abs() < 1e-14));
     }

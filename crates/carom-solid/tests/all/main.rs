@@ -17,6 +17,7 @@ mod manufactured;
 mod mean_dilatation;
 mod plane_stress;
 mod quadrature;
+mod random;
 mod shapes;
 mod space;
 mod stl;

@@ -77,7 +77,7 @@ fn a_divided_box_is_the_finer_box() {
                 let at = |&n: &usize| [0, 1, 2].map(|i| (mesh.nodes[n][i] * 1e12).round() as i64);
                 let mut all: Vec<Vec<_>> =
                     (0..mesh.cell_count()).map(|c| mesh.cell(c).iter().map(at).collect()).collect();
-                all.sort();
+                all.sort_unstable();
                 all
             };
             assert_eq!(divided.nodes.len(), fine.nodes.len());
@@ -100,7 +100,7 @@ fn a_divided_bar_is_the_finer_bar() {
         assert_eq!((divided.nodes.len(), ends(&divided)), (fine.nodes.len(), ends(&fine)));
         let sorted = |mesh: &Mesh| {
             let mut x: Vec<f64> = mesh.nodes.iter().map(|p| p[0]).collect();
-            x.sort_by(f64::total_cmp);
+            x.sort_unstable_by(f64::total_cmp);
             x
         };
         for (a, b) in sorted(&divided).iter().zip(sorted(&fine)) {
@@ -189,7 +189,7 @@ fn parts_of_parts_are_parts() {
         let whole = ball(element, 1.0, [0.0; 3], 1.0, [true; 3]).unwrap();
         let places = |mesh: Mesh| {
             let mut all: Vec<_> = mesh.nodes.of_dimension::<3>().to_vec();
-            all.sort_by_key(|x| x.map(|x| (x * 1e12).round() as i64));
+            all.sort_unstable_by_key(|x| x.map(|x| (x * 1e12).round() as i64));
             all
         };
         let (twice, once) = (places(whole.subdivided(2).subdivided(2)), places(whole.subdivided(4)));

@@ -1,21 +1,30 @@
 //! The hierarchy of boxes compared with an exhaustive search.
 
 use carom_solid::{Bounds, Tree};
-use proptest::prelude::*;
 
-/// Boxes in 1, 2 or 3 dimensions, a third of them points, some duplicated.
-fn boxes(dimension: usize) -> impl Strategy<Value = Vec<Bounds>> {
-    let corner = prop::collection::vec(-4i32..=4, dimension);
-    let one = (corner.clone(), corner, 0..3).prop_map(|(a, b, kind)| {
-        let place = |x: &[i32]| x.iter().map(|x| 0.5 * f64::from(*x)).collect::<Vec<_>>();
-        let (a, b) = (place(&a), place(&b));
-        if kind == 0 { Bounds::of(&a) } else { [a, b].into_iter().collect() }
-    });
-    prop::collection::vec(one, 0..40)
-}
+use super::random::{integer, lists};
 
-fn cases() -> impl Strategy<Value = [Vec<Bounds>; 3]> {
-    (1usize..=3).prop_flat_map(|d| [boxes(d), boxes(d), boxes(d)])
+/// Most boxes of a list.
+const MOST: usize = 40;
+/// Numbers of three lists of boxes, and one more.
+const NUMBERS: usize = 1 + 3 * (1 + 7 * MOST) + 1;
+
+/// Lists of boxes in 1, 2 or 3 dimensions, a third of them points, some duplicated.
+fn boxes(x: &[f64]) -> [Vec<Bounds>; 3] {
+    let dimension = 1 + integer(x[0], 3);
+    let of_list = |x: &[f64]| {
+        let one = |x: &[f64]| {
+            let place = |x: &[f64]| -> Vec<f64> {
+                x[..dimension].iter().map(|x| 0.5 * (integer(*x, 9) as f64 - 4.0)).collect()
+            };
+            let (a, b) = (place(&x[1..4]), place(&x[4..7]));
+            if integer(x[0], 3) == 0 { Bounds::of(&a) } else { [a, b].into_iter().collect() }
+        };
+        x[1..].chunks_exact(7).take(integer(x[0], MOST)).map(one).collect()
+    };
+    let lists = &x[1..];
+    let size = 1 + 7 * MOST;
+    [0, 1, 2].map(|k| of_list(&lists[k * size..(k + 1) * size]))
 }
 
 fn check(tree: &Tree, boxes: &[Bounds], queries: &[Bounds]) {
@@ -37,22 +46,28 @@ fn check(tree: &Tree, boxes: &[Bounds], queries: &[Bounds]) {
     assert!(boxes.is_empty() || (tree.bounds().low(), tree.bounds().high()) == (all.low(), all.high()));
 }
 
-proptest! {
-    #[test]
-    fn finds_what_all_boxes_one_by_one_find([first, second, queries] in cases()) {
-        let mut tree = Tree::new(first.len(), |k| first[k]);
-        check(&tree, &first, &queries);
-        // As many boxes, elsewhere.
-        let moved: Vec<_> = (0..first.len()).map(|k| second.get(k).unwrap_or(&first[k]).grown(0.25)).collect();
-        let mut refitted = tree.clone();
-        refitted.refit(|k| moved[k]);
-        check(&refitted, &moved, &queries);
-        tree.update(|k| moved[k]);
-        check(&tree, &moved, &queries);
-    }
+fn check_changes([first, second, queries]: &[Vec<Bounds>; 3]) {
+    let mut tree = Tree::new(first.len(), |k| first[k]);
+    check(&tree, first, queries);
+    // As many boxes, elsewhere.
+    let moved: Vec<_> = (0..first.len()).map(|k| second.get(k).unwrap_or(&first[k]).grown(0.25)).collect();
+    let mut refitted = tree.clone();
+    refitted.refit(|k| moved[k]);
+    check(&refitted, &moved, queries);
+    tree.update(|k| moved[k]);
+    check(&tree, &moved, queries);
+}
 
-    #[test]
-    fn numbers_that_are_none_are_found_by_everything([first, queries, _] in cases(), bad in 0usize..40) {
+#[test]
+fn finds_what_all_boxes_one_by_one_find() {
+    lists(256, NUMBERS, &|x| check_changes(&boxes(x)));
+    check_changes(&[Vec::new(), Vec::new(), Vec::new()]);
+}
+
+#[test]
+fn numbers_that_are_none_are_found_by_everything() {
+    lists(256, NUMBERS, &|x| {
+        let ([first, queries, _], bad) = (boxes(x), integer(x[NUMBERS - 1], MOST));
         let mut boxes = first.clone();
         if let Some(one) = boxes.get_mut(bad) {
             *one = Bounds::of(&[f64::NAN, f64::INFINITY, f64::NEG_INFINITY]);
@@ -64,7 +79,7 @@ proptest! {
         check(&tree, &first, &queries);
         tree.update(|k| boxes[k]);
         check(&tree, &boxes, &queries);
-    }
+    });
 }
 
 #[test]
