@@ -1,29 +1,30 @@
 //! The matrix-free tangent of Newton's linear problem against differences of the whole residual.
 
-use carom_contact::{Along, ConservingUnilateral, Hold, Penalty, inner};
+use carom_contact::{Along, ConservingUnilateral, Hold, Pairing, Penalty, Rows, inner};
 use carom_formula::Formula;
 use carom_solid::{Element, Law, generate};
 use carom_time::schemes::energy_momentum::EnergyMomentum;
 use carom_time::{ForceRule, Kernel, Memory, Scheme, Stage};
 
+use crate::active_rows::measure_all;
 use crate::constraints::Constraints;
 use crate::equations::Equations;
-use crate::evaluation::Iterate;
-use crate::grid_report::GridReport;
+use crate::evaluation::{Iterate, Spare};
 use crate::linear_problem::LinearProblem;
 use crate::model::{Friction, Load, Loads, Model, Motions};
-use crate::settings::Linear;
+use crate::start::press;
 use crate::state::State;
 use crate::sums::dot;
-use crate::testing::{contact, loaded, model, nodes, parts, simulation};
-use crate::workspace::Workspace;
+use crate::testing::{contact, loaded, model, nodes, parts};
+use crate::timings::Timings;
 
 /// An iterate with its tangent.
 struct Tangent<'a> {
     equations: &'a Equations<'a>,
     at: Iterate,
     rows: Constraints,
-    work: Workspace,
+    spare: Spare,
+    timings: Timings,
 }
 
 impl<'a> Tangent<'a> {
@@ -35,11 +36,11 @@ impl<'a> Tangent<'a> {
     /// The same for other pairs.
     fn from(equations: &'a Equations<'a>, mut at: Iterate, size: f64) -> Self {
         let model = equations.model;
-        let mut work = Workspace::new(model, Linear::Direct);
+        let (mut spare, mut timings) = (Spare::default(), Timings::default());
         model.free.iter().for_each(|&dof| at.increment[dof] = size * wave(dof, 0.3));
-        let now = equations.evaluate(at, &mut work.spare, &mut work.timings).unwrap();
+        let now = equations.evaluate(at, &mut spare, &mut timings).unwrap();
         let rows = Constraints::of(equations, &now);
-        Self { equations, at: now.at, rows, work }
+        Self { equations, at: now.at, rows, spare, timings }
     }
 
     /// A direction over free dofs and rows.
@@ -49,18 +50,18 @@ impl<'a> Tangent<'a> {
 
     /// The matrix times a direction.
     fn product(&mut self, u: &[f64]) -> Vec<f64> {
-        let Self { equations, at, rows, work } = self;
+        let Self { equations, at, rows, spare, timings } = self;
         let (free, mut change) = (&equations.model.free, vec![0.0; equations.model.dofs()]);
         let (dofs, multipliers) = u.split_at(free.len());
         free.iter().zip(dofs).for_each(|(&dof, u)| change[dof] = *u);
-        let now = equations.evaluate(at.clone(), &mut work.spare, &mut work.timings).unwrap();
+        let now = equations.evaluate(at.clone(), spare, timings).unwrap();
         let [forces, gaps] = LinearProblem::product(equations, &now, rows, [change, multipliers.to_vec()]);
         free.iter().map(|&dof| forces[dof]).chain(gaps).collect()
     }
 
     /// Residual at free dofs and weighted gaps of the rows, at distance `e` along a direction.
     fn residual(&mut self, u: &[f64], e: f64) -> Vec<f64> {
-        let Self { equations, at, rows, work } = self;
+        let Self { equations, at, rows, spare, timings } = self;
         let (free, mut at) = (&equations.model.free, at.clone());
         let (dofs, multipliers) = u.split_at(free.len());
         free.iter().zip(dofs).for_each(|(&dof, u)| at.increment[dof] += e * u);
@@ -71,7 +72,7 @@ impl<'a> Tangent<'a> {
                 Some(along) => pair.tangential.pull(*along, e * u),
             }
         }
-        let now = equations.evaluate(at, &mut work.spare, &mut work.timings).unwrap();
+        let now = equations.evaluate(at, spare, timings).unwrap();
         // The direction across a slip turns with it.
         let gap = |(&(k, p), slip): (&(usize, usize), &Option<Along>)| {
             let across = match now.at.pairings[k].pairs[p].tangential.hold {
@@ -105,10 +106,59 @@ fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |most, x| x.abs().max(most))
 }
 
+/// Step of all tests with contact.
+const DT: f64 = 2e-3;
+
+/// The equations of a step from time 0.
 fn equations<'a>(model: &'a Model, state: &'a State, scheme: &dyn Kernel, dt: f64, to: f64) -> Equations<'a> {
     let mut stage = Stage::default();
     scheme.stage_into(0, dt, &Memory { states: &[(&state.y, &state.v, &state.a)], before: None }, &mut stage);
     Equations::new(model, state, stage, to).unwrap()
+}
+
+/// A state at some positions, with irregular accelerations; no pairs.
+fn at(model: &Model, y: Vec<f64>) -> State {
+    let (dofs, contacts) = (model.dofs(), model.contacts.len());
+    let mut state = State {
+        y,
+        v: model.initial_velocity.clone(),
+        a: (0..dofs).map(|dof| wave(dof, 0.5)).collect(),
+        f_internal: vec![0.0; dofs],
+        f_external: vec![0.0; dofs],
+        f_contact: vec![0.0; dofs],
+        contact_forces: vec![[0.0; 3]; contacts],
+        impulses: vec![[0.0; 3]; contacts],
+        pairs: vec![Vec::new(); contacts],
+        ..State::default()
+    };
+    model.internal_force(&state.y, &mut state.f_internal).unwrap();
+    state
+}
+
+/// The same with the nodes of the first body, along the last axis, at `height` of their initial
+/// one, and closed pairs where the gap is below `near`.
+fn touching(model: &Model, near: f64, height: impl Fn(usize, f64) -> f64) -> State {
+    let (d, kinematics) = (model.dimension, &model.contacts[0].kinematics);
+    let mut y = model.initial_position.clone();
+    let own: Vec<usize> = model.parts[0].nodes().map(|node| d * node + d - 1).collect();
+    own.iter().for_each(|&dof| y[dof] = height(dof, y[dof]));
+    // Seen from further away, every node has the facet that faces it.
+    let mut apart = y.clone();
+    own.iter().for_each(|&dof| apart[dof] += 0.1 * model.scale);
+    let mut pairing = Pairing::default();
+    kinematics.search(&apart, &y, &mut pairing, &mut Vec::new());
+    for (p, pair) in pairing.pairs.iter_mut().enumerate() {
+        let mut rows = Rows::new(d);
+        kinematics.measure(pair, &y, &mut rows).unwrap();
+        if rows.row(0).gap < near {
+            (pair.active, pair.lambda) = (true, -2.0 - wave(p, 0.2));
+        }
+    }
+    let mut state = at(model, y);
+    state.pairs = vec![pairing.pairs];
+    let gaps = measure_all(model, &mut state).unwrap();
+    press(model, &mut state, &gaps);
+    state
 }
 
 /// The right half of a disc that strikes a block.
@@ -126,16 +176,19 @@ fn strike() -> Model {
     model
 }
 
+/// The disc with a flat: the slope of its heights grows from 0.3.
+fn flattened(model: &Model) -> State {
+    touching(model, 0.1, |_, y| y - 0.14 * (y / 0.2).tanh())
+}
+
 /// With active, sliding contact; and the matrix is symmetric.
 #[test]
 fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
     let averaged = Scheme::hht(0.2).unwrap().with_forces(ForceRule::AverageState);
     for scheme in [Scheme::chung_hulbert(0.6).unwrap(), averaged] {
-        let mut sim = simulation(strike(), scheme, 2e-3);
-        while sim.state().time < 0.1 {
-            sim.advance(&mut GridReport::default()).unwrap();
-        }
-        let equations = equations(sim.model(), sim.state(), &scheme, sim.dt(), sim.state().time + sim.dt());
+        let model = strike();
+        let state = flattened(&model);
+        let equations = equations(&model, &state, &scheme, DT, DT);
         let mut tangent = Tangent::new(&equations, 1e-3);
         assert!(tangent.rows.len() > 3);
         let (u, w) = (tangent.direction(0.1), tangent.direction(0.7));
@@ -152,12 +205,8 @@ fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
 fn the_whole_tangent_with_a_conserving_contact_is_the_derivative_of_the_residual() {
     let mut model = strike();
     model.contacts[0].interface = Box::new(ConservingUnilateral);
-    let mut sim = simulation(model, EnergyMomentum, 2e-3);
-    while sim.state().time < 0.1 {
-        sim.advance(&mut GridReport::default()).unwrap();
-    }
-    let (dt, time) = (sim.dt(), sim.state().time);
-    let equations = equations(sim.model(), sim.state(), &EnergyMomentum, dt, time + dt);
+    let state = flattened(&model);
+    let equations = equations(&model, &state, &EnergyMomentum, DT, DT);
     let mut tangent = Tangent::new(&equations, 1e-3);
     assert!(tangent.rows.len() > 3);
     let u = tangent.direction(0.1);
@@ -174,11 +223,7 @@ fn the_whole_tangent_with_friction_is_the_derivative_of_the_residual() {
     for scheme in [Scheme::chung_hulbert(0.6).unwrap(), Scheme::hht(0.2).unwrap()] {
         let mut model = strike();
         model.contacts[0].friction = Some(Friction::coulomb(0.4, 64));
-        let mut sim = simulation(model, scheme, 2e-3);
-        while sim.state().time < 0.1 {
-            sim.advance(&mut GridReport::default()).unwrap();
-        }
-        let mut state = sim.state().clone();
+        let mut state = flattened(&model);
         let holds = [Hold::Stick, Hold::Slip([1.0, 0.0]), Hold::Slip([-1.0, 0.0]), Hold::Stick];
         let closed = state.pairs[0].iter_mut().filter(|pair| pair.active);
         for (pair, hold) in closed.zip(holds.iter().cycle()) {
@@ -190,7 +235,7 @@ fn the_whole_tangent_with_friction_is_the_derivative_of_the_residual() {
         state.y.iter_mut().skip(1).step_by(2).take(state.v.len() / 8).for_each(|y| *y += 1e-5);
         let closed = state.pairs[0].iter_mut().filter(|pair| pair.active);
         closed.take(2).for_each(|pair| pair.active = false);
-        let equations = equations(sim.model(), &state, &scheme, sim.dt(), state.time + sim.dt());
+        let equations = equations(&model, &state, &scheme, DT, DT);
         let mut tangent = Tangent::from(&equations, at, 1e-3);
         let (sticks, rows) = (tangent.rows.slips.iter().flatten().count(), tangent.rows.len());
         assert!(sticks >= 2 && rows - sticks > sticks, "{sticks} {rows}");
@@ -236,21 +281,17 @@ fn the_whole_tangent_with_friction_in_space_is_the_derivative_of_the_residual() 
         let mut friction = Friction::coulomb(0.4, 64);
         (friction.slip, friction.decay) = (Some(0.2), 0.3);
         model.contacts[0].friction = Some(friction);
-        let mut sim = simulation(model, chung_hulbert, 2e-3);
-        while sim.state().time < 0.02 {
-            sim.advance(&mut GridReport::default()).unwrap();
-        }
-        let state = sim.state();
-        let equations = equations(sim.model(), state, scheme.as_ref(), sim.dt(), state.time + sim.dt());
-        let mut at = Iterate::at_start(state);
+        let state = touching(&model, 0.01, |dof, z| z - 0.004 + 1e-3 * wave(dof, 0.6));
+        let equations = equations(&model, &state, scheme.as_ref(), DT, DT);
+        let mut at = Iterate::at_start(&state);
         for pair in at.pairings[0].pairs.iter_mut().filter(|pair| pair.active) {
             pair.tangential.tangents = [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0]];
             (pair.tangential.hold, pair.tangential.traction) =
                 (Hold::Stick, [0.1 * pair.lambda, 0.03 * pair.lambda]);
         }
         let mut tangent = Tangent::from(&equations, at, 1e-3);
-        let work = &mut tangent.work;
-        let now = equations.evaluate(tangent.at.clone(), &mut work.spare, &mut work.timings).unwrap();
+        let Tangent { at, spare, timings, .. } = &mut tangent;
+        let now = equations.evaluate(at.clone(), spare, timings).unwrap();
         let mut at = now.at.clone();
         for (p, pair) in
             at.pairings[0].pairs.iter_mut().enumerate().filter(|(p, pair)| pair.active && p % 3 > 0)
@@ -282,29 +323,24 @@ fn the_whole_tangent_with_springs_in_space_is_the_derivative_of_the_residual() {
     friction.springs = vec![60.0; nodes];
     model.contacts[0].friction = Some(friction);
     let scheme = Scheme::chung_hulbert(0.6).unwrap();
-    let mut sim = simulation(model, scheme, 2e-3);
-    while sim.state().time < 0.02 {
-        sim.advance(&mut GridReport::default()).unwrap();
-    }
+    let mut state = touching(&model, 0.0, |dof, z| z - 0.015 + 1e-3 * wave(dof, 0.6));
     // Of those closed at the start, whose springs end the step well inside or outside the cone.
-    let mut state = sim.state().clone();
     let closed = state.pairs[0].iter_mut().filter(|pair| pair.active);
     for (k, pair) in closed.enumerate() {
         let cone = if k % 2 == 0 { 0.05 } else { 0.6 } * pair.lambda;
         pair.tangential.before = [0.8 * cone, -0.6 * cone];
         pair.tangential.hold = if k % 2 == 0 { Hold::Stick } else { Hold::of(pair.tangential.before, 0.0) };
     }
-    let equations = equations(sim.model(), &state, &scheme, sim.dt(), state.time + sim.dt());
+    let equations = equations(&model, &state, &scheme, DT, DT);
     let mut tangent = Tangent::from(&equations, Iterate::at_start(&state), 1e-4);
     let holds =
         tangent.at.pairings[0].pairs.iter().filter(|pair| pair.active).map(|pair| pair.tangential.hold);
     let sticks = holds.clone().filter(|hold| *hold == Hold::Stick).count();
     assert!(sticks > 1 && holds.count() > sticks + 1, "{sticks}");
     let u = tangent.direction(0.1);
-    let u: Vec<f64> =
-        u.iter().take(sim.model().free.len()).copied().chain(vec![0.0; tangent.rows.len()]).collect();
+    let u: Vec<f64> = u.iter().take(model.free.len()).copied().chain(vec![0.0; tangent.rows.len()]).collect();
     let ku = tangent.product(&u);
-    let free = sim.model().free.len();
+    let free = model.free.len();
     for (i, (numeric, k)) in tangent.derivative(&u, 2.5e-6).iter().zip(&ku).take(free).enumerate() {
         assert!((numeric - k).abs() < 1e-6 * largest(&ku[..free]), "{i}: {numeric} {k} of {}", largest(&ku));
     }
@@ -337,9 +373,10 @@ fn the_tangent_under_pressure_is_the_derivative_of_the_residual() {
     for (on, pressure, symmetric) in
         [("top", "3", true), ("top", "3*(1 + X^2)", false), ("bottom", "-2", true)]
     {
-        let sim = simulation(pressed(on, pressure), scheme, 0.1);
+        let model = pressed(on, pressure);
+        let state = at(&model, model.initial_position.clone());
         // Without inertia and with soft springs the pressure dominates the tangent.
-        let equations = equations(sim.model(), sim.state(), &scheme, 1e3, 0.1);
+        let equations = equations(&model, &state, &scheme, 1e3, 0.1);
         let mut tangent = Tangent::new(&equations, 1e-2);
         let (u, w) = (tangent.direction(0.1), tangent.direction(0.7));
         let (ku, kw) = (tangent.product(&u), tangent.product(&w));
@@ -354,10 +391,9 @@ fn the_tangent_under_pressure_is_the_derivative_of_the_residual() {
 /// Also for a discrete gradient, whose tangent is not symmetric.
 #[test]
 fn the_product_of_a_discrete_gradient_is_the_derivative_of_its_force() {
-    let sim = simulation(pressed("top", "3"), Scheme::chung_hulbert(0.5).unwrap(), 0.1);
-    let model = &sim.model();
+    let model = pressed("top", "3");
     let at = |size: f64, seed: f64| -> Vec<f64> {
-        sim.state().y.iter().enumerate().map(|(i, y)| y + size * wave(i, seed)).collect()
+        model.initial_position.iter().enumerate().map(|(i, y)| y + size * wave(i, seed)).collect()
     };
     let (before, y, u) =
         (at(0.02, 0.3), at(0.03, 0.9), (0..model.dofs()).map(|i| wave(i, 0.1)).collect::<Vec<_>>());

@@ -2,13 +2,8 @@
 
 use carom_contact::{Boundary, Detection, Kinematics, NodeToFacet, NodeToPatch, Surface, Unilateral};
 use carom_solid::{Law, LoadedSide, Mesh, body};
-use carom_time::Kernel;
 
-use crate::grid::Grid;
 use crate::model::{BodyInstance, Contact, Loads, Mass, Model, Motions, gap_tolerance};
-use crate::settings::{Linear, Settings, Tangent};
-use crate::simulation::Simulation;
-use crate::stepper::Implicit;
 
 /// Bodies of one material, with consecutive node numbers.
 pub(crate) fn parts(meshes: impl IntoIterator<Item = Mesh>, law: Law, density: f64) -> Vec<BodyInstance> {
@@ -113,25 +108,4 @@ pub(crate) fn model(
         reference,
         parts,
     }
-}
-
-/// A simulation of a model.
-pub(crate) fn simulation(model: Model, scheme: impl Kernel + 'static, dt: f64) -> Simulation {
-    let settings = Settings {
-        tolerance: 1e-9,
-        max_iterations: 20,
-        tangent: Tangent::Full,
-        linear: Linear::Direct,
-        mixing: 0,
-    };
-    let stepper = Box::new(Implicit::new(Box::new(scheme), settings));
-    Simulation::new(
-        model,
-        stepper,
-        Grid { dt, steps: u64::MAX, phase: 0.0, guard: None, floor: 0.0 },
-        true,
-        None,
-        1,
-    )
-    .unwrap()
 }

@@ -252,7 +252,5 @@ mod constant;
 mod integrals;
 mod mean;
 mod rotation;
-#[cfg(test)]
-mod tests;
 
 pub use mean::MeanDilatation;

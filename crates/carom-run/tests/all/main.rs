@@ -29,6 +29,7 @@ mod obstacles;
 mod overlap;
 mod own;
 mod placed;
+mod pressing;
 mod prisms;
 mod probe;
 mod restart;

@@ -130,8 +130,3 @@ fn triangles(element: Element) -> Result<(), MeshError> {
         _ => Err(MeshError::Dimension { element, dimension: 2 }),
     }
 }
-
-#[cfg(test)]
-mod tests;
-#[cfg(test)]
-pub(crate) use tests::solids as testing;

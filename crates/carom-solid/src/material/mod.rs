@@ -30,6 +30,3 @@ pub use plane_stress::{PlaneStress, Thickness};
 pub(crate) use pointwise::{ModuliMats, Pointwise, Stress};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use volumetric::Volumetric;
-
-#[cfg(test)]
-mod tests;

@@ -109,24 +109,3 @@ macro_rules! line {
 line!(Line2, 2, [Vector([-1.0]), Vector([1.0])]);
 line!(Line3, 3, [Vector([-1.0]), Vector([1.0]), Vector([0.0])]);
 line!(Line4, 4, [Vector([-1.0]), Vector([1.0]), Vector([-1.0 / 3.0]), Vector([1.0 / 3.0])]);
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    proptest! {
-        #[test]
-        fn second_derivatives_are_the_slope_of_the_first(xi in -1.5..1.5) {
-            let h = 1e-4;
-            for nodes in 1..=4 {
-                let (here, plus, minus) = (line_shape(nodes, xi), line_shape(nodes, xi + h), line_shape(nodes, xi - h));
-                for a in 0..4 {
-                    let slope = (plus.first[a] - minus.first[a]) / (2.0 * h);
-                    prop_assert!((slope - here.second[a]).abs() < 1e-9);
-                }
-            }
-        }
-    }
-}

@@ -48,30 +48,3 @@ fn orthogonal<const D: usize>(f: Mat<D>) -> Mat<D> {
     }
     r
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A stretch that is turned by a known angle about an axis.
-    #[test]
-    fn stretch_does_not_turn() {
-        for theta in [0.0_f64, 1e-3, 0.3, 2.0, 3.1] {
-            let (s, c) = theta.sin_cos();
-            let plane = Mat([[c, -s], [s, c]]) * Mat([[1.5, 0.2], [0.2, 0.7]]);
-            assert!((angle(&(plane - Mat::identity())) - theta).abs() < 1e-12, "{theta}");
-            let stretch = Mat([[1.5, 0.2, 0.1], [0.2, 0.7, 0.0], [0.1, 0.0, 1.1]]);
-            // About (1, 2, 2)/3: R = c 1 + s [n]× + (1 − c) n nᵀ.
-            let n = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0];
-            let cross = [[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]];
-            let space = Mat(std::array::from_fn(|i| {
-                std::array::from_fn(|j| {
-                    c * f64::from(u8::from(i == j)) + s * cross[i][j] + (1.0 - c) * n[i] * n[j]
-                })
-            }));
-            let found = angle(&(space * stretch - Mat::identity()));
-            assert!((found - theta).abs() < 1e-9, "{theta} {found}");
-        }
-        assert_eq!(angle(&Mat([[0.5]])), 0.0);
-    }
-}

@@ -41,7 +41,7 @@ fn geometry(mesh: &Mesh) -> (Vec<Vec<[f64; 2]>>, Vec<(String, Vec<[f64; 2]>)>) {
     let nodes = mesh.nodes.of_dimension();
     let mut cells: Vec<Vec<_>> =
         (0..mesh.cell_count()).map(|c| mesh.cell(c).iter().map(|&n| nodes[n]).collect()).collect();
-    cells.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    cells.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap());
     let places = |side: &String| mesh.side_nodes(side).unwrap().into_iter().map(|n| nodes[n]).collect();
     (cells, mesh.sides.keys().map(|side| (side.clone(), places(side))).collect())
 }

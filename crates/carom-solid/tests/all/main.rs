@@ -3,12 +3,28 @@
 #![allow(clippy::unwrap_used)]
 
 mod body;
+mod bounds;
+mod discrete_gradient;
+mod facet;
+mod generate;
 mod gmsh;
 mod gmsh_faults;
 mod gmsh_volume;
+mod hull;
+mod laws;
+mod loaded_side;
 mod manufactured;
 mod mean_dilatation;
 mod plane_stress;
+mod quadrature;
+mod random;
+mod shapes;
 mod space;
+mod stl;
 mod subdivided;
+mod tetrahedron;
 mod together;
+mod tree;
+mod triangles;
+mod turn;
+mod validity;

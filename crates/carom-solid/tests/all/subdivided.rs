@@ -1,6 +1,11 @@
 //! Meshes whose cells are divided, compared with finer meshes.
 
+use std::collections::HashSet;
+
+use carom_solid::generate::ball;
 use carom_solid::{Element, Law, Mesh, body, generate};
+
+use super::generate::solids::{sound, volume};
 
 fn area(mesh: &Mesh) -> f64 {
     let law = Law::NeoHookean { lambda: 1.0, mu: 1.0 };
@@ -72,7 +77,7 @@ fn a_divided_box_is_the_finer_box() {
                 let at = |&n: &usize| [0, 1, 2].map(|i| (mesh.nodes[n][i] * 1e12).round() as i64);
                 let mut all: Vec<Vec<_>> =
                     (0..mesh.cell_count()).map(|c| mesh.cell(c).iter().map(at).collect()).collect();
-                all.sort();
+                all.sort_unstable();
                 all
             };
             assert_eq!(divided.nodes.len(), fine.nodes.len());
@@ -95,11 +100,102 @@ fn a_divided_bar_is_the_finer_bar() {
         assert_eq!((divided.nodes.len(), ends(&divided)), (fine.nodes.len(), ends(&fine)));
         let sorted = |mesh: &Mesh| {
             let mut x: Vec<f64> = mesh.nodes.iter().map(|p| p[0]).collect();
-            x.sort_by(f64::total_cmp);
+            x.sort_unstable_by(f64::total_cmp);
             x
         };
         for (a, b) in sorted(&divided).iter().zip(sorted(&fine)) {
             assert!((a - b).abs() < 1e-14);
+        }
+    }
+}
+
+/// A ball and its parts have the same curved boundary, so the same volume; a facet becomes
+/// parts².
+#[test]
+fn parts_of_tetrahedra_fill_the_whole() {
+    for element in [Element::Tet4, Element::Tet10, Element::Tet20] {
+        let whole = ball(element, 1.0, [0.0; 3], 0.8, [true, false, false]).unwrap();
+        for parts in [2, 3] {
+            let divided = whole.subdivided(parts);
+            assert_eq!(divided.cell_count(), whole.cell_count() * parts.pow(3));
+            for (side, facets) in &whole.sides {
+                assert_eq!(divided.sides[side].len(), facets.len() * parts * parts);
+            }
+            let (before, after) = (volume(&whole), sound(&divided));
+            assert!((before - after).abs() < 1e-13 * before, "{element:?} {parts}: {before} {after}");
+        }
+    }
+}
+
+/// Dividing again and again leaves the cells as they are: their quality stays.
+#[test]
+fn the_quality_of_tetrahedra_is_kept() {
+    let mut mesh = ball(Element::Tet4, 1.0, [0.0; 3], 1.0, [true; 3]).unwrap();
+    let first = mesh.subdivided(2).scaled_jacobian().unwrap();
+    for _ in 0..2 {
+        mesh = mesh.subdivided(2);
+    }
+    let last = mesh.scaled_jacobian().unwrap();
+    assert!(last > 0.99 * first, "{first} {last}");
+}
+
+/// Numbers of corners, edges, faces and cells of a mesh of hexahedra.
+fn counts(mesh: &Mesh) -> [usize; 4] {
+    let (mut corners, mut edges, mut faces) = (HashSet::new(), HashSet::new(), HashSet::new());
+    for cell in 0..mesh.cell_count() {
+        for local in mesh.element.facets() {
+            let mut face = [0, 1, 2, 3].map(|k| mesh.cell(cell)[local[k]]);
+            for k in 0..4 {
+                let [a, b] = [face[k], face[(k + 1) % 4]];
+                corners.insert(a);
+                edges.insert([a.min(b), a.max(b)]);
+            }
+            face.sort_unstable();
+            faces.insert(face);
+        }
+    }
+    [corners.len(), edges.len(), faces.len(), mesh.cell_count()]
+}
+
+/// A ball and its parts have the same curved boundary, so the same volume; every edge, face and
+/// cell gets the nodes of its lattice, each once; a facet becomes parts².
+#[test]
+fn parts_of_hexahedra_fill_the_whole() {
+    for element in [Element::Hex8, Element::Hex27] {
+        let whole = ball(element, 1.0, [0.0; 3], 0.8, [true, false, false]).unwrap();
+        let [v, e, f, c] = counts(&whole);
+        assert_eq!(v + f, e + c + 1, "Euler");
+        for parts in [2, 3] {
+            let divided = whole.subdivided(parts);
+            assert_eq!(divided.cell_count(), c * parts.pow(3));
+            let between = element.degree() * parts - 1;
+            let nodes = v + e * between + f * between.pow(2) + c * between.pow(3);
+            assert_eq!(divided.nodes.len(), nodes, "{element:?} {parts}");
+            let [v, e, f, c] = counts(&divided);
+            assert_eq!(v + f, e + c + 1, "Euler");
+            for (side, facets) in &whole.sides {
+                assert_eq!(divided.sides[side].len(), facets.len() * parts * parts);
+            }
+            let (before, after) = (volume(&whole), sound(&divided));
+            assert!((before - after).abs() < 1e-14 * before, "{element:?} {parts}: {before} {after}");
+        }
+    }
+}
+
+/// Two halves of every half are four quarters: the same nodes at the same places.
+#[test]
+fn parts_of_parts_are_parts() {
+    for element in [Element::Hex8, Element::Hex27] {
+        let whole = ball(element, 1.0, [0.0; 3], 1.0, [true; 3]).unwrap();
+        let places = |mesh: Mesh| {
+            let mut all: Vec<_> = mesh.nodes.of_dimension::<3>().to_vec();
+            all.sort_unstable_by_key(|x| x.map(|x| (x * 1e12).round() as i64));
+            all
+        };
+        let (twice, once) = (places(whole.subdivided(2).subdivided(2)), places(whole.subdivided(4)));
+        assert_eq!(twice.len(), once.len());
+        for (a, b) in twice.iter().zip(&once) {
+            assert!((0..3).all(|i| (a[i] - b[i]).abs() < 1e-14), "{a:?} {b:?}");
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Laws in plane stress: derivatives, objectivity, zero out-of-plane stress, uniaxial tension in
 //! closed form.
 
+use carom_solid::material::{PlaneStress, Thickness, excess_det};
+
 use super::*;
 
 const YOUNG: f64 = MU * (3.0 * LAMBDA + 2.0 * MU) / (LAMBDA + MU);
@@ -25,37 +27,43 @@ fn free_across<L: Thickness + Copy>(law: &L, h: &Mat<2>) {
     assert!((plane.volume_ratio(h) - (1.0 + excess_det(&wide))).abs() < 1e-15);
 }
 
-proptest! {
-    #[test]
-    fn stress_and_condensed_tangent_are_derivatives(entries in prop::collection::vec(-0.2..0.2, 4)) {
-        derivatives::<2, _>(&PlaneStress(neo_hookean()), &matrix(&entries));
-        derivatives::<2, _>(&PlaneStress(saint_venant_kirchhoff()), &matrix(&entries));
-        derivatives::<2, _>(&PlaneStress(linear_elastic()), &matrix(&entries));
-    }
+#[test]
+fn stress_and_condensed_tangent_are_derivatives() {
+    lists(256, 4, &|x| {
+        derivatives::<2, _>(&PlaneStress(neo_hookean()), &matrix(x, 0.2));
+        derivatives::<2, _>(&PlaneStress(saint_venant_kirchhoff()), &matrix(x, 0.2));
+        derivatives::<2, _>(&PlaneStress(linear_elastic()), &matrix(x, 0.2));
+    });
+}
 
-    #[test]
-    fn rotations_turn_the_stress(entries in prop::collection::vec(-0.2..0.2, 4), a in -3.0..3.0) {
-        let (s, c) = f64::sin_cos(a);
+#[test]
+fn rotations_turn_the_stress() {
+    lists(256, 5, &|x| {
+        let (s, c) = f64::sin_cos(3.0 * x[4]);
         let q = Mat([[c, -s], [s, c]]);
-        objectivity::<2, _>(&PlaneStress(neo_hookean()), &matrix(&entries), &q);
-        objectivity::<2, _>(&PlaneStress(saint_venant_kirchhoff()), &matrix(&entries), &q);
-    }
+        objectivity::<2, _>(&PlaneStress(neo_hookean()), &matrix(x, 0.2), &q);
+        objectivity::<2, _>(&PlaneStress(saint_venant_kirchhoff()), &matrix(x, 0.2), &q);
+    });
+}
 
-    #[test]
-    fn nothing_presses_across(entries in prop::collection::vec(-0.3..0.3, 4)) {
-        free_across(&neo_hookean(), &matrix(&entries));
-        free_across(&saint_venant_kirchhoff(), &matrix(&entries));
-        free_across(&linear_elastic(), &matrix(&entries));
-    }
+#[test]
+fn nothing_presses_across() {
+    lists(256, 4, &|x| {
+        free_across(&neo_hookean(), &matrix(x, 0.3));
+        free_across(&saint_venant_kirchhoff(), &matrix(x, 0.3));
+        free_across(&linear_elastic(), &matrix(x, 0.3));
+    });
+}
 
-    #[test]
-    fn small_motions_are_hooke_s(entries in prop::collection::vec(-1.0..1.0, 4)) {
-        let h = matrix::<2>(&entries) * 1e-9;
+#[test]
+fn small_motions_are_hooke_s() {
+    lists(256, 4, &|x| {
+        let h = matrix::<2>(x, 1e-9);
         let hooke = stress(&PlaneStress(linear_elastic()), &h);
         let size = MU * h.double_dot(&h).sqrt();
-        prop_assert!(distance(&stress(&PlaneStress(neo_hookean()), &h), &hooke) < 3e-8 * size);
-        prop_assert!(distance(&stress(&PlaneStress(saint_venant_kirchhoff()), &h), &hooke) < 3e-8 * size);
-    }
+        assert!(distance(&stress(&PlaneStress(neo_hookean()), &h), &hooke) < 3e-8 * size);
+        assert!(distance(&stress(&PlaneStress(saint_venant_kirchhoff()), &h), &hooke) < 3e-8 * size);
+    });
 }
 
 /// The thickness is found for any plane stretch: the neo-Hookean root over twelve decades of J,

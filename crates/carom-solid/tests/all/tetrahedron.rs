@@ -2,12 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::*;
-use crate::body::Body;
-use crate::material::NeoHookean;
-use crate::shape::Tet4;
+use carom_algebra::Mat;
+use carom_solid::{Body, Element, Law, Mesh, body};
 
-fn tetrahedron() -> Solid<3, 4, Tet4> {
+fn tetrahedron() -> Box<dyn Body> {
     let nodes = vec![[0.0, 0.0, 0.0], [2.0, 0.1, 0.0], [0.2, 1.5, 0.1], [0.1, 0.2, 1.0]].into();
     let mesh = Mesh {
         element: Element::Tet4,
@@ -16,13 +14,13 @@ fn tetrahedron() -> Solid<3, 4, Tet4> {
         sides: BTreeMap::new(),
         repairs: Vec::new(),
     };
-    Solid::new(mesh, Box::new(NeoHookean { lambda: 2.0, mu: 1.5 }), 3.0, 1.0).unwrap()
+    body(mesh, Law::NeoHookean { lambda: 2.0, mu: 1.5 }, 3.0, 1.0).unwrap()
 }
 
 #[test]
 fn a_tetrahedron_has_its_volume_and_mass() {
     let body = tetrahedron();
-    let [a, b, c] = [1, 2, 3].map(|n| body.mesh.nodes.of_dimension::<3>()[n]);
+    let [a, b, c] = [1, 2, 3].map(|n| body.mesh().nodes.of_dimension::<3>()[n]);
     let volume = Mat([a, b, c]).det() / 6.0;
     let mut volumes = [0.0; 4];
     body.cell_volumes(0, &mut volumes);
@@ -36,7 +34,7 @@ fn a_tetrahedron_has_its_volume_and_mass() {
 fn a_tetrahedron_s_force_and_tangent_are_derivatives() {
     let body = tetrahedron();
     let bent = |x: &[f64]| [1.1 * x[0] - 0.2 * x[1], 0.9 * x[1] + 0.1 * x[2], x[2] + 0.2 * x[0]];
-    let mut y: Vec<f64> = body.mesh.nodes.iter().flat_map(bent).collect();
+    let mut y: Vec<f64> = body.mesh().nodes.iter().flat_map(bent).collect();
     let (mut force, mut tangent) = ([0.0; 12], [0.0; 144]);
     body.cell_tangent(0, &y, &mut force, &mut tangent).unwrap();
     let h = 1e-6;

@@ -4,26 +4,24 @@
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-use carom_algebra::Vector;
+use carom_algebra::{Mat, Vector};
+use carom_solid::generate::{
+    Frame, MeshError, ball, ball_hexahedra, cylinder, cylinder_hexahedra, disc, extrusion, half_disc,
+    interval, rectangle, tube, tube_hexahedra,
+};
+use carom_solid::shape::{Domain, Hex8, Hex27, Shape, Tet4, Tet10, Tet20};
+use carom_solid::{Body, Element, Facet, Mesh};
 
-use super::super::*;
-use crate::reference::gradient;
-use crate::shape::{Domain, Hex8, Hex27, Shape, Tet4, Tet10, Tet20};
-use crate::validity::Validity;
+use crate::validity::cell;
 
 const SOLIDS: [Element; 5] = [Element::Tet4, Element::Tet10, Element::Tet20, Element::Hex8, Element::Hex27];
 
 /// Volume by quadrature of the Jacobian, which is certified positive in every cell.
 pub(crate) fn volume(mesh: &Mesh) -> f64 {
     fn of<const N: usize, S: Shape<3, N>>(mesh: &Mesh) -> f64 {
-        let (rule, validity) = (S::Domain::rule(8), Validity::<3, N>::of::<S>());
-        let positions = mesh.nodes.of_dimension::<3>();
-        let cell = |nodes: &[usize; N]| {
-            let x = nodes.map(|n| Vector(positions[n]));
-            assert!(validity.margin(&x).is_ok(), "{x:?}");
-            rule.iter().map(|(xi, w)| w * gradient(&x, &S::gradients(xi)).det()).sum::<f64>()
-        };
-        mesh.cells.as_chunks::<N>().0.iter().map(cell).sum()
+        let rule = S::Domain::rule(8);
+        let points: Vec<_> = rule.iter().map(|(xi, w)| (S::gradients(xi).to_vec(), w)).collect();
+        integral(mesh, &*cell::<3, N, S>(mesh.element), &points)
     }
     match mesh.element {
         Element::Tet4 => of::<4, Tet4>(mesh),
@@ -32,6 +30,22 @@ pub(crate) fn volume(mesh: &Mesh) -> f64 {
         Element::Hex8 => of::<8, Hex8>(mesh),
         _ => of::<27, Hex27>(mesh),
     }
+}
+
+/// ∫ det(∂x/∂ξ) from the gradients and weights at quadrature points, of cells that the test of a
+/// reference cell certifies.
+fn integral(mesh: &Mesh, reference: &dyn Body, points: &[(Vec<Vector<3>>, f64)]) -> f64 {
+    let positions = mesh.nodes.of_dimension::<3>();
+    let of_cell = |nodes: &[usize]| {
+        let x: Vec<[f64; 3]> = nodes.iter().map(|&n| positions[n]).collect();
+        assert!(reference.cell_margin(0, x.as_flattened()).is_ok(), "{x:?}");
+        let jacobian = |gradients: &[Vector<3>]| {
+            let terms = x.iter().zip(gradients).map(|(x, gradient)| Vector(*x).outer(gradient));
+            terms.fold(Mat::ZERO, |sum, term| sum + term).det()
+        };
+        points.iter().map(|(gradients, weight)| weight * jacobian(gradients)).sum::<f64>()
+    };
+    mesh.cells.chunks_exact(mesh.element.nodes()).map(of_cell).sum()
 }
 
 /// Area, ∫ n and ∫ x·n of facets.
@@ -73,7 +87,7 @@ pub(crate) fn sound(mesh: &Mesh) -> f64 {
     // The sides are the boundary, each facet once.
     let mut of_sides: Vec<&Facet> = mesh.sides.values().flatten().collect();
     assert_eq!(of_sides.len(), skin.len());
-    of_sides.sort_by_key(|f| (f.cell, &f.nodes));
+    of_sides.sort_unstable_by_key(|f| (f.cell, &f.nodes));
     of_sides.dedup();
     assert_eq!(of_sides.len(), skin.len());
     // Facets with the same corners share all nodes, in two cells inside and one on the boundary;
@@ -104,7 +118,7 @@ pub(crate) fn sound(mesh: &Mesh) -> f64 {
     mesh.cells.iter().for_each(|&n| used[n] = true);
     assert!(used.iter().all(|u| *u));
     let mut places: Vec<_> = mesh.nodes.of_dimension::<3>().to_vec();
-    places.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    places.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap());
     assert!(places.windows(2).all(|pair| pair[0] != pair[1]));
     volume
 }

@@ -1,5 +1,8 @@
 //! Rings and polygons: areas, angles, sides, graded sizes, invalid input.
 
+use carom_solid::generate::{Refinement, polygon, ring};
+use carom_solid::line_shape;
+
 use super::*;
 
 fn area(mesh: &Mesh) -> f64 {
@@ -9,7 +12,7 @@ fn area(mesh: &Mesh) -> f64 {
             let rule = triangle(6);
             rule.iter()
                 .map(|(xi, w)| {
-                    let jacobian = gradient(&x, &S::gradients(xi)).det();
+                    let jacobian = gradient::<2, N, S>(&x, xi).det();
                     assert!(jacobian > 0.0, "cell {cell}");
                     w * jacobian
                 })
@@ -68,7 +71,7 @@ fn enclosed(mesh: &Mesh, side: &str) -> f64 {
     let mut twice = 0.0;
     for facet in &mesh.sides[side] {
         for (xi, w) in [(-0.6_f64.sqrt(), 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.6_f64.sqrt(), 5.0 / 9.0)] {
-            let shape = crate::line_shape(facet.nodes.len(), xi);
+            let shape = line_shape(facet.nodes.len(), xi);
             let at = |values: &[f64], i: usize| {
                 facet.nodes.iter().zip(values).map(|(&n, v)| mesh.nodes[n][i] * v).sum::<f64>()
             };
