@@ -106,7 +106,18 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["time.scheme={ kind = \"bathe\", rho_inf = 1.5 }"],
         &["`rho_inf` must be a number in [0, 1]", "write for example `rho_inf = 1`"],
     ),
-    (&["contact.strike.restitution=1.5"], &["write for example `restitution = 1`"]),
+    (&["contact.strike.restitution=1.5"], &["chung-hulbert has no restitution", "leave restitution out"]),
+    (
+        &["contact.strike.restitution=1.5", "time.scheme={ kind = \"moreau-jean\", theta = 0.5 }"],
+        &["write for example `restitution = 1`"],
+    ),
+    (
+        &[
+            "material.rubber={ name = \"rubber\", law = \"neo-hookean\", density = 1, young = 1, poisson = -1 }",
+        ],
+        &["write for example `poisson = -0.99`"],
+    ),
+    (&["body.prism.mesh.cells=[-16, 16]"], &["did you mean 16?"]),
     (
         &["time.scheme={ kind = \"hu\", rho_inf = 0.5 }"],
         &["unknown key `rho_inf` in scheme \"hu\"", "scheme \"wbz\""],

@@ -219,7 +219,7 @@ fn check_prints_the_case() {
     {
         assert!(output.contains(part), "{part:?} not in\n{output}");
     }
-    assert!(output.contains("a pressure wave takes"), "{output}");
+    assert!(output.contains("a pressure wave crosses the smallest body in"), "{output}");
     let scheme = "time.scheme={ kind = \"static\" }";
     let output = text(&place.carom(&["check", "case.toml", "--set", scheme]).stdout);
     assert!(output.contains("400 steps") && !output.contains("wave"), "{output}");

@@ -198,7 +198,10 @@ fn an_overlap_is_listed_and_drawn() {
     let done = place.carom(&["check", "fit.toml"]);
     let said = text(&done.stdout);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
-    assert!(said.contains("of lower at [0.25, 1]: 0.01 deep") && said.contains("fit-overlap.svg"), "{said}");
+    assert!(
+        said.contains("of lower at [0.25, 1] penetrates by 0.01") && said.contains("fit-overlap.svg"),
+        "{said}"
+    );
     assert!(std::fs::read_to_string(place.0.join("fit-overlap.svg")).unwrap().contains("16 nodes inside"));
     let refused = place.carom(&["check", "fit.toml", "--set", "contact.fit.overlap=refuse"]);
     assert_eq!(refused.status.code(), Some(2));
