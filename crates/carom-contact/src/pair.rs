@@ -61,6 +61,11 @@ const WATCHED: f64 = 0.35;
 /// The same when only contacts within the step matter.
 const NEAR: f64 = 0.01;
 
+/// Orders pairs by their nodes; those of one node remain in their order.
+pub(crate) fn in_order(pairs: &mut [Pair]) {
+    pairs.sort_by_key(|pair| pair.node);
+}
+
 /// The pairs of one contact during one solve, ascending by node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pairing {

@@ -67,16 +67,29 @@ impl<const D: usize, const N: usize> Bernstein<D, N> {
     pub(crate) fn of<S: Shape<D, N>>() -> Self {
         let hull = Hull::of::<D, N, S>();
         let control = std::array::from_fn(|a| std::array::from_fn(|c| hull.weights(c)[a]));
-        let mut tables = if S::Domain::TENSOR {
-            Self::of_box(S::DEGREE, control)
+        let determinant = if S::Domain::TENSOR {
+            Determinant::of_box(S::DEGREE)
         } else {
-            Self::of_simplex(S::DEGREE, control, &S::NODES)
+            Determinant::of_simplex(S::DEGREE, &S::NODES)
         };
-        tables.terms.sort_by_key(|term| term.coefficient);
-        tables
+        let Determinant { differences, terms, count, degree, corners, directions } = determinant;
+        Self { control, differences, terms, count, degree, corners, directions }
     }
+}
 
-    fn of_simplex(k: usize, control: [[f64; N]; N], nodes: &[Vector<D>; N]) -> Self {
+/// The part of the tables that does not depend on the number of nodes, compiled once for each
+/// dimension.
+struct Determinant<const D: usize> {
+    differences: [Vec<(usize, usize)>; D],
+    terms: Vec<Term<D>>,
+    count: usize,
+    degree: usize,
+    corners: Vec<Corner<D>>,
+    directions: Vec<Direction>,
+}
+
+impl<const D: usize> Determinant<D> {
+    fn of_simplex(k: usize, nodes: &[Vector<D>]) -> Self {
         let degree = D * (k - 1);
         let (points, parts, whole) = (exponents::<D>(k), exponents::<D>(k - 1), exponents::<D>(degree));
         let plus = |e: &Exponents, corner: usize| {
@@ -86,7 +99,7 @@ impl<const D: usize, const N: usize> Bernstein<D, N> {
         };
         let differences =
             std::array::from_fn(|i| parts.iter().map(|e| (plus(e, 0), plus(e, i + 1))).collect());
-        let terms = products(&[parts.len(); D], |factors: [usize; D]| {
+        let terms = products(&[parts.len(); D], &|factors: [usize; D]| {
             let sum = sum(factors.map(|f| parts[f]));
             let weight = factors.iter().map(|&f| multinomial(&parts[f])).product::<f64>() / multinomial(&sum);
             Term { coefficient: index(&whole, &sum), weight, factors }
@@ -97,7 +110,6 @@ impl<const D: usize, const N: usize> Bernstein<D, N> {
             Corner { coefficient: index(&whole, &e), place: nodes[c] }
         };
         Self {
-            control,
             differences,
             terms,
             count: whole.len(),
@@ -107,7 +119,7 @@ impl<const D: usize, const N: usize> Bernstein<D, N> {
         }
     }
 
-    fn of_box(k: usize, control: [[f64; N]; N]) -> Self {
+    fn of_box(k: usize) -> Self {
         let degree = D * k - 1;
         let (points, whole) = (lattice::<D>(&[k; D]), lattice::<D>(&[degree; D]));
         let parts: [Vec<Exponents>; D] = std::array::from_fn(|i| {
@@ -123,7 +135,7 @@ impl<const D: usize, const N: usize> Bernstein<D, N> {
             };
             parts[i].iter().map(pair).collect()
         });
-        let terms = products(&std::array::from_fn(|i| parts[i].len()), |factors: [usize; D]| {
+        let terms = products(&std::array::from_fn(|i| parts[i].len()), &|factors: [usize; D]| {
             let of = |i: usize| parts[i][factors[i]];
             let sum = sum(std::array::from_fn::<_, D, _>(of));
             let along = |axis: usize| {
@@ -139,7 +151,6 @@ impl<const D: usize, const N: usize> Bernstein<D, N> {
             Corner { coefficient: index(&whole, &e), place }
         };
         Self {
-            control,
             differences,
             terms,
             count: whole.len(),
@@ -204,11 +215,13 @@ pub(crate) fn halves(row: &[f64], direction: &Direction) -> [Vec<f64>; 2] {
     halves
 }
 
-/// All products of one factor of each list of these lengths.
-fn products<const D: usize>(lengths: &[usize; D], term: impl Fn([usize; D]) -> Term<D>) -> Vec<Term<D>> {
+/// All products of one factor of each list of these lengths, ascending in their coefficients.
+fn products<const D: usize>(lengths: &[usize; D], term: &dyn Fn([usize; D]) -> Term<D>) -> Vec<Term<D>> {
     let factor = |code: usize, i: usize| code / lengths[..i].iter().product::<usize>() % lengths[i];
     let codes = 0..lengths.iter().product();
-    codes.map(|code| term(std::array::from_fn(|i| factor(code, i)))).collect()
+    let mut terms: Vec<_> = codes.map(|code| term(std::array::from_fn(|i| factor(code, i)))).collect();
+    terms.sort_by_key(|term| term.coefficient);
+    terms
 }
 
 fn sum<const D: usize>(exponents: [Exponents; D]) -> Exponents {

@@ -22,7 +22,7 @@ use super::passed::{Passed, Paths};
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
 use super::{Kinematics, watch_every_node, zero};
-use crate::pair::{ContactError, Pair, PairEvent, Pairing};
+use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
 
@@ -318,7 +318,7 @@ impl Kinematics for NodeToFacet {
         });
         if !in_corners.is_empty() {
             pairs.append(&mut in_corners);
-            pairs.sort_by_key(|pair| pair.node);
+            in_order(pairs);
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         if tools.search.update(&self.primary, &self.secondary, *margin, before, now) {
@@ -363,7 +363,7 @@ impl Kinematics for NodeToFacet {
                     Detection::Trajectory => {}
                 }
             }
-            pairs.sort_by_key(|p| p.node);
+            in_order(pairs);
         }
         changed
     }

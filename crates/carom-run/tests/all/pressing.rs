@@ -1,7 +1,7 @@
 //! The start of a run with closed contacts: which pairs press, and which accelerate apart.
 
-use carom_contact::{Pair, Rows, length};
-use carom_mechanics::model::{Friction, Model};
+use carom_contact::{Pairing, Rows, length};
+use carom_mechanics::model::{Contact, Friction, Model};
 use carom_mechanics::{Before, Grid, Implicit, Linear, Settings, Simulation, Tangent, each_slip};
 use carom_run::Setup;
 use carom_time::Scheme;
@@ -35,9 +35,17 @@ fn block_on_base(contacts: usize, mu: f64) -> Model {
 
 /// The start of a run from rest, with all pairs closed.
 fn started(model: Model) -> Simulation {
-    let open = |node| Pair { active: true, ..Pair::open(node, 0, 0.0) };
-    let pairs = model.contacts.iter().map(|c| (0..c.kinematics.nodes()).map(open).collect()).collect();
-    let before = Before { y: model.initial_position.clone(), v: vec![0.0; model.dofs()], pairs };
+    let (y, mut apart) = (&model.initial_position, model.initial_position.clone());
+    model.parts[0].nodes().for_each(|node| apart[2 * node + 1] += 0.1);
+    let closed = |contact: &Contact| {
+        let mut pairing = Pairing::default();
+        contact.kinematics.search(&apart, y, &mut pairing, &mut Vec::new());
+        assert_eq!(pairing.pairs.len(), 5);
+        pairing.pairs.iter_mut().for_each(|pair| pair.active = true);
+        pairing.pairs
+    };
+    let pairs = model.contacts.iter().map(closed).collect();
+    let before = Before { y: y.clone(), v: vec![0.0; model.dofs()], pairs };
     let settings = Settings {
         tolerance: 1e-9,
         max_iterations: 20,

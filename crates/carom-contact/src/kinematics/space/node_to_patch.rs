@@ -27,7 +27,7 @@ use crate::kinematics::apart::Apart;
 use crate::kinematics::opposed::is_left;
 use crate::kinematics::tangents::tangents;
 use crate::kinematics::{Kinematics, OneWay, Passed, Side, SweptPatch};
-use crate::pair::{ContactError, Pair, PairEvent, Pairing};
+use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::rows::Rows;
 
 /// Distance past an edge, over the height of the facet, up to which a facet is extrapolated.
@@ -361,7 +361,7 @@ impl Kinematics for NodeToPatch {
         });
         if !concave.is_empty() {
             pairs.append(&mut concave);
-            pairs.sort_by_key(|pair| pair.node);
+            in_order(pairs);
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         let Tools { tree, apart, swept, normals } = &mut *tools;
@@ -407,7 +407,7 @@ impl Kinematics for NodeToPatch {
             changed |= gap < 0.0;
             pairs.push(Pair { eta, ..Pair::open(k, facet, xi) });
         }
-        pairs.sort_by_key(|pair| pair.node);
+        in_order(pairs);
         changed
     }
 
