@@ -54,7 +54,7 @@ KINDS = {
     "overlap at the start": "overlap at the start",
     "no unique closest point": "no unique closest point",
     "lost facet": "is beyond primary facet",
-    "active set": "does not settle|active set cycles",
+    "active set": "do(es)? not converge: nodes|active set cycles",
     "inverted cell": "inverted|det F|J ≤ 0",
     "explicit contact": "explicit step did not converge",
     "penetrates": "penetrates by",

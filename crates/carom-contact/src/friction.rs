@@ -41,7 +41,7 @@ pub fn inner(a: Along, b: Along) -> f64 {
 
 /// Whether a closed pair sticks, or in which direction it slips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub enum Hold {
+pub enum FrictionState {
     /// S = 0.
     #[default]
     Stick,
@@ -49,7 +49,7 @@ pub enum Hold {
     Slip(Along),
 }
 
-impl Hold {
+impl FrictionState {
     /// The state in which a closing pair starts, from its slip in the iterate: the projection onto
     /// the cone of a pressure that is still zero.
     pub fn of(slip: Along, tolerance: f64) -> Self {
@@ -80,7 +80,7 @@ impl Hold {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tangential {
     /// Stick or slip.
-    pub hold: Hold,
+    pub friction_state: FrictionState,
     /// In space the tangents where the pair was last evaluated, which turn with the normal. Zero
     /// before that.
     pub tangents: [[f64; 3]; 2],
@@ -98,9 +98,9 @@ impl Tangential {
     /// it.
     pub fn pull(&mut self, along: Along, traction: f64) {
         let pulled = [0, 1].map(|i| self.traction[i] + traction * along[i]);
-        match self.hold {
-            Hold::Stick => self.traction = pulled,
-            Hold::Slip(_) => self.hold = Hold::of(pulled, 0.0),
+        match self.friction_state {
+            FrictionState::Stick => self.traction = pulled,
+            FrictionState::Slip(_) => self.friction_state = FrictionState::of(pulled, 0.0),
         }
     }
 }
@@ -171,9 +171,9 @@ impl Law {
 
 /// A closed pair as the law sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rub {
+pub struct FrictionPair {
     /// Its state.
-    pub hold: Hold,
+    pub friction_state: FrictionState,
     /// Traction q.
     pub traction: Along,
     /// Slip S of the step.
@@ -211,30 +211,35 @@ impl StickSlip {
     ///
     /// # Errors
     /// If the states return to those visited before in spite of all restrictions.
-    pub fn changes(&mut self, pairs: &[Option<Rub>], converged: bool) -> Result<Vec<(usize, Hold)>, Cycle> {
+    pub fn changes(
+        &mut self,
+        pairs: &[Option<FrictionPair>],
+        converged: bool,
+    ) -> Result<Vec<(usize, FrictionState)>, Cycle> {
         if self.caution > Caution::EveryIteration && !converged {
             return Ok(Vec::new());
         }
         let widest = pairs.iter().flatten().map(|pair| pair.cone).fold(0.0, f64::max);
-        let mut wrong: Vec<(usize, Hold, f64)> = Vec::new();
+        let mut wrong: Vec<(usize, FrictionState, f64)> = Vec::new();
         for (p, pair) in pairs.iter().enumerate() {
             let Some(pair) = pair else { continue };
-            let backwards = -inner(pair.hold.direction(), pair.slip);
-            if pair.hold == Hold::Stick {
+            let backwards = -inner(pair.friction_state.direction(), pair.slip);
+            if pair.friction_state == FrictionState::Stick {
                 let excess = length(pair.traction) - pair.cone;
                 if excess > EDGE * widest {
-                    wrong.push((p, Hold::of(pair.traction, 0.0), excess / widest));
+                    wrong.push((p, FrictionState::of(pair.traction, 0.0), excess / widest));
                 }
             } else if backwards > self.slip_tolerance {
-                wrong.push((p, Hold::Stick, backwards));
+                wrong.push((p, FrictionState::Stick, backwards));
             }
         }
         if wrong.is_empty() {
             return Ok(Vec::new());
         }
-        let after = |wrong: &[(usize, Hold, f64)]| -> Vec<Option<[i8; 2]>> {
-            let mut states: Vec<_> = pairs.iter().map(|pair| pair.map(|pair| pair.hold.rounded())).collect();
-            wrong.iter().for_each(|&(p, hold, _)| states[p] = Some(hold.rounded()));
+        let after = |wrong: &[(usize, FrictionState, f64)]| -> Vec<Option<[i8; 2]>> {
+            let mut states: Vec<_> =
+                pairs.iter().map(|pair| pair.map(|pair| pair.friction_state.rounded())).collect();
+            wrong.iter().for_each(|&(p, friction_state, _)| states[p] = Some(friction_state.rounded()));
             states
         };
         self.visited.insert(after(&[]));
@@ -254,14 +259,16 @@ impl StickSlip {
         }
         if self.caution == Caution::OneAtATime {
             // Sticks that leave the cone before slips in the wrong direction, the worst first.
-            wrong.sort_by(|a, b| (a.1 == Hold::Stick).cmp(&(b.1 == Hold::Stick)).then(b.2.total_cmp(&a.2)));
+            wrong.sort_by(|a, b| {
+                (a.1 == FrictionState::Stick).cmp(&(b.1 == FrictionState::Stick)).then(b.2.total_cmp(&a.2))
+            });
             let untried = wrong.iter().find(|change| !self.visited.contains(&after(&[**change])));
             return match untried {
-                Some(&(p, hold, _)) => Ok(vec![(p, hold)]),
+                Some(&(p, friction_state, _)) => Ok(vec![(p, friction_state)]),
                 None => Err(Cycle { pairs: wrong.iter().map(|change| change.0).collect() }),
             };
         }
-        Ok(wrong.into_iter().map(|(p, hold, _)| (p, hold)).collect())
+        Ok(wrong.into_iter().map(|(p, friction_state, _)| (p, friction_state)).collect())
     }
 
     /// Clears the visited states: the pairs themselves have changed.
@@ -274,21 +281,21 @@ impl StickSlip {
 mod tests {
     use super::*;
 
-    const FORWARD: Hold = Hold::Slip([1.0, 0.0]);
-    const BACKWARD: Hold = Hold::Slip([-1.0, 0.0]);
+    const FORWARD: FrictionState = FrictionState::Slip([1.0, 0.0]);
+    const BACKWARD: FrictionState = FrictionState::Slip([-1.0, 0.0]);
 
     #[allow(clippy::unnecessary_wraps)]
-    fn rub(hold: Hold, traction: f64, slip: f64) -> Option<Rub> {
-        Some(Rub { hold, traction: [traction, 0.0], slip: [slip, 0.0], cone: 1.0 })
+    fn rub(friction_state: FrictionState, traction: f64, slip: f64) -> Option<FrictionPair> {
+        Some(FrictionPair { friction_state, traction: [traction, 0.0], slip: [slip, 0.0], cone: 1.0 })
     }
 
     #[test]
     fn tractions_leave_the_cone_and_slips_turn_into_stick() {
         let pairs = [
-            rub(Hold::Stick, 0.9, 0.0),
-            rub(Hold::Stick, 1.1, 0.0),
-            rub(Hold::Stick, -1.1, 0.0),
-            rub(Hold::Stick, 1.0 + 1e-11, 0.0),
+            rub(FrictionState::Stick, 0.9, 0.0),
+            rub(FrictionState::Stick, 1.1, 0.0),
+            rub(FrictionState::Stick, -1.1, 0.0),
+            rub(FrictionState::Stick, 1.0 + 1e-11, 0.0),
             None,
             rub(FORWARD, 1.0, 0.5),
             rub(FORWARD, 1.0, -0.5),
@@ -296,21 +303,27 @@ mod tests {
             rub(BACKWARD, -1.0, 1e-13),
         ];
         let changes = StickSlip::new(1e-12, true).changes(&pairs, false).unwrap();
-        assert_eq!(changes, [(1, FORWARD), (2, BACKWARD), (6, Hold::Stick), (7, Hold::Stick)]);
+        assert_eq!(
+            changes,
+            [(1, FORWARD), (2, BACKWARD), (6, FrictionState::Stick), (7, FrictionState::Stick)]
+        );
     }
 
     #[test]
     fn in_space_a_stick_slips_along_its_traction() {
-        let pair = |hold, traction, slip| Some(Rub { hold, traction, slip, cone: 1.0 });
-        let oblique = Hold::Slip([0.6, -0.8]);
+        let pair =
+            |friction_state, traction, slip| Some(FrictionPair { friction_state, traction, slip, cone: 1.0 });
+        let oblique = FrictionState::Slip([0.6, -0.8]);
         let pairs = [
-            pair(Hold::Stick, [0.9, -1.2], [0.0; 2]),
-            pair(Hold::Stick, [0.7, -0.7], [0.0; 2]),
+            pair(FrictionState::Stick, [0.9, -1.2], [0.0; 2]),
+            pair(FrictionState::Stick, [0.7, -0.7], [0.0; 2]),
             pair(oblique, [0.6, -0.8], [0.8, 0.59]),
             pair(oblique, [0.6, -0.8], [0.8, 0.61]),
         ];
         let changes = StickSlip::new(1e-12, true).changes(&pairs, false).unwrap();
-        let [(0, Hold::Slip(d)), (3, Hold::Stick)] = changes[..] else { panic!("{changes:?}") };
+        let [(0, FrictionState::Slip(d)), (3, FrictionState::Stick)] = changes[..] else {
+            panic!("{changes:?}")
+        };
         assert!((d[0] - 0.6).abs() < 1e-15 && (d[1] + 0.8).abs() < 1e-15, "{d:?}");
     }
 
@@ -340,10 +353,10 @@ mod tests {
     #[test]
     fn a_two_cycle_is_named_in_the_end() {
         let mut set = StickSlip::new(0.0, true);
-        let (stick, slip) = ([rub(Hold::Stick, 2.0, 0.0)], [rub(FORWARD, 1.0, -1.0)]);
+        let (stick, slip) = ([rub(FrictionState::Stick, 2.0, 0.0)], [rub(FORWARD, 1.0, -1.0)]);
         assert_eq!(set.changes(&stick, false).unwrap(), [(0, FORWARD)]);
         assert!(set.changes(&slip, false).unwrap().is_empty());
-        assert_eq!(set.changes(&slip, true).unwrap(), [(0, Hold::Stick)]);
+        assert_eq!(set.changes(&slip, true).unwrap(), [(0, FrictionState::Stick)]);
         let mut named = false;
         for k in 0..6 {
             named |= set.changes(if k % 2 == 0 { &stick } else { &slip }, true).is_err();

@@ -17,7 +17,7 @@ mod solid_angle;
 pub use active_set::{ActiveSet, Contender, Cycle};
 pub use depth::Depth;
 pub use discrete_gradient::DiscreteGradient;
-pub use friction::{Along, Hold, Law, Radius, Rub, StickSlip, Tangential, inner, length};
+pub use friction::{Along, FrictionPair, FrictionState, Law, Radius, StickSlip, Tangential, inner, length};
 pub use interface::{
     Answer, Augmented, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point,
     Unilateral,

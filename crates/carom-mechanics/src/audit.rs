@@ -27,7 +27,7 @@ const PASSED: f64 = 0.01;
 
 /// What the audit found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Doubt {
+pub enum AuditFailure {
     /// A node lies deeper than what was measured.
     #[error("node {node} lies {depth:.3e} deep in body \"{body}\", while {measured:.3e} was measured")]
     Deeper {
@@ -57,7 +57,7 @@ pub enum Doubt {
 ///
 /// # Errors
 /// The first node that contradicts it.
-pub fn audit(model: &Model, before: &[f64], now: &[f64], measured: Depths) -> Result<(), Doubt> {
+pub fn audit(model: &Model, before: &[f64], now: &[f64], measured: Depths) -> Result<(), AuditFailure> {
     let d = model.dimension;
     for contact in model.contacts.iter().filter(|contact| !contact.itself && d > 1) {
         let (Some(primary), [(_, one), (_, other)]) = (contact.primary_part, &contact.facets[..]) else {
@@ -94,7 +94,7 @@ pub fn audit(model: &Model, before: &[f64], now: &[f64], measured: Depths) -> Re
                 let depth = outlines[1].depth(to);
                 if depth > measured.all + SAME * size {
                     let body = part.name.clone();
-                    return Err(Doubt::Deeper { node, body, depth, measured: measured.all });
+                    return Err(AuditFailure::Deeper { node, body, depth, measured: measured.all });
                 }
                 if depth == 0.0 && outlines[0].depth(from) == 0.0 {
                     outside.push((node, 0.0_f64));
@@ -124,7 +124,7 @@ pub fn audit(model: &Model, before: &[f64], now: &[f64], measured: Depths) -> Re
                 // A path is measured at a few instants: its largest depth may be missed by a part.
                 let limit = allowed(node) + contact.depths[0].max(PASSED) * longest;
                 if depth > 2.0 * limit + SAME * longest {
-                    return Err(Doubt::Passed { node, body: part.name.clone(), depth });
+                    return Err(AuditFailure::Passed { node, body: part.name.clone(), depth });
                 }
             }
         }

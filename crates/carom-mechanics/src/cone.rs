@@ -14,7 +14,9 @@
 //! q = −sμp. So the solution depends continuously on μ, and tangential impulses that slip are μ
 //! times the normal ones. For accelerations `persistency.rs` chooses pairs of which none pulls.
 
-use carom_contact::{Along, Hold, Law, Pair, Row, Rows, Rub, StickSlip, Tangential, inner, length};
+use carom_contact::{
+    Along, FrictionPair, FrictionState, Law, Pair, Row, Rows, StickSlip, Tangential, inner, length,
+};
 
 use crate::constraints::Constraints;
 use crate::independent::{DEPENDENT, independent_above, slip_remainder};
@@ -66,7 +68,7 @@ pub(crate) struct Motion {
 /// The state of a pair in a solve.
 #[derive(Clone, Copy, PartialEq)]
 struct Way {
-    hold: Hold,
+    friction_state: FrictionState,
     /// Coefficient and traction of a slip, of which one is zero.
     slip: [f64; 2],
     /// Whether it may stick.
@@ -80,14 +82,14 @@ impl Way {
     /// the next solve; returns whether that changes anything. `rate`: H x − b, `widest`: the
     /// largest traction.
     fn turn(&mut self, motion: &Motion, pair: usize, rate: Along, widest: f64) -> bool {
-        let Hold::Slip(direction) = self.hold else { return false };
+        let FrictionState::Slip(direction) = self.friction_state else { return false };
         let traction = inner(motion.tangential[pair], direction);
         if !self.is_free || traction <= 0.0 {
             return self.turns.take().is_some();
         }
         let turn = motion.turns[pair] / traction;
         let [along, other] = direction;
-        self.hold = Hold::of([along - turn * other, other + turn * along], 0.0);
+        self.friction_state = FrictionState::of([along - turn * other, other + turn * along], 0.0);
         let is_new = self.turns.is_none();
         self.turns = Some((inner(rate, direction) / traction).max(0.0));
         is_new || motion.turns[pair].abs() > TURN * widest
@@ -96,9 +98,11 @@ impl Way {
     /// The components of the rows by which friction constrains a pair, and whether they are of a
     /// slip.
     fn prevented(&self, tangents: usize) -> impl Iterator<Item = (Along, bool)> + use<> {
-        match (self.hold, self.turns) {
-            (Hold::Stick, _) => [([1.0, 0.0], false), ([0.0, 1.0], false)].into_iter().take(tangents),
-            (Hold::Slip([along, other]), turns) => {
+        match (self.friction_state, self.turns) {
+            (FrictionState::Stick, _) => {
+                [([1.0, 0.0], false), ([0.0, 1.0], false)].into_iter().take(tangents)
+            }
+            (FrictionState::Slip([along, other]), turns) => {
                 [([-other, along], true); 2].into_iter().take(usize::from(turns.is_some()))
             }
         }
@@ -210,11 +214,12 @@ impl Closed {
 
     /// Whether each pair stuck in the step, or in which direction it slipped if it was closed
     /// `before`.
-    pub(crate) fn holds(&self, state: &State, before: &[Vec<Pair>]) -> Vec<Option<Hold>> {
+    pub(crate) fn holds(&self, state: &State, before: &[Vec<Pair>]) -> Vec<Option<FrictionState>> {
         let of = |&(k, p): &(usize, usize)| {
             let pair = &state.pairs[k][p];
             let is_new = !before[k].iter().any(|old| old.active && old.node == pair.node);
-            Some(pair.tangential.hold).filter(|hold| *hold == Hold::Stick || !is_new)
+            Some(pair.tangential.friction_state)
+                .filter(|friction_state| *friction_state == FrictionState::Stick || !is_new)
         };
         self.places.iter().map(of).collect()
     }
@@ -226,16 +231,16 @@ impl Closed {
         model: &Model,
         state: &mut State,
         right: &Right,
-        slid: &[Option<Hold>],
+        slid: &[Option<FrictionState>],
         system: &mut System,
     ) -> Result<Motion, Rejected> {
         let mut ways = self.ways(state);
         let (rates, still) = (self.slip_rates(&state.v), AT_REST * max_abs(&state.v));
         for (i, way) in ways.iter_mut().enumerate() {
-            let hold = Hold::of(rates[i], still);
+            let friction_state = FrictionState::of(rates[i], still);
             let known = slid.get(i).copied().flatten();
-            if hold != Hold::Stick && known != Some(Hold::Stick) {
-                (way.hold, way.is_free) = (known.unwrap_or(hold), false);
+            if friction_state != FrictionState::Stick && known != Some(FrictionState::Stick) {
+                (way.friction_state, way.is_free) = (known.unwrap_or(friction_state), false);
             }
         }
         self.solve(model, state, right, system, (ways, &self.laws))
@@ -243,8 +248,9 @@ impl Closed {
 
     /// The ways of the pairs of a state.
     fn ways(&self, state: &State) -> Vec<Way> {
-        let hold = |&(k, p): &(usize, usize)| state.pairs[k][p].tangential.hold;
-        let way = |place| Way { hold: hold(place), slip: [0.0; 2], is_free: true, turns: None };
+        let friction_state = |&(k, p): &(usize, usize)| state.pairs[k][p].tangential.friction_state;
+        let way =
+            |place| Way { friction_state: friction_state(place), slip: [0.0; 2], is_free: true, turns: None };
         self.places.iter().map(way).collect()
     }
 
@@ -281,29 +287,36 @@ impl Closed {
             }
             let rub = |i: usize| {
                 let (way, law, p) = (ways[i], laws[i]?, motion.normal[i]);
-                if p >= 0.0 && way.hold == Hold::Stick {
+                if p >= 0.0 && way.friction_state == FrictionState::Stick {
                     return None;
                 }
                 let cone = law.grip(-p);
                 // What is no slip to round-off has no direction.
                 let rate = [0, 1].map(|a| rates[i][a] - right.slips[i][a]);
-                let slip = if way.is_free && length(rate) > none { rate } else { way.hold.direction() };
-                Some(Rub { hold: way.hold, traction: motion.tangential[i], slip, cone })
+                let slip =
+                    if way.is_free && length(rate) > none { rate } else { way.friction_state.direction() };
+                Some(FrictionPair {
+                    friction_state: way.friction_state,
+                    traction: motion.tangential[i],
+                    slip,
+                    cone,
+                })
             };
-            let rubs: Vec<Option<Rub>> = (0..ways.len()).map(rub).collect();
+            let rubs: Vec<Option<FrictionPair>> = (0..ways.len()).map(rub).collect();
             let changes = set.changes(&rubs, true).map_err(|_| Rejected::NoFrictionBalance)?;
             let widest = motion.tangential.iter().map(|q| length(*q)).fold(0.0, f64::max);
             for (i, way) in ways.iter_mut().enumerate().filter(|_| model.dimension == 3) {
                 let rate = [0, 1].map(|a| rates[i][a] - right.slips[i][a]);
                 changed |= way.turn(&motion, i, rate, widest);
             }
-            for &(i, hold) in &changes {
-                (ways[i].hold, ways[i].turns) = (hold, None);
+            for &(i, friction_state) in &changes {
+                (ways[i].friction_state, ways[i].turns) = (friction_state, None);
             }
             if changes.is_empty() && !changed {
                 for ((&(k, p), way), traction) in self.places.iter().zip(&ways).zip(&motion.tangential) {
                     let tangential = &mut state.pairs[k][p].tangential;
-                    *tangential = Tangential { hold: way.hold, traction: *traction, ..*tangential };
+                    *tangential =
+                        Tangential { friction_state: way.friction_state, traction: *traction, ..*tangential };
                 }
                 return Ok(motion);
             }
@@ -326,7 +339,7 @@ impl Closed {
         rows.is_skew = !rubs.is_empty();
         let d = model.dimension;
         for &i in &rubs {
-            let direction = ways[i].hold.direction();
+            let direction = ways[i].friction_state.direction();
             for (row, d) in self.slip_rows(i).zip(direction) {
                 let [factor, traction] = ways[i].slip.map(|part| d * part);
                 row.add_to(-traction, &mut forces);
@@ -368,7 +381,7 @@ impl Closed {
         for &i in &rubs {
             let [coefficient, traction] = ways[i].slip;
             let size = traction - coefficient * motion.normal[i];
-            motion.tangential[i] = ways[i].hold.direction().map(|d| d * size);
+            motion.tangential[i] = ways[i].friction_state.direction().map(|d| d * size);
         }
         for (&name, q) in holding.iter().zip(forces_held) {
             let (i, along, turns) = names[name];

@@ -6,7 +6,7 @@
 //! node in two contacts with one facet keeps one of them, for any contacts and nodes (Gaussian
 //! elimination of the sparse rows).
 
-use carom_contact::{Along, Direction, DiscreteGradient, Hold, Pair, Row, Rows, inner, length};
+use carom_contact::{Along, Direction, DiscreteGradient, FrictionState, Pair, Row, Rows, inner, length};
 
 use crate::balance::contact_weights;
 use crate::equations::Equations;
@@ -112,7 +112,7 @@ impl Constraints {
             let pair = &evaluation.at.pairings[k].pairs[p];
             curvature.iter_mut().for_each(|c| *c *= answer.lambda);
             let rubs = equations.laws[k].get(pair.node).is_some_and(|law| !law.is_none());
-            if rubs && pair.tangential.hold != Hold::Stick {
+            if rubs && pair.tangential.friction_state != FrictionState::Stick {
                 equations.slip_curvature_into(evaluation, place, &mut derivatives, &mut curvature);
                 constraints.is_skew = true;
             }
@@ -153,7 +153,7 @@ impl Constraints {
             let (turned, slope) = (&derivatives.turned[tangent], &derivatives.slopes[tangent]);
             gradient.iter_mut().zip(slope).for_each(|(sum, slope)| *sum += along[tangent] * slope);
             // The force of a slip is that of its gap.
-            if pair.tangential.hold == Hold::Stick {
+            if pair.tangential.friction_state == FrictionState::Stick {
                 let force = along[tangent] * traction[tangent];
                 curvature.iter_mut().zip(turned).for_each(|(sum, h)| *sum += force * h);
             }
@@ -163,7 +163,7 @@ impl Constraints {
         self.slips.push(Some(along));
         self.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
         self.compliances.push(spring.unwrap_or(0.0));
-        let forward = inner(pair.tangential.hold.direction(), evaluation.slip_of((k, p)));
+        let forward = inner(pair.tangential.friction_state.direction(), evaluation.slip_of((k, p)));
         let stiffer = evaluation.at.stiffer;
         let turns = if forward > 0.0 { (forward / length(traction)).min(LOOSE) } else { 0.0 };
         let yields = equations.stick_yields(k, pair, stiffer).unwrap_or(turns);
@@ -310,7 +310,7 @@ impl Evaluation {
 
     /// The rows H of those that slip.
     pub(crate) fn slipping(&self) -> impl Iterator<Item = Row<'_>> {
-        let slips = |pair: &Pair| pair.tangential.hold != Hold::Stick;
+        let slips = |pair: &Pair| pair.tangential.friction_state != FrictionState::Stick;
         let places = self.pressing().filter(move |&(k, p)| slips(&self.at.pairings[k].pairs[p]));
         places.filter(|&(k, _)| !self.slips[k].is_empty()).flat_map(|place| self.slip_rows(place))
     }

@@ -3,7 +3,9 @@
 
 use std::collections::BTreeSet;
 
-use carom_contact::{ActiveSet, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip};
+use carom_contact::{
+    ActiveSet, Contender, FrictionPair, FrictionState, Pair, PairEvent, Pairing, Row, StickSlip,
+};
 
 use crate::constraints::Constraints;
 use crate::equations::Equations;
@@ -88,10 +90,10 @@ impl ContactUpdate {
     /// The initial state for a stage.
     pub(crate) fn new(model: &Model) -> Self {
         let set = |contact: &Contact| ActiveSet::new(model.gap_tolerance, contact.within);
-        let hold = |contact: &Contact| StickSlip::new(model.gap_tolerance, contact.within);
+        let friction_state = |contact: &Contact| StickSlip::new(model.gap_tolerance, contact.within);
         Self {
             sets: model.contacts.iter().map(set).collect(),
-            holds: model.contacts.iter().map(hold).collect(),
+            holds: model.contacts.iter().map(friction_state).collect(),
             facet_updates: FACET_UPDATES,
             regularity: f64::INFINITY,
         }
@@ -182,7 +184,7 @@ impl ContactUpdate {
                 if contact.friction.is_some() {
                     let slip = equations.slip(k, &mut pairs[p], &evaluation.middle, increment);
                     let law = &equations.laws[k][pairs[p].node];
-                    pairs[p].tangential.hold = Hold::under(law, slip, model.gap_tolerance);
+                    pairs[p].tangential.friction_state = FrictionState::under(law, slip, model.gap_tolerance);
                     pairs[p].tangential.traction = [0.0; 2];
                 }
             }
@@ -205,11 +207,12 @@ impl ContactUpdate {
             let rub = |(p, pair): (usize, &Pair)| {
                 // One that has just closed has no pressure yet; one that slips without friction
                 // continues to do so.
-                let slips = pair.tangential.hold != Hold::Stick && equations.laws[k][pair.node].is_none();
+                let slips = pair.tangential.friction_state != FrictionState::Stick
+                    && equations.laws[k][pair.node].is_none();
                 (pair.active && pair.lambda != 0.0 && !slips).then(|| equations.rubs(evaluation, (k, p)))
             };
             let pairs = &evaluation.at.pairings[k].pairs[..evaluation.rows[k].len()];
-            let rubs: Vec<Option<Rub>> = pairs.iter().enumerate().map(rub).collect();
+            let rubs: Vec<Option<FrictionPair>> = pairs.iter().enumerate().map(rub).collect();
             let pairs = &mut evaluation.at.pairings[k].pairs;
             let changes =
                 self.holds[k].changes(&rubs, settled).map_err(|cycle| Rejected::StickSlipCycle {
@@ -221,8 +224,8 @@ impl ContactUpdate {
                         .collect(),
                     regularity: self.regularity,
                 })?;
-            for (p, hold) in changes {
-                (pairs[p].tangential.hold, changed) = (hold, true);
+            for (p, friction_state) in changes {
+                (pairs[p].tangential.friction_state, changed) = (friction_state, true);
             }
         }
         Ok(changed)

@@ -33,7 +33,7 @@
 //! what is recorded.
 
 use carom_contact::{
-    Along, ContactError, Hold, Law, Pair, Radius, Row, Rows, Rub, Tangential, inner, length,
+    Along, ContactError, FrictionPair, FrictionState, Law, Pair, Radius, Row, Rows, Tangential, inner, length,
 };
 
 use crate::balance::contact_weights;
@@ -168,19 +168,19 @@ impl Equations<'_> {
         if let Some(stiffness) = self.stick_spring(contact, pair) {
             let trial = self.trial(contact, pair, stiffness, slip);
             let tangential = &mut pair.tangential;
-            if inner(tangential.hold.direction(), trial) > 0.0 {
-                tangential.hold = Hold::of(trial, 0.0);
+            if inner(tangential.friction_state.direction(), trial) > 0.0 {
+                tangential.friction_state = FrictionState::of(trial, 0.0);
             }
             tangential.traction = trial;
         } else if self.model.dimension == 3
             && radius.value == 0.0
-            && pair.tangential.hold != Hold::Stick
+            && pair.tangential.friction_state != FrictionState::Stick
             && slip != [0.0; 2]
         {
-            pair.tangential.hold = Hold::of(slip, 0.0);
+            pair.tangential.friction_state = FrictionState::of(slip, 0.0);
         }
-        let direction = pair.tangential.hold.direction();
-        if pair.tangential.hold != Hold::Stick {
+        let direction = pair.tangential.friction_state.direction();
+        if pair.tangential.friction_state != FrictionState::Stick {
             pair.tangential.traction = direction.map(|d| d * radius.value);
         }
         Rubbing { direction, radius, rate }
@@ -198,7 +198,8 @@ impl Equations<'_> {
     ) -> (Along, f64) {
         let trial = self.trial(contact, pair, stiffness, slip);
         let (law, pressure) = (self.laws[contact][pair.node], (-pair.lambda).max(0.0));
-        let start = self.state.closed(contact, pair.node).map(|old| old.tangential.hold.direction());
+        let start =
+            self.state.closed(contact, pair.node).map(|old| old.tangential.friction_state.direction());
         let slipped = start.is_some_and(|direction| inner(direction, trial) > 0.0);
         let slips = law.slip(pressure, length(slip) * self.rate(part)).value;
         (trial, if slipped { slips } else { law.grip(pressure) })
@@ -207,27 +208,28 @@ impl Equations<'_> {
     /// A closed pair of an iterate as the law sees it. On a spring, what slips is what exceeds its
     /// stretch at the edge of the cone: an iterate beyond the opposite edge sticks before it slips
     /// there, since from one edge to the other Newton's method would find no tangent between them.
-    pub(crate) fn rubs(&self, evaluation: &Evaluation, (contact, p): (usize, usize)) -> Rub {
+    pub(crate) fn rubs(&self, evaluation: &Evaluation, (contact, p): (usize, usize)) -> FrictionPair {
         let pair = &evaluation.at.pairings[contact].pairs[p];
-        let Tangential { hold, traction, .. } = pair.tangential;
+        let Tangential { friction_state, traction, .. } = pair.tangential;
         let slip = evaluation.slip_of((contact, p));
         let Some(stiffness) = self.stick_spring(contact, pair) else {
             let cone = self.laws[contact][pair.node].grip(-pair.lambda);
-            return Rub { hold, traction, slip, cone };
+            return FrictionPair { friction_state, traction, slip, cone };
         };
         let gap = evaluation.rows[contact].row(p).gap;
         let part = self.part(contact, pair, gap, &mut Rows::new(self.model.dimension));
         let (trial, cone) = self.yields_at(contact, pair, stiffness, slip, part);
-        let direction = hold.direction();
+        let direction = friction_state.direction();
         let beyond = (inner(direction, trial) - cone) / stiffness;
-        Rub { hold, traction: trial, slip: direction.map(|d| d * beyond), cone }
+        FrictionPair { friction_state, traction: trial, slip: direction.map(|d| d * beyond), cone }
     }
 
     /// The state in which a spring begins, by the projection of its traction.
     fn begin_spring(&self, contact: usize, pair: &mut Pair, slip: Along, part: Counted) {
         if let Some(stiffness) = self.stick_spring(contact, pair) {
             let (trial, edge) = self.yields_at(contact, pair, stiffness, slip, part);
-            pair.tangential.hold = if length(trial) <= edge { Hold::Stick } else { Hold::of(trial, 0.0) };
+            pair.tangential.friction_state =
+                if length(trial) <= edge { FrictionState::Stick } else { FrictionState::of(trial, 0.0) };
         }
     }
 
@@ -242,9 +244,9 @@ impl Equations<'_> {
     /// traction of a slip turns with that of its spring.
     pub(crate) fn spring_yields(&self, contact: usize, pair: &Pair, slip: Along) -> Option<f64> {
         let stiffness = self.stick_spring(contact, pair)?;
-        let share = match pair.tangential.hold {
-            Hold::Stick => 1.0,
-            Hold::Slip(_) => {
+        let share = match pair.tangential.friction_state {
+            FrictionState::Stick => 1.0,
+            FrictionState::Slip(_) => {
                 length(self.trial(contact, pair, stiffness, slip)) / length(pair.tangential.traction)
             }
         };
@@ -255,9 +257,9 @@ impl Equations<'_> {
     /// that sticks, and in space what is across the direction of a slip with a traction.
     pub(crate) fn prevented(&self, contact: usize, pair: &Pair) -> impl Iterator<Item = Along> {
         let tangents = self.model.dimension - 1;
-        let rows = match pair.tangential.hold {
-            Hold::Stick => [[1.0, 0.0], [0.0, 1.0]].into_iter().take(tangents),
-            Hold::Slip([along, other]) => {
+        let rows = match pair.tangential.friction_state {
+            FrictionState::Stick => [[1.0, 0.0], [0.0, 1.0]].into_iter().take(tangents),
+            FrictionState::Slip([along, other]) => {
                 let turns = tangents == 2 && pair.tangential.traction != [0.0; 2];
                 [[-other, along], [0.0; 2]].into_iter().take(usize::from(turns))
             }
@@ -296,7 +298,7 @@ impl Equations<'_> {
             && pair.node >= self.model.contacts[contact].kinematics.nodes()
         {
             // Edges have neither friction nor its springs.
-            pair.tangential.hold = Hold::Slip([1.0, 0.0]);
+            pair.tangential.friction_state = FrictionState::Slip([1.0, 0.0]);
         }
         if begins {
             self.begin_spring(contact, pair, slip, part);
@@ -328,7 +330,7 @@ impl Equations<'_> {
     /// Factor of a slip that is prevented, as a gap: of one across a slip, its angle counts too.
     pub(crate) fn weight_of_slip(&self, pair: &Pair, slip: Along) -> f64 {
         let gap = self.model.gap_tolerance;
-        let turns = pair.tangential.hold != Hold::Stick;
+        let turns = pair.tangential.friction_state != FrictionState::Stick;
         if turns { (gap / (ANGLE * length(slip) + ROUND_OFF * gap)).max(1.0) } else { 1.0 }
     }
 

@@ -2,7 +2,7 @@
 //! tractions q along H(y_s), and what pairs with friction did. About the normal, tangents of
 //! springs turn with the facet at the end of the step, by its least-squares rotation in it.
 
-use carom_contact::{Hold, Pair, Row, Rows, Tangential, length};
+use carom_contact::{FrictionState, Pair, Row, Rows, Tangential, length};
 
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
@@ -93,8 +93,8 @@ pub(crate) fn book_states(model: &Model, state: &mut State, dt: f64) {
     let nodes =
         rubs.flat_map(|(contact, pairs)| pairs.iter().filter(|p| p.node < contact.kinematics.nodes()));
     for pair in nodes.filter(|pair| pair.active) {
-        rubbed.closed += dt;
-        rubbed.stuck += if pair.tangential.hold == Hold::Stick { dt } else { 0.0 };
+        rubbed.contact_time += dt;
+        rubbed.stick_time += if pair.tangential.friction_state == FrictionState::Stick { dt } else { 0.0 };
         rubbed.farthest = rubbed.farthest.max(length(pair.tangential.slip));
     }
 }

@@ -70,7 +70,7 @@ mod watched;
 mod wholes;
 mod workspace;
 
-pub use audit::{Doubt, audit, unaudited};
+pub use audit::{AuditFailure, audit, unaudited};
 pub use friction_state::each_slip;
 pub use grid::Grid;
 pub use grid_report::{Attempt, GridReport, LogEvent};
@@ -83,7 +83,7 @@ pub use rejected::Rejected;
 pub use renewal::{FrozenTangent, Point};
 pub use settings::{Linear, Settings, Tangent};
 pub use simulation::Simulation;
-pub use start::Before;
+pub use start::InitialState;
 pub use state::{Bisection, Carried, Created, HalfStepVelocity, Ledger, Means, OtherModel, Previous, State};
 pub use stepper::{Accepted, Explicit, Implicit, Impulsive, StepReport, Stepper};
 pub use stopped::Stopped;

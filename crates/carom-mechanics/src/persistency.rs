@@ -15,7 +15,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_contact::{ActiveSet, Along, Contender, Hold, Row, Rows, inner, length};
+use carom_contact::{ActiveSet, Along, Contender, FrictionState, Row, Rows, inner, length};
 
 use crate::active_rows::{measure_all, pressing};
 use crate::cone::{AT_REST, Closed, Right};
@@ -82,11 +82,17 @@ pub(crate) fn project(
     let still = AT_REST * max_abs(&state.v);
     let left = still.max(model.gap_tolerance * impact.slope);
     let goes_on = slips.iter().zip(&after).map(|(a, b)| [length(*a), length(*b), inner(*a, *b)]);
-    let slid = slid.into_iter().zip(goes_on).map(|(hold, [before, now, along])| match hold? {
-        Hold::Stick => Some(Hold::Stick).filter(|_| now <= left),
-        slip @ Hold::Slip(_) => Some(slip).filter(|_| before > still && along > 0.0),
-    });
-    let slid = closed.places.iter().zip(slid).filter_map(|(place, hold)| Some((*place, hold?))).collect();
+    let slid =
+        slid.into_iter().zip(goes_on).map(|(friction_state, [before, now, along])| match friction_state? {
+            FrictionState::Stick => Some(FrictionState::Stick).filter(|_| now <= left),
+            slip @ FrictionState::Slip(_) => Some(slip).filter(|_| before > still && along > 0.0),
+        });
+    let slid = closed
+        .places
+        .iter()
+        .zip(slid)
+        .filter_map(|(place, friction_state)| Some((*place, friction_state?)))
+        .collect();
 
     let before = state.ledger.kinetic;
     take(model, state, before - model.kinetic(&state.v) + rubbed);
@@ -112,7 +118,7 @@ pub(crate) fn accelerate(
     state: &mut State,
     gaps: &[Rows],
     asks: impl Fn(&Place) -> bool,
-    slid: &BTreeMap<Place, Hold>,
+    slid: &BTreeMap<Place, FrictionState>,
     system: &mut System,
 ) -> Result<(), Rejected> {
     let pairs: Vec<Place> = pressing(state).filter(&asks).collect();
@@ -132,7 +138,8 @@ pub(crate) fn accelerate(
         let turning: Vec<Along> =
             closed.slip_curvatures(model, state).iter().map(|bent| bent.map(|b| -b)).collect();
         let right = Right { forces: &forces, gaps: &bending, slips: &turning };
-        let known: Vec<Option<Hold>> = closed.places.iter().map(|place| slid.get(place).copied()).collect();
+        let known: Vec<Option<FrictionState>> =
+            closed.places.iter().map(|place| slid.get(place).copied()).collect();
         let motion = closed.accelerate(model, state, &right, &known, system)?;
 
         let [force, acceleration] = [&forces, &motion.x].map(|x| ROUND_OFF * max_abs(x));

@@ -1,6 +1,6 @@
 //! The slips that friction prevents in a stage, and those among them that are rows of its system.
 
-use carom_contact::{Along, Hold, Row, Rows};
+use carom_contact::{Along, FrictionState, Row, Rows};
 
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
@@ -47,7 +47,7 @@ impl PreventedSlips {
         let model = equations.model;
         let is_elastic = |&(k, p, number): &Name| {
             let (contact, pair) = (&model.contacts[k], &evaluation.at.pairings[k].pairs[p]);
-            let yields = number == 0 || pair.tangential.hold == Hold::Stick;
+            let yields = number == 0 || pair.tangential.friction_state == FrictionState::Stick;
             !contact.interface.is_constraint() || contact.augmentation.is_some() && yields
         };
         let gaps = || evaluation.pressing().map(|(k, p)| ((k, p, 0), evaluation.rows[k].row(p)));
@@ -66,7 +66,7 @@ impl PreventedSlips {
     /// Contact, pair and components of the slips of sticks that are not among these.
     pub(crate) fn dropped(&self, evaluation: &Evaluation, rows: &[Name]) -> Vec<((usize, usize), Along)> {
         let sticks = |&&((k, p, _), _): &&(Name, Along)| {
-            evaluation.at.pairings[k].pairs[p].tangential.hold == Hold::Stick
+            evaluation.at.pairings[k].pairs[p].tangential.friction_state == FrictionState::Stick
         };
         let dropped = self.names.iter().filter(sticks).filter(|(name, _)| rows.binary_search(name).is_err());
         dropped.map(|&((k, p, _), along)| ((k, p), along)).collect()

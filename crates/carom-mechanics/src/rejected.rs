@@ -75,7 +75,7 @@ pub enum Rejected {
     },
     /// The active set returns to one visited before.
     #[error(
-        "contact \"{contact}\": the active set does not settle: nodes {nodes:?} alternate between open \
+        "contact \"{contact}\": the active set does not converge: nodes {nodes:?} alternate between open \
         and closed"
     )]
     Cycle {
@@ -86,7 +86,7 @@ pub enum Rejected {
     },
     /// The states of friction return to those visited before.
     #[error(
-        "contact \"{contact}\": friction does not settle: nodes {nodes:?} alternate between stick and slip{}",
+        "contact \"{contact}\": the stick and slip states do not converge: nodes {nodes:?} alternate between stick and slip{}",
         if *regularity < SINGULAR {
             format!(
                 "; μ is so large that stick and slip are not unique (relative singular value {regularity:.3}, negative where the determinant is)"

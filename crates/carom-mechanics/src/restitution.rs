@@ -14,7 +14,7 @@
 //! law for the impulse (`cone.rs`): what it takes is not owed. Which nodes stick depends on f,
 //! which is iterated.
 
-use carom_contact::{Along, Hold, Pair, Row, Tangential, inner};
+use carom_contact::{Along, FrictionState, Pair, Row, Tangential, inner};
 
 use crate::active_rows::{measure, pressing};
 use crate::cone::{AT_REST, Closed, Right};
@@ -130,7 +130,7 @@ fn settle(
     let slips = closed.slip_rates(&state.v);
     // A node that sticks keeps its slip rate, which oscillates from step to step.
     let sticks = |&(k, p): &(usize, usize)| {
-        state.pairs[k][p].active && state.pairs[k][p].tangential.hold == Hold::Stick
+        state.pairs[k][p].active && state.pairs[k][p].tangential.friction_state == FrictionState::Stick
     };
     let stop = |(place, rate): (&(usize, usize), &Along)| {
         if sticks(place) { [0.0; 2] } else { rate.map(|rate| -rate) }
@@ -141,16 +141,16 @@ fn settle(
     let of_state = |&(k, p): &(usize, usize)| state.pairs[k][p].tangential;
     let tangentials: Vec<Tangential> = closed.places.iter().map(of_state).collect();
     let still = AT_REST * max_abs(&state.v);
-    let hold = |(place, rate): (&(usize, usize), &Along)| {
-        if sticks(place) { Hold::Stick } else { Hold::of(*rate, still) }
+    let friction_state = |(place, rate): (&(usize, usize), &Along)| {
+        if sticks(place) { FrictionState::Stick } else { FrictionState::of(*rate, still) }
     };
-    let holds: Vec<Hold> = closed.places.iter().zip(&slips).map(hold).collect();
+    let holds: Vec<FrictionState> = closed.places.iter().zip(&slips).map(friction_state).collect();
     let mut reach = 1.0;
     for _ in 0..ROUNDS {
         let parting: Vec<f64> = speeds.iter().map(|speed| reach * speed).collect();
         let right = Right { forces: &forces, gaps: &parting, slips: &stopping };
-        for (&(k, p), hold) in closed.places.iter().zip(&holds) {
-            state.pairs[k][p].tangential.hold = *hold;
+        for (&(k, p), friction_state) in closed.places.iter().zip(&holds) {
+            state.pairs[k][p].tangential.friction_state = *friction_state;
         }
         let motion = closed.impulse(model, state, &right, system)?;
         for (&(k, p), tangential) in closed.places.iter().zip(&tangentials) {

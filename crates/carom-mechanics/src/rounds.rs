@@ -1,7 +1,7 @@
 //! The rounds of augmented Lagrangians: when Newton's method has converged, their multipliers are
 //! replaced by its forces, until closed gaps and the slips of sticking nodes are below a tolerance.
 
-use carom_contact::{Hold, Pair, inner, length};
+use carom_contact::{FrictionState, Pair, inner, length};
 
 use crate::augmented::take;
 use crate::equations::Equations;
@@ -27,7 +27,7 @@ impl Equations<'_> {
     /// 1/k of a closed pair that sticks.
     pub(crate) fn stick_yields(&self, contact: usize, pair: &Pair, stiffer: i32) -> Option<f64> {
         let [_, stiffness] = self.augmentation(contact, pair, stiffer)?;
-        (pair.tangential.hold == Hold::Stick).then(|| stiffness.recip())
+        (pair.tangential.friction_state == FrictionState::Stick).then(|| stiffness.recip())
     }
 
     /// (q − q̂)/k of a closed pair along one component, which its slip has in this round; 0 if it
@@ -63,7 +63,9 @@ impl Rounds {
         for k in (0..model.contacts.len()).filter(augmented) {
             for (p, pair) in now.at.pairings[k].pairs.iter().enumerate().filter(|(_, pair)| pair.active) {
                 largest = largest.max(now.rows[k].row(p).gap.abs());
-                if model.contacts[k].friction.is_some() && pair.tangential.hold == Hold::Stick {
+                if model.contacts[k].friction.is_some()
+                    && pair.tangential.friction_state == FrictionState::Stick
+                {
                     largest = largest.max(length(now.slip_of((k, p))));
                 }
             }

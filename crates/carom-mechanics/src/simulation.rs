@@ -11,7 +11,7 @@ use crate::grid::Grid;
 use crate::grid_report::{Attempt, GridReport, LogEvent};
 use crate::model::Model;
 use crate::rejected::Rejected;
-use crate::start::{Before, Inertia, start};
+use crate::start::{Inertia, InitialState, start};
 use crate::state::{FEW, OtherModel, State};
 use crate::stepper::Stepper;
 use crate::stopped::Stopped;
@@ -49,7 +49,7 @@ impl Simulation {
         stepper: Box<dyn Stepper>,
         grid: Grid,
         inertia: bool,
-        before: Option<Before>,
+        before: Option<InitialState>,
         threads: usize,
     ) -> Result<Self, Rejected> {
         let mut simulation = Self::at(model, stepper, grid, State::default(), threads);

@@ -24,7 +24,7 @@ use crate::system::System;
 
 /// The start of a run, if not the initial positions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Before {
+pub struct InitialState {
     /// Positions.
     pub y: Vec<f64>,
     /// Velocities.
@@ -55,12 +55,12 @@ const NEAR: f64 = 1e-9;
 pub(crate) fn start(
     model: &Model,
     inertia: Inertia,
-    before: Option<Before>,
+    before: Option<InitialState>,
     system: &mut System,
 ) -> Result<State, Rejected> {
     let (dofs, has_inertia) = (model.dofs(), inertia != Inertia::None);
     let contacts = model.contacts.len();
-    let Before { y, v, mut pairs } = before.unwrap_or_else(|| Before {
+    let InitialState { y, v, mut pairs } = before.unwrap_or_else(|| InitialState {
         y: model.initial_position.clone(),
         v: model.initial_velocity.clone(),
         pairs: vec![Vec::new(); contacts],

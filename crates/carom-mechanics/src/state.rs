@@ -36,7 +36,7 @@ pub struct Ledger {
     /// Work of friction on the bodies.
     pub friction_work: f64,
     /// Slip so far.
-    pub rubbed: Rubbed,
+    pub rubbed: SlipTotals,
     /// Energy that conserving contact with a restitution has still to return; negative if it
     /// created some (`restitution.rs`).
     pub owed: f64,
@@ -68,11 +68,11 @@ impl Ledger {
 
 /// What pairs with friction did so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Rubbed {
+pub struct SlipTotals {
     /// Σ over the pairs of the time in which they were closed, and in which they stuck.
-    pub closed: f64,
-    /// See `closed`.
-    pub stuck: f64,
+    pub contact_time: f64,
+    /// See `contact_time`.
+    pub stick_time: f64,
     /// Largest slip of a pair since it closed.
     pub farthest: f64,
 }

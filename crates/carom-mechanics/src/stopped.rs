@@ -2,7 +2,7 @@
 
 use carom_formula::instant;
 
-use crate::audit::Doubt;
+use crate::audit::AuditFailure;
 use crate::rejected::Rejected;
 
 /// Why a simulation stopped before its end; the state of the last grid time is preserved.
@@ -38,7 +38,7 @@ pub enum Stopped {
         /// The grid step.
         dt: f64,
         /// What it found.
-        doubt: Doubt,
+        doubt: AuditFailure,
     },
     /// The scheme created energy.
     #[error(

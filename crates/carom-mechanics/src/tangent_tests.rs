@@ -1,6 +1,6 @@
 //! The matrix-free tangent of Newton's linear problem against differences of the whole residual.
 
-use carom_contact::{Along, ConservingUnilateral, Hold, Pairing, Penalty, Rows, inner};
+use carom_contact::{Along, ConservingUnilateral, FrictionState, Pairing, Penalty, Rows, inner};
 use carom_formula::Formula;
 use carom_solid::{Element, Law, generate};
 use carom_time::schemes::energy_momentum::EnergyMomentum;
@@ -75,9 +75,9 @@ impl<'a> Tangent<'a> {
         let now = equations.evaluate(at, spare, timings).unwrap();
         // The direction across a slip turns with it.
         let gap = |(&(k, p), slip): (&(usize, usize), &Option<Along>)| {
-            let across = match now.at.pairings[k].pairs[p].tangential.hold {
-                Hold::Slip([x, y]) => slip.map(|_| [-y, x]),
-                Hold::Stick => *slip,
+            let across = match now.at.pairings[k].pairs[p].tangential.friction_state {
+                FrictionState::Slip([x, y]) => slip.map(|_| [-y, x]),
+                FrictionState::Stick => *slip,
             };
             across.map_or(now.rows[k].row(p).gap, |along| inner(along, now.slip_of((k, p))))
         };
@@ -224,10 +224,16 @@ fn the_whole_tangent_with_friction_is_the_derivative_of_the_residual() {
         let mut model = strike();
         model.contacts[0].friction = Some(Friction::coulomb(0.4, 64));
         let mut state = flattened(&model);
-        let holds = [Hold::Stick, Hold::Slip([1.0, 0.0]), Hold::Slip([-1.0, 0.0]), Hold::Stick];
+        let holds = [
+            FrictionState::Stick,
+            FrictionState::Slip([1.0, 0.0]),
+            FrictionState::Slip([-1.0, 0.0]),
+            FrictionState::Stick,
+        ];
         let closed = state.pairs[0].iter_mut().filter(|pair| pair.active);
-        for (pair, hold) in closed.zip(holds.iter().cycle()) {
-            (pair.tangential.hold, pair.tangential.traction) = (*hold, [0.1 * pair.lambda, 0.0]);
+        for (pair, friction_state) in closed.zip(holds.iter().cycle()) {
+            (pair.tangential.friction_state, pair.tangential.traction) =
+                (*friction_state, [0.1 * pair.lambda, 0.0]);
         }
         let at = Iterate::at_start(&state);
         // These two were open, and would fly through the other side.
@@ -286,8 +292,8 @@ fn the_whole_tangent_with_friction_in_space_is_the_derivative_of_the_residual() 
         let mut at = Iterate::at_start(&state);
         for pair in at.pairings[0].pairs.iter_mut().filter(|pair| pair.active) {
             pair.tangential.tangents = [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0]];
-            (pair.tangential.hold, pair.tangential.traction) =
-                (Hold::Stick, [0.1 * pair.lambda, 0.03 * pair.lambda]);
+            (pair.tangential.friction_state, pair.tangential.traction) =
+                (FrictionState::Stick, [0.1 * pair.lambda, 0.03 * pair.lambda]);
         }
         let mut tangent = Tangent::from(&equations, at, 1e-3);
         let Tangent { at, spare, timings, .. } = &mut tangent;
@@ -297,7 +303,7 @@ fn the_whole_tangent_with_friction_in_space_is_the_derivative_of_the_residual() 
             at.pairings[0].pairs.iter_mut().enumerate().filter(|(p, pair)| pair.active && p % 3 > 0)
         {
             let ([x, y], (sin, cos)) = (now.slip_of((0, p)), 0.4_f64.sin_cos());
-            pair.tangential.hold = Hold::of([cos * x - sin * y, sin * x + cos * y], 0.0);
+            pair.tangential.friction_state = FrictionState::of([cos * x - sin * y, sin * x + cos * y], 0.0);
         }
         let mut tangent = Tangent::from(&equations, at, 1e-3);
         let slips = tangent.rows.slips.iter().flatten();
@@ -329,13 +335,17 @@ fn the_whole_tangent_with_springs_in_space_is_the_derivative_of_the_residual() {
     for (k, pair) in closed.enumerate() {
         let cone = if k % 2 == 0 { 0.05 } else { 0.6 } * pair.lambda;
         pair.tangential.before = [0.8 * cone, -0.6 * cone];
-        pair.tangential.hold = if k % 2 == 0 { Hold::Stick } else { Hold::of(pair.tangential.before, 0.0) };
+        pair.tangential.friction_state =
+            if k % 2 == 0 { FrictionState::Stick } else { FrictionState::of(pair.tangential.before, 0.0) };
     }
     let equations = equations(&model, &state, &scheme, DT, DT);
     let mut tangent = Tangent::from(&equations, Iterate::at_start(&state), 1e-4);
-    let holds =
-        tangent.at.pairings[0].pairs.iter().filter(|pair| pair.active).map(|pair| pair.tangential.hold);
-    let sticks = holds.clone().filter(|hold| *hold == Hold::Stick).count();
+    let holds = tangent.at.pairings[0]
+        .pairs
+        .iter()
+        .filter(|pair| pair.active)
+        .map(|pair| pair.tangential.friction_state);
+    let sticks = holds.clone().filter(|friction_state| *friction_state == FrictionState::Stick).count();
     assert!(sticks > 1 && holds.count() > sticks + 1, "{sticks}");
     let u = tangent.direction(0.1);
     let u: Vec<f64> = u.iter().take(model.free.len()).copied().chain(vec![0.0; tangent.rows.len()]).collect();

@@ -6,7 +6,7 @@
 
 use carom_case::{Case, ContactSpec, InitialSpec, Problem, Velocities};
 use carom_mechanics::model::{Manufactured, Model};
-use carom_mechanics::{Before, Grid, State};
+use carom_mechanics::{Grid, InitialState, State};
 use carom_record::{Manifest, Status, last_checkpoint};
 
 use crate::saved_state;
@@ -15,7 +15,7 @@ use crate::saved_state;
 ///
 /// # Errors
 /// If a formula has no value at t = 0.
-pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<Before, Vec<Problem>> {
+pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<InitialState, Vec<Problem>> {
     let (mut y, mut v) = (Vec::new(), Vec::new());
     for place in model.reference.chunks_exact(model.dimension) {
         let [position, velocity] = motion.motion(place, 0.0).map_err(|error| {
@@ -30,7 +30,7 @@ pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<Before, Vec<
         y.extend(position);
         v.extend(velocity);
     }
-    Ok(Before { y, v, pairs: vec![Vec::new(); model.contacts.len()] })
+    Ok(InitialState { y, v, pairs: vec![Vec::new(); model.contacts.len()] })
 }
 
 /// Reads the end of the run from which a case starts.
@@ -38,7 +38,7 @@ pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<Before, Vec<
 /// # Errors
 /// If there is no such run, it is not finished, or its bodies are not those of the case; all under
 /// `initial.from`.
-pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<Before, Vec<Problem>> {
+pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<InitialState, Vec<Problem>> {
     let directory = spec.from.display();
     let wrong = |what: String, why: String, help: &str| vec![Problem::new("initial.from", what, why, help)];
     let unreadable = |why: String| {
@@ -73,7 +73,8 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
         ));
     }
 
-    let mut before = Before { y: model.reference.clone(), v: vec![0.0; model.dofs()], pairs: Vec::new() };
+    let mut before =
+        InitialState { y: model.reference.clone(), v: vec![0.0; model.dofs()], pairs: Vec::new() };
     let mut meshes = Vec::new();
     let mut first = 0;
     for body in &old.bodies {

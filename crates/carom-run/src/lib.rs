@@ -13,10 +13,10 @@ mod warnings;
 pub use build::overlaps;
 pub use carom_case as case;
 pub use carom_mechanics::{
-    Accepted, Attempt, Before, Bisection, Depths, Doubt, Explicit, FrozenTangent, Grid, GridReport,
-    HalfStepVelocity, Implicit, Impulsive, Ledger, LogEvent, Means, OtherModel, Point, Previous, Rejected,
-    Settings, Simulation, State, StepReport, Stepper, Stopped, Tangent, Timings, Workspace, audit,
-    frequencies, model, stability, unaudited,
+    Accepted, Attempt, AuditFailure, Bisection, Depths, Explicit, FrozenTangent, Grid, GridReport,
+    HalfStepVelocity, Implicit, Impulsive, InitialState, Ledger, LogEvent, Means, OtherModel, Point,
+    Previous, Rejected, Settings, Simulation, State, StepReport, Stepper, Stopped, Tangent, Timings,
+    Workspace, audit, frequencies, model, stability, unaudited,
 };
 pub use overlap::{OverlapNode, overlapping};
 pub use reduce::{ReduceError, Reduced, reduce};

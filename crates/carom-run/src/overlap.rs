@@ -22,7 +22,7 @@ use carom_case::{
 };
 use carom_contact::{Pairing, Rows};
 use carom_mechanics::model::Model;
-use carom_mechanics::{Before, Grid, Implicit, Linear, Settings, Simulation, Stepper, Tangent, depths};
+use carom_mechanics::{Grid, Implicit, InitialState, Linear, Settings, Simulation, Stepper, Tangent, depths};
 use carom_time::{ForceRule, Integrator};
 
 use crate::build::{Materials, build, overlaps};
@@ -112,7 +112,7 @@ pub(crate) fn relaxed(
     model: &Model,
     materials: &Materials,
     threads: usize,
-) -> Result<Option<Before>, Vec<Problem>> {
+) -> Result<Option<InitialState>, Vec<Problem>> {
     let Some(first) = case.contacts.iter().position(|contact| contact.overlap == Overlap::Relax) else {
         return Ok(None);
     };
@@ -143,7 +143,8 @@ pub(crate) fn relaxed(
     }
     let step = LONG * start.scale / slowest;
     let rest = vec![0.0; start.dofs()];
-    let mut before = Before { y: start.initial_position.clone(), v: rest.clone(), pairs: closed(&start) };
+    let mut before =
+        InitialState { y: start.initial_position.clone(), v: rest.clone(), pairs: closed(&start) };
     for stage in 1..=STAGES {
         let model = at(1.0 - f64::from(stage) / f64::from(STAGES))?;
         let most = if stage == STAGES { MOST } else { 1 };
@@ -158,7 +159,7 @@ pub(crate) fn relaxed(
     // The carriers of moving obstacles come last.
     let (mut y, from) = (model.initial_position.clone(), &before.y);
     y[..from.len()].copy_from_slice(from);
-    Ok(Some(Before { y, v: model.initial_velocity.clone(), pairs: before.pairs }))
+    Ok(Some(InitialState { y, v: model.initial_velocity.clone(), pairs: before.pairs }))
 }
 
 /// The energy of round-off: of displacements of 1e-10 L in the stiffest material.
@@ -214,12 +215,12 @@ fn rotation(d: usize, reference: &[f64], y: &[f64]) -> f64 {
 /// Steps from rest until nothing moves, or after so many steps, if more than one is allowed.
 fn settle(
     model: Model,
-    mut before: Before,
+    mut before: InitialState,
     step: f64,
     most: u32,
     (tolerance, floor): (f64, f64),
     threads: usize,
-) -> Result<Before, String> {
+) -> Result<InitialState, String> {
     let rest = before.v.clone();
     let grid = Grid { dt: step, steps: u64::from(most), phase: 0.0, guard: None, floor: 0.0 };
     let mut simulation = Simulation::new(model, stepper(tolerance)?, grid, true, Some(before), threads)
@@ -230,7 +231,7 @@ fn settle(
         let mut state = simulation.state().clone();
         let strain = state.ledger.strain;
         if most == 1 || (strain - old).abs() <= SETTLED * strain.abs() + floor {
-            before = Before { y: state.y, v: rest, pairs: state.pairs };
+            before = InitialState { y: state.y, v: rest, pairs: state.pairs };
             return Ok(before);
         }
         if simulation.finished() {

@@ -5,8 +5,8 @@ use carom_case::{Case, ContactLaw, ContactPoint, ContactSpec, Fallback, Problem,
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, stable_step};
 use carom_mechanics::{
-    Before, Explicit, Grid, Implicit, Impulsive, Linear, Rejected, Settings, Simulation, State, Stepper,
-    Tangent,
+    Explicit, Grid, Implicit, Impulsive, InitialState, Linear, Rejected, Settings, Simulation, State,
+    Stepper, Tangent,
 };
 use carom_solid::Constitutive;
 use carom_time::{Integrator, Kernel, Nonsmooth};
@@ -122,7 +122,7 @@ impl<'a> Setup<'a> {
         if !problems.is_empty() {
             return Err(problems.into());
         }
-        let before: Option<Before> = match (&case.initial, &model.loads.manufactured) {
+        let before: Option<InitialState> = match (&case.initial, &model.loads.manufactured) {
             (Some(initial), _) => Some(before(initial, case, &model)?),
             (None, Some(motion)) => Some(given(motion, &model)?),
             (None, None) => overlap::relaxed(case, &model, &self.materials, self.threads)?,

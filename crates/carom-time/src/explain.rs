@@ -42,7 +42,7 @@ pub struct Accuracy {
 pub struct Constrained {
     /// Largest modulus of the roots that govern it.
     pub radius: f64,
-    /// Steps until the transient is below 1 % of v₀/Δt; none if it does not settle.
+    /// Steps until the transient is below 1 % of v₀/Δt; none if it does not decay.
     pub steps: Option<u32>,
     /// In words.
     pub text: String,

@@ -43,5 +43,5 @@ pub use parameter::Parameter;
 pub use scheme::{ForceRule, Scheme};
 pub use schemes::KINDS;
 pub use schemes::statics::STATIC;
-pub use stage::{Affine, Before, Internal, Kernel, Memory, Stage, Weights};
+pub use stage::{Affine, Internal, Kernel, Memory, PreviousStep, Stage, Weights};
 pub use text::{Catalogue, CatalogueRow, explain_all};

@@ -1,6 +1,6 @@
 //! One degree of freedom, m a + k u = f: the smallest system for a kernel, and the place to verify
 //! its analysis.
-use crate::stage::{Affine, Before, Kernel, Memory, Stage, Weights};
+use crate::stage::{Affine, Kernel, Memory, PreviousStep, Stage, Weights};
 
 /// m a + k u = f with constant f, driven by any kernel.
 ///
@@ -99,7 +99,7 @@ fn run(
     increment: impl Fn(&Stage) -> f64,
 ) -> Motion {
     let one = std::slice::from_ref::<f64>;
-    let before = before.as_ref().map(|[d, v]| Before { increment: one(d), velocity: one(v) });
+    let before = before.as_ref().map(|[d, v]| PreviousStep { increment: one(d), velocity: one(v) });
     let mut motions = vec![start];
     for k in 0..kernel.stages() {
         let states: Vec<_> = motions.iter().map(|[u, v, a]| (one(u), one(v), one(a))).collect();

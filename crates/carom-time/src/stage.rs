@@ -109,12 +109,12 @@ pub struct Memory<'a> {
     pub states: &'a [(&'a [f64], &'a [f64], &'a [f64])],
     /// The previous step, if it had the same size and nothing intervened; only for kernels that
     /// request it.
-    pub before: Option<Before<'a>>,
+    pub before: Option<PreviousStep<'a>>,
 }
 
 /// Data of the previous step for a two-step scheme.
 #[derive(Clone, Copy, Debug)]
-pub struct Before<'a> {
+pub struct PreviousStep<'a> {
     /// Increment of positions over that step, stored to avoid the rounding of positions.
     pub increment: &'a [f64],
     /// Velocity at its start.

@@ -34,7 +34,7 @@ use carom_algebra::{Kind, complementarity, coulomb, proximal};
 use carom_contact::{Pair, Pairing, Rows, Tangential, inner};
 
 use super::forward::Forward;
-use super::rubbing::{combined, hold, kind, loose};
+use super::rubbing::{combined, friction_state, kind, loose};
 use super::scratch::Scratch;
 use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, moves, overconstrained};
 use super::{Accepted, StepReport, Stepper, difference};
@@ -413,7 +413,7 @@ impl Explicit {
         for ((of, slip), kind) in combined(kinds, along, &slipped).zip(&kinds[places.len()..]) {
             let Some((k, p)) = now[of] else { continue };
             let tangential = &mut pairings[k].pairs[p].tangential;
-            tangential.hold = hold(*kind, impulses[of], tangential.traction.map(|q| -q));
+            tangential.friction_state = friction_state(*kind, impulses[of], tangential.traction.map(|q| -q));
             (0..2).for_each(|a| tangential.slip[a] += slip[a]);
         }
         for (contact, pairing) in model.contacts.iter().zip(pairings) {

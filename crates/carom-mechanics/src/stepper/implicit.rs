@@ -4,7 +4,7 @@
 
 use carom_contact::{Direction, Pairing, Rows};
 use carom_time::schemes::backward_euler::BackwardEuler;
-use carom_time::{Before, Kernel, Memory, Stage, Weights};
+use carom_time::{Kernel, Memory, PreviousStep, Stage, Weights};
 
 use super::in_velocity::solve_in_velocity;
 use super::meetings::{Path, meetings};
@@ -251,7 +251,7 @@ impl Implicit {
         let mut states: Vec<(&[f64], &[f64], &[f64])> = vec![(&state.y, &state.v, &state.a)];
         states.extend(finished.iter().map(|p| (&p.y[..], &p.v[..], &p.a[..])));
         let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
-        let before = previous.map(|p| Before { increment: &p.increment, velocity: &p.velocity });
+        let before = previous.map(|p| PreviousStep { increment: &p.increment, velocity: &p.velocity });
         let mut stage = Stage::default();
         self.kernel.stage_into(k, dt, &Memory { states: &states, before }, &mut stage);
         stage

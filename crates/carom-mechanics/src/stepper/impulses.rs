@@ -12,7 +12,7 @@ use carom_algebra::{Kind, LinearError, complementarity, coulomb, proximal};
 use carom_contact::{Along, Law, Pairing, Rows, Tangential};
 use carom_time::ImpulseShares;
 
-use super::rubbing::{combined, hold, kind, loose};
+use super::rubbing::{combined, friction_state, kind, loose};
 use super::watch::{active, measure_into, moves, overconstrained};
 use crate::constraints::Constraints;
 use crate::equations::Equations;
@@ -248,7 +248,7 @@ impl Impulses {
         for ((of, slip), kind) in combined(&self.kinds, &along, &slips).zip(&self.kinds[first..]) {
             let (k, p) = self.rows.places[of];
             let tangential = &mut pairings[k].pairs[p].tangential;
-            tangential.hold = hold(*kind, self.values[of], rubbed[of]);
+            tangential.friction_state = friction_state(*kind, self.values[of], rubbed[of]);
             tangential.traction = rubbed[of].map(|impulse| -impulse / dt);
             (0..2).for_each(|a| tangential.slip[a] += slip[a]);
         }

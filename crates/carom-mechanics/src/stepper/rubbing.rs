@@ -3,7 +3,7 @@
 //! that comes into contact while it moves along the other side slips from the start.
 
 use carom_algebra::Kind;
-use carom_contact::{Along, Hold, Law, Pair, Row, Rows, length};
+use carom_contact::{Along, FrictionState, Law, Pair, Row, Rows, length};
 
 use crate::cone::AT_REST;
 use crate::independent::slip_remainder;
@@ -27,17 +27,19 @@ pub(super) fn kind(
     let mut rate = [0.0; 2];
     rate.iter_mut().zip(slips.iter()).for_each(|(rate, row)| *rate = row.along(v));
     let touches = state.closed(contact, pair.node).is_none();
-    let hold = if touches { Hold::of(rate, AT_REST * max_abs(v)) } else { pair.tangential.hold };
-    let coefficient = if hold == Hold::Stick { law.stick } else { law.coefficient(length(rate)).0 };
+    let friction_state =
+        if touches { FrictionState::of(rate, AT_REST * max_abs(v)) } else { pair.tangential.friction_state };
+    let coefficient =
+        if friction_state == FrictionState::Stick { law.stick } else { law.coefficient(length(rate)).0 };
     Kind::Tangential { of, coefficient, limit: law.limit }
 }
 
 /// Whether a pair of this law sticks under these forces, or where it slips.
-pub(super) fn hold(kind: Kind, normal: f64, tangential: Along) -> Hold {
-    let Kind::Tangential { coefficient, limit, .. } = kind else { return Hold::Stick };
+pub(super) fn friction_state(kind: Kind, normal: f64, tangential: Along) -> FrictionState {
+    let Kind::Tangential { coefficient, limit, .. } = kind else { return FrictionState::Stick };
     let radius = (coefficient * normal).min(limit);
     let sticks = length(tangential) < radius * (1.0 - EDGE);
-    if sticks { Hold::Stick } else { Hold::of(tangential.map(|q| -q), 0.0) }
+    if sticks { FrictionState::Stick } else { FrictionState::of(tangential.map(|q| -q), 0.0) }
 }
 
 /// The components along its tangents of the slips of a pair on which its friction acts. In space

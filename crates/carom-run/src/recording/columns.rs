@@ -1,7 +1,7 @@
 //! Columns of `history.csv`: a single list of names, units and values keeps them consistent.
 
 use carom_case::{Case, Fallback};
-use carom_contact::{Hold, Pair, Rows};
+use carom_contact::{FrictionState, Pair, Rows};
 use carom_mechanics::model::{BodyInstance, Model, Quantity};
 use carom_mechanics::{Depths, GridReport, State, each_slip};
 use carom_record::Column;
@@ -274,11 +274,11 @@ pub(super) fn row(
     row.extend([since.penetration.all, since.penetration.constrained]);
     row.push(model.min_det_f(&state.y));
     if rubs(model) {
-        let sticks = |pair: &&Pair| pair.active && pair.tangential.hold == Hold::Stick;
+        let sticks = |pair: &&Pair| pair.active && pair.tangential.friction_state == FrictionState::Stick;
         let rubbing =
             model.contacts.iter().zip(&state.pairs).filter(|(contact, _)| contact.friction.is_some());
         row.push(rubbing.flat_map(|(_, pairs)| pairs).filter(sticks).count() as f64);
-        row.extend([ledger.rubbed.stuck, ledger.rubbed.closed, ledger.rubbed.farthest]);
+        row.extend([ledger.rubbed.stick_time, ledger.rubbed.contact_time, ledger.rubbed.farthest]);
     }
     for part in &model.parts {
         for field in [&state.y, &state.v] {

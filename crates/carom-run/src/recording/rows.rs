@@ -1,7 +1,7 @@
 //! The rows of a state, as a run records them.
 
 use carom_case::Case;
-use carom_contact::{Hold, Pair, Tangential, length};
+use carom_contact::{FrictionState, Pair, Tangential, length};
 use carom_mechanics::model::{Contact, Model};
 use carom_mechanics::{GridReport, Simulation, State, each_slip, penetration};
 use carom_record::{Column, ContactRow};
@@ -98,11 +98,11 @@ pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> 
                 multiplier: pair.lambda,
                 pressure: -of_node[pair.node] / weights[pair.node],
                 normal,
-                friction: match (&contact.friction, pair.tangential.hold) {
+                friction: match (&contact.friction, pair.tangential.friction_state) {
                     _ if pair.node >= contact.kinematics.nodes() => "none",
                     (None, _) => "none",
-                    (_, Hold::Stick) => "stick",
-                    (_, Hold::Slip(_)) => "slip",
+                    (_, FrictionState::Stick) => "stick",
+                    (_, FrictionState::Slip(_)) => "slip",
                 }
                 .into(),
                 traction: if in_space { length(traction) } else { traction[0] },

@@ -1,6 +1,6 @@
 //! The second method that checks contact: it agrees with a run, and contradicts what is wrong.
 
-use carom_run::{Doubt, Simulation, audit, unaudited};
+use carom_run::{AuditFailure, Simulation, audit, unaudited};
 
 use super::common::{DISCS, finish, simulation};
 
@@ -25,10 +25,10 @@ fn the_audit_finds_what_was_not_measured_and_what_has_passed() {
     assert_eq!(audit(model, start, &moved(&sim, 0.05), nothing), Ok(()));
     // The centres are 1.1 and 0.2 apart: with 0.8 less, the discs overlap by 1 − |(0.3, 0.2)|.
     let found = audit(model, start, &moved(&sim, 0.8), nothing);
-    let Err(Doubt::Deeper { depth, .. }) = found else { panic!("{found:?}") };
+    let Err(AuditFailure::Deeper { depth, .. }) = found else { panic!("{found:?}") };
     assert!(depth > 0.01 && depth < 1.0 - f64::hypot(0.3, 0.2) + 0.01, "{depth}");
     let found = audit(model, start, &moved(&sim, 2.5), nothing);
-    assert!(matches!(found, Err(Doubt::Passed { .. })), "{found:?}");
+    assert!(matches!(found, Err(AuditFailure::Passed { .. })), "{found:?}");
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn the_audit_finds_a_passage_that_the_contact_does_not_allow_and_says_what_it_le
     };
     assert_eq!(passed(1.21), Ok(()));
     let found = passed(1.1);
-    let Err(Doubt::Passed { depth, .. }) = found else { panic!("{found:?}") };
+    let Err(AuditFailure::Passed { depth, .. }) = found else { panic!("{found:?}") };
     assert!(depth > 0.01 && depth < 0.1 + 1e-3, "{depth}");
     let left = unaudited(model);
     assert_eq!(left, ["bodies without a contact between them"]);
@@ -77,12 +77,12 @@ fn in_space_the_audit_agrees_with_a_ball_that_rebounds_and_finds_one_that_has_pa
         };
         assert_eq!(audit(model, &at(0.1), &at(0.2), nothing), Ok(()));
         let found = audit(model, &at(0.2), &at(0.3), nothing);
-        let Err(Doubt::Passed { depth, .. }) = found else { panic!("{found:?}") };
+        let Err(AuditFailure::Passed { depth, .. }) = found else { panic!("{found:?}") };
         // The plate is 0.01 thick.
         assert!(depth > 0.002 && depth <= 0.005 + 1e-12, "{depth}");
         // At 0.238 its lowest node is 0.02 to 0.05 below the top, and others are within the plate.
         let found = audit(model, &at(0.2), &at(0.238), nothing);
-        let Err(Doubt::Deeper { depth, .. }) = found else { panic!("{found:?}") };
+        let Err(AuditFailure::Deeper { depth, .. }) = found else { panic!("{found:?}") };
         assert!(depth > 0.0005 && depth <= 0.005 + 1e-12, "{depth}");
         assert_eq!(unaudited(model), ["edges between their nodes", "bodies without a contact between them"]);
     }

@@ -1,7 +1,7 @@
 //! Augmented Lagrangians end where multipliers do, whatever their springs; and what holds for
 //! multipliers: resumed runs, momentum, the ledger, no friction for μ = 0.
 
-use carom_contact::Hold;
+use carom_contact::FrictionState;
 use carom_run::{GridReport, Simulation};
 
 use super::common::{DISCS, case as case_of, finish, momenta, simulation};
@@ -72,7 +72,9 @@ fn every_step_is_that_of_multipliers() {
 fn the_springs_do_not_matter() {
     let states = |sim: &Simulation| {
         let pairs = sim.state().pairs[0].iter().filter(|pair| pair.active);
-        pairs.map(|pair| (pair.node, pair.tangential.hold == Hold::Stick)).collect::<Vec<_>>()
+        pairs
+            .map(|pair| (pair.node, pair.tangential.friction_state == FrictionState::Stick))
+            .collect::<Vec<_>>()
     };
     let mut exact = simulation(DISCS, &discs(SCHEMES[0], "multiplier", "0.2"));
     let mut others: Vec<Simulation> = ["1e-2", "1.0", "1e2", "1e4"]

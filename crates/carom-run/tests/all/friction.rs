@@ -1,7 +1,7 @@
 //! Friction: none for μ = 0; resumed runs; momentum and the ledger of two discs that
 //! rub; Coulomb's law at every node; limits and coefficients that change.
 
-use carom_contact::{Hold, Pair};
+use carom_contact::{FrictionState, Pair};
 use carom_run::{GridReport, Simulation, State};
 
 use super::common::{DISCS, case as case_of, finish, momenta, simulation};
@@ -73,7 +73,8 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 
 /// Closed pairs that stick or that slip.
 fn count(state: &State, stick: bool) -> usize {
-    let counts = |pair: &&Pair| pair.active && (pair.tangential.hold == Hold::Stick) == stick;
+    let counts =
+        |pair: &&Pair| pair.active && (pair.tangential.friction_state == FrictionState::Stick) == stick;
     state.pairs[0].iter().filter(counts).count()
 }
 
@@ -113,12 +114,12 @@ fn every_node_obeys_the_law_and_momentum_is_conserved() {
                 assert!(pair.lambda <= 1e-9 * largest, "{scheme}: {pair:?}");
                 let (q, cone) = (pair.tangential.traction[0], 0.2 * (-pair.lambda).max(0.0));
                 assert!(q.abs() <= cone + 1e-9 * largest, "{scheme}: {pair:?}");
-                match pair.tangential.hold {
-                    Hold::Stick => sticks += 1,
-                    hold @ Hold::Slip(_) => {
+                match pair.tangential.friction_state {
+                    FrictionState::Stick => sticks += 1,
+                    friction_state @ FrictionState::Slip(_) => {
                         slips += 1;
                         assert!(
-                            (q - hold.direction()[0] * cone).abs() <= 1e-9 * largest,
+                            (q - friction_state.direction()[0] * cone).abs() <= 1e-9 * largest,
                             "{scheme}: {pair:?}"
                         );
                     }
@@ -184,7 +185,7 @@ fn a_limited_traction_is_that_stress_times_the_area() {
         // A limited traction has no impulse where contact begins.
         assert!((coulomb[0] / wide[0] - 1.0).abs() < 1e-3, "{scheme}: {coulomb:?} {wide:?}");
         let narrow = finish(simulation(&block("mu = 0.3\nshear = 0.05", scheme), &[] as &[&str]));
-        let closed = narrow.state().ledger.rubbed.closed / 5.0;
+        let closed = narrow.state().ledger.rubbed.contact_time / 5.0;
         let force = -narrow.state().impulse()[0];
         // Nodes lift off now and then; while all are closed, τ A = 0.05.
         assert!(

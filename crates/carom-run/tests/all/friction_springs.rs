@@ -88,7 +88,7 @@ fn a_node_on_a_spring_sticks_elastically() {
     let with = "mu = 0.9\nenforcement = \"penalty\"\nstiffness = 1.0\nstick_stiffness = 0.5";
     let sim = finish(simulation(&block(with, SCHEMES[0]), &["body.block.velocity=[1e-4, 0.0]"]));
     let ledger = &sim.state().ledger;
-    assert!(ledger.rubbed.stuck > 0.9 * ledger.rubbed.closed, "{:?}", ledger.rubbed);
+    assert!(ledger.rubbed.stick_time > 0.9 * ledger.rubbed.contact_time, "{:?}", ledger.rubbed);
     // The block falls on its springs, so that nodes bounce and slip then.
     assert!(ledger.friction_work <= 0.0, "{ledger:?}");
     assert!(ledger.stick_springs > 0.0 && ledger.stick_springs < ledger.springs);

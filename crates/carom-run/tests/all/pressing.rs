@@ -2,7 +2,7 @@
 
 use carom_contact::{Pairing, Rows, length};
 use carom_mechanics::model::{Contact, Friction, Model};
-use carom_mechanics::{Before, Grid, Implicit, Linear, Settings, Simulation, Tangent, each_slip};
+use carom_mechanics::{Grid, Implicit, InitialState, Linear, Settings, Simulation, Tangent, each_slip};
 use carom_run::Setup;
 use carom_time::Scheme;
 
@@ -45,7 +45,7 @@ fn started(model: Model) -> Simulation {
         pairing.pairs
     };
     let pairs = model.contacts.iter().map(closed).collect();
-    let before = Before { y: y.clone(), v: vec![0.0; model.dofs()], pairs };
+    let before = InitialState { y: y.clone(), v: vec![0.0; model.dofs()], pairs };
     let settings = Settings {
         tolerance: 1e-9,
         max_iterations: 20,

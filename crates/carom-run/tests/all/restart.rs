@@ -205,7 +205,11 @@ tolerance = 1e-14
                 let (now, rest) = (sim.state(), at_rest.state());
                 assert_eq!(now.pairs[0].len(), rest.pairs[0].len(), "{scheme}");
                 for (now, rest) in now.pairs[0].iter().zip(&rest.pairs[0]) {
-                    assert_eq!(now.tangential.hold, carom_contact::Hold::Stick, "{scheme}");
+                    assert_eq!(
+                        now.tangential.friction_state,
+                        carom_contact::FrictionState::Stick,
+                        "{scheme}"
+                    );
                     let changes =
                         [now.lambda - rest.lambda, now.tangential.traction[0] - rest.tangential.traction[0]];
                     let largest = rest.lambda.abs();

@@ -1,7 +1,7 @@
 //! Friction in space: the plane is a slice of it, no direction is special, forces and moments
 //! balance, the law holds at every node, and runs resume with the same bits.
 
-use carom_contact::{Hold, Pair, Tangential, length};
+use carom_contact::{FrictionState, Pair, Tangential, length};
 use carom_run::model::Contact;
 use carom_run::recording::Rows;
 use carom_run::{GridReport, Simulation, State};
@@ -51,7 +51,9 @@ fn an_impact_of_slabs_with_friction_is_that_of_the_plane() {
         slabs.push("contact.strike.mu=0.3".into());
         let space = finish(simulation(IMPACT, &slabs));
         let slips = |sim: &Simulation, stick: bool| {
-            let counts = |pair: &&Pair| pair.active && (pair.tangential.hold == Hold::Stick) == stick;
+            let counts = |pair: &&Pair| {
+                pair.active && (pair.tangential.friction_state == FrictionState::Stick) == stick
+            };
             sim.state().pairs[0].iter().filter(counts).count()
         };
         assert!(slips(&plane, true) + slips(&plane, false) > 2, "{scheme}");
@@ -167,7 +169,7 @@ fn every_node_obeys_the_law() {
             let largest = state.pairs[0].iter().map(|pair| pair.lambda.abs()).fold(0.0, f64::max);
             for pair in state.pairs[0].iter().filter(|pair| pair.active && pair.lambda <= 0.0) {
                 let (q, cone) = (length(pair.tangential.traction), mu * -pair.lambda);
-                let is_stick = pair.tangential.hold == Hold::Stick;
+                let is_stick = pair.tangential.friction_state == FrictionState::Stick;
                 *(if is_stick { &mut sticks } else { &mut slips }) += 1;
                 assert!(q <= cone + 1e-9 * largest, "{scheme}: {pair:?}");
                 assert!(is_stick || q >= cone - 1e-9 * largest, "{scheme}: {pair:?}");
@@ -316,7 +318,7 @@ newton = {{ tolerance = 1e-12 }}
             while !sim.finished() {
                 sim.advance(&mut GridReport::default()).unwrap();
                 for pair in sim.state().pairs[0].iter().filter(|pair| pair.active) {
-                    sticks += usize::from(pair.tangential.hold == Hold::Stick);
+                    sticks += usize::from(pair.tangential.friction_state == FrictionState::Stick);
                     let ([x, y, _], cone) = (traction_of(pair), 0.3 * pair.lambda.abs());
                     let node = sim.model().contacts[0].kinematics.secondary()[pair.node];
                     let least = if sim.model().reference[3 * node] == 0.0 { 0.0 } else { 1e-12 };
@@ -348,7 +350,7 @@ fn every_node_of_a_spinning_ball_has_the_force_of_slip() {
         let largest = active().map(|pair| -pair.lambda).fold(0.0, f64::max);
         for pair in active() {
             let q = length(pair.tangential.traction);
-            assert!(matches!(pair.tangential.hold, Hold::Slip(_)), "{pair:?}");
+            assert!(matches!(pair.tangential.friction_state, FrictionState::Slip(_)), "{pair:?}");
             assert!((q + 0.2 * pair.lambda).abs() <= 1e-10 * 0.2 * largest, "{pair:?} {largest}");
             slips += 1;
         }

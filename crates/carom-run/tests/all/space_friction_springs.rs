@@ -1,7 +1,7 @@
 //! Friction of nodes on springs in space: the plane is a slice of it, no direction is special, and
 //! the springs turn with the bodies.
 
-use carom_contact::{Hold, length};
+use carom_contact::{FrictionState, length};
 use carom_run::{GridReport, Simulation};
 
 use super::common::{finish, simulation, turned};
@@ -92,7 +92,7 @@ fn springs_in_space_obey_the_law_and_keep_the_balance() {
             let mut energy = 0.0;
             for pair in state.pairs[0].iter().filter(|pair| pair.active) {
                 let (q, cone) = (length(pair.tangential.traction), mu * -pair.lambda);
-                let is_stick = pair.tangential.hold == Hold::Stick;
+                let is_stick = pair.tangential.friction_state == FrictionState::Stick;
                 *(if is_stick { &mut sticks } else { &mut slips }) += 1;
                 assert!(q <= cone * (1.0 + 1e-12), "{mu}: {pair:?}");
                 assert!(is_stick || q >= cone * (1.0 - 1e-12), "{mu}: {pair:?}");

@@ -17,7 +17,7 @@ use super::boundary::Boundary;
 use super::edge_gap::EdgeGap;
 use super::edges::Edges;
 use super::folds::PatchFolds;
-use crate::friction::{Hold, Tangential};
+use crate::friction::{FrictionState, Tangential};
 use crate::kinematics::SweptEdges;
 use crate::kinematics::apart::Apart;
 use crate::kinematics::tangents::tangents;
@@ -137,7 +137,8 @@ impl EdgeToEdge {
         let mut pair = Pair::open(edges[0], self.sides[1].facets() + edges[1], xi[0]);
         pair.eta = xi[1];
         // It has no friction.
-        pair.tangential = Tangential { hold: Hold::Slip([1.0, 0.0]), ..Tangential::default() };
+        pair.tangential =
+            Tangential { friction_state: FrictionState::Slip([1.0, 0.0]), ..Tangential::default() };
         pair
     }
 
