@@ -51,7 +51,7 @@ fn bent(bytes: &[u8]) {
     let files = fixtures();
     lists(4000, 12, &|x| {
         let mut file = files[integer(x[0], 21)].1.clone();
-        for [at, byte] in &x[2..].as_chunks::<2>().0[..1 + integer(x[1], 5)] {
+        for [at, byte] in &x[2..].as_chunks::<2>().0[..=integer(x[1], 5)] {
             let at = integer(*at, file.len());
             file[at] = bytes[integer(*byte, bytes.len())];
         }
