@@ -205,5 +205,7 @@ fn an_overlap_is_listed_and_drawn() {
     assert!(std::fs::read_to_string(place.0.join("fit-overlap.svg")).unwrap().contains("16 nodes inside"));
     let refused = place.carom(&["check", "fit.toml", "--set", "contact.fit.overlap=refuse"]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(text(&refused.stderr).contains("keep-gap") && text(&refused.stdout).contains("0.01 deep"));
+    assert!(
+        text(&refused.stderr).contains("keep-gap") && text(&refused.stdout).contains("penetrates by 0.01")
+    );
 }
