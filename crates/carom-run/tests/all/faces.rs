@@ -96,7 +96,9 @@ fn exchange_in_every_scheme(elements: &[&str]) {
 #[test]
 fn flush_boundaries_exchange_them_like_the_sides_that_meet() {
     for element in ["T3", "T6", "Q4", "Q9", "Tet4", "Tet10", "Hex8", "Hex27"] {
-        for scheme in [SCHEMES[0], SCHEMES[4]] {
+        // Of the elements that take longest one scheme is enough.
+        let schemes = if ["Tet10", "Hex27"].contains(&element) { &[0][..] } else { &[0, 4] };
+        for scheme in schemes.iter().map(|&k| SCHEMES[k]) {
             let [named, whole] = [&[][..], &SKINS].map(|sides| exchange(element, scheme, sides));
             assert!((whole / named - 1.0).abs() < 1e-9, "{element}, {}: {named} {whole}", scheme.0);
         }

@@ -278,8 +278,8 @@ fn contact_case(path: &Path, at_night: bool) -> Option<(Case, Span)> {
     let is_slow = case.expects.iter().any(|expect| expect.slow);
     let span = match ["ladder", "space", "self"].iter().any(|folder| is_in(folder)) {
         _ if is_slow => Span { after: 3, at_most: 60 },
-        true => Span { after: if at_night { 20 } else { 3 }, at_most: 420 },
-        false => Span { after: if at_night { 300 } else { 50 }, at_most: if at_night { 600 } else { 250 } },
+        true => Span { after: if at_night { 20 } else { 2 }, at_most: 420 },
+        false => Span { after: if at_night { 300 } else { 20 }, at_most: if at_night { 600 } else { 250 } },
     };
     (!case.contacts.is_empty()).then_some((case, span))
 }
