@@ -10,31 +10,21 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 #[global_allocator]
 static COUNTED: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Two discs that approach each other, 4214 unknowns each.
-const DISCS: &str = r#"
-dimension = 2
-material = [{ name = "rubber", law = "neo-hookean", density = 0.25, lambda = 20.0, mu = 15.0 }]
-contact = [{ name = "strike", secondary = "left.arc", primary = "right.arc" }]
-time = { end = 1.0, step = 2e-4, scheme = { kind = "central-difference" } }
-[[body]]
-name = "left"
-material = "rubber"
-element = "T6"
-mass = "lumped"
-mesh = { shape = "disc", radius = 0.5, center = [-0.51, 0.0], size = 0.04 }
-velocity = [1.0, 0.0]
-[[body]]
-name = "right"
-material = "rubber"
-element = "T6"
-mass = "lumped"
-mesh = { shape = "disc", radius = 0.5, center = [0.51, 0.0], size = 0.04 }
-velocity = [-1.0, 0.0]
-"#;
+/// Two discs that collide after some forty steps.
+const DISCS: &str = include_str!("../../../cases/disc/head-on.toml");
+const SETS: [&str; 7] = [
+    "body.upper.mass=lumped",
+    "body.upper.mesh.size=0.08",
+    "body.upper.mesh.center=[0.0, 1.01]",
+    "body.lower.mass=lumped",
+    "body.lower.mesh.size=0.08",
+    "body.lower.mesh.center=[0.0, -1.01]",
+    "time={ end = 0.7, step = 1e-4, scheme = { kind = \"central-difference\" } }",
+];
 
 #[test]
 fn an_explicit_step_allocates_nothing_of_the_size_of_the_bodies() {
-    let document = Document::parse("case.toml", DISCS, &[]).unwrap();
+    let document = Document::parse("head-on.toml", DISCS, &SETS.map(str::to_owned)).unwrap();
     let mut simulation = Setup::new(&read(&document).unwrap()).start().unwrap();
     let vector = 8 * simulation.state().y.len();
     let mut report = GridReport::default();

@@ -98,7 +98,7 @@ pub(super) fn recommended(
     methods.sort_by(|a, b| order(a).total_cmp(&order(b)).then(finest(a).total_cmp(&finest(b))));
     let without = if any_unsound { "no arm that did not create energy" } else { "no arm" };
     let nothing = || match goal {
-        Goal::Cost => vec![measure.words.replacen("processor time of arms", without, 1)],
+        Goal::Cost => vec![format!("{without} has the required accuracy, {accuracy}")],
         _ => vec![format!("{without} has a value for: {}", measure.words)],
     };
     let first = methods.first().ok_or_else(nothing)?;
