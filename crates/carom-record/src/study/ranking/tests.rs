@@ -225,13 +225,15 @@ fn one_sound_member_has_the_scatter_of_all() {
     assert!((of_a.error - 0.01).abs() < 1e-15 && (of_a.uncertainty - 0.03).abs() < 1e-15);
 }
 
-/// Both arms are accurate at the fine level only, where B is cheaper, though A is at the coarse one.
+/// Both arms are accurate at the fine level only, where B is cheaper; A is cheaper at the coarse
+/// one.
 #[test]
 fn least_cost_is_looked_for_over_all_levels() {
     let runs = [("a", 0, 0.2, 0.5), ("b", 0, 0.2, 1.0), ("a", 1, 0.01, 3.0), ("b", 1, 0.01, 2.0)];
     let verdict = by_cost(&study(&runs)).verdict.unwrap();
     assert!(verdict.arm == 3 && verdict.alike.is_empty(), "{verdict:?}");
-    // A is accurate at both: its coarse arm is the cheapest, though B ranks first at the fine level.
+    // A is accurate at both: its coarse arm is the cheapest, though B ranks first at the fine
+    // level.
     let runs = [("a", 0, 0.04, 1.5), ("b", 0, 0.2, 1.0), ("a", 1, 0.01, 3.0), ("b", 1, 0.01, 2.0)];
     assert_eq!(by_cost(&study(&runs)).verdict.unwrap().arm, 0);
     let none = by_cost(&study(&[("a", 0, 0.2, 1.0)])).verdict.unwrap_err();
