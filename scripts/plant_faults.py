@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plants faults into Carom one by one and checks that `carom verify` detects each of them.
+"""Plants faults into Carom one by one and checks that each of them is detected.
 
     scripts/plant_faults.py [WORD…] [--markdown FILE]
         all faults, or those whose names contain a word; exit code 1 if one is not detected
@@ -10,8 +10,9 @@
 A fault of scripts/faults.json replaces one string of one file by another; the string must occur
 exactly once. The faults are planted in target/faults, in a copy of the last commit with its own
 target directory. Each fault costs the compilation of the crates above it and, if a short case
-detects it, a few seconds. First `--fast --fail-fast` is run; a fault that it does not detect is
-tested with the whole suite.
+detects it, a few seconds. First `carom verify --fast --fail-fast` is run; a fault that it does not
+detect is tested with the whole suite. What no case expects, such as the ranking of a study or a
+warning, the tests of the package `tests` must detect.
 """
 
 import argparse
@@ -54,10 +55,14 @@ def main():
         sys.exit(f"the tree does not build:\n{error}")
     if missed := verified("--fast"):
         sys.exit(f"the suite fails without any fault: {missed}")
+    packages = {fault["tests"] for fault in FAULTS if "tests" in fault and wanted(given, fault)}
+    for package in sorted(packages):
+        if failed := tested(package):
+            sys.exit(f"the tests of {package} fail without any fault: {failed}")
     print("no fault: the suite passes", flush=True)
     rows, survived = [], []
     for fault in FAULTS:
-        if given.words and not any(word in fault["name"] for word in given.words):
+        if not wanted(given, fault):
             continue
         begin, found = time.time(), planted(fault)
         print(f"{'found   ' if found else 'SURVIVED'}  {fault['name']}  ({time.time() - begin:.0f} s)  {found or ''}", flush=True)
@@ -72,6 +77,10 @@ def main():
         given.markdown.write_text("".join(f"| {line} |\n" for line in lines), encoding="utf-8")
     print(f"{len(rows)} faults, {len(survived)} survived{': ' + ', '.join(survived) if survived else ''}")
     sys.exit(1 if survived else 0)
+
+
+def wanted(given, fault):
+    return not given.words or any(word in fault["name"] for word in given.words)
 
 
 def undocumented():
@@ -118,12 +127,25 @@ def copy():
             path.write_bytes(content)
 
 
+def cargo(what, package):
+    environment = {**os.environ, "CARGO_TARGET_DIR": str(PLACE / "target"), "CARGO_INCREMENTAL": "1"}
+    command = ["cargo", what, "--quiet", "--package", package]
+    return subprocess.run(command, cwd=TREE, env=environment, capture_output=True, text=True, check=False)
+
+
 def build():
     """The error output of the compiler, or None."""
-    environment = {**os.environ, "CARGO_TARGET_DIR": str(PLACE / "target"), "CARGO_INCREMENTAL": "1"}
-    command = ["cargo", "build", "--quiet", "--package", "carom"]
-    done = subprocess.run(command, cwd=TREE, env=environment, capture_output=True, text=True, check=False)
+    done = cargo("build", "carom")
     return done.stderr if done.returncode else None
+
+
+def tested(package):
+    """The first test of a package that fails, or None."""
+    done = cargo("test", package)
+    if done.returncode == 0:
+        return None
+    failed = re.search(r"^---- (\S+) stdout ----$", done.stdout, re.MULTILINE)
+    return f"test {package} {failed[1]}" if failed else shortened((done.stderr.strip().splitlines() or ["no message"])[0])
 
 
 def verified(*which):
@@ -164,7 +186,7 @@ def planted(fault):
     try:
         if error := build():
             sys.exit(f"{fault['name']}: does not build:\n{error}")
-        return verified("--fast") or verified()
+        return tested(fault["tests"]) if "tests" in fault else verified("--fast") or verified()
     finally:
         path.write_text(text, encoding="utf-8")
 
