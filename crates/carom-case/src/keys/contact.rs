@@ -8,7 +8,7 @@ pub(super) const CONTACT: Table = Table {
     doc: "A contact pair: two sides that may come into contact.",
     keys: &[
         key("name", Name, "Name used in records and messages.").example("\"strike\""),
-        key("secondary", Side, "Secondary (slave) side: its nodes may not penetrate the primary. `body.skin` is the whole boundary of a body.").example("\"cylinder.arc\"").unless("between"),
+        key("secondary", Side, "Secondary (slave) side: its nodes must not penetrate the primary. `body.skin` is the whole boundary of a body.").example("\"cylinder.arc\"").unless("between"),
         key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of \
             `plane`, `circle`, `sphere`, `cylinder`, `polyline` and `surface`. If it is the secondary side, this side is in contact \
             with itself.").example("\"prism.top\"").unless("between"),
@@ -236,7 +236,7 @@ const SURFACE: Table = Table {
     name: "surface",
     doc: "A rigid triangulated surface, with the vertices of its triangles counter-clockwise as seen from \
         outside. It may be closed, or open: past its rim there is no contact, and behind it a body is inside. \
-        Nodes of bodies may not penetrate it; its own edges and vertices do not meet facets of bodies between \
+        Nodes of bodies must not penetrate it; its own edges and vertices do not meet facets of bodies between \
         their nodes. A node that slides across a convex edge of more than 30° leaves the surface; in a groove \
         it is constrained by one of the faces only.",
     keys: &[

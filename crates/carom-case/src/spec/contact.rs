@@ -16,7 +16,7 @@ pub struct ContactSpec {
     /// Whether it is one of the contacts that the key `between` of its table stands for.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub between: bool,
-    /// Secondary (slave) side: its nodes may not penetrate the primary.
+    /// Secondary (slave) side: its nodes must not penetrate the primary.
     pub secondary: String,
     /// Primary (master) side, which may be the secondary one, or a rigid obstacle.
     pub primary: PrimarySpec,

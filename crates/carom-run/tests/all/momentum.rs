@@ -3,7 +3,7 @@
 //! velocities: P = Σ M [v + (1 − γ − α_m) Δt a] of a body that nothing supports changes by the
 //! impulses of its contacts, beyond the momentum that its loads give to a particle with the same
 //! scheme. Forces between two bodies have no moment either: Σ y × ∇g = 0 and Σ y × H = 0 for the
-//! rows of every closed pair and of its slips. And no contact pulls: λ ≤ 0 at the end of every step.
+//! rows of every closed pair and of its slips. And no contact pulls: λ ≤ 0 at the end of a step.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;

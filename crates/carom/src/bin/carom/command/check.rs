@@ -20,7 +20,7 @@ use crate::{console, out};
 /// Nodes listed without `--verbose`.
 const LISTED: usize = 10;
 
-/// Report the errors of a case or study without running it; draw overlapping bodies (SVG)
+/// Report the errors of a case or study without running it, and draw bodies that overlap (SVG)
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  carom check impact.toml --set time.scheme.rho_inf=0.5\n  carom check laboratory.toml"

@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
     /// Format
     #[arg(long, value_enum)]
     format: Format,
-    /// The file to write; must not exist yet [default: standard output, except for Parquet]
+    /// The file to write; must not exist yet [default: standard output; required for Parquet]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }

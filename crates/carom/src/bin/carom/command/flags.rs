@@ -13,7 +13,7 @@ pub(crate) struct Flags {
     /// at most 64, or four per core if that is more [default: one per core]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZero<usize>>,
-    /// Do not write figures and report page
+    /// Do not write the figures or the report page
     #[arg(long)]
     pub(crate) no_report: bool,
     /// If a run stops, do not test which changes of the case would let it continue
@@ -26,7 +26,7 @@ pub(crate) struct Flags {
     /// Print a timing profile of a run
     #[arg(long)]
     pub(crate) profile: bool,
-    /// Exit with code 1 if an expectation of a run is missed
+    /// Exit with code 1 if a run misses an expectation (`[[expect]]` in the case)
     #[arg(long)]
     pub(crate) strict: bool,
     /// Print one JSON object per event on standard output, and nothing else

@@ -7,13 +7,13 @@ use carom::ReduceError;
 use crate::exit::{Exit, Failure};
 use crate::{console, directory, out, summary};
 
-/// Make a smaller case that starts just before the stop of a run and stops in the same way
+/// From a run that stopped (exit code 3), make a smaller case that stops in the same way
 #[derive(clap::Args)]
 #[command(after_help = "\
-`carom reduce` runs the reduced case: its exit code is 0 if the case stops for the same reason at
-the same place.
+The reduced case starts shortly before the stop. `carom reduce` also runs it, and exits with 0 if it
+stops for the same reason at the same place, with 2 if it does not.
 
-Example:
+Examples:
   carom reduce runs/impact
   carom run runs/impact-reduced/case.toml")]
 pub(crate) struct Arguments {

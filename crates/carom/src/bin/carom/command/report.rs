@@ -11,7 +11,7 @@ use convert::{Converter, Format};
 use crate::exit::{Exit, Failure};
 use crate::{out, simulation};
 
-/// Rebuild the figures and the page of a run or a study from its records alone
+/// Rebuild the figures and the report page of a run or a study from its data files alone
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -12,7 +12,7 @@ use crate::exit::{Exit, Failure};
 use crate::live::{Live, stop_on_signal};
 use crate::{out, simulation, summary};
 
-/// Resume a run or a study that was interrupted; the result is bitwise identical
+/// Resume an interrupted run or study; the result is bitwise that of an uninterrupted one
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -20,7 +20,8 @@ Examples:
 pub(crate) struct Arguments {
     /// The case file, or - for standard input
     case: PathBuf,
-    /// Directory of the run; must not exist yet [default: runs/NAME, runs/NAME-2, …]
+    /// Directory of the run; must not exist yet [default: runs/NAME, or runs/NAME-2, … if that
+    /// exists; NAME is the name of the case file without its extension]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace a value of the case; an entry of a list is addressed by its name:

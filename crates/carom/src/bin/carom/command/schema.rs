@@ -10,7 +10,7 @@ Examples:
   carom schema > carom.schema.json
   carom schema --study > study.schema.json
 
-An editor uses the schema if the first line of a case is
+Editors with a language server for TOML (Taplo) use the schema if the first line of a case is:
   #:schema ./carom.schema.json")]
 pub(crate) struct Arguments {
     /// Print the schema of study files

@@ -30,14 +30,15 @@ pub(crate) struct Arguments {
     /// The study file, or - for standard input
     #[arg(required = true)]
     study: Option<PathBuf>,
-    /// Directory of the study; must not exist yet [default: runs/NAME, runs/NAME-2, …]
+    /// Directory of the study; must not exist yet [default: runs/NAME, or runs/NAME-2, … if that
+    /// exists; NAME is the name of the study file without its extension]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Number of concurrent arms (variants); results are bitwise identical for any number;
     /// at most 64, or four per core if that is more [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
-    /// Do not write figures and report page
+    /// Do not write the figures or the report page
     #[arg(long)]
     no_report: bool,
     /// Print one JSON object per event on standard output, and nothing else

@@ -53,7 +53,7 @@ machine; `carom study arm` then refuses to run on a machine of another type.")]
     Collect {
         /// Directory of the study
         directory: PathBuf,
-        /// Do not write figures and report page
+        /// Do not write the figures or the report page
         #[arg(long)]
         no_report: bool,
     },

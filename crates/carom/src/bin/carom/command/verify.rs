@@ -21,7 +21,7 @@ use crate::{console, directory, out};
 /// The cases as they were when the program was built.
 static CASES: Dir = include_dir!("$CAROM_CASES");
 
-/// Run all cases and studies with expectations and report which of these are met
+/// Run all cases and studies that state expected results, and report which expectations are met
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -30,7 +30,7 @@ Examples:
   carom verify --fast --csv
   carom verify --verbose | less -S
 
-Exit codes: 0 all met · 1 an expectation was missed · 2 a case is invalid · 3 a run stopped unexpectedly")]
+Exit codes: 0 all expectations met · 1 an expectation was missed · 2 a case is invalid · 3 a run stopped unexpectedly")]
 #[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
     /// Cases, studies, or folders of them [default: the folder cases/ if it exists, otherwise
@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     /// Write fields, figures and a page for every run
     #[arg(long)]
     report: bool,
-    /// Write one Markdown table per family into this directory
+    /// Write one Markdown table per folder of cases into this directory
     #[arg(long, value_name = "DIR")]
     markdown: Option<PathBuf>,
     /// Print one JSON object per event on standard output, and nothing else

@@ -11,7 +11,7 @@ use resvg::{tiny_skia, usvg};
 /// A format of figures.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Format {
-    /// The figures as the page has them
+    /// Written with the page in any case; only the file names are printed
     Svg,
     /// Raster image; needs a build with `--features figures`
     Png,
