@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Checks report pages in headless Chromium.
 
-    python3 scripts/check_page.py runs/impact/report.html [more pages] [--screenshots DIR]
+    python3 scripts/check_page.py runs/impact/report.html [more pages] [--scenes DIR] [--store]
+                                  [--screenshots DIR]
 
 Opens each page, plays its animation and drags its slider; a scene in space is also turned, moved,
-zoomed, cut and coloured, by mouse, touch and keys. Fails on any console message, missing part or
+zoomed, cut and coloured, by mouse, touch and keys. With --scenes, the scene as opened is compared
+with the stored picture DIR/NAME.json, if there is one; --store writes it. Fails on any console message, missing part or
 external request, and on text that is cut off, covered or hard to read at either of two widths and in
 either colour scheme (`page_layout.py`); of a picture, NAME.svg, this alone. Needs only `chromium` (apt-get install chromium). With
 --screenshots, it writes for every page NAME.png (as opened), NAME-playing.png (after the animation was
@@ -246,7 +248,20 @@ def apart(before, after):
     return max(abs(a - b) for a, b in zip(before[1], after[1]))
 
 
-def scene(browser):
+def differs(found, stored, store):
+    """How a picture of a scene differs from the stored one."""
+    if store:
+        stored.write_text(json.dumps([round(level) for level in found[1]]), encoding="utf-8")
+    if not stored or not stored.is_file():
+        return []
+    levels = json.loads(stored.read_text(encoding="utf-8"))
+    if len(levels) != len(found[1]):
+        return [f"the scene has another size than that of {stored}"]
+    by = apart((0, levels), found)
+    return [f"the scene is not that of {stored}: a square differs by {by:.0f} levels"] if by >= SAME else []
+
+
+def scene(browser, stored=None, store=False):
     """Turns, moves, zooms, cuts and colours a scene; returns the errors found."""
     wrong = []
     picture = "#animation canvas"
@@ -291,6 +306,7 @@ def scene(browser):
     first = shown()
     if not 3 < first[0] < 97:
         wrong.append(f"the scene draws {first[0]:.1f} % of its picture")
+    wrong += differs(first, stored, store)
     steps = [
         ("dragging", lambda: drag((60, 30))),
         ("dragging with the right button", lambda: drag((50, 20), "right")),
@@ -320,8 +336,9 @@ def scene(browser):
     return wrong
 
 
-def check(browser, page, screenshots):
+def check(browser, page, options):
     """The errors of a page, as sentences."""
+    screenshots, stored = options.screenshots, options.scenes and options.scenes / f"{page.resolve().parent.name}.json"
     if page.suffix == ".svg":
         # As in a page, whose window it does not exceed.
         with tempfile.TemporaryDirectory() as folder:
@@ -347,7 +364,7 @@ def check(browser, page, screenshots):
         solid = browser.value("!!document.querySelector('#animation .scene')")
         # A scene is unpacked after the page was loaded.
         if solid and browser.until("!document.getElementById('animation').hidden"):
-            wrong += scene(browser)
+            wrong += scene(browser, stored, options.store)
         wrong += animation(browser)
         if to:
             picture(browser, f"{to}-playing.png")
@@ -377,6 +394,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("pages", nargs="+", type=Path)
     parser.add_argument("--screenshots", type=Path)
+    parser.add_argument("--scenes", type=Path)
+    parser.add_argument("--store", action="store_true")
     arguments = parser.parse_args()
     failed = False
     if arguments.screenshots:
@@ -385,7 +404,7 @@ def main():
         browser = Browser(profile)
         try:
             for page in arguments.pages:
-                wrong = check(browser, page, arguments.screenshots)
+                wrong = check(browser, page, arguments)
                 failed |= bool(wrong)
                 played = "; played and dragged" if 'id="animation"' in page.read_text(encoding="utf-8") else ""
                 print(f"{page}: {page.stat().st_size / 1e6:.2f} MB, {'; '.join(wrong) or 'no console message' + played}")

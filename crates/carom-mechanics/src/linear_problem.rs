@@ -117,6 +117,11 @@ impl LinearProblem {
         (total.increment, total.multipliers) = (self.increment.clone(), vec![0.0; rows.len()]);
         loop {
             self.correct(equations, rows, preconditioner, depth, &mut total, timings)?;
+            if total.last == 0.0 {
+                // Without a residual no correction can be compared with another one.
+                self.restart();
+                return Ok(total);
+            }
             if let Some(last) = self.comparable.replace(total.last) {
                 renewal.observe(total.last / last);
             }

@@ -130,8 +130,8 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let caption = format!(
         "Contact pressure p during contact, over time and the arc length s of the secondary side in the reference \
          configuration; a band per node, nothing where it is open.{thinned} The line is at the instant of the \
-         animation, and a click goes to one. Data: `contact.csv`, column \
-         `pressure`."
+         animation, and a click goes to one. Where the nodes of the two sides do not match, nodal pressures have \
+         errors of 10 % or more. Data: `contact.csv`, column `pressure`."
     );
     let labels = [
         ("@P@", with_unit("p", &stress)),

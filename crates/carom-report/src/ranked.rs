@@ -6,7 +6,7 @@ use carom_record::Reason;
 use carom_record::study::compared::is_stress;
 use carom_record::study::design::{Design, Kind};
 use carom_record::study::ranking::{Ranking, error, standing};
-use carom_record::study::reference::Standing;
+use carom_record::study::reference::{Reference, Standing};
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
@@ -55,7 +55,12 @@ impl Ranked<'_> {
             return self.column(head, |_| None);
         };
         let relative = if right == 0.0 { f64::INFINITY } else { uncertainty / right.abs() };
-        let head = if relative > 0.0 { format!("{head} ± {}", three(relative)) } else { head.to_owned() };
+        let mesh = self.study.reference.as_ref().is_none_or(Reference::refines_mesh);
+        let head = match relative {
+            0.0 => head.to_owned(),
+            _ if !mesh => format!("{head} ± {} (step only)", three(relative)),
+            _ => format!("{head} ± {}", three(relative)),
+        };
         self.column(&head, |arm| {
             self.study.rows[arm]
                 .value(metric)

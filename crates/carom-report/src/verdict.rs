@@ -36,7 +36,7 @@ const FEW: usize = 12;
 /// What the columns of the ranking mean.
 const COLUMNS: [&str; 11] = [
     "Errors are relative errors; energies are fractions of the largest kinetic + strain energy.",
-    "± in a heading: relative uncertainty of the reference value.",
+    "± in a heading: relative uncertainty of the reference value; step only: without the error of its mesh, which was not refined.",
     "Delay: time by which the motion lags the reference; negative where it leads.",
     "Energy drift: largest change of the energy at any time.",
     "Lost in impact: energy lost over the impact that changes it most.",
@@ -182,10 +182,23 @@ pub(crate) fn rankings(study: &Study) -> Markup {
 
 /// Which conclusions change between equal steps and equal cost.
 fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
-    let Some(design) = study.manifest.design.as_ref().filter(|_| !ranking.crosschecks.is_empty()) else {
-        return Markup::default();
+    let Some(design) = &study.manifest.design else { return Markup::default() };
+    let (other, axis) = match design.kind {
+        Kind::MatchedCost => ("equal steps", "step"),
+        Kind::MatchedStep => ("equal cost", "cost"),
     };
-    let other = if design.kind == Kind::MatchedCost { "equal steps" } else { "equal cost" };
+    if ranking.crosschecks.is_empty() {
+        if ranking.levels.len() < 2 || ranking.goal == Goal::Cost {
+            return Markup::default();
+        }
+        return html! {
+            h3 { "The same at " (other) }
+            p.small {
+                "Not known: at no level do the levels of another method reach the " (axis) " of the arm that \
+                 stands first."
+            }
+        };
+    }
     let value = |check: &Crosscheck| match check.at {
         "step" => format!("Δt = {}", in_time(study, check.value)),
         _ => format!("{} s of processor time", three(check.value)),
@@ -255,7 +268,8 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
             table {
                 thead {
                     tr {
-                        th { "Metric" } th { "Unit" } th.n { "Value" } th.n { "Uncertainty" }
+                        th { "Metric" } th { "Unit" } th.n { "Value" }
+                        th.n { (if reference.refines_mesh() { "Uncertainty" } else { "Uncertainty, step only" }) }
                         th.n { "Observed order" } th.n { "Half-width of members" }
                     }
                 }
@@ -275,6 +289,14 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                  distance of a member from the median, plus a step for instants (half a step with several \
                  phases), plus 5/4 of what averaging over 1/16 of the contact changes, for extremes and \
                  variations."
+                @if !reference.refines_mesh() {
+                    " The mesh was not refined: its error is not included, and the true values may lie \
+                     outside. With "
+                    code { "mesh = [1, 2, 4]" }
+                    " in "
+                    code { "[fine]" }
+                    " it is."
+                }
             }
         }
         details {

@@ -56,7 +56,12 @@ pub(super) fn chatter(facts: &Facts) -> Option<f64> {
     (duration > 0.0).then(|| switches / duration)
 }
 
+/// None if a row stands for several steps: it has the largest penetration of all of them.
 pub(super) fn mean_penetration(facts: &Facts) -> Option<f64> {
+    let steps = facts.history.column("step").unwrap_or_default();
+    if steps.windows(2).any(|two| two[1] - two[0] > 1.0) {
+        return None;
+    }
     let (depth, active) = (facts.history.column("penetration")?, facts.history.column("active")?);
     let (sum, rows) =
         depth.iter().zip(active).filter(|(_, n)| **n > 0.0).fold((0.0, 0), |(s, n), (d, _)| (s + d, n + 1));

@@ -2,7 +2,7 @@
 //! rebound.
 //!
 //! ```text
-//! restitution    −(v⁺·n)/(v⁻·n) of its centre; n along the impulse of the first episode
+//! restitution    −(v⁺·n)/(v⁻·n) of its centre; n along v⁺ − v⁻ of the first episode
 //! apex           vertex of the parabola through the highest row of its centre and the adjacent rows
 //! ```
 
@@ -21,14 +21,18 @@ pub fn striker(history: &History) -> Option<&str> {
     speeds.reduce(|best, next| if next.1 > best.1 { next } else { best }).map(|(body, _)| body)
 }
 
-/// −(v⁺·n)/(v⁻·n) of the striker's centre; n along the impulse of the first episode.
+/// v·(v⁺ − v⁻) of a body's centre in a row, for its velocities in two rows before and after an
+/// episode. Without supports this is the direction of the impulse; on a plane of symmetry the
+/// impulse also has the part that the support takes. It does not depend on which side is secondary.
+fn along(velocity: &[&[f64]], [before, after]: [usize; 2], row: usize) -> f64 {
+    velocity.iter().map(|v| v[row] * (v[after] - v[before])).sum()
+}
+
+/// −(v⁺·n)/(v⁻·n) of the striker's centre; n along v⁺ − v⁻.
 pub(super) fn restitution(history: &History, episode: Episode) -> Option<f64> {
-    let (before, after) = (episode.start.checked_sub(1)?, episode.end?);
-    let impulse = vector(history, "contact_impulse");
+    let ends = [episode.start.checked_sub(1)?, episode.end?];
     let velocity = vector(history, &format!("{}.velocity", striker(history)?));
-    let along =
-        |row: usize| velocity.iter().zip(&impulse).map(|(v, p)| v[row] * (p[after] - p[before])).sum::<f64>();
-    let value = -along(after) / along(before);
+    let value = -along(&velocity, ends, ends[1]) / along(&velocity, ends, ends[0]);
     value.is_finite().then_some(value)
 }
 
@@ -57,14 +61,12 @@ pub(super) fn apex(facts: &Facts) -> Option<(f64, f64)> {
     Some((t[i] - there / curvature, top - 0.5 * there * there / curvature - y[0]))
 }
 
-/// Time at which the velocity of the striker's centre along the impulse of the first episode
+/// Time at which the velocity of the striker's centre along its change over the first episode
 /// changes sign, linearly interpolated between rows.
 pub(super) fn turning_time(facts: &Facts) -> Option<f64> {
     let (history, rows) = (facts.history, facts.rows.clone()?);
-    let impulse = [0, 1, 2].map(|axis| facts.impulse(axis));
     let velocity = vector(history, &format!("{}.velocity", striker(history)?));
-    let along =
-        |row: usize| velocity.iter().zip(impulse).map(|(v, p)| v[row] * p.unwrap_or_default()).sum::<f64>();
+    let along = |row: usize| along(&velocity, [rows.start, rows.end - 1], row);
     let before = (rows.start..rows.end - 1).find(|&i| along(i) < 0.0 && along(i + 1) >= 0.0)?;
     let (a, b) = (along(before), along(before + 1));
     Some(facts.time(before) + (facts.time(before + 1) - facts.time(before)) * a / (a - b))

@@ -143,9 +143,9 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 28] = [
         d(
             "restitution",
             Unit::None,
-            "−(v⁺·n)/(v⁻·n), n along the impulse",
+            "−(v⁺·n)/(v⁻·n), n along v⁺ − v⁻",
             "Newton's coefficient",
-            "ratio of the velocities of the striker's centre along the impulse after and before the first episode, sign reversed",
+            "ratio of the velocities of the striker's centre along its change, after and before the first episode, sign reversed",
         ),
         |f| restitution(f.history, f.first()?),
     ),

@@ -9,6 +9,7 @@ use super::arm::Arm;
 use super::claim::Claim;
 use super::design::{Design, Goal, Kind};
 use super::ensemble::Ensemble;
+use super::roles::as_in_arm;
 use crate::metrics::Overlay;
 use crate::{Expect, Machine, Manifest, RecordError, Run, Source, Status, files};
 
@@ -170,13 +171,18 @@ impl StudyManifest {
         Manifest::read(&path).map(|m| (Some(m.status), m.reason))
     }
 
-    /// The record of an arm, none if it has not started.
+    /// The record of an arm, none if it has not started; forces and impulses of contact have the
+    /// same sign in all members of an arm.
     ///
     /// # Errors
     /// Input/output or system error, or a damaged record.
     pub fn record(&self, directory: &Path, arm: &Arm) -> Result<Option<Run>, RecordError> {
         let path = directory.join(&arm.directory);
-        path.join("manifest.json").is_file().then(|| Run::open(&path)).transpose()
+        let mut run = path.join("manifest.json").is_file().then(|| Run::open(&path)).transpose()?;
+        if let (Some(run), Some(of)) = (&mut run, arm.role.member.filter(|of| of.member.swapped)) {
+            as_in_arm(&mut run.history, [&self.arms[of.arm].case, &arm.case]);
+        }
+        Ok(run)
     }
 
     /// As [`Self::record`], and none of a record that is damaged.

@@ -29,6 +29,7 @@ pub mod ranking;
 mod recommendation;
 pub mod reference;
 mod reference_of;
+mod roles;
 mod row;
 mod tables;
 mod trajectory;

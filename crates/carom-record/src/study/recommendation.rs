@@ -2,7 +2,8 @@
 //!
 //! Methods are ordered by their mean place over the levels. Of those that are not distinguished
 //! from the best and have the required accuracy, the cheapest is recommended; processor times
-//! within 10 % of the smallest count as equal, and the smaller error then decides. Nothing is
+//! within 10 % of the smallest count as equal, and so do all of a design of matched cost; the
+//! smaller error then decides. Nothing is
 //! recommended if only a substitute for the measure of the goal is established, or if none of them
 //! has the required accuracy.
 
@@ -66,6 +67,7 @@ pub(super) fn recommended(
     // An arm that created much energy is not recommended, nor evidence for its method.
     let sound = |ranked: &Vec<Ranked>| ranked.iter().filter(|r| r.sound).cloned().collect();
     let any_unsound = levels.iter().flatten().any(|r| !r.sound);
+    let unfiltered = levels;
     let levels: Vec<Vec<Ranked>> = levels.iter().map(sound).collect();
     let full: Vec<&Vec<Ranked>> = levels.iter().filter(|l| !l.is_empty()).collect();
     let mut methods: Vec<&str> = Vec::new();
@@ -128,8 +130,14 @@ pub(super) fn recommended(
     let accurate = |m: &&str| goal == Goal::Cost || arm_of(m).is_some_and(|r| r.has_accuracy(accuracy));
     let (fit, unfit): (Vec<&str>, Vec<&str>) = tied.iter().copied().partition(accurate);
     let field = if fit.is_empty() { &unfit } else { &fit };
-    let costs: Vec<Option<f64>> =
-        field.iter().map(|m| rows.get(arm_of(m)?.arm)?.value("cpu_time").filter(|c| *c > 0.0)).collect();
+    // What was matched by counting is not told apart by measured times.
+    let is_matched =
+        goal != Goal::Cost && manifest.design.as_ref().is_some_and(|d| d.kind == Kind::MatchedCost);
+    let measured = |method: &str| {
+        let time = rows.get(arm_of(method)?.arm)?.value("cpu_time");
+        time.filter(|time| *time > 0.0 && !is_matched)
+    };
+    let costs: Vec<Option<f64>> = field.iter().map(|m| measured(m)).collect();
     let picked = cheapest(&costs);
     let best = field[picked];
     let alike_ones: Vec<String> = tied.iter().filter(|m| **m != best).map(|m| (*m).to_owned()).collect();
@@ -156,7 +164,13 @@ pub(super) fn recommended(
         }
         return Err(against);
     }
-    let first_at = full.iter().filter(|l| l.iter().any(|r| r.place == 1 && name(r.arm) == best)).count();
+    let is_first = |method: &str, l: &[Ranked]| l.iter().any(|r| r.place == 1 && name(r.arm) == method);
+    let first_at = full.iter().filter(|l| is_first(best, l)).count();
+    // Methods with a worse mean place that nevertheless share the first place at a level.
+    let others = methods.iter().filter(|m| !tied.contains(m));
+    let sharing = |method: &&str| full.iter().filter(|l| is_first(best, l) && is_first(method, l)).count();
+    let sharing = others.map(|m| (*m, sharing(m))).filter(|(_, levels)| *levels > 0 && goal != Goal::Cost);
+    let sharing: Vec<(&str, usize)> = sharing.collect();
     let unit = if goal == Goal::Cost { " s" } else { "" };
     let mut reasons = vec![format!("{}: {}{unit}", measure.words, short(minimised(chosen)))];
     let level = |arm: usize| manifest.arms[arm].role.level;
@@ -181,6 +195,9 @@ pub(super) fn recommended(
                 String::new()
             }
         ));
+    }
+    if goal != Goal::Cost {
+        reasons.extend(passed_by(manifest, unfiltered, &methods, &tied, chosen));
     }
     // The least cost is that of any level.
     let first_at = if goal == Goal::Cost { full.len() } else { first_at };
@@ -214,6 +231,15 @@ pub(super) fn recommended(
     if let Some(depth) = penetration {
         reasons.push(format!("its contact is a penalty: it penetrates by up to {}", short(depth)));
     }
+    for other in &alike_ones {
+        let depth = arm_of(other).and_then(|arm| self::penetration(manifest, arm.arm, rows));
+        reasons.extend(depth.map(|depth| {
+            format!(
+                "the contact of {other}, which is not distinguished, is a penalty: it penetrates by up to {}",
+                short(depth)
+            )
+        }));
+    }
     if !measure.left_out.is_empty() {
         reasons
             .push(format!("not established by the reference, and left out: {}", measure.left_out.join(", ")));
@@ -231,7 +257,7 @@ pub(super) fn recommended(
         ensemble: full.iter().flat_map(|l| l.iter()).all(|r| r.members > 1),
     };
     let (mut confidence, mut confidence_reasons) =
-        confidence(goal, manifest, measure, &full, first_at, decided_by, &evidence);
+        confidence(goal, manifest, measure, &full, first_at, decided_by, &sharing, &evidence);
     let arm = &manifest.arms[chosen.arm];
     if let Some(design) =
         manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedStep && manifest.by_cost(arm))
@@ -243,6 +269,34 @@ pub(super) fn recommended(
         ));
     }
     Ok(Verdict { arm: chosen.arm, alike: alike_ones, penetration, reasons, confidence, confidence_reasons })
+}
+
+/// Why a method with a smaller error at the level of the recommended arm has a worse mean place:
+/// what it did at another level.
+fn passed_by(
+    manifest: &StudyManifest,
+    levels: &[Vec<Ranked>],
+    methods: &[&str],
+    tied: &[&str],
+    chosen: &Ranked,
+) -> Vec<String> {
+    let level = manifest.arms[chosen.arm].role.level;
+    let of =
+        |method: &str, level: usize| levels[level].iter().find(|r| manifest.arms[r.arm].method() == method);
+    let why_not = |method: &&str| {
+        let here = of(method, level).filter(|r| r.sound && r.error < chosen.error)?;
+        let (worst, place) = (0..levels.len())
+            .filter(|other| *other != level && !levels[*other].is_empty())
+            .map(|other| (of(method, other), of(method, other).map_or(usize::MAX, |r| r.place)))
+            .max_by_key(|(ranked, place)| (ranked.is_none_or(|r| !r.sound), *place))?;
+        let why = match worst {
+            None => "it has no value at another level".to_owned(),
+            Some(r) if !r.sound => format!("{} created energy", manifest.arms[r.arm].name),
+            Some(r) => format!("{} has only place {place}", manifest.arms[r.arm].name),
+        };
+        Some(format!("{method} has a smaller error at this level, {}, but {why}", short(here.error)))
+    };
+    methods.iter().filter(|m| !tied.contains(m)).filter_map(why_not).collect()
 }
 
 /// Why a method without the required accuracy is not recommended: no arm has it, or only arms of
@@ -322,6 +376,7 @@ fn confidence(
     levels: &[&Vec<Ranked>],
     first_at: usize,
     decided_by: DecidedBy,
+    sharing: &[(&str, usize)],
     evidence: &Evidence,
 ) -> (Confidence, Vec<String>) {
     let (mut confidence, mut reasons) = (Confidence::High, Vec::new());
@@ -356,6 +411,12 @@ fn confidence(
             Confidence::Low,
             format!("other methods are not distinguished from it, neither by error ({close}) nor by cost"),
         ),
+    }
+    for (method, count) in sharing {
+        at_most(
+            Confidence::Medium,
+            format!("at {count} of {} levels {method} is not distinguished from it ({close})", levels.len()),
+        );
     }
     if first_at < levels.len() {
         at_most(

@@ -63,7 +63,7 @@ pub const WARNINGS: [Entry; 15] = [
         id: "long-step",
         why: "the contact force is then the momentum transferred in a step divided by Δt, and depends more on Δt \
             than on the body",
-        advice: "a shorter step; otherwise evaluate only the impulse, the contact duration and the motion",
+        advice: "a shorter step; otherwise evaluate only impulse, contact duration and motion, and only if no energy was created",
         rule: Rule::Model(steps::long_step),
     },
     Entry {
@@ -132,7 +132,7 @@ pub const WARNINGS: [Entry; 15] = [
         id: "energy-created",
         why: "an elastic body cannot create energy; motion, forces and stresses afterwards are artefacts of the \
             scheme",
-        advice: "persistency = \"project\", a scheme with more damping, another step, or the energy guard, which stops such a run",
+        advice: "a scheme with more damping, another step, persistency = \"project\" where it is \"none\", or the energy guard, which stops such a run",
         rule: Rule::Record(record::energy_created),
     },
     Entry {

@@ -394,3 +394,20 @@ fn ringing_contact_hides_nothing_that_it_creates() {
     }
     assert!(largest > 0.5, "no scheme rings: {largest}");
 }
+
+/// A bar at rest has no residual: its steps need one solve each, or two.
+#[test]
+fn a_bar_at_rest_costs_next_to_nothing() {
+    let rest = [
+        "body.bar.velocity=[0.0]",
+        "body.bar.gravity=[0.0]",
+        "time.scheme={ kind = \"newmark\", beta = 0.25, gamma = 0.5 }",
+    ];
+    let mut sim = simulation(BAR, &rest);
+    let start = sim.state().y.clone();
+    for _ in 0..20 {
+        let report = sim.step().unwrap();
+        assert!((1..=2).contains(&report.newton), "{}", report.newton);
+    }
+    assert_eq!(sim.state().y, start);
+}

@@ -300,3 +300,43 @@ fn the_check_begins_with_the_first_arm_of_the_table() {
     let [check] = &ranking.crosschecks[..] else { panic!("{:?}", ranking.crosschecks) };
     assert_eq!((check.level, check.first.as_str(), check.value, &check.better), (1, "b", 3.0, &None));
 }
+
+/// A is first at the coarse level and shares the first place at the fine one, where B has the
+/// smaller error: it is recommended, but not with high confidence.
+#[test]
+fn a_shared_place_is_not_ranked_first() {
+    let runs = [("a", 0, 0.010, 1.0), ("b", 0, 0.020, 1.0), ("a", 1, 0.0050, 2.0), ("b", 1, 0.0049, 2.0)];
+    let members: [&[(f64, f64)]; 4] =
+        [&[(0.010, 1.0); 2], &[(0.020, 1.0); 2], &[(0.0050, 2.0); 2], &[(0.0049, 2.0); 2]];
+    let (mut manifest, rows) = with_members(study(&runs), &members);
+    manifest.ensemble.as_mut().unwrap().mesh = vec![1.0, 2.0];
+    let verdict = by_energy(&(manifest, rows)).verdict.unwrap();
+    assert_eq!((verdict.arm, verdict.confidence), (0, Confidence::Medium));
+    let why = verdict.confidence_reasons.join("; ");
+    assert!(why.contains("at 1 of 2 levels b is not distinguished from it"), "{why}");
+}
+
+/// B is better at the coarse level, where A is recommended, because B created energy at the fine
+/// one.
+#[test]
+fn why_the_smaller_error_does_not_win_is_said() {
+    let runs = [("a", 0, 0.020, 1.0), ("b", 0, 0.010, 1.0), ("a", 1, 0.008, 2.0), ("b", 1, 0.005, 2.0)];
+    let (manifest, mut rows) = study(&runs);
+    let created = Metric { name: "energy_created".into(), value: Some(0.5), ..rows[3].metrics[0].clone() };
+    rows[3].metrics.push(created);
+    let verdict = by_energy(&(manifest, rows)).verdict.unwrap();
+    assert_eq!(verdict.arm, 0);
+    let why = verdict.reasons.join("; ");
+    assert!(why.contains("b has a smaller error at this level, 0.01, but b 1 created energy"), "{why}");
+}
+
+/// Costs that were matched by counting are equal, whatever the processor times: nothing decides.
+#[test]
+fn measured_times_do_not_decide_between_matched_costs() {
+    let (mut manifest, rows) = study(&[("a", 0, 0.0100, 2.0), ("b", 0, 0.0101, 1.0)]);
+    assert_eq!(by_energy(&(manifest.clone(), rows.clone())).verdict.unwrap().arm, 1);
+    manifest.design.as_mut().unwrap().kind = Kind::MatchedCost;
+    let verdict = by_energy(&(manifest, rows)).verdict.unwrap();
+    assert_eq!((verdict.arm, verdict.alike, verdict.confidence), (0, vec!["b".into()], Confidence::Low));
+    assert!(!verdict.reasons.iter().any(|why| why.contains("processor time")), "{:?}", verdict.reasons);
+}

@@ -68,7 +68,11 @@ fn text(study: &Study) -> String {
         Some(unit) => format!("{name} [{unit}]"),
         None => name.to_owned(),
     };
-    let columns = SHOWN.map(|name| (name, head(name)));
+    // Bars have no impulse along y.
+    let has = |name: &str| study.rows.iter().any(|row| row.value(name).is_some());
+    let impulse = if has("impulse_y") || !has("impulse_x") { "impulse_y" } else { "impulse_x" };
+    let columns = SHOWN.map(|name| if name == "impulse_y" { impulse } else { name });
+    let columns = columns.map(|name| (name, head(name)));
     let heads = columns.iter().fold(String::new(), |row, (_, head)| row + &format!("  {head:>17}"));
     let mut lines = vec![format!("{:width$}{heads}", "")];
     for (arm, row) in study.rows.iter().enumerate() {
