@@ -361,6 +361,23 @@ fn a_coefficient_of_zero_with_a_limit_is_no_friction() {
     }
 }
 
+/// The coefficient of a place is that of its reference position, however far it has slid.
+#[test]
+fn a_coefficient_that_depends_on_the_place() {
+    let sim = finish(simulation(&block("mu = \"0.2 + 0.3*X\"", SCHEMES[3]), &[""; 0]));
+    let (model, mut slipping) = (sim.model(), 0);
+    let nodes = model.contacts[0].kinematics.secondary();
+    for pair in sim.state().pairs[0].iter().filter(|pair| pair.active && pair.lambda < 0.0) {
+        if matches!(pair.tangential.friction_state, FrictionState::Slip(_)) {
+            let mu = 0.2 + 0.3 * model.reference[2 * nodes[pair.node]];
+            let ratio = pair.tangential.traction[0].abs() / -pair.lambda;
+            assert!((ratio - mu).abs() < 1e-10, "{ratio} {mu}");
+            slipping += 1;
+        }
+    }
+    assert!(slipping > 1, "{slipping}");
+}
+
 #[test]
 fn a_negative_coefficient_stops_the_run_by_its_name() {
     let text = block("mu = \"0.3 - 10*t\"", SCHEMES[3]);

@@ -137,6 +137,30 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
     }
 }
 
+/// A block on an incline a millionth below the angle of friction (B2 of dynamics): it starts from the
+/// equilibrium of load steps and does not slide, by any kind of scheme.
+#[test]
+fn a_block_on_an_incline_rests_in_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let statics = include_str!("../../../../cases/friction/incline-sticks.toml");
+    let initial = initial_state(statics, &folder.path().join("rests"));
+    let at_rest = finish(simulation(statics, &[""; 0]));
+    let text = format!("{}\n{initial}", statics.split("[[expect]]").next().unwrap());
+    for scheme in [
+        r#"{ kind = "chung-hulbert", rho_inf = 0.5 }"#,
+        r#"{ kind = "bathe", rho_inf = 0.5 }"#,
+        r#"{ kind = "energy-momentum" }"#,
+        r#"{ kind = "moreau-jean", theta = 0.5 }"#,
+    ] {
+        let sets = [&format!("time.scheme={scheme}"), "time.step=0.01", "time.end=0.5"];
+        let moving = finish(simulation(&text, &sets));
+        let (now, rest) = (moving.state(), at_rest.state());
+        let moved = now.y.iter().zip(&rest.y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(moved < 1e-12, "{scheme}: {moved:e}");
+        assert!(now.ledger.friction_work.abs() < 1e-12, "{scheme}: {:e}", now.ledger.friction_work);
+    }
+}
+
 /// A block that is pressed and sheared in load steps stays as it is in motion: the tractions of
 /// every node and the anchors of springs are those of the other run, and all nodes stick.
 #[test]
