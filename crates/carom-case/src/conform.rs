@@ -127,7 +127,7 @@ impl Check {
             _ => format!("add `{name} = {}`", self.names.example(key, self.dimension)),
         };
         let help = if key.example.is_empty() { help } else { format!("{help}, for example") };
-        let what = format!("{table} has no `{name}`");
+        let what = format!("{table} needs `{name}`");
         let why = format!("`{name}` is required. {}", key.meaning());
         self.problems.push(Problem::new(path, what, why, help.trim_end_matches(", for example")).at_key());
     }

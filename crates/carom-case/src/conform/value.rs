@@ -176,13 +176,22 @@ impl Check {
             self.add(path, what, why, format!("write {}", key.kind.described(self.dimension)));
         } else if !range.contains(x) {
             let what = format!("`{}` must be {}, not {x}", key.name, range.described());
-            // A sign is easily lost, or of another convention.
-            let help = if x < 0.0 && range.contains(-x) {
+            let example =
+                || format!("write for example `{} = {}`", key.name, self.names.example(key, self.dimension));
+            // Zero or less of a positive number is a default that is not known, or an attempt to
+            // switch something off.
+            let is_off = x <= 0.0 && range.low == Some((0.0, false));
+            let help = if is_off && matches!(key.kind, Kind::NumberOrFalse(_)) {
+                format!("`{} = false` switches it off; or {}", key.name, example())
+            } else if is_off && matches!(key.default, keys::Default::Is(_)) {
+                example()
+            } else if x < 0.0 && range.contains(-x) {
+                // A sign is easily lost, or of another convention.
                 format!("did you mean `{} = {}`?", key.name, -x)
             } else if let Some(near) = range.value_next_to(x) {
                 format!("write for example `{} = {near}`", key.name)
             } else {
-                format!("write for example `{} = {}`", key.name, self.names.example(key, self.dimension))
+                example()
             };
             self.add(path, what, key.meaning(), help);
         }

@@ -52,7 +52,7 @@ fn errors_are_reported_at_their_key() {
     assert!(problem("body.prism.element=T6").help.contains("element = \"T10\""));
     let side = problem("contact.strike.primary=prism.tob");
     assert!(side.help.contains("`prism.top`"), "{side}");
-    assert!(problem("body.prism.mesh={ file = \"impact.msh\" }").what.contains("no `surface`"));
+    assert!(problem("body.prism.mesh={ file = \"impact.msh\" }").what.contains("needs `surface`"));
     assert!(problem("body.prism.mesh={ surface = \"prism\" }").help.contains("or give `file`"));
     let both = problem("body.prism.mesh={ file = \"impact.msh\", surface = \"prism\", shape = \"disc\" }");
     assert!(both.what.contains("unknown key `shape` in mesh from a file"), "{both}");
@@ -174,8 +174,8 @@ fn errors_of_extruded_files_are_reported_at_their_key() {
             ["the extrusion of \"sector\"", "element = \"Hex8\", or set Mesh.ElementOrder = 2"],
         ),
         ("surface", "volume", ["unknown key `volume`", "surface"]),
-        (", surface = \"sector\"", "", ["has no `surface`", "surface = \"profile\""]),
-        ("height = 0.5, ", "", ["has no `height`", "height = 0.2"]),
+        (", surface = \"sector\"", "", ["needs `surface`", "surface = \"profile\""]),
+        ("height = 0.5, ", "", ["needs `height`", "height = 0.2"]),
     ] {
         let problem = problem_of(old, new);
         assert!(texts.iter().all(|text| problem.contains(text)), "{old} {new}: {problem}");

@@ -92,7 +92,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     ),
     (
         &["probe=[{ name = \"A\", body = \"cylinder\" }]"],
-        &["[[probe]] has no `at`", "why: `at` is required. Reference position of the point."],
+        &["[[probe]] needs `at`", "why: `at` is required. Reference position of the point."],
     ),
     (&["contact.strike.friction={ mu = 0.3 }"], &["unknown key `friction`", "did you mean `mu`?"]),
     (&["body.cylinder.element=L2"], &["the element L2 has dimension 1", "use T3, T6, T10, Q4 or Q9"]),

@@ -51,17 +51,17 @@ impl Goal {
         (
             "force",
             Goal::Force,
-            "total variation of the contact force; substitutes: power above 16 cycles per contact, mean peak, impulse",
+            "total variation of the contact force; proxies: power above 16 cycles per contact, mean peak, impulse",
         ),
         (
             "stress",
             Goal::Stress,
-            "total variation of the stresses of the probes; substitutes: their mean peaks, their deviations",
+            "total variation of the stresses of the probes; proxies: their mean peaks, their deviations",
         ),
         (
             "friction",
             Goal::Friction,
-            "mean of the errors of friction's work and of the share of the time in contact that nodes stick; substitutes: one of them",
+            "mean of the errors of friction's work and of the share of the time in contact that nodes stick; proxies: one of them",
         ),
         ("trajectory", Goal::Trajectory, "deviation of displacements and centres"),
         ("cost", Goal::Cost, "processor time of arms whose displacements are within `accuracy`"),

@@ -4,7 +4,7 @@
 //! from the best and have the required accuracy, the cheapest is recommended; processor times
 //! within 10 % of the smallest count as equal, and so do all of a design of matched cost; the
 //! smaller error then decides. Nothing is
-//! recommended if only a substitute for the measure of the goal is established, or if none of them
+//! recommended if only a proxy for the measure of the goal is established, or if none of them
 //! has the required accuracy.
 
 use super::design::{Goal, Kind};
@@ -146,7 +146,7 @@ pub(super) fn recommended(
     if !measure.passed_over.is_empty() {
         let names: Vec<&str> = measure.passed_over.iter().map(|(name, _)| name.as_str()).collect();
         against.push(format!(
-            "the reference does not establish {}, the measure of this goal; the arms are ranked by a substitute, {}",
+            "the reference does not establish {}, the measure of this goal; the arms are ranked by a proxy, {}",
             names.join(" or "),
             measure.name
         ));

@@ -169,7 +169,7 @@ fn arguments_are_checked() {
         (&["rnu", "case.toml"], "unrecognized subcommand"),
         (&["resume", "old"], "old is not the directory of a run"),
         (&["report", "nowhere"], "there is no directory nowhere"),
-        (&["explain", "bathe"], "scheme \"bathe\" has no `rho_inf`"),
+        (&["explain", "bathe"], "scheme \"bathe\" needs `rho_inf`"),
         (&["explain", "hht", "alpha=-0.1"], "did you mean `alpha = 0.1`?"),
         (&["explain", "wbz", "rho=0.5"], "unknown key `rho`"),
     ];
