@@ -9,8 +9,8 @@ use crate::History;
 const OF_SECONDARY: [&str; 3] = ["contact_force_", "contact_impulse_", "algorithmic_impulse_"];
 
 /// Gives the columns of a swapped member the signs of its arm; `cases`: those of arm and member. If
-/// only some contacts are swapped, the sums over all of them have no counterpart in the arm, and the
-/// columns are removed.
+/// only some contacts are swapped, the sums over all of them have no counterpart in the arm, and
+/// the columns are removed.
 pub(super) fn as_in_arm(history: &mut History, cases: [&Value; 2]) {
     fn secondary(case: &Value) -> impl Iterator<Item = Option<&Value>> {
         let contacts = case.get("contacts").and_then(Value::as_array);
@@ -39,8 +39,8 @@ mod tests {
     use super::*;
     use crate::Column;
 
-    /// With sides a, b and c, d swapped both, signs change; with only one of the two, nothing can be
-    /// said of the sums.
+    /// With sides a, b and c, d swapped both, signs change; with only one of the two, nothing can
+    /// be said of the sums.
     #[test]
     fn sums_over_the_secondary_sides() {
         let history = |names: [&str; 2]| {

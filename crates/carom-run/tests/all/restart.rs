@@ -137,8 +137,8 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
     }
 }
 
-/// A block on an incline a millionth below the angle of friction (B2 of dynamics): it starts from the
-/// equilibrium of load steps and does not slide, by any kind of scheme.
+/// A block on an incline a millionth below the angle of friction: it starts from the equilibrium of
+/// load steps and does not slide, by any kind of scheme.
 #[test]
 fn a_block_on_an_incline_rests_in_motion() {
     let folder = tempfile::tempdir().unwrap();
