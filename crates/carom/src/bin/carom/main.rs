@@ -32,7 +32,7 @@ Examples:
 Exit codes:
   0    success
   1    an expectation was missed (verify, or --strict); study collect: runs are missing or damaged
-  2    the case or an argument is invalid
+  2    the case or an argument is invalid; reduce: the reduced case does not stop in the same way
   3    the simulation stopped; its last valid state is saved
   4    input/output or system error
   130  interrupted by Ctrl-C; continue with carom resume")]

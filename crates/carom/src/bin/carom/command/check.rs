@@ -28,7 +28,7 @@ const LISTED: usize = 10;
 pub(crate) struct Arguments {
     /// The case file or the study file; - for standard input
     case: PathBuf,
-    /// Replace a value of the case, as in `carom run`
+    /// Replace a value of the case, as in `carom run`; not for a study
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
     /// Print the resolved case with all defaults, or its errors, as JSON

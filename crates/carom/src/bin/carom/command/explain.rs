@@ -8,8 +8,8 @@ use serde::Serialize;
 use crate::exit::{Exit, Failure};
 use crate::out;
 
-/// Print order, ρ∞, damping and period error of a time integrator, and its parameters in every
-/// convention
+/// Print order, spectral radius, damping and period error of a time integrator, and its parameters
+/// in every convention of the literature
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

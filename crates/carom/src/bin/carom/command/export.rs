@@ -18,7 +18,7 @@ Examples:
 pub(crate) struct Arguments {
     /// The run directory
     directory: PathBuf,
-    /// Format
+    /// Format of the output
     #[arg(long, value_enum)]
     format: Format,
     /// The file to write; must not exist yet [default: standard output; required for Parquet]

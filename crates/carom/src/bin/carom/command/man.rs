@@ -7,7 +7,7 @@ use clap::CommandFactory;
 use crate::exit::{Exit, Failure};
 use crate::out;
 
-/// Write the manual pages
+/// Print the manual page of carom, or write those of all commands into a directory
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -19,7 +19,8 @@ Examples:
 pub(crate) struct Arguments {
     /// The directory of a run that ended with exit code 3
     directory: PathBuf,
-    /// Directory of the reduced case; must not exist yet [default: RUN-reduced, RUN-reduced-2, …]
+    /// Directory of the reduced case; must not exist yet [default: DIRECTORY-reduced, or
+    /// DIRECTORY-reduced-2, … if that exists]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

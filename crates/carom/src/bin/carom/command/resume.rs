@@ -12,7 +12,7 @@ use crate::exit::{Exit, Failure};
 use crate::live::{Live, stop_on_signal};
 use crate::{out, simulation, summary};
 
-/// Resume an interrupted run or study; the result is bitwise that of an uninterrupted one
+/// Resume an interrupted run or study; the result is bitwise identical to an uninterrupted one
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,
     /// Number of concurrent arms of a study; results are bitwise identical for any number;
-    /// at most 64, or four per core if that is more [default: all cores]
+    /// at most 64, or four per core if that is more [default: one per core]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     #[command(flatten)]

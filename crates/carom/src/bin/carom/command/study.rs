@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Number of concurrent arms (variants); results are bitwise identical for any number;
-    /// at most 64, or four per core if that is more [default: all cores]
+    /// at most 64, or four per core if that is more [default: one per core]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Do not write the figures or the report page

@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "report")]
     fail_fast: bool,
     /// Number of concurrent runs; results are bitwise identical for any number;
-    /// at most 64, or four per core if that is more [default: all cores]
+    /// at most 64, or four per core if that is more [default: one per core]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Directory of the verification; must not exist yet [default: runs/verify, runs/verify-2, …]
