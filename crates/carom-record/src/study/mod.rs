@@ -16,6 +16,7 @@ mod arms;
 pub mod checks;
 mod claim;
 pub mod compared;
+mod confidence;
 mod convergence;
 mod crosscheck;
 pub mod design;
