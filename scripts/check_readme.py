@@ -35,9 +35,9 @@ def printed(carom):
 
 # What CI does not measure: words of README.md, and the page of the book with the same figures.
 MEASURED = [
-    (r"takes (2\.7 GiB) and (7) s per step on one\s+core \(\d+ \w+ \d{4},\s+`carom run cases/perf/ball", "performance.md",
+    (r"needs (2\.7 GiB) of memory and (7) s per\s+step on one core \(\d+ \w+ \d{4},\s+`carom run cases/perf/ball", "performance.md",
      r"cases/perf/ball\.toml`\), ten steps \| – \| {1}\.\d s, {0} "),
-    (r"Of (400)\s+random plane cases that are hard for\s+contact, (96) %\s.*\(\d+ \w+ \d{4}, `scripts/ladder\.py --seed 1 --count 400`\)",
+    (r"Of (400)\s+random\s+plane\s+cases that are\s+hard for\s+contact, (96) %\s.*\(\d+ \w+ \d{4}, `scripts/ladder\.py --seed 1 --count 400`\)",
      "verification/ladder.md", r"first {0} cases of seed 1.*finished, correct \| [^|]* \| \d+ \({1} %\)"),
 ]
 
