@@ -286,9 +286,9 @@ fn restitution_with_friction_can_create_energy() {
     let (nn, tt, nt) = (1.0 + 3.0 * cos * cos, 1.0 + 3.0 * sin * sin, -3.0 * sin * cos);
     // Impulses for v_n from −1 to 1, and v_t from 0.5 to 0.
     let determinant = nn * tt - nt * nt;
-    let [pn, pt] = [(2.0 * tt + 0.5 * nt) / determinant, (-0.5 * nn - 2.0 * nt) / determinant];
-    let created = 0.5 * 0.5 * pt;
-    assert!(pt.abs() < 0.8 * pn && (created - 0.184_232_86 * 0.625).abs() < 1e-6, "{created}");
+    let [normal, along] = [(2.0 * tt + 0.5 * nt) / determinant, (-0.5 * nn - 2.0 * nt) / determinant];
+    let created = 0.5 * 0.5 * along;
+    assert!(along.abs() < 0.8 * normal && (created - 0.184_232_86 * 0.625).abs() < 1e-6, "{created}");
 
     let guarded = finish(simulation(ROD, &[] as &[&str]));
     let ledger = &guarded.state().ledger;
