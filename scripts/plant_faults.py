@@ -16,6 +16,7 @@ warning, the tests of the package `tests` must detect.
 """
 
 import argparse
+import fcntl
 import io
 import itertools
 import json
@@ -50,6 +51,12 @@ def main():
     if given.check:
         print(f"{len(FAULTS)} faults fit the source")
         return
+    PLACE.mkdir(parents=True, exist_ok=True)
+    lock = (PLACE / "lock").open("w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        sys.exit(f"faults are being planted in {PLACE} already")
     copy()
     if error := build():
         sys.exit(f"the tree does not build:\n{error}")

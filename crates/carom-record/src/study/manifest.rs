@@ -179,8 +179,9 @@ impl StudyManifest {
     pub fn record(&self, directory: &Path, arm: &Arm) -> Result<Option<Run>, RecordError> {
         let path = directory.join(&arm.directory);
         let mut run = path.join("manifest.json").is_file().then(|| Run::open(&path)).transpose()?;
-        if let (Some(run), Some(of)) = (&mut run, arm.role.member.filter(|of| of.member.swapped)) {
-            as_in_arm(&mut run.history, [&self.arms[of.arm].case, &arm.case]);
+        let swapped = arm.role.member.filter(|of| of.member.swapped);
+        if let (Some(run), Some(base)) = (&mut run, swapped.and_then(|of| self.arms.get(of.arm))) {
+            as_in_arm(&mut run.history, [&base.case, &arm.case]);
         }
         Ok(run)
     }
