@@ -3,9 +3,8 @@
 //! Methods are ordered by their mean place over the levels. Of those that are not distinguished
 //! from the best and have the required accuracy, the cheapest is recommended; processor times
 //! within 10 % of the smallest count as equal, and so do all of a design of matched cost; the
-//! smaller error then decides. Nothing is
-//! recommended if only a proxy for the measure of the goal is established, or if none of them
-//! has the required accuracy.
+//! smaller error then decides. Nothing is recommended if only a proxy for the measure of the goal
+//! is established, or if none of them has the required accuracy.
 
 pub use super::confidence::Confidence;
 use super::confidence::{DecidedBy, Evidence, confidence};
@@ -272,7 +271,7 @@ fn passed_by(
         let why = match worst {
             None => "it has no value at another level".to_owned(),
             Some(r) if !r.sound => format!("{} created energy", manifest.arms[r.arm].name),
-            Some(r) => format!("{} has only place {place}", manifest.arms[r.arm].name),
+            Some(r) => format!("{} is only in place {place}", manifest.arms[r.arm].name),
         };
         Some(format!("{method} has a smaller error at this level, {}, but {why}", short(here.error)))
     };

@@ -28,6 +28,7 @@ mod nonsmooth;
 mod obstacles;
 mod overlap;
 mod own;
+mod particle;
 mod placed;
 mod pressing;
 mod prisms;

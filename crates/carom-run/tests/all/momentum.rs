@@ -16,9 +16,10 @@ use carom_run::model::{BodyInstance, LoadsAt, Model};
 use carom_run::{GridReport, LogEvent, Setup, Simulation, State};
 
 use carom_study::Plan;
-use carom_time::{Kernel, Memory, Nonsmooth, PreviousStep, Stage};
+use carom_time::{Kernel, Nonsmooth};
 
 use super::common::{BAR, schemes};
+use super::particle::Particle;
 
 /// Σ over the nodes of a body.
 fn resultant(model: &Model, body: &BodyInstance, vector: &[f64]) -> [f64; 3] {
@@ -28,65 +29,6 @@ fn resultant(model: &Model, body: &BodyInstance, vector: &[f64]) -> [f64; 3] {
         *sum = body.nodes().map(|node| vector[node * d + i]).sum();
     }
     sum
-}
-
-/// A particle of unit mass on which the loads of a body act, without gravity. Its scheme is linear,
-/// so that it has the part of the loads in the sums of M v and M a.
-struct Particle {
-    /// Velocity and acceleration.
-    v: [f64; 3],
-    a: [f64; 3],
-    /// The load at the state, and its time.
-    load: [f64; 3],
-    time: f64,
-    /// The increment of the last step and the velocity at its start.
-    last: [[f64; 3]; 2],
-}
-
-impl Particle {
-    fn new(load: [f64; 3], time: f64) -> Self {
-        Self { v: [0.0; 3], a: load, load, time, last: [[0.0; 3]; 2] }
-    }
-
-    /// One step; without a kernel, by the trapezoidal rule. `load_at`: the load at a time.
-    fn advance(
-        &mut self,
-        kernel: Option<&dyn Kernel>,
-        dt: f64,
-        has_previous: bool,
-        load_at: impl Fn(f64) -> [f64; 3],
-    ) {
-        let end = load_at(self.time + dt);
-        let mut ends = vec![([0.0; 3], self.v, self.a)];
-        let [increment, velocity] = &self.last;
-        let before = has_previous.then_some(PreviousStep { increment, velocity });
-        let mut stage = Stage::default();
-        for k in 0..kernel.map_or(0, Kernel::stages) {
-            let states: Vec<_> = ends.iter().map(|(y, v, a)| (&y[..], &v[..], &a[..])).collect();
-            kernel.unwrap().stage_into(k, dt, &Memory { states: &states, before }, &mut stage);
-            let Stage { weights: w, before: b, .. } = &stage;
-            let at = stage.end * (1.0 - stage.average);
-            let now = if at == 1.0 { end } else { load_at(self.time + at * dt) };
-            let a: [f64; 3] = std::array::from_fn(|i| {
-                (w.external * now[i] + b.external * self.load[i] - b.mass * self.a[i]) / w.mass
-            });
-            let d: [f64; 3] =
-                std::array::from_fn(|i| (a[i] - stage.acceleration.at_start[i]) / stage.acceleration.slope);
-            let mut v = [0.0; 3];
-            stage.velocity.value_into(&d, &mut v);
-            ends.push((d, v, a));
-        }
-        let (d, v, a) = match ends[..] {
-            [_] => {
-                let v = std::array::from_fn(|i| self.v[i] + 0.5 * dt * (self.load[i] + end[i]));
-                ([0.0; 3], v, end)
-            }
-            [.., last] => last,
-            [] => unreachable!(),
-        };
-        self.last = [d, self.v];
-        (self.v, self.a, self.load, self.time) = (v, a, end, self.time + dt);
-    }
 }
 
 struct Balance {
