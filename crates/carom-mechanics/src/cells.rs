@@ -33,7 +33,8 @@ impl Block {
 }
 
 /// Calls `compute(first, numbers, values)` for consecutive cells on all threads, `count` in all,
-/// and `add(cell, numbers)` in the order of the cells. Returns the sum of the values in that order.
+/// and `add(first, numbers)` for such blocks in the order of the cells. Returns the sum of the
+/// values in that order.
 ///
 /// # Errors
 /// The first inverted cell.
@@ -46,10 +47,8 @@ pub(crate) fn for_each(
 ) -> Result<f64, Inverted> {
     let mut sum = 0.0;
     let mut add_all = |block: &Block| {
-        for (k, (local, value)) in block.locals.chunks_exact(numbers).zip(&block.values).enumerate() {
-            sum += value;
-            add(block.first + k, local);
-        }
+        block.values.iter().for_each(|value| sum += value);
+        add(block.first, &block.locals);
     };
     let is_serial = threads.count() == 1 || count < FEW;
     let share = (NEAR / numbers).clamp(1, SHARE);
@@ -76,6 +75,16 @@ pub(crate) fn for_each(
     }
     add_all(&done);
     Ok(sum)
+}
+
+/// The addition of [`for_each`] by one for each cell.
+pub(crate) fn added_one_by_one(
+    numbers: usize,
+    mut add: impl FnMut(usize, &[f64]) + Send,
+) -> impl FnMut(usize, &[f64]) + Send {
+    move |first, locals| {
+        locals.chunks_exact(numbers).enumerate().for_each(|(k, local)| add(first + k, local));
+    }
 }
 
 /// The computation of [`for_each`] by one for each cell.

@@ -164,6 +164,7 @@ impl Preconditioner for Direct {
             };
             let (count, numbers) = (mesh.cell_count(), n + n * n);
             let compute = cells::one_by_one(numbers, compute);
+            let add = cells::added_one_by_one(numbers, add);
             cells::for_each(&model.threads, count, numbers, compute, add)
                 .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
         }

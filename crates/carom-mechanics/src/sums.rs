@@ -5,15 +5,21 @@ const LANES: usize = 8;
 
 /// Scalar product.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (whole, tail) = a.as_chunks::<LANES>();
-    let (other, other_tail) = b.as_chunks::<LANES>();
+    sum([a, b], |[a, b]| a * b)
+}
+
+/// Σ term(aᵢ, bᵢ, …) over vectors of the same length.
+#[inline(always)]
+pub(crate) fn sum<const K: usize>(of: [&[f64]; K], term: impl Fn([f64; K]) -> f64) -> f64 {
+    let (whole, tails) = (of.map(|x| x.as_chunks::<LANES>().0), of.map(|x| x.as_chunks::<LANES>().1));
     let mut sums = [0.0; LANES];
-    for (a, b) in whole.iter().zip(other) {
+    for i in 0..whole[0].len() {
+        let at = whole.map(|x| &x[i]);
         for l in 0..LANES {
-            sums[l] += a[l] * b[l];
+            sums[l] += term(at.map(|x| x[l]));
         }
     }
-    let tail: f64 = tail.iter().zip(other_tail).map(|(a, b)| a * b).sum();
+    let tail: f64 = (0..tails[0].len()).map(|i| term(tails.map(|x| x[i]))).sum();
     sums.iter().sum::<f64>() + tail
 }
 
@@ -41,6 +47,7 @@ mod tests {
         for n in 0..40 {
             let x: Vec<f64> = (1..=n).map(f64::from).collect();
             assert_eq!(dot(&x, &x), f64::from(n * (n + 1) * (2 * n + 1) / 6));
+            assert_eq!(sum([&x, &x, &x], |[a, b, c]| a * b * c), f64::from(n * (n + 1) / 2).powi(2));
             for k in 0..n as usize {
                 let mut other: Vec<f64> = x.iter().map(|x| -x).collect();
                 other[k] = -100.0;

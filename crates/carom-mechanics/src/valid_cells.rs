@@ -109,6 +109,7 @@ fn check_paths(model: &Model, part: &BodyInstance, before: &[f64], now: &[f64]) 
             left.push(cell);
         }
     };
+    let add = cells::added_one_by_one(1, add);
     cells::for_each(&model.threads, body.mesh().cell_count(), 1, compute, add)
         .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
     for cell in left {
@@ -124,7 +125,7 @@ fn margin(model: &Model, part: &BodyInstance, y: &[f64]) -> Result<f64, Rejected
     let mut least = f64::INFINITY;
     let compute =
         |first: usize, margins: &mut [f64], _: &mut [f64]| part.body.cell_margins(first, y, margins);
-    let add = |_: usize, margin: &[f64]| least = least.min(margin[0]);
+    let add = |_: usize, margins: &[f64]| least = margins.iter().fold(least, |least, m| least.min(*m));
     cells::for_each(&model.threads, part.body.mesh().cell_count(), 1, compute, add)
         .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
     Ok(least)

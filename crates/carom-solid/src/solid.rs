@@ -28,6 +28,7 @@ use crate::reference::{self, Degenerate, gradient};
 use crate::shape::{Domain, Hull, Shape};
 use crate::tree::Tree;
 use crate::validity::Validity;
+use constant::Packed;
 
 /// Why a body cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -73,6 +74,8 @@ pub struct Solid<const D: usize, const N: usize, S> {
     thickness: f64,
     /// Quadrature points for forces of each cell.
     places: Vec<Place<D>>,
+    /// Of cells with constant strain, the same for four at once.
+    packed: Vec<Packed<D>>,
     /// Points of the reference cell first, then those of each curved cell.
     points: Vec<Points<D, N>>,
     curved: Vec<bool>,
@@ -120,6 +123,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             density,
             thickness,
             places: Vec::with_capacity(cells),
+            packed: Vec::new(),
             points: pack(force_rules[0].iter().map(|(xi, weight)| (S::gradients(xi), weight))),
             curved: Vec::with_capacity(cells),
             mass_rules,
@@ -168,6 +172,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             solid.places.push(place);
             solid.curved.push(curved);
         }
+        solid.pack_constant();
         Ok(solid)
     }
 

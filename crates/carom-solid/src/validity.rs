@@ -24,6 +24,8 @@ type Differences<const D: usize, const N: usize> = [[Vector<D>; N]; D];
 const BUDGET: usize = 2000;
 /// Halvings of a piece before it counts as not certified.
 const DEEPEST: u32 = 60;
+/// Round-offs that a determinant is above zero if it may fall to a thousandth.
+const FAR: f64 = 1e4;
 /// Tolerance of θ of a loss.
 const TOLERANCE: f64 = 1e-6;
 
@@ -117,41 +119,43 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         }
     }
 
-    /// [`Self::margin`] of simplices of degree 1 from their edges from the first node; `None` if
-    /// one is not certified.
+    /// [`Self::margin`] of simplices of degree 1 from their edges from the first node, the rows of E;
+    /// `None` if one is not certified.
+    ///
+    /// If nodes move by at most m, an edge changes by dE with |dEᵢⱼ| ≤ 2m, and |E⁻¹dE| ≤ 2m r 1ᵀ with
+    /// rᵢ = Σⱼ|E⁻¹ᵢⱼ|, which has the spectral radius 2m Σ|E⁻¹ᵢⱼ|. Where that is at most 0.9,
+    /// det(E + dE) ≥ 0.1ᴰ det E: certified, if det E is far above its round-off, which grows by less
+    /// than 2ᴰ, because m ≤ 0.45 max|Eᵢⱼ|.
     #[inline(always)]
     pub(crate) fn margin_of_edges<T: Real>(&self, edges: &Mat<D, T>) -> Option<T> {
-        let (mut largest, mut sums) = (T::ZERO, [T::ZERO; D]);
+        let (mut largest, mut sum) = (T::ZERO, T::ZERO);
+        let cofactors = edges.cofactor();
         for i in 0..D {
             for j in 0..D {
-                let size = edges.0[i][j].map(f64::abs);
-                (largest, sums[i]) = (largest.max(size), sums[i] + size);
+                largest = largest.max(edges.0[i][j].map(f64::abs));
+                sum = sum + cofactors.0[i][j].map(f64::abs);
             }
         }
-        let free = edges.det() - self.round_off(largest);
-        let is_lost = free.find(|free| free <= 0.0 || free.is_nan()).is_some();
-        (self.is_affine && !is_lost).then(|| self.distance(free, sums))
+        let (det, error) = (edges.det(), self.round_off(largest));
+        let is_lost = (det - error).find(|free| free <= 0.0 || free.is_nan()).is_some();
+        let free = (det - T::of(FAR) * error).max(T::ZERO);
+        (self.is_affine && !is_lost).then(|| T::of(0.449) * free / sum)
     }
 
     /// Distance by which positions may change until a determinant falls by `free`, for differences
     /// whose components have these largest sums.
-    #[inline(always)]
-    fn distance<T: Real>(&self, free: T, sums: [T; D]) -> T {
-        let mut sum = sums[0];
-        for i in 1..D {
-            sum = sum + sums[i];
-        }
-        let of = T::of;
+    fn distance(&self, free: f64, sums: [f64; D]) -> f64 {
+        let sum: f64 = sums.iter().sum();
         let change = match D {
             1 => free,
-            2 => of(2.0) * free / (sum + (sum * sum + of(8.0) * free).map(f64::sqrt)),
+            2 => 2.0 * free / (sum + (sum * sum + 8.0 * free).sqrt()),
             _ => {
                 // With x = free/(D! Eᴰ), less than the exact (1 + x)^(1/D) − 1.
-                let ratio = free / (of(factorial(D)) * power::<D, T>(sum));
-                sum * ratio / (of(D as f64) * (of(1.0) + ratio))
+                let ratio = free / (factorial(D) * power::<D, f64>(sum));
+                sum * ratio / (D as f64 * (1.0 + ratio))
             }
         };
-        of(0.999) * change / of(self.sensitivity)
+        0.999 * change / self.sensitivity
     }
 
     /// Bound of the round-off of a determinant's coefficient for positions of magnitude `largest`

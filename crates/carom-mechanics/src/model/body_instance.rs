@@ -64,6 +64,12 @@ impl BodyInstance {
         &all[nodes.start * d..nodes.end * d]
     }
 
+    /// Its section of a vector over all nodes, to be changed.
+    pub fn of_mut<'a>(&self, all: &'a mut [f64]) -> &'a mut [f64] {
+        let (nodes, d) = (self.nodes(), self.body.mesh().dimension());
+        &mut all[nodes.start * d..nodes.end * d]
+    }
+
     /// Global dofs of a cell, node-major.
     pub fn cell_dofs(&self, cell: usize) -> &[u32] {
         let n = self.body.mesh().element.dofs();
@@ -102,9 +108,7 @@ impl BodyInstance {
                     local.iter_mut().zip(&b).for_each(|(f, b)| *f += phi * volume * b);
                 }
             });
-            for (dof, f) in self.cell_dofs(cell).iter().zip(&local) {
-                force[*dof as usize] += f;
-            }
+            self.body.add_cells(cell, &local, self.of_mut(force));
         }
         failure
     }

@@ -13,7 +13,7 @@ use super::motion::Motions;
 use super::probe::Probe;
 use super::rigid::Mode;
 use crate::cells;
-use crate::sums::dot;
+use crate::sums::{dot, sum};
 
 /// A named support: the dofs whose reaction is recorded.
 pub struct Support {
@@ -150,11 +150,8 @@ impl Model {
         let mut strain = 0.0;
         for part in &self.parts {
             let mesh = part.body.mesh();
-            let add = |cell: usize, local: &[f64]| {
-                for (dof, f) in part.cell_dofs(cell).iter().zip(local) {
-                    force[*dof as usize] += f;
-                }
-            };
+            let own = part.of_mut(force);
+            let add = |first: usize, locals: &[f64]| part.body.add_cells(first, locals, own);
             let compute = |first: usize, local: &mut [f64], energies: &mut [f64]| {
                 of_cells(part, first, local, energies)
             };
@@ -199,7 +196,7 @@ impl Model {
 
     /// Potential of gravity, −f·(y − X): zero in the reference configuration.
     pub fn potential(&self, y: &[f64]) -> f64 {
-        -(0..y.len()).map(|i| self.gravity[i] * (y[i] - self.reference[i])).sum::<f64>()
+        -sum([&self.gravity, y, &self.reference], |[f, y, x]| f * (y - x))
     }
 
     /// Largest angle by which a quadrature point of a body has turned, and largest norm of the

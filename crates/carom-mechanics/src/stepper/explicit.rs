@@ -46,6 +46,7 @@ use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stability::{SAFETY, lumped};
 use crate::state::{HalfStepVelocity, State};
+use crate::sums::sum;
 use crate::timings::timed;
 use crate::workspace::Workspace;
 
@@ -73,7 +74,7 @@ impl Explicit {
 
     /// Updates the kinetic energy ½ Σ m v².
     fn book_kinetic(&self, state: &mut State) {
-        state.ledger.kinetic = 0.5 * self.mass.iter().zip(&state.v).map(|(m, v)| m * v * v).sum::<f64>();
+        state.ledger.kinetic = 0.5 * sum([&self.mass, &state.v], |[m, v]| m * v * v);
     }
 }
 
@@ -126,12 +127,16 @@ impl Explicit {
     /// deformed: Rayleigh's quotient Δy·Δf_int/Δy·MΔy of the mean tangent is at most its largest
     /// ω², and beyond 4/Δt² only if that is. Motion that grows comes to consist of such modes.
     fn check_stability(&self, start: &State, next: &State, dt: f64) -> Result<(), Rejected> {
-        let (mut stiffness, mut inertia) = (0.0, 0.0);
-        for i in (0..self.mass.len()).filter(|&i| self.inverse_mass[i] > 0.0) {
-            let moved = next.y[i] - start.y[i];
-            stiffness += moved * (next.f_internal[i] - start.f_internal[i]);
-            inertia += self.mass[i] * moved * moved;
-        }
+        let moved =
+            |[inverse_mass, before, now]: [f64; 3]| if inverse_mass > 0.0 { now - before } else { 0.0 };
+        let stiffness = sum(
+            [&self.inverse_mass, &start.y, &next.y, &start.f_internal, &next.f_internal],
+            |[inverse, before, now, pulled, pulls]| moved([inverse, before, now]) * (pulls - pulled),
+        );
+        let inertia = sum([&self.mass, &self.inverse_mass, &start.y, &next.y], |[m, free @ ..]| {
+            let moved = moved(free);
+            m * moved * moved
+        });
         let round_off = ROUND_OFF * (start.ledger.kinetic + start.ledger.strain);
         if dt * dt * stiffness > 4.0 * inertia && stiffness > round_off {
             return Err(Rejected::Unstable { longest: 2.0 * (inertia / stiffness).sqrt() });
@@ -178,8 +183,8 @@ impl Explicit {
     /// what grows beyond is instability.
     fn lent(&self, state: &State, dt: f64) -> f64 {
         let factor = 0.125 * dt * dt;
-        let inertia: f64 = self.mass.iter().zip(&state.a).map(|(m, a)| m * a * a).sum();
-        let loads: f64 = self.inverse_mass.iter().zip(&state.f_external).map(|(m, f)| m * f * f).sum();
+        let inertia = sum([&self.mass, &state.a], |[m, a]| m * a * a);
+        let loads = sum([&self.inverse_mass, &state.f_external], |[m, f]| m * f * f);
         (factor * inertia).min(SAFETY * SAFETY * state.ledger.strain + factor * loads)
     }
 

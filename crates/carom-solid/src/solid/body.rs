@@ -35,6 +35,19 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         one_by_one(self, first, y, forces, energies)
     }
 
+    fn add_cells(&self, first: usize, locals: &[f64], sum: &mut [f64]) {
+        let (locals, sum) = (locals.as_chunks::<D>().0.as_chunks::<N>().0, sum.as_chunks_mut::<D>().0);
+        let cells = &self.mesh.cells.as_chunks::<N>().0[first..];
+        for (nodes, local) in cells.iter().zip(locals) {
+            for (node, local) in nodes.iter().zip(local) {
+                let sum = &mut sum[*node];
+                for i in 0..D {
+                    sum[i] += local[i];
+                }
+            }
+        }
+    }
+
     fn cell_tangent(
         &self,
         cell: usize,

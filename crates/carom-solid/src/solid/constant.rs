@@ -5,8 +5,14 @@ use carom_algebra::{Four, Mat, wide};
 
 use super::Solid;
 use crate::body::{Inverted, one_by_one};
-use crate::points::LANES;
+use crate::points::{LANES, Lanes, Mats, set};
 use crate::shape::{Domain, Shape};
+
+/// The maps (∂X/∂ξ)⁻¹ and weights of four consecutive cells.
+pub(super) struct Packed<const D: usize> {
+    maps: Mats<D>,
+    weights: Lanes,
+}
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// Whether F is constant in every cell.
@@ -20,6 +26,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         forces: &mut [f64],
         energies: &mut [f64],
     ) -> Result<(), Inverted> {
+        if !first.is_multiple_of(LANES) {
+            return one_by_one(self, first, y, forces, energies);
+        }
         let blocks = forces.chunks_mut(LANES * N * D).zip(energies.chunks_mut(LANES));
         for (block, (forces, energies)) in blocks.enumerate() {
             let cells = first + block * LANES;
@@ -61,28 +70,52 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         )
     }
 
-    /// Forces and energies of up to four cells; returns false if one is inverted.
+    /// The maps and weights of four cells from the first of every block on.
+    pub(super) fn pack_constant(&mut self) {
+        if !Self::HAS_CONSTANT_STRAIN {
+            return;
+        }
+        let weight = self.points[0].weights[0];
+        let blocks = self.places.chunks(LANES).map(|places| {
+            let mut packed = Packed { maps: [[[0.0; LANES]; D]; D], weights: [0.0; LANES] };
+            for (l, place) in places.iter().enumerate() {
+                set(&mut packed.maps, l, &place.inverse, 1.0);
+                packed.weights[l] = place.volume * weight;
+            }
+            packed
+        });
+        self.packed = blocks.collect();
+    }
+
+    /// Forces and energies of up to four cells, those of a packed block; returns false if one is
+    /// inverted.
     #[inline(always)]
     fn forces_of_four(&self, first: usize, y: &[f64], forces: &mut [f64], energies: &mut [f64]) -> bool {
         let count = energies.len();
-        let (mut local, mut maps) = ([[[0.0; LANES]; D]; D], [[[0.0; LANES]; D]; D]);
-        let mut weights = [0.0; LANES];
-        // The first lane has the gradients and the weight of the one point.
-        let point = &self.points[0];
-        for l in 0..count {
-            let (place, u) = (&self.places[first + l], self.displacements(first + l, y));
-            weights[l] = place.volume * point.weights[0];
-            for i in 0..D {
-                for j in 0..D {
-                    maps[i][j][l] = place.inverse.0[i][j];
-                    let mut sum = 0.0;
-                    for a in 0..N {
-                        sum += u[a][i] * point.gradients[a][j][0];
-                    }
-                    local[i][j][l] = sum;
+        let (reference, y) = (self.mesh.nodes.of_dimension::<D>(), y.as_chunks::<D>().0);
+        let cells = &self.mesh.cells.as_chunks::<N>().0[first..first + count];
+        let mut u = [[[0.0; LANES]; D]; N];
+        for l in 0..LANES {
+            // The last cell again in lanes that are left over.
+            let nodes = &cells[l.min(count - 1)];
+            for a in 0..N {
+                let (now, before) = (&y[nodes[a]], &reference[nodes[a]]);
+                for i in 0..D {
+                    u[a][i][l] = now[i] - before[i];
                 }
             }
         }
+        // ∂u/∂ξ: the edges from the first node, by the lengths of those of the reference cell.
+        let gradients = &self.points[0].gradients;
+        let mut local = [[[0.0; LANES]; D]; D];
+        for i in 0..D {
+            for j in 0..D {
+                for l in 0..LANES {
+                    local[i][j][l] = (u[j + 1][i][l] - u[0][i][l]) * gradients[j + 1][j][0];
+                }
+            }
+        }
+        let Packed { maps, weights } = &self.packed[first / LANES];
         let mut h = [[[0.0; LANES]; D]; D];
         for i in 0..D {
             for j in 0..D {
@@ -103,18 +136,22 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
                         pulled[i][j][l] += stresses[i][k][l] * weights[l] * maps[j][k][l];
                     }
                 }
+                for l in 0..LANES {
+                    pulled[i][j][l] *= gradients[j + 1][j][0];
+                }
             }
         }
-        for a in 0..N {
-            for i in 0..D {
-                let mut sum = [0.0; LANES];
-                for j in 0..D {
-                    for l in 0..LANES {
-                        sum[l] += pulled[i][j][l] * point.gradients[a][j][0];
-                    }
+        for i in 0..D {
+            let mut first = [0.0; LANES];
+            for j in 0..D {
+                for l in 0..LANES {
+                    first[l] -= pulled[i][j][l];
                 }
-                for l in 0..count {
-                    forces[l * N * D + a * D + i] = sum[l];
+            }
+            for l in 0..count {
+                forces[l * N * D + i] = first[l];
+                for j in 0..D {
+                    forces[l * N * D + (j + 1) * D + i] = pulled[i][j][l];
                 }
             }
         }

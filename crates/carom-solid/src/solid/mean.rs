@@ -139,6 +139,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> Body for 
         )
     }
 
+    fn add_cells(&self, first: usize, locals: &[f64], sum: &mut [f64]) {
+        self.solid.add_cells(first, locals, sum);
+    }
+
     fn cell_tangent(
         &self,
         cell: usize,
