@@ -5,6 +5,8 @@
 //! measure, is ±1 for a point, for a curve traversed with the body on its left the tangent rotated
 //! to the right, and for a surface y,₁ × y,₂, its nodes counter-clockwise seen from outside.
 
+use std::sync::OnceLock;
+
 use carom_algebra::Vector;
 
 use crate::quadrature;
@@ -110,6 +112,18 @@ impl FacetShape {
             Self::Q4 => surface::<4, Quad4>(xi),
             Self::Q9 => surface::<9, Quad9>(xi),
         }
+    }
+
+    /// Points spread over a surface, five between two corners, and φᵃ there.
+    pub fn samples(self) -> &'static [([f64; 2], [f64; NODES])] {
+        static KNOWN: [OnceLock<Vec<([f64; 2], [f64; NODES])>>; 9] = [const { OnceLock::new() }; 9];
+        KNOWN[self as usize].get_or_init(|| {
+            let is_triangle = self.corners() == 3;
+            let lines = (0..5_u8).flat_map(|i| (0..if is_triangle { 5 - i } else { 5 }).map(move |j| [i, j]));
+            let at = lines.map(|line| line.map(|k| f64::from(k) / 4.0));
+            let place = |x: [f64; 2]| if is_triangle { x } else { x.map(|x| 2.0 * x - 1.0) };
+            at.map(|x| (place(x), self.functions(place(x)).values)).collect()
+        })
     }
 
     /// ∂²φᵃ/∂ξ∂ξ, ∂²φᵃ/∂ξ∂η and ∂²φᵃ/∂η∂η of a surface: constant or, by central differences of the

@@ -125,7 +125,7 @@ impl NodeToFacet {
     pub(super) fn may_press(&self, node: usize, facet: usize, y: Places) -> bool {
         let Some((own, around)) = &self.own else { return true };
         let Some(around) = around.get(&node) else { return true };
-        let most_opposed = |facet: usize| {
+        let most_opposed = |&facet: &usize| {
             let there = self.primary.facet(facet).at(y, 0.0).normal;
             let cosines = around.iter().map(|&own_facet| own.facet(own_facet).at(y, 0.0).normal.dot(&there));
             cosines.fold(f64::INFINITY, f64::min)
@@ -133,7 +133,7 @@ impl NodeToFacet {
         let here = self.primary.facet(facet).at(y, 0.0);
         let height = (y.at(node) - here.position).dot(&here.normal);
         let sized = |other: usize| (other, self.primary.length(other, y));
-        !is_left(facet, height, || self.primary.across_corners(facet, y).map(sized), most_opposed)
+        !is_left(&facet, height, || self.primary.across_corners(facet, y).map(sized), most_opposed)
     }
 
     /// The same for nodes of the primary side itself.

@@ -23,12 +23,12 @@ const FLUSH: f64 = 0.02;
 /// Whether a facet over which a node has this height is left to one beside it. `beside` gives those
 /// across sharp edges, each with its length; `most_opposed` is the least nᵢ·n for the normal of a
 /// facet.
-pub(super) fn is_left<I: Iterator<Item = (usize, f64)>>(
-    facet: usize,
+pub(super) fn is_left<F, I: Iterator<Item = (F, f64)>>(
+    facet: &F,
     height: f64,
     beside: impl Fn() -> I,
-    most_opposed: impl Fn(usize) -> f64,
+    most_opposed: impl Fn(&F) -> f64,
 ) -> bool {
     most_opposed(facet) > ASIDE
-        && beside().any(|(other, length)| height <= FLUSH * length && most_opposed(other) < OPPOSED)
+        && beside().any(|(other, length)| height <= FLUSH * length && most_opposed(&other) < OPPOSED)
 }

@@ -2,11 +2,10 @@
 //! crosses, else the nearest one that it was not behind before.
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, Tree};
-
 use super::crossing::crossing;
 use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
 use super::patch::place;
+use super::paths::{Paths, path};
 use crate::kinematics::candidate::AROUND;
 use crate::kinematics::{Kinematics, OneWay, SweptPatch};
 use crate::pair::Pair;
@@ -18,50 +17,23 @@ const BEHIND: f64 = 0.02;
 /// neighbouring side.
 const TOGETHER: f64 = 1e-4;
 
-/// Facets near a node, ascending, and the normals of all facets if the side may meet itself.
-pub(super) type Near<'a> = (&'a [usize], &'a [Vector<3>]);
+/// Facets near a node, ascending, and of all facets the boxes of their paths and, if the side may
+/// meet itself, their normals.
+pub(super) type Near<'a> = (&'a [usize], &'a Paths, &'a [Vector<3>]);
 
 impl NodeToPatch {
-    /// Finds the facets that a secondary node, given by index, may meet.
-    pub(super) fn find_into(
-        &self,
-        tree: &Tree,
-        k: usize,
-        before: &[f64],
-        now: &[f64],
-        near: &mut Vec<usize>,
-    ) {
-        let node = self.secondary[k];
-        let path: Bounds = [place(before, node).0, place(now, node).0].iter().collect();
-        tree.find_into(&path.grown(NOISE * path.size()), near);
-    }
-
-    /// Updates the boxes of the facets' paths.
-    pub(super) fn update(&self, tree: &mut Tree, margin: f64, before: &[f64], now: &[f64]) {
-        let swept = |facet: usize| {
-            let [old, new] = [before, now].map(|y| self.primary.bounds(&self.hull, facet, y));
-            let bounds = old.union(&new);
-            bounds.grown(margin * bounds.size())
-        };
-        if tree.is_empty() {
-            *tree = Tree::new(self.primary.all(), swept);
-        } else {
-            tree.update(swept);
-        }
-    }
-
     /// θ and facet of the first crossing of trajectories of a node, of those near it; of facets
     /// that are reached together, one of the side.
     pub(super) fn first(
         &self,
         swept: &mut SweptPatch,
-        (near, normals): Near,
+        (near, paths, normals): Near,
         node: usize,
         before: &[f64],
         now: &[f64],
     ) -> Option<(f64, usize)> {
-        let mut first = [None; 2];
-        for &facet in near {
+        let (mut first, path) = ([None; 2], path(node, [before, now]));
+        for &facet in near.iter().filter(|&&facet| paths.may_cross(&path, facet)) {
             let first = &mut first[usize::from(self.is_met(node, facet, normals))];
             if let Some((theta, _)) = crossing(swept, self.primary.patch(facet), before, now, node)
                 && first.is_none_or(|(least, _)| theta < least)
@@ -79,16 +51,17 @@ impl NodeToPatch {
     pub(super) fn candidate(
         &self,
         swept: &mut SweptPatch,
-        (near, normals): Near,
+        near_by: Near,
         place_of: usize,
         before: &[f64],
         now: &[f64],
     ) -> Option<(usize, [f64; 2])> {
+        let (near, _, normals) = near_by;
         let (node, slack) = (self.secondary[place_of], self.slack(place_of));
         let [start, end] = [before, now].map(|y| place(y, node));
         let is_met = |facet: usize| self.is_met(node, facet, normals);
         let mut closest: Option<(f64, usize, [f64; 2], f64)> = None;
-        let first = self.first(swept, (near, normals), node, before, now);
+        let first = self.first(swept, near_by, node, before, now);
         for &facet in near {
             let patch = self.primary.patch(facet);
             let Some(xi) = patch.closest_point(now, end, REACH) else { continue };
@@ -128,7 +101,7 @@ impl NodeToPatch {
             if first.is_some_and(|(_, facet)| of_sides(facet)) {
                 return None;
             }
-            self.around_end((near, normals), place_of, before, now)
+            self.around_end(near_by, place_of, before, now)
         };
         let of_side = closest.filter(|&(_, facet, ..)| is_met(facet));
         let Some((_, facet, xi, _)) = of_side else { return beside() };
@@ -148,19 +121,22 @@ impl NodeToPatch {
     pub(super) fn elsewhere(
         &self,
         swept: &mut SweptPatch,
-        (near, normals): (&mut Vec<usize>, &[Vector<3>]),
+        (near, paths, normals): (&mut Vec<usize>, &Paths, &[Vector<3>]),
         place_of: usize,
         held: &[Pair],
         [before, now]: [&[f64]; 2],
     ) -> Option<(usize, [f64; 2])> {
-        near.retain(|&facet| held.iter().all(|pair| pair.facet != facet));
+        let node = self.secondary[place_of];
+        let path = path(node, [before, now]);
+        near.retain(|&facet| {
+            held.iter().all(|pair| pair.facet != facet) && paths.may_cross(&path, facet)
+        });
         if near.is_empty() {
             return None;
         }
         let around: Vec<usize> = held.iter().flat_map(|pair| self.primary.ring(pair.facet)).collect();
         near.retain(|facet| !around.contains(facet));
-        let node = self.secondary[place_of];
-        let (_, facet) = self.first(swept, (near, normals), node, before, now)?;
+        let (_, facet) = self.first(swept, (near, paths, normals), node, before, now)?;
         let end = place(now, node);
         let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
         let enters = self.is_met(node, facet, normals)
@@ -175,7 +151,7 @@ impl NodeToPatch {
     /// side, as in the plane.
     fn around_end(
         &self,
-        (near, normals): Near,
+        (near, _, normals): Near,
         place_of: usize,
         before: &[f64],
         now: &[f64],

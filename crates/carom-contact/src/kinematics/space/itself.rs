@@ -62,7 +62,7 @@ impl NodeToPatch {
     pub(super) fn may_take(&self, node: usize, facet: usize, y: &[f64]) -> bool {
         let normal = |facet: usize| self.primary.middle(facet, y).normal;
         self.folds.as_ref().is_none_or(|(folds, side)| folds.met(node, facet, normal) == Some(*side))
-            && self.may_press(node, facet, y)
+            && self.may_press(node, y)(facet)
     }
 
     /// Of facets near a node, those that it may meet at positions with these normals, in either

@@ -17,6 +17,7 @@ mod gap;
 mod itself;
 mod node_to_patch;
 mod passed;
+mod paths;
 mod patch;
 mod with_edges;
 

@@ -17,12 +17,13 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, Hull, Tree};
+use carom_solid::{Bounds, Hull};
 
 use super::boundary::Boundary;
 use super::folds::{PatchFolds, update_normals};
 use super::gap::PatchGap;
-use super::patch::{Feature, cross, place};
+use super::patch::{Feature, PatchPoint, cross, place};
+use super::paths::Paths;
 use crate::kinematics::apart::Apart;
 use crate::kinematics::opposed::is_left;
 use crate::kinematics::tangents::tangents;
@@ -69,8 +70,7 @@ pub struct NodeToPatch {
 /// Reused memory; results do not depend on its content.
 #[derive(Debug)]
 pub(super) struct Tools {
-    /// Boxes of the facets' paths.
-    pub(super) tree: Tree,
+    pub(super) paths: Paths,
     pub(super) apart: Apart,
     pub(super) swept: SweptPatch,
     /// Normals of the facets at the start of a step, if the side may meet itself.
@@ -92,7 +92,7 @@ impl NodeToPatch {
         let both = primary.nodes().iter().chain(&secondary).copied();
         let apart = Apart::new(both, 3, hull.weight());
         let swept = SweptPatch::new(primary.shape());
-        let tools = Mutex::new(Tools { tree: Tree::default(), apart, swept, normals: Vec::new() });
+        let tools = Mutex::new(Tools { paths: Paths::default(), apart, swept, normals: Vec::new() });
         Self {
             secondary,
             primary,
@@ -117,19 +117,21 @@ impl NodeToPatch {
         Self { own: Some(own), ..self }
     }
 
-    /// Whether a node can press on a facet, rather than on one beside it (`opposed.rs`).
-    pub(super) fn may_press(&self, node: usize, facet: usize, y: &[f64]) -> bool {
-        let Some(own) = &self.own else { return true };
-        let around = own.facets_around(node);
-        let most_opposed = |facet: usize| {
-            let there = self.primary.middle(facet, y).normal;
-            let cosines = around.iter().map(|&own_facet| own.middle(own_facet, y).normal.dot(&there));
-            cosines.fold(f64::INFINITY, f64::min)
-        };
-        let here = self.primary.middle(facet, y);
-        let height = (place(y, node) - here.position).dot(&here.normal);
-        let sized = |other: usize| (other, self.primary.patch(other).length(y));
-        !is_left(facet, height, || self.primary.bent_away(facet, y).map(sized), most_opposed)
+    /// The facets on which a node can press, rather than on one beside them (`opposed.rs`).
+    pub(super) fn may_press<'a>(&'a self, node: usize, y: &'a [f64]) -> impl Fn(usize) -> bool + 'a {
+        let around = self.own.as_ref().map(|own| {
+            own.facets_around(node).iter().map(|&facet| own.middle(facet, y).normal).collect::<Vec<_>>()
+        });
+        move |facet| {
+            let Some(around) = &around else { return true };
+            let most_opposed = |there: &PatchPoint| {
+                around.iter().map(|own| own.dot(&there.normal)).fold(f64::INFINITY, f64::min)
+            };
+            let here = self.primary.middle(facet, y);
+            let height = (place(y, node) - here.position).dot(&here.normal);
+            let sized = |other: usize| (self.primary.middle(other, y), self.primary.patch(other).length(y));
+            !is_left(&here, height, || self.primary.bent_away(facet, y).map(sized), most_opposed)
+        }
     }
 
     /// The same for nodes of the primary side itself.
@@ -364,30 +366,35 @@ impl Kinematics for NodeToPatch {
             in_order(pairs);
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { tree, apart, swept, normals } = &mut *tools;
+        let Tools { paths, apart, swept, normals } = &mut *tools;
         if apart.holds(*margin, [before, now]) {
             return changed;
         }
-        self.update(tree, *margin, before, now);
+        paths.update(&self.primary, &self.hull, *margin, [before, now]);
         if self.folds.is_some() {
             update_normals(&self.primary, before, normals);
         }
         let ends = |&node: &usize| [place(before, node).0, place(now, node).0];
-        let paths: Bounds = self.secondary.iter().flat_map(ends).collect();
-        apart.searched([&tree.bounds(), &paths.grown(NOISE * paths.size())], [*margin, NOISE], now);
+        let nodes: Bounds = self.secondary.iter().flat_map(ends).collect();
+        let boxes = [&paths.tree().bounds(), &nodes.grown(NOISE * nodes.size())];
+        apart.searched(boxes, [*margin, NOISE], now);
         let (known, mut next, mut near) = (pairs.len(), 0, Vec::new());
         for (k, &node) in self.secondary.iter().enumerate() {
             let first = next;
             while next < known && pairs[next].node == k {
                 next += 1;
             }
-            self.find_into(tree, k, before, now, &mut near);
+            paths.find_into(node, [before, now], &mut near);
             self.retain_met(node, normals, &mut near);
-            near.retain(|&facet| self.may_press(node, facet, before));
+            if near.is_empty() {
+                continue;
+            }
+            let may_press = self.may_press(node, before);
+            near.retain(|&facet| may_press(facet));
             if next > first {
                 let held = &pairs[first..next];
                 if let Some((facet, [xi, eta])) =
-                    self.elsewhere(swept, (&mut near, normals), k, held, [before, now])
+                    self.elsewhere(swept, (&mut near, paths, normals), k, held, [before, now])
                 {
                     changed = true;
                     pairs.push(Pair { eta, ..Pair::open(k, facet, xi) });
@@ -397,7 +404,8 @@ impl Kinematics for NodeToPatch {
             if near.is_empty() {
                 continue;
             }
-            let Some((facet, [xi, eta])) = self.candidate(swept, (&near, normals), k, before, now) else {
+            let Some((facet, [xi, eta])) = self.candidate(swept, (&near, paths, normals), k, before, now)
+            else {
                 continue;
             };
             let gap = self.gap(facet, [xi, eta], place(now, node), now) + self.slack(k);
@@ -413,18 +421,19 @@ impl Kinematics for NodeToPatch {
 
     fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { tree, swept, normals, .. } = &mut *tools;
-        self.update(tree, Pairing::default().margin, before, now);
+        let Tools { paths, swept, normals, .. } = &mut *tools;
+        paths.update(&self.primary, &self.hull, Pairing::default().margin, [before, now]);
         if self.folds.is_some() {
             update_normals(&self.primary, before, normals);
         }
         let mut near = Vec::new();
         let mut met = |&k: &usize| {
-            self.find_into(tree, k, before, now, &mut near);
             let node = self.secondary[k];
+            paths.find_into(node, [before, now], &mut near);
             self.retain_met(node, normals, &mut near);
-            near.retain(|&facet| self.may_press(node, facet, before));
-            let first = self.first(swept, (&near, normals), node, before, now);
+            let may_press = self.may_press(node, before);
+            near.retain(|&facet| may_press(facet));
+            let first = self.first(swept, (&near, paths, normals), node, before, now);
             let (theta, _) = first.filter(|&(_, facet)| self.is_met(node, facet, normals))?;
             (self.slack(k) == 0.0).then(|| theta.clamp(0.0, 1.0))
         };

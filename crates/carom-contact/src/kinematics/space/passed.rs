@@ -21,7 +21,7 @@ impl NodeToPatch {
     ) -> Option<Passed> {
         let (nodes, boundary) = (self.secondary(), &self.primary);
         let first = *nodes.first()?;
-        let Tools { tree, apart, swept, .. } = tools;
+        let Tools { paths, apart, swept, .. } = tools;
         // Within one piece, a path may begin and end on either side of its own boundary.
         let folds = self.folds.as_ref();
         if folds.is_some_and(|(folds, _)| !folds.has_pieces()) {
@@ -47,11 +47,11 @@ impl NodeToPatch {
         if of_body + of_nodes <= 2.0 * SHARE * shortest {
             return None;
         }
-        self.update(tree, 0.0, before, now);
+        paths.update(boundary, &self.hull, 0.0, [before, now]);
         let (mut between, mut near) = (None, Vec::new());
         let mut worst: Option<Passed> = None;
         for (k, &node) in nodes.iter().enumerate() {
-            self.find_into(tree, k, before, now, &mut near);
+            paths.find_into(node, [before, now], &mut near);
             near.retain(|&facet| bounds(node, facet));
             let relative = |&other: &usize| (path(node) - path(other)).norm();
             let far = near.iter().any(|&facet| {
@@ -69,7 +69,7 @@ impl NodeToPatch {
             let mut way = OnWay {
                 boundary,
                 bounds: &bounds,
-                tree,
+                tree: paths.tree(),
                 between: between.get_or_insert_with(|| Between::new([before, now])),
                 before,
                 node,

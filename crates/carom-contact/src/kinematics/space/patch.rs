@@ -4,7 +4,7 @@
 //! The derivative of −d·τ_α by ξ_β is A_αβ = τ_α·τ_β − d·∂²y/∂ξ_α∂ξ_β; A > 0 marks a minimum.
 
 use carom_algebra::{Mat, Vector};
-use carom_solid::FacetShape;
+use carom_solid::{FacetShape, Net};
 use carom_solid::shape::line_shape;
 
 /// Positions of nodes in space, flat.
@@ -55,8 +55,6 @@ pub(crate) enum Feature {
 const STEPS: usize = 40;
 /// How far beyond an edge, over the height of the facet, the search of a point on it may go.
 const PASSES: f64 = 0.25;
-/// Points between two corners from which the search of a closest point begins.
-const SAMPLES: usize = 4;
 
 impl PatchPoint {
     /// τ_α·τ_β.
@@ -202,16 +200,14 @@ impl Patch<'_> {
 
     fn nearest_sample(&self, y: &[f64], from: Vector<3>) -> [f64; 2] {
         let mut best = ([0.0; 2], f64::INFINITY);
-        for i in 0..=SAMPLES {
-            let count = if self.corners() == 3 { SAMPLES - i } else { SAMPLES };
-            for j in 0..=count {
-                let [s, t] = [i, j].map(|k| k as f64 / SAMPLES as f64);
-                let xi = if self.corners() == 3 { [s, t] } else { [2.0 * s - 1.0, 2.0 * t - 1.0] };
-                let d = self.offset(from, y, xi);
-                let square = d.dot(&d);
-                if square < best.1 {
-                    best = (xi, square);
-                }
+        let mut nodes = [Vector::ZERO; Net::POINTS];
+        nodes.iter_mut().zip(self.nodes).for_each(|(x, &node)| *x = place(y, node) - from);
+        for (xi, values) in self.shape.samples() {
+            let terms = nodes[..self.nodes.len()].iter().zip(values);
+            let d = terms.fold(Vector::ZERO, |sum, (x, value)| sum + *x * *value);
+            let square = d.dot(&d);
+            if square < best.1 {
+                best = (*xi, square);
             }
         }
         best.0
@@ -225,6 +221,9 @@ impl Patch<'_> {
         let inside = inside.map(|xi| Nearest { xi, at: Feature::Inside, distance: distance(xi) });
         let mut nearest = inside;
         for edge in 0..self.corners() {
+            if nearest.is_some_and(|nearest| nearest.distance < self.edge_bound(y, from, edge)) {
+                continue;
+            }
             let s = self.nearest_on_edge(y, from, edge);
             let xi = self.along(edge, s);
             let found = distance(xi);
@@ -238,6 +237,24 @@ impl Patch<'_> {
             }
         }
         nearest.unwrap_or(Nearest { xi: self.corner(0), at: Feature::Corner(0), distance: f64::INFINITY })
+    }
+
+    /// A lower bound of the distance to an edge: that to the box around its nodes, grown by what the
+    /// curve through them may exceed it, (Σ|φ| − 1)/2 ≤ 0.32 of its extents.
+    fn edge_bound(&self, y: &[f64], from: Vector<3>, edge: usize) -> f64 {
+        let (nodes, count) = self.shape.edge(edge);
+        let mut square = 0.0;
+        for i in 0..3 {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for &node in &nodes[..count] {
+                let x = y[3 * self.nodes[node] + i] - from[i];
+                (low, high) = (low.min(x), high.max(x));
+            }
+            let beyond = if count > 2 { 0.32 * (high - low) } else { 0.0 };
+            let away = (low - beyond).max(-beyond - high).max(0.0);
+            square += away * away;
+        }
+        square.sqrt()
     }
 
     /// s of the nearest point of an edge: the best sample, refined between its neighbours by
