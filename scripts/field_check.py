@@ -35,8 +35,9 @@ for its secondary bodies and for all bodies that start above it.
 Self-penetration: if facets that are not neighbours cross, depth of the points x of the outline with
 winding number w(x) > 1. Here w is the sum of the angles under which x sees the oriented outline,
 divided by 2π, the interior angle at x itself over 2π where nothing overlaps, and one more inside
-another part. Depth: distance to the facets that are neither the own one nor its neighbours.
-Limit 0.1 h.
+another part. Depth: distance to the facets that are neither the own one nor its neighbours, but for
+those across a crease, where the interior angle is above 270 degrees: its two walls close on each
+other. Limit 0.1 h.
 
 Inverted: the determinant of a cell's map, relative to its corners' order, is not positive at one of
 the 153 points with coordinates k/16. (The triangle of the corners of a curved cell may turn over
@@ -139,6 +140,10 @@ def boundary(cells):
     return np.array(order), np.array(loops)
 
 
+def wrapped(angle):
+    return (angle + np.pi) % (2 * np.pi) - np.pi
+
+
 class Outline:
     """Outline of one body: topology and, after `at`, the samples of one instant."""
 
@@ -150,6 +155,7 @@ class Outline:
         self.slopes = slopes(self.p)
         self.nodes, first = np.unique(self.facets, return_index=True)
         self.node_facet = first // (self.p + 1)
+        self.turns = np.zeros(len(self.facets))
         self.at(reference)
         self.h = np.linalg.norm(np.diff(self.samples, axis=1), axis=2).sum(1)
         self.sag = self.turning() / (8 * self.p**2)
@@ -157,6 +163,7 @@ class Outline:
     def at(self, position):
         self.position = position
         self.samples = np.einsum("ki,fid->fkd", self.matrix, position[self.facets])
+        self.follow_turns()
         # Straight facets need one segment.
         s = self.samples[:, :: PARTS if self.p == 1 else 1]
         self.a, self.b = s[:, :-1].reshape(-1, 2), s[:, 1:].reshape(-1, 2)
@@ -179,13 +186,21 @@ class Outline:
             following[members[-1]] = members[0]
         return following
 
+    def angles(self):
+        """Directions of the segments of each facet."""
+        d = np.diff(self.samples, axis=1)
+        return np.arctan2(d[..., 1], d[..., 0])
+
+    def follow_turns(self):
+        """Angle by which the outline turns at the end of each facet, negative at a concave corner; it is
+        followed over the fields, because a crease may close beyond -180 degrees."""
+        angle = self.angles()
+        self.turns += wrapped(angle[self.neighbour(), 0] - angle[:, -1] - self.turns)
+
     def turning(self):
         """Largest angle over which a facet and the vertex after it turn; corners do not count."""
-        d = np.diff(self.samples, axis=1)
-        angle = np.arctan2(d[..., 1], d[..., 0])
-        wrap = lambda x: (x + np.pi) % (2 * np.pi) - np.pi
-        inside = np.abs(wrap(np.diff(angle, axis=1)).sum(1))
-        vertex = np.abs(wrap(angle[self.neighbour(), 0] - angle[:, -1]))
+        inside = np.abs(wrapped(np.diff(self.angles(), axis=1)).sum(1))
+        vertex = np.abs(wrapped(self.turns))
         return float((inside + np.where(vertex > CORNER, 0.0, vertex)).max())
 
     def inside(self, x):
@@ -251,6 +266,8 @@ class Outline:
         inside = angle.sum(1) / (2 * np.pi) > 1 + 1e-6
         if not inside.any():
             return 0.0
+        crease = self.turns < -np.pi / 2
+        near[np.arange(n)[crease], following[crease]] = near[following[crease], np.arange(n)[crease]] = False
         depth, _ = self.distance(x[inside], near[own[inside]])
         return float((depth / self.h[own[inside]]).max())
 

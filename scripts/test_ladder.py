@@ -197,6 +197,26 @@ class Geometry(unittest.TestCase):
             # 0.1.
             self.assertLessEqual(depth, 0.05 / body.h.min() + 0.1)
 
+    def test_the_walls_of_a_crease_overlap_by_their_distance(self):
+        # A notch in the upper side, whose walls lean over each other.
+        left, right, low = (-1.0, 1.0), (1.0, 1.0), (-1.0, -1.0)
+        points = [low, (1.0, -1.0), right, (0.1, 1.0), (0.05, 0.5), (0.0, 0.0), (-0.05, 0.5), (-0.1, 1.0), left]
+        triangles = [(0, 1, 5), (1, 2, 5), (2, 3, 4), (2, 4, 5), (5, 6, 8), (6, 7, 8), (0, 5, 8)]
+        for p in (1, 2):
+            reference, cells = elevated(points, triangles, p)
+            body = fc.Outline(cells, reference)
+            self.assertEqual(body.self_depth(), 0.0)
+            for over in (0.004, 0.05):
+                moved = reference.copy()
+                wall = reference[:, 1] > 0
+                # From the tips on both walls: by 0.1 + over at the top.
+                amount = (0.1 + over) * reference[wall, 1]
+                moved[wall, 0] -= np.where(np.abs(reference[wall, 0]) < 0.5, np.sign(reference[wall, 0]) * amount, 0)
+                body.at(moved)
+                found = body.self_depth()
+                self.assertLess(found * body.h.min(), 2.1 * over)
+                self.assertGreater(found * body.h.max(), over)
+
     def test_plane(self):
         body = outline(*square((0, 0), 2, 0.5, 2), moved=(0.0, -0.1))
         nodes, edges = fc.plane_depths(body, np.zeros(2), np.array([0.0, 1.0]), body.nodes)
