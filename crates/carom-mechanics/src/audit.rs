@@ -122,7 +122,7 @@ pub fn audit(model: &Model, before: &[f64], now: &[f64], measured: Depths) -> Re
             }
             for (node, depth) in outside {
                 // A path is measured at a few instants: its largest depth may be missed by a part.
-                let limit = allowed(node) + contact.depths[0].max(PASSED) * longest;
+                let limit = allowed(node) + contact.depths.kinks.max(PASSED) * longest;
                 if depth > 2.0 * limit + SAME * longest {
                     return Err(AuditFailure::Passed { node, body: part.name.clone(), depth });
                 }

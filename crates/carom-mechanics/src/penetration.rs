@@ -8,9 +8,9 @@
 use carom_contact::{Rows, Side};
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Contact, Model};
+use crate::model::{BodyInstance, Contact, Model};
 use crate::rejected::Rejected;
-use crate::skins::{BodySkin, folding_skin, length, part_of, skin};
+use crate::skins::{BodySkin, folding_skin, kinks, length, part_of, skin};
 use crate::state::State;
 use crate::tips::{Pierced, Tip};
 use crate::watched::{Way, edge_points, has_gaps, watched};
@@ -19,15 +19,26 @@ use crate::watched::{Way, edge_points, has_gaps, watched};
 #[derive(Debug, Default)]
 pub struct Penetration {
     skins: Vec<Option<BodySkin>>,
+    /// Nodes at the kinks of each body that must not be entered.
+    kinks: Vec<Vec<usize>>,
     pub(crate) ways: Vec<Way>,
     tips: Vec<Tip>,
     /// Positions to which the clearances refer.
     y: Vec<f64>,
     /// Bodies whose skins have their positions of this step.
     current: Vec<bool>,
-    /// Depths of the active pairs of a contact and lengths of their facets, by node.
-    paired: Vec<(usize, f64, f64)>,
+    /// Depths of the active pairs of a contact, lengths of their facets, and whether those are at a
+    /// kink, by node.
+    paired: Vec<(usize, f64, Entered)>,
     rows: Option<Rows>,
+}
+
+/// A facet that a node entered.
+#[derive(Clone, Copy, Debug)]
+struct Entered {
+    length: f64,
+    /// Whether it has a node at a kink.
+    is_at_kink: bool,
 }
 
 /// Largest depths of nodes of the sides of contacts in the other body, ≥ 0.
@@ -123,7 +134,12 @@ impl Penetration {
             let folds = of_body.any(|way| way.itself.is_some());
             if folds { folding_skin(model, part) } else { skin(part) }
         };
-        Self { skins: (0..model.parts.len()).map(skin).collect(), ways, tips, ..Self::default() }
+        let skins: Vec<_> = (0..model.parts.len()).map(skin).collect();
+        let of_body = |(part, skin): (&BodyInstance, &Option<BodySkin>)| {
+            skin.as_ref().map_or_else(Vec::new, |_| kinks(model, part))
+        };
+        let kinks = model.parts.iter().zip(&skins).map(of_body).collect();
+        Self { skins, kinks, ways, tips, ..Self::default() }
     }
 
     /// Penetration at the state.
@@ -189,8 +205,10 @@ impl Penetration {
         let (node, facet, depth) = skin.deepest_in_itself(y)?;
         let length = length(model, skin.facet_nodes(facet));
         // Chords do not tell smaller depths from none.
-        (depth > CHORDS * length)
-            .then_some((body, Inside { node, what: What::Node, depth, limit: contact.depths[1] * length }))
+        (depth > CHORDS * length).then_some((
+            body,
+            Inside { node, what: What::Node, depth, limit: contact.depths.others * length },
+        ))
     }
 
     /// The round parts of rigid obstacles that may have met a body, with contact and body.
@@ -238,11 +256,16 @@ impl Penetration {
         way: usize,
         state: Option<&State>,
     ) -> (Depths, Option<Inside>) {
-        let Self { skins, ways, y, current, paired, rows, .. } = self;
+        let Self { skins, kinks, ways, y, current, paired, rows, .. } = self;
         let Way { contact, body, itself, nodes, first, .. } = &mut ways[way];
         let (mut deepest, mut worst) = (Depths::default(), None::<Inside>);
         let Some(skin) = skins[*body].as_mut() else { return (deepest, worst) };
         paired.clear();
+        let kinks = &kinks[*body];
+        let of_facet = |facet: &[usize]| Entered {
+            length: length(model, facet),
+            is_at_kink: facet.iter().any(|node| kinks.binary_search(node).is_ok()),
+        };
         if let (Some(k), Some(state)) = (*contact, state)
             && nodes.iter().any(|watched| watched.clearance <= 0.0)
         {
@@ -264,7 +287,7 @@ impl Penetration {
                 if contact.kinematics.measure(&mut pair, y, rows).is_ok() {
                     let node = contact.kinematics.secondary()[pair.node];
                     let facet = contact.kinematics.facet_nodes(&pair);
-                    paired.push((node, (-rows.row(0).gap).max(0.0), length(model, facet)));
+                    paired.push((node, (-rows.row(0).gap).max(0.0), of_facet(facet)));
                 }
             }
             // A node in a concave corner has two pairs: the deeper one counts.
@@ -287,11 +310,12 @@ impl Penetration {
                 if !std::mem::replace(&mut current[*body], true) {
                     skin.update(y);
                 }
-                let entered = |facet: usize| length(model, skin.facet_nodes(facet));
+                let entered = |facet: usize| of_facet(skin.facet_nodes(facet));
                 if let Some(side) = *itself {
                     let found = skin.depth_of(node, side, watched.reach, y);
                     watched.clearance = found.map_or(watched.reach, |found| found.distance);
-                    found.map_or((0.0, 0.0), |found| (-found.distance - watched.kept, entered(found.facet)))
+                    let Some(found) = found else { continue };
+                    (-found.distance - watched.kept, entered(found.facet))
                 } else {
                     // No deeper than any point of the boundary is away: neither the deepest nor too
                     // deep.
@@ -299,7 +323,7 @@ impl Penetration {
                     let point = watched.point(y, model.dimension);
                     if let Some((facet, xi)) = watched.near {
                         let bound = skin.distance(facet, xi, point, y);
-                        if bound <= known && bound <= watched.limit(entered(facet)) {
+                        if bound <= known && bound <= watched.limit(entered(facet).length) {
                             continue;
                         }
                     }
@@ -314,7 +338,13 @@ impl Penetration {
                 *first = k;
             }
             deepest.add(depth, watched.constrained);
-            let limit = watched.limit(entered);
+            let mut limit = watched.limit(entered.length);
+            if watched.constrained
+                && entered.is_at_kink
+                && let Some(k) = *contact
+            {
+                limit = limit.max(model.contacts[k].depths.kinks * entered.length);
+            }
             if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
                 let what = if watched.between.is_empty() { What::Node } else { What::Edge };
                 worst = Some(Inside { node, what, depth, limit });
@@ -367,4 +397,56 @@ const CHORDS: f64 = 0.01;
 /// Square of the distance between two positions of a node.
 fn square(a: &[f64], b: &[f64], dimension: usize, node: usize) -> f64 {
     (dimension * node..dimension * (node + 1)).map(|dof| (a[dof] - b[dof]).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_solid::{Element, Law, generate};
+
+    use super::*;
+    use crate::model::{Loads, Motions};
+    use crate::testing::{contact, model, parts};
+
+    /// What is too deep where a block of this many cells lies this deep in a wider one, whose facets
+    /// are 0.5 long, from x = 0 to 4, in the plane or in space.
+    fn too_deep(dimension: usize, cells: usize, from: f64, depth: f64) -> Option<Inside> {
+        let (wide, high) = (0.5 * cells as f64, 1.0 - depth);
+        let law = Law::NeoHookean { lambda: 1.0, mu: 1.0 };
+        let (meshes, [below, above]) = if dimension == 2 {
+            let block = |min, max, cells| generate::rectangle(Element::T3, min, max, cells).unwrap();
+            let upper = block([from, high], [from + wide, high + 1.0], [cells, 1]);
+            ([block([0.0, 0.0], [4.0, 1.0], [8, 2]), upper], ["bottom", "top"])
+        } else {
+            let block = |min, max, cells| generate::cuboid(Element::Tet4, min, max, cells).unwrap();
+            let upper = block([from, 1.2, high], [from + wide, 1.2 + wide, high + 1.0], [cells, cells, 1]);
+            ([block([0.0; 3], [4.0, 4.0, 1.0], [8, 8, 2]), upper], ["bottom", "top"])
+        };
+        let parts = parts(meshes, law, 1.0);
+        let mut strike = contact(&parts, (1, below), (0, above));
+        let mesh = parts[0].body.mesh();
+        let facets = mesh.sides[above].iter().map(|facet| facet.nodes.clone()).collect();
+        strike.facets.push((mesh.element.facet_shape(), facets));
+        let model = model(parts, &[], Motions::default(), Loads::default(), vec![strike]);
+        let mut penetration = Penetration::of_contacts(&model);
+        penetration.begin(&model, &model.reference);
+        (0..penetration.ways.len()).find_map(|way| penetration.deepest(&model, way, None).1)
+    }
+
+    #[test]
+    fn constrained_nodes_are_held_to_a_millionth_of_a_facet_away_from_kinks() {
+        for dimension in [2, 3] {
+            for (depth, is_too_deep) in [(4e-7, false), (6e-7, true)] {
+                let found = too_deep(dimension, 3, 1.2, depth);
+                assert_eq!(found.is_some(), is_too_deep, "{dimension} {depth}");
+                if let Some(found) = found {
+                    assert!((found.depth - depth).abs() < 1e-12 && (found.limit - 5e-7).abs() < 1e-12);
+                }
+            }
+            // The block with one cell has no other nodes but its corners.
+            for (depth, is_too_deep) in [(4e-3, false), (6e-3, true)] {
+                let found = too_deep(dimension, 1, 1.2, depth);
+                assert_eq!(found.is_some(), is_too_deep, "{dimension} {depth}: {found:?}");
+            }
+        }
+    }
 }

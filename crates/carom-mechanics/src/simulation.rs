@@ -338,7 +338,7 @@ impl Simulation {
 fn nothing_passed(model: &Model, before: &[f64], now: &[f64]) -> Result<(), Rejected> {
     for contact in &model.contacts {
         if let Some(Passed { what, node, depth, limit }) =
-            contact.kinematics.passed(before, now, contact.depths[0])
+            contact.kinematics.passed(before, now, contact.depths.kinks)
         {
             return Err(Rejected::Passed { contact: contact.name.clone(), what, node, depth, limit });
         }

@@ -138,6 +138,17 @@ fn surface(part: &BodyInstance) -> ClosedSurface {
     ClosedSurface::new(Boundary::new(shape, &skin_facets(part), &[], 0))
 }
 
+/// Nodes of a body's boundary at convex kinks of more than 30° in the reference configuration,
+/// ascending.
+pub(crate) fn kinks(model: &Model, part: &BodyInstance) -> Vec<usize> {
+    let (shape, facets) = (part.body.mesh().element.facet_shape(), skin_facets(part));
+    match shape.dimension() {
+        2 => Surface::new(shape, &facets, &vec![1.0; facets.len()]).corners(&model.reference),
+        3 => Boundary::new(shape, &facets, &[], 0).nodes_of_sharp_edges(&model.reference, |_, _| false),
+        _ => Vec::new(),
+    }
+}
+
 /// The same as [`skin`] for its own nodes too.
 pub(crate) fn folding_skin(model: &Model, part: &BodyInstance) -> Option<BodySkin> {
     let (pieces, first, reference) = (part.body.mesh().pieces(), part.first_node, &model.reference);

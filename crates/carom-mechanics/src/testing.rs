@@ -3,7 +3,7 @@
 use carom_contact::{Boundary, Detection, Kinematics, NodeToFacet, NodeToPatch, Surface, Unilateral};
 use carom_solid::{Law, LoadedSide, Mesh, body};
 
-use crate::model::{BodyInstance, Contact, Loads, Mass, Model, Motions, gap_tolerance};
+use crate::model::{AllowedDepths, BodyInstance, Contact, Loads, Mass, Model, Motions, gap_tolerance};
 
 /// Bodies of one material, with consecutive node numbers.
 pub(crate) fn parts(meshes: impl IntoIterator<Item = Mesh>, law: Law, density: f64) -> Vec<BodyInstance> {
@@ -52,7 +52,7 @@ pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary:
         primary_part: Some(primary.0),
         itself: false,
         facets: vec![(shape(secondary.0), facets(secondary))],
-        depths: [0.01, 0.1],
+        depths: AllowedDepths { smooth: 1e-6, kinks: 0.01, others: 0.1 },
         friction: None,
         augmentation: None,
         predictor: false,

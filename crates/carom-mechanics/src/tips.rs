@@ -91,7 +91,7 @@ impl Tip {
         let nodes = 0..contact.kinematics.secondary().len();
         let kept = nodes.map(|node| contact.kinematics.kept(node)).fold(0.0, f64::max);
         let facet = skin.facet_nodes(found.facet);
-        let limit = SHARE.max(contact.depths[1]) * length(model, facet);
+        let limit = SHARE.max(contact.depths.others) * length(model, facet);
         Some(Pierced { node: facet[0], depth: radius - found.distance - kept, limit })
     }
 }

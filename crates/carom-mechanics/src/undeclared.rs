@@ -155,7 +155,7 @@ impl Covered {
             let (Some(a), Some(b)) = (contact.primary_part, secondary_part(model, contact)) else { continue };
             let covered = all.entry((a.min(b), a.max(b))).or_default();
             covered.nodes.extend(contact.facets.iter().flat_map(|(_, facets)| facets).flatten());
-            covered.share = covered.share.max(contact.depths[1]);
+            covered.share = covered.share.max(contact.depths.others);
             covered.kept = kept_depths(contact).into_values().fold(covered.kept, f64::max);
         }
         all
@@ -182,7 +182,8 @@ fn beside(model: &Model) -> Vec<Beside> {
         };
         let facets = skin_facets(&model.parts[body]);
         let nodes = lengths(model, &facets).filter(is_beside);
-        let nodes: Vec<_> = nodes.map(|(node, length)| (node, contact.depths[1] * length + kept)).collect();
+        let nodes: Vec<_> =
+            nodes.map(|(node, length)| (node, contact.depths.others * length + kept)).collect();
         if !nodes.is_empty() {
             all.push(Beside { body, contact: k, nodes });
         }

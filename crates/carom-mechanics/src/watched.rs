@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use carom_contact::{Boundary, Side};
 
 use crate::model::{Contact, Model};
-use crate::skins::{length, position, skin_facets, skin_nodes};
+use crate::skins::{kinks, length, part_of, position, skin_facets, skin_nodes};
 
 /// Nodes of a side against a body.
 #[derive(Debug)]
@@ -67,12 +67,14 @@ impl Way {
                 *shortest = shortest.min(length);
             }
         }
+        let kinks = primary_part.map_or_else(Vec::new, |part| kinks(model, &model.parts[part]));
         let watched = |(node, longest)| {
             let constrained = side == Side::Later
                 || earlier.get(&node).is_some_and(|&place| kinematics.allowed(place) == 0.0);
             // Before a node can enter a facet that it does not meet yet, the boundary folds.
             let reach = 0.5 * shortest.get(&node).copied().unwrap_or(f64::INFINITY);
-            Watched { reach, ..Watched::new(node, longest, constrained, depths[usize::from(!constrained)]) }
+            let is_kink = kinks.binary_search(&node).is_ok();
+            Watched { reach, ..Watched::new(node, longest, constrained, depths.of(constrained, is_kink)) }
         };
         let nodes = lengths(model, facets).map(watched).collect();
         Self { itself: Some(side), ..Self::new(model, Some(contact), primary_part.unwrap_or(0), nodes) }
@@ -119,10 +121,13 @@ pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -
     let strict = nodes.filter(|(k, _)| contact.kinematics.allowed(*k) == 0.0).map(|(_, &node)| node);
     let strict: HashSet<usize> = strict.collect();
     let kept = kept_depths(contact);
+    let part = facets.first().and_then(|facet| part_of(model, facet[0]));
+    let kinks = part.map_or_else(Vec::new, |part| kinks(model, &model.parts[part]));
     let watched = |(node, length)| {
         let constrained = strict.contains(&node);
         let kept = kept.get(&node).copied().unwrap_or(0.0);
-        Watched { kept, ..Watched::new(node, length, constrained, contact.depths[usize::from(!constrained)]) }
+        let share = contact.depths.of(constrained, kinks.binary_search(&node).is_ok());
+        Watched { kept, ..Watched::new(node, length, constrained, share) }
     };
     lengths(model, facets).map(watched).collect()
 }
@@ -161,7 +166,7 @@ pub(crate) fn edge_points(
             between.iter().filter_map(|(node, _)| of.get(node)).fold(0.0, |most: f64, x| most.max(*x))
         };
         let (length, kept, node) = (largest(&longest), largest(&kept), between[0].0);
-        Watched { between, kept, ..Watched::new(node, length, false, contact.depths[1]) }
+        Watched { between, kept, ..Watched::new(node, length, false, contact.depths.others) }
     };
     points.into_iter().map(watched).collect()
 }

@@ -5,6 +5,17 @@ use carom_solid::FacetShape;
 
 use super::friction::Friction;
 
+/// Allowed depths of nodes, over the length of a facet.
+#[derive(Clone, Copy, Debug)]
+pub struct AllowedDepths {
+    /// Of nodes that the contact constrains, away from kinks of over 30° of either side.
+    pub smooth: f64,
+    /// Of nodes that it constrains, at such kinks.
+    pub kinks: f64,
+    /// Of other nodes of its sides.
+    pub others: f64,
+}
+
 /// A contact: relative position of its surfaces, contact law, and treatment by the schemes.
 #[allow(clippy::struct_excessive_bools)] // Each is a choice of the case, independent of the others.
 pub struct Contact {
@@ -21,9 +32,8 @@ pub struct Contact {
     /// Facets of either side in global nodes with their shape, for consistent weights; the
     /// secondary side first; once if the side is in contact with itself.
     pub facets: Vec<(FacetShape, Vec<Vec<usize>>)>,
-    /// Allowed depth, over the length of a facet, of nodes that the contact constrains, and of
-    /// other nodes of its sides: a step in which a node is deeper is rejected.
-    pub depths: [f64; 2],
+    /// A step in which a node is deeper is rejected.
+    pub depths: AllowedDepths,
     /// Friction.
     pub friction: Option<Friction>,
     /// Springs of its augmented Lagrangian.
@@ -55,5 +65,16 @@ impl Contact {
     /// Whether it is a constraint whose closed gaps do no work.
     pub(crate) fn conserves(&self) -> bool {
         self.interface.is_constraint() && self.interface.direction() == Direction::DiscreteGradient
+    }
+}
+
+impl AllowedDepths {
+    /// Of a node that the contact constrains or not, at a kink of its own side or not.
+    pub(crate) fn of(self, constrained: bool, is_kink: bool) -> f64 {
+        match (constrained, is_kink) {
+            (true, false) => self.smooth,
+            (true, true) => self.kinks,
+            (false, _) => self.others,
+        }
     }
 }

@@ -14,7 +14,7 @@ mod rigid;
 mod whole;
 
 pub use body_instance::BodyInstance;
-pub use contact::{Augmentation, Contact};
+pub use contact::{AllowedDepths, Augmentation, Contact};
 pub use formulas::{NoValue, value};
 pub use friction::Friction;
 pub use loads::{Amplitude, Load, Loads, LoadsAt};

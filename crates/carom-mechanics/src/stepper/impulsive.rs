@@ -286,7 +286,7 @@ fn sinks_slowly(model: &Model, before: &State, now: &State) -> Result<(), Reject
         for pair in now.pairs[k].iter().filter(|pair| pair.active) {
             let [start, end] = [before, now].map(|at| -gap_at(contact, &mut pair.clone(), &at.y, &mut row));
             let depth = end - start.max(0.0);
-            let bound = SINKS * contact.depths[0] * length(model, contact.kinematics.facet_nodes(pair));
+            let bound = SINKS * contact.depths.kinks * length(model, contact.kinematics.facet_nodes(pair));
             if depth > bound {
                 return Err(Rejected::Deep { depth, bound });
             }

@@ -4,14 +4,14 @@
 use std::collections::HashMap;
 
 use carom_case::{
-    ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, FrictionSpec, ObstacleMotion,
-    Persistency, Problem, load_variables,
+    ActiveSetRule, Case, ContactLaw, ContactSpec, Detection, Enforcement, ForceTime, FrictionSpec,
+    ObstacleMotion, Persistency, Problem, load_variables,
 };
 use carom_contact::{
     Augmented, ConservingPenalty, ConservingUnilateral, Direction, Kinematics, NodeToObstacle, Obstacle,
     Penalty, Unilateral,
 };
-use carom_mechanics::model::{Augmentation, BodyInstance, Contact, Friction};
+use carom_mechanics::model::{AllowedDepths, Augmentation, BodyInstance, Contact, Friction};
 use carom_solid::FacetShape;
 
 use super::between_sides::{Bodies, Which, longest, without};
@@ -127,8 +127,16 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
         },
         // A law on velocities lets positions drift.
         depths: match (spec.enforcement.is_exact(), spec.law) {
-            (true, Some(ContactLaw::Position | ContactLaw::Predictor)) => [0.01, 0.1],
-            _ => [0.25; 2],
+            (true, Some(ContactLaw::Position | ContactLaw::Predictor)) => AllowedDepths {
+                // A frozen contact point is not the closest one, and springs leave a part of the gap.
+                smooth: match (spec.enforcement, spec.detection) {
+                    (Enforcement::Multiplier, Detection::ClosestPoint) => 1e-6,
+                    _ => 0.01,
+                },
+                kinks: 0.01,
+                others: 0.1,
+            },
+            _ => AllowedDepths { smooth: 0.25, kinks: 0.25, others: 0.25 },
         },
         friction,
         augmentation: (spec.enforcement == Enforcement::Augmented)

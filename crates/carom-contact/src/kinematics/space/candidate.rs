@@ -1,7 +1,6 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the nearest one that it was not behind before.
 
-use carom_algebra::Vector;
 use super::crossing::crossing;
 use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
 use super::patch::place;
@@ -9,6 +8,7 @@ use super::paths::{Paths, path};
 use crate::kinematics::candidate::AROUND;
 use crate::kinematics::{Kinematics, OneWay, SweptPatch};
 use crate::pair::Pair;
+use carom_algebra::Vector;
 
 /// A node this far behind a facet, relative to its length, at the start of a step has not crossed
 /// it.
@@ -128,9 +128,7 @@ impl NodeToPatch {
     ) -> Option<(usize, [f64; 2])> {
         let node = self.secondary[place_of];
         let path = path(node, [before, now]);
-        near.retain(|&facet| {
-            held.iter().all(|pair| pair.facet != facet) && paths.may_cross(&path, facet)
-        });
+        near.retain(|&facet| held.iter().all(|pair| pair.facet != facet) && paths.may_cross(&path, facet));
         if near.is_empty() {
             return None;
         }

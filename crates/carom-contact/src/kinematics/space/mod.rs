@@ -17,8 +17,8 @@ mod gap;
 mod itself;
 mod node_to_patch;
 mod passed;
-mod paths;
 mod patch;
+mod paths;
 mod with_edges;
 
 pub use boundary::Boundary;

@@ -4,8 +4,8 @@
 //! The derivative of −d·τ_α by ξ_β is A_αβ = τ_α·τ_β − d·∂²y/∂ξ_α∂ξ_β; A > 0 marks a minimum.
 
 use carom_algebra::{Mat, Vector};
-use carom_solid::{FacetShape, Net};
 use carom_solid::shape::line_shape;
+use carom_solid::{FacetShape, Net};
 
 /// Positions of nodes in space, flat.
 pub(crate) fn place(y: &[f64], node: usize) -> Vector<3> {
