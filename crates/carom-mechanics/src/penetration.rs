@@ -407,8 +407,8 @@ mod tests {
     use crate::model::{Loads, Motions};
     use crate::testing::{contact, model, parts};
 
-    /// What is too deep where a block of this many cells lies this deep in a wider one, whose facets
-    /// are 0.5 long, from x = 0 to 4, in the plane or in space.
+    /// What is too deep where a block of this many cells lies this deep in a wider one, whose
+    /// facets are 0.5 long, from x = 0 to 4, in the plane or in space.
     fn too_deep(dimension: usize, cells: usize, from: f64, depth: f64) -> Option<Inside> {
         let (wide, high) = (0.5 * cells as f64, 1.0 - depth);
         let law = Law::NeoHookean { lambda: 1.0, mu: 1.0 };

@@ -48,8 +48,8 @@ pub trait Body: Send + Sync {
         one_by_one(self, first, y, forces, energies)
     }
 
-    /// Adds the nodal vectors of consecutive cells from `first` on, `N·D` numbers each, to `sum`, one
-    /// over all nodes.
+    /// Adds the nodal vectors of consecutive cells from `first` on, `N·D` numbers each, to `sum`,
+    /// one over all nodes.
     fn add_cells(&self, first: usize, locals: &[f64], sum: &mut [f64]);
 
     /// As [`Self::cell_force`], and overwrites `tangent` (`(N·D)²`, row-major, symmetric, both

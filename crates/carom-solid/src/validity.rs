@@ -119,13 +119,13 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         }
     }
 
-    /// [`Self::margin`] of simplices of degree 1 from their edges from the first node, the rows of E;
-    /// `None` if one is not certified.
+    /// [`Self::margin`] of simplices of degree 1 from their edges from the first node, the rows of
+    /// E; `None` if one is not certified.
     ///
-    /// If nodes move by at most m, an edge changes by dE with |dEᵢⱼ| ≤ 2m, and |E⁻¹dE| ≤ 2m r 1ᵀ with
+    /// If nodes move by at most m, E changes by dE with |dEᵢⱼ| ≤ 2m, and |E⁻¹dE| ≤ 2m r 1ᵀ with
     /// rᵢ = Σⱼ|E⁻¹ᵢⱼ|, which has the spectral radius 2m Σ|E⁻¹ᵢⱼ|. Where that is at most 0.9,
-    /// det(E + dE) ≥ 0.1ᴰ det E: certified, if det E is far above its round-off, which grows by less
-    /// than 2ᴰ, because m ≤ 0.45 max|Eᵢⱼ|.
+    /// det(E + dE) ≥ 0.1ᴰ det E: certified, if det E is far above its round-off, which grows by
+    /// less than 2ᴰ, because m ≤ 0.45 max|Eᵢⱼ|.
     #[inline(always)]
     pub(crate) fn margin_of_edges<T: Real>(&self, edges: &Mat<D, T>) -> Option<T> {
         let (mut largest, mut sum) = (T::ZERO, T::ZERO);

@@ -128,7 +128,7 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
         // A law on velocities lets positions drift.
         depths: match (spec.enforcement.is_exact(), spec.law) {
             (true, Some(ContactLaw::Position | ContactLaw::Predictor)) => AllowedDepths {
-                // A frozen contact point is not the closest one, and springs leave a part of the gap.
+                // A frozen contact point is not the closest one; springs leave a part of the gap.
                 smooth: match (spec.enforcement, spec.detection) {
                     (Enforcement::Multiplier, Detection::ClosestPoint) => 1e-6,
                     _ => 0.01,

@@ -239,8 +239,8 @@ impl Patch<'_> {
         nearest.unwrap_or(Nearest { xi: self.corner(0), at: Feature::Corner(0), distance: f64::INFINITY })
     }
 
-    /// A lower bound of the distance to an edge: that to the box around its nodes, grown by what the
-    /// curve through them may exceed it, (Σ|φ| − 1)/2 ≤ 0.32 of its extents.
+    /// A lower bound of the distance to an edge: that to the box around its nodes, grown by what
+    /// the curve through them may exceed it, (Σ|φ| − 1)/2 ≤ 0.32 of its extents.
     fn edge_bound(&self, y: &[f64], from: Vector<3>, edge: usize) -> f64 {
         let (nodes, count) = self.shape.edge(edge);
         let mut square = 0.0;
