@@ -257,5 +257,7 @@ mod constant;
 mod integrals;
 mod mean;
 mod rotation;
+#[cfg(test)]
+mod rules;
 
 pub use mean::MeanDilatation;
