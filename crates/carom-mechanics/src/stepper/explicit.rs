@@ -30,17 +30,10 @@
 //! The first step, and one of another size, starts with v_{n−½} := v_n − Δt/2 M⁻¹f_n; a contact
 //! force at t_n then acts over a whole step.
 
-use carom_algebra::{Kind, complementarity, coulomb, proximal};
-use carom_contact::{Pair, Pairing, Rows, Tangential, inner};
-
-use super::forward::Forward;
-use super::rubbing::{combined, friction_state, kind, loose};
-use super::scratch::Scratch;
-use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, moves, overconstrained};
+use super::increments::Increments;
+use super::watch::{active, approach, depth};
 use super::{Accepted, StepReport, Stepper, difference};
-use crate::contact_update::search;
 use crate::friction_state::{book_states, each_slip};
-use crate::independent::is_dependent;
 use crate::ledger::book_contact_forces;
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -49,9 +42,6 @@ use crate::state::{HalfStepVelocity, State};
 use crate::sums::sum;
 use crate::timings::timed;
 use crate::workspace::Workspace;
-
-/// Linearisations of the gaps in a step before it is rejected; two to five are typical.
-const ROUNDS: u32 = 60;
 
 /// Work of internal forces, relative to the energies, that may be round-off.
 const ROUND_OFF: f64 = 1e-12;
@@ -172,7 +162,7 @@ impl Explicit {
         // Gaps are closed to a tolerance, over which the work of their forces is not known.
         let pressed = |state: &State| state.pairs.iter().flatten().map(|pair| -pair.lambda).sum::<f64>();
         next.ledger.unbooked += model.gap_tolerance * (pressed(start) + pressed(next));
-        next.ledger.unbooked += self.lent(next, dt) - self.lent(start, dt);
+        next.ledger.unbooked += self.lent(model, next, dt) - self.lent(model, start, dt);
         next.ledger.potential = model.potential(&next.y);
         self.book_kinetic(next);
     }
@@ -181,10 +171,14 @@ impl Explicit {
     /// the half steps, and v_{n−½}·M v_{n+½}/2 changes by the works. A step of a share of the limit
     /// lends at most the square of that share of the strain energy, and Δt²/8 f·M⁻¹f of the loads:
     /// what grows beyond is instability.
-    fn lent(&self, state: &State, dt: f64) -> f64 {
+    fn lent(&self, model: &Model, state: &State, dt: f64) -> f64 {
         let factor = 0.125 * dt * dt;
         let inertia = sum([&self.mass, &state.a], |[m, a]| m * a * a);
-        let loads = sum([&self.inverse_mass, &state.f_external], |[m, f]| m * f * f);
+        let loads = if model.loads.is_empty() {
+            0.0
+        } else {
+            sum([&self.inverse_mass, &state.f_external], |[m, f]| m * f * f)
+        };
         (factor * inertia).min(SAFETY * SAFETY * state.ledger.strain + factor * loads)
     }
 
@@ -202,7 +196,7 @@ impl Explicit {
         let before: Vec<f64> = (0..state.v.len()).map(|i| state.v[i] - 0.5 * dt * free(i)).collect();
         let (velocity, kinetic) = (state.v.clone(), state.ledger.kinetic);
         let last = state.half_step.dt;
-        let lent = self.lent(state, last);
+        let lent = self.lent(model, state, last);
         self.advance_half_step(model, state, &before, dt, work, report)?;
         if state.pairs.iter().flatten().all(|p| !p.active) {
             // Without contact v_n remains bitwise unchanged.
@@ -212,7 +206,7 @@ impl Explicit {
         self.book_kinetic(state);
         // A shorter step lends less, and what is not lent any more is created.
         if last > 0.0 {
-            state.ledger.unbooked += self.lent(state, dt) - lent;
+            state.ledger.unbooked += self.lent(model, state, dt) - lent;
         }
         report.begun = state.ledger.kinetic - kinetic;
         state.ledger.contact_work += report.begun;
@@ -238,10 +232,20 @@ impl Explicit {
             state.a[i] =
                 self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
         }
+        if model.contacts.is_empty() {
+            state.half_step.velocity.resize(before.len(), 0.0);
+            for i in 0..before.len() {
+                state.half_step.velocity[i] = before[i] + dt * state.a[i];
+                state.v[i] = before[i] + 0.5 * dt * state.a[i];
+            }
+            (state.half_step.longest, state.half_step.dt) = (dt, dt);
+            return Ok(());
+        }
         let mut velocity = std::mem::take(&mut state.half_step.velocity);
         let Workspace { explicit: scratch, timings, .. } = work;
         let is_behind = timed(&mut timings.contact, || {
-            self.contact(model, state, before, dt, &mut velocity, scratch, report)
+            let step = Increments { model, state, before, dt, inverse_mass: &self.inverse_mass };
+            step.solve(&mut velocity, scratch, report)
         })?;
         let HalfStepVelocity { longest, .. } = &mut state.half_step;
         *longest = if is_behind { longest.max(dt) } else { dt };
@@ -265,221 +269,4 @@ impl Explicit {
         (state.half_step.velocity, state.half_step.dt) = (velocity, dt);
         Ok(())
     }
-
-    /// Pairs with the forces that make y_n + Δt v_{n+½} admissible, and that velocity; the
-    /// gradients of their rows are those at y_n. Returns whether a pair is behind its facet at y_n.
-    #[allow(clippy::too_many_arguments)]
-    fn contact(
-        &self,
-        model: &Model,
-        state: &State,
-        before: &[f64],
-        dt: f64,
-        velocity: &mut Vec<f64>,
-        scratch: &mut Scratch,
-        report: &mut StepReport,
-    ) -> Result<bool, Rejected> {
-        let tolerance = model.gap_tolerance;
-        let Scratch {
-            free, at, pairings, rows, impulses, places, loaded, acting, slips, along, kinds, ..
-        } = scratch;
-        let laws = model.friction_laws(state.time)?;
-        places.clear();
-        acting.clear();
-        along.clear();
-        kinds.clear();
-        free.clear();
-        free.extend(before.iter().zip(&state.a).map(|(v, a)| v + dt * a));
-        carry_into(model, state, Pairing::near, pairings);
-        let mut row = Rows::new(model.dimension);
-        at.resize(free.len(), 0.0);
-        velocity.clone_from(free);
-        let mut is_behind = false;
-        // Contact, node and facet of the rows that were last examined, and whether they depend on
-        // each other: their gradients are those at y_n in every round.
-        let (mut examined, mut dependent) = (Vec::new(), false);
-        for round in 0..=ROUNDS {
-            Forward { state, before, velocity, dt }.place(0.0, at);
-            loaded.clear();
-            loaded.extend(forces(pairings));
-            search(model, &state.y, at, pairings, &mut report.events);
-            // A force handed to another facet acts along another row. Gaps of new pairs are
-            // measured below with all others.
-            let moved_on = !forces(pairings).eq(loaded.iter().copied());
-            measure_into(model, &state.y, pairings, rows)?;
-            // Gaps at the positions of the law replace those at y_n; a violated pair joins the
-            // working set and stays.
-            let mut worst = 0.0_f64;
-            for (k, contact) in model.contacts.iter().enumerate() {
-                if pairings[k].pairs.is_empty() {
-                    continue;
-                }
-                let motion = Forward { state, before, velocity, dt };
-                is_behind |= motion.gaps_of_law(
-                    contact,
-                    &mut pairings[k].pairs,
-                    &mut rows[k],
-                    tolerance,
-                    at,
-                    &mut row,
-                );
-                for (p, pair) in pairings[k].pairs.iter_mut().enumerate() {
-                    let gap = rows[k].row(p).gap;
-                    let wrong = if pair.lambda < 0.0 { gap.abs() } else { -gap };
-                    if -gap > tolerance && !moves(model, rows[k].row(p)) {
-                        return Err(overconstrained(contact, pair, gap));
-                    }
-                    worst = worst.max(wrong);
-                    pair.active |= wrong > tolerance;
-                }
-            }
-            if worst <= tolerance && !moved_on {
-                break;
-            }
-            if round == ROUNDS {
-                return Err(Rejected::Unsettled { rounds: ROUNDS, gap: worst });
-            }
-            report.newton += 1;
-            places.clear();
-            places.extend(active(pairings).filter(|&(k, p)| moves(model, rows[k].row(p))));
-            acting.clear();
-            places.iter().for_each(|&(k, p)| acting.push_row(rows[k].row(p)));
-            kinds.clear();
-            kinds.resize(places.len(), Kind::Normal);
-            impulses.clear();
-            impulses.extend(places.iter().map(|&(k, p)| -pairings[k].pairs[p].lambda));
-            along.clear();
-            for (i, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
-                let Some(law) = laws[k].get(pairings[k].pairs[p].node) else { continue };
-                let pair = &mut pairings[k].pairs[p];
-                slips.clear();
-                slip_into(model, state, (k, pair), slips)?;
-                let kind = kind(law, i, state, (k, pair), slips, before);
-                for part in loose(model, slips, free) {
-                    acting.push_combined(slips, 0, &part[..slips.len()]);
-                    along.push(part);
-                    kinds.push(kind);
-                    impulses.push(-inner(part, pair.tangential.traction));
-                }
-            }
-            let (mut matrix, mut right) = self.matrix(acting, at);
-            for (i, &(k, p)) in places.iter().enumerate() {
-                let leaves = pairings[k].pairs[p].start.is_some();
-                let restitution = if leaves { 0.0 } else { model.contacts[k].restitution };
-                right[i] = (1.0 + restitution) * rows[k].row(p).gap / (dt * dt)
-                    - (0..kinds.len()).map(|j| matrix[i * kinds.len() + j] * impulses[j]).sum::<f64>();
-            }
-            for i in places.len()..kinds.len() {
-                right[i] = acting.row(i).along(free) / dt;
-            }
-            let named = |&(k, p): &(usize, usize)| {
-                let pair = &pairings[k].pairs[p];
-                (k, pair.node, pair.facet)
-            };
-            if !places.iter().map(named).eq(examined.iter().copied()) {
-                examined.clear();
-                examined.extend(places.iter().map(named));
-                dependent = is_dependent(model, acting.iter().take(places.len()))
-                    || model.dimension == 3 && is_dependent(model, acting.iter());
-            }
-            if dependent {
-                proximal(&mut matrix, &mut right, impulses);
-            }
-            if kinds.len() > places.len() {
-                coulomb(&matrix, &right, kinds, impulses)?;
-            } else {
-                complementarity(&matrix, &right, impulses)?;
-            }
-            for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
-                (pair.lambda, pair.tangential.traction) = (0.0, [0.0; 2]);
-            }
-            for (row, force) in acting.iter().zip(impulses.iter()) {
-                row.add_to(*force, at);
-            }
-            for (&(k, p), force) in places.iter().zip(impulses.iter()) {
-                pairings[k].pairs[p].lambda = -force;
-            }
-            for (of, force) in combined(kinds, along, &impulses[places.len()..]) {
-                let (k, p) = places[of];
-                let traction = &mut pairings[k].pairs[p].tangential.traction;
-                (0..2).for_each(|a| traction[a] -= force[a]);
-            }
-            for i in 0..free.len() {
-                velocity[i] = free[i] + dt * self.inverse_mass[i] * at[i];
-            }
-        }
-        // The last search may have added and removed pairs, but none with a force.
-        let pressing: Vec<_> = pressing(pairings).collect();
-        let mut pressing = pressing.into_iter();
-        let now = |force: &f64| if *force > 0.0 { pressing.next() } else { None };
-        let now: Vec<_> = impulses[..places.len()].iter().map(now).collect();
-        let slipped: Vec<f64> =
-            acting.iter().skip(places.len()).map(|row| dt * row.along(velocity)).collect();
-        for ((of, slip), kind) in combined(kinds, along, &slipped).zip(&kinds[places.len()..]) {
-            let Some((k, p)) = now[of] else { continue };
-            let tangential = &mut pairings[k].pairs[p].tangential;
-            tangential.friction_state = friction_state(*kind, impulses[of], tangential.traction.map(|q| -q));
-            (0..2).for_each(|a| tangential.slip[a] += slip[a]);
-        }
-        for (contact, pairing) in model.contacts.iter().zip(pairings) {
-            for pair in &mut pairing.pairs {
-                (pair.active, pair.start) = (pair.lambda < 0.0, None);
-                if !pair.active {
-                    pair.tangential = Tangential::default();
-                }
-                if pair.active {
-                    // The recorded contact point is that of the force: at y_n.
-                    gap_at(contact, pair, &state.y, &mut row);
-                }
-            }
-        }
-        Ok(is_behind)
-    }
-
-    /// G M⁻¹Gᵀ over these rows, and room for a right-hand side. `column` is overwritten by zeros.
-    fn matrix(&self, rows: &Rows, column: &mut [f64]) -> (Vec<f64>, Vec<f64>) {
-        let count = rows.len();
-        let mut matrix = vec![0.0; count * count];
-        column.fill(0.0);
-        for (j, row) in rows.iter().enumerate() {
-            for (dof, slope) in row.entries() {
-                column[dof] = self.inverse_mass[dof] * slope;
-            }
-            for (i, other) in rows.iter().enumerate() {
-                matrix[i * count + j] = other.along(column);
-            }
-            row.entries().for_each(|(dof, _)| column[dof] = 0.0);
-        }
-        (matrix, vec![0.0; count])
-    }
-}
-
-/// Adds H at y_n of a pair, which keeps the tangents there.
-fn slip_into(
-    model: &Model,
-    state: &State,
-    (k, pair): (usize, &mut Pair),
-    rows: &mut Rows,
-) -> Result<(), Rejected> {
-    let (contact, mut at) = (&model.contacts[k], *pair);
-    let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
-    contact.kinematics.measure(&mut at, &state.y, rows).map_err(failed)?;
-    rows.pop();
-    let first = rows.len();
-    contact.kinematics.slip(&at, &state.y, &[], rows).map_err(failed)?;
-    pair.tangential.tangents = rows.tangents(first);
-    Ok(())
-}
-
-/// Contact and index of the pairs with a force.
-fn pressing(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize)> {
-    pairings.iter().enumerate().flat_map(|(k, pairing)| {
-        let loaded = pairing.pairs.iter().enumerate().filter(|(_, pair)| pair.lambda < 0.0);
-        loaded.map(move |(p, _)| (k, p))
-    })
-}
-
-/// Contact, node and facet of the pairs with a force.
-fn forces(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize, usize)> {
-    pressing(pairings).map(|(k, p)| (k, pairings[k].pairs[p].node, pairings[k].pairs[p].facet))
 }

@@ -6,6 +6,7 @@ mod implicit;
 mod impulses;
 mod impulsive;
 mod in_velocity;
+mod increments;
 mod meetings;
 mod rubbing;
 mod scratch;
@@ -23,6 +24,7 @@ use crate::penetration::Depths;
 use crate::rejected::Rejected;
 use crate::settings::Linear;
 use crate::state::State;
+use crate::sums::max_abs;
 use crate::timings::timed;
 use crate::workspace::Workspace;
 
@@ -66,7 +68,7 @@ impl Accepted {
         for (what, values) in
             [("a position", &state.y), ("a velocity", &state.v), ("an acceleration", &state.a)]
         {
-            if values.iter().any(|x| !x.is_finite()) {
+            if max_abs(values).is_infinite() {
                 return Err(Rejected::NotFinite { what });
             }
         }

@@ -1,0 +1,296 @@
+//! Contact forces of an explicit step, by forward increments: P_n such that y_n + Δt v_{n+½} is
+//! admissible (`explicit.rs`). With linearised gaps they solve a complementarity problem with
+//! G M⁻¹Gᵀ, with friction one of both forces; the linearisation is repeated.
+
+use carom_algebra::{Kind, complementarity, coulomb, proximal};
+use carom_contact::{Law, Pair, Pairing, Rows, Tangential, inner};
+
+use super::StepReport;
+use super::forward::Forward;
+use super::rubbing::{combined, friction_state, kind, loose};
+use super::scratch::Scratch;
+use super::watch::{active, carry_into, gap_at, measure_into, moves, overconstrained};
+use crate::contact_update::search;
+use crate::independent::is_dependent;
+use crate::model::Model;
+use crate::rejected::Rejected;
+use crate::state::State;
+
+/// Linearisations of the gaps in a step before it is rejected; two to five are typical.
+const ROUNDS: u32 = 60;
+
+/// A step from y_n and v_{n−½}.
+pub(super) struct Increments<'a> {
+    pub model: &'a Model,
+    /// With y_n and the acceleration without contact.
+    pub state: &'a State,
+    /// v_{n−½}.
+    pub before: &'a [f64],
+    pub dt: f64,
+    /// 1/m per dof; zero if constrained.
+    pub inverse_mass: &'a [f64],
+}
+
+/// The gaps at the end of a step, as the law takes them.
+struct Gaps {
+    /// The largest that must not be.
+    worst: f64,
+    /// Whether a force was handed to another facet, and acts along another row.
+    moved_on: bool,
+    /// Whether a pair is behind its facet at y_n.
+    is_behind: bool,
+}
+
+/// Whether rows depend on each other. Their gradients are those at y_n in every round, so that it
+/// is found once for the same contacts, nodes and facets.
+#[derive(Default)]
+struct Dependence {
+    examined: Vec<(usize, usize, usize)>,
+    is_dependent: bool,
+}
+
+impl Increments<'_> {
+    /// Leaves in `scratch` the pairs with the forces that make y_n + Δt v_{n+½} admissible, whose
+    /// rows have the gradients at y_n, and that velocity in `velocity`. Returns whether a pair is
+    /// behind its facet at y_n.
+    pub(super) fn solve(
+        &self,
+        velocity: &mut Vec<f64>,
+        scratch: &mut Scratch,
+        report: &mut StepReport,
+    ) -> Result<bool, Rejected> {
+        let (model, tolerance) = (self.model, self.model.gap_tolerance);
+        let laws = model.friction_laws(self.state.time)?;
+        scratch.places.clear();
+        scratch.acting.clear();
+        scratch.along.clear();
+        scratch.kinds.clear();
+        scratch.free.clear();
+        scratch.free.extend(self.before.iter().zip(&self.state.a).map(|(v, a)| v + self.dt * a));
+        carry_into(model, self.state, Pairing::near, &mut scratch.pairings);
+        scratch.at.resize(scratch.free.len(), 0.0);
+        velocity.clone_from(&scratch.free);
+        let mut row = Rows::new(model.dimension);
+        let (mut is_behind, mut dependence) = (false, Dependence::default());
+        for round in 0..=ROUNDS {
+            let gaps = self.gaps(velocity, scratch, &mut row, report)?;
+            is_behind |= gaps.is_behind;
+            if gaps.worst <= tolerance && !gaps.moved_on {
+                break;
+            }
+            if round == ROUNDS {
+                return Err(Rejected::Unsettled { rounds: ROUNDS, gap: gaps.worst });
+            }
+            report.newton += 1;
+            self.choose_rows(&laws, scratch)?;
+            self.find_impulses(&mut dependence, scratch)?;
+            self.apply(velocity, scratch);
+        }
+        self.note_slips(velocity, scratch);
+        for (contact, pairing) in model.contacts.iter().zip(&mut scratch.pairings) {
+            for pair in &mut pairing.pairs {
+                (pair.active, pair.start) = (pair.lambda < 0.0, None);
+                if pair.active {
+                    // The recorded contact point is that of the force: at y_n.
+                    gap_at(contact, pair, &self.state.y, &mut row);
+                } else {
+                    pair.tangential = Tangential::default();
+                }
+            }
+        }
+        Ok(is_behind)
+    }
+
+    /// Searches pairs for the motion with this velocity and measures their gaps; a violated pair
+    /// joins the working set and stays.
+    fn gaps(
+        &self,
+        velocity: &[f64],
+        scratch: &mut Scratch,
+        row: &mut Rows,
+        report: &mut StepReport,
+    ) -> Result<Gaps, Rejected> {
+        let (model, state, tolerance) = (self.model, self.state, self.model.gap_tolerance);
+        let Scratch { at, pairings, rows, loaded, .. } = scratch;
+        let motion = Forward { state, before: self.before, velocity, dt: self.dt };
+        motion.place(0.0, at);
+        loaded.clear();
+        loaded.extend(forces(pairings));
+        search(model, &state.y, at, pairings, &mut report.events);
+        // Gaps of new pairs are measured below with all others.
+        let moved_on = !forces(pairings).eq(loaded.iter().copied());
+        measure_into(model, &state.y, pairings, rows)?;
+        let mut gaps = Gaps { worst: 0.0, moved_on, is_behind: false };
+        for (k, contact) in model.contacts.iter().enumerate() {
+            let pairs = &mut pairings[k].pairs;
+            if pairs.is_empty() {
+                continue;
+            }
+            // Gaps at the positions of the law replace those at y_n.
+            gaps.is_behind |= motion.gaps_of_law(contact, pairs, &mut rows[k], tolerance, at, row);
+            for (p, pair) in pairs.iter_mut().enumerate() {
+                let gap = rows[k].row(p).gap;
+                let wrong = if pair.lambda < 0.0 { gap.abs() } else { -gap };
+                if -gap > tolerance && !moves(model, rows[k].row(p)) {
+                    return Err(overconstrained(contact, pair, gap));
+                }
+                gaps.worst = gaps.worst.max(wrong);
+                pair.active |= wrong > tolerance;
+            }
+        }
+        Ok(gaps)
+    }
+
+    /// The rows that impulses act along, those of the gaps and then of slips, with their last
+    /// impulses.
+    fn choose_rows(&self, laws: &[Vec<Law>], scratch: &mut Scratch) -> Result<(), Rejected> {
+        let (model, state) = (self.model, self.state);
+        let Scratch { free, pairings, rows, impulses, places, acting, slips, along, kinds, .. } = scratch;
+        places.clear();
+        places.extend(active(pairings).filter(|&(k, p)| moves(model, rows[k].row(p))));
+        acting.clear();
+        places.iter().for_each(|&(k, p)| acting.push_row(rows[k].row(p)));
+        kinds.clear();
+        kinds.resize(places.len(), Kind::Normal);
+        impulses.clear();
+        impulses.extend(places.iter().map(|&(k, p)| -pairings[k].pairs[p].lambda));
+        along.clear();
+        for (i, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
+            let Some(law) = laws[k].get(pairings[k].pairs[p].node) else { continue };
+            let pair = &mut pairings[k].pairs[p];
+            slips.clear();
+            slip_into(model, state, (k, pair), slips)?;
+            let kind = kind(law, i, state, (k, pair), slips, self.before);
+            for part in loose(model, slips, free) {
+                acting.push_combined(slips, 0, &part[..slips.len()]);
+                along.push(part);
+                kinds.push(kind);
+                impulses.push(-inner(part, pair.tangential.traction));
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves the small problem of these rows.
+    fn find_impulses(&self, dependence: &mut Dependence, scratch: &mut Scratch) -> Result<(), Rejected> {
+        let (model, dt) = (self.model, self.dt);
+        let Scratch { free, at, pairings, rows, impulses, places, acting, kinds, .. } = scratch;
+        let (mut matrix, mut right) = self.matrix(acting, at);
+        for (i, &(k, p)) in places.iter().enumerate() {
+            let leaves = pairings[k].pairs[p].start.is_some();
+            let restitution = if leaves { 0.0 } else { model.contacts[k].restitution };
+            right[i] = (1.0 + restitution) * rows[k].row(p).gap / (dt * dt)
+                - (0..kinds.len()).map(|j| matrix[i * kinds.len() + j] * impulses[j]).sum::<f64>();
+        }
+        for i in places.len()..kinds.len() {
+            right[i] = acting.row(i).along(free) / dt;
+        }
+        let named = |&(k, p): &(usize, usize)| {
+            let pair = &pairings[k].pairs[p];
+            (k, pair.node, pair.facet)
+        };
+        let Dependence { examined, is_dependent: dependent } = dependence;
+        if !places.iter().map(named).eq(examined.iter().copied()) {
+            examined.clear();
+            examined.extend(places.iter().map(named));
+            *dependent = is_dependent(model, acting.iter().take(places.len()))
+                || model.dimension == 3 && is_dependent(model, acting.iter());
+        }
+        if *dependent {
+            proximal(&mut matrix, &mut right, impulses);
+        }
+        if kinds.len() > places.len() {
+            coulomb(&matrix, &right, kinds, impulses)?;
+        } else {
+            complementarity(&matrix, &right, impulses)?;
+        }
+        Ok(())
+    }
+
+    /// Gives the impulses to their pairs, and to the velocity.
+    fn apply(&self, velocity: &mut [f64], scratch: &mut Scratch) {
+        let Scratch { free, at, pairings, impulses, places, acting, along, kinds, .. } = scratch;
+        for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
+            (pair.lambda, pair.tangential.traction) = (0.0, [0.0; 2]);
+        }
+        for (row, force) in acting.iter().zip(impulses.iter()) {
+            row.add_to(*force, at);
+        }
+        for (&(k, p), force) in places.iter().zip(impulses.iter()) {
+            pairings[k].pairs[p].lambda = -force;
+        }
+        for (of, force) in combined(kinds, along, &impulses[places.len()..]) {
+            let (k, p) = places[of];
+            let traction = &mut pairings[k].pairs[p].tangential.traction;
+            (0..2).for_each(|a| traction[a] -= force[a]);
+        }
+        for i in 0..free.len() {
+            velocity[i] = free[i] + self.dt * self.inverse_mass[i] * at[i];
+        }
+    }
+
+    /// Adds the slips over the step, and whether pairs stick, to those with a force. The last
+    /// search may have added and removed pairs, but none with a force.
+    fn note_slips(&self, velocity: &[f64], scratch: &mut Scratch) {
+        let Scratch { pairings, impulses, places, acting, along, kinds, .. } = scratch;
+        let pressing: Vec<_> = pressing(pairings).collect();
+        let mut pressing = pressing.into_iter();
+        let now = |force: &f64| if *force > 0.0 { pressing.next() } else { None };
+        let now: Vec<_> = impulses[..places.len()].iter().map(now).collect();
+        let slipped: Vec<f64> =
+            acting.iter().skip(places.len()).map(|row| self.dt * row.along(velocity)).collect();
+        for ((of, slip), kind) in combined(kinds, along, &slipped).zip(&kinds[places.len()..]) {
+            let Some((k, p)) = now[of] else { continue };
+            let tangential = &mut pairings[k].pairs[p].tangential;
+            tangential.friction_state = friction_state(*kind, impulses[of], tangential.traction.map(|q| -q));
+            (0..2).for_each(|a| tangential.slip[a] += slip[a]);
+        }
+    }
+
+    /// G M⁻¹Gᵀ over these rows, and room for a right-hand side. `column` is overwritten by zeros.
+    fn matrix(&self, rows: &Rows, column: &mut [f64]) -> (Vec<f64>, Vec<f64>) {
+        let count = rows.len();
+        let mut matrix = vec![0.0; count * count];
+        column.fill(0.0);
+        for (j, row) in rows.iter().enumerate() {
+            for (dof, slope) in row.entries() {
+                column[dof] = self.inverse_mass[dof] * slope;
+            }
+            for (i, other) in rows.iter().enumerate() {
+                matrix[i * count + j] = other.along(column);
+            }
+            row.entries().for_each(|(dof, _)| column[dof] = 0.0);
+        }
+        (matrix, vec![0.0; count])
+    }
+}
+
+/// Adds H at y_n of a pair, which keeps the tangents there.
+fn slip_into(
+    model: &Model,
+    state: &State,
+    (k, pair): (usize, &mut Pair),
+    rows: &mut Rows,
+) -> Result<(), Rejected> {
+    let (contact, mut at) = (&model.contacts[k], *pair);
+    let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
+    contact.kinematics.measure(&mut at, &state.y, rows).map_err(failed)?;
+    rows.pop();
+    let first = rows.len();
+    contact.kinematics.slip(&at, &state.y, &[], rows).map_err(failed)?;
+    pair.tangential.tangents = rows.tangents(first);
+    Ok(())
+}
+
+/// Contact and index of the pairs with a force.
+fn pressing(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize)> {
+    pairings.iter().enumerate().flat_map(|(k, pairing)| {
+        let loaded = pairing.pairs.iter().enumerate().filter(|(_, pair)| pair.lambda < 0.0);
+        loaded.map(move |(p, _)| (k, p))
+    })
+}
+
+/// Contact, node and facet of the pairs with a force.
+fn forces(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize, usize)> {
+    pressing(pairings).map(|(k, p)| (k, pairings[k].pairs[p].node, pairings[k].pairs[p].facet))
+}
