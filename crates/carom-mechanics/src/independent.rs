@@ -13,8 +13,8 @@ pub(crate) const DEPENDENT: f64 = 1e-8;
 /// The same of rows whose multipliers are found from G M⁻¹Gᵀ.
 const NEARLY: f64 = 1e-5;
 
-/// The same for a slip in space.
-const HELD: f64 = 1e-3;
+/// The same for the slip of a pair whose nodes supports constrain along a tangent.
+pub(crate) const HELD: f64 = 1e-3;
 
 /// The places whose rows are linearly independent on the free dofs.
 pub(crate) fn independent_rows(

@@ -20,6 +20,12 @@ pub(crate) type Blocks<const D: usize, const N: usize> = [[Mats<D>; N]; N];
 /// ∂P/∂F at one point as blocks: `[J][L].0[i][j]` is ∂P_iJ/∂F_jL.
 pub(crate) type Moduli<const D: usize> = [[Mat<D>; D]; D];
 
+/// The maps (∂X/∂ξ)⁻¹ and weights of four consecutive cells with one point each.
+pub(crate) struct Packed<const D: usize> {
+    pub(crate) maps: Mats<D>,
+    pub(crate) weights: Lanes,
+}
+
 /// Up to four quadrature points of one cell, or of all cells that share them up to an affine map.
 pub(crate) struct Points<const D: usize, const N: usize> {
     /// Gradients of φᵃ as `[a][j][point]`; zero in unused lanes.

@@ -22,13 +22,12 @@ use carom_algebra::{Mat, Vector};
 
 use crate::material::Pointwise;
 use crate::mesh::{Element, Facet, Mesh};
-use crate::points::{LANES, Points};
+use crate::points::{LANES, Packed, Points};
 use crate::quadrature::Rule;
 use crate::reference::{self, Degenerate, gradient};
 use crate::shape::{Domain, Hull, Shape};
 use crate::tree::Tree;
 use crate::validity::Validity;
-use constant::Packed;
 
 /// Why a body cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

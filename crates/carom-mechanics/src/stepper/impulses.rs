@@ -138,7 +138,7 @@ impl Impulses {
             pair.tangential.tangents = slips.tangents(0);
             let law = Law { limit: dt * law.limit, ..*law };
             let kind = kind(&law, of, state, (k, pair), &slips, &state.v);
-            for along in loose(model, &slips, &path) {
+            for along in loose(model, measured[k].row(p), &slips, &path) {
                 combination.clear();
                 combination.push_combined(&slips, 0, &along[..slips.len()]);
                 rows.push_plain((k, p), combination.row(0), Some(along));

@@ -161,7 +161,7 @@ impl Increments<'_> {
             slips.clear();
             slip_into(model, state, (k, pair), slips)?;
             let kind = kind(law, i, state, (k, pair), slips, self.before);
-            for part in loose(model, slips, free) {
+            for part in loose(model, rows[k].row(p), slips, free) {
                 acting.push_combined(slips, 0, &part[..slips.len()]);
                 along.push(part);
                 kinds.push(kind);

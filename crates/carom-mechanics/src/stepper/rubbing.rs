@@ -6,7 +6,7 @@ use carom_algebra::Kind;
 use carom_contact::{Along, FrictionState, Law, Pair, Row, Rows, length};
 
 use crate::cone::AT_REST;
-use crate::independent::slip_remainder;
+use crate::independent::HELD;
 use crate::model::Model;
 use crate::state::State;
 use crate::sums::{dot, max_abs};
@@ -42,42 +42,40 @@ pub(super) fn friction_state(kind: Kind, normal: f64, tangential: Along) -> Fric
     if sticks { FrictionState::Stick } else { FrictionState::of(tangential.map(|q| -q), 0.0) }
 }
 
-/// The components along its tangents of the slips of a pair on which its friction acts. In space
-/// supports may constrain its nodes along a tangent: what is left of that row, along the normal,
-/// only turns the facet, times the gap, and its force would take part of the cone without any other
-/// effect. `x`: a motion; where supports move the nodes along that tangent, they slip.
-pub(super) fn loose(model: &Model, slips: &Rows, x: &[f64]) -> impl Iterator<Item = Along> + use<> {
+/// The components along its tangents of the slips of a pair on which its friction acts. Supports
+/// may constrain its nodes along a tangent, as in a plane of symmetry: what is left of that row on
+/// free dofs is a part of the row of the `gap`, or only turns the facet, times the gap. Its force
+/// would take part of the cone without any other effect. `x`: a motion; where supports move the
+/// nodes along that tangent, they slip.
+pub(super) fn loose(model: &Model, gap: Row, slips: &Rows, x: &[f64]) -> impl Iterator<Item = Along> + use<> {
     let tangents = [[1.0, 0.0], [0.0, 1.0]];
+    let is_free = |&(dof, _): &(usize, f64)| !model.fixed[dof];
+    let normal: Vec<(usize, f64)> = gap.entries().filter(is_free).collect();
+    let square: f64 = normal.iter().map(|(_, slope)| slope * slope).sum();
+    // What is left of a row on free dofs, in the order of their nodes, and the motion of the others
+    // along it.
+    let part = |row: Row| -> (Vec<f64>, f64) {
+        let of_gap = |dof: usize| normal.iter().find(|entry| entry.0 == dof).map_or(0.0, |entry| entry.1);
+        let free: Vec<(usize, f64)> = row.entries().filter(is_free).collect();
+        let common: f64 =
+            free.iter().map(|&(dof, h)| h * of_gap(dof)).sum::<f64>() / square.max(f64::MIN_POSITIVE);
+        let rest = free.iter().map(|&(dof, h)| h - common * of_gap(dof)).collect();
+        let held = row.entries().filter(|entry| !is_free(entry));
+        (rest, held.map(|(dof, h)| h * x[dof]).sum())
+    };
+    let least = HELD * HELD;
+    let rest = AT_REST * max_abs(x);
     if slips.len() < 2 {
-        return tangents.into_iter().take(slips.len());
+        let is_constrained = |row: Row| {
+            let (free, moved) = part(row);
+            dot(&free, &free) <= least && moved.abs() <= rest
+        };
+        return tangents.into_iter().take(slips.iter().filter(|&row| !is_constrained(row)).count());
     }
     let [first, second] = [slips.row(0), slips.row(1)];
-    let (e, t) = (first.first(), second.first());
-    let normal: [f64; 3] = std::array::from_fn(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        e[j] * t[k] - e[k] * t[j]
-    });
-    // The parts along the facet on free dofs, and the motion of the others along them.
-    let part = |row: Row| -> (Vec<f64>, f64) {
-        let (mut free, mut moved) = (Vec::new(), 0.0);
-        for (node, h) in row.nodes.iter().zip(row.gradient.as_chunks::<3>().0) {
-            let across: f64 = h.iter().zip(normal).map(|(h, n)| h * n).sum();
-            for (i, dof) in (3 * node..).take(3).enumerate() {
-                let along = h[i] - across * normal[i];
-                if model.fixed[dof] {
-                    moved += along * x[dof];
-                } else {
-                    free.push(along);
-                }
-            }
-        }
-        (free, moved)
-    };
     let ((e, e_moved), (t, t_moved)) = (part(first), part(second));
     let [a, b, mixed] = [dot(&e, &e), dot(&t, &t), dot(&e, &t)];
     let most = 0.5 * (a + b) + (0.5 * (a - b)).hypot(mixed);
-    let least = slip_remainder(model).powi(2);
-    let rest = AT_REST * max_abs(x);
     let rests = |[i, j]: Along| (i * e_moved + j * t_moved).abs() <= rest;
     if most <= least {
         let all_rest = tangents.into_iter().all(rests);

@@ -454,3 +454,35 @@ time = { end = 0.076, step = 0.00076, scheme = { kind = "bathe", rho_inf = 0.5 }
         assert!((y - exact).abs() < 1e-12, "{dof}: {y} {exact}");
     }
 }
+
+/// In a plane of symmetry a node moves along the plane only. Where the facet below it leans, its
+/// slip depends on its gap, and friction has no effect of its own; by symmetry it has none at all.
+#[test]
+fn a_node_in_a_plane_of_symmetry_does_not_rub() {
+    let case = include_str!("../../../../cases/impact/impact.toml");
+    for scheme in [r#"{ kind = "central-difference" }"#, r#"{ kind = "moreau-jean", theta = 0.5 }"#] {
+        let sets = [
+            &format!("time={{ scheme = {scheme}, step = 3.75e-4, end = 0.345 }}"),
+            "expect=[]",
+            "contact.strike.mu=0.3",
+            "body.cylinder.mass=lumped",
+            "body.prism.mass=lumped",
+        ];
+        let mut sim = simulation(case, &sets);
+        let (mut in_plane, mut rubs) = (0, 0);
+        while !sim.finished() {
+            sim.advance(&mut GridReport::default()).unwrap();
+            let model = sim.model();
+            for pair in sim.state().pairs[0].iter().filter(|pair| pair.active) {
+                let node = model.contacts[0].kinematics.secondary()[pair.node];
+                if model.reference[2 * node] == 0.0 {
+                    in_plane += 1;
+                    assert_eq!(pair.tangential.traction, [0.0; 2], "{scheme}");
+                } else {
+                    rubs += usize::from(pair.tangential.traction != [0.0; 2]);
+                }
+            }
+        }
+        assert!(in_plane > 10 && rubs > 10, "{scheme}: {in_plane} {rubs}");
+    }
+}

@@ -5,14 +5,8 @@ use carom_algebra::{Four, Mat, wide};
 
 use super::Solid;
 use crate::body::{Inverted, one_by_one};
-use crate::points::{LANES, Lanes, Mats, set};
+use crate::points::{LANES, Packed, set};
 use crate::shape::{Domain, Shape};
-
-/// The maps (∂X/∂ξ)⁻¹ and weights of four consecutive cells.
-pub(super) struct Packed<const D: usize> {
-    maps: Mats<D>,
-    weights: Lanes,
-}
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// Whether F is constant in every cell.

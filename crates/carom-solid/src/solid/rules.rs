@@ -73,9 +73,8 @@ fn errors<const D: usize, const N: usize, S: Shape<D, N>>(
         }
     }
     let [rule, mesh, exact] = &forces;
-    let largest = |a: &[Vector<D>], b: &[Vector<D>]| {
-        a.iter().zip(b).map(|(a, b)| (*a - *b).norm()).fold(0.0, f64::max)
-    };
+    let largest =
+        |a: &[Vector<D>], b: &[Vector<D>]| a.iter().zip(b).map(|(a, b)| (*a - *b).norm()).fold(0.0, f64::max);
     [largest(rule, mesh), largest(mesh, exact)]
 }
 

@@ -2,9 +2,9 @@
 //! crosses, else the nearest one that it was not behind before.
 
 use super::crossing::crossing;
-use super::node_to_patch::{NOISE, NodeToPatch, PAST, REACH};
+use super::node_to_patch::{NodeToPatch, PAST, REACH};
 use super::patch::place;
-use super::paths::{Paths, path};
+use super::paths::{NOISE, Paths, path};
 use crate::kinematics::candidate::AROUND;
 use crate::kinematics::{Kinematics, OneWay, SweptPatch};
 use crate::pair::Pair;

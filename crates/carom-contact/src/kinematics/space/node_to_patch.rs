@@ -23,7 +23,7 @@ use super::boundary::Boundary;
 use super::folds::{PatchFolds, update_normals};
 use super::gap::PatchGap;
 use super::patch::{Feature, PatchPoint, cross, place};
-use super::paths::Paths;
+use super::paths::{NOISE, Paths};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::opposed::is_left;
 use crate::kinematics::tangents::tangents;
@@ -46,8 +46,6 @@ const PAST_SIDE: f64 = 2e-2;
 /// Difference between the gaps of two facets, relative to their length, up to which either keeps a
 /// node out that would be handed to and fro between them: two rows would depend on each other.
 const FLAT: f64 = 1e-9;
-/// Depth relative to the length of a facet that round-off feigns.
-pub(super) const NOISE: f64 = 1e-9;
 
 /// Secondary nodes against a primary side of facets in space.
 #[derive(Debug)]

@@ -3,9 +3,10 @@
 use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::Boundary;
-use super::node_to_patch::NOISE;
 use super::patch::place;
 
+/// Depth relative to the length of a facet that round-off feigns.
+pub(super) const NOISE: f64 = 1e-9;
 /// Growth of a box, relative to its size, beyond the distance at which a node meets a facet
 /// (`crossing.rs`).
 const MEETS: f64 = 1e-5;
