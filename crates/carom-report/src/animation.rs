@@ -23,7 +23,7 @@ use crate::palette::LINES;
 use crate::pen::Point;
 use crate::pressure;
 use crate::quantity::{Quantity, bars, choice, stresses};
-use crate::sheet::Legend;
+use crate::sheet::{Legend, arrowheads};
 use crate::text::{Label, Prose};
 
 /// Largest number of bytes of positions and stresses in the page; field files are skipped evenly to
@@ -34,6 +34,13 @@ const FRAMES: usize = 300;
 pub(crate) const PLAYER: &str = include_str!("player.js");
 /// Largest number of kinds of events drawn; the rarest come first.
 const KINDS: usize = 6;
+
+/// An animation; its scripts come after all figures of the page, whose time histories they use.
+#[derive(Clone, Debug)]
+pub(crate) struct Animation {
+    pub(crate) figure: Markup,
+    pub(crate) scripts: Markup,
+}
 
 /// The bodies in one frame; bars are drawn as strips.
 pub(crate) fn instant(fields: &FieldSet, time: String) -> Option<Instant> {
@@ -205,6 +212,31 @@ fn chosen(run: &Run, numbers: usize) -> Vec<&FieldEntry> {
     run.fields.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, e)| e).collect()
 }
 
+/// A sentence of the captions.
+pub(crate) const EVENTS: &str = " Ticks below the histories: events in `log.jsonl`.";
+
+/// How many of the field files are frames.
+pub(crate) fn of_files(frames: usize, files: usize) -> String {
+    if frames < files {
+        format!("{frames} of the {files} field files")
+    } else {
+        format!("all {files} field files")
+    }
+}
+
+/// How an animation is controlled; folded, because it is no part of what is shown.
+pub(crate) fn help(keys: Markup) -> Markup {
+    html! {
+        details.small {
+            summary { "Controls" }
+            (keys)
+            " At speed 1 the whole run takes 8 s. The line in the time histories of this page is at the instant \
+             shown; a click in one goes to that instant, a drag across one enlarges all of them, and a double click or \
+             Esc shows the whole time again."
+        }
+    }
+}
+
 /// Play, time, what is shown, and speed; the first controls of an animation.
 pub(crate) fn controls() -> Markup {
     html! {
@@ -222,8 +254,8 @@ pub(crate) fn controls() -> Markup {
     }
 }
 
-/// The section of the page, hidden until its script runs; nothing for fewer than two field files.
-pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<Markup> {
+/// The animation, hidden until its script runs; nothing for fewer than two field files.
+pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<Animation> {
     let first = run.field(run.fields.first()?).ok()?;
     let flat = first.blocks.iter().all(|b| b.cell == Cell::Curve);
     // A node of a bar is two points with a stress; one of the plane has two stresses.
@@ -306,14 +338,10 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         "quantities": quantities.iter().zip([&values, &mises]).map(data_of).collect::<Vec<_>>(),
         "largest": largest, "planes": fixed, "walls": walls, "flat": flat,
     });
-    let every = if entries.len() < run.fields.len() {
-        format!("{} of the {} recorded instants", entries.len(), run.fields.len())
-    } else {
-        format!("all {} recorded instants", entries.len())
-    };
+    let every = of_files(entries.len(), run.fields.len());
     // Only `<` could end the script element.
     let data = data.to_string().replace('<', "\\u003c");
-    Some(html! {
+    let figure = html! {
         figure.animation #animation hidden {
             div.stage {
                 canvas {}
@@ -332,17 +360,23 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                 }
                 "; frames are " (every) ", without interpolation."
                 @if largest > 0.0 {
-                    (Prose(" Arrows: contact forces −λn on the secondary nodes (`contact.csv`), at most "))
+                    (Prose(" Arrows: contact forces on the secondary nodes (`contact.csv`); the longest is "))
                     (Label(&amount(largest, run.history.unit("contact_force_x")))) "."
                 }
-                (Prose(" Ticks below the histories: events in `log.jsonl`. Space: play or pause. ← and →: \
-                        previous or next frame. A click in a time history goes to that instant; a drag across one enlarges all of them, a double \
-                        click or Esc shows the whole time."))
+                (arrowheads(quantities.iter().map(|q| q.legend.cut)))
+                @if !run.log.is_empty() { (Prose(EVENTS)) }
             }
+            (help(html! {
+                "Keys, after a click on the animation: Space: play or pause; ← and → (or comma and full stop): previous and \
+                 next frame."
+            }))
         }
+    };
+    let scripts = html! {
         script #animation-data type="application/json" { (PreEscaped(data)) }
         script { (PreEscaped(PLAYER)) (PreEscaped(include_str!("animation.js"))) }
-    })
+    };
+    Some(Animation { figure, scripts })
 }
 
 #[cfg(test)]

@@ -110,7 +110,7 @@ impl Chart<'_> {
         let mut out = open_chart(self.title, width, height);
         let to_x = |x: f64| LEFT + plot * x_axis.position(x);
         let mut y0 = 0.0;
-        let mut bottoms = Vec::new();
+        let (mut bottoms, mut spans) = (Vec::new(), Vec::new());
         for (panel, rows) in self.panels.iter().zip(&rows) {
             y0 += GAP;
             write_legend(&mut out, panel, rows, y0);
@@ -144,6 +144,7 @@ impl Chart<'_> {
             }
             let bottom = y0 + h;
             bottoms.push(bottom);
+            spans.push([y0, bottom]);
             let _ = writeln!(
                 out,
                 "<path d=\"M{LEFT} {y0:.1}v{h:.1}h{plot}\" fill=\"none\" stroke=\"#222\" \
@@ -179,11 +180,12 @@ impl Chart<'_> {
             );
             y0 = bottom;
         }
-        ticks(&mut out, &x_axis, &bottoms, &to_x);
-        y0 += 23.0;
+        let above = y0;
         for track in options.tracks {
             y0 += ROW;
-            let at = |t: &f64| format!("M{:.1} {:.1}v9", to_x(*t), y0 - 4.5);
+            // A tick at an end of the axis stays within its window.
+            let at =
+                |t: &f64| format!("M{:.1} {:.1}v9", to_x(*t).clamp(LEFT + 0.6, LEFT + plot - 0.6), y0 - 4.5);
             let mut d: Vec<String> = track.times.iter().filter(|t| t.is_finite()).map(at).collect();
             d.dedup();
             let _ = writeln!(
@@ -195,9 +197,15 @@ impl Chart<'_> {
             );
             write_text(&mut out, LEFT - 6.0, y0 + 3.6, "text-anchor=\"end\" font-size=\"11\"", &track.label);
         }
-        y0 += if options.tracks.is_empty() { 0.0 } else { 10.0 };
+        if !options.tracks.is_empty() {
+            y0 += 10.0;
+            bottoms.push(y0);
+            spans.push([above + 6.0, y0]);
+        }
+        ticks(&mut out, &x_axis, &bottoms, &to_x);
+        y0 += 23.0;
         if options.time {
-            out.push_str(&time_axis((to_x(x_axis.low), to_x(x_axis.high)), &x_axis, (8.0, y0 - 12.0)));
+            out.push_str(&time_axis((to_x(x_axis.low), to_x(x_axis.high)), &x_axis, &spans));
         }
         let (words, unit) = unit_of(&self.x_label);
         let x_label = x_axis.label(words, unit);
@@ -208,12 +216,14 @@ impl Chart<'_> {
 }
 
 /// The mark of an axis of time, along which the animation moves a line: left and right end, and top
-/// and bottom of the line.
-pub(crate) fn time_axis((left, right): (f64, f64), axis: &Axis, (top, bottom): (f64, f64)) -> String {
+/// and bottom of each part of the line.
+pub(crate) fn time_axis((left, right): (f64, f64), axis: &Axis, spans: &[[f64; 2]]) -> String {
     let (low, high, exponent, offset) = (axis.low, axis.high, axis.exponent, axis.offset);
+    let spans: Vec<String> = spans.iter().map(|[top, bottom]| format!("{top:.1} {bottom:.1}")).collect();
     format!(
-        "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} {top} {bottom:.1} {exponent} \
-         {offset:e}\"/>\n"
+        "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} {exponent} {offset:e}\" \
+         data-spans=\"{}\"/>\n",
+        spans.join(" ")
     )
 }
 

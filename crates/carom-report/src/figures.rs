@@ -1,8 +1,8 @@
 //! The figures of a run, and the columns and files from which they are drawn.
 
 use carom_record::{Cell, FieldEntry, Run, metrics};
-use maud::Markup;
 
+use crate::animation::Animation;
 use crate::axis::range;
 use crate::bands::Bands;
 use crate::bodies::{self, Instant};
@@ -22,8 +22,7 @@ use crate::{animation, bars, contours, meshes, noise, pressure, setup, space, st
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shown {
     pub(crate) figures: Vec<Figure>,
-    /// The animation.
-    pub(crate) animation: Option<Markup>,
+    pub(crate) animation: Option<Animation>,
     /// Notes on what could not be drawn.
     pub(crate) notes: Vec<String>,
 }

@@ -7,6 +7,7 @@ use carom_record::{FieldFormat, Run, Status, Warning};
 use maud::{Markup, Render, html};
 use serde_json::Value;
 
+use crate::animation::Animation;
 use crate::digits;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::figure::Figure;
@@ -28,7 +29,7 @@ const RESULTS: &str = "All values are computed from `history.csv` alone: times f
     and `strain`, and motion from `center_…` and `velocity_…` of the striker.";
 
 /// The page.
-pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, notes: &[String]) -> String {
+pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Animation>, notes: &[String]) -> String {
     let title = run.manifest.case.get("title").and_then(Value::as_str).unwrap_or("Carom run");
     let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &f.endings(), &f.caption, &f.svg);
     let named = |name: &'static str| figures.iter().enumerate().filter(move |(_, f)| f.name == name);
@@ -41,7 +42,7 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, no
         @for warning in &run.manifest.warnings { (warning_line(warning)) }
         @for note in notes { p.small { (note) } }
         @for f in named("setup") { (figure(f)) }
-        @if let Some(animation) = animation { (animation) }
+        @if let Some(animation) = animation { (animation.figure) }
         (results(run))
         (expectations(run))
         h2 { "Figures" }
@@ -49,6 +50,7 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, no
         (events(run))
         (timing(&run.manifest))
         (reproduce(run))
+        @if let Some(animation) = animation { (animation.scripts) }
     };
     document(title, "", &body)
 }

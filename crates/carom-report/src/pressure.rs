@@ -122,8 +122,9 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let y = sides.len() as f64 * step + 22.0;
     let label = x_axis.label("time t", run.history.unit("time"));
     write_text(&mut out, LEFT + 0.5 * plot, y, "text-anchor=\"middle\"", &label);
-    let bottom = 26.0 + (sides.len() - 1) as f64 * step + HEIGHT;
-    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, (26.0, bottom)));
+    let spans: Vec<[f64; 2]> =
+        (0..sides.len()).map(|k| 26.0 + k as f64 * step).map(|top| [top, top + HEIGHT]).collect();
+    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans));
     out.push_str("</svg>\n");
     let thinned =
         if stride > 1 { format!(" {} recorded instant is drawn.", every(stride)) } else { String::new() };

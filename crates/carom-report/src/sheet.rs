@@ -114,6 +114,15 @@ impl Sheet {
     }
 }
 
+/// What the arrowheads at colour bars mean, as a sentence; empty where there are none.
+pub(crate) fn arrowheads(cuts: impl IntoIterator<Item = [bool; 2]>) -> &'static str {
+    match cuts.into_iter().flatten().filter(|cut| *cut).count() {
+        0 => "",
+        1 => " Arrowhead at the colour bar: at most 0.5 % of the values lie beyond that end.",
+        _ => " Arrowheads at the colour bars: at most 0.5 % of the values lie beyond each such end.",
+    }
+}
+
 /// Vertical colour bar with ticks, and an arrow at an end beyond which there are values.
 pub(crate) fn color_bar(out: &mut String, legend: &Legend, x: f64, (top, bottom): (f64, f64)) {
     let Legend { bands, cut, label, unit } = *legend;

@@ -60,8 +60,9 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
             write_text(&mut out, LEFT + 0.5 * plot, top + HEIGHT + 40.0, "text-anchor=\"middle\"", &label);
         }
     }
-    let bottom = 40.0 + (contacts.len() - 1) as f64 * (HEIGHT + 44.0) + HEIGHT;
-    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, (40.0, bottom)));
+    let tops = (0..contacts.len()).map(|k| 40.0 + k as f64 * (HEIGHT + 44.0));
+    let spans: Vec<[f64; 2]> = tops.map(|top| [top, top + HEIGHT]).collect();
+    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans));
     out.push_str("</svg>\n");
     let is_length = !run.fields.is_empty();
     let counted = if is_length {
