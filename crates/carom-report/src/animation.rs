@@ -16,13 +16,14 @@ use serde_json::json;
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::bodies::{Instant, frame, triangles};
 use crate::chart::{Chart, Options, Panel, Series, Track};
-use crate::labels::{amount, is_stress, symbol, with_unit};
+use crate::labels::{amount, is_stress, symbol, time_label};
 use crate::noise;
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::Point;
 use crate::pressure;
 use crate::quantity::{Quantity, bars, choice, stresses};
+use crate::scientific::significant;
 use crate::sheet::{Legend, arrowheads};
 use crate::text::{Label, Prose};
 
@@ -174,7 +175,7 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     if panels.len() > 1 && panels[0].label.starts_with("force") && noise::is_noise(run, force) {
         panels.remove(0);
     }
-    let x_label = with_unit("time t", h.unit("time"));
+    let x_label = time_label(run);
     let chart = Chart { title: "Time histories beside the animation", x_label, shades, panels };
     chart.draw(&Options { width: 470.0, tracks: &tracks(run), time: true })
 }
@@ -210,6 +211,11 @@ fn chosen(run: &Run, numbers: usize) -> Vec<&FieldEntry> {
     let stride = run.fields.len().div_ceil(most).max(1);
     let last = run.fields.len().saturating_sub(1);
     run.fields.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, e)| e).collect()
+}
+
+/// Two digits of a force, with a prefix only where it is far from one.
+fn size(x: f64, unit: &str) -> String {
+    if (0.01..1000.0).contains(&x) { format!("{} {unit}", significant(x, 2)) } else { amount(x, unit) }
 }
 
 /// A sentence of the captions.
@@ -337,6 +343,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         "x": packed(coordinates(0), (x0, x1)), "y": packed(coordinates(1), (y0, y1)),
         "quantities": quantities.iter().zip([&values, &mises]).map(data_of).collect::<Vec<_>>(),
         "largest": largest, "planes": fixed, "walls": walls, "flat": flat,
+        "marked": surfaces.iter().map(|obstacle| obstacle.mark(run, 0.0).is_some()).collect::<Vec<_>>(),
     });
     let every = of_files(entries.len(), run.fields.len());
     // Only `<` could end the script element.
@@ -361,7 +368,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                 "; frames are " (every) ", without interpolation."
                 @if largest > 0.0 {
                     (Prose(" Arrows: contact forces on the secondary nodes (`contact.csv`); the longest is "))
-                    (Label(&amount(largest, run.history.unit("contact_force_x")))) "."
+                    (Label(&size(largest, run.history.unit("contact_force_x")))) "."
                 }
                 (arrowheads(quantities.iter().map(|q| q.legend.cut)))
                 @if !run.log.is_empty() { (Prose(EVENTS)) }

@@ -42,6 +42,8 @@ mod publish;
 mod quantity;
 mod ranked;
 mod redraw;
+mod results;
+mod scientific;
 mod setup;
 mod sheet;
 mod space;

@@ -14,7 +14,7 @@ use crate::figure::Figure;
 use crate::labels::with_unit;
 use crate::pen::{Pen, open_grid};
 use crate::redraw::filled;
-use crate::sheet::{Legend, color_bar};
+use crate::sheet::{Legend, arrowheads, color_bar};
 
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 74.0;
@@ -97,10 +97,12 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let kept: Vec<f64> = shown.into_iter().step_by(stride).collect();
     let to_x = |t: f64| LEFT + plot * x_axis.position(t);
     let mut table = String::from("contact,node,s,time,pressure\n");
+    let mut cuts = Vec::new();
     for (k, side) in sides.iter().enumerate() {
         let top = 26.0 + k as f64 * step;
         let (bands, cut) = positive_bands(side.rows.iter().map(|(row, _)| row.pressure));
-        let y_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 4.0, true);
+        cuts.push(cut);
+        let y_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 6.0, true);
         let to_y = |s: f64| top + HEIGHT * (1.0 - y_axis.position(s));
         write_text(&mut out, LEFT, top - 8.0, "font-size=\"12\" font-weight=\"600\"", side.name);
         map(&mut out, side, &kept, &bands, (&to_x, &to_y));
@@ -127,12 +129,18 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans));
     out.push_str("</svg>\n");
     let thinned =
-        if stride > 1 { format!(" {} recorded instant is drawn.", every(stride)) } else { String::new() };
+        if stride > 1 { format!(" {} recorded step is drawn.", every(stride)) } else { String::new() };
+    let contacts = run.manifest.case.get("contacts").and_then(Value::as_array).into_iter().flatten();
+    let unmatched = if contacts.into_iter().any(|contact| contact.pointer("/primary/side").is_some()) {
+        " Where the nodes of the two sides do not match, nodal pressures have errors of 10 % or more."
+    } else {
+        ""
+    };
     let caption = format!(
         "Contact pressure p during contact, over time and the arc length s of the secondary side in the reference \
-         configuration; a band per node, nothing where it is open.{thinned} The line is at the instant of the \
-         animation, and a click goes to one. Where the nodes of the two sides do not match, nodal pressures have \
-         errors of 10 % or more. Data: `contact.csv`, column `pressure`."
+         configuration; one band per node, blank where the node is not in contact.{thinned}{}{unmatched} Data: \
+         `contact.csv`, column `pressure`.",
+        arrowheads(cuts)
     );
     let labels = [
         ("@P@", with_unit("p", &stress)),
@@ -218,7 +226,8 @@ pub(crate) fn profiles(run: &Run, frames: &[&FieldEntry]) -> Option<(String, Vec
         let [width, height] = SMALL;
         let (wide, high) = (width - LEFT - 14.0, height - 66.0);
         let x_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 6.0, true);
-        let most = range(side.rows.iter().map(|(row, _)| &row.pressure)).1;
+        // As on the map: a few peaks are cut off.
+        let most = positive_bands(side.rows.iter().map(|(row, _)| row.pressure)).0.high;
         let y_axis = Axis::new((0.0, most), 2.0, false);
         let mut out = open_chart("Contact pressure at the instant of the animation", width, height);
         let top = 24.0;

@@ -22,8 +22,8 @@ use crate::bodies::{Instant, bezier, corners, edges, fill_space, places};
 use crate::chart::{open, write_text};
 use crate::obstacles;
 use crate::pen::{Pen, Point, open_grid};
-use crate::symbols::{arrow, direction, guides, plus, rollers, wall};
-use drawing::{BAR, KEY, PRIMARY, ROOM, SECONDARY, Setup};
+use crate::symbols::{arrow, direction, guides, motion, plus, rollers, wall};
+use drawing::{BAR, KEY, PRIMARY, ROOM, SECONDARY, Setup, Walk};
 use values::{list, text, vector};
 
 /// The figure, from the initial fields; nothing without cells.
@@ -86,6 +86,19 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     out.push_str(&key);
     out.push_str("</svg>\n");
     Some(out)
+}
+
+/// Shortest support that is recognisable, in pixels.
+const SHORTEST: f64 = 24.0;
+
+/// A side, or a straight line of a length in its middle if it is shorter.
+fn at_least(walk: Walk, length: f64) -> Walk {
+    let (Some(&(a, n)), Some(&(b, _))) = (walk.first(), walk.last()) else { return walk };
+    if walk.windows(2).map(|w| (w[1].0[0] - w[0].0[0]).hypot(w[1].0[1] - w[0].0[1])).sum::<f64>() >= length {
+        return walk;
+    }
+    let (middle, along) = (plus(a, 0.5, [b[0] - a[0], b[1] - a[1]]), direction(a, b));
+    [-0.5, 0.5].map(|s| (plus(middle, s * length, along), n)).to_vec()
 }
 
 impl Setup<'_> {
@@ -177,8 +190,14 @@ impl Setup<'_> {
     fn supports(&self, out: &mut String) {
         for support in list(self.case(), "supports") {
             let (fix, across) = (Self::directions(support), Self::is_held_across(support));
+            let moved = Self::moved_axis(support);
             for side in list(support, "on").iter().filter_map(Value::as_str) {
                 for walk in self.walks(side) {
+                    if let Some(axis) = moved.filter(|_| !self.flat) {
+                        motion(out, &walk, axis);
+                        continue;
+                    }
+                    let walk = if self.flat { walk } else { at_least(walk, SHORTEST) };
                     if self.flat || fix.len() + usize::from(across) > 1 {
                         wall(out, &walk, 0.0);
                         continue;

@@ -19,9 +19,38 @@ const LEFT: f64 = 74.0;
 const RIGHT: f64 = 14.0;
 const HEIGHT: f64 = 180.0;
 
-/// The states, with their colours.
-const STATES: [(&str, &str); 3] =
-    [("sticks", LINES[6]), ("slips forward", LINES[2]), ("slips backward", LINES[3])];
+/// The colours of the states: sticks, slips against the tangent, slips along it. The tangent is the
+/// outward normal of the primary side turned by a quarter clockwise; a positive traction is the
+/// friction along it on the secondary side, which then slips the other way.
+const COLOURS: [&str; 3] = [LINES[6], LINES[2], LINES[3]];
+
+/// The two directions of slip in words: along an axis if the normals of all contacts have one
+/// direction, around a rigid circle, or else by a definition in the caption.
+fn directions(run: &Run, contacts: &[&str]) -> Option<[&'static str; 2]> {
+    let case = run.manifest.case.get("contacts")?.as_array()?;
+    let is_round = |name: &&str| {
+        let contact = case.iter().find(|c| c.get("name").and_then(|n| n.as_str()) == Some(name));
+        contact
+            .and_then(|contact| contact.pointer("/primary/circle"))
+            .is_some_and(|circle| circle.get("inside").and_then(serde_json::Value::as_bool) != Some(true))
+    };
+    if contacts.iter().all(is_round) {
+        return Some(["slips counterclockwise", "slips clockwise"]);
+    }
+    let rows = || run.contact.iter().filter(|row| row.friction != "none");
+    let all = |d: usize, sign: f64| rows().all(|row| sign * row.normal[d] > 0.9);
+    if all(1, 1.0) {
+        Some(["slips towards −x", "slips towards +x"])
+    } else if all(1, -1.0) {
+        Some(["slips towards +x", "slips towards −x"])
+    } else if all(0, 1.0) {
+        Some(["slips towards +y", "slips towards −y"])
+    } else if all(0, -1.0) {
+        Some(["slips towards −y", "slips towards +y"])
+    } else {
+        None
+    }
+}
 
 /// A map of each contact that has friction. A side in space has no arc length.
 pub(crate) fn figure(run: &Run) -> Option<Figure> {
@@ -42,8 +71,10 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let plot = WIDTH - LEFT - RIGHT;
     let height = contacts.len() as f64 * (HEIGHT + 44.0) + 52.0;
     let mut out = open_chart("Stick and slip", WIDTH, height);
-    for (i, (label, colour)) in STATES.iter().enumerate() {
-        let x = LEFT + 150.0 * i as f64;
+    let words = directions(run, &contacts);
+    let [against, along] = words.unwrap_or(["slips backward", "slips forward"]);
+    for (i, (label, colour)) in ["sticks", against, along].iter().zip(COLOURS).enumerate() {
+        let x = LEFT + [0.0, 90.0, 290.0][i];
         let _ = writeln!(out, "<rect x=\"{x:.1}\" y=\"6\" width=\"16\" height=\"11\" fill=\"{colour}\"/>");
         write_text(&mut out, x + 22.0, 16.0, "", label);
     }
@@ -70,16 +101,25 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     } else {
         " Nodes are numbered along the side, because no field file has their positions."
     };
+    let direction = if words.is_some() {
+        " Slip: motion of the secondary side relative to the primary."
+    } else {
+        " Slip: motion of the secondary side relative to the primary; forward: along the outward normal of the primary \
+         side turned by a quarter clockwise."
+    };
     let caption = format!(
         "Nodes in contact over time, along the secondary side in the reference configuration: where they \
-         stick and slip, at the recorded instants; nothing is drawn for open nodes.{counted} Forward: the \
-         force of friction on the secondary side has the direction of the outward normal of the primary \
-         side turned by a quarter clockwise; backward: the opposite one. Data: `contact.csv`, columns \
-         `friction` and `traction`."
+         stick and slip, at the recorded steps; one band per node, blank where it is not in contact.{counted}{direction} \
+         Data: `contact.csv`, columns `friction` and `traction`."
     );
     let unit = length(run);
     let (words, unit) = arc::label(is_length, &unit);
-    let labels = [("@T@", with_unit("time t", run.history.unit("time"))), ("@S@", with_unit(words, unit))];
+    let labels = [
+        ("@T@", with_unit("time t", run.history.unit("time"))),
+        ("@S@", with_unit(words, unit)),
+        ("@AGAINST@", against.to_owned()),
+        ("@ALONG@", along.to_owned()),
+    ];
     let script = filled(include_str!("stick_slip.py"), &labels);
     Some(Figure::new("stick-slip", caption, out).with(table(run, &contacts), script))
 }
@@ -125,14 +165,16 @@ fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &
     }
     for (node, spans) in &of_nodes {
         let Some([below, above]) = places.get(node).map(|place| &place.part) else { continue };
-        let (y, h) = (to_y(*above), to_y(*below) - to_y(*above));
+        // Edges at whole tenths, which neighbours share: a gap would read as an open node.
+        let [y, end] = [above, below].map(|s| (10.0 * to_y(*s)).round() / 10.0);
+        let h = end - y;
         for (from, to, state) in spans {
             let (x, w) = (to_x(*from), to_x(*to) - to_x(*from));
             let _ = writeln!(
                 out,
                 "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{:.1}\" height=\"{h:.1}\" fill=\"{}\" shape-rendering=\"crispEdges\"/>",
                 w.max(0.5),
-                STATES[*state].1
+                COLOURS[*state]
             );
         }
     }

@@ -76,7 +76,7 @@ fn figures_and_page() {
         "4 × rejected",
         "<td>assembly</td><td class=\"n\">1.25</td><td class=\"n\">3.13</td><td class=\"n\">50 %</td>",
         "<td>other</td><td class=\"n\">0.5</td><td class=\"n\">1.25</td><td class=\"n\">20 %</td>",
-        "<td>newton</td><td class=\"n\">1532</td><td class=\"n\">3.83</td>",
+        "<td>Newton iterations</td><td class=\"n\">1532</td><td class=\"n\">3.83</td>",
         r"--set 'title='\''x'\'''",
     ] {
         assert!(page.contains(part), "{part}");
@@ -216,7 +216,7 @@ fn solids_are_drawn_and_have_a_scene() {
         assert!(bodies.contains(part), "{part}");
     }
     let page = check_page(&directory);
-    for part in ["id=\"animation\" hidden", "class=\"scene\"", "\"packed\":\"", "all 6 recorded instants"] {
+    for part in ["id=\"animation\" hidden", "class=\"scene\"", "\"packed\":\"", "all 6 field files"] {
         assert!(page.contains(part), "{part}");
     }
     report(&directory).unwrap();

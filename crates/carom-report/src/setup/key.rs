@@ -6,12 +6,12 @@ use std::fmt::Write as _;
 use serde_json::Value;
 
 use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORT, Setup};
-use super::forces::written;
+use super::forces::{COLOR, written};
 use super::values::{list, text as word, tuple, vector};
 use crate::bodies::fill_space;
 use crate::chart::write_text;
-use crate::labels::number;
-use crate::symbols::{plus, rollers, wall};
+use crate::scientific::given;
+use crate::symbols::{arrow, motion, plus, rollers, wall};
 use crate::text;
 
 /// The smallest size of letters in pixels.
@@ -54,7 +54,7 @@ impl Setup<'_> {
             line(
                 &swatch,
                 &format!(
-                    "{}: {}, {cells} {element} cells, {nodes} nodes",
+                    "{}: material {}, {cells} {element} cells, {nodes} nodes",
                     word(body, "name"),
                     word(body, "material")
                 ),
@@ -71,15 +71,21 @@ impl Setup<'_> {
             }
         }
         if let Some(plane) = self.plane_in_words(length) {
+            line("", "Model", true);
             line("", &plane, false);
         }
         line("", "Materials", true);
         for m in list(self.case(), "materials") {
-            let real = |key| m.get(key).and_then(Value::as_f64).map_or(String::new(), number);
-            line("", &format!("{}: {}", word(m, "name"), word(m, "law")), false);
-            let (density, lambda, mu) = (real("density"), real("lambda"), real("mu"));
+            let real = |key| m.get(key).and_then(Value::as_f64);
+            line("", &format!("{}: {}", word(m, "name"), law_name(word(m, "law"))), false);
+            let density = real("density").map_or(String::new(), given);
             line("", &format!("ρ = {density} {mass}/{length}^3"), false);
-            line("", &format!("Λ = {lambda} {stress}, μ = {mu} {stress}"), false);
+            let (Some(lambda), Some(shear)) = (real("lambda"), real("mu")) else { continue };
+            // In the manifest a material has Lamé's constants; μ is the coefficient of friction here.
+            let poisson = lambda / (2.0 * (lambda + shear));
+            let young = 2.0 * shear * (1.0 + poisson);
+            line("", &format!("E = {} {stress}, ν = {}", given(young), given(poisson)), false);
+            line("", &format!("λ = {} {stress}, G = {} {stress}", given(lambda), given(shear)), false);
         }
         for (k, support) in list(self.case(), "supports").iter().enumerate() {
             if k == 0 {
@@ -94,18 +100,22 @@ impl Setup<'_> {
                     swatch,
                     "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{SUPPORT}\" stroke=\"#44607c\"/>"
                 );
+            } else if let Some(axis) = Self::moved_axis(support).filter(|_| !self.flat) {
+                motion(&mut swatch, &[([10.0, 0.0], axis), ([10.0, 0.0], axis)], axis);
             } else if fixed > 1 || self.flat {
                 wall(&mut swatch, &ends, 0.0);
             } else {
                 rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));
             }
-            line(&swatch, &format!("{}: {}", on.join(", "), Self::support_in_words(support)), false);
+            line(&swatch, &format!("{}: {}", on.join(", "), self.support_in_words(support)), false);
         }
         for (k, load) in self.forces_in_words().iter().enumerate() {
             if k == 0 {
                 line("", "Loads", true);
             }
-            line("", load, false);
+            let mut swatch = String::new();
+            arrow(&mut swatch, [0.0, 0.0], [20.0, 0.0], COLOR);
+            line(&swatch, load, false);
         }
         for (k, contact) in list(self.case(), "contacts").iter().enumerate() {
             if k == 0 {
@@ -150,9 +160,17 @@ impl Setup<'_> {
     fn plane_in_words(&self, length: &str) -> Option<String> {
         let is_plane = self.case().get("dimension").and_then(Value::as_u64) == Some(2);
         let thickness = self.case().get("thickness").and_then(Value::as_f64)?;
-        is_plane.then(|| {
-            format!("plane {}, thickness {} {length}", word(self.case(), "plane"), number(thickness))
-        })
+        is_plane
+            .then(|| format!("plane {}, thickness {} {length}", word(self.case(), "plane"), given(thickness)))
+    }
+}
+
+/// The name of a material law.
+fn law_name(law: &str) -> &str {
+    match law {
+        "neo-hookean" => "neo-Hookean",
+        "saint-venant-kirchhoff" => "Saint Venant–Kirchhoff",
+        law => law,
     }
 }
 

@@ -264,10 +264,15 @@ impl Solid<'_> {
                 .min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
             let Some((from, to)) = near else { continue };
             let [x, y] = self.to([0, 1, 2].map(|d| at[d] + to[d] - from[d]));
+            // Inside a body, or on faces that are all turned away.
+            let of_node = |k: &usize| self.skin[*k].nodes.iter().any(|node| self.places[*node] == *to);
+            let is_seen = (0..self.skin.len()).filter(of_node).any(|k| self.seen(k));
+            let (fill, dashes) =
+                if is_seen { ("#fff", "") } else { ("none", " stroke-dasharray=\"2.2 1.6\"") };
             let _ = writeln!(
                 out,
-                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" \
-                 stroke-width=\"1.8\"/>"
+                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.2\" fill=\"{fill}\" stroke=\"#000\" \
+                 stroke-width=\"1.8\"{dashes}/>"
             );
             let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
                         paint-order=\"stroke\" stroke-linejoin=\"round\"";

@@ -134,10 +134,10 @@ pub(crate) fn underlay(out: &mut String, lines: &[[Place; 2]], view: &View, to: 
 }
 
 fn caption(bands: &Bands, cut: [bool; 2], unit: &str, during: &str, rigid: bool) -> String {
-    let rigid = if rigid { " Light lines, behind the bodies: rigid obstacles." } else { "" };
+    let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
     let arrow = if cut[1] {
         format!(
-            " Arrow at the colour bar: up to 0.5 % of the values are above {}{}{unit}.",
+            " Arrowhead at the colour bar: at most 0.5 % of the values are above {}{}{unit}.",
             bands.high,
             if unit.is_empty() { "" } else { " " }
         )

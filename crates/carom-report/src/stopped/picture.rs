@@ -6,11 +6,11 @@ use std::fmt::Write as _;
 
 use carom_record::{FieldSet, Run, Stop, StopPlace};
 
-use crate::axis::round_step;
+use crate::axis::{range, round_step};
 use crate::bodies::{Instant, bezier, corners, edge_nodes, edges, is_plane, places};
 use crate::chart::{open, write_text};
 use crate::figure::Figure;
-use crate::labels::instant_label;
+use crate::labels::{instant_label, listed};
 use crate::meshes::{self, Pane};
 use crate::obstacles;
 use crate::palette::LINES;
@@ -39,10 +39,17 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
     }
     let (svg, moved) = draw(run, stop, place, &fields)?;
     let rejected = if moved { " Dashed: the positions that were rejected." } else { "" };
+    let there = [
+        (true, "the node"),
+        (!place.facet_nodes.is_empty(), "the facet"),
+        (!place.cell_nodes.is_empty(), "the cell"),
+    ];
+    let parts: Vec<&str> = there.iter().filter(|(there, _)| *there).map(|(_, part)| *part).collect();
     let caption = format!(
-        "The place of the stop at {}, the last accepted state: deformed mesh with the node, and the \
-         facet or cell, where the next step failed.{rejected} Data: `stopped.vtu`, `stopped.json`.",
-        instant_label(run, stop.last)
+        "The place of the stop at {}, the last accepted state: deformed mesh with {}, where the next step \
+         failed.{rejected} Data: `stopped.vtu`, `stopped.json`.",
+        instant_label(run, stop.last),
+        listed(&parts)
     );
     let pane = |title: &str, array: &str| Pane {
         title: title.to_owned(),
@@ -65,7 +72,11 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
     let size = size(place, fields, &points, node);
     let half = [ZOOM * size * (WIDTH / (HEIGHT - KEY)), ZOOM * size];
     let around = [at[0] - half[0], at[0] + half[0], at[1] - half[1], at[1] + half[1]];
-    let (frame, scale) = filled(around, &of_place(place, fields, &points), 0.5 * size);
+    let bodies = of_place(place, fields, &points);
+    let (low, high) = range(bodies.iter().map(|p| &p[1]));
+    // Around a body that is crushed there is nothing to see.
+    let margin = 0.5 * size.min((high - low).max(0.25 * size));
+    let (frame, scale) = filled(around, &bodies, margin);
     let height = KEY + (frame[3] - frame[2]) * scale;
     let to = |p: Point| [(p[0] - frame[0]) * scale, KEY + (frame[3] - p[1]) * scale];
     let near = |points: &[Point], nodes: &[usize]| {
@@ -232,11 +243,21 @@ fn key(out: &mut String, place: &StopPlace, moved: bool) {
         entries.push((REJECTED, "rejected".to_owned(), "stroke-dasharray=\"6 4\""));
     }
     let mut x = 4.0;
-    for (color, label, style) in entries {
-        let _ = writeln!(
-            out,
-            "<path d=\"M{x:.1} 17h24\" stroke=\"{color}\" stroke-width=\"5\" {style} fill=\"none\"/>"
-        );
+    for (k, (color, label, style)) in entries.into_iter().enumerate() {
+        let _ = if k == 0 {
+            writeln!(
+                out,
+                "<circle cx=\"{:.1}\" cy=\"17\" r=\"10\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2.2\"/>\n\
+                 <circle cx=\"{:.1}\" cy=\"17\" r=\"3.5\" fill=\"{color}\"/>",
+                x + 12.0,
+                x + 12.0
+            )
+        } else {
+            writeln!(
+                out,
+                "<path d=\"M{x:.1} 17h24\" stroke=\"{color}\" stroke-width=\"5\" {style} fill=\"none\"/>"
+            )
+        };
         write_text(out, x + 30.0, 21.5, "", &label);
         x += 30.0 + 7.6 * label.chars().count() as f64 + 26.0;
     }
