@@ -135,20 +135,24 @@
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
     g.fillStyle = "#fff"; g.fillRect(0, 0, W, H);
     g.lineJoin = "round";
+    const trace = () => {
+      g.beginPath();
+      for (const walk of outline) {
+        const n = walk.length, at = i => [px(X[base + walk[i]]), py(Y[base + walk[i]])];
+        const p = Array.from({ length: n }, (_, i) => at(i)), mix = w => [0, 1].map(d => w.reduce((s, v, i) => s + v * p[i][d], 0));
+        g.moveTo(...p[0]);
+        if (n === 2) g.lineTo(...p[1]);
+        else if (n === 3) g.quadraticCurveTo(...mix([-0.5, 2, -0.5]), ...p[2]);
+        else g.bezierCurveTo(...mix([-5 / 6, 3, -1.5, 1 / 3]), ...mix([1 / 3, -1.5, 3, -5 / 6]), ...p[3]);
+      }
+    };
+    trace();
+    if (thin) { g.strokeStyle = "#777"; g.lineWidth = 5.2; g.stroke(); }
     paths.forEach((path, b) => {
       g.fillStyle = g.strokeStyle = shown.colors[b];
       g.fill(path); g.lineWidth = thin ? 3.5 : 0.6; g.stroke(path);
     });
-    g.strokeStyle = "#000"; g.lineWidth = 1.1; g.beginPath();
-    for (const walk of outline) {
-      const n = walk.length, at = i => [px(X[base + walk[i]]), py(Y[base + walk[i]])];
-      const p = Array.from({ length: n }, (_, i) => at(i)), mix = w => [0, 1].map(d => w.reduce((s, v, i) => s + v * p[i][d], 0));
-      g.moveTo(...p[0]);
-      if (n === 2) g.lineTo(...p[1]);
-      else if (n === 3) g.quadraticCurveTo(...mix([-0.5, 2, -0.5]), ...p[2]);
-      else g.bezierCurveTo(...mix([-5 / 6, 3, -1.5, 1 / 3]), ...mix([1 / 3, -1.5, 3, -5 / 6]), ...p[3]);
-    }
-    if (!thin) g.stroke();
+    if (!thin) { trace(); g.strokeStyle = "#000"; g.lineWidth = 1.1; g.stroke(); }
     for (const [p, n] of data.flat ? frames[k].planes : data.planes) {
       const l = Math.hypot(...n), t = [n[1] / l, n[0] / l], c = [px(p[0]), py(p[1])], r = data.flat ? 46 : W;
       g.lineWidth = 1.6; g.strokeStyle = "#222"; g.beginPath();
@@ -195,9 +199,10 @@
     profiles.forEach((show, i) => show(frames[k].pressure[i]));
   };
 
-  // Start at the frame with the largest contact force.
+  // Start at the frame with the largest contact force, or at the end.
   const force = f => f.forces.reduce((s, v, i) => i % 4 > 1 ? s + Math.abs(v) : s, 0);
-  const first = frames.reduce((a, b) => force(b) > force(a) ? b : a);
+  const most = frames.reduce((a, b) => force(b) > force(a) ? b : a);
+  const first = force(most) > 0 ? most : frames[frames.length - 1];
   coloured(root, k => { shown = quantities[k]; draw(frame); });
   player(root, frames, data.unit, draw, first.time);
 })();

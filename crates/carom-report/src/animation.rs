@@ -16,7 +16,7 @@ use serde_json::json;
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::bodies::{Instant, frame, triangles};
 use crate::chart::{Chart, Options, Panel, Series, Track};
-use crate::labels::{amount, is_stress, symbol, time_label};
+use crate::labels::{amount, is_static, is_stress, symbol, time_label};
 use crate::noise;
 use crate::obstacles;
 use crate::palette::LINES;
@@ -336,7 +336,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let numbers: Vec<u8> =
         cells.iter().flat_map(|(_, n)| n.iter().flat_map(|k| (*k as u32).to_le_bytes())).collect();
     let data = json!({
-        "unit": run.history.unit("time"), "box": [x0, x1, y0, y1],
+        "unit": if is_static(run) { "" } else { run.history.unit("time") }, "box": [x0, x1, y0, y1],
         "points": frames[0].1.points.len(), "frames": frames.iter().enumerate().map(frame_of).collect::<Vec<_>>(),
         "degrees": cells.iter().map(|(d, _)| d.to_string()).collect::<String>(),
         "cells": STANDARD.encode(numbers),

@@ -77,13 +77,13 @@ impl Axis {
         Self { low, high, ticks: ticks.collect(), exponent, offset }
     }
 
-    /// The same axis with tick labels in units of another power of ten, if they have at most four
+    /// The same axis with tick labels in units of another power of ten, if they have at most three
     /// decimals.
     pub(crate) fn in_units_of(mut self, exponent: i32) -> Self {
         let [(first, _), (second, _), ..] = &self.ticks[..] else { return self };
         let scale = 10f64.powi(exponent);
         let decimals = (-((second - first) / scale * 1.0001).log10().floor()).max(0.0);
-        if self.offset != 0.0 || decimals > 4.0 {
+        if self.offset != 0.0 || decimals > 3.0 {
             return self;
         }
         for (value, label) in &mut self.ticks {

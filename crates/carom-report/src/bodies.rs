@@ -238,8 +238,9 @@ pub(crate) fn figure(
     title: &str,
     legend: &Legend,
     length: &str,
+    width: f64,
 ) -> String {
-    let mut sheet = Sheet::new(title, instants.len(), frame, 34.0);
+    let mut sheet = Sheet::new(title, instants.len(), frame, (width, 34.0));
     for (k, instant) in instants.iter().enumerate() {
         sheet.heading(k, &instant.time);
         let (to, scale) = (sheet.map(k), sheet.scale);
@@ -247,8 +248,12 @@ pub(crate) fn figure(
         out.push_str(&open_grid());
         // The colour of a body that is thinner than its outline is drawn as a line.
         let thin = thickness(instant) * scale < THIN;
-        fill(out, instant, legend.bands, &to, if thin { 35.0 } else { 10.0 });
         let [inside, outline] = edges(instant, &to).map(|pen| pen.data().to_string());
+        if thin {
+            let _ =
+                writeln!(out, "<path d=\"{outline}\" fill=\"none\" stroke=\"#777\" stroke-width=\"52\"/>");
+        }
+        fill(out, instant, legend.bands, &to, if thin { 35.0 } else { 10.0 });
         if thin {
             out.push_str("</g>\n");
         } else {

@@ -48,6 +48,7 @@ pub(crate) struct Track {
 }
 
 /// Options of the drawing.
+#[derive(Clone, Copy)]
 pub(crate) struct Options<'a> {
     /// Width in pixels.
     pub(crate) width: f64,
@@ -266,6 +267,14 @@ pub(crate) fn time_axis((left, right): (f64, f64), axis: &Axis, spans: &[[f64; 2
          data-spans=\"{}\"/>\n",
         spans.join(" ")
     )
+}
+
+/// The ground of a map, on which its brightest and its darkest colours stand out.
+pub(crate) fn ground(out: &mut String, [x, y, width, height]: [f64; 4]) {
+    let _ = writeln!(
+        out,
+        "<rect class=\"open\" x=\"{x}\" y=\"{y:.1}\" width=\"{width}\" height=\"{height}\" fill=\"#e2e2e2\"/>"
+    );
 }
 
 /// The opening of the part of a panel that zooming stretches: a window on the same coordinates.

@@ -1,6 +1,6 @@
 //! The figures of a run, and the columns and files from which they are drawn.
 
-use carom_record::{Cell, FieldEntry, Run, Stop, metrics};
+use carom_record::{Cell, FieldEntry, Run, Stop, contact_axes, metrics};
 
 use crate::animation::Animation;
 use crate::axis::range;
@@ -8,14 +8,14 @@ use crate::bands::Bands;
 use crate::bodies::{self, Instant};
 use crate::chart::{Chart, Options, Panel, Series};
 use crate::collected::measured_label;
-use crate::figure::Figure;
+use crate::figure::{Figure, NARROW};
 use crate::labels::{capitalised, instant_label, is_stress, listed, symbol, time_label, with_unit, words};
 use crate::meshes::Pane;
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::quantity::stresses;
 use crate::redraw::of_chart;
-use crate::sheet::{Legend, arrowheads};
+use crate::sheet::{Legend, SHEET, arrowheads};
 use crate::{animation, bars, contours, meshes, noise, pressure, setup, space, stick_slip, stopped};
 
 /// Everything that can be drawn from a record.
@@ -40,10 +40,9 @@ pub(crate) fn all(run: &Run) -> Shown {
     let place = shown.figures.len() + 1;
     if let Some((bodies, bands)) = instants(run, &mut shown.notes) {
         shown.figures.push(bodies);
-        shown.animation = match bands {
-            Some(bands) => animation::section(run, &bands, shades(run), place),
-            None => space::section(run, shades(run), place),
-        };
+        let is_solid = contact_axes(&run.manifest.case) == 3;
+        let section = if is_solid { space::section } else { animation::section };
+        shown.animation = section(run, &bands, shades(run), place);
     }
     let map = stick_slip::figure(run);
     let pressure = pressure::figure(run);
@@ -88,7 +87,7 @@ fn setup(run: &Run) -> Option<Figure> {
         values: Vec::new(),
     };
     let length = fields.array("displacement").map_or("", |a| a.unit.as_str());
-    let figure = Figure::new("setup", caption, svg);
+    let figure = Figure::new("setup", caption, svg).with_narrow(setup::narrow(run, &fields)?);
     Some(meshes::with_files(figure, &fields, &[pane], length, String::new()))
 }
 
@@ -130,7 +129,9 @@ fn chart<'a>(
         let options = Options { tracks: &tracks, time: true, ..Options::default() };
         let chart = Chart { title, x_label, shades: shades(run), panels };
         let plot = of_chart(name, &chart);
-        Figure::new(name, caption, chart.draw(&options)).with(plot.csv(), plot.script())
+        let narrow = chart.draw(&Options { width: NARROW, ..options });
+        let figure = Figure::new(name, caption, chart.draw(&options)).with_narrow(narrow);
+        figure.with(plot.csv(), plot.script())
     })
 }
 
@@ -424,7 +425,7 @@ fn five(run: &Run) -> (Vec<&FieldEntry>, &'static str) {
 }
 
 /// The deformed bodies at several instants, coloured by stress, and its bands in the plane.
-fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>)> {
+fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
     let (entries, during) = five(run);
     if entries.is_empty() {
         notes.push("No field files were written (output.fields_every = 0): bodies and contact pressure are not drawn.".into());
@@ -449,11 +450,11 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
         let strips: Vec<Instant> =
             sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
-        return Some((bars::figure(run, &sets, during), Some(bodies::colors(&strips).0)));
+        return Some((bars::figure(run, &sets, during), bodies::colors(&strips).0));
     }
     if bodies::fill_space(first) {
         let length = first.array("displacement").map_or("", |a| a.unit.as_str());
-        let (svg, caption) = space::instants(run, &sets, length, during)?;
+        let ([svg, narrow], caption, bands) = space::instants(run, &sets, length, during)?;
         let panes: Vec<Pane> = sets
             .iter()
             .filter_map(|(time, set)| {
@@ -463,8 +464,8 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
             })
             .collect();
         let value = with_unit("σ_{vM}", first.array("stress").map_or("", |a| a.unit.as_str()));
-        let figure = Figure::new("bodies", caption, svg);
-        return Some((meshes::with_files(figure, first, &panes, length, value), None));
+        let figure = Figure::new("bodies", caption, svg).with_narrow(narrow);
+        return Some((meshes::with_files(figure, first, &panes, length, value), bands));
     }
     let stress = first.array("stress")?.unit.clone();
     let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
@@ -491,7 +492,8 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
         .map(|walks| walks.iter().flat_map(|walk| obstacles::clipped(walk, wide)).collect())
         .collect();
     let legend = Legend { bands: &bands, cut, label: "σ_{yy}", unit: &stress };
-    let svg = bodies::figure(&list, (&walks, &marks, wide), title, &legend, &length);
+    let [svg, narrow] = [SHEET, NARROW]
+        .map(|width| bodies::figure(&list, (&walks, &marks, wide), title, &legend, &length, width));
     let arrow = arrowheads([cut]);
     let mark = if marks.iter().any(|marks| !marks.is_empty()) {
         " Triangle: a point of the plane that moves."
@@ -502,7 +504,7 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
          the same scale; displacements are not magnified. Blue: compression. Red: tension.{mark}{arrow} Data: stress and displacement in the field files."
     );
-    let figure = Figure::new("bodies", caption, svg);
+    let figure = Figure::new("bodies", caption, svg).with_narrow(narrow);
     let figure = contours::with_files(figure, &times, &list, [unit, &length, &stress]);
-    Some((figure, Some(bands)))
+    Some((figure, bands))
 }

@@ -57,11 +57,14 @@ pub(crate) fn time_label(run: &Run) -> String {
     if is_static(run) { "load parameter t".to_owned() } else { with_unit("time t", run.history.unit("time")) }
 }
 
-/// `t = 0.3150 s`, with the digits that tell the rows of a run apart.
+/// `t = 0.315 s`, with the digits that tell the rows of a run apart.
 pub(crate) fn instant_label(run: &Run, time: f64) -> String {
     let apart = run.times().windows(2).map(|pair| pair[1] - pair[0]);
     let step = apart.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
-    let label = format!("t = {} {}", instant(time, step, 4), run.history.unit("time"));
+    // Six digits, or more where rows are closer.
+    let digits = if step < 1e-5 * time.abs() { instant(time, step, 4) } else { number(time) };
+    let unit = if is_static(run) { "" } else { run.history.unit("time") };
+    let label = format!("t = {digits} {unit}");
     label.trim_end().to_owned()
 }
 

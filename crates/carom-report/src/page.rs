@@ -10,9 +10,10 @@ use serde_json::Value;
 use crate::animation::Animation;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::figure::Figure;
-use crate::labels::{capitalised, is_static, number};
+use crate::labels::{capitalised, is_static, is_stress, number};
 use crate::results::results;
 use crate::scientific::{powers, significant};
+use crate::setup::in_words;
 use crate::stopped;
 use crate::text::{Label, Prose, typeset};
 use crate::timing::{three, timing};
@@ -27,7 +28,7 @@ const HEADER: &str = "Data: `manifest.json` (version, input_hash, case, machine,
 /// The page.
 pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Animation>, notes: &[String]) -> String {
     let title = run.manifest.case.get("title").and_then(Value::as_str).unwrap_or("Carom run");
-    let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &f.endings(), &f.caption, &f.svg);
+    let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &f.endings(), &f.caption, &f.pictures());
     let named = |name: &'static str| figures.iter().enumerate().filter(move |(_, f)| f.name == name);
     let place = named("stopped").next().map(&figure);
     let others = figures.iter().enumerate().filter(|(_, f)| f.name != "setup" && f.name != "stopped");
@@ -92,7 +93,12 @@ fn header(run: &Run) -> Markup {
     html! {
         table {
             @if let Some(name) = run.directory.file_name() { (row("Run", name.to_string_lossy())) }
-            @if !bodies.is_empty() { (row("Bodies", bodies.join(", "))) }
+            @if run.fields.is_empty() {
+                // Nothing is drawn of the model.
+                @for (name, lines) in in_words(&m.case, stress_unit(run)) {
+                    (row(name, html! { @for (i, line) in lines.iter().enumerate() { @if i > 0 { br; } (Label(line)) } }))
+                }
+            } @else if !bodies.is_empty() { (row("Bodies", bodies.join(", "))) }
             @if !m.source.sets.is_empty() {
                 (row("Changed options", html! {
                     @for (i, set) in m.source.sets.iter().enumerate() { @if i > 0 { br; } code { (set) } }
@@ -116,6 +122,12 @@ fn header(run: &Run) -> Markup {
     }
 }
 
+/// The unit of stress, from a column that has it.
+fn stress_unit(run: &Run) -> &str {
+    let is_stress = |name: &str| name.rsplit_once('.').is_some_and(|(_, quantity)| is_stress(quantity));
+    run.history.columns.iter().find(|column| is_stress(&column.name)).map_or("", |column| &column.unit)
+}
+
 fn row(name: &str, value: impl Render) -> Markup {
     html! { tr { th { (name) } td { (value) } } }
 }
@@ -133,8 +145,8 @@ fn integration(case: &Value, unit: &str) -> Option<String> {
     let told = |(k, v): &(&String, &Value)| *k != "forces" || !(is_static || *v == "average-forces");
     let scheme: Vec<String> = scheme.iter().filter(told).map(part).collect();
     let step = case.pointer("/time/step").and_then(Value::as_f64).map_or(String::new(), number);
-    let what = if is_static { "load step" } else { "Δt" };
-    Some(format!("{}; {what} = {step} {unit}", scheme.join(", ")))
+    let step = if is_static { format!("load step = {step}") } else { format!("Δt = {step} {unit}") };
+    Some(format!("{}; {step}", scheme.join(", ")).replace(" = ", "\u{a0}=\u{a0}"))
 }
 
 /// The name of a scheme in the literature.

@@ -88,7 +88,7 @@ const player = (root, frames, unit, draw, first) => {
     frame = k;
     draw(k);
     axes.forEach(axis => axis.move(frames[k].time));
-    shown.textContent = `t = ${frames[k].time.toPrecision(4)} ${unit} · step ${frames[k].step} · ${frames[k].file}`;
+    shown.textContent = `t = ${+frames[k].time.toPrecision(6)} ${unit} · step ${frames[k].step} · ${frames[k].file}`;
   };
   const pause = () => { cancelAnimationFrame(playing); playing = null; button.textContent = "▶"; };
   const play = () => {

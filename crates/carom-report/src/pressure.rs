@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 use crate::arc::{Place, places};
 use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
-use crate::chart::{open_chart, time_axis, write_text};
-use crate::figure::Figure;
+use crate::chart::{ground, open_chart, time_axis, write_text};
+use crate::figure::{Figure, NARROW};
 use crate::labels::with_unit;
 use crate::pen::{Pen, open_grid};
 use crate::redraw::filled;
@@ -87,47 +87,12 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         return None;
     }
     let (length, stress) = units(run);
-    let (from, to) = in_contact(run, &sides);
-    let x_axis = Axis::new((from, to), 7.0, true);
-    let plot = WIDTH - LEFT - RIGHT;
-    let step = HEIGHT + 46.0;
-    let mut out = open_chart("Contact pressure along the side", WIDTH, sides.len() as f64 * step + 34.0);
-    let shown: Vec<f64> = run.times().iter().copied().filter(|t| (from..=to).contains(t)).collect();
-    let stride = shown.len().div_ceil(INSTANTS).max(1);
-    let kept: Vec<f64> = shown.into_iter().step_by(stride).collect();
-    let to_x = |t: f64| LEFT + plot * x_axis.position(t);
     let mut table = String::from("contact,node,s,time,pressure\n");
-    let mut cuts = Vec::new();
-    for (k, side) in sides.iter().enumerate() {
-        let top = 26.0 + k as f64 * step;
-        let (bands, cut) = positive_bands(side.rows.iter().map(|(row, _)| row.pressure));
-        cuts.push(cut);
-        let y_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 6.0, true);
-        let to_y = |s: f64| top + HEIGHT * (1.0 - y_axis.position(s));
-        write_text(&mut out, LEFT, top - 8.0, "font-size=\"12\" font-weight=\"600\"", side.name);
-        map(&mut out, side, &kept, &bands, (&to_x, &to_y));
-        frame(&mut out, (&x_axis, &y_axis), [LEFT, plot, top, HEIGHT]);
-        let label = y_axis.label("arc length s", &length);
-        let middle = top + 0.5 * HEIGHT;
-        let turned = format!("text-anchor=\"middle\" transform=\"translate(17 {middle:.1}) rotate(-90)\"");
-        write_text(&mut out, 0.0, 0.0, &turned, &label);
-        let legend = Legend { bands: &bands, cut, label: "p", unit: &stress };
-        color_bar(&mut out, &legend, LEFT + plot + 20.0, (top - 4.0, top + HEIGHT - 8.0));
-        for (row, place) in &side.rows {
-            let _ = writeln!(
-                table,
-                "{},{},{:?},{:?},{:?}",
-                side.name, row.node, place.at, row.time, row.pressure
-            );
-        }
+    for (side, (row, place)) in sides.iter().flat_map(|side| side.rows.iter().map(move |row| (side, row))) {
+        let _ =
+            writeln!(table, "{},{},{:?},{:?},{:?}", side.name, row.node, place.at, row.time, row.pressure);
     }
-    let y = sides.len() as f64 * step + 22.0;
-    let label = x_axis.label("time t", run.history.unit("time"));
-    write_text(&mut out, LEFT + 0.5 * plot, y, "text-anchor=\"middle\"", &label);
-    let spans: Vec<[f64; 2]> =
-        (0..sides.len()).map(|k| 26.0 + k as f64 * step).map(|top| [top, top + HEIGHT]).collect();
-    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans));
-    out.push_str("</svg>\n");
+    let ((out, cuts, stride), (narrow, ..)) = (draw(run, &sides, WIDTH), draw(run, &sides, NARROW));
     let thinned =
         if stride > 1 { format!(" {} recorded step is drawn.", every(stride)) } else { String::new() };
     let contacts = run.manifest.case.get("contacts").and_then(Value::as_array).into_iter().flatten();
@@ -138,7 +103,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     };
     let caption = format!(
         "Contact pressure p during contact, over time and the arc length s of the secondary side in the reference \
-         configuration; one band per node, blank where the node is not in contact.{thinned}{}{unmatched} Data: \
+         configuration; one band per node, grey where the node is not in contact.{thinned}{}{unmatched} Data: \
          `contact.csv`, column `pressure`.",
         arrowheads(cuts)
     );
@@ -148,7 +113,48 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         ("@S@", with_unit("arc length s", &length)),
     ];
     let script = filled(include_str!("pressure.py"), &labels);
-    Some(Figure::new("pressure", caption, out).with(table, script))
+    Some(Figure::new("pressure", caption, out).with_narrow(narrow).with(table, script))
+}
+
+/// The maps as a picture of a width, whether the colours of each leave values out, and of how many
+/// steps one is drawn.
+fn draw(run: &Run, sides: &[Side], width: f64) -> (String, Vec<[bool; 2]>, usize) {
+    let (length, stress) = units(run);
+    let (from, to) = in_contact(run, sides);
+    let x_axis = Axis::new((from, to), 7.0, true);
+    let plot = width - LEFT - RIGHT;
+    let step = HEIGHT + 46.0;
+    let mut out = open_chart("Contact pressure along the side", width, sides.len() as f64 * step + 34.0);
+    let shown: Vec<f64> = run.times().iter().copied().filter(|t| (from..=to).contains(t)).collect();
+    let stride = shown.len().div_ceil(INSTANTS).max(1);
+    let kept: Vec<f64> = shown.into_iter().step_by(stride).collect();
+    let to_x = |t: f64| LEFT + plot * x_axis.position(t);
+    let mut cuts = Vec::new();
+    for (k, side) in sides.iter().enumerate() {
+        let top = 26.0 + k as f64 * step;
+        let (bands, cut) = positive_bands(side.rows.iter().map(|(row, _)| row.pressure));
+        cuts.push(cut);
+        let y_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 6.0, true);
+        let to_y = |s: f64| top + HEIGHT * (1.0 - y_axis.position(s));
+        write_text(&mut out, LEFT, top - 8.0, "font-size=\"12\" font-weight=\"600\"", side.name);
+        ground(&mut out, [LEFT, top, plot, HEIGHT]);
+        map(&mut out, side, &kept, &bands, (&to_x, &to_y));
+        frame(&mut out, (&x_axis, &y_axis), [LEFT, plot, top, HEIGHT]);
+        let label = y_axis.label("arc length s", &length);
+        let middle = top + 0.5 * HEIGHT;
+        let turned = format!("text-anchor=\"middle\" transform=\"translate(17 {middle:.1}) rotate(-90)\"");
+        write_text(&mut out, 0.0, 0.0, &turned, &label);
+        let legend = Legend { bands: &bands, cut, label: "p", unit: &stress };
+        color_bar(&mut out, &legend, LEFT + plot + 20.0, (top - 4.0, top + HEIGHT - 8.0));
+    }
+    let y = sides.len() as f64 * step + 22.0;
+    let label = x_axis.label("time t", run.history.unit("time"));
+    write_text(&mut out, LEFT + 0.5 * plot, y, "text-anchor=\"middle\"", &label);
+    let spans: Vec<[f64; 2]> =
+        (0..sides.len()).map(|k| 26.0 + k as f64 * step).map(|top| [top, top + HEIGHT]).collect();
+    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans));
+    out.push_str("</svg>\n");
+    (out, cuts, stride)
 }
 
 /// `Every second`, `Every third`, `Every 4th`.

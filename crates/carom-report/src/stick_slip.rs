@@ -8,8 +8,8 @@ use carom_record::{ContactRow, Run};
 
 use crate::arc::{self, places};
 use crate::axis::{Axis, range};
-use crate::chart::{open_chart, time_axis, write_text};
-use crate::figure::Figure;
+use crate::chart::{ground, open_chart, time_axis, write_text};
+use crate::figure::{Figure, NARROW};
 use crate::labels::with_unit;
 use crate::palette::LINES;
 use crate::redraw::filled;
@@ -66,35 +66,9 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     if contacts.is_empty() {
         return None;
     }
-    let (first, last) = range(run.times());
-    let x_axis = Axis::new((first, last), 8.0, true);
-    let plot = WIDTH - LEFT - RIGHT;
-    let height = contacts.len() as f64 * (HEIGHT + 44.0) + 52.0;
-    let mut out = open_chart("Stick and slip", WIDTH, height);
     let words = directions(run, &contacts);
     let [against, along] = words.unwrap_or(["slips backward", "slips forward"]);
-    for (i, (label, colour)) in ["sticks", against, along].iter().zip(COLOURS).enumerate() {
-        let x = LEFT + [0.0, 90.0, 290.0][i];
-        let _ = writeln!(out, "<rect x=\"{x:.1}\" y=\"6\" width=\"16\" height=\"11\" fill=\"{colour}\"/>");
-        write_text(&mut out, x + 22.0, 16.0, "", label);
-    }
-    for (k, name) in contacts.iter().enumerate() {
-        let top = 40.0 + k as f64 * (HEIGHT + 44.0);
-        let rows = run.contact.iter().filter(|row| row.contact == *name);
-        draw(&mut out, run, name, &rows.collect::<Vec<_>>(), &x_axis, top);
-        if k + 1 == contacts.len() {
-            for (value, label) in &x_axis.ticks {
-                let x = LEFT + plot * x_axis.position(*value);
-                write_text(&mut out, x, top + HEIGHT + 19.0, "text-anchor=\"middle\"", label);
-            }
-            let label = x_axis.label("time t", run.history.unit("time"));
-            write_text(&mut out, LEFT + 0.5 * plot, top + HEIGHT + 40.0, "text-anchor=\"middle\"", &label);
-        }
-    }
-    let tops = (0..contacts.len()).map(|k| 40.0 + k as f64 * (HEIGHT + 44.0));
-    let spans: Vec<[f64; 2]> = tops.map(|top| [top, top + HEIGHT]).collect();
-    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans));
-    out.push_str("</svg>\n");
+    let [out, narrow] = [WIDTH, NARROW].map(|width| picture(run, &contacts, [against, along], width));
     let is_length = !run.fields.is_empty();
     let counted = if is_length {
         ""
@@ -109,7 +83,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     };
     let caption = format!(
         "Nodes in contact over time, along the secondary side in the reference configuration: where they \
-         stick and slip, at the recorded steps; one band per node, blank where it is not in contact.{counted}{direction} \
+         stick and slip, at the recorded steps; one band per node, grey where it is not in contact.{counted}{direction} \
          Data: `contact.csv`, columns `friction` and `traction`."
     );
     let unit = length(run);
@@ -121,7 +95,39 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         ("@ALONG@", along.to_owned()),
     ];
     let script = filled(include_str!("stick_slip.py"), &labels);
-    Some(Figure::new("stick-slip", caption, out).with(table(run, &contacts), script))
+    Some(Figure::new("stick-slip", caption, out).with_narrow(narrow).with(table(run, &contacts), script))
+}
+
+/// The maps as a picture of a width; the other argument is the two directions of slip in words.
+fn picture(run: &Run, contacts: &[&str], [against, along]: [&str; 2], width: f64) -> String {
+    let (first, last) = range(run.times());
+    let x_axis = Axis::new((first, last), 8.0, true);
+    let plot = width - LEFT - RIGHT;
+    let height = contacts.len() as f64 * (HEIGHT + 44.0) + 52.0;
+    let mut out = open_chart("Stick and slip", width, height);
+    for (i, (label, colour)) in ["sticks", against, along].iter().zip(COLOURS).enumerate() {
+        let x = if width < WIDTH { 8.0 } else { LEFT } + [0.0, 80.0, 270.0][i];
+        let _ = writeln!(out, "<rect x=\"{x:.1}\" y=\"6\" width=\"16\" height=\"11\" fill=\"{colour}\"/>");
+        write_text(&mut out, x + 22.0, 16.0, "", label);
+    }
+    for (k, name) in contacts.iter().enumerate() {
+        let top = 40.0 + k as f64 * (HEIGHT + 44.0);
+        let rows = run.contact.iter().filter(|row| row.contact == *name);
+        draw(&mut out, run, (name, &rows.collect::<Vec<_>>()), &x_axis, (top, width));
+        if k + 1 == contacts.len() {
+            for (value, label) in &x_axis.ticks {
+                let x = LEFT + plot * x_axis.position(*value);
+                write_text(&mut out, x, top + HEIGHT + 19.0, "text-anchor=\"middle\"", label);
+            }
+            let label = x_axis.label("time t", run.history.unit("time"));
+            write_text(&mut out, LEFT + 0.5 * plot, top + HEIGHT + 40.0, "text-anchor=\"middle\"", &label);
+        }
+    }
+    let tops = (0..contacts.len()).map(|k| 40.0 + k as f64 * (HEIGHT + 44.0));
+    let spans: Vec<[f64; 2]> = tops.map(|top| [top, top + HEIGHT]).collect();
+    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans));
+    out.push_str("</svg>\n");
+    out
 }
 
 /// What the maps show.
@@ -140,8 +146,14 @@ fn table(run: &Run, contacts: &[&str]) -> String {
 }
 
 /// The map of one contact.
-fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &Axis, top: f64) {
-    let plot = WIDTH - LEFT - RIGHT;
+fn draw(
+    out: &mut String,
+    run: &Run,
+    (name, rows): (&str, &[&ContactRow]),
+    x_axis: &Axis,
+    (top, width): (f64, f64),
+) {
+    let plot = width - LEFT - RIGHT;
     let (places, is_length) = places(run, name, rows);
     let y_axis = Axis::new(range(places.values().flat_map(|place| &place.part)), 4.0, true);
     let to_x = |t: f64| LEFT + plot * x_axis.position(t);
@@ -163,6 +175,7 @@ fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &
             _ => spans.push((row.time, next(row.time), state)),
         }
     }
+    ground(out, [LEFT, top, plot, HEIGHT]);
     for (node, spans) in &of_nodes {
         let Some([below, above]) = places.get(node).map(|place| &place.part) else { continue };
         // Edges at whole tenths, which neighbours share: a gap would read as an open node.

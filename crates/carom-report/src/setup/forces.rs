@@ -195,6 +195,18 @@ impl Setup<'_> {
         support.get("normal").and_then(Value::as_bool) == Some(true)
     }
 
+    /// The direction that a support with one condition constrains.
+    pub(super) fn constrained(support: &Value) -> Point {
+        if Self::directions(support).first() == Some(&0.0) { [1.0, 0.0] } else { [0.0, 1.0] }
+    }
+
+    /// Whether a support with one condition leaves its side free along the normal.
+    pub(super) fn is_guided(support: &Value, walk: &[(Point, Point)]) -> bool {
+        let axis = Self::constrained(support);
+        let is_along = |(_, n): &(Point, Point)| (n[0] * axis[0] + n[1] * axis[1]).abs() > 0.7;
+        !Self::is_held_across(support) && !walk.iter().all(is_along)
+    }
+
     /// The axis along which a support moves its sides, as a direction.
     pub(super) fn moved_axis(support: &Value) -> Option<Point> {
         let axis = list(support, "move").first()?.get(0)?.as_f64()?;

@@ -11,7 +11,7 @@ use super::values::{list, text as word, tuple, vector};
 use crate::bodies::fill_space;
 use crate::chart::write_text;
 use crate::scientific::given;
-use crate::symbols::{arrow, motion, plus, rollers, wall};
+use crate::symbols::{arrow, guides, motion, plus, rollers, wall};
 use crate::text;
 
 /// The smallest size of letters in pixels.
@@ -50,14 +50,11 @@ impl Setup<'_> {
                 Self::color(k)
             );
             let cells = block.map_or(0, |b| b.cells().count());
-            let element = word(body, "element");
+            let (element, material) = (word(body, "element"), word(body, "material"));
+            let material = if material == word(body, "name") { "the material" } else { material };
             line(
                 &swatch,
-                &format!(
-                    "{}: material {}, {cells} {element} cells, {nodes} nodes",
-                    word(body, "name"),
-                    word(body, "material")
-                ),
+                &format!("{}: {material}, {cells} {element} cells, {nodes} nodes", word(body, "name")),
                 false,
             );
             for (key, symbol, unit) in [
@@ -105,7 +102,13 @@ impl Setup<'_> {
             } else if fixed > 1 || self.flat {
                 wall(&mut swatch, &ends, 0.0);
             } else {
-                rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));
+                let is_guided =
+                    on.iter().flat_map(|side| self.walks(side)).any(|w| Self::is_guided(support, &w));
+                if is_guided {
+                    guides(&mut swatch, &ends, [1.0, 0.0]);
+                } else {
+                    rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));
+                }
             }
             line(&swatch, &format!("{}: {}", on.join(", "), self.support_in_words(support)), false);
         }
@@ -166,7 +169,7 @@ impl Setup<'_> {
 }
 
 /// The name of a material law.
-fn law_name(law: &str) -> &str {
+pub(super) fn law_name(law: &str) -> &str {
     match law {
         "neo-hookean" => "neo-Hookean",
         "saint-venant-kirchhoff" => "Saint Venant–Kirchhoff",

@@ -11,6 +11,7 @@ use super::forces::{COLOR, Load, load};
 use super::values::{list, text, vector};
 use crate::axis::round_step;
 use crate::chart::{open, write_text};
+use crate::figure::NARROW;
 use crate::pen::Point;
 use crate::space::{
     DRAWN, Facet, Paint, Place, View, box_of, corners, cross, draw, frame, minus, pieces, places, skin,
@@ -35,7 +36,7 @@ struct Solid<'a> {
 }
 
 /// The figure; nothing without extent.
-pub(super) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
+pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
     let (view, places, skin) = (View::axonometric(), places(fields), skin(fields));
     let rigid: Vec<[Place; 2]> = wires(run, box_of(&skin, std::iter::once(&places)))
         .iter()
@@ -49,7 +50,8 @@ pub(super) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
         return None;
     }
     let margin = 52.0;
-    let scale = (ROOM / (x1 - x0)).min(430.0 / (y1 - y0));
+    let room = if narrow { NARROW - 2.0 * margin } else { ROOM };
+    let scale = (room / (x1 - x0)).min(430.0 / (y1 - y0));
     let size = [(x1 - x0) * scale, (y1 - y0) * scale];
     let (left, top) = (margin, margin);
     let points = places.iter().map(|p| view.of(*p)).map(|[x, y, _]| [x, y]).collect();
@@ -57,9 +59,15 @@ pub(super) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     let setup = Setup { run, fields, points, flat: false, scale, origin, inside: HashMap::new() };
     let beside = left + size[0] + margin + 20.0;
     let mut key = String::new();
-    let lines = setup.key(&mut key, beside);
+    let lines = setup.key(&mut key, if narrow { 12.0 } else { beside });
     let bottom = top + size[1] + margin;
-    let mut out = open("Initial configuration", beside + KEY, (bottom + FOOT).max(lines + 8.0));
+    let [width, height] = if narrow {
+        key = format!("<g transform=\"translate(0 {:.1})\">\n{key}</g>\n", bottom + FOOT);
+        [NARROW, bottom + FOOT + lines + 8.0]
+    } else {
+        [beside + KEY, (bottom + FOOT).max(lines + 8.0)]
+    };
+    let mut out = open("Initial configuration", width, height);
     let mut numbers: HashMap<Vec<usize>, Vec<usize>> = HashMap::new();
     for (k, facet) in skin.iter().enumerate() {
         numbers.entry(facet.face.clone()).or_default().push(k);

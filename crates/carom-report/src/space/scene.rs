@@ -16,6 +16,7 @@ use super::view::View;
 use super::wires::wires;
 use crate::animation::{Animation, EVENTS, PLAYER, controls, help, histories, of_files};
 use crate::bands::{Bands, color_bands, positive_bands_of};
+use crate::labels::is_static;
 use crate::quantity::{Quantity, bars, choice, stresses};
 use crate::sheet::{Legend, arrowheads};
 use crate::text::{Label, Prose};
@@ -219,7 +220,7 @@ fn frame(run: &Run, entry: &FieldEntry, nodes: &[usize], points: usize) -> Optio
 }
 
 /// The section of the page, hidden until its script runs; nothing for fewer than two field files.
-pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Option<Animation> {
+pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<Animation> {
     let first = run.field(run.fields.first()?).ok()?;
     let surface = Surface::new(&skin(&first));
     let most = (NUMBERS / surface.nodes.len().max(1)).min(FRAMES);
@@ -238,7 +239,11 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
         return None;
     }
     let places = surface.nodes.iter().map(|&k| first.points[k]).collect();
-    let scene = Scene::new(surface, places, frames);
+    let mut scene = Scene::new(surface, places, frames);
+    // The colours of the figure.
+    let most = scene.frames.iter().flat_map(|f| &f.mises).copied().fold(0.0, f64::max);
+    let Bands { low, high, count } = *bands;
+    scene.bands[0] = (Bands { low, high, count }, [false, most > high]);
     let (chosen, packed) = scene.fitted();
     let peak = |k: &usize| scene.frames[*k].mises.iter().copied().fold(0.0, f64::max);
     let start = chosen.iter().max_by(|a, b| peak(a).total_cmp(&peak(b)).then(b.cmp(a))).copied()?;
@@ -271,7 +276,7 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
     let moves: Vec<Vec<Place>> =
         chosen.iter().map(|&k| rigid.iter().map(|wire| wire.moved(run, entries[k].time)).collect()).collect();
     let data = json!({
-        "unit": run.history.unit("time"), "nodes": scene.places.len(),
+        "unit": if is_static(run) { "" } else { run.history.unit("time") }, "nodes": scene.places.len(),
         "triangles": scene.surface.triangles.len(), "edges": scene.surface.edges.len(),
         "low": low, "high": high, "largest": scene.largest, "levels": LEVELS,
         "view": View::axonometric().axes, "first": entries[start].time,
