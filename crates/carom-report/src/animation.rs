@@ -231,7 +231,7 @@ pub(crate) fn of_files(frames: usize, files: usize) -> String {
 }
 
 /// How an animation is controlled; folded, because it is no part of what is shown.
-pub(crate) fn help(keys: Markup) -> Markup {
+pub(crate) fn help(keys: &Markup) -> Markup {
     html! {
         details.small {
             summary { "Controls" }
@@ -373,7 +373,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                 (arrowheads(quantities.iter().map(|q| q.legend.cut)))
                 @if !run.log.is_empty() { (Prose(EVENTS)) }
             }
-            (help(html! {
+            (help(&html! {
                 "Keys, after a click on the animation: Space: play or pause; ← and → (or comma and full stop): previous and \
                  next frame."
             }))

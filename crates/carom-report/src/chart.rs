@@ -213,8 +213,8 @@ impl Chart<'_> {
 }
 
 impl Chart<'_> {
-    /// The vertical axes. Those of one unit have one power of ten where that leaves few decimals: their
-    /// quantities are compared.
+    /// The vertical axes. Those of one unit have one power of ten where that leaves few decimals:
+    /// their quantities are compared.
     fn y_axes(&self) -> Vec<Axis> {
         let axis = |panel: &Panel| {
             let (low, high) = range(panel.series.iter().flat_map(|s| &s.y));

@@ -139,8 +139,8 @@ impl Obstacle {
         &self.walk
     }
 
-    /// The point of a moving plane that is below the bodies at first, with the normal, at a recorded
-    /// time: the plane itself looks the same wherever it is.
+    /// The point of a moving plane that is below the bodies at first, with the normal, at a
+    /// recorded time: the plane itself looks the same wherever it is.
     pub(crate) fn mark(&self, run: &Run, time: f64) -> Option<(Point, Point)> {
         (self.is_plane && self.moves(run)).then(|| self.at(run, time)[STRAIGHT / 2])
     }
@@ -239,7 +239,8 @@ pub(crate) fn clipped(walk: &Walk, frame: [f64; 4]) -> Vec<Walk> {
 mod tests {
     use super::*;
 
-    /// By hand: y = x from −1 to 3 crosses the unit square at its corners; a line outside has no part.
+    /// By hand: y = x from −1 to 3 crosses the unit square at its corners; a line outside has no
+    /// part.
     #[test]
     fn surfaces_end_at_the_frame() {
         let n = [0.0, 1.0];

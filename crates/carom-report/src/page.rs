@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::animation::Animation;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::figure::Figure;
-use crate::labels::{capitalised, is_static, is_stress, number};
+use crate::labels::{capitalised, is_static, number};
 use crate::results::results;
 use crate::scientific::{powers, significant};
 use crate::setup::in_words;
@@ -95,7 +95,7 @@ fn header(run: &Run) -> Markup {
             @if let Some(name) = run.directory.file_name() { (row("Run", name.to_string_lossy())) }
             @if run.fields.is_empty() {
                 // Nothing is drawn of the model.
-                @for (name, lines) in in_words(&m.case, stress_unit(run)) {
+                @for (name, lines) in in_words(&m.case) {
                     (row(name, html! { @for (i, line) in lines.iter().enumerate() { @if i > 0 { br; } (Label(line)) } }))
                 }
             } @else if !bodies.is_empty() { (row("Bodies", bodies.join(", "))) }
@@ -120,12 +120,6 @@ fn header(run: &Run) -> Markup {
         }
         p.small { (Prose(HEADER)) }
     }
-}
-
-/// The unit of stress, from a column that has it.
-fn stress_unit(run: &Run) -> &str {
-    let is_stress = |name: &str| name.rsplit_once('.').is_some_and(|(_, quantity)| is_stress(quantity));
-    run.history.columns.iter().find(|column| is_stress(&column.name)).map_or("", |column| &column.unit)
 }
 
 fn row(name: &str, value: impl Render) -> Markup {
@@ -196,7 +190,9 @@ fn expected(text: &str) -> String {
 /// nothing for other expressions.
 fn unit_of_question(run: &Run, what: &str) -> Markup {
     let unit = |unit: &str| html! { @if unit.is_empty() { "–" } @else { (Label(unit)) } };
-    if let Some(metric) = metrics::all(&run.history).into_iter().find(|m| m.name == what) {
+    let overlays = metrics::overlays(run);
+    let measured = overlays.iter().flat_map(|overlay| metrics::of_measured(&run.history, overlay));
+    if let Some(metric) = metrics::all(&run.history).into_iter().chain(measured).find(|m| m.name == what) {
         return unit(&metric.unit);
     }
     let form = what.split(' ').next().unwrap_or_default();

@@ -1,5 +1,7 @@
 //! Numbers as labels: significant digits, with powers of ten as superscripts.
 
+use std::fmt::Write as _;
+
 /// A number with a number of significant digits, as a label: `17.85`, `4.762×10^{−4}`.
 pub(crate) fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 {
@@ -70,7 +72,7 @@ pub(crate) fn powers(text: &str) -> String {
             out += &significant(value, mantissa.chars().filter(char::is_ascii_digit).count());
         } else {
             let factor = if mantissa == "1" { String::new() } else { format!("{mantissa}×") };
-            out += &format!("{factor}10^{{{sign}{order}}}");
+            let _ = write!(out, "{factor}10^{{{sign}{order}}}");
         }
         rest = &digits[count..];
     }

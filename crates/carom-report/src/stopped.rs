@@ -172,7 +172,7 @@ fn iterations(iterations: &[StopIteration]) -> Markup {
         @if !iterations.is_empty() {
             h3 { "The last iterations" }
             div.scroll {
-                table {
+                table.iterations {
                     thead {
                         tr {
                             th.n { "Iteration" } th.n { "Residual" }

@@ -78,7 +78,7 @@ impl Setup<'_> {
             let density = real("density").map_or(String::new(), given);
             line("", &format!("ρ = {density} {mass}/{length}^3"), false);
             let (Some(lambda), Some(shear)) = (real("lambda"), real("mu")) else { continue };
-            // In the manifest a material has Lamé's constants; μ is the coefficient of friction here.
+            // The manifest has Lamé's constants; μ is the coefficient of friction here.
             let poisson = lambda / (2.0 * (lambda + shear));
             let young = 2.0 * shear * (1.0 + poisson);
             line("", &format!("E = {} {stress}, ν = {}", given(young), given(poisson)), false);

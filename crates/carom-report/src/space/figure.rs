@@ -48,7 +48,8 @@ pub(crate) fn draw(
     }
 }
 
-/// The figure, also for a narrow window, with its caption, and the bands of its colours; nothing without stresses.
+/// The figure, also for a narrow window, with its caption, and the bands of its colours; nothing
+/// without stresses.
 pub(crate) fn instants(
     run: &Run,
     sets: &[(f64, FieldSet)],

@@ -1,8 +1,8 @@
 //! The scene of a run in space: its skin, to be turned and played.
 //!
 //! The frames are the field files; nothing is interpolated. Of every node of the skin the scene has
-//! the reference position, and in each frame the displacement, the stress of von Mises and the
-//! mean stress, as integers over their ranges. What is stored is how each number differs from what the
+//! the reference position, and in each frame the displacement, the stress of von Mises and the mean
+//! stress, as integers over their ranges. What is stored is how each number differs from what the
 //! two frames before and the node before let expect, compressed (RFC 1950); `scene.js` draws it.
 
 use base64::Engine as _;
@@ -319,7 +319,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                 (arrowheads(quantities.iter().map(|q| q.legend.cut)))
                 @if !run.log.is_empty() { (Prose(EVENTS)) }
             }
-            (help(html! {
+            (help(&html! {
                 "Drag the bodies: turn; with the right button or Shift: move. Wheel, after a click: zoom. Touch: one \
                  finger turns, two move and zoom. Keys, after a click on the bodies: arrows turn, with Shift they \
                  move; + and −: zoom; 0: reset; comma and full stop: previous and next frame; Space: play or pause."
