@@ -213,7 +213,21 @@ fn unit_of_question(run: &Run, what: &str) -> Markup {
     }
 }
 
+/// Sources of more than one expectation that are too long to be repeated.
+fn repeated_sources(run: &Run) -> Vec<&String> {
+    let mut found: Vec<&String> = Vec::new();
+    let sources: Vec<&String> = run.manifest.expectations.iter().filter_map(|e| e.source.as_ref()).collect();
+    for source in &sources {
+        let is_repeated = sources.iter().filter(|other| other == &source).count() > 1;
+        if source.chars().count() > 40 && is_repeated && !found.contains(source) {
+            found.push(source);
+        }
+    }
+    found
+}
+
 fn expectations(run: &Run) -> Markup {
+    let repeated = repeated_sources(run);
     html! {
         @if !run.manifest.expectations.is_empty() {
             h2 { "Expectations" }
@@ -230,10 +244,17 @@ fn expectations(run: &Run) -> Markup {
                         td.n { (Label(&or_dash(e.got, |x| significant(x, DIGITS)))) }
                         td.unit { (unit_of_question(run, &e.what)) }
                         @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
-                        td { @if let Some(source) = &e.source { (source) } }
+                        td {
+                            @if let Some(source) = &e.source {
+                                @if let Some(k) = repeated.iter().position(|other| *other == source) {
+                                    "[" (k + 1) "]"
+                                } @else { (source) }
+                            }
+                        }
                     }
                 }
             }
+            @for (k, source) in repeated.iter().enumerate() { p.small { "[" (k + 1) "] " (source) } }
         }
     }
 }

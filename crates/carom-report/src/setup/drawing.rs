@@ -21,8 +21,8 @@ pub(super) const BAR: f64 = 26.0;
 /// Fill colours of bodies, used in turn.
 pub(super) const BODIES: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
 
-/// Fill colour of supported sides in space.
-pub(super) const SUPPORT: &str = "#9db4ca";
+/// Fill colours of supported sides in space, one for each support in turn.
+pub(super) const SUPPORTS: [&str; 3] = ["#9db4ca", "#a3c4ab", "#c3aecf"];
 
 /// The polyline of a side in pixels, with outward unit normals.
 pub(super) type Walk = Vec<(Point, Point)>;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORT, Setup};
+use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORTS, Setup};
 use super::forces::{COLOR, written};
 use super::values::{list, text as word, tuple, vector};
 use crate::bodies::fill_space;
@@ -95,7 +95,8 @@ impl Setup<'_> {
             if fill_space(self.fields) {
                 let _ = write!(
                     swatch,
-                    "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{SUPPORT}\" stroke=\"#44607c\"/>"
+                    "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#44607c\"/>",
+                    SUPPORTS[k % SUPPORTS.len()]
                 );
             } else if let Some(axis) = Self::moved_axis(support).filter(|_| !self.flat) {
                 motion(&mut swatch, &[([10.0, 0.0], axis), ([10.0, 0.0], axis)], axis);

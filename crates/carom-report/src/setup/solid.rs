@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use carom_record::{FieldSet, Run};
 
-use super::drawing::{BODIES, KEY, ROOM, SUPPORT, Setup};
+use super::drawing::{BODIES, KEY, ROOM, SUPPORTS, Setup};
 use super::forces::{COLOR, Load, load};
 use super::values::{list, text, vector};
 use crate::axis::round_step;
@@ -125,17 +125,25 @@ impl Solid<'_> {
 
     /// Bodies, with supported sides in a colour of their own.
     fn bodies(&self, out: &mut String, place: (Point, Point)) {
-        let supported: HashSet<usize> = self.named("supports").into_iter().flatten().collect();
+        // A facet of two supports has the colour of the first.
+        let mut supported: HashMap<usize, usize> = HashMap::new();
+        for (k, support) in list(self.setup.case(), "supports").iter().enumerate() {
+            let sides = list(support, "on").iter().filter_map(|side| side.as_str());
+            for facet in sides.flat_map(|side| self.side(side)) {
+                supported.entry(facet).or_insert(k % SUPPORTS.len());
+            }
+        }
         let number: HashMap<&Facet, f64> = (self.skin.iter().enumerate())
             .map(|(k, facet)| {
-                let color = if supported.contains(&k) { BODIES.len() } else { facet.block % BODIES.len() };
+                let color =
+                    supported.get(&k).map_or(facet.block % BODIES.len(), |support| BODIES.len() + support);
                 (facet, color as f64)
             })
             .collect();
         let to = |p: Point| self.setup.to(p);
         let pieces =
             pieces(&self.skin, &self.places, &|facet, _| number[facet], &self.view, &to, self.setup.scale);
-        let colors: Vec<&str> = BODIES.iter().copied().chain([SUPPORT]).collect();
+        let colors: Vec<&str> = BODIES.iter().chain(&SUPPORTS).copied().collect();
         let drawn = pieces.len() <= DRAWN;
         draw(out, &pieces, (&Paint::Parts(&colors), colors.len()), place, drawn);
     }

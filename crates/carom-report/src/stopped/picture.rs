@@ -9,7 +9,7 @@ use carom_record::{FieldSet, Run, Stop, StopPlace};
 use crate::axis::{range, round_step};
 use crate::bodies::{Instant, bezier, corners, edge_nodes, edges, is_plane, places};
 use crate::chart::{open, write_text};
-use crate::figure::Figure;
+use crate::figure::{Figure, NARROW};
 use crate::labels::{instant_label, listed};
 use crate::meshes::{self, Pane};
 use crate::obstacles;
@@ -37,7 +37,8 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
     if fields.blocks.iter().any(|block| !is_plane(block)) {
         return None;
     }
-    let (svg, moved) = draw(run, stop, place, &fields)?;
+    let (svg, moved) = draw(run, stop, place, &fields, WIDTH)?;
+    let (narrow, _) = draw(run, stop, place, &fields, NARROW)?;
     let rejected = if moved { " Dashed: the positions that were rejected." } else { "" };
     let there = [
         (true, "the node"),
@@ -59,24 +60,24 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
     let mut panes = vec![pane("accepted", "displacement")];
     panes.extend(fields.array("rejected").map(|_| pane("rejected", "rejected")));
     let length = fields.array("displacement").map_or("", |u| u.unit.as_str());
-    let figure = Figure::new("stopped", caption, svg);
+    let figure = Figure::new("stopped", caption, svg).with_narrow(narrow);
     Some(meshes::with_files(figure, &fields, &panes, length, String::new()))
 }
 
 /// The picture, and whether the rejected positions differ visibly.
-fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<(String, bool)> {
+fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet, width: f64) -> Option<(String, bool)> {
     let points = places(fields);
     let rejected = rejected(fields);
     let node = place.node.as_ref()?.number;
     let at = *points.get(node)?;
     let size = size(place, fields, &points, node);
-    let half = [ZOOM * size * (WIDTH / (HEIGHT - KEY)), ZOOM * size];
+    let half = [ZOOM * size * (width / (HEIGHT - KEY)), ZOOM * size];
     let around = [at[0] - half[0], at[0] + half[0], at[1] - half[1], at[1] + half[1]];
     let bodies = of_place(place, fields, &points);
     let (low, high) = range(bodies.iter().map(|p| &p[1]));
     // Around a body that is crushed there is nothing to see.
     let margin = 0.5 * size.min((high - low).max(0.25 * size));
-    let (frame, scale) = filled(around, &bodies, margin);
+    let (frame, scale) = filled(around, &bodies, (margin, width));
     let height = KEY + (frame[3] - frame[2]) * scale;
     let to = |p: Point| [(p[0] - frame[0]) * scale, KEY + (frame[3] - p[1]) * scale];
     let near = |points: &[Point], nodes: &[usize]| {
@@ -88,11 +89,11 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
         };
         inside(0) && inside(1)
     };
-    let mut out = open("Where the simulation stopped", WIDTH, height);
+    let mut out = open("Where the simulation stopped", width, height);
     let _ = writeln!(
         out,
-        "<clipPath id=\"stopped-frame\"><rect x=\"0\" y=\"{KEY}\" width=\"{WIDTH}\" height=\"{}\"/></clipPath>\n\
-         <g clip-path=\"url(#stopped-frame)\">",
+        "<clipPath id=\"stopped-frame-{width}\"><rect x=\"0\" y=\"{KEY}\" width=\"{width}\" height=\"{}\"/></clipPath>\n\
+         <g clip-path=\"url(#stopped-frame-{width})\">",
         height - KEY
     );
     let mut drawn = HashSet::new();
@@ -164,7 +165,7 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
     let _ = writeln!(
         out,
         "<rect x=\"0.5\" y=\"{KEY}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888\"/>",
-        WIDTH - 1.0,
+        width - 1.0,
         height - KEY - 0.5
     );
     key(&mut out, place, moved);
@@ -194,7 +195,7 @@ fn of_place(place: &StopPlace, fields: &FieldSet, points: &[Point]) -> Vec<Point
 
 /// The part of a frame in which these points are, with a margin, and the scale with which it fills
 /// the picture: its whole width, and at most its height.
-fn filled(around: [f64; 4], points: &[Point], margin: f64) -> ([f64; 4], f64) {
+fn filled(around: [f64; 4], points: &[Point], (margin, width): (f64, f64)) -> ([f64; 4], f64) {
     let mut frame = around;
     for i in 0..2 {
         let low = points.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min) - margin;
@@ -202,9 +203,9 @@ fn filled(around: [f64; 4], points: &[Point], margin: f64) -> ([f64; 4], f64) {
         frame[2 * i] = around[2 * i].max(low);
         frame[2 * i + 1] = around[2 * i + 1].min(high);
     }
-    let (width, height) = (frame[1] - frame[0], frame[3] - frame[2]);
-    let scale = (WIDTH / width).min((HEIGHT - KEY) / height);
-    let beside = 0.5 * (WIDTH / scale - width);
+    let (across, height) = (frame[1] - frame[0], frame[3] - frame[2]);
+    let scale = (width / across).min((HEIGHT - KEY) / height);
+    let beside = 0.5 * (width / scale - across);
     ([frame[0] - beside, frame[1] + beside, frame[2], frame[3]], scale)
 }
 
