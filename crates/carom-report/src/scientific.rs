@@ -2,6 +2,9 @@
 
 use std::fmt::Write as _;
 
+/// Most significant digits of a number in text.
+const MOST: usize = 5;
+
 /// A number with a number of significant digits, as a label: `17.85`, `4.762×10^{−4}`.
 pub(crate) fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 {
@@ -66,10 +69,12 @@ pub(crate) fn powers(text: &str) -> String {
         let order = digits[..count].trim_start_matches('0');
         let order = if order.is_empty() { "0" } else { order };
         let value: f64 = format!("{mantissa}e{}{order}", sign.replace('−', "-")).parse().unwrap_or(f64::NAN);
-        if order == "0" {
+        // Messages of events have up to ten digits.
+        let digits_given = mantissa.chars().filter(char::is_ascii_digit).count();
+        if digits_given > MOST || (order != "0" && (0.01..1000.0).contains(&value)) {
+            out += &significant(value, digits_given.min(MOST));
+        } else if order == "0" {
             out.push_str(mantissa);
-        } else if (0.01..1000.0).contains(&value) {
-            out += &significant(value, mantissa.chars().filter(char::is_ascii_digit).count());
         } else {
             let factor = if mantissa == "1" { String::new() } else { format!("{mantissa}×") };
             let _ = write!(out, "{factor}10^{{{sign}{order}}}");
@@ -103,6 +108,7 @@ mod tests {
     #[test]
     fn exponents_in_text_are_powers() {
         assert_eq!(powers("last 1.21e-5 L (allowed: 1.0e-9)"), "last 1.21×10^{−5} L (allowed: 1.0×10^{−9})");
+        assert_eq!(powers("at t = 3.192743194e-1 by 7.714270e-6"), "at t = 0.31927 by 7.7143×10^{−6}");
         assert_eq!(powers("residual 9.97e-1, 2.5e2 m"), "residual 0.997, 250 m");
         assert_eq!(powers("1e−10 %, case1e3, 0.9e0 e"), "10^{−10} %, case1e3, 0.9 e");
     }
