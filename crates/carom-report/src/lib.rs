@@ -25,6 +25,7 @@ mod ensemble;
 mod figure;
 mod figures;
 mod fit;
+mod instants;
 mod integrity;
 mod labels;
 mod laboratory;
