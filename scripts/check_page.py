@@ -137,9 +137,15 @@ SHOWN = """JSON.stringify((root => [
         copy.drawImage(c, 0, 0);
         return copy.getImageData(0, 0, c.width, c.height).data.reduce((s, v) => (s * 31 + v) | 0, 0);
     })(root.querySelector("canvas")),
-    document.querySelector("path.cursor").getAttribute("d"),
+    [...document.querySelectorAll("path.cursor")].map(line => line.getAttribute("d")).join(),
 ])(document.getElementById("animation")))"""
 TIME = "parseFloat(document.querySelector('#animation output').textContent.match(/t = ([-+.e0-9]+)/)[1])"
+# How many time histories do not have their line at the instant shown.
+LOST = f"""(t => [...document.querySelectorAll("g.time")].filter(axis => {{
+    const [x0, x1, t0, t1] = axis.dataset.axis.split(" ").map(Number), x = x0 + (x1 - x0) * (t - t0) / (t1 - t0);
+    const line = axis.querySelector("path.cursor")?.getAttribute("d");
+    return line === undefined || (x > x0 && x < x1 && !(Math.abs(parseFloat(line.slice(1)) - x) < 1.5));
+}}).length)({TIME})"""
 FORWARD = "document.querySelector('#animation button').textContent"
 
 
@@ -157,6 +163,12 @@ def animation(browser):
     if not browser.value("!!document.querySelector('path.cursor')"):
         return ["no time history shows the cursor of the animation"]
 
+    def found(when):
+        if lost := browser.value(LOST):
+            wrong.append(f"{when}, {lost} time histories do not show the instant of the animation")
+
+    found("as opened")
+
     def shown():
         return json.loads(browser.value(SHOWN))
 
@@ -168,7 +180,7 @@ def animation(browser):
     at_first = shown()
     browser.click("#animation button")
     started = browser.value(TIME)
-    if browser.value(FORWARD) == "▶" or not browser.until(f"{TIME} > {started}"):
+    if browser.value(FORWARD) == "▶" or not browser.until(f"{TIME} !== {started}"):
         wrong.append("the play button does not start the animation")
     browser.click("#animation button")
     differs(at_first, played := shown(), "playing")
@@ -191,6 +203,21 @@ def animation(browser):
     browser.value("document.querySelector('g.time').ownerSVGElement.id = 'history'")
     browser.click("#history", 0.5)
     differs(dragged, shown(), "a click on a time history")
+    found("after a click")
+    # Every other one takes clicks too.
+    for k in range(browser.value("document.querySelectorAll('g.time').length")):
+        # Of two pictures of one history, one for each width of the window, one is hidden.
+        if not browser.value(f"document.querySelectorAll('g.time')[{k}].ownerSVGElement.checkVisibility()"):
+            continue
+        # The last frame, away from the middle of any history.
+        browser.value("""(slider => { slider.value = 1; slider.dispatchEvent(new Event("input")); })(
+            document.querySelector("#animation input"))""")
+        browser.value(f"document.querySelectorAll('g.time')[{k}].ownerSVGElement.id = 'history-{k}'")
+        before = shown()
+        browser.click(f"#history-{k}", 0.5)
+        if shown()[2] == before[2]:
+            wrong.append(f"a click on time history {k + 1} goes to no other instant")
+    browser.value("document.querySelector('g.time').ownerSVGElement.id = 'history'")
 
     # Other colours, with their colour bar; those of a scene are tried with it.
     if browser.value("!!document.querySelector('#animation .quantity') && !document.querySelector('#animation .scene')"):

@@ -50,7 +50,7 @@
       let line = "", dots = "";
       for (let i = 0; i < list.length; i += 3) {
         const at = (x0 + (x1 - x0) * (list[i + 1] - s0) / (s1 - s0)).toFixed(1) + " " +
-          (y0 + (y1 - y0) * (list[i + 2] - p0) / (p1 - p0)).toFixed(1);
+          (y0 + (y1 - y0) * (Math.min(list[i + 2], p1) - p0) / (p1 - p0)).toFixed(1);
         line += (i && list[i] === list[i - 3] + 1 ? "L" : "M") + at;
         dots += `M${at}h0`;
       }
@@ -61,13 +61,14 @@
 
   // The picture leaves a margin for arrows around the bodies.
   const aspect = (high - low) / (right - left);
-  const W = data.flat || aspect < 0.5 ? 900 : Math.min(380, Math.max(220, 440 / aspect)), pad = 18;
+  const LONGEST = 44;
+  const W = data.flat || aspect < 0.5 ? 900 : Math.min(380, Math.max(220, 440 / aspect)), pad = data.largest > 0 ? LONGEST + 2 : 18;
   root.classList.toggle("wide", W > 400);
   const scale = (W - 2 * pad) / (right - left), H = Math.max(data.flat ? 110 : 0, (high - low) * scale + 2 * pad);
   const ratio = Math.max(2, window.devicePixelRatio || 1);
   canvas.width = W * ratio; canvas.height = H * ratio;
   canvas.style.width = W + "px"; canvas.style.aspectRatio = W + " / " + H;
-  const g = canvas.getContext("2d");
+  const g = canvas.getContext("2d"), THIN = 5;
   const px = x => pad + (x - left) * scale, py = y => H / 2 - (y - (low + high) / 2) * scale;
 
   const clip = (polygon, level, sign) => {
@@ -83,7 +84,7 @@
     return out;
   };
   const arrow = (x, y, fx, fy) => {
-    const size = Math.hypot(fx, fy), length = 62 * size / data.largest, dx = fx / size, dy = -fy / size;
+    const size = Math.hypot(fx, fy), length = LONGEST * size / data.largest, dx = fx / size, dy = -fy / size;
     if (length < 2) return;
     const head = Math.min(6, 0.6 * length), ex = x + dx * length, ey = y + dy * length;
     g.beginPath();
@@ -95,6 +96,13 @@
     g.lineWidth = 2.8; g.strokeStyle = "#fff"; g.stroke();
     g.lineWidth = 1.1; g.strokeStyle = g.fillStyle = "#000"; g.stroke(); g.fill();
   };
+  // The colour of a body that is thinner than its outline is drawn as a line.
+  const thin = (() => {
+    let area = 0, around = 0;
+    for (const [, [a, b, c]] of cells) area += Math.abs((X[b] - X[a]) * (Y[c] - Y[a]) - (X[c] - X[a]) * (Y[b] - Y[a])) / 2;
+    for (const walk of outline) around += Math.hypot(X[walk[0]] - X[walk[walk.length - 1]], Y[walk[0]] - Y[walk[walk.length - 1]]);
+    return 2 * area * scale < THIN * around;
+  })();
   const draw = k => {
     frame = k;
     const base = k * data.points, S = shown.values, paths = shown.colors.map(() => new Path2D());
@@ -127,20 +135,24 @@
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
     g.fillStyle = "#fff"; g.fillRect(0, 0, W, H);
     g.lineJoin = "round";
+    const trace = () => {
+      g.beginPath();
+      for (const walk of outline) {
+        const n = walk.length, at = i => [px(X[base + walk[i]]), py(Y[base + walk[i]])];
+        const p = Array.from({ length: n }, (_, i) => at(i)), mix = w => [0, 1].map(d => w.reduce((s, v, i) => s + v * p[i][d], 0));
+        g.moveTo(...p[0]);
+        if (n === 2) g.lineTo(...p[1]);
+        else if (n === 3) g.quadraticCurveTo(...mix([-0.5, 2, -0.5]), ...p[2]);
+        else g.bezierCurveTo(...mix([-5 / 6, 3, -1.5, 1 / 3]), ...mix([1 / 3, -1.5, 3, -5 / 6]), ...p[3]);
+      }
+    };
+    trace();
+    if (thin) { g.strokeStyle = "#777"; g.lineWidth = 5.2; g.stroke(); }
     paths.forEach((path, b) => {
       g.fillStyle = g.strokeStyle = shown.colors[b];
-      g.fill(path); g.lineWidth = 0.6; g.stroke(path);
+      g.fill(path); g.lineWidth = thin ? 3.5 : 0.6; g.stroke(path);
     });
-    g.strokeStyle = "#000"; g.lineWidth = 1.1; g.beginPath();
-    for (const walk of outline) {
-      const n = walk.length, at = i => [px(X[base + walk[i]]), py(Y[base + walk[i]])];
-      const p = Array.from({ length: n }, (_, i) => at(i)), mix = w => [0, 1].map(d => w.reduce((s, v, i) => s + v * p[i][d], 0));
-      g.moveTo(...p[0]);
-      if (n === 2) g.lineTo(...p[1]);
-      else if (n === 3) g.quadraticCurveTo(...mix([-0.5, 2, -0.5]), ...p[2]);
-      else g.bezierCurveTo(...mix([-5 / 6, 3, -1.5, 1 / 3]), ...mix([1 / 3, -1.5, 3, -5 / 6]), ...p[3]);
-    }
-    g.stroke();
+    if (!thin) { trace(); g.strokeStyle = "#000"; g.lineWidth = 1.1; g.stroke(); }
     for (const [p, n] of data.flat ? frames[k].planes : data.planes) {
       const l = Math.hypot(...n), t = [n[1] / l, n[0] / l], c = [px(p[0]), py(p[1])], r = data.flat ? 46 : W;
       g.lineWidth = 1.6; g.strokeStyle = "#222"; g.beginPath();
@@ -168,17 +180,29 @@
           rest -= l;
         }
         last = p;
+        // A plane looks the same wherever it is: a triangle moves with it.
+        if (data.marked[j] && 2 * i === w.length - 4) {
+          const q = [p[0] - 13 * n[0], p[1] + 13 * n[1]];
+          g.fillStyle = "#222"; g.fill(new Path2D(`M${p}L${q[0] + 6 * n[1]} ${q[1] + 6 * n[0]}L${q[0] - 6 * n[1]} ${q[1] - 6 * n[0]}z`));
+        }
       }
       g.stroke();
     });
     const f = frames[k].forces;
-    for (let i = 0; i < f.length; i += 4) arrow(px(f[i]), py(f[i + 1]), f[i + 2], f[i + 3]);
+    // Arrows closer than a few pixels would be a black band.
+    for (let i = 0, last = null; i < f.length; i += 4) {
+      const x = px(f[i]), y = py(f[i + 1]);
+      if (last && Math.hypot(x - last[0], y - last[1]) < 7) continue;
+      arrow(x, y, f[i + 2], f[i + 3]);
+      last = [x, y];
+    }
     profiles.forEach((show, i) => show(frames[k].pressure[i]));
   };
 
-  // Start at the frame with the largest contact force.
+  // Start at the frame with the largest contact force, or at the end.
   const force = f => f.forces.reduce((s, v, i) => i % 4 > 1 ? s + Math.abs(v) : s, 0);
-  const first = frames.reduce((a, b) => force(b) > force(a) ? b : a);
+  const most = frames.reduce((a, b) => force(b) > force(a) ? b : a);
+  const first = force(most) > 0 ? most : frames[frames.length - 1];
   coloured(root, k => { shown = quantities[k]; draw(frame); });
   player(root, frames, data.unit, draw, first.time);
 })();

@@ -16,14 +16,15 @@ use serde_json::json;
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::bodies::{Instant, frame, triangles};
 use crate::chart::{Chart, Options, Panel, Series, Track};
-use crate::labels::{amount, is_stress, symbol, with_unit};
+use crate::labels::{amount, is_static, is_stress, symbol, time_label};
 use crate::noise;
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::Point;
 use crate::pressure;
 use crate::quantity::{Quantity, bars, choice, stresses};
-use crate::sheet::Legend;
+use crate::scientific::significant;
+use crate::sheet::{Legend, arrowheads};
 use crate::text::{Label, Prose};
 
 /// Largest number of bytes of positions and stresses in the page; field files are skipped evenly to
@@ -34,6 +35,13 @@ const FRAMES: usize = 300;
 pub(crate) const PLAYER: &str = include_str!("player.js");
 /// Largest number of kinds of events drawn; the rarest come first.
 const KINDS: usize = 6;
+
+/// An animation; its scripts come after all figures of the page, whose time histories they use.
+#[derive(Clone, Debug)]
+pub(crate) struct Animation {
+    pub(crate) figure: Markup,
+    pub(crate) scripts: Markup,
+}
 
 /// The bodies in one frame; bars are drawn as strips.
 pub(crate) fn instant(fields: &FieldSet, time: String) -> Option<Instant> {
@@ -167,7 +175,7 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     if panels.len() > 1 && panels[0].label.starts_with("force") && noise::is_noise(run, force) {
         panels.remove(0);
     }
-    let x_label = with_unit("time t", h.unit("time"));
+    let x_label = time_label(run);
     let chart = Chart { title: "Time histories beside the animation", x_label, shades, panels };
     chart.draw(&Options { width: 470.0, tracks: &tracks(run), time: true })
 }
@@ -205,6 +213,36 @@ fn chosen(run: &Run, numbers: usize) -> Vec<&FieldEntry> {
     run.fields.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, e)| e).collect()
 }
 
+/// Two digits of a force, with a prefix only where it is far from one.
+fn size(x: f64, unit: &str) -> String {
+    if (0.01..1000.0).contains(&x) { format!("{} {unit}", significant(x, 2)) } else { amount(x, unit) }
+}
+
+/// A sentence of the captions.
+pub(crate) const EVENTS: &str = " Ticks below the histories: events in `log.jsonl`.";
+
+/// How many of the field files are frames.
+pub(crate) fn of_files(frames: usize, files: usize) -> String {
+    if frames < files {
+        format!("{frames} of the {files} field files")
+    } else {
+        format!("all {files} field files")
+    }
+}
+
+/// How an animation is controlled; folded, because it is no part of what is shown.
+pub(crate) fn help(keys: &Markup) -> Markup {
+    html! {
+        details.small {
+            summary { "Controls" }
+            (keys)
+            " At speed 1 the whole run takes 8 s. The line in the time histories of this page is at the instant \
+             shown; a click in one goes to that instant, a drag across one enlarges all of them, and a double click or \
+             Esc shows the whole time again."
+        }
+    }
+}
+
 /// Play, time, what is shown, and speed; the first controls of an animation.
 pub(crate) fn controls() -> Markup {
     html! {
@@ -222,8 +260,8 @@ pub(crate) fn controls() -> Markup {
     }
 }
 
-/// The section of the page, hidden until its script runs; nothing for fewer than two field files.
-pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<Markup> {
+/// The animation, hidden until its script runs; nothing for fewer than two field files.
+pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<Animation> {
     let first = run.field(run.fields.first()?).ok()?;
     let flat = first.blocks.iter().all(|b| b.cell == Cell::Curve);
     // A node of a bar is two points with a stress; one of the plane has two stresses.
@@ -298,22 +336,19 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let numbers: Vec<u8> =
         cells.iter().flat_map(|(_, n)| n.iter().flat_map(|k| (*k as u32).to_le_bytes())).collect();
     let data = json!({
-        "unit": run.history.unit("time"), "box": [x0, x1, y0, y1],
+        "unit": if is_static(run) { "" } else { run.history.unit("time") }, "box": [x0, x1, y0, y1],
         "points": frames[0].1.points.len(), "frames": frames.iter().enumerate().map(frame_of).collect::<Vec<_>>(),
         "degrees": cells.iter().map(|(d, _)| d.to_string()).collect::<String>(),
         "cells": STANDARD.encode(numbers),
         "x": packed(coordinates(0), (x0, x1)), "y": packed(coordinates(1), (y0, y1)),
         "quantities": quantities.iter().zip([&values, &mises]).map(data_of).collect::<Vec<_>>(),
         "largest": largest, "planes": fixed, "walls": walls, "flat": flat,
+        "marked": surfaces.iter().map(|obstacle| obstacle.mark(run, 0.0).is_some()).collect::<Vec<_>>(),
     });
-    let every = if entries.len() < run.fields.len() {
-        format!("{} of the {} recorded instants", entries.len(), run.fields.len())
-    } else {
-        format!("all {} recorded instants", entries.len())
-    };
+    let every = of_files(entries.len(), run.fields.len());
     // Only `<` could end the script element.
     let data = data.to_string().replace('<', "\\u003c");
-    Some(html! {
+    let figure = html! {
         figure.animation #animation hidden {
             div.stage {
                 canvas {}
@@ -332,17 +367,23 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                 }
                 "; frames are " (every) ", without interpolation."
                 @if largest > 0.0 {
-                    (Prose(" Arrows: contact forces −λn on the secondary nodes (`contact.csv`), at most "))
-                    (Label(&amount(largest, run.history.unit("contact_force_x")))) "."
+                    (Prose(" Arrows: contact forces on the secondary nodes (`contact.csv`); the longest is "))
+                    (Label(&size(largest, run.history.unit("contact_force_x")))) "."
                 }
-                (Prose(" Ticks below the histories: events in `log.jsonl`. Space: play or pause. ← and →: \
-                        previous or next frame. A click in a time history goes to that instant; a drag across one enlarges all of them, a double \
-                        click or Esc shows the whole time."))
+                (arrowheads(quantities.iter().map(|q| q.legend.cut)))
+                @if !run.log.is_empty() { (Prose(EVENTS)) }
             }
+            (help(&html! {
+                "Keys, after a click on the animation: Space: play or pause; ← and → (or comma and full stop): previous and \
+                 next frame."
+            }))
         }
+    };
+    let scripts = html! {
         script #animation-data type="application/json" { (PreEscaped(data)) }
         script { (PreEscaped(PLAYER)) (PreEscaped(include_str!("animation.js"))) }
-    })
+    };
+    Some(Animation { figure, scripts })
 }
 
 #[cfg(test)]

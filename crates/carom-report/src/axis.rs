@@ -77,6 +77,23 @@ impl Axis {
         Self { low, high, ticks: ticks.collect(), exponent, offset }
     }
 
+    /// The same axis with tick labels in units of another power of ten, if they have at most three
+    /// decimals.
+    pub(crate) fn in_units_of(mut self, exponent: i32) -> Self {
+        let [(first, _), (second, _), ..] = &self.ticks[..] else { return self };
+        let scale = 10f64.powi(exponent);
+        let decimals = (-((second - first) / scale * 1.0001).log10().floor()).max(0.0);
+        if self.offset != 0.0 || decimals > 3.0 {
+            return self;
+        }
+        for (value, label) in &mut self.ticks {
+            let text = format!("{:.*}", decimals as usize, value.abs() / scale);
+            *label = if *value < 0.0 { format!("−{text}") } else { text };
+        }
+        self.exponent = exponent;
+        self
+    }
+
     /// The label of the axis: quantity, offset and unit.
     pub(crate) fn label(&self, quantity: &str, unit: &str) -> String {
         // The offset is in the unit without a prefix: “F − 0.06 N (µN)”.
@@ -120,6 +137,16 @@ mod tests {
         assert_eq!(labels((0.0, 2.6e7), true), ("0 10 20".into(), 6));
         assert_eq!(labels((-3e-7, 3e-7), true), ("−200 0 200".into(), -9));
         assert_eq!(labels((-1e-3, 0.0), true), ("−1.0 −0.8 −0.6 −0.4 −0.2 0.0".into(), -3));
+    }
+
+    /// Millijoules beside joules.
+    #[test]
+    fn axes_change_their_unit() {
+        let axis = Axis::new((0.0, 0.008), 4.0, false);
+        assert_eq!((axis.exponent, axis.ticks[1].1.as_str()), (-3, "2"));
+        let axis = axis.in_units_of(0);
+        assert_eq!((axis.exponent, axis.ticks[1].1.as_str()), (0, "0.002"));
+        assert_eq!(Axis::new((0.0, 8e-7), 4.0, false).in_units_of(0).exponent, -9);
     }
 
     /// 0.060000 to 0.060008: labels are the millionths above 0.06.

@@ -4,7 +4,7 @@
 //! fine subdivision, and edges are drawn as Bézier curves, exactly (a Lagrange edge of degree ≤ 3
 //! is one).
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;
 
 use carom_record::{Block, Cell, FieldSet};
@@ -13,7 +13,7 @@ use crate::bands::{Bands, color_bands, parts, shape};
 use crate::obstacles::Walk;
 use crate::pen::{Pen, Point, open_grid};
 use crate::sheet::{Legend, Sheet};
-use crate::symbols::wall;
+use crate::symbols::{mark, wall};
 
 /// One instant: deformed nodes, the quantity at them, and the cells.
 pub(crate) struct Instant {
@@ -83,7 +83,7 @@ pub(crate) fn triangles(nodes: &[usize]) -> Vec<Vec<usize>> {
 }
 
 /// Filled bands of all cells: one path per colour.
-fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -> Point) {
+fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -> Point, width: f64) {
     let mut paths = vec![Pen::default(); bands.count];
     let (mut n, mut corner) = (Vec::new(), Vec::new());
     let halves = instant
@@ -134,10 +134,32 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
         // A stroke in the colour of the fill closes the hairlines between neighbours.
         let _ = writeln!(
             out,
-            "<path d=\"{d}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"10\" \
+            "<path d=\"{d}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"{width}\" \
              stroke-linejoin=\"round\"/>"
         );
     }
+}
+
+/// Pixels below which a body is thin.
+const THIN: f64 = 5.0;
+
+/// Mean thickness of the cells in units of length: twice their area by the length of their outline.
+fn thickness(instant: &Instant) -> f64 {
+    let at = |k: usize| instant.points[k];
+    let (mut area, mut around) = (0.0, 0.0);
+    let mut found: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+    for (_, nodes) in &instant.cells {
+        let count = corners(nodes);
+        for e in 0..count {
+            let (a, b) = (nodes[e], nodes[(e + 1) % count]);
+            *found.entry([a.min(b), a.max(b)]).or_default() += 1;
+            area += 0.5 * (at(a)[0] * at(b)[1] - at(b)[0] * at(a)[1]);
+        }
+    }
+    for ([a, b], _) in found.iter().filter(|(_, count)| **count == 1) {
+        around += (at(*a)[0] - at(*b)[0]).hypot(at(*a)[1] - at(*b)[1]);
+    }
+    if around > 0.0 { 2.0 * area.abs() / around } else { f64::INFINITY }
 }
 
 /// Nodes of an edge from end to end.
@@ -208,31 +230,46 @@ pub(crate) fn colors(instants: &[Instant]) -> (Bands, [bool; 2]) {
     color_bands(instants.iter().flat_map(used))
 }
 
-/// The figure; `obstacles` are the surfaces at each instant within `frame`.
+/// The figure; `obstacles` are the surfaces at each instant within `frame`, and `marks` points on
+/// them with normals.
 pub(crate) fn figure(
     instants: &[Instant],
-    (obstacles, frame): (&[Vec<Walk>], [f64; 4]),
+    (obstacles, marks, frame): (&[Vec<Walk>], &[Walk], [f64; 4]),
     title: &str,
     legend: &Legend,
     length: &str,
+    width: f64,
 ) -> String {
-    let mut sheet = Sheet::new(title, instants.len(), frame, 34.0);
+    let mut sheet = Sheet::new(title, instants.len(), frame, (width, 34.0));
     for (k, instant) in instants.iter().enumerate() {
         sheet.heading(k, &instant.time);
-        let to = sheet.map(k);
+        let (to, scale) = (sheet.map(k), sheet.scale);
         let out = &mut sheet.out;
         out.push_str(&open_grid());
-        fill(out, instant, legend.bands, &to);
+        // The colour of a body that is thinner than its outline is drawn as a line.
+        let thin = thickness(instant) * scale < THIN;
         let [inside, outline] = edges(instant, &to).map(|pen| pen.data().to_string());
-        let _ = writeln!(
-            out,
-            "<path d=\"{inside}\" fill=\"none\" stroke=\"#000\" stroke-opacity=\"0.28\" \
+        if thin {
+            let _ =
+                writeln!(out, "<path d=\"{outline}\" fill=\"none\" stroke=\"#777\" stroke-width=\"52\"/>");
+        }
+        fill(out, instant, legend.bands, &to, if thin { 35.0 } else { 10.0 });
+        if thin {
+            out.push_str("</g>\n");
+        } else {
+            let _ = writeln!(
+                out,
+                "<path d=\"{inside}\" fill=\"none\" stroke=\"#000\" stroke-opacity=\"0.28\" \
              stroke-width=\"8\"/>\n\
              <path d=\"{outline}\" fill=\"none\" stroke=\"#000\" stroke-width=\"18\" \
              stroke-linecap=\"round\"/>\n</g>"
-        );
+            );
+        }
         for walk in obstacles.get(k).into_iter().flatten() {
             wall(out, &walk.iter().map(|&(p, n)| (to(p), [-n[0], n[1]])).collect::<Vec<_>>(), 0.0);
+        }
+        for &(p, n) in marks.get(k).into_iter().flatten() {
+            mark(out, to(p), [-n[0], n[1]]);
         }
     }
     sheet.finish(legend, length)

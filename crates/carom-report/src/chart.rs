@@ -48,6 +48,7 @@ pub(crate) struct Track {
 }
 
 /// Options of the drawing.
+#[derive(Clone, Copy)]
 pub(crate) struct Options<'a> {
     /// Width in pixels.
     pub(crate) width: f64,
@@ -109,18 +110,14 @@ impl Chart<'_> {
         let height = tops.zip(&self.panels).map(|(top, p)| top + p.height).sum::<f64>() + 48.0 + below;
         let mut out = open_chart(self.title, width, height);
         let to_x = |x: f64| LEFT + plot * x_axis.position(x);
+        let y_axes = self.y_axes();
         let mut y0 = 0.0;
-        let mut bottoms = Vec::new();
-        for (panel, rows) in self.panels.iter().zip(&rows) {
+        let (mut bottoms, mut spans) = (Vec::new(), Vec::new());
+        for ((panel, rows), y_axis) in self.panels.iter().zip(&rows).zip(&y_axes) {
             y0 += GAP;
             write_legend(&mut out, panel, rows, y0);
             y0 += rows.len() as f64 * 18.0;
             let h = panel.height;
-            let (low, high) = range(panel.series.iter().flat_map(|s| &s.y));
-            let whole = panel.series.iter().flat_map(|s| &s.y).all(|y| y.fract() == 0.0);
-            // Integer quantities have ticks at integers only.
-            let most = if whole { (high - low).max(1.0) } else { f64::INFINITY };
-            let y_axis = Axis::new((low, high), (h / 42.0).max(2.0).min(most), false);
             let to_y = |y: f64| y0 + h * (1.0 - y_axis.position(y));
             let window = window(y0 - 2.0, h + 4.0, plot);
             out.push_str(&window);
@@ -144,13 +141,14 @@ impl Chart<'_> {
             }
             let bottom = y0 + h;
             bottoms.push(bottom);
+            spans.push([y0, bottom]);
             let _ = writeln!(
                 out,
                 "<path d=\"M{LEFT} {y0:.1}v{h:.1}h{plot}\" fill=\"none\" stroke=\"#222\" \
                  stroke-width=\"0.9\"/>"
             );
             out.push_str(&window);
-            for series in &panel.series {
+            for (series, dashes) in panel.series.iter().zip(dashes(panel)) {
                 let points = series.x.iter().zip(&series.y).map(|(&x, &y)| (to_x(x), to_y(y)));
                 let color = series.color;
                 if series.dotted {
@@ -161,7 +159,7 @@ impl Chart<'_> {
                 let _ = writeln!(
                     out,
                     "<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\" \
-                     stroke-linejoin=\"round\" vector-effect=\"non-scaling-stroke\"/>"
+                     stroke-linejoin=\"round\" vector-effect=\"non-scaling-stroke\"{dashes}/>"
                 );
             }
             out.push_str("</svg>\n");
@@ -179,11 +177,12 @@ impl Chart<'_> {
             );
             y0 = bottom;
         }
-        ticks(&mut out, &x_axis, &bottoms, &to_x);
-        y0 += 23.0;
+        let above = y0;
         for track in options.tracks {
             y0 += ROW;
-            let at = |t: &f64| format!("M{:.1} {:.1}v9", to_x(*t), y0 - 4.5);
+            // A tick at an end of the axis stays within its window.
+            let at =
+                |t: &f64| format!("M{:.1} {:.1}v9", to_x(*t).clamp(LEFT + 0.6, LEFT + plot - 0.6), y0 - 4.5);
             let mut d: Vec<String> = track.times.iter().filter(|t| t.is_finite()).map(at).collect();
             d.dedup();
             let _ = writeln!(
@@ -195,9 +194,15 @@ impl Chart<'_> {
             );
             write_text(&mut out, LEFT - 6.0, y0 + 3.6, "text-anchor=\"end\" font-size=\"11\"", &track.label);
         }
-        y0 += if options.tracks.is_empty() { 0.0 } else { 10.0 };
+        if !options.tracks.is_empty() {
+            y0 += 10.0;
+            bottoms.push(y0);
+            spans.push([above + 6.0, y0]);
+        }
+        ticks(&mut out, &x_axis, &bottoms, &to_x);
+        y0 += 23.0;
         if options.time {
-            out.push_str(&time_axis((to_x(x_axis.low), to_x(x_axis.high)), &x_axis, (8.0, y0 - 12.0)));
+            out.push_str(&time_axis((to_x(x_axis.low), to_x(x_axis.high)), &x_axis, &spans));
         }
         let (words, unit) = unit_of(&self.x_label);
         let x_label = x_axis.label(words, unit);
@@ -207,14 +212,69 @@ impl Chart<'_> {
     }
 }
 
+impl Chart<'_> {
+    /// The vertical axes. Those of one unit have one power of ten where that leaves few decimals:
+    /// their quantities are compared.
+    fn y_axes(&self) -> Vec<Axis> {
+        let axis = |panel: &Panel| {
+            let (low, high) = range(panel.series.iter().flat_map(|s| &s.y));
+            let whole = panel.series.iter().flat_map(|s| &s.y).all(|y| y.fract() == 0.0);
+            // Integer quantities have ticks at integers only.
+            let most = if whole { (high - low).max(1.0) } else { f64::INFINITY };
+            Axis::new((low, high), (panel.height / 42.0).max(2.0).min(most), false)
+        };
+        let axes: Vec<Axis> = self.panels.iter().map(axis).collect();
+        let largest = |unit: &str| {
+            let alike = self.panels.iter().zip(&axes).filter(|(panel, _)| panel.unit == unit);
+            alike.map(|(_, axis)| axis.exponent).max().unwrap_or(0)
+        };
+        let common = |(panel, axis): (&Panel, &Axis)| {
+            if panel.unit.is_empty() { axis.clone() } else { axis.clone().in_units_of(largest(&panel.unit)) }
+        };
+        self.panels.iter().zip(&axes).map(common).collect()
+    }
+}
+
+/// Curves closer than this share of the range of their panel cover each other.
+const CLOSE: f64 = 0.006;
+
+/// The style of every curve of a panel: dashed where it would cover an earlier one throughout.
+fn dashes(panel: &Panel) -> Vec<&'static str> {
+    let (low, high) = range(panel.series.iter().flat_map(|s| &s.y));
+    let covers = |a: &Series, b: &Series| {
+        let close = |(x, y): (&f64, &f64)| (x - y).abs() <= CLOSE * (high - low);
+        !a.dotted && !b.dotted && a.y.len() == b.y.len() && a.x == b.x && a.y.iter().zip(&b.y).all(close)
+    };
+    let style = |(k, series): (usize, &Series)| match panel.series[..k]
+        .iter()
+        .filter(|earlier| covers(series, earlier))
+        .count()
+    {
+        0 => "",
+        1 => " stroke-dasharray=\"7 6\"",
+        _ => " stroke-dasharray=\"2 11\"",
+    };
+    panel.series.iter().enumerate().map(style).collect()
+}
+
 /// The mark of an axis of time, along which the animation moves a line: left and right end, and top
-/// and bottom of the line.
-pub(crate) fn time_axis((left, right): (f64, f64), axis: &Axis, (top, bottom): (f64, f64)) -> String {
+/// and bottom of each part of the line.
+pub(crate) fn time_axis((left, right): (f64, f64), axis: &Axis, spans: &[[f64; 2]]) -> String {
     let (low, high, exponent, offset) = (axis.low, axis.high, axis.exponent, axis.offset);
+    let spans: Vec<String> = spans.iter().map(|[top, bottom]| format!("{top:.1} {bottom:.1}")).collect();
     format!(
-        "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} {top} {bottom:.1} {exponent} \
-         {offset:e}\"/>\n"
+        "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} {exponent} {offset:e}\" \
+         data-spans=\"{}\"/>\n",
+        spans.join(" ")
     )
+}
+
+/// The ground of a map, on which its brightest and its darkest colours stand out.
+pub(crate) fn ground(out: &mut String, [x, y, width, height]: [f64; 4]) {
+    let _ = writeln!(
+        out,
+        "<rect class=\"open\" x=\"{x}\" y=\"{y:.1}\" width=\"{width}\" height=\"{height}\" fill=\"#e2e2e2\"/>"
+    );
 }
 
 /// The opening of the part of a panel that zooming stretches: a window on the same coordinates.
@@ -282,16 +342,17 @@ fn legend_rows(panel: &Panel, width: f64) -> Vec<Vec<usize>> {
 }
 
 fn write_legend(out: &mut String, panel: &Panel, rows: &[Vec<usize>], top: f64) {
+    let dashes = dashes(panel);
     for (line, row) in rows.iter().enumerate() {
         let (mut x, y) = (LEFT + 6.0, top + 18.0 * line as f64 + 5.0);
-        for series in row.iter().map(|&i| &panel.series[i]) {
+        for (series, dashes) in row.iter().map(|&i| (&panel.series[i], dashes[i])) {
             if series.dotted {
                 let places = [4.0, 11.0, 18.0].map(|by| (x + by, y));
                 dots(out, places.into_iter(), series.color);
             } else {
                 let _ = writeln!(
                     out,
-                    "<path d=\"M{x:.1} {y:.1}h22\" stroke=\"{}\" stroke-width=\"2\"/>",
+                    "<path d=\"M{x:.1} {y:.1}h22\" stroke=\"{}\" stroke-width=\"2\"{dashes}/>",
                     series.color
                 );
             }

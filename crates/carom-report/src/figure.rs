@@ -1,5 +1,8 @@
 //! A figure of a run with the files beside it.
 
+/// Width in pixels of a picture for a narrow window.
+pub(crate) const NARROW: f64 = 440.0;
+
 /// A figure of a report.
 #[derive(Clone, Debug)]
 pub struct Figure {
@@ -9,13 +12,32 @@ pub struct Figure {
     pub caption: String,
     /// The picture.
     pub svg: String,
+    /// The picture for a narrow window; empty where it would be the same.
+    pub narrow: String,
     /// Further files: endings and contents.
     pub files: Vec<(&'static str, String)>,
 }
 
 impl Figure {
     pub(crate) fn new(name: &'static str, caption: impl Into<String>, svg: String) -> Self {
-        Self { name, caption: caption.into(), svg, files: Vec::new() }
+        Self { name, caption: caption.into(), svg, narrow: String::new(), files: Vec::new() }
+    }
+
+    /// With a picture for a narrow window, of which the page shows one or the other.
+    pub(crate) fn with_narrow(mut self, svg: String) -> Self {
+        self.narrow = svg;
+        self
+    }
+
+    /// The pictures on the page.
+    pub(crate) fn pictures(&self) -> String {
+        let named =
+            |svg: &str, name: &str| svg.replacen("<svg class=\"", &format!("<svg class=\"{name} "), 1);
+        if self.narrow.is_empty() {
+            self.svg.clone()
+        } else {
+            named(&self.svg, "broad") + &named(&self.narrow, "narrow")
+        }
     }
 
     /// With its data as a table, and a script that redraws it.

@@ -1,29 +1,24 @@
 //! The figures of a run, and the columns and files from which they are drawn.
 
-use carom_record::{Cell, FieldEntry, Run, metrics};
-use maud::Markup;
+use carom_record::{Run, contact_axes, metrics};
 
+use crate::animation::Animation;
 use crate::axis::range;
-use crate::bands::Bands;
-use crate::bodies::{self, Instant};
 use crate::chart::{Chart, Options, Panel, Series};
 use crate::collected::measured_label;
-use crate::figure::Figure;
-use crate::labels::{capitalised, instant_label, is_stress, listed, symbol, with_unit, words};
+use crate::figure::{Figure, NARROW};
+use crate::instants::instants;
+use crate::labels::{capitalised, is_stress, listed, symbol, time_label, words};
 use crate::meshes::Pane;
-use crate::obstacles;
 use crate::palette::LINES;
-use crate::quantity::stresses;
 use crate::redraw::of_chart;
-use crate::sheet::Legend;
-use crate::{animation, bars, contours, meshes, noise, pressure, setup, space, stick_slip, stopped};
+use crate::{animation, bodies, meshes, noise, pressure, setup, space, stick_slip, stopped};
 
 /// Everything that can be drawn from a record.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shown {
     pub(crate) figures: Vec<Figure>,
-    /// The animation.
-    pub(crate) animation: Option<Markup>,
+    pub(crate) animation: Option<Animation>,
     /// Notes on what could not be drawn.
     pub(crate) notes: Vec<String>,
 }
@@ -41,10 +36,9 @@ pub(crate) fn all(run: &Run) -> Shown {
     let place = shown.figures.len() + 1;
     if let Some((bodies, bands)) = instants(run, &mut shown.notes) {
         shown.figures.push(bodies);
-        shown.animation = match bands {
-            Some(bands) => animation::section(run, &bands, shades(run), place),
-            None => space::section(run, shades(run), place),
-        };
+        let is_solid = contact_axes(&run.manifest.case) == 3;
+        let section = if is_solid { space::section } else { animation::section };
+        shown.animation = section(run, &bands, shades(run), place);
     }
     let map = stick_slip::figure(run);
     let pressure = pressure::figure(run);
@@ -64,8 +58,9 @@ fn setup(run: &Run) -> Option<Figure> {
         let contacts = run.manifest.case.get("contacts").and_then(|v| v.as_array());
         let is_rigid = |contact: &serde_json::Value| contact.pointer("/primary/side").is_none();
         let rigid = contacts.is_some_and(|contacts| contacts.iter().any(is_rigid));
-        let rigid = if rigid { " Light lines, behind the bodies: rigid obstacles." } else { "" };
-        format!(" View: {}. Dashed: outlines of sides that are turned away.{rigid}", space::View::words())
+        let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
+        let dashed = if svg.contains("stroke-dasharray") { " Dashed: what is turned away." } else { "" };
+        format!(" View: {}.{dashed}{rigid}", space::View::words())
     } else {
         String::new()
     };
@@ -73,8 +68,10 @@ fn setup(run: &Run) -> Option<Figure> {
         let items = run.manifest.case.get(*key).and_then(|v| v.as_array());
         items.is_some_and(|items| !items.is_empty()).then_some(*words)
     };
+    // The sides of contacts are not coloured in space.
+    let contacts = if bodies::fill_space(&fields) { "" } else { "contacts" };
     let parts =
-        [("supports", "supports"), ("loads", "loads"), ("contacts", "contact sides"), ("probes", "probes")];
+        [("supports", "supports"), ("loads", "loads"), (contacts, "contact sides"), ("probes", "probes")];
     let parts: Vec<&str> = std::iter::once("mesh").chain(parts.iter().filter_map(there)).collect();
     let parts = listed(&parts);
     let caption = format!(
@@ -86,15 +83,32 @@ fn setup(run: &Run) -> Option<Figure> {
         values: Vec::new(),
     };
     let length = fields.array("displacement").map_or("", |a| a.unit.as_str());
-    let figure = Figure::new("setup", caption, svg);
+    let figure = Figure::new("setup", caption, svg).with_narrow(setup::narrow(run, &fields)?);
     Some(meshes::with_files(figure, &fields, &[pane], length, String::new()))
 }
 
-/// Contact intervals to shade.
+/// Share of the recorded time from which shading says nothing.
+const THROUGHOUT: f64 = 0.97;
+
+/// Contact intervals to shade; none where one lasts throughout.
 fn shades(run: &Run) -> Vec<(f64, f64)> {
     let t = run.times();
     let end = |e: &metrics::Episode| e.end.map_or(t[t.len() - 1], |i| t[i]);
-    metrics::episodes(&run.history, 0.0).iter().map(|e| (t[e.start], end(e))).collect()
+    let all: Vec<(f64, f64)> =
+        metrics::episodes(&run.history, 0.0).iter().map(|e| (t[e.start], end(e))).collect();
+    let lasts = |(from, to): &(f64, f64)| to - from > THROUGHOUT * (t[t.len() - 1] - t[0]);
+    if all.iter().any(lasts) { Vec::new() } else { all }
+}
+
+/// What the shading means.
+fn shaded(run: &Run) -> &'static str {
+    if !shades(run).is_empty() {
+        " Shaded: contact."
+    } else if noise::has_contact(run) {
+        " In contact throughout."
+    } else {
+        ""
+    }
 }
 
 /// A chart over time with its files.
@@ -105,13 +119,15 @@ fn chart<'a>(
     panels: Vec<Panel<'a>>,
 ) -> Option<Figure> {
     let panels: Vec<Panel> = panels.into_iter().filter(|p| !p.series.is_empty()).collect();
-    let x_label = with_unit("time t", run.history.unit("time"));
+    let x_label = time_label(run);
     (!panels.is_empty()).then(|| {
         let tracks = if title == "Solver" { animation::tracks(run) } else { Vec::new() };
         let options = Options { tracks: &tracks, time: true, ..Options::default() };
         let chart = Chart { title, x_label, shades: shades(run), panels };
         let plot = of_chart(name, &chart);
-        Figure::new(name, caption, chart.draw(&options)).with(plot.csv(), plot.script())
+        let narrow = chart.draw(&Options { width: NARROW, ..options });
+        let figure = Figure::new(name, caption, chart.draw(&options)).with_narrow(narrow);
+        figure.with(plot.csv(), plot.script())
     })
 }
 
@@ -220,10 +236,13 @@ fn probes(run: &Run) -> Option<Figure> {
     };
     let mut list: Vec<String> = panels.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
+    let list: Vec<&str> = list.iter().map(String::as_str).collect();
     let caption = format!(
-        "Time histories at the probes: {}.{} Data: `history.csv`, columns `{}`.",
-        list.join(", "),
-        if shades(run).is_empty() { "" } else { " Shaded: contact." },
+        "Time histories at the probes: {}.{}{} Data: `history.csv`, {} `{}`.",
+        listed(&list),
+        shaded(run),
+        sources(run),
+        if columns.len() == 1 { "column" } else { "columns" },
         columns.join("`, `")
     );
     let panels = panels.into_iter().map(|(_, p)| p).collect();
@@ -260,11 +279,13 @@ fn force(run: &Run) -> Option<Figure> {
         panel("contact force f", h.unit("contact_force_x"), 200.0, forces),
         panel("impulse P", h.unit("contact_impulse_x"), 130.0, impulses),
     ];
-    let caption = "Contact force on the secondary (slave) side at the end of each step, and its accumulated \
-                   impulse. Shaded: contact. Single peaks of the force depend on the time step far more \
-                   than the impulse does. Data: `history.csv`, columns `contact_force_…` and \
-                   `contact_impulse_…`.";
-    chart(run, ("force", "Contact force and impulse"), caption.into(), panels)
+    let caption = format!(
+        "Contact force on the secondary side at the end of each step, and its accumulated impulse, which also has \
+         the forces within a step.{} Single peaks of the force depend on the time step far more than the impulse \
+         does. Data: `history.csv`, columns `contact_force_…` and `contact_impulse_…`.",
+        shaded(run)
+    );
+    chart(run, ("force", "Contact force and impulse"), caption, panels)
 }
 
 /// The energy balance.
@@ -283,12 +304,21 @@ fn energy(run: &Run) -> Option<Figure> {
     let works = if panels[1].series.is_empty() {
         " All work and dissipation are below 10^{-12} of the largest energy and omitted."
     } else {
-        " Top: energies. Bottom: accumulated work and dissipation, which is external work + contact work + \
-         friction work − change of the total energy; where it is negative, energy was created."
+        " Top: energies. Bottom: accumulated work and dissipation. The dissipation is the sum of all work less the \
+         change of the total energy. It falls where the integrator creates energy, or where the work of a force that \
+         varies within a step is inexact; the metric `energy_created` leaves out the latter."
     };
+    let shown: Vec<String> = ENERGIES
+        .iter()
+        .chain(&WORKS)
+        .filter(|(_, label)| panels.iter().flat_map(|p| &p.series).any(|s| s.label == *label))
+        .map(|(column, _)| format!("`{column}`"))
+        .collect();
+    let shown: Vec<&str> = shown.iter().map(String::as_str).collect();
     let caption = format!(
-        "Energy balance.{works} Quantities that remain zero are omitted. Data: `history.csv`, columns of the \
-         same names."
+        "Energy balance.{works}{} Quantities that remain zero are omitted. Data: `history.csv`, columns {}.",
+        shaded(run),
+        listed(&shown)
     );
     chart(run, ("energy", "Energy balance"), caption, panels)
 }
@@ -309,10 +339,21 @@ fn measured(run: &Run) -> Option<Figure> {
         panel(column, run.history.unit(column), 190.0, curves(run, &overlays, &[(column, "computed")], 0.0))
     };
     let caption = format!(
-        "Measured data and the columns that they belong to. Data: `history.csv`, columns `{}`.",
+        "Measured data and the columns that they belong to.{} Data: `history.csv`, {} `{}`.",
+        sources(run),
+        if columns.len() == 1 { "column" } else { "columns" },
         columns.join("`, `")
     );
     chart(run, ("measured", "Measured data"), caption, columns.iter().map(of).collect())
+}
+
+/// Where the measured data, drawn as dots, come from.
+fn sources(run: &Run) -> String {
+    let source = |overlay: metrics::Overlay| {
+        let source = overlay.source.map_or_else(String::new, |source| format!(" ({source})"));
+        format!(" Dots: data “{}”{source}.", overlay.name)
+    };
+    metrics::overlays(run).into_iter().map(source).collect()
 }
 
 /// Iterations, active nodes and rejections by step.
@@ -335,106 +376,21 @@ fn solver(run: &Run) -> Option<Figure> {
     let panels = shown.iter().map(|(name, label, _)| one(name, label)).collect();
     let words: Vec<&str> = shown.iter().map(|(_, _, words)| *words).collect();
     let names: Vec<&str> = shown.iter().map(|(name, ..)| *name).collect();
-    let none = if occurs("rejected") { "" } else { " No step was rejected." };
+    // The column has the rejections of steps that were accepted in the end.
+    let rejected = run.log.iter().filter(|event| event.kind == "rejected").count();
+    let none = match rejected {
+        _ if occurs("rejected") => String::new(),
+        0 => " No step was rejected.".to_owned(),
+        1 => " One attempt of the last step was rejected.".to_owned(),
+        n => format!(" {n} attempts of the last step were rejected."),
+    };
+    let [ticks, log] =
+        if run.log.is_empty() { [""; 2] } else { [" Ticks: events by kind.", "; `log.jsonl`"] };
     let caption = format!(
-        "{} per step.{none} Ticks: events by kind. Data: `history.csv`, columns `{}`; `log.jsonl`.",
+        "{} per step.{none}{ticks} Data: `history.csv`, {} `{}`{log}.",
         capitalised(&listed(&words)),
+        if names.len() == 1 { "column" } else { "columns" },
         names.join("`, `")
     );
     chart(run, ("solver", "Solver"), caption, panels)
-}
-
-/// The field files nearest to five equidistant instants of the first contact; of the run if there
-/// is no contact.
-fn five(run: &Run) -> (Vec<&FieldEntry>, bool) {
-    let t = run.times();
-    let contact = metrics::first_episode(&run.history).map(|e| (t[e.start], t[e.end.unwrap_or(t.len()) - 1]));
-    let span = |(a, b): (f64, f64)| {
-        let near = |k: i32| {
-            let at = a + (b - a) * f64::from(k) / 4.0;
-            run.fields.iter().min_by(|p, q| (p.time - at).abs().total_cmp(&(q.time - at).abs()))
-        };
-        let mut list: Vec<&FieldEntry> = (0..5).filter_map(near).collect();
-        list.dedup();
-        list
-    };
-    match contact {
-        Some(contact) => (span(contact), true),
-        None => (span((t[0], t[t.len() - 1])), false),
-    }
-}
-
-/// The deformed bodies at several instants, coloured by stress, and its bands in the plane.
-fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Option<Bands>)> {
-    let (entries, contact) = five(run);
-    if entries.is_empty() {
-        notes.push("No field files were written (output.fields_every = 0): bodies and contact pressure are not drawn.".into());
-    }
-    let mut sets = Vec::new();
-    for entry in entries {
-        match run.field(entry) {
-            Ok(set) => sets.push((entry.time, set)),
-            Err(error) => notes.push(error.to_string()),
-        }
-    }
-    let first = &sets.first()?.1;
-    let during = if contact { "of the first contact" } else { "of the run (there was no contact)" };
-    let unit = run.history.unit("time");
-    if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
-        let strips: Vec<Instant> =
-            sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
-        return Some((bars::figure(run, &sets, during), Some(bodies::colors(&strips).0)));
-    }
-    if bodies::fill_space(first) {
-        let length = first.array("displacement").map_or("", |a| a.unit.as_str());
-        let (svg, caption) = space::instants(run, &sets, length, during)?;
-        let panes: Vec<Pane> = sets
-            .iter()
-            .filter_map(|(time, set)| {
-                let [values, _] = stresses(set)?;
-                let points = meshes::moved(set, "displacement");
-                Some(Pane { title: instant_label(run, *time), points, values })
-            })
-            .collect();
-        let value = with_unit("σ_{vM}", first.array("stress").map_or("", |a| a.unit.as_str()));
-        let figure = Figure::new("bodies", caption, svg);
-        return Some((meshes::with_files(figure, first, &panes, length, value), None));
-    }
-    let stress = first.array("stress")?.unit.clone();
-    let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
-    let instant = |(time, set): &_| Instant::new(set, "stress", 1, instant_label(run, *time));
-    let list: Vec<Instant> = sets.iter().filter_map(instant).collect();
-    let (bands, cut) = bodies::colors(&list);
-    let title = "Deformed bodies with vertical Cauchy stress";
-    let frame = bodies::frame(&list);
-    let obstacles = obstacles::all(run, frame);
-    let times: Vec<f64> = sets.iter().map(|(time, _)| *time).collect();
-    let walks: Vec<Vec<_>> =
-        times.iter().map(|time| obstacles.iter().map(|o| o.at(run, *time)).collect()).collect();
-    let mut wide = frame;
-    for (obstacle, walk) in walks.iter().flat_map(|walks| obstacles.iter().zip(walks)) {
-        wide = obstacle.shown_in(walk, wide, frame);
-    }
-    // The hatching of a plane that touches the bodies needs room.
-    let room = if obstacles.is_empty() { 0.0 } else { 0.04 * (wide[1] - wide[0]).max(wide[3] - wide[2]) };
-    let wide = [wide[0] - room, wide[1] + room, wide[2] - room, wide[3] + room];
-    let walks: Vec<Vec<_>> = walks
-        .iter()
-        .map(|walks| walks.iter().flat_map(|walk| obstacles::clipped(walk, wide)).collect())
-        .collect();
-    let legend = Legend { bands: &bands, cut, label: "σ_{yy}", unit: &stress };
-    let svg = bodies::figure(&list, (&walks, wide), title, &legend, &length);
-    let arrow = if cut[0] || cut[1] {
-        " Arrows at the colour bar: up to 0.5 % of the values at either end are out of its range."
-    } else {
-        ""
-    };
-    let caption = format!(
-        "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
-         the same scale; displacements are not magnified. Blue: compression. Red: tension. The von Mises \
-         stress of the animation has no sign.{arrow} Data: stress and displacement in the field files."
-    );
-    let figure = Figure::new("bodies", caption, svg);
-    let figure = contours::with_files(figure, &times, &list, [unit, &length, &stress]);
-    Some((figure, Some(bands)))
 }

@@ -3,6 +3,8 @@
 use carom_formula::instant;
 use carom_record::Run;
 
+use crate::scientific::significant;
+
 /// Symbol of a probe quantity: `σ_{yy}`.
 pub(crate) fn symbol(quantity: &str) -> String {
     match quantity {
@@ -45,11 +47,24 @@ pub(crate) fn with_unit(label: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { label.to_string() } else { format!("{label} ({unit})") }
 }
 
-/// `t = 0.3150 s`, with the digits that tell the rows of a run apart.
+/// Whether a run has load steps in place of time steps.
+pub(crate) fn is_static(run: &Run) -> bool {
+    run.manifest.case.pointer("/time/scheme/kind").is_some_and(|kind| kind == "static")
+}
+
+/// The label of the axis of time, which in a static analysis is a parameter of the load.
+pub(crate) fn time_label(run: &Run) -> String {
+    if is_static(run) { "load parameter t".to_owned() } else { with_unit("time t", run.history.unit("time")) }
+}
+
+/// `t = 0.315 s`, with the digits that tell the rows of a run apart.
 pub(crate) fn instant_label(run: &Run, time: f64) -> String {
     let apart = run.times().windows(2).map(|pair| pair[1] - pair[0]);
     let step = apart.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
-    let label = format!("t = {} {}", instant(time, step, 4), run.history.unit("time"));
+    // Six digits, or more where rows are closer.
+    let digits = if step < 1e-5 * time.abs() { instant(time, step, 4) } else { number(time) };
+    let unit = if is_static(run) { "" } else { run.history.unit("time") };
+    let label = format!("t = {digits} {unit}");
     label.trim_end().to_owned()
 }
 
@@ -63,19 +78,19 @@ pub(crate) fn scaled(unit: &str, exponent: i32) -> String {
 }
 
 /// A number with its unit, whose prefix is chosen so that the number is from 1 to 1000 where there
-/// is such a prefix: 524.548 µN.
+/// is such a prefix: 525 µN.
 pub(crate) fn amount(x: f64, unit: &str) -> String {
     let exponent = if x == 0.0 || !x.is_finite() { 0 } else { 3 * (x.abs().log10() / 3.0).floor() as i32 };
     match prefixed(unit, exponent) {
-        Some(unit) => format!("{} {unit}", number(x / 10f64.powi(exponent))),
-        None => format!("{} {unit}", number(x)).trim_end().to_owned(),
+        Some(unit) => format!("{} {unit}", significant(x / 10f64.powi(exponent), 3)),
+        None => format!("{} {unit}", significant(x, 3)).trim_end().to_owned(),
     }
 }
 
 /// The unit with the prefix that stands for its own times 10^exponent: 10^{-6} MPa is Pa.
 fn prefixed(unit: &str, exponent: i32) -> Option<String> {
-    const PREFIXES: [(&str, i32); 8] =
-        [("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9), ("T", 12)];
+    const PREFIXES: [(&str, i32); 9] =
+        [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9), ("T", 12)];
     let (first, rest) = unit.split_at(unit.find([' ', '/']).unwrap_or(unit.len()));
     let base = ["Pa", "N", "J", "m", "s"].into_iter().find(|base| first.ends_with(base))?;
     let own = PREFIXES.iter().find(|(prefix, _)| *prefix == &first[..first.len() - base.len()])?.1;
@@ -128,11 +143,11 @@ mod tests {
 
     #[test]
     fn amounts_have_the_prefix_of_their_size() {
-        let cases = [(5.24548e-4, "N", "524.548 µN"), (0.0, "N", "0 N"), (2.5e-3, "kg", "0.0025 kg")];
+        let cases = [(5.24548e-4, "N", "525 µN"), (0.0, "N", "0 N"), (2.5e-3, "kg", "0.00250 kg")];
         for (x, unit, text) in cases {
             assert_eq!(amount(x, unit), text);
         }
-        assert_eq!(amount(-31.25e6, "kPa"), "−31.25 GPa");
+        assert_eq!(amount(-31.25e6, "kPa"), "−31.2 GPa");
     }
 
     /// 10^-6 MPa = 1 Pa, 10^3 N = 1 kN, 10^-3 m/s = 1 mm/s.

@@ -139,6 +139,12 @@ impl Obstacle {
         &self.walk
     }
 
+    /// The point of a moving plane that is below the bodies at first, with the normal, at a
+    /// recorded time: the plane itself looks the same wherever it is.
+    pub(crate) fn mark(&self, run: &Run, time: f64) -> Option<(Point, Point)> {
+        (self.is_plane && self.moves(run)).then(|| self.at(run, time)[STRAIGHT / 2])
+    }
+
     /// Its points and normals in one list, relative to the point about which it turns.
     pub(crate) fn base(&self) -> Vec<f64> {
         let rounded = |x: f64| format!("{x:.6e}").parse().unwrap_or(0.0);
@@ -189,8 +195,61 @@ impl Obstacle {
     }
 }
 
+/// The part of a segment inside a frame, between 0 and 1 from its start (Liang and Barsky 1984).
+fn inside(a: Point, b: Point, frame: [f64; 4]) -> Option<[f64; 2]> {
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for i in 0..2 {
+        let d = b[i] - a[i];
+        let ends = [frame[2 * i] - a[i], frame[2 * i + 1] - a[i]];
+        if d == 0.0 {
+            if ends[0] > 0.0 || ends[1] < 0.0 {
+                return None;
+            }
+            continue;
+        }
+        let [enter, leave] = if d > 0.0 { ends } else { [ends[1], ends[0]] };
+        (from, to) = (from.max(enter / d), to.min(leave / d));
+    }
+    (from < to).then_some([from, to])
+}
+
 /// The parts of a surface inside a frame.
-pub(crate) fn clipped(walk: &Walk, [x0, x1, y0, y1]: [f64; 4]) -> Vec<Walk> {
-    let inside = |(p, _): &(Point, Point)| p[0] >= x0 && p[0] <= x1 && p[1] >= y0 && p[1] <= y1;
-    walk.split(|place| !inside(place)).filter(|part| part.len() > 1).map(<[_]>::to_vec).collect()
+pub(crate) fn clipped(walk: &Walk, frame: [f64; 4]) -> Vec<Walk> {
+    let mut parts: Vec<Walk> = Vec::new();
+    let mut continues = false;
+    for pair in walk.windows(2) {
+        let [(a, n), (b, m)] = [pair[0], pair[1]];
+        let Some([from, to]) = inside(a, b, frame) else {
+            continues = false;
+            continue;
+        };
+        let at = |s: f64| [0, 1].map(|i| a[i] + s * (b[i] - a[i]));
+        if !continues || from > 0.0 {
+            parts.push(vec![(at(from), n)]);
+        }
+        if let Some(part) = parts.last_mut() {
+            part.push((at(to), m));
+        }
+        continues = to == 1.0;
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: y = x from −1 to 3 crosses the unit square at its corners; a line outside has no
+    /// part.
+    #[test]
+    fn surfaces_end_at_the_frame() {
+        let n = [0.0, 1.0];
+        let walk = |points: &[Point]| points.iter().map(|p| (*p, n)).collect::<Walk>();
+        let frame = [0.0, 1.0, 0.0, 1.0];
+        let parts = clipped(&walk(&[[-1.0, -1.0], [0.5, 0.5], [3.0, 3.0]]), frame);
+        assert_eq!(parts, [walk(&[[0.0, 0.0], [0.5, 0.5], [1.0, 1.0]])]);
+        assert!(clipped(&walk(&[[-1.0, 2.0], [3.0, 2.0]]), frame).is_empty());
+        let there_and_back = walk(&[[0.5, 0.5], [2.0, 0.5], [2.0, 0.25], [0.5, 0.25]]);
+        assert_eq!(clipped(&there_and_back, frame).len(), 2);
+    }
 }

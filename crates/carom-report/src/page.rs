@@ -1,17 +1,19 @@
 //! `report.html`: the report of a run as a single self-contained page, for screen and print.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use carom_record::metrics::{self, Metric};
+use carom_record::metrics;
 use carom_record::{FieldFormat, Run, Status, Warning};
 use maud::{Markup, Render, html};
 use serde_json::Value;
 
-use crate::digits;
+use crate::animation::Animation;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::figure::Figure;
-use crate::labels::number;
-use crate::noise::has_contact;
+use crate::labels::{capitalised, is_static, number};
+use crate::results::results;
+use crate::scientific::{powers, significant};
+use crate::setup::in_words;
 use crate::stopped;
 use crate::text::{Label, Prose, typeset};
 use crate::timing::{three, timing};
@@ -23,14 +25,10 @@ const HEADER: &str = "Data: `manifest.json` (version, input_hash, case, machine,
     started) and `history.csv` (rows and times). The input hash is the BLAKE3 hash of the case file and of \
     the options given with it.";
 
-const RESULTS: &str = "All values are computed from `history.csv` alone: times from `time` and `active`, \
-    forces from `contact_force_…`, impulses from `contact_impulse_…`, energies from `dissipation`, `kinetic` \
-    and `strain`, and motion from `center_…` and `velocity_…` of the striker.";
-
 /// The page.
-pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, notes: &[String]) -> String {
+pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Animation>, notes: &[String]) -> String {
     let title = run.manifest.case.get("title").and_then(Value::as_str).unwrap_or("Carom run");
-    let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &f.endings(), &f.caption, &f.svg);
+    let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &f.endings(), &f.caption, &f.pictures());
     let named = |name: &'static str| figures.iter().enumerate().filter(move |(_, f)| f.name == name);
     let place = named("stopped").next().map(&figure);
     let others = figures.iter().enumerate().filter(|(_, f)| f.name != "setup" && f.name != "stopped");
@@ -41,7 +39,7 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, no
         @for warning in &run.manifest.warnings { (warning_line(warning)) }
         @for note in notes { p.small { (note) } }
         @for f in named("setup") { (figure(f)) }
-        @if let Some(animation) = animation { (animation) }
+        @if let Some(animation) = animation { (animation.figure) }
         (results(run))
         (expectations(run))
         h2 { "Figures" }
@@ -49,6 +47,7 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, no
         (events(run))
         (timing(&run.manifest))
         (reproduce(run))
+        @if let Some(animation) = animation { (animation.scripts) }
     };
     document(title, "", &body)
 }
@@ -57,7 +56,7 @@ fn warning_line(warning: &Warning) -> Markup {
     let Warning { id, place, what, why, advice } = warning;
     html! {
         p {
-            b.miss { "Warning" } " (" code { (id) } "), " (typeset(place)) ": " (typeset(what)) "; " (typeset(why)) ". Try "
+            b.miss { "Warning" } " (" code { (id) } "), " (typeset(place)) ": " (Label(&powers(&typeset(what)))) "; " (typeset(why)) ". Try "
             (typeset(advice)) "."
         }
     }
@@ -74,12 +73,13 @@ fn status(run: &Run) -> Markup {
         }
         Status::Finished => ("finished", "finished".to_owned()),
         Status::Stopped => ("stopped", "stopped; can be resumed".to_owned()),
+        Status::Failed if run.stop.is_some() => ("failed", "stopped by an error".to_owned()),
         Status::Failed => ("failed", "failed".to_owned()),
     };
     html! {
         p {
             span.status.(class) { (word) }
-            @if let Some(reason) = m.reason.as_ref().filter(|_| run.stop.is_none()) { " " (reason) }
+            @if let Some(reason) = m.reason.as_ref().filter(|_| run.stop.is_none()) { " " (Label(&powers(&typeset(reason)))) }
         }
     }
 }
@@ -92,20 +92,31 @@ fn header(run: &Run) -> Markup {
     let bodies: Vec<&str> = bodies.filter_map(|b| b.get("name")?.as_str()).collect();
     html! {
         table {
-            @if !bodies.is_empty() { (row("Bodies", bodies.join(", "))) }
+            @if let Some(name) = run.directory.file_name() { (row("Run", name.to_string_lossy())) }
+            @if run.fields.is_empty() {
+                // Nothing is drawn of the model.
+                @for (name, lines) in in_words(&m.case) {
+                    (row(name, html! { @for (i, line) in lines.iter().enumerate() { @if i > 0 { br; } (Label(line)) } }))
+                }
+            } @else if !bodies.is_empty() { (row("Bodies", bodies.join(", "))) }
+            @if !m.source.sets.is_empty() {
+                (row("Changed options", html! {
+                    @for (i, set) in m.source.sets.iter().enumerate() { @if i > 0 { br; } code { (set) } }
+                }))
+            }
             (row("Carom version", &m.version))
             (row("Input hash", html! { code.hash { (m.input_hash) } }))
             (row("Record", html! {
-                (rows) " rows, up to t = " (number(last)) " " (Label(run.history.unit("time")))
+                (rows) " recorded steps, up to t = " (number(last)) " " (Label(run.history.unit("time")))
             }))
             @if let Some(time) = integration(&m.case, run.history.unit("time")) {
-                (row("Time integration", Label(&time)))
+                (row(if is_static(run) { "Analysis" } else { "Time integration" }, Label(&time)))
             }
             (row("Machine", html! {
-                (machine.cpus) " cores, " (machine.os) " " (machine.arch) "; threads: " (m.threads)
+                (machine.cpus) " cores, " (capitalised(&machine.os)) " " (machine.arch) "; threads: " (m.threads)
             }))
             (row("Wall time", html! { (three(wall)) " s" }))
-            (row("Started", &m.started))
+            (row("Started", m.started.replace('T', " ").replace('Z', " UTC")))
         }
         p.small { (Prose(HEADER)) }
     }
@@ -118,7 +129,7 @@ fn row(name: &str, value: impl Render) -> Markup {
 /// The scheme with its parameters, and the time step.
 fn integration(case: &Value, unit: &str) -> Option<String> {
     let part = |(k, v): (&String, &Value)| match v.as_str() {
-        Some(text) if k == "kind" => text.to_string(),
+        Some(text) if k == "kind" => scheme_name(text).to_owned(),
         Some(text) => format!("{k}: {}", text.replace('-', " ")),
         None => format!("{} = {}", symbol_of(k), v.as_f64().map_or_else(|| v.to_string(), number)),
     };
@@ -128,8 +139,28 @@ fn integration(case: &Value, unit: &str) -> Option<String> {
     let told = |(k, v): &(&String, &Value)| *k != "forces" || !(is_static || *v == "average-forces");
     let scheme: Vec<String> = scheme.iter().filter(told).map(part).collect();
     let step = case.pointer("/time/step").and_then(Value::as_f64).map_or(String::new(), number);
-    let what = if is_static { "load step" } else { "Δt" };
-    Some(format!("{}; {what} = {step} {unit}", scheme.join(", ")))
+    let step = if is_static { format!("load step = {step}") } else { format!("Δt = {step} {unit}") };
+    Some(format!("{}; {step}", scheme.join(", ")).replace(" = ", "\u{a0}=\u{a0}"))
+}
+
+/// The name of a scheme in the literature.
+fn scheme_name(kind: &str) -> &str {
+    match kind {
+        "backward-euler" => "backward Euler",
+        "bathe" => "Bathe",
+        "central-difference" => "central differences",
+        "chung-hulbert" => "Chung–Hulbert (generalized-α)",
+        "energy-momentum" => "energy–momentum",
+        "generalized-alpha" => "generalized-α",
+        "hht" => "Hilber–Hughes–Taylor (HHT-α)",
+        "hu" => "Hu",
+        "moreau-jean" => "Moreau–Jean",
+        "newmark" => "Newmark",
+        "nonsmooth-generalized-alpha" => "nonsmooth generalized-α",
+        "paoli-schatzman" => "Paoli–Schatzman",
+        "wbz" => "Wood–Bossak–Zienkiewicz (WBZ-α)",
+        kind => kind,
+    }
 }
 
 /// The symbol of a parameter of a scheme.
@@ -146,72 +177,84 @@ fn symbol_of(key: &str) -> &str {
     }
 }
 
-/// Six digits; three of what may be round-off.
-fn shown(x: f64) -> String {
-    if x.abs() < 1e-9 { digits::three(x) } else { number(x) }
+/// Significant digits of a result beside its tolerance.
+const DIGITS: usize = 6;
+
+/// An expected value with its tolerance, which stay on one line.
+fn expected(text: &str) -> String {
+    let exact = text.strip_suffix(" ± 0").map_or_else(|| text.to_owned(), |value| format!("= {value}"));
+    powers(&minus(&exact)).replace(" ± ", "\u{a0}±\u{a0}").replace(" %", "\u{a0}%")
 }
 
-fn results(run: &Run) -> Markup {
+/// The unit of a metric, or of an expression that adds columns of one unit; a dash for numbers,
+/// nothing for other expressions.
+fn unit_of_question(run: &Run, what: &str) -> Markup {
+    let unit = |unit: &str| html! { @if unit.is_empty() { "–" } @else { (Label(unit)) } };
     let overlays = metrics::overlays(run);
     let measured = overlays.iter().flat_map(|overlay| metrics::of_measured(&run.history, overlay));
-    let all = metrics::all(&run.history).into_iter().chain(measured);
-    let known: Vec<Metric> = all.filter(|m| m.value.is_some()).collect();
-    let groups = metrics::TITLES
-        .map(|title| (title, known.iter().filter(|m| metrics::group(&m.name) == title).collect::<Vec<_>>()));
-    html! {
-        h2 { "Key results" }
-        table.results {
-            thead { tr { th { "Metric" } th.n { "Value" } th { "Unit" } th { "Definition" } } }
-            @for (title, members) in groups.iter().filter(|(_, members)| !members.is_empty()) {
-                tr.group { th colspan="4" { (title) } }
-                @for metric in members {
-                    tr {
-                        td { code { (metric.name) } }
-                        td.n { (or_dash(metric.value, shown)) }
-                        td.unit { @if metric.unit.is_empty() { "–" } @else { (Label(&metric.unit)) } }
-                        td { (metric.definition) }
-                    }
-                }
-            }
-        }
-        @if let Some(body) = metrics::striker(&run.history).filter(|_| has_contact(run)) {
-            p.small { "Striker: " (body) ". " (Prose(RESULTS)) }
-        }
+    if let Some(metric) = metrics::all(&run.history).into_iter().chain(measured).find(|m| m.name == what) {
+        return unit(&metric.unit);
+    }
+    let form = what.split(' ').next().unwrap_or_default();
+    if form == "time" {
+        return unit(run.history.unit("time"));
+    }
+    // Factors may have units, those of functions of t have.
+    let sum = what.split_once("− (").map_or(what, |(column, _)| column);
+    let columns: Vec<&str> = sum
+        .split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | ':')))
+        .filter(|word| run.column(word).is_some() && *word != "time")
+        .collect();
+    let units: BTreeSet<&str> = columns.iter().map(|column| run.history.unit(column)).collect();
+    match units.first() {
+        Some(_) if sum.contains('/') && columns.len() == 2 && units.len() == 1 => unit(""),
+        Some(one) if units.len() == 1 && !sum.contains(['/', '*']) => unit(one),
+        _ => html! {},
     }
 }
 
-/// The unit of a metric, or of a reduction of one column; empty for other expressions.
-fn unit_of_question(run: &Run, what: &str) -> String {
-    if let Some(metric) = metrics::all(&run.history).into_iter().find(|m| m.name == what) {
-        return metric.unit;
-    }
-    let Some((form, column)) = what.rsplit_once(' ') else { return run.history.unit(what).to_owned() };
-    match form.split(' ').next().unwrap_or_default() {
-        _ if form.contains(['[', '/', '*', '+']) => String::new(),
-        "time" => run.history.unit("time").to_owned(),
-        "min" | "max" | "first" | "last" | "at" | "range" | "drift" | "peak" | "rms" => {
-            run.history.unit(column).to_owned()
+/// Sources of more than one expectation that are too long to be repeated.
+fn repeated_sources(run: &Run) -> Vec<&String> {
+    let mut found: Vec<&String> = Vec::new();
+    let sources: Vec<&String> = run.manifest.expectations.iter().filter_map(|e| e.source.as_ref()).collect();
+    for source in &sources {
+        let is_repeated = sources.iter().filter(|other| other == &source).count() > 1;
+        if source.chars().count() > 40 && is_repeated && !found.contains(source) {
+            found.push(source);
         }
-        _ => String::new(),
     }
+    found
 }
 
 fn expectations(run: &Run) -> Markup {
+    let repeated = repeated_sources(run);
     html! {
         @if !run.manifest.expectations.is_empty() {
             h2 { "Expectations" }
-            table {
-                thead { tr { th { "Quantity" } th { "Expected" } th.n { "Result" } th { "Unit" } th {} th { "Source" } } }
+            table.expectations {
+                thead {
+                    tr {
+                        th { "Quantity" } th { "Expected" } th.n { "Result" } th { "Unit" } th { "Verdict" }
+                        th { "Source" }
+                    }
+                }
                 @for e in &run.manifest.expectations {
                     tr {
-                        td { code { (e.what) } } td { (minus(&e.expected)) }
-                        td.n { (or_dash(e.got, number)) }
-                        td.unit { (Label(&unit_of_question(run, &e.what))) }
+                        td { code { (e.what) } } td.expected { (Label(&expected(&e.expected))) }
+                        td.n { (Label(&or_dash(e.got, |x| significant(x, DIGITS)))) }
+                        td.unit { (unit_of_question(run, &e.what)) }
                         @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
-                        td { @if let Some(source) = &e.source { (source) } }
+                        td {
+                            @if let Some(source) = &e.source {
+                                @if let Some(k) = repeated.iter().position(|other| *other == source) {
+                                    "[" (k + 1) "]"
+                                } @else { (source) }
+                            }
+                        }
                     }
                 }
             }
+            @for (k, source) in repeated.iter().enumerate() { p.small { "[" (k + 1) "] " (source) } }
         }
     }
 }
@@ -230,16 +273,22 @@ fn events(run: &Run) -> Markup {
         } @else {
             p { (counts.join(", ")) "." }
             details {
-                summary { (listed) " of " (all) " events" }
+                summary {
+                    @if listed < all { "The first " (listed) " of " (all) " events" }
+                    @else if all == 1 { "1 event" } @else { (all) " events" }
+                }
                 table {
                     thead { tr { th.n { "Step" } th.n { "Time (" (Label(run.history.unit("time"))) ")" } th { "Kind" } th { "Message" } } }
                     @for e in &run.log[..listed] {
-                        tr { td.n { (e.step) } td.n { (number(e.time)) } td { (e.kind) } td { (e.message) } }
+                        tr {
+                            td.n { (e.step) } td.n { (number(e.time)) } td { (e.kind) }
+                            td { (Label(&powers(&typeset(&e.message)))) }
+                        }
                     }
                 }
             }
         }
-        p.small { (Prose("Data: `log.jsonl`, one event per line.")) }
+        @if all > 0 { p.small { (Prose("Data: `log.jsonl`, one event per line.")) } }
     }
 }
 

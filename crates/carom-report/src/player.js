@@ -16,7 +16,8 @@ const player = (root, frames, unit, draw, first) => {
   // All histories show the same interval of time, at first the whole one; a drag across one enlarges it.
   let shownFrom = null, shownTo = null;
   const axes = [...document.querySelectorAll("svg g.time")].map(axis => {
-    const [x0, x1, t0, t1, top, bottom, exponent, offset] = axis.dataset.axis.split(" ").map(Number);
+    const [x0, x1, t0, t1, exponent, offset] = axis.dataset.axis.split(" ").map(Number);
+    const spans = axis.dataset.spans.split(" ").map(Number);
     const svg = axis.ownerSVGElement, ticks = svg.querySelector("g.ticks"), original = ticks?.innerHTML;
     // A map over time has a cursor and takes clicks, but is not enlarged.
     const range = () => shownFrom === null || !ticks ? [t0, t1] : [shownFrom, shownTo];
@@ -45,7 +46,8 @@ const player = (root, frames, unit, draw, first) => {
     return {
       move: t => {
         const x = place(t);
-        line.setAttribute("d", x < x0 - 1 || x > x1 + 1 ? "" : `M${x.toFixed(2)} ${top}V${bottom}`);
+        const parts = spans.map((y, i) => i % 2 ? `V${y}` : `M${x.toFixed(2)} ${y}`);
+        line.setAttribute("d", x < x0 - 1 || x > x1 + 1 ? "" : parts.join(""));
       },
       rescale: () => {
         if (!ticks) return;
@@ -86,7 +88,7 @@ const player = (root, frames, unit, draw, first) => {
     frame = k;
     draw(k);
     axes.forEach(axis => axis.move(frames[k].time));
-    shown.textContent = `t = ${frames[k].time.toPrecision(4)} ${unit} · step ${frames[k].step} · ${frames[k].file}`;
+    shown.textContent = `t = ${+frames[k].time.toPrecision(6)} ${unit} · step ${frames[k].step} · ${frames[k].file}`;
   };
   const pause = () => { cancelAnimationFrame(playing); playing = null; button.textContent = "▶"; };
   const play = () => {

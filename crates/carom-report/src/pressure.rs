@@ -9,12 +9,12 @@ use serde_json::{Value, json};
 use crate::arc::{Place, places};
 use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
-use crate::chart::{open_chart, time_axis, write_text};
-use crate::figure::Figure;
+use crate::chart::{ground, open_chart, time_axis, write_text};
+use crate::figure::{Figure, NARROW};
 use crate::labels::with_unit;
 use crate::pen::{Pen, open_grid};
 use crate::redraw::filled;
-use crate::sheet::{Legend, color_bar};
+use crate::sheet::{Legend, arrowheads, color_bar};
 
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 74.0;
@@ -87,22 +87,57 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         return None;
     }
     let (length, stress) = units(run);
-    let (from, to) = in_contact(run, &sides);
+    let mut table = String::from("contact,node,s,time,pressure\n");
+    for (side, (row, place)) in sides.iter().flat_map(|side| side.rows.iter().map(move |row| (side, row))) {
+        let _ =
+            writeln!(table, "{},{},{:?},{:?},{:?}", side.name, row.node, place.at, row.time, row.pressure);
+    }
+    let ((out, cuts, stride), (narrow, ..)) = (draw(run, &sides, WIDTH), draw(run, &sides, NARROW));
+    let thinned =
+        if stride > 1 { format!(" {} recorded step is drawn.", every(stride)) } else { String::new() };
+    let contacts = run.manifest.case.get("contacts").and_then(Value::as_array).into_iter().flatten();
+    let unmatched = if contacts.into_iter().any(|contact| contact.pointer("/primary/side").is_some()) {
+        " Where the nodes of the two sides do not match, nodal pressures have errors of 10 % or more."
+    } else {
+        ""
+    };
+    let caption = format!(
+        "Contact pressure p during contact, over time and the arc length s of the secondary side in the reference \
+         configuration; one band per node, grey where the node is not in contact.{thinned}{}{unmatched} Data: \
+         `contact.csv`, column `pressure`.",
+        arrowheads(cuts)
+    );
+    let labels = [
+        ("@P@", with_unit("p", &stress)),
+        ("@T@", with_unit("time t", run.history.unit("time"))),
+        ("@S@", with_unit("arc length s", &length)),
+    ];
+    let script = filled(include_str!("pressure.py"), &labels);
+    Some(Figure::new("pressure", caption, out).with_narrow(narrow).with(table, script))
+}
+
+/// The maps as a picture of a width, whether the colours of each leave values out, and of how many
+/// steps one is drawn.
+fn draw(run: &Run, sides: &[Side], width: f64) -> (String, Vec<[bool; 2]>, usize) {
+    let (length, stress) = units(run);
+    let (from, to) = in_contact(run, sides);
     let x_axis = Axis::new((from, to), 7.0, true);
-    let plot = WIDTH - LEFT - RIGHT;
+    let plot = width - LEFT - RIGHT;
     let step = HEIGHT + 46.0;
-    let mut out = open_chart("Contact pressure along the side", WIDTH, sides.len() as f64 * step + 34.0);
+    let mut out = open_chart("Contact pressure along the side", width, sides.len() as f64 * step + 34.0);
     let shown: Vec<f64> = run.times().iter().copied().filter(|t| (from..=to).contains(t)).collect();
     let stride = shown.len().div_ceil(INSTANTS).max(1);
     let kept: Vec<f64> = shown.into_iter().step_by(stride).collect();
     let to_x = |t: f64| LEFT + plot * x_axis.position(t);
-    let mut table = String::from("contact,node,s,time,pressure\n");
+    let mut cuts = Vec::new();
     for (k, side) in sides.iter().enumerate() {
         let top = 26.0 + k as f64 * step;
         let (bands, cut) = positive_bands(side.rows.iter().map(|(row, _)| row.pressure));
-        let y_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 4.0, true);
+        cuts.push(cut);
+        let y_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 6.0, true);
         let to_y = |s: f64| top + HEIGHT * (1.0 - y_axis.position(s));
         write_text(&mut out, LEFT, top - 8.0, "font-size=\"12\" font-weight=\"600\"", side.name);
+        ground(&mut out, [LEFT, top, plot, HEIGHT]);
         map(&mut out, side, &kept, &bands, (&to_x, &to_y));
         frame(&mut out, (&x_axis, &y_axis), [LEFT, plot, top, HEIGHT]);
         let label = y_axis.label("arc length s", &length);
@@ -111,35 +146,15 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         write_text(&mut out, 0.0, 0.0, &turned, &label);
         let legend = Legend { bands: &bands, cut, label: "p", unit: &stress };
         color_bar(&mut out, &legend, LEFT + plot + 20.0, (top - 4.0, top + HEIGHT - 8.0));
-        for (row, place) in &side.rows {
-            let _ = writeln!(
-                table,
-                "{},{},{:?},{:?},{:?}",
-                side.name, row.node, place.at, row.time, row.pressure
-            );
-        }
     }
     let y = sides.len() as f64 * step + 22.0;
     let label = x_axis.label("time t", run.history.unit("time"));
     write_text(&mut out, LEFT + 0.5 * plot, y, "text-anchor=\"middle\"", &label);
-    let bottom = 26.0 + (sides.len() - 1) as f64 * step + HEIGHT;
-    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, (26.0, bottom)));
+    let spans: Vec<[f64; 2]> =
+        (0..sides.len()).map(|k| 26.0 + k as f64 * step).map(|top| [top, top + HEIGHT]).collect();
+    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans));
     out.push_str("</svg>\n");
-    let thinned =
-        if stride > 1 { format!(" {} recorded instant is drawn.", every(stride)) } else { String::new() };
-    let caption = format!(
-        "Contact pressure p during contact, over time and the arc length s of the secondary side in the reference \
-         configuration; a band per node, nothing where it is open.{thinned} The line is at the instant of the \
-         animation, and a click goes to one. Where the nodes of the two sides do not match, nodal pressures have \
-         errors of 10 % or more. Data: `contact.csv`, column `pressure`."
-    );
-    let labels = [
-        ("@P@", with_unit("p", &stress)),
-        ("@T@", with_unit("time t", run.history.unit("time"))),
-        ("@S@", with_unit("arc length s", &length)),
-    ];
-    let script = filled(include_str!("pressure.py"), &labels);
-    Some(Figure::new("pressure", caption, out).with(table, script))
+    (out, cuts, stride)
 }
 
 /// `Every second`, `Every third`, `Every 4th`.
@@ -217,7 +232,8 @@ pub(crate) fn profiles(run: &Run, frames: &[&FieldEntry]) -> Option<(String, Vec
         let [width, height] = SMALL;
         let (wide, high) = (width - LEFT - 14.0, height - 66.0);
         let x_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 6.0, true);
-        let most = range(side.rows.iter().map(|(row, _)| &row.pressure)).1;
+        // As on the map: a few peaks are cut off.
+        let most = positive_bands(side.rows.iter().map(|(row, _)| row.pressure)).0.high;
         let y_axis = Axis::new((0.0, most), 2.0, false);
         let mut out = open_chart("Contact pressure at the instant of the animation", width, height);
         let top = 24.0;

@@ -52,7 +52,7 @@ pub(crate) fn choice(quantities: &[Quantity]) -> Markup {
     }
 }
 
-/// The equivalent stress of von Mises, √(3/2 s:s), of each point, and the pressure −tr σ/3.
+/// The equivalent stress of von Mises, √(3/2 s:s), of each point, and the mean stress tr σ/3.
 pub(crate) fn stresses(fields: &FieldSet) -> Option<[Vec<f64>; 2]> {
     let stress = fields.array("stress").filter(|a| a.components == 6)?;
     let points = stress.values.as_chunks::<6>().0;
@@ -60,8 +60,8 @@ pub(crate) fn stresses(fields: &FieldSet) -> Option<[Vec<f64>; 2]> {
         let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
         (0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
     };
-    let pressure = |s: &[f64; 6]| -(s[0] + s[1] + s[2]) / 3.0;
-    Some([points.iter().map(mises).collect(), points.iter().map(pressure).collect()])
+    let mean = |s: &[f64; 6]| (s[0] + s[1] + s[2]) / 3.0;
+    Some([points.iter().map(mises).collect(), points.iter().map(mean).collect()])
 }
 
 #[cfg(test)]
@@ -75,8 +75,8 @@ mod tests {
         let values = vec![5.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2.0, -2.0, -2.0, 0.0, 3.0, 0.0];
         let stress = PointArray { name: "stress".into(), unit: String::new(), components: 6, values };
         let fields = FieldSet { points: vec![[0.0; 3]; 2], blocks: Vec::new(), arrays: vec![stress] };
-        let [mises, pressure] = stresses(&fields).unwrap();
-        assert_eq!((mises[0], pressure[0]), (5.0, -5.0 / 3.0));
-        assert!((mises[1] - 27f64.sqrt()).abs() < 1e-14 && pressure[1] == 2.0);
+        let [mises, mean] = stresses(&fields).unwrap();
+        assert_eq!((mises[0], mean[0]), (5.0, 5.0 / 3.0));
+        assert!((mises[1] - 27f64.sqrt()).abs() < 1e-14 && mean[1] == -2.0);
     }
 }

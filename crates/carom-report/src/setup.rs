@@ -10,6 +10,7 @@ mod key;
 mod planes;
 mod solid;
 mod values;
+mod words;
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -20,17 +21,29 @@ use serde_json::Value;
 use crate::axis::Axis;
 use crate::bodies::{Instant, bezier, corners, edges, fill_space, places};
 use crate::chart::{open, write_text};
+use crate::figure::NARROW;
 use crate::obstacles;
 use crate::pen::{Pen, Point, open_grid};
-use crate::symbols::{arrow, direction, guides, plus, rollers, wall};
-use drawing::{BAR, KEY, PRIMARY, ROOM, SECONDARY, Setup};
+use crate::symbols::{arrow, direction, guides, motion, plus, rollers, wall};
+use drawing::{BAR, KEY, PRIMARY, ROOM, SECONDARY, Setup, Walk};
 use values::{list, text, vector};
+pub(crate) use words::in_words;
 
-/// The figure, from the initial fields; nothing without cells.
+/// The figure, from the initial fields, with the key beside the drawing; nothing without cells.
 pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
+    drawn(run, fields, false)
+}
+
+/// The figure for a narrow window: the key is below.
+pub(crate) fn narrow(run: &Run, fields: &FieldSet) -> Option<String> {
+    drawn(run, fields, true)
+}
+
+fn drawn(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
     if fill_space(fields) {
-        return solid::figure(run, fields);
+        return solid::figure(run, fields, narrow);
     }
+    let room = if narrow { NARROW - 155.0 } else { ROOM };
     let flat = fields.blocks.iter().all(|b| b.cell == Cell::Curve);
     let points = places(fields);
     let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
@@ -60,7 +73,7 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
         return None;
     }
     let margin = 46.0;
-    let scale = if flat { ROOM / (x1 - x0) } else { (ROOM / (x1 - x0)).min(430.0 / (y1 - y0)) };
+    let scale = if flat { room / (x1 - x0) } else { (room / (x1 - x0)).min(430.0 / (y1 - y0)) };
     let picture = if flat { BAR } else { (y1 - y0) * scale };
     let left = 60.0 + margin;
     let right = left + (x1 - x0) * scale;
@@ -68,10 +81,15 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     let origin = [left - x0 * scale, if flat { top + 0.5 * BAR } else { top + y1 * scale }];
     let mut setup = Setup { run, fields, points, flat, scale, origin, inside: HashMap::new() };
     let mut key = String::new();
-    let lines = setup.key(&mut key, right + margin + 36.0);
-    let bottom = (top + picture + margin).max(if flat { 0.0 } else { lines - 60.0 });
-    let mut out =
-        open("Initial configuration", right + margin + 36.0 + KEY, (bottom + 44.0).max(lines + 8.0));
+    let lines = setup.key(&mut key, if narrow { 12.0 } else { right + margin + 36.0 });
+    let bottom = (top + picture + margin).max(if flat || narrow { 0.0 } else { lines - 60.0 });
+    let [width, height] = if narrow {
+        key = format!("<g transform=\"translate(0 {:.1})\">\n{key}</g>\n", bottom + 44.0);
+        [NARROW, bottom + 44.0 + lines + 8.0]
+    } else {
+        [right + margin + 36.0 + KEY, (bottom + 44.0).max(lines + 8.0)]
+    };
+    let mut out = open("Initial configuration", width, height);
     setup.axes(&mut out, [left - margin, right + margin, top - margin, bottom]);
     setup.bodies(&mut out);
     setup.planes(&mut out, &planes, 0.6 * margin);
@@ -86,6 +104,19 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     out.push_str(&key);
     out.push_str("</svg>\n");
     Some(out)
+}
+
+/// Shortest support that is recognisable, in pixels.
+const SHORTEST: f64 = 24.0;
+
+/// A side, or a straight line of a length in its middle if it is shorter.
+fn at_least(walk: Walk, length: f64) -> Walk {
+    let (Some(&(a, n)), Some(&(b, _))) = (walk.first(), walk.last()) else { return walk };
+    if walk.windows(2).map(|w| (w[1].0[0] - w[0].0[0]).hypot(w[1].0[1] - w[0].0[1])).sum::<f64>() >= length {
+        return walk;
+    }
+    let (middle, along) = (plus(a, 0.5, [b[0] - a[0], b[1] - a[1]]), direction(a, b));
+    [-0.5, 0.5].map(|s| (plus(middle, s * length, along), n)).to_vec()
 }
 
 impl Setup<'_> {
@@ -177,19 +208,22 @@ impl Setup<'_> {
     fn supports(&self, out: &mut String) {
         for support in list(self.case(), "supports") {
             let (fix, across) = (Self::directions(support), Self::is_held_across(support));
+            let moved = Self::moved_axis(support);
             for side in list(support, "on").iter().filter_map(Value::as_str) {
                 for walk in self.walks(side) {
+                    if let Some(axis) = moved.filter(|_| !self.flat) {
+                        motion(out, &walk, axis);
+                        continue;
+                    }
+                    let walk = if self.flat { walk } else { at_least(walk, SHORTEST) };
                     if self.flat || fix.len() + usize::from(across) > 1 {
                         wall(out, &walk, 0.0);
                         continue;
                     }
-                    let constrained = if fix.first() == Some(&0.0) { [1.0, 0.0] } else { [0.0, 1.0] };
-                    let along_normal =
-                        |(_, n): &(Point, Point)| (n[0] * constrained[0] + n[1] * constrained[1]).abs() > 0.7;
-                    if across || walk.iter().all(along_normal) {
-                        rollers(out, &walk);
+                    if Self::is_guided(support, &walk) {
+                        guides(out, &walk, Self::constrained(support));
                     } else {
-                        guides(out, &walk, constrained);
+                        rollers(out, &walk);
                     }
                 }
             }
@@ -228,12 +262,9 @@ impl Setup<'_> {
             let halo = "text-anchor=\"middle\" font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" \
                         stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
             write_text(out, x, y, halo, text(body, "name"));
-            let mut at = if self.flat {
-                [center[0], center[1] - 0.5 * BAR - 30.0]
-            } else {
-                plus(center, 8.0, [0.0, 1.0])
-            };
-            for (key, symbol) in [("gravity", "g"), ("velocity", "v_{0}")] {
+            let size = self.size(text(body, "name"));
+            let length = (0.45 * size).clamp(24.0, 48.0);
+            for (key, symbol, side) in [("gravity", "g", 1.0), ("velocity", "v_{0}", -1.0)] {
                 let v = vector(body.get(key));
                 let d = direction(
                     [0.0; 2],
@@ -242,18 +273,36 @@ impl Setup<'_> {
                 if d == [0.0; 2] {
                     continue;
                 }
-                let end = plus(at, 48.0, d);
-                arrow(out, at, end, "#222");
-                let label = if self.flat {
-                    plus(at, 10.0, [-d[0].signum(), 0.5])
+                // Gravity to the right of the middle, the velocity to the left; below the name.
+                let from = if self.flat {
+                    [center[0], center[1] - 0.5 * BAR - 30.0]
                 } else {
-                    // Across the arrow, to the left.
-                    plus(plus(at, 30.0, d), 11.0, [-d[1].abs().max(0.4), d[0] * d[1].signum()])
+                    [center[0] + side * 0.3 * length, center[1] - 8.0]
                 };
-                write_text(out, label[0], label[1], &halo.replace("15", "14"), symbol);
-                at = plus(at, 22.0, if self.flat { [0.0, -1.0] } else { [1.0, 0.0] });
+                let end = plus(from, length, d);
+                arrow(out, from, end, "#222");
+                let label = if self.flat {
+                    plus(from, 10.0, [-d[0].signum(), 0.5])
+                } else {
+                    // Beside an upright arrow, below the head of a level one.
+                    let out_of_it = [side * d[1].abs(), d[0].abs()];
+                    plus(plus(end, -6.0, d), 13.0, out_of_it)
+                };
+                write_text(out, label[0], label[1] + 4.0, &halo.replace("15", "14"), symbol);
             }
         }
+    }
+
+    /// The smaller side of the box around a body, in pixels.
+    fn size(&self, body: &str) -> f64 {
+        let block = self.fields.blocks.iter().find(|b| b.body == body);
+        let nodes = || block.into_iter().flat_map(|b| &b.connectivity).map(|&k| self.node(k));
+        let extent = |i: usize| {
+            let (low, high) = nodes()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[i]), high.max(p[i])));
+            high - low
+        };
+        if self.flat { 100.0 } else { extent(0).min(extent(1)) }
     }
 
     fn probes(&self, out: &mut String) {

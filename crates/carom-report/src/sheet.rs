@@ -9,12 +9,15 @@ use crate::chart::{open, write_text};
 use crate::pen::Point;
 use crate::text;
 
-const WIDTH: f64 = 940.0;
+/// Usual width of a sheet; one of half of it has half as many columns.
+pub(crate) const SHEET: f64 = 940.0;
 /// Room for the colour bar, between pictures, and for a heading.
 const BAR: f64 = 96.0;
 /// Room for the label of a colour bar.
 const ROOM: f64 = 78.0;
 const GAP: f64 = 14.0;
+/// Greatest height of a colour bar.
+const TALLEST: f64 = 420.0;
 const LINE: f64 = 30.0;
 
 /// What a colour bar shows: bands, whether values lie below and above them, quantity and unit.
@@ -34,14 +37,15 @@ pub(crate) struct Sheet {
     /// Pixels per unit of length.
     pub(crate) scale: f64,
     columns: usize,
+    width: f64,
     /// Height in pixels, without and with what is below the pictures.
     pub(crate) pictures: f64,
     height: f64,
 }
 
 impl Sheet {
-    /// A sheet for a number of pictures, with `foot` pixels below them.
-    pub(crate) fn new(title: &str, count: usize, frame: [f64; 4], foot: f64) -> Self {
+    /// A sheet of a width for a number of pictures, with `foot` pixels below them.
+    pub(crate) fn new(title: &str, count: usize, frame: [f64; 4], (width, foot): (f64, f64)) -> Self {
         let [x0, x1, y0, y1] = frame;
         let aspect = (x1 - x0) / (y1 - y0).max(1e-12 * (x1 - x0).abs()).max(f64::MIN_POSITIVE);
         let most = if aspect < 1.3 {
@@ -51,12 +55,13 @@ impl Sheet {
         } else {
             1
         };
+        let most = if width < SHEET { most / 2 } else { most };
         let columns = count.min(most).max(1);
-        let cell_width = (WIDTH - BAR - 8.0) / columns as f64;
+        let cell_width = (width - BAR - 8.0) / columns as f64;
         let scale = ((cell_width - GAP) / (x1 - x0)).min(460.0 / (y1 - y0));
         let pictures = count.div_ceil(columns) as f64 * ((y1 - y0) * scale + LINE + GAP);
         let height = pictures + foot;
-        Self { out: open(title, WIDTH, height), frame, scale, columns, pictures, height }
+        Self { out: open(title, width, height), frame, scale, columns, width, pictures, height }
     }
 
     /// Left end of the room of picture `k`, and top of the picture.
@@ -66,7 +71,7 @@ impl Sheet {
     }
 
     fn cell_width(&self) -> f64 {
-        (WIDTH - BAR - 8.0) / self.columns as f64
+        (self.width - BAR - 8.0) / self.columns as f64
     }
 
     /// Upper left corner of picture `k`, and its size.
@@ -87,7 +92,7 @@ impl Sheet {
     pub(crate) fn heading(&mut self, k: usize, time: &str) {
         let [room, top] = self.corner(k);
         let left = self.picture(k).0[0].min(room + 0.5 * self.cell_width() - 50.0);
-        let letter = char::from(b'A' + (k % 25) as u8);
+        let letter = char::from(b'a' + (k % 25) as u8);
         let _ = writeln!(
             self.out,
             "<text x=\"{left:.1}\" y=\"{:.1}\"><tspan font-weight=\"bold\">({letter})</tspan> {}</text>",
@@ -108,9 +113,20 @@ impl Sheet {
         );
         let text = format!("{size} {length}");
         write_text(&mut self.out, 8.0 + size * self.scale + 8.0, y + 4.0, "", text.trim());
-        color_bar(&mut self.out, legend, WIDTH - BAR + 18.0, (LINE, self.height - 50.0));
+        // Not longer than what is compared with it needs.
+        let bottom = (self.height - 50.0).min(LINE + TALLEST);
+        color_bar(&mut self.out, legend, self.width - BAR + 18.0, (LINE, bottom));
         self.out.push_str("</svg>\n");
         self.out
+    }
+}
+
+/// What the arrowheads at colour bars mean, as a sentence; empty where there are none.
+pub(crate) fn arrowheads(cuts: impl IntoIterator<Item = [bool; 2]>) -> &'static str {
+    match cuts.into_iter().flatten().filter(|cut| *cut).count() {
+        0 => "",
+        1 => " Arrowhead at the colour bar: at most 0.5 % of the values lie beyond that end.",
+        _ => " Arrowheads at the colour bars: at most 0.5 % of the values lie beyond each such end.",
     }
 }
 

@@ -7,11 +7,11 @@ here = pathlib.Path(__file__).resolve().parent
 contacts = {}
 with open(here / "stick-slip.csv", encoding="utf-8", newline="") as file:
     for row in csv.DictReader(file):
-        state = "sticks" if row["state"] != "slip" else "slips " + ("backward" if float(row["traction"]) < 0 else "forward")
+        state = "sticks" if row["state"] != "slip" else @ALONG@ if float(row["traction"]) < 0 else @AGAINST@
         times, places = contacts.setdefault(row["contact"], {}).setdefault(state, ([], []))
         times.append(float(row["time"])); places.append(float(row["s"]))
 
-colors = {"sticks": "#56b4e9", "slips forward": "#d55e00", "slips backward": "#009e73"}
+colors = {"sticks": "#56b4e9", @AGAINST@: "#d55e00", @ALONG@: "#009e73"}
 figure, axes = plt.subplots(
     len(contacts), figsize=(7.2, 2.6 * len(contacts) + 0.4), squeeze=False, layout="constrained"
 )

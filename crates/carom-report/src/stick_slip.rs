@@ -8,8 +8,8 @@ use carom_record::{ContactRow, Run};
 
 use crate::arc::{self, places};
 use crate::axis::{Axis, range};
-use crate::chart::{open_chart, time_axis, write_text};
-use crate::figure::Figure;
+use crate::chart::{ground, open_chart, time_axis, write_text};
+use crate::figure::{Figure, NARROW};
 use crate::labels::with_unit;
 use crate::palette::LINES;
 use crate::redraw::filled;
@@ -19,9 +19,38 @@ const LEFT: f64 = 74.0;
 const RIGHT: f64 = 14.0;
 const HEIGHT: f64 = 180.0;
 
-/// The states, with their colours.
-const STATES: [(&str, &str); 3] =
-    [("sticks", LINES[6]), ("slips forward", LINES[2]), ("slips backward", LINES[3])];
+/// The colours of the states: sticks, slips against the tangent, slips along it. The tangent is the
+/// outward normal of the primary side turned by a quarter clockwise; a positive traction is the
+/// friction along it on the secondary side, which then slips the other way.
+const COLOURS: [&str; 3] = [LINES[6], LINES[2], LINES[3]];
+
+/// The two directions of slip in words: along an axis if the normals of all contacts have one
+/// direction, around a rigid circle, or else by a definition in the caption.
+fn directions(run: &Run, contacts: &[&str]) -> Option<[&'static str; 2]> {
+    let case = run.manifest.case.get("contacts")?.as_array()?;
+    let is_round = |name: &&str| {
+        let contact = case.iter().find(|c| c.get("name").and_then(|n| n.as_str()) == Some(name));
+        contact
+            .and_then(|contact| contact.pointer("/primary/circle"))
+            .is_some_and(|circle| circle.get("inside").and_then(serde_json::Value::as_bool) != Some(true))
+    };
+    if contacts.iter().all(is_round) {
+        return Some(["slips counterclockwise", "slips clockwise"]);
+    }
+    let rows = || run.contact.iter().filter(|row| row.friction != "none");
+    let all = |d: usize, sign: f64| rows().all(|row| sign * row.normal[d] > 0.9);
+    if all(1, 1.0) {
+        Some(["slips towards −x", "slips towards +x"])
+    } else if all(1, -1.0) {
+        Some(["slips towards +x", "slips towards −x"])
+    } else if all(0, 1.0) {
+        Some(["slips towards +y", "slips towards −y"])
+    } else if all(0, -1.0) {
+        Some(["slips towards −y", "slips towards +y"])
+    } else {
+        None
+    }
+}
 
 /// A map of each contact that has friction. A side in space has no arc length.
 pub(crate) fn figure(run: &Run) -> Option<Figure> {
@@ -37,20 +66,54 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     if contacts.is_empty() {
         return None;
     }
+    let words = directions(run, &contacts);
+    let [against, along] = words.unwrap_or(["slips backward", "slips forward"]);
+    let [out, narrow] = [WIDTH, NARROW].map(|width| picture(run, &contacts, [against, along], width));
+    let is_length = !run.fields.is_empty();
+    let counted = if is_length {
+        ""
+    } else {
+        " Nodes are numbered along the side, because no field file has their positions."
+    };
+    let direction = if words.is_some() {
+        " Slip: motion of the secondary side relative to the primary."
+    } else {
+        " Slip: motion of the secondary side relative to the primary; forward: along the outward normal of the primary \
+         side turned by a quarter clockwise."
+    };
+    let caption = format!(
+        "Nodes in contact over time, along the secondary side in the reference configuration: where they \
+         stick and slip, at the recorded steps; one band per node, grey where it is not in contact.{counted}{direction} \
+         Data: `contact.csv`, columns `friction` and `traction`."
+    );
+    let unit = length(run);
+    let (words, unit) = arc::label(is_length, &unit);
+    let labels = [
+        ("@T@", with_unit("time t", run.history.unit("time"))),
+        ("@S@", with_unit(words, unit)),
+        ("@AGAINST@", against.to_owned()),
+        ("@ALONG@", along.to_owned()),
+    ];
+    let script = filled(include_str!("stick_slip.py"), &labels);
+    Some(Figure::new("stick-slip", caption, out).with_narrow(narrow).with(table(run, &contacts), script))
+}
+
+/// The maps as a picture of a width; the other argument is the two directions of slip in words.
+fn picture(run: &Run, contacts: &[&str], [against, along]: [&str; 2], width: f64) -> String {
     let (first, last) = range(run.times());
     let x_axis = Axis::new((first, last), 8.0, true);
-    let plot = WIDTH - LEFT - RIGHT;
+    let plot = width - LEFT - RIGHT;
     let height = contacts.len() as f64 * (HEIGHT + 44.0) + 52.0;
-    let mut out = open_chart("Stick and slip", WIDTH, height);
-    for (i, (label, colour)) in STATES.iter().enumerate() {
-        let x = LEFT + 150.0 * i as f64;
+    let mut out = open_chart("Stick and slip", width, height);
+    for (i, (label, colour)) in ["sticks", against, along].iter().zip(COLOURS).enumerate() {
+        let x = if width < WIDTH { 8.0 } else { LEFT } + [0.0, 80.0, 270.0][i];
         let _ = writeln!(out, "<rect x=\"{x:.1}\" y=\"6\" width=\"16\" height=\"11\" fill=\"{colour}\"/>");
         write_text(&mut out, x + 22.0, 16.0, "", label);
     }
     for (k, name) in contacts.iter().enumerate() {
         let top = 40.0 + k as f64 * (HEIGHT + 44.0);
         let rows = run.contact.iter().filter(|row| row.contact == *name);
-        draw(&mut out, run, name, &rows.collect::<Vec<_>>(), &x_axis, top);
+        draw(&mut out, run, (name, &rows.collect::<Vec<_>>()), &x_axis, (top, width));
         if k + 1 == contacts.len() {
             for (value, label) in &x_axis.ticks {
                 let x = LEFT + plot * x_axis.position(*value);
@@ -60,27 +123,11 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
             write_text(&mut out, LEFT + 0.5 * plot, top + HEIGHT + 40.0, "text-anchor=\"middle\"", &label);
         }
     }
-    let bottom = 40.0 + (contacts.len() - 1) as f64 * (HEIGHT + 44.0) + HEIGHT;
-    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, (40.0, bottom)));
+    let tops = (0..contacts.len()).map(|k| 40.0 + k as f64 * (HEIGHT + 44.0));
+    let spans: Vec<[f64; 2]> = tops.map(|top| [top, top + HEIGHT]).collect();
+    out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans));
     out.push_str("</svg>\n");
-    let is_length = !run.fields.is_empty();
-    let counted = if is_length {
-        ""
-    } else {
-        " Nodes are numbered along the side, because no field file has their positions."
-    };
-    let caption = format!(
-        "Nodes in contact over time, along the secondary side in the reference configuration: where they \
-         stick and slip, at the recorded instants; nothing is drawn for open nodes.{counted} Forward: the \
-         force of friction on the secondary side has the direction of the outward normal of the primary \
-         side turned by a quarter clockwise; backward: the opposite one. Data: `contact.csv`, columns \
-         `friction` and `traction`."
-    );
-    let unit = length(run);
-    let (words, unit) = arc::label(is_length, &unit);
-    let labels = [("@T@", with_unit("time t", run.history.unit("time"))), ("@S@", with_unit(words, unit))];
-    let script = filled(include_str!("stick_slip.py"), &labels);
-    Some(Figure::new("stick-slip", caption, out).with(table(run, &contacts), script))
+    out
 }
 
 /// What the maps show.
@@ -99,8 +146,14 @@ fn table(run: &Run, contacts: &[&str]) -> String {
 }
 
 /// The map of one contact.
-fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &Axis, top: f64) {
-    let plot = WIDTH - LEFT - RIGHT;
+fn draw(
+    out: &mut String,
+    run: &Run,
+    (name, rows): (&str, &[&ContactRow]),
+    x_axis: &Axis,
+    (top, width): (f64, f64),
+) {
+    let plot = width - LEFT - RIGHT;
     let (places, is_length) = places(run, name, rows);
     let y_axis = Axis::new(range(places.values().flat_map(|place| &place.part)), 4.0, true);
     let to_x = |t: f64| LEFT + plot * x_axis.position(t);
@@ -122,16 +175,19 @@ fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &
             _ => spans.push((row.time, next(row.time), state)),
         }
     }
+    ground(out, [LEFT, top, plot, HEIGHT]);
     for (node, spans) in &of_nodes {
         let Some([below, above]) = places.get(node).map(|place| &place.part) else { continue };
-        let (y, h) = (to_y(*above), to_y(*below) - to_y(*above));
+        // Edges at whole tenths, which neighbours share: a gap would read as an open node.
+        let [y, end] = [above, below].map(|s| (10.0 * to_y(*s)).round() / 10.0);
+        let h = end - y;
         for (from, to, state) in spans {
             let (x, w) = (to_x(*from), to_x(*to) - to_x(*from));
             let _ = writeln!(
                 out,
                 "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{:.1}\" height=\"{h:.1}\" fill=\"{}\" shape-rendering=\"crispEdges\"/>",
                 w.max(0.5),
-                STATES[*state].1
+                COLOURS[*state]
             );
         }
     }

@@ -8,11 +8,12 @@ use maud::{Markup, html};
 use crate::document::{file, joined, or_dash};
 use crate::figure::Figure;
 use crate::labels::{capitalised, number};
+use crate::scientific::{powers, significant};
 use crate::text::{Label, Prose, typeset};
 
 const ITERATIONS: &str = "Newton's iterations of the last attempt, each before its correction. Residual: as \
     a fraction of the sum of the forces. Gap and correction: as fractions of the length of the model. \
-    Damping: the fraction of the correction that was applied. Data: `stopped.json`.";
+    Damping: the fraction of the correction that was applied.";
 
 /// The picture of the place.
 pub(crate) fn picture(run: &Run) -> Option<Figure> {
@@ -25,7 +26,11 @@ pub(crate) fn section(run: &Run, picture: Option<Markup>) -> Markup {
     let unit = run.history.unit("time");
     html! {
         h2 { "Why it stopped" }
-        p.reason { (capitalised(&typeset(&stop.reason))) "." }
+        p.reason { (Label(&powers(&capitalised(&typeset(&stop.reason))))) "." }
+        p.small {
+            "The last accepted state is at t = " (number(stop.last)) " " (Label(unit)) "; the last attempt began at t = "
+            (number(stop.time)) " " (Label(unit)) ". t and Δt are in " (Label(unit)) "; L is the length of the model."
+        }
         @if let Some(place) = &stop.place { (where_table(place, length_unit(run))) }
         @if let Some(picture) = picture { (picture) }
         (advice(stop, unit))
@@ -82,7 +87,21 @@ fn where_table(place: &StopPlace, unit: &str) -> Markup {
     }
 }
 
+/// How many of the changes that were tried helped.
+fn summary(stop: &Stop) -> Option<String> {
+    let trials: Vec<bool> = stop.advice.iter().filter_map(|a| Some(a.trial.as_ref()?.passed)).collect();
+    let (tried, passed) = (trials.len(), trials.iter().filter(|passed| **passed).count());
+    match (tried, passed) {
+        (0, _) => None,
+        (1, 0) => Some("The change that was tried did not help.".to_owned()),
+        (_, 0) => Some(format!("None of the {tried} changes that were tried helped.")),
+        _ => Some(format!("{passed} of the {tried} changes that were tried got past the stop.")),
+    }
+}
+
 fn advice(stop: &Stop, unit: &str) -> Markup {
+    // Where a trial began is of interest only if it was not the start of the run.
+    let is_late = stop.advice.iter().any(|a| a.trial.as_ref().is_some_and(|trial| trial.from > 0.0));
     let result = |advice: &Advice| {
         html! {
             @match &advice.trial {
@@ -94,57 +113,90 @@ fn advice(stop: &Stop, unit: &str) -> Markup {
                         // A trial that fails earlier is inconclusive.
                         @if trial.reached < stop.last { "stops earlier, at t = " } @else { "stops at t = " }
                         (number(trial.reached)) " " (Label(unit))
-                        @if let Some(why) = &trial.why { details { summary { "why" } (typeset(why)) } }
+                        @if let Some(why) = &trial.why {
+                            details { summary { "why" } (Label(&powers(&typeset(why)))) }
+                        }
                     }
                 }
                 None => { td { "not tried" } }
             }
-            td.n { (or_dash(advice.trial.as_ref().map(|trial| trial.from), number)) }
+            @if is_late {
+                td.n { (or_dash(advice.trial.as_ref().map(|trial| trial.from), number)) }
+            }
         }
     };
     html! {
         @if !stop.advice.is_empty() {
             h3 { "What to try" }
+            @if let Some(words) = summary(stop) { p { (words) } }
             div.scroll {
-                table {
-                    thead { tr { th { "Remedy" } th { "Option" } th { "Tried" } th.n { "From t (" (Label(unit)) ")" } } }
+                table.advice {
+                    thead {
+                        tr {
+                            th { "Remedy" } th { "Option" } th { "Tried" }
+                            @if is_late { th.n { "From t (" (Label(unit)) ")" } }
+                        }
+                    }
                     @for advice in &stop.advice {
                         tr {
                             td { (Prose(&advice.what)) }
-                            td { @for set in &advice.sets { code { "--set '" (set) "'" } " " } }
+                            td { @for set in &advice.sets { code { "--set '" (breakable(set)) "'" } " " } }
                             (result(advice))
                         }
                     }
                 }
             }
-            @if let Some(trials) = &stop.trials { p.small { (trials) } }
+            @if let Some(trials) = &stop.trials { p.small { (Label(&powers(&typeset(trials)))) } }
         }
     }
 }
 
+/// An option that is broken before its value rather than within a word.
+fn breakable(set: &str) -> Markup {
+    let (key, value) = set.split_once('=').unwrap_or((set, ""));
+    html! { (key) @if !value.is_empty() { "=" wbr; (value) } }
+}
+
+/// A fraction of a correction: it is halved, so a power of two.
+fn fraction(x: f64) -> String {
+    let halvings = -x.log2();
+    if halvings > 2.0 && halvings.fract() == 0.0 { format!("2^{{−{halvings}}}") } else { number(x) }
+}
+
 fn iterations(iterations: &[StopIteration]) -> Markup {
-    let or_none = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| format!("{x:.2e}").replace('-', "−"));
+    let or_none = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| significant(x, 3));
+    let gaps = iterations.iter().any(|i| i.gap.is_some_and(|gap| gap != 0.0));
+    let pairs = iterations.iter().any(|i| i.active > 0);
+    let changes = iterations.iter().any(|i| i.changed);
     html! {
         @if !iterations.is_empty() {
             h3 { "The last iterations" }
             div.scroll {
-                table {
+                table.iterations {
                     thead {
                         tr {
-                            th.n { "Iteration" } th.n { "Residual" } th.n { "Gap" } th.n { "Correction" }
-                            th.n { "Damping" } th.n { "Active pairs" } th { "Contacts" }
+                            th.n { "Iteration" } th.n { "Residual" }
+                            @if gaps { th.n { "Gap" } }
+                            th.n { "Correction" } th.n { "Damping" }
+                            @if pairs { th.n { "Active pairs" } }
+                            @if changes { th { "Contacts" } }
                         }
                     }
                     @for i in iterations {
                         tr {
-                            td.n { (i.number) } td.n { (or_none(i.residual)) } td.n { (or_none(i.gap)) }
-                            td.n { (or_none(i.correction)) } td.n { (number(i.length)) } td.n { (i.active) }
-                            td { @if i.changed { "changed" } }
+                            td.n { (i.number) } td.n { (Label(&or_none(i.residual))) }
+                            @if gaps { td.n { (Label(&or_none(i.gap))) } }
+                            td.n { (Label(&or_none(i.correction))) } td.n { (Label(&fraction(i.length))) }
+                            @if pairs { td.n { (i.active) } }
+                            @if changes { td { @if i.changed { "changed" } } }
                         }
                     }
                 }
             }
-            p.small { (Prose(ITERATIONS)) }
+            p.small {
+                (Prose(ITERATIONS)) @if !pairs { " No pair was in contact." }
+                (Prose(" Data: `stopped.json`."))
+            }
         }
     }
 }

@@ -77,6 +77,39 @@ pub(crate) fn wall(out: &mut String, line: &[(Point, Point)], offset: f64) {
     );
 }
 
+/// A mark on a rigid surface, in the body: a triangle whose tip is on the surface; `n` points into
+/// the body.
+pub(crate) fn mark(out: &mut String, p: Point, n: Point) {
+    let foot = plus(p, 13.0, n);
+    let [a, b] = [6.0, -6.0].map(|s| plus(foot, s, [-n[1], n[0]]));
+    let _ = writeln!(
+        out,
+        "<path d=\"M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}z\" fill=\"#222\"/>",
+        p[0], p[1], a[0], a[1], b[0], b[1]
+    );
+}
+
+/// Double-headed arrows across or along a side that is moved.
+pub(crate) fn motion(out: &mut String, line: &[(Point, Point)], axis: Point) {
+    for (p, _) in along(line, 30.0) {
+        let [a, b] = [-9.0, 9.0].map(|s| plus(p, s, axis));
+        let side = [-axis[1], axis[0]];
+        let mut d = format!("M{:.1} {:.1}L{:.1} {:.1}", a[0], a[1], b[0], b[1]);
+        for (end, sign) in [(a, 1.0), (b, -1.0)] {
+            let [left, right] = [3.5, -3.5].map(|s| plus(plus(end, 5.0 * sign, axis), s, side));
+            let _ = write!(
+                d,
+                "M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}",
+                left[0], left[1], end[0], end[1], right[0], right[1]
+            );
+        }
+        for (stroke, width) in [("#fff", 4.0), ("#44607c", 1.6)] {
+            let _ =
+                writeln!(out, "<path d=\"{d}\" fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{width}\"/>");
+        }
+    }
+}
+
 /// Rollers between a side and a wall: the side can move along the wall.
 pub(crate) fn rollers(out: &mut String, line: &[(Point, Point)]) {
     wall(out, line, 9.0);

@@ -32,11 +32,15 @@ fn pieces(label: &str) -> Vec<(Level, String)> {
         match (c, group) {
             ('_' | '^', Some((inside, after))) => {
                 let level = if c == '_' { Level::Sub } else { Level::Super };
-                pieces.extend([(level, inside.to_string()), (Level::Base, String::new())]);
+                // A minus sign in an exponent.
+                let inside =
+                    if level == Level::Super { inside.replace('-', "−") } else { inside.to_owned() };
+                pieces.extend([(level, inside), (Level::Base, String::new())]);
                 rest = after;
             }
             ('^', None) if digits > 0 => {
-                pieces.extend([(Level::Super, rest[..digits].to_string()), (Level::Base, String::new())]);
+                let digits_after = rest[..digits].replace('-', "−");
+                pieces.extend([(Level::Super, digits_after), (Level::Base, String::new())]);
                 rest = &rest[digits..];
             }
             _ => {
@@ -206,7 +210,7 @@ mod tests {
         let html = |label: &str| Label(label).render().into_string();
         assert_eq!(html("σ_{yy} at <B>"), "σ<sub>yy</sub> at &lt;B&gt;");
         assert_eq!(html("kg·m/s^2"), "kg·m/s<sup>2</sup>");
-        assert_eq!(html("10^-3 a_b ^ {x"), "10<sup>-3</sup> a_b ^ {x");
+        assert_eq!(html("10^-3 a_b ^ {x"), "10<sup>−3</sup> a_b ^ {x");
         let prose = Prose("Data: σ_{yy} in `a_{b}`.").render().into_string();
         assert_eq!(prose, "Data: σ<sub>yy</sub> in <code>a_{b}</code>.");
         let text = svg("σ_{yy} (Pa)");

@@ -12,12 +12,25 @@ pub(crate) fn three(x: f64) -> String {
     number((x / unit).round() * unit)
 }
 
+/// A counter in words.
+fn counter(name: &str, is_explicit: bool) -> String {
+    match name {
+        "newton" if is_explicit => "iterations of the contact forces".to_owned(),
+        "newton" => "Newton iterations".to_owned(),
+        "rejected" => "rejected attempts".to_owned(),
+        "activations" => "activations of contact nodes".to_owned(),
+        "releases" => "releases of contact nodes".to_owned(),
+        name => name.replace('_', " "),
+    }
+}
+
 /// Width of a bar of 100 %, in rem.
 const WIDTH: f64 = 8.0;
 
 /// The section of the page.
 pub(crate) fn timing(m: &Manifest) -> Markup {
     let steps = m.counters.get("steps").copied().unwrap_or(0);
+    let is_explicit = m.case.pointer("/time/scheme/kind").is_some_and(|kind| kind == "central-difference");
     let each = |whole: f64| if steps > 0 { three(whole / steps as f64) } else { "–".into() };
     html! {
         h2 { "Timing" }
@@ -30,11 +43,11 @@ pub(crate) fn timing(m: &Manifest) -> Markup {
                     }
                 }
                 @let all = ("total", "wall time of the run without its set-up", total);
-                @for (name, what, seconds) in m.phases().into_iter().chain([all]) {
+                @for (name, what, seconds) in m.phases().into_iter().chain([all]).filter(|phase| phase.2 > 0.0) {
                     @let share = seconds / total.max(f64::MIN_POSITIVE);
                     tr {
                         td { (name) } td.n { (three(seconds)) } td.n { (each(1e3 * seconds)) }
-                        td.n { (format_args!("{:.0} %", 100.0 * share)) }
+                        td.n { @if share < 0.005 { "< 1 %" } @else { (format_args!("{:.0} %", 100.0 * share)) } }
                         td.share { span style=(format_args!("width:{:.2}rem", WIDTH * share)) {} }
                         td { (what) }
                     }
@@ -43,14 +56,17 @@ pub(crate) fn timing(m: &Manifest) -> Markup {
         }
         @if let Some(&cpu) = m.timings.get("cpu") {
             p {
-                "Processor time of the first thread in the time steps, without output: " (three(cpu)) " s ("
-                (each(1e3 * cpu)) " ms per step). The rest of the wall time is output and waiting."
+                "Processor time of the first thread in the time steps: " (three(cpu)) " s (" (each(1e3 * cpu))
+                " ms per step)."
             }
         }
         table {
             thead { tr { th { "Counter" } th.n { "Total" } th.n { "Per step" } } }
-            @for (name, &count) in &m.counters {
-                tr { td { (name.replace('_', " ")) } td.n { (count) } td.n { (each(count as f64)) } }
+            @for (name, &count) in m.counters.iter().filter(|(_, count)| **count > 0) {
+                tr {
+                    td { (counter(name, is_explicit)) } td.n { (count) }
+                    td.n { @if name != "steps" { (each(count as f64)) } }
+                }
             }
         }
         p.small {

@@ -52,7 +52,7 @@ pub const OVERLAY: [(Definition, fn(&History, &Overlay) -> Option<f64>); 3] = [
             Unit::Column,
             "√(mean (c(t_i) − m_i)²)",
             OWN,
-            "root mean square difference of a column from the measured data of [[overlay]]",
+            "root mean square difference between the column and the measured data",
         ),
         rms,
     ),

@@ -21,8 +21,8 @@ pub(super) const BAR: f64 = 26.0;
 /// Fill colours of bodies, used in turn.
 pub(super) const BODIES: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
 
-/// Fill colour of supported sides in space.
-pub(super) const SUPPORT: &str = "#9db4ca";
+/// Fill colours of supported sides in space, one for each support in turn.
+pub(super) const SUPPORTS: [&str; 3] = ["#9db4ca", "#a3c4ab", "#c3aecf"];
 
 /// The polyline of a side in pixels, with outward unit normals.
 pub(super) type Walk = Vec<(Point, Point)>;
@@ -57,12 +57,17 @@ impl Setup<'_> {
         BODIES[k % BODIES.len()]
     }
 
-    /// Mean position of the nodes of a body.
+    /// Mean position of the nodes of a body, or the node nearest to it where it lies outside.
     pub(super) fn center(&self, body: &str) -> Option<Point> {
         let block: &Block = self.fields.blocks.iter().find(|b| b.body == body)?;
         let mut sum = [0.0; 2];
         block.connectivity.iter().for_each(|&k| sum = plus(sum, 1.0, self.node(k)));
-        Some(sum.map(|s| s / block.connectivity.len() as f64))
+        let mean = sum.map(|s| s / block.connectivity.len() as f64);
+        let away = |p: Point| (p[0] - mean[0]).hypot(p[1] - mean[1]);
+        let nodes = || block.connectivity.iter().map(|&k| self.node(k));
+        let near = nodes().min_by(|a, b| away(*a).total_cmp(&away(*b)))?;
+        let furthest = nodes().map(away).fold(0.0, f64::max);
+        Some(if away(near) > 0.3 * furthest { near } else { mean })
     }
 
     /// Current position of a reference point, moved like the nearest node.

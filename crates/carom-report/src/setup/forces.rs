@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use super::drawing::Setup;
 use super::values::{list, text, vector};
-use crate::labels::number;
 use crate::pen::Point;
+use crate::scientific::given;
 use crate::symbols::{along, arrow, direction, plus};
 
 pub(super) const COLOR: &str = "#7a2f8f";
@@ -30,9 +30,44 @@ pub(super) fn load(value: &Value) -> Option<Load<'_>> {
     Some(Load { kind, spec, components })
 }
 
-/// A number or a formula as written.
+/// A number, or a formula typeset.
 pub(super) fn written(value: &Value) -> String {
-    value.as_str().map_or_else(|| value.as_f64().map_or(String::new(), number), str::to_owned)
+    value.as_str().map_or_else(|| value.as_f64().map_or(String::new(), given), typeset)
+}
+
+/// Whether t is a word of a formula.
+fn depends_on_time(formula: &str) -> bool {
+    formula.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == "t")
+}
+
+/// A formula with minus signs, dots of multiplication and π.
+fn typeset(formula: &str) -> String {
+    let mut out = String::with_capacity(formula.len());
+    let mut word = String::new();
+    let end = |word: &mut String, out: &mut String| {
+        // Numbers have no more digits than elsewhere in the key.
+        let number = word.parse().ok().filter(|_| word.starts_with(|c: char| c.is_ascii_digit()));
+        match (word.as_str(), number) {
+            ("pi", _) => out.push('π'),
+            (_, Some(number)) => out.push_str(&given(number)),
+            (word, None) => out.push_str(word),
+        }
+        word.clear();
+    };
+    for c in formula.chars() {
+        if c.is_alphanumeric() || matches!(c, '.' | '_') {
+            word.push(c);
+            continue;
+        }
+        end(&mut word, &mut out);
+        match c {
+            '-' => out.push('−'),
+            '*' => out.push('·'),
+            c => out.push(c),
+        }
+    }
+    end(&mut word, &mut out);
+    out
 }
 
 impl Setup<'_> {
@@ -76,7 +111,14 @@ impl Setup<'_> {
                 let spots = if self.flat {
                     vec![(plus(walk[0].0, 0.5, [0.0, walk[1].0[1] - walk[0].0[1]]), walk[0].1)]
                 } else {
-                    along(&walk, SPACING)
+                    // One arrow at a short side: heads of several would cover each other.
+                    let spots = along(&walk, SPACING);
+                    let is_short = spots.len() == 2 && distance(spots[0].0, spots[1].0) < 0.5 * SPACING;
+                    if is_short {
+                        vec![along(&walk, 0.5 * distance(spots[0].0, spots[1].0))[1]]
+                    } else {
+                        spots
+                    }
                 };
                 for (spot, n) in spots {
                     let values = self.values(&load, spot);
@@ -106,7 +148,10 @@ impl Setup<'_> {
             let sides: Vec<&str> = list(load.spec, "on").iter().filter_map(Value::as_str).collect();
             let place = if sides.is_empty() { text(load.spec, "body").to_owned() } else { sides.join(", ") };
             let unit = self.load_unit(load.kind);
-            let amount = format!("{amount} {unit}").trim_end().to_owned();
+            let units = self.case().get("units").unwrap_or(&Value::Null);
+            let is_formula = load.components.iter().any(|c| c.as_str().is_some_and(depends_on_time));
+            let time = if is_formula { format!(" (t in {})", text(units, "time")) } else { String::new() };
+            let amount = format!("{amount} {unit}{time}").trim_end().to_owned();
             let table = value.pointer("/table/file").and_then(Value::as_str);
             let table = table.map_or_else(String::new, |file| format!(" × {file}"));
             Some(format!("{place}: {} {amount}{table}", load.kind.replace('-', " ")))
@@ -125,7 +170,7 @@ impl Setup<'_> {
     }
 
     /// The conditions of a support: `u_{x} = u_{y} = 0`.
-    pub(super) fn support_in_words(support: &Value) -> String {
+    pub(super) fn support_in_words(&self, support: &Value) -> String {
         let axis = |i: f64| ["u_{x}", "u_{y}", "u_{z}"][(i as usize).min(2)];
         let across = Self::is_held_across(support);
         let axes = vector(support.get("fix")).into_iter().map(axis);
@@ -133,7 +178,14 @@ impl Setup<'_> {
         let fixed = (!fixed.is_empty()).then(|| fixed.join(" = ") + " = 0");
         let moved = list(support, "move").iter().filter_map(|m| {
             let [axis_number, formula] = m.as_array()?.as_slice() else { return None };
-            Some(format!("{} = {}", axis(axis_number.as_f64()?), written(formula)))
+            let units = self.case().get("units").unwrap_or(&Value::Null);
+            let (length, time) = (text(units, "length"), text(units, "time"));
+            let words = format!("{} = {} {length}", axis(axis_number.as_f64()?), written(formula));
+            Some(if formula.as_str().is_some_and(depends_on_time) {
+                format!("{words} (t in {time})")
+            } else {
+                words
+            })
         });
         fixed.into_iter().chain(moved).collect::<Vec<_>>().join(", ")
     }
@@ -143,11 +195,33 @@ impl Setup<'_> {
         support.get("normal").and_then(Value::as_bool) == Some(true)
     }
 
+    /// The direction that a support with one condition constrains.
+    pub(super) fn constrained(support: &Value) -> Point {
+        if Self::directions(support).first() == Some(&0.0) { [1.0, 0.0] } else { [0.0, 1.0] }
+    }
+
+    /// Whether a support with one condition leaves its side free along the normal.
+    pub(super) fn is_guided(support: &Value, walk: &[(Point, Point)]) -> bool {
+        let axis = Self::constrained(support);
+        let is_along = |(_, n): &(Point, Point)| (n[0] * axis[0] + n[1] * axis[1]).abs() > 0.7;
+        !Self::is_held_across(support) && !walk.iter().all(is_along)
+    }
+
+    /// The axis along which a support moves its sides, as a direction.
+    pub(super) fn moved_axis(support: &Value) -> Option<Point> {
+        let axis = list(support, "move").first()?.get(0)?.as_f64()?;
+        Some(if axis == 0.0 { [1.0, 0.0] } else { [0.0, 1.0] })
+    }
+
     /// Directions constrained or moved by a support, by their axes.
     pub(super) fn directions(support: &Value) -> Vec<f64> {
         let moved = list(support, "move").iter().filter_map(|m| m.get(0).and_then(Value::as_f64));
         vector(support.get("fix")).into_iter().chain(moved).collect()
     }
+}
+
+fn distance(a: Point, b: Point) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// Direction of a vector on the page, where y points down.

@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORT, Setup};
-use super::forces::written;
+use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORTS, Setup};
+use super::forces::{COLOR, written};
 use super::values::{list, text as word, tuple, vector};
 use crate::bodies::fill_space;
 use crate::chart::write_text;
-use crate::labels::number;
-use crate::symbols::{plus, rollers, wall};
+use crate::scientific::given;
+use crate::symbols::{arrow, guides, motion, plus, rollers, wall};
 use crate::text;
 
 /// The smallest size of letters in pixels.
@@ -50,14 +50,11 @@ impl Setup<'_> {
                 Self::color(k)
             );
             let cells = block.map_or(0, |b| b.cells().count());
-            let element = word(body, "element");
+            let (element, material) = (word(body, "element"), word(body, "material"));
+            let material = if material == word(body, "name") { "the material" } else { material };
             line(
                 &swatch,
-                &format!(
-                    "{}: {}, {cells} {element} cells, {nodes} nodes",
-                    word(body, "name"),
-                    word(body, "material")
-                ),
+                &format!("{}: {material}, {cells} {element} cells, {nodes} nodes", word(body, "name")),
                 false,
             );
             for (key, symbol, unit) in [
@@ -71,15 +68,21 @@ impl Setup<'_> {
             }
         }
         if let Some(plane) = self.plane_in_words(length) {
+            line("", "Model", true);
             line("", &plane, false);
         }
         line("", "Materials", true);
         for m in list(self.case(), "materials") {
-            let real = |key| m.get(key).and_then(Value::as_f64).map_or(String::new(), number);
-            line("", &format!("{}: {}", word(m, "name"), word(m, "law")), false);
-            let (density, lambda, mu) = (real("density"), real("lambda"), real("mu"));
+            let real = |key| m.get(key).and_then(Value::as_f64);
+            line("", &format!("{}: {}", word(m, "name"), law_name(word(m, "law"))), false);
+            let density = real("density").map_or(String::new(), given);
             line("", &format!("ρ = {density} {mass}/{length}^3"), false);
-            line("", &format!("Λ = {lambda} {stress}, μ = {mu} {stress}"), false);
+            let (Some(lambda), Some(shear)) = (real("lambda"), real("mu")) else { continue };
+            // The manifest has Lamé's constants; μ is the coefficient of friction here.
+            let poisson = lambda / (2.0 * (lambda + shear));
+            let young = 2.0 * shear * (1.0 + poisson);
+            line("", &format!("E = {} {stress}, ν = {}", given(young), given(poisson)), false);
+            line("", &format!("λ = {} {stress}, G = {} {stress}", given(lambda), given(shear)), false);
         }
         for (k, support) in list(self.case(), "supports").iter().enumerate() {
             if k == 0 {
@@ -92,20 +95,31 @@ impl Setup<'_> {
             if fill_space(self.fields) {
                 let _ = write!(
                     swatch,
-                    "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{SUPPORT}\" stroke=\"#44607c\"/>"
+                    "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#44607c\"/>",
+                    SUPPORTS[k % SUPPORTS.len()]
                 );
+            } else if let Some(axis) = Self::moved_axis(support).filter(|_| !self.flat) {
+                motion(&mut swatch, &[([10.0, 0.0], axis), ([10.0, 0.0], axis)], axis);
             } else if fixed > 1 || self.flat {
                 wall(&mut swatch, &ends, 0.0);
             } else {
-                rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));
+                let is_guided =
+                    on.iter().flat_map(|side| self.walks(side)).any(|w| Self::is_guided(support, &w));
+                if is_guided {
+                    guides(&mut swatch, &ends, [1.0, 0.0]);
+                } else {
+                    rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));
+                }
             }
-            line(&swatch, &format!("{}: {}", on.join(", "), Self::support_in_words(support)), false);
+            line(&swatch, &format!("{}: {}", on.join(", "), self.support_in_words(support)), false);
         }
         for (k, load) in self.forces_in_words().iter().enumerate() {
             if k == 0 {
                 line("", "Loads", true);
             }
-            line("", load, false);
+            let mut swatch = String::new();
+            arrow(&mut swatch, [0.0, 0.0], [20.0, 0.0], COLOR);
+            line(&swatch, load, false);
         }
         for (k, contact) in list(self.case(), "contacts").iter().enumerate() {
             if k == 0 {
@@ -150,9 +164,17 @@ impl Setup<'_> {
     fn plane_in_words(&self, length: &str) -> Option<String> {
         let is_plane = self.case().get("dimension").and_then(Value::as_u64) == Some(2);
         let thickness = self.case().get("thickness").and_then(Value::as_f64)?;
-        is_plane.then(|| {
-            format!("plane {}, thickness {} {length}", word(self.case(), "plane"), number(thickness))
-        })
+        is_plane
+            .then(|| format!("plane {}, thickness {} {length}", word(self.case(), "plane"), given(thickness)))
+    }
+}
+
+/// The name of a material law.
+pub(super) fn law_name(law: &str) -> &str {
+    match law {
+        "neo-hookean" => "neo-Hookean",
+        "saint-venant-kirchhoff" => "Saint Venant–Kirchhoff",
+        law => law,
     }
 }
 

@@ -6,11 +6,12 @@ use std::fmt::Write as _;
 
 use carom_record::{FieldSet, Run};
 
-use super::drawing::{BODIES, KEY, ROOM, SUPPORT, Setup};
+use super::drawing::{BODIES, KEY, ROOM, SUPPORTS, Setup};
 use super::forces::{COLOR, Load, load};
 use super::values::{list, text, vector};
 use crate::axis::round_step;
 use crate::chart::{open, write_text};
+use crate::figure::NARROW;
 use crate::pen::Point;
 use crate::space::{
     DRAWN, Facet, Paint, Place, View, box_of, corners, cross, draw, frame, minus, pieces, places, skin,
@@ -35,7 +36,7 @@ struct Solid<'a> {
 }
 
 /// The figure; nothing without extent.
-pub(super) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
+pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
     let (view, places, skin) = (View::axonometric(), places(fields), skin(fields));
     let rigid: Vec<[Place; 2]> = wires(run, box_of(&skin, std::iter::once(&places)))
         .iter()
@@ -49,7 +50,8 @@ pub(super) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
         return None;
     }
     let margin = 52.0;
-    let scale = (ROOM / (x1 - x0)).min(430.0 / (y1 - y0));
+    let room = if narrow { NARROW - 2.0 * margin } else { ROOM };
+    let scale = (room / (x1 - x0)).min(430.0 / (y1 - y0));
     let size = [(x1 - x0) * scale, (y1 - y0) * scale];
     let (left, top) = (margin, margin);
     let points = places.iter().map(|p| view.of(*p)).map(|[x, y, _]| [x, y]).collect();
@@ -57,9 +59,15 @@ pub(super) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     let setup = Setup { run, fields, points, flat: false, scale, origin, inside: HashMap::new() };
     let beside = left + size[0] + margin + 20.0;
     let mut key = String::new();
-    let lines = setup.key(&mut key, beside);
+    let lines = setup.key(&mut key, if narrow { 12.0 } else { beside });
     let bottom = top + size[1] + margin;
-    let mut out = open("Initial configuration", beside + KEY, (bottom + FOOT).max(lines + 8.0));
+    let [width, height] = if narrow {
+        key = format!("<g transform=\"translate(0 {:.1})\">\n{key}</g>\n", bottom + FOOT);
+        [NARROW, bottom + FOOT + lines + 8.0]
+    } else {
+        [beside + KEY, (bottom + FOOT).max(lines + 8.0)]
+    };
+    let mut out = open("Initial configuration", width, height);
     let mut numbers: HashMap<Vec<usize>, Vec<usize>> = HashMap::new();
     for (k, facet) in skin.iter().enumerate() {
         numbers.entry(facet.face.clone()).or_default().push(k);
@@ -117,17 +125,25 @@ impl Solid<'_> {
 
     /// Bodies, with supported sides in a colour of their own.
     fn bodies(&self, out: &mut String, place: (Point, Point)) {
-        let supported: HashSet<usize> = self.named("supports").into_iter().flatten().collect();
+        // A facet of two supports has the colour of the first.
+        let mut supported: HashMap<usize, usize> = HashMap::new();
+        for (k, support) in list(self.setup.case(), "supports").iter().enumerate() {
+            let sides = list(support, "on").iter().filter_map(|side| side.as_str());
+            for facet in sides.flat_map(|side| self.side(side)) {
+                supported.entry(facet).or_insert(k % SUPPORTS.len());
+            }
+        }
         let number: HashMap<&Facet, f64> = (self.skin.iter().enumerate())
             .map(|(k, facet)| {
-                let color = if supported.contains(&k) { BODIES.len() } else { facet.block % BODIES.len() };
+                let color =
+                    supported.get(&k).map_or(facet.block % BODIES.len(), |support| BODIES.len() + support);
                 (facet, color as f64)
             })
             .collect();
         let to = |p: Point| self.setup.to(p);
         let pieces =
             pieces(&self.skin, &self.places, &|facet, _| number[facet], &self.view, &to, self.setup.scale);
-        let colors: Vec<&str> = BODIES.iter().copied().chain([SUPPORT]).collect();
+        let colors: Vec<&str> = BODIES.iter().chain(&SUPPORTS).copied().collect();
         let drawn = pieces.len() <= DRAWN;
         draw(out, &pieces, (&Paint::Parts(&colors), colors.len()), place, drawn);
     }
@@ -264,10 +280,15 @@ impl Solid<'_> {
                 .min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
             let Some((from, to)) = near else { continue };
             let [x, y] = self.to([0, 1, 2].map(|d| at[d] + to[d] - from[d]));
+            // Inside a body, or on faces that are all turned away.
+            let of_node = |k: &usize| self.skin[*k].nodes.iter().any(|node| self.places[*node] == *to);
+            let is_seen = (0..self.skin.len()).filter(of_node).any(|k| self.seen(k));
+            let (fill, dashes) =
+                if is_seen { ("#fff", "") } else { ("none", " stroke-dasharray=\"2.2 1.6\"") };
             let _ = writeln!(
                 out,
-                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" \
-                 stroke-width=\"1.8\"/>"
+                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.2\" fill=\"{fill}\" stroke=\"#000\" \
+                 stroke-width=\"1.8\"{dashes}/>"
             );
             let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
                         paint-order=\"stroke\" stroke-linejoin=\"round\"";

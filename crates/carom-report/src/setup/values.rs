@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::labels::number;
+use crate::scientific::given;
 
 pub(super) fn list<'a>(value: &'a Value, key: &str) -> &'a [Value] {
     value.get(key).and_then(Value::as_array).map_or(&[], Vec::as_slice)
@@ -18,6 +18,6 @@ pub(super) fn vector(value: Option<&Value>) -> Vec<f64> {
 
 /// A vector in parentheses; a single component without.
 pub(super) fn tuple(v: &[f64]) -> String {
-    let parts: Vec<String> = v.iter().map(|x| number(*x)).collect();
+    let parts: Vec<String> = v.iter().map(|x| given(*x)).collect();
     if parts.len() == 1 { parts[0].clone() } else { format!("({})", parts.join(", ")) }
 }

@@ -10,10 +10,11 @@ use super::skin::{Facet, Place, places, skin};
 use super::view::View;
 use super::wires::wires;
 use crate::bands::{Bands, positive_bands};
+use crate::figure::NARROW;
 use crate::labels::instant_label;
 use crate::pen::{GRID, Pen, Point, open_grid};
 use crate::quantity::stresses;
-use crate::sheet::{Legend, Sheet};
+use crate::sheet::{Legend, SHEET, Sheet};
 
 /// Largest number of triangles of a figure that are drawn one by one.
 pub(crate) const DRAWN: usize = 6000;
@@ -47,13 +48,14 @@ pub(crate) fn draw(
     }
 }
 
-/// The figure with its caption, and the bands of its colours; nothing without stresses.
+/// The figure, also for a narrow window, with its caption, and the bands of its colours; nothing
+/// without stresses.
 pub(crate) fn instants(
     run: &Run,
     sets: &[(f64, FieldSet)],
     length: &str,
     during: &str,
-) -> Option<(String, String)> {
+) -> Option<([String; 2], String, Bands)> {
     let view = View::axonometric();
     let skin = skin(&sets.first()?.1);
     let mut list = Vec::new();
@@ -76,24 +78,28 @@ pub(crate) fn instants(
     if !(wide[1] > wide[0] && wide[3] > wide[2]) {
         return None;
     }
-    let mut sheet = Sheet::new("Deformed bodies with von Mises stress", list.len(), wide, FOOT);
-    let seen = |(k, (_, places, mises)): (usize, &(String, Vec<Place>, Vec<f64>))| {
-        pieces(&skin, places, &|_, node| mises[node], &view, &sheet.map(k), sheet.scale)
-    };
-    let all: Vec<Vec<Piece>> = list.iter().enumerate().map(seen).collect();
-    let drawn = all.iter().map(Vec::len).sum::<usize>() <= DRAWN;
-    for (k, ((heading, ..), pieces)) in list.iter().zip(&all).enumerate() {
-        sheet.heading(k, heading);
-        let place = sheet.picture(k);
-        let to = sheet.map(k);
-        underlay(&mut sheet.out, &lines[k], &view, &to);
-        draw(&mut sheet.out, pieces, (&Paint::Bands(&bands), bands.count), place, drawn);
-    }
-    let triad = [36.0, sheet.pictures + 36.0];
-    view.triad(&mut sheet.out, triad, 28.0);
     let unit = sets[0].1.array("stress")?.unit.clone();
-    let svg = sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit: &unit }, length);
-    Some((svg, caption(&bands, cut, &unit, during, !rigid.is_empty())))
+    let drawn = |width: f64| {
+        let mut sheet = Sheet::new("Deformed bodies with von Mises stress", list.len(), wide, (width, FOOT));
+        let seen = |(k, (_, places, mises)): (usize, &(String, Vec<Place>, Vec<f64>))| {
+            pieces(&skin, places, &|_, node| mises[node], &view, &sheet.map(k), sheet.scale)
+        };
+        let all: Vec<Vec<Piece>> = list.iter().enumerate().map(seen).collect();
+        let drawn = all.iter().map(Vec::len).sum::<usize>() <= DRAWN;
+        for (k, ((heading, ..), pieces)) in list.iter().zip(&all).enumerate() {
+            sheet.heading(k, heading);
+            let place = sheet.picture(k);
+            let to = sheet.map(k);
+            underlay(&mut sheet.out, &lines[k], &view, &to);
+            draw(&mut sheet.out, pieces, (&Paint::Bands(&bands), bands.count), place, drawn);
+        }
+        let triad = [36.0, sheet.pictures + 36.0];
+        view.triad(&mut sheet.out, triad, 28.0);
+        sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit: &unit }, length)
+    };
+    let pictures = [SHEET, NARROW].map(drawn);
+    let caption = caption(&bands, cut, &unit, during, !rigid.is_empty());
+    Some((pictures, caption, bands))
 }
 
 /// Corners of the box of all places of a skin.
@@ -134,10 +140,10 @@ pub(crate) fn underlay(out: &mut String, lines: &[[Place; 2]], view: &View, to: 
 }
 
 fn caption(bands: &Bands, cut: [bool; 2], unit: &str, during: &str, rigid: bool) -> String {
-    let rigid = if rigid { " Light lines, behind the bodies: rigid obstacles." } else { "" };
+    let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
     let arrow = if cut[1] {
         format!(
-            " Arrow at the colour bar: up to 0.5 % of the values are above {}{}{unit}.",
+            " Arrowhead at the colour bar: at most 0.5 % of the values are above {}{}{unit}.",
             bands.high,
             if unit.is_empty() { "" } else { " " }
         )

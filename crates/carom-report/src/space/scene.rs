@@ -1,23 +1,24 @@
 //! The scene of a run in space: its skin, to be turned and played.
 //!
 //! The frames are the field files; nothing is interpolated. Of every node of the skin the scene has
-//! the reference position, and in each frame the displacement, the stress of von Mises and the
-//! pressure, as integers over their ranges. What is stored is how each number differs from what the
+//! the reference position, and in each frame the displacement, the stress of von Mises and the mean
+//! stress, as integers over their ranges. What is stored is how each number differs from what the
 //! two frames before and the node before let expect, compressed (RFC 1950); `scene.js` draws it.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use carom_record::{FieldEntry, Run};
-use maud::{Markup, PreEscaped, html};
+use maud::{PreEscaped, html};
 use serde_json::json;
 
 use super::skin::{Facet, Place, skin};
 use super::view::View;
 use super::wires::wires;
-use crate::animation::{PLAYER, controls, histories};
+use crate::animation::{Animation, EVENTS, PLAYER, controls, help, histories, of_files};
 use crate::bands::{Bands, color_bands, positive_bands_of};
+use crate::labels::is_static;
 use crate::quantity::{Quantity, bars, choice, stresses};
-use crate::sheet::Legend;
+use crate::sheet::{Legend, arrowheads};
 use crate::text::{Label, Prose};
 
 /// Largest number of bytes of the scene in the page, in base 64; frames are left out evenly to stay
@@ -79,7 +80,7 @@ impl Surface {
 struct Frame {
     moved: Vec<Place>,
     mises: Vec<f64>,
-    pressure: Vec<f64>,
+    mean: Vec<f64>,
 }
 
 /// Everything that is drawn.
@@ -90,7 +91,7 @@ struct Scene {
     frames: Vec<Frame>,
     /// Largest component of a displacement.
     largest: f64,
-    /// Von Mises, pressure and displacement.
+    /// Von Mises, mean stress and displacement.
     bands: [(Bands, [bool; 2]); 3],
 }
 
@@ -104,7 +105,7 @@ impl Scene {
         let largest = moved().flatten().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
         let bands = [
             positive_bands_of(frames.iter().map(|f| f.mises.iter().copied())),
-            color_bands(frames.iter().flat_map(|f| f.pressure.iter().copied())),
+            color_bands(frames.iter().flat_map(|f| f.mean.iter().copied())),
             positive_bands_of(frames.iter().map(|f| f.moved.iter().map(length))),
         ];
         Self { surface, places, frames, largest, bands }
@@ -160,7 +161,7 @@ impl Scene {
             for channel in 0..CHANNELS {
                 let now: Vec<i16> = match channel {
                     3 => frame.mises.iter().map(|x| level(*x, &self.bands[0].0)).collect(),
-                    4 => frame.pressure.iter().map(|x| level(*x, &self.bands[1].0)).collect(),
+                    4 => frame.mean.iter().map(|x| level(*x, &self.bands[1].0)).collect(),
                     d => frame.moved.iter().map(|u| (u[d] * by).round() as i16).collect(),
                 };
                 let [last, older] = &mut before[channel];
@@ -210,16 +211,16 @@ fn put(bytes: &mut Vec<u8>, numbers: impl Iterator<Item = u16>) {
 fn frame(run: &Run, entry: &FieldEntry, nodes: &[usize], points: usize) -> Option<Frame> {
     let fields = run.field(entry).ok().filter(|fields| fields.points.len() == points)?;
     let u = fields.array("displacement").filter(|a| a.components == 3)?;
-    let [mises, pressure] = stresses(&fields)?;
+    let [mises, mean] = stresses(&fields)?;
     Some(Frame {
         moved: nodes.iter().map(|&k| [0, 1, 2].map(|d| u.values[3 * k + d])).collect(),
         mises: nodes.iter().map(|&k| mises[k]).collect(),
-        pressure: nodes.iter().map(|&k| pressure[k]).collect(),
+        mean: nodes.iter().map(|&k| mean[k]).collect(),
     })
 }
 
 /// The section of the page, hidden until its script runs; nothing for fewer than two field files.
-pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Option<Markup> {
+pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<Animation> {
     let first = run.field(run.fields.first()?).ok()?;
     let surface = Surface::new(&skin(&first));
     let most = (NUMBERS / surface.nodes.len().max(1)).min(FRAMES);
@@ -238,7 +239,11 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
         return None;
     }
     let places = surface.nodes.iter().map(|&k| first.points[k]).collect();
-    let scene = Scene::new(surface, places, frames);
+    let mut scene = Scene::new(surface, places, frames);
+    // The colours of the figure.
+    let most = scene.frames.iter().flat_map(|f| &f.mises).copied().fold(0.0, f64::max);
+    let Bands { low, high, count } = *bands;
+    scene.bands[0] = (Bands { low, high, count }, [false, most > high]);
     let (chosen, packed) = scene.fitted();
     let peak = |k: &usize| scene.frames[*k].mises.iter().copied().fold(0.0, f64::max);
     let start = chosen.iter().max_by(|a, b| peak(a).total_cmp(&peak(b)).then(b.cmp(a))).copied()?;
@@ -246,7 +251,7 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
     let (stress, length) = (unit("stress"), unit("displacement"));
     let kinds = [
         ("von Mises stress", "σ_{vM}", &stress),
-        ("pressure", "p", &stress),
+        ("mean stress", "σ_{m}", &stress),
         ("displacement", "|u|", &length),
     ];
     let quantities: Vec<Quantity> = scene
@@ -271,7 +276,7 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
     let moves: Vec<Vec<Place>> =
         chosen.iter().map(|&k| rigid.iter().map(|wire| wire.moved(run, entries[k].time)).collect()).collect();
     let data = json!({
-        "unit": run.history.unit("time"), "nodes": scene.places.len(),
+        "unit": if is_static(run) { "" } else { run.history.unit("time") }, "nodes": scene.places.len(),
         "triangles": scene.surface.triangles.len(), "edges": scene.surface.edges.len(),
         "low": low, "high": high, "largest": scene.largest, "levels": LEVELS,
         "view": View::axonometric().axes, "first": entries[start].time,
@@ -279,14 +284,10 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
         "frames": chosen.iter().map(entry).collect::<Vec<_>>(), "packed": packed,
         "rigid": lines, "moves": moves,
     });
-    let every = if chosen.len() < run.fields.len() {
-        format!("{} of the {} recorded instants", chosen.len(), run.fields.len())
-    } else {
-        format!("all {} recorded instants", chosen.len())
-    };
+    let every = of_files(chosen.len(), run.fields.len());
     // Only `<` could end the script element.
     let data = data.to_string().replace('<', "\\u003c");
-    Some(html! {
+    let figure = html! {
         figure.animation #animation hidden {
             div.stage {
                 div.scene {
@@ -313,18 +314,23 @@ pub(crate) fn section(run: &Run, shades: Vec<(f64, f64)>, figure: usize) -> Opti
             figcaption {
                 b { "Scene." } " The bodies, initially in the view of figure " (figure) "; frames are " (every)
                 ", without interpolation. Displacements are not magnified. " (Label("σ_{vM}"))
-                " and p = −tr σ/3 (red: compression) are those of nodal averages of the Cauchy stress. \
-                 The inside of a cut body is grey. Drag: turn; with the right button or Shift: move. Wheel, \
-                 after a click: zoom. Touch: one finger turns, two move and zoom. Keys, after a click: arrows \
-                 turn, with Shift they move; + and −: zoom; 0: reset; comma and full stop: previous and next frame. "
-                (Prose("Space: play or pause. Ticks below the histories: events in `log.jsonl`. A click in a \
-                        time history goes to that instant; a drag across one enlarges all of them, a double click or \
-                        Esc shows the whole time."))
+                " and the mean stress " (Label("σ_{m}")) " = tr σ/3 (blue: compression, red: tension) are those of \
+                 nodal averages of the Cauchy stress. The inside of a cut body is grey."
+                (arrowheads(quantities.iter().map(|q| q.legend.cut)))
+                @if !run.log.is_empty() { (Prose(EVENTS)) }
             }
+            (help(&html! {
+                "Drag the bodies: turn; with the right button or Shift: move. Wheel, after a click: zoom. Touch: one \
+                 finger turns, two move and zoom. Keys, after a click on the bodies: arrows turn, with Shift they \
+                 move; + and −: zoom; 0: reset; comma and full stop: previous and next frame; Space: play or pause."
+            }))
         }
+    };
+    let scripts = html! {
         script #animation-data type="application/json" { (PreEscaped(data)) }
         script { (PreEscaped(PLAYER)) (PreEscaped(include_str!("scene.js"))) }
-    })
+    };
+    Some(Animation { figure, scripts })
 }
 
 #[cfg(test)]
@@ -360,7 +366,7 @@ mod tests {
             Frame {
                 moved: places.iter().map(moved).collect(),
                 mises: places.iter().map(|p| wave(p, 17.0).abs()).collect(),
-                pressure: places.iter().map(|p| wave(p, 11.0)).collect(),
+                mean: places.iter().map(|p| wave(p, 11.0)).collect(),
             }
         };
         let scene = Scene::new(surface, places.clone(), (0..100).map(frame).collect());

@@ -39,7 +39,7 @@ impl View {
 
     /// In words.
     pub(crate) fn words() -> String {
-        format!("parallel projection, z up, seen from −y turned {TURNED}° towards +x and raised by {RAISED}°")
+        format!("parallel projection, azimuth {TURNED}° from −y towards +x, elevation {RAISED}°")
     }
 
     /// Coordinates to the right, up, and towards the eye.

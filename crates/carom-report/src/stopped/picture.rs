@@ -6,11 +6,11 @@ use std::fmt::Write as _;
 
 use carom_record::{FieldSet, Run, Stop, StopPlace};
 
-use crate::axis::round_step;
+use crate::axis::{range, round_step};
 use crate::bodies::{Instant, bezier, corners, edge_nodes, edges, is_plane, places};
 use crate::chart::{open, write_text};
-use crate::figure::Figure;
-use crate::labels::instant_label;
+use crate::figure::{Figure, NARROW};
+use crate::labels::{instant_label, listed};
 use crate::meshes::{self, Pane};
 use crate::obstacles;
 use crate::palette::LINES;
@@ -37,12 +37,20 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
     if fields.blocks.iter().any(|block| !is_plane(block)) {
         return None;
     }
-    let (svg, moved) = draw(run, stop, place, &fields)?;
+    let (svg, moved) = draw(run, stop, place, &fields, WIDTH)?;
+    let (narrow, _) = draw(run, stop, place, &fields, NARROW)?;
     let rejected = if moved { " Dashed: the positions that were rejected." } else { "" };
+    let there = [
+        (true, "the node"),
+        (!place.facet_nodes.is_empty(), "the facet"),
+        (!place.cell_nodes.is_empty(), "the cell"),
+    ];
+    let parts: Vec<&str> = there.iter().filter(|(there, _)| *there).map(|(_, part)| *part).collect();
     let caption = format!(
-        "The place of the stop at {}, the last accepted state: deformed mesh with the node, and the \
-         facet or cell, where the next step failed.{rejected} Data: `stopped.vtu`, `stopped.json`.",
-        instant_label(run, stop.last)
+        "The place of the stop at {}, the last accepted state: deformed mesh with {}, where the next step \
+         failed.{rejected} Data: `stopped.vtu`, `stopped.json`.",
+        instant_label(run, stop.last),
+        listed(&parts)
     );
     let pane = |title: &str, array: &str| Pane {
         title: title.to_owned(),
@@ -52,20 +60,24 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
     let mut panes = vec![pane("accepted", "displacement")];
     panes.extend(fields.array("rejected").map(|_| pane("rejected", "rejected")));
     let length = fields.array("displacement").map_or("", |u| u.unit.as_str());
-    let figure = Figure::new("stopped", caption, svg);
+    let figure = Figure::new("stopped", caption, svg).with_narrow(narrow);
     Some(meshes::with_files(figure, &fields, &panes, length, String::new()))
 }
 
 /// The picture, and whether the rejected positions differ visibly.
-fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<(String, bool)> {
+fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet, width: f64) -> Option<(String, bool)> {
     let points = places(fields);
     let rejected = rejected(fields);
     let node = place.node.as_ref()?.number;
     let at = *points.get(node)?;
     let size = size(place, fields, &points, node);
-    let half = [ZOOM * size * (WIDTH / (HEIGHT - KEY)), ZOOM * size];
+    let half = [ZOOM * size * (width / (HEIGHT - KEY)), ZOOM * size];
     let around = [at[0] - half[0], at[0] + half[0], at[1] - half[1], at[1] + half[1]];
-    let (frame, scale) = filled(around, &of_place(place, fields, &points), 0.5 * size);
+    let bodies = of_place(place, fields, &points);
+    let (low, high) = range(bodies.iter().map(|p| &p[1]));
+    // Around a body that is crushed there is nothing to see.
+    let margin = 0.5 * size.min((high - low).max(0.25 * size));
+    let (frame, scale) = filled(around, &bodies, (margin, width));
     let height = KEY + (frame[3] - frame[2]) * scale;
     let to = |p: Point| [(p[0] - frame[0]) * scale, KEY + (frame[3] - p[1]) * scale];
     let near = |points: &[Point], nodes: &[usize]| {
@@ -77,11 +89,11 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
         };
         inside(0) && inside(1)
     };
-    let mut out = open("Where the simulation stopped", WIDTH, height);
+    let mut out = open("Where the simulation stopped", width, height);
     let _ = writeln!(
         out,
-        "<clipPath id=\"stopped-frame\"><rect x=\"0\" y=\"{KEY}\" width=\"{WIDTH}\" height=\"{}\"/></clipPath>\n\
-         <g clip-path=\"url(#stopped-frame)\">",
+        "<clipPath id=\"stopped-frame-{width}\"><rect x=\"0\" y=\"{KEY}\" width=\"{width}\" height=\"{}\"/></clipPath>\n\
+         <g clip-path=\"url(#stopped-frame-{width})\">",
         height - KEY
     );
     let mut drawn = HashSet::new();
@@ -153,7 +165,7 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
     let _ = writeln!(
         out,
         "<rect x=\"0.5\" y=\"{KEY}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888\"/>",
-        WIDTH - 1.0,
+        width - 1.0,
         height - KEY - 0.5
     );
     key(&mut out, place, moved);
@@ -183,7 +195,7 @@ fn of_place(place: &StopPlace, fields: &FieldSet, points: &[Point]) -> Vec<Point
 
 /// The part of a frame in which these points are, with a margin, and the scale with which it fills
 /// the picture: its whole width, and at most its height.
-fn filled(around: [f64; 4], points: &[Point], margin: f64) -> ([f64; 4], f64) {
+fn filled(around: [f64; 4], points: &[Point], (margin, width): (f64, f64)) -> ([f64; 4], f64) {
     let mut frame = around;
     for i in 0..2 {
         let low = points.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min) - margin;
@@ -191,9 +203,9 @@ fn filled(around: [f64; 4], points: &[Point], margin: f64) -> ([f64; 4], f64) {
         frame[2 * i] = around[2 * i].max(low);
         frame[2 * i + 1] = around[2 * i + 1].min(high);
     }
-    let (width, height) = (frame[1] - frame[0], frame[3] - frame[2]);
-    let scale = (WIDTH / width).min((HEIGHT - KEY) / height);
-    let beside = 0.5 * (WIDTH / scale - width);
+    let (across, height) = (frame[1] - frame[0], frame[3] - frame[2]);
+    let scale = (width / across).min((HEIGHT - KEY) / height);
+    let beside = 0.5 * (width / scale - across);
     ([frame[0] - beside, frame[1] + beside, frame[2], frame[3]], scale)
 }
 
@@ -232,11 +244,21 @@ fn key(out: &mut String, place: &StopPlace, moved: bool) {
         entries.push((REJECTED, "rejected".to_owned(), "stroke-dasharray=\"6 4\""));
     }
     let mut x = 4.0;
-    for (color, label, style) in entries {
-        let _ = writeln!(
-            out,
-            "<path d=\"M{x:.1} 17h24\" stroke=\"{color}\" stroke-width=\"5\" {style} fill=\"none\"/>"
-        );
+    for (k, (color, label, style)) in entries.into_iter().enumerate() {
+        let _ = if k == 0 {
+            writeln!(
+                out,
+                "<circle cx=\"{:.1}\" cy=\"17\" r=\"10\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2.2\"/>\n\
+                 <circle cx=\"{:.1}\" cy=\"17\" r=\"3.5\" fill=\"{color}\"/>",
+                x + 12.0,
+                x + 12.0
+            )
+        } else {
+            writeln!(
+                out,
+                "<path d=\"M{x:.1} 17h24\" stroke=\"{color}\" stroke-width=\"5\" {style} fill=\"none\"/>"
+            )
+        };
         write_text(out, x + 30.0, 21.5, "", &label);
         x += 30.0 + 7.6 * label.chars().count() as f64 + 26.0;
     }

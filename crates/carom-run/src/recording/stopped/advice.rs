@@ -32,8 +32,8 @@ const PROJECT: Remedy = (
 const FULL: Remedy = (Some(Kind::Full), "a new tangent in every iteration");
 const FALLBACK: Remedy = (
     Some(Kind::Fallback),
-    "the fallback: backward Euler with contact implicit in velocity takes the grid steps at which the run would \
-     stop; it dissipates energy there",
+    "another scheme for the steps at which the run would stop: backward Euler with contact implicit in velocity, \
+     which dissipates energy in them",
 );
 const FINER: Remedy = (None, "a finer mesh there (`refine` of a polygon, or a mesh file), or a smaller load");
 const OTHER_LAW: Remedy = (

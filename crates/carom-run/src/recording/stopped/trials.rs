@@ -70,8 +70,8 @@ impl Trials<'_> {
     /// How the trials are made.
     pub(super) fn words(&self) -> String {
         format!(
-            "Each change was tried alone, up to {BEYOND} steps past the stop, with at most {BISECTIONS} \
-             bisections of a step and {:.1e} iterations × unknowns (the run took {:.1e}).",
+            "Each change was tried alone, up to {BEYOND} steps past the stop, with a step bisected at most \
+             {BISECTIONS} times and a limited effort: {:.1e} iterations × unknowns (the run took {:.1e}).",
             self.effort.limit() as f64,
             self.effort.spent() as f64
         )

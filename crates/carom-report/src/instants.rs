@@ -1,0 +1,123 @@
+//! The figure of the deformed bodies at several instants, coloured by stress.
+
+use carom_record::{Cell, FieldEntry, Run, Stop, metrics};
+
+use crate::bands::Bands;
+use crate::bodies::{self, Instant};
+use crate::figure::{Figure, NARROW};
+use crate::labels::{instant_label, with_unit};
+use crate::meshes::Pane;
+use crate::obstacles;
+use crate::quantity::stresses;
+use crate::sheet::{Legend, SHEET, arrowheads};
+use crate::{animation, bars, contours, meshes, space};
+
+/// The field files nearest to five equidistant instants of the first contact; of the run if there
+/// is no contact, or only one field file in it. With words for the span.
+fn five(run: &Run) -> (Vec<&FieldEntry>, &'static str) {
+    let t = run.times();
+    let contact = metrics::first_episode(&run.history).map(|e| (t[e.start], t[e.end.unwrap_or(t.len()) - 1]));
+    let span = |(a, b): (f64, f64)| {
+        let within = || run.fields.iter().filter(|entry| (a..=b).contains(&entry.time));
+        let near = |k: i32| {
+            let at = a + (b - a) * f64::from(k) / 4.0;
+            within().min_by(|p, q| (p.time - at).abs().total_cmp(&(q.time - at).abs()))
+        };
+        let mut list: Vec<&FieldEntry> = (0..5).filter_map(near).collect();
+        list.dedup();
+        list
+    };
+    let whole = || span((t[0], t[t.len() - 1]));
+    match contact.map(span) {
+        // A run that failed is shown up to its end.
+        Some(_) if run.stop.is_some() => (whole(), "of the run up to the last accepted state"),
+        Some(list) if list.len() > 1 => (list, "of the first contact"),
+        Some(_) => (whole(), "of the run"),
+        None => (whole(), "of the run (there was no contact)"),
+    }
+}
+
+/// The deformed bodies at several instants, coloured by stress, and its bands in the plane.
+pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
+    let (entries, during) = five(run);
+    if entries.is_empty() {
+        notes.push("No field files were written (output.fields_every = 0): bodies and contact pressure are not drawn.".into());
+    }
+    let mut sets = Vec::new();
+    for entry in entries {
+        match run.field(entry) {
+            Ok(set) => sets.push((entry.time, set)),
+            Err(error) => notes.push(error.to_string()),
+        }
+    }
+    // The state at which a run failed is in a file of its own.
+    if let Some(stop) = &run.stop
+        && let Ok(Some(set)) = Stop::fields(&run.directory, &run.manifest)
+        && sets.last().is_some_and(|(time, last)| stop.last > *time && last.points.len() == set.points.len())
+    {
+        sets.truncate(4);
+        sets.push((stop.last, set));
+    }
+    let first = &sets.first()?.1;
+    let unit = run.history.unit("time");
+    if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
+        let strips: Vec<Instant> =
+            sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
+        return Some((bars::figure(run, &sets, during), bodies::colors(&strips).0));
+    }
+    if bodies::fill_space(first) {
+        let length = first.array("displacement").map_or("", |a| a.unit.as_str());
+        let ([svg, narrow], caption, bands) = space::instants(run, &sets, length, during)?;
+        let panes: Vec<Pane> = sets
+            .iter()
+            .filter_map(|(time, set)| {
+                let [values, _] = stresses(set)?;
+                let points = meshes::moved(set, "displacement");
+                Some(Pane { title: instant_label(run, *time), points, values })
+            })
+            .collect();
+        let value = with_unit("σ_{vM}", first.array("stress").map_or("", |a| a.unit.as_str()));
+        let figure = Figure::new("bodies", caption, svg).with_narrow(narrow);
+        return Some((meshes::with_files(figure, first, &panes, length, value), bands));
+    }
+    let stress = first.array("stress")?.unit.clone();
+    let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
+    let instant = |(time, set): &_| Instant::new(set, "stress", 1, instant_label(run, *time));
+    let list: Vec<Instant> = sets.iter().filter_map(instant).collect();
+    let (bands, cut) = bodies::colors(&list);
+    let title = "Deformed bodies with vertical Cauchy stress";
+    let frame = bodies::frame(&list);
+    let obstacles = obstacles::all(run, frame);
+    let times: Vec<f64> = sets.iter().map(|(time, _)| *time).collect();
+    let walks: Vec<Vec<_>> =
+        times.iter().map(|time| obstacles.iter().map(|o| o.at(run, *time)).collect()).collect();
+    let of_time = |time: &f64| obstacles.iter().filter_map(|o| o.mark(run, *time)).collect();
+    let marks: Vec<Vec<_>> = times.iter().map(of_time).collect();
+    let mut wide = frame;
+    for (obstacle, walk) in walks.iter().flat_map(|walks| obstacles.iter().zip(walks)) {
+        wide = obstacle.shown_in(walk, wide, frame);
+    }
+    // The hatching of a plane that touches the bodies needs room.
+    let room = if obstacles.is_empty() { 0.0 } else { 0.04 * (wide[1] - wide[0]).max(wide[3] - wide[2]) };
+    let wide = [wide[0] - room, wide[1] + room, wide[2] - room, wide[3] + room];
+    let walks: Vec<Vec<_>> = walks
+        .iter()
+        .map(|walks| walks.iter().flat_map(|walk| obstacles::clipped(walk, wide)).collect())
+        .collect();
+    let legend = Legend { bands: &bands, cut, label: "σ_{yy}", unit: &stress };
+    let [svg, narrow] = [SHEET, NARROW]
+        .map(|width| bodies::figure(&list, (&walks, &marks, wide), title, &legend, &length, width));
+    let arrow = arrowheads([cut]);
+    let mark = if marks.iter().any(|marks| !marks.is_empty()) {
+        " Triangle: a point of the plane that moves."
+    } else {
+        ""
+    };
+    let caption = format!(
+        "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
+         the same scale; displacements are not magnified. Blue: compression. Red: tension.{mark}{arrow} Data: stress and displacement in the field files."
+    );
+    let figure = Figure::new("bodies", caption, svg).with_narrow(narrow);
+    let figure = contours::with_files(figure, &times, &list, [unit, &length, &stress]);
+    Some((figure, bands))
+}
