@@ -12,7 +12,7 @@ mod frame;
 mod legend;
 mod scale;
 
-pub(crate) use curve::{APART, Curve, style};
+pub(crate) use curve::{APART, COLORS, Curve, style};
 
 /// A grey band behind the curves.
 #[derive(Clone, Debug)]
@@ -106,24 +106,14 @@ impl Plot {
         if !self.same {
             return of(pane);
         }
+        // Panes with unsound runs alone do not set the common axis, unless there are no others.
+        let sets = |pane: &&Pane| pane.curves.iter().any(|curve| !curve.apart && !curve.points);
+        let any = self.panes.iter().any(|pane| sets(&pane));
         self.panes
             .iter()
+            .filter(|pane| !any || sets(pane))
             .map(of)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (c, d)| (a.min(c), b.max(d)))
-    }
-
-    /// Gives the coloured curves the styles 0, 1, … by their labels, the same in all panes.
-    pub(crate) fn with_styles(mut self) -> Self {
-        let mut known: Vec<String> = Vec::new();
-        for curve in self.panes.iter_mut().flat_map(|pane| &mut pane.curves).filter(|c| !c.quiet && !c.apart)
-        {
-            let at = known.iter().position(|label| *label == curve.label);
-            curve.style = at.unwrap_or(known.len());
-            if at.is_none() {
-                known.push(curve.label.clone());
-            }
-        }
-        self
     }
 
     /// A curve of each distinct label.
@@ -211,7 +201,7 @@ pub(crate) mod tests {
         let fails = curve("fails", true, 50.0);
         let both = with(&plot, vec![curve("finishes", false, 1.0), fails.clone()]);
         assert_eq!((both.y_range(&both.panes[0]), both.legend().len()), ((0.0, 1.0), 2));
-        assert!(both.svg().contains(&format!("stroke=\"{}\"", APART.0)));
+        assert!(both.svg().contains(&format!("stroke=\"{APART}\"")));
         let alone = with(&plot, vec![fails]);
         assert_eq!(alone.y_range(&alone.panes[0]), (0.0, 50.0));
     }

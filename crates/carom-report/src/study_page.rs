@@ -1,16 +1,19 @@
 //! `study.html`: recommendation, arms, ranking, figures and metrics of a study as a single
 //! self-contained page.
 
-use carom_record::study::{Row, Study};
-use carom_record::{Status, metrics};
+use carom_record::study::{Arm, Row, Study};
+use carom_record::{Status, Warning, metrics};
 use maud::{Markup, PreEscaped, Render, html};
 
 use crate::collected::{Origin, time_unit};
 use crate::digits::five;
 use crate::document::{document, figure, file, joined, minus, or_dash};
+use crate::labels::listed;
+use crate::laboratory::style_of;
 use crate::plot::{APART, Plot, style};
+use crate::systems::Systems;
 use crate::text::{Label, Prose, typeset};
-use crate::{by_arm, claims, convergence, design, ensemble, integrity, trend, verdict};
+use crate::{by_arm, claims, convergence, design, ensemble, integrity, settings, trend, verdict};
 
 /// Largest number of values of a key that are listed one by one.
 const FEW: usize = 4;
@@ -19,7 +22,13 @@ const FEW: usize = 4;
 const MANY: usize = 12;
 
 /// The page.
-pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins: &[Origin]) -> String {
+pub(crate) fn page(
+    study: &Study,
+    picture: Option<&str>,
+    plots: &[Plot],
+    origins: &[Origin],
+    systems: &Systems,
+) -> String {
     let failed = study.rows.iter().filter(|row| row.status == Some(Status::Failed)).count();
     let unsound = study.rows.iter().filter(|row| row.is_unsound()).count() - failed;
     let expectations = || study.rows.iter().flat_map(|row| &row.expectations).chain(&study.expectations);
@@ -32,7 +41,7 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
             ("failed", format!("{finished} of {all} arms finished; {} {rest}", all - finished))
         }
         Status::Finished if unsound > 0 => {
-            ("failed", format!("finished; {unsound} of {all} arms created more than 2 % of the energy"))
+            ("failed", format!("finished; in {unsound} of {all} arms the energy rose by more than 2 %"))
         }
         Status::Finished if missed > 0 => {
             ("failed", format!("finished; {missed} of {expected} expectations missed"))
@@ -49,11 +58,12 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         (arms(study))
         (verdict::rankings(study))
         (ensemble::section(study))
-        (self::expectations(study))
-        (warnings(study))
+        (self::expectations(study, systems))
+        (warnings(study, origins))
         h2 { "Figures" }
+        @if let Some(words) = systems.words() { p { (Prose(&words)) } }
         (figures(plots))
-        (metrics(study))
+        (metrics(study, systems))
         (trend::section(study))
         (convergence::section(study))
         (verdict::phases(study))
@@ -85,18 +95,7 @@ fn figures(plots: &[Plot]) -> Markup {
 
 /// The drawing of the case, the values that differ between arms, and the design.
 fn setup(study: &Study, picture: Option<&str>) -> Markup {
-    let mut varied: Vec<(&str, Vec<&str>)> = Vec::new();
-    let arms = || study.manifest.arms.iter().filter(|a| !a.role.fine);
-    let is_everywhere = |set: &String| arms().all(|arm| arm.sets.contains(set));
-    let sets = arms().flat_map(|arm| &arm.sets).filter(|set| !is_everywhere(set));
-    for (key, value) in sets.filter_map(|set| set.split_once('=')) {
-        let (key, value) = (key.trim(), value.trim());
-        match varied.iter_mut().find(|(k, _)| *k == key) {
-            Some((_, values)) if values.contains(&value) => {}
-            Some((_, values)) => values.push(value),
-            None => varied.push((key, vec![value])),
-        }
-    }
+    let (varied, shared) = (settings::varied(study), settings::shared(study));
     html! {
         h2 { "Setup" }
         @if let Some(svg) = picture {
@@ -109,19 +108,77 @@ fn setup(study: &Study, picture: Option<&str>) -> Markup {
                 }
             }
         }
+        @if picture.is_none() {
+            p { "Case: " code { (study.manifest.source.case_path) } ". No sketch: the arms recorded no fields." }
+        }
+        @if !shared.is_empty() { p { "Set in all arms: " (codes(&shared, ", ")) "." } }
         @if !varied.is_empty() {
-            p { "Values that differ between arms; an arm that does not set one has that of the case:" }
-            ul {
+            p { "Parameters that differ between arms (otherwise the value of the case file applies):" }
+            @if has_matrix(study) { (matrix(study, &varied)) } @else { (parameters(study, &varied)) }
+        }
+        (design::paragraphs(study))
+    }
+}
+
+/// Whether parameters are listed by arm, and not by value.
+fn has_matrix(study: &Study) -> bool {
+    study.rows.len() <= FEW
+}
+
+/// A table with a row for every parameter and a column for every arm.
+fn matrix(study: &Study, varied: &[(&str, Vec<Option<&str>>)]) -> Markup {
+    let of_case = |arm: usize, key: &str| settings::of_case(&study.manifest.arms[arm], key);
+    html! {
+        div.scroll {
+            table.metrics {
+                thead { tr { th { "Parameter" } @for row in &study.rows { th { (row.name) } } } }
                 @for (key, values) in varied {
-                    li {
-                        code { (key) } ": "
-                        @if values.len() > FEW { (values.len()) " values" } @else { (codes(&values, ", ")) }
+                    tr {
+                        td { code { (key) } }
+                        @for (arm, value) in values.iter().enumerate() {
+                            td {
+                                @match (value, of_case(arm, key)) {
+                                    (Some(value), _) => code { (settings::brief(value)) },
+                                    (None, Some(value)) => code { (settings::brief(&value)) },
+                                    (None, None) => span.small { "case file" },
+                                }
+                            }
+                        }
                     }
                 }
             }
         }
-        (design::paragraphs(study))
     }
+}
+
+/// A list of parameters, each with its distinct values and that of the case.
+fn parameters(study: &Study, varied: &[(&str, Vec<Option<&str>>)]) -> Markup {
+    let arms = || study.manifest.arms.iter().enumerate().filter(|(_, arm)| !arm.role.fine);
+    html! {
+        ul {
+            @for (key, values) in varied {
+                @let unset = arms().find(|(i, _)| values[*i].is_none());
+                @let base = unset.and_then(|(_, arm)| settings::of_case(arm, key));
+                @let distinct = distinct(values);
+                li {
+                    code { (key) } ": "
+                    @if distinct.len() > FEW { (distinct.len()) " values" } @else { (codes(&distinct, ", ")) }
+                    @if let Some(base) = base { "; in the case file " code { (base) } }
+                }
+            }
+        }
+    }
+}
+
+/// The values that are set, each once.
+fn distinct(values: &[Option<&str>]) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for value in values.iter().flatten().map(|value| settings::brief(value)) {
+        if !found.contains(&value) {
+            found.push(value);
+        }
+    }
+    found
 }
 
 /// Items set as code, with a separator between them.
@@ -131,30 +188,41 @@ fn codes(items: &[impl Render], separator: impl Render) -> Markup {
 
 fn arms(study: &Study) -> Markup {
     let m = &study.manifest;
+    let own = |arm: &Arm| {
+        let own = arm.sets.iter().filter(|set| !settings::is_shared(study, set));
+        own.map(|set| settings::brief(set)).collect::<Vec<_>>()
+    };
+    // What the table of parameters lists is not said twice.
+    let listed = m.arms.iter().any(|arm| arm.case_path.is_some())
+        || !has_matrix(study) && m.arms.iter().any(|arm| !own(arm).is_empty());
     html! {
         h2 { "Arms" }
         // A long list would push the results down the page.
         details open[study.rows.len() <= MANY] {
-            summary { (study.rows.len()) " arms (variants of the case) and their settings" }
+            summary { (study.rows.len()) " arms (variants of the case)" }
             table {
                 thead {
                     tr {
-                        th.n { "No." } th { "Line" } th { "Arm" } th { "Settings" } th.n { "Steps" }
-                        th { "Status" }
+                        th.n { "No." } th { "Line" } th { "Arm" }
+                        @if listed { th { "Settings" } }
+                        th.n { "Steps" } th { "Status" }
                     }
                 }
                 @for (i, (row, arm)) in study.rows.iter().zip(&m.arms).enumerate() {
                     tr {
                         td.n { (i + 1) }
-                        td { (line(i, row.is_unsound())) }
+                        td { (line(style_of(study, i), row.is_unsound())) }
                         td {
                             a href={ (arm.directory) "/report.html" } { (row.name) }
                             @if m.reference.as_ref() == Some(&row.name) { " (reference)" }
                         }
-                        td {
-                            @if let Some(path) = &arm.case_path { "case " code { (path) } }
-                            @if arm.case_path.is_some() && !arm.sets.is_empty() { br; }
-                            (codes(&arm.sets, html! { br; }))
+                        @if listed {
+                            @let sets = own(arm);
+                            td {
+                                @if let Some(path) = &arm.case_path { "case " code { (path) } }
+                                @if arm.case_path.is_some() && !sets.is_empty() { br; }
+                                (codes(&sets, html! { br; }))
+                            }
                         }
                         td.n { (arm.steps) }
                         (ended(study, i, row))
@@ -168,6 +236,7 @@ fn arms(study: &Study) -> Markup {
 /// How an arm ended, and why.
 fn ended(study: &Study, arm: usize, row: &Row) -> Markup {
     let (class, word) = match row.status {
+        Some(Status::Finished) if row.is_unsound() => ("undecided", "finished, created energy"),
         Some(Status::Finished) => ("pass", "finished"),
         Some(Status::Failed) => ("miss", "failed"),
         Some(Status::Running | Status::Stopped) => ("undecided", "not finished"),
@@ -184,12 +253,10 @@ fn ended(study: &Study, arm: usize, row: &Row) -> Markup {
 }
 
 /// The line of an arm in the figures.
-fn line(arm: usize, apart: bool) -> Markup {
-    let (color, dashes) = if apart { (APART.0, APART.1) } else { (style(arm % 8).0, "") };
+fn line(number: usize, apart: bool) -> Markup {
+    let (color, width) = if apart { (APART, "1") } else { (style(number).0, "2") };
     html! {
-        svg.line width="44" height="10" {
-            path d="M1 5h42" stroke=(color) stroke-width="2" stroke-dasharray=(dashes) {}
-        }
+        svg.line width="44" height="10" { path d="M1 5h42" stroke=(color) stroke-width=(width) {} }
     }
 }
 
@@ -213,11 +280,17 @@ fn unit_of_question(study: &Study, what: &str) -> String {
     .unwrap_or_default()
 }
 
-fn expectations(study: &Study) -> Markup {
+fn expectations(study: &Study, systems: &Systems) -> Markup {
     let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (row.name.as_str(), e)));
     let all: Vec<_> = arms.chain(study.expectations.iter().map(|e| ("", e))).collect();
     let met = all.iter().filter(|(_, e)| e.pass).count();
     let table = by_arm(study);
+    // Those of arms are in the units of their cases.
+    let unit = |what: &str| {
+        if systems.is_one() { unit_of_question(study, what) } else { String::new() }
+    };
+    let (of_arms, units) =
+        (all.iter().any(|(arm, _)| !arm.is_empty()), all.iter().any(|(_, e)| !unit(&e.what).is_empty()));
     html! {
         @if !all.is_empty() {
             h2 { "Expectations" }
@@ -228,8 +301,11 @@ fn expectations(study: &Study) -> Markup {
                 table {
                     thead {
                         tr {
-                            th { "Quantity" } th { "Arm" } th { "Expected" } th.n { "Result" } th { "Unit" } th {}
-                            th { "Source" }
+                            th { "Quantity" }
+                            @if of_arms { th { "Arm" } }
+                            th { "Expected" } th.n { "Result" }
+                            @if units { th { "Unit" } }
+                            th { "Met" } th { "Source" }
                         }
                     }
                     @for (arm, e) in all {
@@ -238,11 +314,11 @@ fn expectations(study: &Study) -> Markup {
                                 code { (e.what) }
                                 @if let Some(why) = &e.why { br; span.small { (why) } }
                             }
-                            td { (arm) }
+                            @if of_arms { td { (arm) } }
                             td { (minus(&e.expected)) }
                             td.n { (or_dash(e.got, five)) }
-                            td.unit { (Label(&unit_of_question(study, &e.what))) }
-                            @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
+                            @if units { td.unit { (Label(&unit(&e.what))) } }
+                            @if e.pass { td.pass { "yes" } } @else { td.miss { "missed" } }
                             td { @if let Some(source) = &e.source { (source) } }
                         }
                     }
@@ -252,28 +328,97 @@ fn expectations(study: &Study) -> Markup {
     }
 }
 
-/// The warnings of all arms; one that several arms share is listed once.
-fn warnings(study: &Study) -> Markup {
-    let shared = study.warnings();
+/// A warning with what several arms found, each with its arms.
+struct Found<'a> {
+    warning: &'a Warning,
+    what: Vec<(&'a str, Vec<usize>)>,
+}
+
+/// The warnings of all arms; those that differ in their numbers only are one.
+fn found(study: &Study) -> Vec<Found<'_>> {
+    let mut found: Vec<Found> = Vec::new();
+    for (warning, arms) in study.warnings() {
+        let same = |other: &&mut Found| {
+            let other = other.warning;
+            (&other.id, &other.place, &other.why) == (&warning.id, &warning.place, &warning.why)
+        };
+        match found.iter_mut().find(same) {
+            Some(known) => known.what.push((&warning.what, arms)),
+            None => found.push(Found { warning, what: vec![(&warning.what, arms)] }),
+        }
+    }
+    found
+}
+
+/// Names of arms, or where there are many, their numbers.
+fn names(study: &Study, arms: &[usize]) -> String {
+    match arms.len() {
+        all if all == study.rows.len() && all > 1 => "all".to_owned(),
+        few if few <= FEW => {
+            arms.iter().map(|arm| study.rows[*arm].name.clone()).collect::<Vec<_>>().join("; ")
+        }
+        _ => {
+            format!("numbers {}", arms.iter().map(|arm| (arm + 1).to_string()).collect::<Vec<_>>().join(", "))
+        }
+    }
+}
+
+/// Arms with the same record, and whether their inputs are the same too.
+fn identical(study: &Study, origins: &[Origin]) -> Vec<(String, bool)> {
+    let mut sets: Vec<Vec<&Origin>> = Vec::new();
+    for origin in origins.iter().filter(|origin| !origin.record.is_empty()) {
+        match sets.iter_mut().find(|set| set[0].record == origin.record) {
+            Some(set) => set.push(origin),
+            None => sets.push(vec![origin]),
+        }
+    }
+    let words = |set: Vec<&Origin>| {
+        let names: Vec<&str> = set.iter().map(|origin| study.rows[origin.arm].name.as_str()).collect();
+        let quoted: Vec<String> = names.iter().map(|name| format!("“{name}”")).collect();
+        let quoted: Vec<&str> = quoted.iter().map(String::as_str).collect();
+        (listed(&quoted), set.iter().all(|origin| origin.input == set[0].input))
+    };
+    sets.into_iter().filter(|set| set.len() > 1).map(words).collect()
+}
+
+/// The warnings of all arms.
+fn warnings(study: &Study, origins: &[Origin]) -> Markup {
+    let (found, identical) = (found(study), identical(study, origins));
     html! {
-        @if !shared.is_empty() {
-            h2 { "Warnings" }
-            table {
-                thead { tr { th { "Warning" } th { "What was found, and why it matters" } th { "Try" } th { "Arms" } } }
-                @for (warning, arms) in &shared {
-                    tr {
-                        td { code { (warning.id) } }
-                        td { (typeset(&warning.place)) ": " (typeset(&warning.what)) "; " (typeset(&warning.why)) "." }
-                        td { (typeset(&warning.advice)) }
-                        td {
-                            @if arms.len() == study.rows.len() && arms.len() > 1 { "all" }
-                            @else { (joined(arms.iter().map(|arm| arm + 1), ", ")) }
-                        }
+        @if !found.is_empty() || !identical.is_empty() { h2 { "Warnings" } }
+        @if !identical.is_empty() {
+            p { "Arms with bitwise identical records count as several, but are one:" }
+            ul {
+                @for (names, same) in &identical {
+                    li {
+                        (Label(names)) ": "
+                        @if *same { "the same input." } @else { "the settings in which they differ have no effect." }
                     }
                 }
             }
-            @if shared.iter().any(|(_, arms)| arms.len() < study.rows.len() || arms.len() == 1) {
-                p.small { "Arms by their number." }
+        }
+        @if !found.is_empty() {
+            table {
+                thead { tr { th { "Warning" } th { "What was found, and why it matters" } th { "Try" } th { "Arms" } } }
+                @for Found { warning, what } in &found {
+                    tr {
+                        td { code { (warning.id) } }
+                        td {
+                            (typeset(&warning.place)) ": "
+                            @for (k, (words, arms)) in what.iter().enumerate() {
+                                @if k > 0 { "; " }
+                                (typeset(words))
+                                @if what.len() > 1 { " (" (names(study, arms)) ")" }
+                            }
+                            "; " (typeset(&warning.why)) "."
+                        }
+                        td { (typeset(&warning.advice)) }
+                        td {
+                            @let arms: Vec<usize> = what.iter().flat_map(|(_, arms)| arms.clone()).collect();
+                            (names(study, &arms))
+                        }
+                    }
+                }
             }
         }
     }
@@ -317,7 +462,7 @@ fn by_arm(study: &Study) -> Option<Markup> {
     })
 }
 
-fn metrics(study: &Study) -> Markup {
+fn metrics(study: &Study, systems: &Systems) -> Markup {
     let mut shown = study.metrics();
     shown.retain(|m| study.rows.iter().any(|r| r.value(&m.name).is_some()));
     let groups = metrics::TITLES.map(|title| {
@@ -337,7 +482,9 @@ fn metrics(study: &Study) -> Markup {
             }
         }
         p.small {
-            "Column headings are the numbers of the arms. Every value is computed from the directory of its \
+            "Column headings are the numbers of the arms. "
+            @if !systems.is_one() { "Values are in the units of the first arm. " }
+            "Every value is computed from the directory of its \
              arm alone. Data in full precision: " (file("study.csv")) ", and with measured times \
              " (file("study_tidy.csv")) "."
         }
