@@ -94,8 +94,8 @@ mod tests {
     use super::*;
     use crate::units::Labels;
 
-    /// NIST SP 811, appendix B.8: 1 lbf = 4.448 222 N, 1 psi = 6.894 757 kPa, 1 ft lbf = 1.355 818 J,
-    /// 1 pdl (lb ft/s²) = 0.138 255 0 N; and 1 N/mm² = 1 MPa, 1 km/h = 0.277 777 8 m/s.
+    /// NIST SP 811, appendix B.8: 1 lbf = 4.448 222 N, 1 psi = 6.894 757 kPa, 1 ft lbf = 1.355 818
+    /// J, 1 pdl (lb ft/s²) = 0.138 255 0 N; and 1 N/mm² = 1 MPa, 1 km/h = 0.277 777 8 m/s.
     #[test]
     fn published_factors() {
         for (from, to, published) in [

@@ -125,7 +125,10 @@ impl<'a> Keys<'a> {
     pub(crate) fn label(&self, name: &str) -> String {
         let part = |part: &str| match setting(part) {
             Some(("time.scheme", value)) => value.to_owned(),
-            Some((key, value)) => format!("{} = {value}", self.short(key)),
+            Some((key, value)) => match self.short(key) {
+                "mu" => format!("μ = {value}"),
+                short => format!("{short} = {value}"),
+            },
             _ => part.to_owned(),
         };
         name.split(", ").map(part).collect::<Vec<_>>().join(", ")
@@ -179,6 +182,7 @@ mod tests {
         let label = |name| Keys::of([name].into_iter()).label(name);
         assert_eq!(label("time.scheme=hu, time.step=0.001875"), "hu, step = 0.001875");
         assert_eq!(label("Bathe, ρ∞ = 0.5"), "Bathe, ρ∞ = 0.5");
+        assert_eq!(label("contact.a.mu=0.2"), "μ = 0.2");
     }
 
     #[test]

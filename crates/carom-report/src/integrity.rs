@@ -24,9 +24,16 @@ fn short(hash: &str) -> &str {
 pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
     let metrics = study.metrics();
     let unit = metrics.iter().find(|m| m.name == "penetration").map_or("", |m| &m.unit);
+    let is_exception = |origin: &&Origin| {
+        study.rows[origin.arm].status != Some(Status::Finished) || origin.rejected > 0 || origin.fallbacks > 0
+    };
+    let exceptions: Vec<&Origin> = origins.iter().filter(is_exception).collect();
+    let is_short = origins.len() <= 4;
     let penetration = with_unit("Max. penetration", unit);
     html! {
         h2 { "Integrity" }
+        details open[is_short || !exceptions.is_empty()] {
+        summary { "How each arm ended, and hashes of its input and its record" }
         table.metrics.ranking {
             thead {
                 tr {
@@ -46,6 +53,7 @@ pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
             }
         }
         p.small { (Prose(HASHES)) }
+        }
         (recomputed(study))
     }
 }

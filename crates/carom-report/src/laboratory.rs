@@ -35,7 +35,19 @@ pub(crate) fn plots(study: &Study, columns: &[Column], measured: &Measured, time
 pub(crate) fn style_of(study: &Study, arm: usize) -> usize {
     let method = study.manifest.arms.get(arm).and_then(|arm| arm.role.method.as_deref());
     let known = method.and_then(|method| study.manifest.methods().iter().position(|name| *name == method));
-    known.unwrap_or(arm % COLORS)
+    // In figures of equally many arms, each has the colours of the others.
+    let is_grid = study.manifest.arms.iter().all(|arm| !arm.role.fine && arm.case_path.is_none());
+    known.unwrap_or_else(|| arm % if is_grid { each(study.rows.len()) } else { COLORS })
+}
+
+/// Curves in one figure; more arms need more figures.
+const MOST: usize = 8;
+
+/// The number of arms in a figure: the largest that divides them evenly, as nine of a sweep of
+/// three by three; else eleven are six and five, not eight and three.
+pub(crate) fn each(arms: usize) -> usize {
+    let least = arms.div_ceil(arms.div_ceil(MOST).max(1)).max(1);
+    (least.div_ceil(2)..=least).rev().find(|each| arms.is_multiple_of(*each)).unwrap_or(least)
 }
 
 /// Methods with their finished arms, the coarsest first, without the arms of the reference.

@@ -9,7 +9,7 @@ use carom_record::study::reference::{Reference, Standing};
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
-use crate::collected::time_unit;
+use crate::collected::{in_time, time_unit};
 use crate::design::OFF_BUDGET;
 use crate::digits::{count, five, three};
 use crate::document::joined;
@@ -18,6 +18,9 @@ use crate::text::Label;
 
 /// Largest number of probe stresses that have a column.
 const STRESSES: usize = 3;
+
+/// A column with values in less than this fraction of its cells is none.
+const SPARSE: usize = 4;
 
 /// A heading and the cells below it, in the order of the ranked arms.
 struct Column {
@@ -185,11 +188,27 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
 }
 
 fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> Markup {
-    let (shown, missing): (Vec<_>, Vec<_>) =
+    let (known, missing): (Vec<_>, Vec<_>) =
         columns.iter().partition(|c| c.cells.iter().any(Option::is_some));
-    if shown.is_empty() {
+    if known.is_empty() {
         return Markup::default();
     }
+    // A few values are said below the table.
+    let is_sparse =
+        |c: &&Column| SPARSE * c.cells.iter().filter(|cell| cell.is_some()).count() < c.cells.len();
+    let (sparse, shown): (Vec<&Column>, Vec<&Column>) = known.into_iter().partition(is_sparse);
+    let arms: Vec<usize> = ranking.levels.iter().flatten().map(|r| r.arm).collect();
+    let values = |c: &Column| {
+        let each = c.cells.iter().zip(&arms);
+        let each =
+            each.filter_map(|(cell, arm)| Some(format!("{}: {}", study.rows[*arm].name, cell.as_ref()?)));
+        each.collect::<Vec<_>>().join("; ")
+    };
+    let steps = study.manifest.design.as_ref().map_or(&[][..], |design| &design.steps);
+    let level_words = |level: usize| match steps.get(level) {
+        Some(h) => format!("Level {}: Δt = {}", level + 1, in_time(study, *h)),
+        None => format!("Level {}", level + 1),
+    };
     let chosen = ranking.verdict.as_ref().ok().map(|verdict| verdict.arm);
     // The cells of a column run through all levels.
     let mut rows = 0..;
@@ -204,7 +223,7 @@ fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> M
             }
             @for (level, ranked) in ranking.levels.iter().enumerate() {
                 @if ranking.levels.len() > 1 {
-                    tr { td colspan=(shown.len() + 2) { b { "Level " (level + 1) } } }
+                    tr { td colspan=(shown.len() + 2) { b { (Label(&level_words(level))) } } }
                 }
                 @for (r, row) in ranked.iter().zip(rows.by_ref()) {
                     @let arm = &study.manifest.arms[r.arm];
@@ -217,6 +236,9 @@ fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> M
                     }
                 }
             }
+        }
+        @for column in &sparse {
+            p.small { (Label(&column.head)) ": " (Label(&values(column))) "; of no other arm." }
         }
         @if !missing.is_empty() {
             p.small { "Not available: " (joined(missing.iter().map(|c| Label(&c.head)), ", ")) "." }

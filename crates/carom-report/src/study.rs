@@ -14,8 +14,6 @@ use crate::publish::{ReportError, ReportSummary, publish, write};
 use crate::systems::Systems;
 use crate::{curves, laboratory, setup, study_page, trend};
 
-/// Curves in one figure; more arms need more figures.
-const MOST: usize = 8;
 /// Figures of one column that are shown; more of them are folded away, and with a goal, for which
 /// there are figures of all methods, more than `FEW_MORE`.
 const FEW: usize = 3;
@@ -166,13 +164,6 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
     (0..groups.len()).filter_map(figure).collect()
 }
 
-/// The number of arms in a figure: the largest that divides them evenly, as nine of a sweep of
-/// three by three; else eleven are six and five, not eight and three.
-fn each(arms: usize) -> usize {
-    let least = arms.div_ceil(arms.div_ceil(MOST));
-    (least.div_ceil(2)..=least).rev().find(|each| arms.is_multiple_of(*each)).unwrap_or(least)
-}
-
 /// Arms of the same case and level, by which a colour means a method, in figures that are not too
 /// full; those of the reference are by themselves.
 fn groups(study: &Study) -> Vec<Vec<usize>> {
@@ -185,7 +176,9 @@ fn groups(study: &Study) -> Vec<Vec<usize>> {
             None => kinds.push(vec![i]),
         }
     }
-    let few = |same: Vec<usize>| same.chunks(each(same.len())).map(<[usize]>::to_vec).collect::<Vec<_>>();
+    let few = |same: Vec<usize>| {
+        same.chunks(laboratory::each(same.len())).map(<[usize]>::to_vec).collect::<Vec<_>>()
+    };
     kinds.into_iter().flat_map(few).collect()
 }
 
@@ -233,7 +226,8 @@ fn multiples(curves: Vec<Curve>, y_label: &str, span: Option<(f64, f64)>) -> Vec
 
 #[cfg(test)]
 mod tests {
-    use super::{each, numbers};
+    use super::numbers;
+    use crate::laboratory::each;
 
     #[test]
     fn arms_are_split_evenly() {

@@ -1,6 +1,7 @@
 //! `study.html`: recommendation, arms, ranking, figures and metrics of a study as a single
 //! self-contained page.
 
+use carom_record::metrics::Metric;
 use carom_record::study::{Arm, Row, Study};
 use carom_record::{Status, Warning, metrics};
 use maud::{Markup, PreEscaped, Render, html};
@@ -96,14 +97,17 @@ fn figures(plots: &[Plot]) -> Markup {
 /// The drawing of the case, the values that differ between arms, and the design.
 fn setup(study: &Study, picture: Option<&str>) -> Markup {
     let (varied, shared) = (settings::varied(study), settings::shared(study));
+    let title = study.manifest.arms.first().and_then(|arm| arm.case.get("title")?.as_str());
+    let title = title.filter(|title| !title.is_empty());
     html! {
         h2 { "Setup" }
         @if let Some(svg) = picture {
             figure {
                 div.drawing { (PreEscaped(svg)) }
                 figcaption {
-                    "Initial configuration of the first arm, case "
-                    code { (study.manifest.source.case_path) } ". "
+                    "Initial configuration of the first arm"
+                    @if let Some(title) = title { ": " (Label(title)) }
+                    " (case " code { (study.manifest.source.case_path) } "). "
                     span.small { "(" (file("figures/setup.svg")) ")" }
                 }
             }
@@ -477,7 +481,9 @@ fn metrics(study: &Study, systems: &Systems) -> Markup {
                     html! { (or_dash(study.rows[arm].value(&metric.name), five)) }
                 }))
                 table {
-                    @for metric in members { tr { td { code { (metric.name) } } td { (metric.definition) } } }
+                    @for (names, definition) in definitions(members) {
+                        tr { td { (codes(&names, ", ")) } td { (definition) } }
+                    }
                 }
             }
         }
@@ -489,6 +495,18 @@ fn metrics(study: &Study, systems: &Systems) -> Markup {
              " (file("study_tidy.csv")) "."
         }
     }
+}
+
+/// Definitions, each with all its metrics: those of columns have the same for every probe.
+fn definitions<'a>(metrics: &[&'a Metric]) -> Vec<(Vec<&'a str>, &'static str)> {
+    let mut found: Vec<(Vec<&str>, &str)> = Vec::new();
+    for metric in metrics {
+        match found.iter_mut().find(|(_, definition)| *definition == metric.definition) {
+            Some((names, _)) => names.push(&metric.name),
+            None => found.push((vec![&metric.name], metric.definition)),
+        }
+    }
+    found
 }
 
 /// A bibliography entry with the version of the program and the hash of the input.
@@ -518,12 +536,17 @@ const FILES: [&str; 9] = [
 
 fn reproduce(study: &Study) -> Markup {
     let m = &study.manifest;
+    let beside = m.source.case_path.rsplit('/').next().unwrap_or_default();
     let there = FILES.iter().filter(|name| study.directory.join(name).is_file());
     html! {
         h2 { "How to reproduce" }
         p {
             (Prose("Save the study file below as `study.toml` and the case file as "))
-            code { (m.source.case_path) } " relative to it, and run Carom " (m.version) ":"
+            code { (m.source.case_path) } " relative to it"
+            @if m.source.case_path.contains('/') {
+                " (or beside it, with " code { "case = \"" (beside) "\"" } " in the study file)"
+            }
+            ", and run Carom " (m.version) ":"
         }
         pre { "carom study study.toml" }
         p.small {

@@ -157,6 +157,7 @@ fn axis(study: &Study, key: &str) -> String {
         "cells" => "1/cells".to_owned(),
         "refine" => "1/refine".to_owned(),
         _ if TIMES.contains(&key) => with_unit(last, time_unit(study)),
+        "mu" => "μ".to_owned(),
         "rho_inf" => "ρ_{∞}".to_owned(),
         _ => last.to_owned(),
     }

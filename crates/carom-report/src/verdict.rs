@@ -38,7 +38,7 @@ const FEW: usize = 12;
 const PLACES: &str = "The place of an arm is one plus the number of arms that are distinguishably better: by \
     more than the uncertainty of the reference, more than the spreads of both over the ensemble added, and more \
     than 5 %. So arms share a place though one of them may be distinguished from a third and the other not. Within \
-    a place arms are in the order of their cost. ▸: recommended.";
+    a place arms are in the order of their cost.";
 
 /// Orders above it are not those of a scheme.
 const HIGHEST: f64 = 4.0;
@@ -74,8 +74,8 @@ pub(crate) fn summary(study: &Study) -> Markup {
                     h2 { "No recommendation" }
                     p { (Prose(&goal)) }
                     ul {
-                        @for reason in reasons { li { (Label(reason)) } }
-                        @if let Err(why) = &ranking.measure { li { (Label(why)) } }
+                        @for reason in reasons { li { (Label(&capitalised(reason))) "." } }
+                        @if let Err(why) = &ranking.measure { li { (Label(&capitalised(why))) "." } }
                     }
                 }
             };
@@ -203,7 +203,7 @@ pub(crate) fn rankings(study: &Study) -> Markup {
         @if let Ok(measure) = &ranking.measure {
             @let uncertainty = three(measure.uncertainty);
             p { "Ranked by " (Label(&measure.words)) " (uncertainty of the errors: " (uncertainty) ")." }
-            p.small { (PLACES) }
+            p.small { (PLACES) @if ranking.verdict.is_ok() { " ▸: recommended." } }
             (ranked_table(study, ranking))
             (crosschecks(study, ranking))
         }
@@ -356,7 +356,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
 fn other_goals(study: &Study) -> Markup {
     html! {
         h3 { "Recommendations for the other goals" }
-        table {
+        div.scroll { table {
             thead {
                 tr { th { "Goal" } th { "Recommended" } th.n { (with_unit("Δt", time_unit(study))) } th { "Confidence" } th { "Ranked by" } }
             }
@@ -385,7 +385,7 @@ fn other_goals(study: &Study) -> Markup {
                     }
                 }
             }
-        }
+        } }
     }
 }
 
