@@ -228,7 +228,11 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
         name: format!("trend-{}", file_name(key)),
         caption: format!(
             "{which} against `{key}`{}{of}.{lines}{} Arms that failed or created energy are left out.",
-            if wide { " on a logarithmic axis, where straight lines look curved" } else { "" },
+            match (wide, fitted) {
+                (false, _) => "",
+                (true, false) => " on a logarithmic axis",
+                (true, true) => " on a logarithmic axis, where straight lines look curved",
+            },
             if single && fitted { " Grey: 95 % confidence interval of the line." } else { "" }
         ),
         x_label: axis(study, key),

@@ -88,7 +88,7 @@ fn summary(v: &Verification) -> Markup {
         ("Set-ups", format!("{} (a study counts as one)", v.set_ups.len())),
         ("With dynamic contact", v.with_contact().to_string()),
         ("Simulations", v.set_ups.iter().map(|s| s.runs).sum::<usize>().to_string()),
-        ("Expected values", format!("{rows}, of which {sourced} state their source")),
+        ("Expected values", format!("{rows}, {sourced} with a stated source")),
         ("Missed", missed.to_string()),
         ("Unexpected stops", stopped.to_string()),
         ("Wall time", format!("{} s, {} concurrent runs", three(v.wall), v.jobs)),
