@@ -206,7 +206,7 @@ pub(crate) mod tests {
         assert_eq!(alone.y_range(&alone.panes[0]), (0.0, 50.0));
     }
 
-    /// An unsound curve that ends inside the axes has a cross; one that goes on above them has none.
+    /// An unsound curve that ends inside the axes has a cross; one that goes on above has none.
     #[test]
     fn a_cross_is_where_a_run_stops() {
         let mut plot = plot();
