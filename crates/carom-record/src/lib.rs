@@ -13,6 +13,7 @@
 //! killed and resumed writes the same bytes as an uninterrupted one.
 
 mod checkpoint;
+pub mod conversion;
 mod error;
 mod expectation;
 mod export;

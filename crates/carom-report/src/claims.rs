@@ -34,6 +34,16 @@ fn ratio(v: &Verdict) -> Markup {
     }
 }
 
+/// The right side, with its constant factor beside the quantity.
+fn factored(v: &Verdict, right: f64) -> String {
+    match v.bound {
+        Some((_, factor)) if factor != 1.0 && right != factor => {
+            format!("{} = {} × {}", three(right), three(factor), three(right / factor))
+        }
+        _ => three(right),
+    }
+}
+
 /// The section of the page; nothing for a study without claims.
 pub(crate) fn section(study: &Study) -> Markup {
     if study.verdicts.is_empty() {
@@ -42,7 +52,7 @@ pub(crate) fn section(study: &Study) -> Markup {
     let all = study.manifest.ensemble.is_some();
     let confirmed = study.verdicts.iter().filter(|v| class(v) == "pass").count();
     let result = |v: &Verdict| match &v.ensemble {
-        Some(Confirmed { count: 0, of, .. }) => format!("denied in all ({of} of {of})"),
+        Some(Confirmed { count: 0, of, .. }) => format!("refuted in all ({of} of {of})"),
         Some(confirmed @ Confirmed { count: k, of, .. }) => {
             format!("confirmed {} ({k} of {of})", confirmed.word())
         }
@@ -59,7 +69,7 @@ pub(crate) fn section(study: &Study) -> Markup {
                         td {
                             (v.claim.text) br; code { (v.claim.compare) }
                             @if let (Some(left), Some(right)) = (v.left, v.right) {
-                                br; span.small { "left " (three(left)) ", right " (three(right)) }
+                                br; span.small { "left " (three(left)) ", right " (factored(v, right)) }
                             }
                         }
                         td.(class(v)) { (result(v)) }
@@ -71,13 +81,13 @@ pub(crate) fn section(study: &Study) -> Markup {
         @if all {
             p.small {
                 "Ratio: the left quantity divided by the right one, without constant factors, and what is \
-                 claimed of it; where the right side is a number, the left one. Median over the members of the \
+                 claimed of it; for a comparison with a number, the left quantity itself. Median over the members of the \
                  ensemble in which the claim can be decided, and range. Left and right: of the arms as given."
             }
         } @else {
             p.small {
                 "Ratio: the left quantity divided by the right one, without constant factors, and what is \
-                 claimed of it; where the right side is a number, the left one. Without an ensemble ("
+                 claimed of it; for a comparison with a number, the left quantity itself. Without an ensemble ("
                 code { "[ensemble]" } ") it has no interval."
             }
         }

@@ -11,6 +11,7 @@ use crate::digits::five;
 use crate::labels::{is_stress, symbol, words};
 use crate::noise;
 use crate::plot::Curve;
+use crate::systems::Systems;
 
 /// Columns shown besides those of the probes: name, label, caption.
 const OTHERS: [(&str, &str, &str); 5] = [
@@ -105,12 +106,29 @@ pub(crate) fn measured_label(overlay: &Overlay) -> String {
 }
 
 /// Adds the columns of an arm, measured ones included.
-pub(crate) fn collect(columns: &mut Vec<Column>, measured: &Measured, arm: usize, run: &Run) {
+pub(crate) fn collect(
+    columns: &mut Vec<Column>,
+    measured: &Measured,
+    systems: &mut Systems,
+    arm: usize,
+    run: &Run,
+) {
+    let Some(times) = systems.of_times(arm, run) else { return };
+    let mut put = |name: &str, values: &[f64], unit: &str| {
+        let (mut x, mut y) = thinned(run.times(), values);
+        let known = columns.iter().position(|column| column.name == name);
+        let to = known.map_or(unit, |known| &columns[known].unit).to_owned();
+        let Some(factor) = systems.factor(arm, unit, &to) else { return };
+        x.iter_mut().for_each(|x| *x *= times);
+        y.iter_mut().for_each(|y| *y *= factor);
+        match known {
+            Some(known) => columns[known].curves.push((arm, x, y)),
+            None => columns.push(Column { name: name.to_owned(), unit: to, curves: vec![(arm, x, y)] }),
+        }
+    };
     let force = contact_force(&run.history);
     if force.iter().any(|f| *f > 0.0) {
-        let (x, y) = thinned(run.times(), &force);
-        let unit = run.history.unit("contact_force_x");
-        put(columns, FORCE, unit, (arm, x, y));
+        put(FORCE, &force, run.history.unit("contact_force_x"));
     }
     let nonzero = |name: &&str| run.column(name).is_some_and(|c| c.iter().any(|x| *x != 0.0));
     let others = OTHERS[1..].iter().map(|other| other.0).filter(nonzero);
@@ -126,15 +144,7 @@ pub(crate) fn collect(columns: &mut Vec<Column>, measured: &Measured, arm: usize
     }
     for name in names {
         let Some(values) = run.column(name) else { continue };
-        let (x, y) = thinned(run.times(), values);
-        put(columns, name, run.history.unit(name), (arm, x, y));
-    }
-}
-
-fn put(columns: &mut Vec<Column>, name: &str, unit: &str, curve: (usize, Vec<f64>, Vec<f64>)) {
-    match columns.iter_mut().find(|c| c.name == name) {
-        Some(column) => column.curves.push(curve),
-        None => columns.push(Column { name: name.to_owned(), unit: unit.to_owned(), curves: vec![curve] }),
+        put(name, values, run.history.unit(name));
     }
 }
 

@@ -5,6 +5,7 @@ use carom_record::study::Study;
 
 use crate::axis::range;
 use crate::plot::Curve;
+use crate::text::width;
 
 /// Curves that differ by less than this share of the range, half a pixel of a small pane, are drawn
 /// once.
@@ -53,8 +54,23 @@ pub(crate) fn merged(curves: Vec<Curve>) -> Vec<(Curve, Vec<String>)> {
     found
 }
 
-/// What is said about curves that are drawn once: `Drawn once, because they differ by less than
-/// 0.3 % of the range: “a”, “b” and “c”; …`; nothing where there are none.
+/// Labels of at most this width, in units of the font size, name both of two curves.
+const WIDE: f64 = 21.0;
+
+/// A curve with those that it is drawn for in its label.
+pub(crate) fn with(curve: Curve, others: &[String]) -> Curve {
+    let first = &curve.label;
+    let label = match others {
+        [] => return curve,
+        [other] if width(first) + width(other) < WIDE => format!("{first} and {other}"),
+        [_] => format!("{first} and 1 other"),
+        others => format!("{first} and {} others", others.len()),
+    };
+    Curve { label, ..curve }
+}
+
+/// What is said about curves that are drawn once: `Curves that differ by less than 0.3 % of the
+/// range are drawn once: “a”, “b” and “c”; …`; nothing where there are none.
 pub(crate) fn drawn_once(found: &[(String, Vec<String>)]) -> String {
     let sets = found.iter().filter(|(_, others)| !others.is_empty());
     let quoted = |name: &String| format!("“{name}”");
@@ -67,7 +83,7 @@ pub(crate) fn drawn_once(found: &[(String, Vec<String>)]) -> String {
     if sets.is_empty() {
         return String::new();
     }
-    format!(" Drawn once, because they differ by less than 0.3 % of the range: {}.", sets.join("; "))
+    format!(" Curves that differ by less than 0.3 % of the range are drawn once: {}.", sets.join("; "))
 }
 
 /// Whether a curve goes up and down so often that it hides others.
@@ -109,7 +125,10 @@ impl<'a> Keys<'a> {
     pub(crate) fn label(&self, name: &str) -> String {
         let part = |part: &str| match setting(part) {
             Some(("time.scheme", value)) => value.to_owned(),
-            Some((key, value)) => format!("{} = {value}", self.short(key)),
+            Some((key, value)) => match self.short(key) {
+                "mu" => format!("μ = {value}"),
+                short => format!("{short} = {value}"),
+            },
             _ => part.to_owned(),
         };
         name.split(", ").map(part).collect::<Vec<_>>().join(", ")
@@ -155,7 +174,7 @@ mod tests {
             Curve { y: x.clone(), x, ..Curve::default() }
         };
         assert_eq!(merged(vec![line(3), line(7)]).len(), 1);
-        assert!(drawn_once(&found).contains("range: “a” and “b”."));
+        assert!(drawn_once(&found).contains("drawn once: “a” and “b”."));
     }
 
     #[test]
@@ -163,6 +182,7 @@ mod tests {
         let label = |name| Keys::of([name].into_iter()).label(name);
         assert_eq!(label("time.scheme=hu, time.step=0.001875"), "hu, step = 0.001875");
         assert_eq!(label("Bathe, ρ∞ = 0.5"), "Bathe, ρ∞ = 0.5");
+        assert_eq!(label("contact.a.mu=0.2"), "μ = 0.2");
     }
 
     #[test]

@@ -52,11 +52,15 @@ pub(crate) fn paragraphs(study: &Study) -> Markup {
     }
 }
 
+/// Whether the cost of an arm, where it is matched, is more than 10 % off its budget.
+pub(crate) fn is_off_budget(study: &Study, arm: &Arm) -> bool {
+    study.manifest.by_cost(arm) && arm.role.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET)
+}
+
 /// Whether all matched costs are within 10 % of their budget, and which arms miss it.
 pub(crate) fn budgets(study: &Study) -> Markup {
-    let off = |arm: &&Arm| arm.role.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET);
     let matched: Vec<&Arm> = study.manifest.arms.iter().filter(|a| study.manifest.by_cost(a)).collect();
-    let missed: Vec<&Arm> = matched.iter().copied().filter(off).collect();
+    let missed: Vec<&Arm> = matched.iter().copied().filter(|arm| is_off_budget(study, arm)).collect();
     let cost = |arm: &&Arm| match arm.role.cost {
         Some(share) => format!("{} ({} of the budget)", arm.name, three(share)),
         None => format!("{} (cost unknown)", arm.name),

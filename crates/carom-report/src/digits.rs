@@ -13,6 +13,11 @@ pub(crate) fn five(x: f64) -> String {
     text.replace('-', "−")
 }
 
+/// A count, with all its digits; a mean of counts with three.
+pub(crate) fn count(x: f64) -> String {
+    if x.fract() == 0.0 && x.abs() < 1e15 { format!("{x}").replace('-', "−") } else { three(x) }
+}
+
 /// A number with three digits.
 pub(crate) fn three(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
@@ -23,4 +28,17 @@ pub(crate) fn three(x: f64) -> String {
     }
     let scale = 10f64.powi(2 - x.abs().log10().floor() as i32);
     five((x * scale).round() / scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_keep_all_digits() {
+        let cases = [(1254.0, "1254"), (12_345_678.0, "12345678"), (0.0, "0"), (2505.5, "2510")];
+        for (x, text) in cases {
+            assert_eq!(count(x), text);
+        }
+    }
 }

@@ -12,7 +12,8 @@ use crate::document::file;
 pub(crate) fn section(study: &Study) -> Markup {
     let Some(ensemble) = &study.manifest.ensemble else { return Markup::default() };
     let failed = study.members.iter().filter(|row| row.status == Some(Status::Failed)).count();
-    let metrics = study.metrics().into_iter().filter(|m| !m.is_work());
+    let known = |name: &str| (0..study.rows.len()).any(|arm| study.spread(arm, name).is_some());
+    let metrics = study.metrics().into_iter().filter(|m| !m.is_work() && known(&m.name));
     let metrics: Vec<_> = metrics.collect();
     html! {
         h2 { "Ensemble" }

@@ -6,10 +6,10 @@ use carom_record::study::Study;
 use maud::{Markup, html};
 
 use crate::collected::Origin;
-use crate::design::budgets;
 use crate::digits::three;
 use crate::document::or_dash;
-use crate::text::Prose;
+use crate::labels::with_unit;
+use crate::text::{Label, Prose};
 
 const HASHES: &str = "Input hash: BLAKE3 of the case and the settings of the arm. Record hash: BLAKE3 of \
     `history.csv` and `contact.csv`; a repetition with the same version on the same platform gives the same \
@@ -22,13 +22,23 @@ fn short(hash: &str) -> &str {
 
 /// The section of the page.
 pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
+    let metrics = study.metrics();
+    let unit = metrics.iter().find(|m| m.name == "penetration").map_or("", |m| &m.unit);
+    let is_exception = |origin: &&Origin| {
+        study.rows[origin.arm].status != Some(Status::Finished) || origin.rejected > 0 || origin.fallbacks > 0
+    };
+    let exceptions: Vec<&Origin> = origins.iter().filter(is_exception).collect();
+    let is_short = origins.len() <= 4;
+    let penetration = with_unit("Max. penetration", unit);
     html! {
         h2 { "Integrity" }
+        details open[is_short || !exceptions.is_empty()] {
+        summary { "How each arm ended, and hashes of its input and its record" }
         table.metrics.ranking {
             thead {
                 tr {
                     th { "Arm" } th { "Status" } th.n { "Rejected steps" } th.n { "Cycles and fallbacks" }
-                    th.n { "Max. penetration" } th { "Input hash" } th { "Record hash" }
+                    th.n { (Label(&penetration)) } th { "Input hash" } th { "Record hash" }
                 }
             }
             @for origin in origins {
@@ -43,8 +53,8 @@ pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
             }
         }
         p.small { (Prose(HASHES)) }
+        }
         (recomputed(study))
-        @if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) { (budgets(study)) }
     }
 }
 

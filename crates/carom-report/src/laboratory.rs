@@ -1,17 +1,20 @@
-//! Figures that compare time integrators: error against cost, roughness against dissipation, the
-//! histories of each method with the reference, and the spectral properties of the schemes at the
-//! frequencies of the model.
+//! Figures that compare time integrators: error against cost, roughness against dissipation, and
+//! the histories of each method with the reference.
 
 use carom_record::Status;
+use carom_record::study::Study;
 use carom_record::study::compared::{established, is_trajectory};
 use carom_record::study::design::Goal;
 use carom_record::study::reference::{FORCE, Reference};
-use carom_record::study::{Study, step};
 
 use crate::collected::{Column, Measured, named};
 use crate::curves;
 use crate::labels::{capitalised, file_name, with_unit};
-use crate::plot::{Band, Curve, Pane, Plot};
+use crate::plot::{Band, COLORS, Curve, Pane, Plot};
+use crate::theory;
+
+/// Colour of the reference in small multiples.
+const REFERENCE: &str = "#777";
 
 /// Largest number of small multiples in one figure.
 const MULTIPLES: usize = 24;
@@ -21,14 +24,30 @@ pub(crate) fn plots(study: &Study, columns: &[Column], measured: &Measured, time
     if study.manifest.goal.is_none() {
         return Vec::new();
     }
-    let mut plots: Vec<Plot> = [error_cost(study), roughness_dissipation(study)]
-        .into_iter()
-        .flatten()
-        .map(Plot::with_styles)
-        .collect();
+    let mut plots: Vec<Plot> =
+        [error_cost(study), roughness_dissipation(study)].into_iter().flatten().collect();
     plots.extend(columns.iter().filter_map(|c| multiples(study, c, measured, time)));
-    plots.extend(theory(study).map(Plot::with_styles));
+    plots.extend(theory::plot(study));
     plots
+}
+
+/// The style of an arm in all figures: that of its method, where there are methods.
+pub(crate) fn style_of(study: &Study, arm: usize) -> usize {
+    let method = study.manifest.arms.get(arm).and_then(|arm| arm.role.method.as_deref());
+    let known = method.and_then(|method| study.manifest.methods().iter().position(|name| *name == method));
+    // In figures of equally many arms, each has the colours of the others.
+    let is_grid = study.manifest.arms.iter().all(|arm| !arm.role.fine && arm.case_path.is_none());
+    known.unwrap_or_else(|| arm % if is_grid { each(study.rows.len()) } else { COLORS })
+}
+
+/// Curves in one figure; more arms need more figures.
+const MOST: usize = 8;
+
+/// The number of arms in a figure: the largest that divides them evenly, as nine of a sweep of
+/// three by three; else eleven are six and five, not eight and three.
+pub(crate) fn each(arms: usize) -> usize {
+    let least = arms.div_ceil(arms.div_ceil(MOST).max(1)).max(1);
+    (least.div_ceil(2)..=least).rev().find(|each| arms.is_multiple_of(*each)).unwrap_or(least)
 }
 
 /// Methods with their finished arms, the coarsest first, without the arms of the reference.
@@ -49,8 +68,8 @@ pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
     found
 }
 
-/// Up to this number of methods all are drawn in colour; of more, only those that matter.
-const COLOURED: usize = 7;
+/// Up to this number of methods all have broad lines; of more, only those that matter.
+const BROAD: usize = 7;
 
 /// A pane with one curve with markers per method, through the points of its arms, and another one
 /// of the arms that created much energy; the Pareto front; and the recommended arm.
@@ -65,9 +84,10 @@ fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Pane {
         .collect();
     let front = front(&points);
     let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
-    let few = methods.len() <= COLOURED;
+    let few = methods.len() <= BROAD;
     let mut curves = Vec::new();
-    for (style, (name, arms)) in methods.into_iter().enumerate() {
+    for (name, arms) in methods {
+        let style = arms.first().map_or(0, |arm| style_of(study, *arm));
         let matters = arms.iter().any(|arm| chosen == Some(*arm) || front.iter().any(|(on, _)| on == arm));
         let (unsound, sound): (Vec<usize>, Vec<usize>) =
             arms.into_iter().partition(|arm| study.rows[*arm].is_unsound());
@@ -111,10 +131,11 @@ fn front(points: &[(usize, (f64, f64))]) -> Vec<(usize, (f64, f64))> {
     sorted
 }
 
-/// What dashed grey curves of these panes are.
+/// What grey curves of these panes are.
 fn apart(panes: &[Pane]) -> &'static str {
     if panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.apart) {
-        " Grey: arms that created more energy than the default guard allows; they do not affect the axes."
+        " Grey: arms that created more energy than the default guard allows; they do not affect the axes, and \
+         an arrowhead at the edge stands for one that lies outside."
     } else {
         ""
     }
@@ -126,7 +147,7 @@ fn ring(panes: &[Pane]) -> &'static str {
     if has_ring { " Ring: recommended arm." } else { "" }
 }
 
-/// What grey curves of these panes are, where not all curves are coloured.
+/// What thin curves of these panes are.
 fn quiet(panes: &[Pane]) -> &'static str {
     if panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.quiet) {
         " Thin: methods that are neither on the front nor recommended."
@@ -164,7 +185,10 @@ fn error_cost(study: &Study) -> Option<Plot> {
         && !matches!(ranking.goal, Goal::Trajectory | Goal::Cost)
     {
         let pane = scatter(study, |arm| Some((cost(arm)?, ranked(study, arm)?)));
-        panes.push(Pane { title: measure.name.clone(), y_label: "error".into(), ..pane });
+        let floor = (measure.uncertainty > 0.0)
+            .then(|| (measure.uncertainty, "uncertainty of the errors".to_owned()));
+        let title = format!("goal: {}", measure.name.replace('_', " "));
+        panes.push(Pane { floor, title, y_label: "relative error".into(), ..pane });
     }
     panes.retain(|p| !p.curves.is_empty());
     (!panes.is_empty()).then(|| Plot {
@@ -187,8 +211,12 @@ fn error_cost(study: &Study) -> Option<Plot> {
     })
 }
 
+/// Smaller drifts of the energy are drawn as this one.
+const LEAST_DRIFT: f64 = 1e-6;
+
 fn roughness_dissipation(study: &Study) -> Option<Plot> {
-    let lost = |arm: usize| study.rows[arm].value("energy_drift");
+    // One method that conserves energy up to round-off would compress all others.
+    let lost = |arm: usize| Some(study.rows[arm].value("energy_drift")?.max(LEAST_DRIFT));
     let right = study
         .reference
         .as_ref()
@@ -211,15 +239,29 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
         titled("total variation of the contact force", over, varied),
         titled("power above 16 cycles per contact", "share of power", high),
     ];
-    panes.retain(|p| !p.curves.is_empty());
+    // A pane of a few methods compares nothing.
+    let all = methods(study).len();
+    let known = |pane: &Pane| {
+        let sound: Vec<_> = pane.curves.iter().filter(|curve| !curve.apart).collect();
+        !sound.is_empty() && 2 * sound.len() >= all
+    };
+    let count = panes.len();
+    panes.retain(known);
+    let left_out = if panes.len() < count {
+        " A measure that fewer than half of the methods have is not drawn."
+    } else {
+        ""
+    };
+    let conserving = study.rows.iter().any(|row| row.value("energy_drift").is_some_and(|d| d < LEAST_DRIFT));
+    let least = if conserving { " A drift below 10^{−6} is drawn there." } else { "" };
     (!panes.is_empty()).then(|| Plot {
         group: String::new(),
         name: "roughness-dissipation".into(),
         caption: format!(
             "Roughness of the contact force against energy drift: one point per arm, one curve per method. \
              Broad line: Pareto front.{}{} Numerical damping reduces roughness at the cost of energy; \
-             methods at the lower left are smooth without it. TV: total variation during the first contact. \
-             Arms with a zero are omitted (logarithmic axes).{}",
+             methods at the lower left are smooth without loss of energy. TV: total variation during the first contact. \
+             Arms with a zero are omitted (logarithmic axes).{least}{left_out}{}",
             ring(&panes),
             quiet(&panes),
             apart(&panes)
@@ -233,15 +275,27 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
     })
 }
 
-/// The band of a column: the reference ± its uncertainty.
-fn band(reference: &Reference, column: &str) -> Option<Band> {
+/// The reference of a column as a line, and where its value is established, the band of its
+/// uncertainty.
+fn reference_of(reference: &Reference, column: &str) -> Option<(Curve, Option<Band>)> {
     let (x, y) = reference.column(column)?;
     let off = reference.band(column);
     let every = x.len().div_ceil(1200).max(1);
     let rows = (0..x.len()).step_by(every);
     let edge = |sign: f64| rows.clone().map(|i| y[i] + sign * off[i]).collect();
-    let x = rows.clone().map(|i| x[i]).collect();
-    Some(Band { name: "reference", x, low: edge(-1.0), high: edge(1.0) })
+    let x: Vec<f64> = rows.clone().map(|i| x[i]).collect();
+    let known = reference.uncertainty(column).established().is_some();
+    let band = known.then(|| Band { name: "uncertainty", x: x.clone(), low: edge(-1.0), high: edge(1.0) });
+    let line = Curve {
+        label: "reference".to_owned(),
+        color: Some(REFERENCE),
+        quiet: true,
+        x,
+        y: edge(0.0),
+        unlisted: true,
+        ..Curve::default()
+    };
+    Some((line, band))
 }
 
 /// Name of the figure with small multiples of a column.
@@ -249,23 +303,20 @@ fn multiples_name(column: &str) -> String {
     format!("each-{}", file_name(if column == FORCE { "contact-force" } else { column }))
 }
 
-/// Whether a column has small multiples of all arms among these figures.
-pub(crate) fn shows(plots: &[Plot], column: &str) -> bool {
-    let name = multiples_name(column);
-    plots.iter().any(|plot| plot.name == name)
-}
-
 /// A column of every method at its finest level, one pane each; during the first contact, if this
 /// is a small part of the time. Methods with the same curve share a pane.
 fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) -> Option<Plot> {
-    let band = study.reference.as_ref().and_then(|r| band(r, &column.name));
+    let reference = study.reference.as_ref().and_then(|r| reference_of(r, &column.name));
+    let (line, band) = reference.map_or((None, None), |(line, band)| (Some(line), band));
     let (label, what) = named(&column.name);
     let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
     let curve = |(name, arms): (&str, Vec<usize>)| {
         let finest = arms.last()?;
         let (_, x, y) = column.curves.iter().find(|(arm, ..)| arm == finest)?;
         let chosen = arms.iter().any(|arm| chosen == Some(*arm));
-        Some(Curve { label: name.to_owned(), x: x.clone(), y: y.clone(), chosen, ..Curve::default() })
+        let (style, apart) = (style_of(study, *finest), study.rows[*finest].is_unsound());
+        let label = name.to_owned();
+        Some(Curve { label, style, apart, x: x.clone(), y: y.clone(), chosen, ..Curve::default() })
     };
     let found = curves::merged(methods(study).into_iter().filter_map(curve).take(MULTIPLES).collect());
     // A single pane compares nothing; the overlays show the column as well.
@@ -278,11 +329,16 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
     let points = measured.points(&column.name, end, true);
     let pane = |(k, (curve, others)): (usize, (Curve, Vec<String>))| {
         let mark = if curve.chosen { "▸ " } else { "" };
-        let more = if others.is_empty() { String::new() } else { format!(" (+{})", others.len()) };
-        let title = format!("{mark}{}{more}", curve.label);
+        let more = match &others[..] {
+            [] => String::new(),
+            [other] => format!(" and {other}"),
+            others => format!(" and {} others", others.len()),
+        };
+        let creates = if curve.apart { ", creates energy" } else { "" };
+        let title = format!("{mark}{}{more}{creates}", curve.label);
         let name = curve.label.clone();
-        let curve = Curve { unlisted: true, style: if curve.chosen { 2 } else { 1 }, ..curve };
-        let curves = std::iter::once(curve).chain(points.iter().cloned()).collect();
+        let curve = Curve { unlisted: true, ..curve };
+        let curves = line.iter().cloned().chain([curve]).chain(points.iter().cloned()).collect();
         Pane {
             name,
             title,
@@ -293,15 +349,21 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
             ..Pane::default()
         }
     };
-    let panes: Vec<Pane> = found.into_iter().enumerate().map(pane).collect();
-    let grey =
-        if band.is_some() { " Grey: the reference; the width of the band is its uncertainty." } else { "" };
+    let grey = match (&line, &band) {
+        (None, _) => "",
+        (_, Some(_)) => " Thin grey line: the reference, with the band of its uncertainty.",
+        (_, None) => " Thin grey line: the reference; its uncertainty is not established.",
+    };
+    let mark = if found.iter().any(|(curve, _)| curve.chosen) { " ▸: recommended." } else { "" };
+    let is_apart = found.iter().any(|(curve, _)| curve.apart);
+    let apart = if is_apart { " Methods that create energy do not affect the axes." } else { "" };
     let when = if span.is_some() { " during the first contact" } else { "" };
+    let panes: Vec<Pane> = found.into_iter().enumerate().map(pane).collect();
     Some(Plot {
         group: String::new(),
         name: multiples_name(&column.name),
         caption: format!(
-            "{}{when}, for each method at its finest level.{grey}{}{} All panels have the same axes.",
+            "{}{when}, for each method at its finest level.{grey}{mark}{apart}{}{} All panels have the same axes.",
             capitalised(&what),
             curves::drawn_once(&names),
             measured.words(&column.name)
@@ -311,87 +373,6 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
         across: 3,
         same: true,
         direct: false,
-        panes,
-    })
-}
-
-/// Spectral radius, damping and period error of every scheme, from `theory.csv`; frequencies of the
-/// model, from `frequencies.csv`.
-fn theory(study: &Study) -> Option<Plot> {
-    let rows = |name: &str| -> Option<Vec<csv::StringRecord>> {
-        csv::Reader::from_path(study.directory.join(name)).ok()?.records().collect::<Result<_, _>>().ok()
-    };
-    let table = rows("theory.csv")?;
-    let steps = study.manifest.arms.iter().filter(|a| !a.role.fine).filter_map(|a| step(a, "time.step"));
-    let (short, long) = steps.fold((f64::INFINITY, 0.0_f64), |(a, b), h| (a.min(h), b.max(h)));
-    let mut marks: Vec<(f64, String)> = Vec::new();
-    for row in rows("frequencies.csv").unwrap_or_default() {
-        let (word, Ok(omega)) = (&row[0], row[1].parse::<f64>()) else { continue };
-        // The lowest frequencies are too close for a label each.
-        let symbol = match word {
-            "1" => "ω_{1}Δt",
-            "highest" => "ω_{max}Δt",
-            "spring" => "ω_{c}Δt",
-            _ => "",
-        };
-        marks.push((omega * long, symbol.to_owned()));
-        if short < 0.9 * long {
-            marks.push((omega * short, String::new()));
-        }
-    }
-    let springs = if marks.iter().any(|m| m.1.starts_with("ω_{c}")) {
-        " ω_{c}: the stiffest penalty spring on its node alone, with the other side at rest."
-    } else {
-        ""
-    };
-    let mut names: Vec<&str> = Vec::new();
-    for row in &table {
-        if !names.contains(&&row[0]) {
-            names.push(&row[0]);
-        }
-    }
-    let curve = |column: usize| {
-        let (names, table) = (&names, &table);
-        names.iter().enumerate().map(move |(style, name)| {
-            let of = table.iter().filter(|r| &r[0] == *name);
-            let points = of.filter_map(|r| Some((r[1].parse::<f64>().ok()?, r[column].parse::<f64>().ok()?)));
-            let (x, y) = points.unzip();
-            Curve { label: (*name).to_owned(), style, x, y, ..Curve::default() }
-        })
-    };
-    let mut once: Vec<(String, Vec<String>)> = Vec::new();
-    let mut pane = |title: &str, y_label: &str, column: usize, limits: (f64, f64)| {
-        let found = curves::merged(curve(column).filter(|c| !c.x.is_empty()).collect());
-        let names = found.iter().filter(|(_, others)| !others.is_empty());
-        once.extend(names.map(|(curve, others)| (format!("{} ({title})", curve.label), others.clone())));
-        Pane {
-            title: title.into(),
-            y_label: y_label.into(),
-            curves: found.into_iter().map(|(curve, _)| curve).collect(),
-            marks: marks.clone(),
-            limits: Some(limits),
-            ..Pane::default()
-        }
-    };
-    let panes = vec![
-        pane("spectral radius", "ρ", 2, (0.0, 1.1)),
-        pane("numerical damping ratio", "ξ", 3, (0.0, 1.0)),
-        pane("relative period error", "(T − T_{0})/T_{0}", 4, (-0.1, 1.0)),
-    ];
-    Some(Plot {
-        group: String::new(),
-        name: "theory".into(),
-        caption: format!(
-            "Properties of the schemes for an undamped oscillator of angular frequency ω. Vertical lines: \
-             frequencies of the model at the longest time step (labelled) and at the shortest.{springs} For \
-             a node constrained by a multiplier ωΔt = ∞, where only ρ_{{∞}} matters.{}",
-            curves::drawn_once(&once)
-        ),
-        x_label: "ωΔt".into(),
-        log: [true, false],
-        across: 1,
-        same: false,
-        direct: true,
         panes,
     })
 }

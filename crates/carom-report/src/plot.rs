@@ -12,7 +12,7 @@ mod frame;
 mod legend;
 mod scale;
 
-pub(crate) use curve::{APART, Curve, style};
+pub(crate) use curve::{APART, COLORS, Curve, style};
 
 /// A grey band behind the curves.
 #[derive(Clone, Debug)]
@@ -106,24 +106,14 @@ impl Plot {
         if !self.same {
             return of(pane);
         }
+        // Panes with unsound runs alone do not set the common axis, unless there are no others.
+        let sets = |pane: &&Pane| pane.curves.iter().any(|curve| !curve.apart && !curve.points);
+        let any = self.panes.iter().any(|pane| sets(&pane));
         self.panes
             .iter()
+            .filter(|pane| !any || sets(pane))
             .map(of)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (c, d)| (a.min(c), b.max(d)))
-    }
-
-    /// Gives the coloured curves the styles 0, 1, … by their labels, the same in all panes.
-    pub(crate) fn with_styles(mut self) -> Self {
-        let mut known: Vec<String> = Vec::new();
-        for curve in self.panes.iter_mut().flat_map(|pane| &mut pane.curves).filter(|c| !c.quiet && !c.apart)
-        {
-            let at = known.iter().position(|label| *label == curve.label);
-            curve.style = at.unwrap_or(known.len());
-            if at.is_none() {
-                known.push(curve.label.clone());
-            }
-        }
-        self
     }
 
     /// A curve of each distinct label.
@@ -211,8 +201,42 @@ pub(crate) mod tests {
         let fails = curve("fails", true, 50.0);
         let both = with(&plot, vec![curve("finishes", false, 1.0), fails.clone()]);
         assert_eq!((both.y_range(&both.panes[0]), both.legend().len()), ((0.0, 1.0), 2));
-        assert!(both.svg().contains(&format!("stroke=\"{}\"", APART.0)));
+        assert!(both.svg().contains(&format!("stroke=\"{APART}\"")));
         let alone = with(&plot, vec![fails]);
         assert_eq!(alone.y_range(&alone.panes[0]), (0.0, 50.0));
+    }
+
+    /// An unsound curve that ends inside the axes has a cross; one that goes on above has none.
+    #[test]
+    fn a_cross_is_where_a_run_stops() {
+        let mut plot = plot();
+        (plot.log, plot.direct) = ([false, false], true);
+        let curve = |label: &str, apart: bool, x: &[f64], y: &[f64]| Curve {
+            label: label.into(),
+            x: x.to_vec(),
+            y: y.to_vec(),
+            apart,
+            ..Curve::default()
+        };
+        let sound = curve("sound", false, &[0.0, 10.0], &[0.0, 1.0]);
+        let stops = curve("stops", true, &[0.0, 5.0], &[0.0, 0.5]);
+        let leaves = curve("leaves", true, &[0.0, 5.0, 10.0], &[0.0, 0.5, 99.0]);
+        for (unsound, crosses) in [(stops, 1), (leaves, 0)] {
+            plot.panes[0].curves = vec![sound.clone(), unsound];
+            assert_eq!(plot.svg().matches("l6 6m0 -6l-6 6").count(), crosses);
+        }
+    }
+
+    /// A point outside the axes is an arrowhead at the edge, and nothing lies outside the figure.
+    #[test]
+    fn points_outside_the_axes_are_at_their_edge() {
+        let mut plot = plot();
+        plot.log = [false, false];
+        let apart = Curve { apart: true, x: vec![9.0], y: vec![1e-4], ..plot.panes[0].curves[0].clone() };
+        plot.panes[0].curves.push(apart);
+        let svg = plot.svg();
+        let tips = svg.lines().filter(|line| line.contains(&format!("z\" fill=\"{APART}\"")));
+        let tips: Vec<f64> = tips.filter_map(|line| line.split(['M', ' ']).nth(2)?.parse().ok()).collect();
+        assert!(!tips.is_empty() && tips.iter().all(|x| (0.0..=720.0).contains(x)), "{tips:?} {svg}");
     }
 }

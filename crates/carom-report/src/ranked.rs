@@ -1,8 +1,7 @@
 //! The arms of a study in the order of the ranking, in tables narrow enough for print: errors and
-//! costs; energy and contact force; penetration and errors; errors of stresses and orders. A
-//! quantity that is not available in any arm has no column.
+//! costs; energy and contact force; penetration and errors; errors of stresses. A quantity that is
+//! not available in any arm has no column.
 
-use carom_record::Reason;
 use carom_record::study::compared::is_stress;
 use carom_record::study::design::{Design, Kind};
 use carom_record::study::ranking::{Ranking, error, standing};
@@ -10,15 +9,18 @@ use carom_record::study::reference::{Reference, Standing};
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
-use crate::collected::time_unit;
+use crate::collected::{in_time, time_unit};
 use crate::design::OFF_BUDGET;
-use crate::digits::{five, three};
+use crate::digits::{count, five, three};
 use crate::document::joined;
 use crate::labels::with_unit;
 use crate::text::Label;
 
 /// Largest number of probe stresses that have a column.
 const STRESSES: usize = 3;
+
+/// A column with values in less than this fraction of its cells is none.
+const SPARSE: usize = 4;
 
 /// A heading and the cells below it, in the order of the ranked arms.
 struct Column {
@@ -46,6 +48,11 @@ impl Ranked<'_> {
     /// The values of a metric.
     fn metric(&self, head: &str, metric: &str) -> Column {
         self.column(head, |arm| self.study.rows[arm].value(metric).map(three))
+    }
+
+    /// The values of a metric that counts something.
+    fn count(&self, head: &str, metric: &str) -> Column {
+        self.column(head, |arm| self.study.rows[arm].value(metric).map(count))
     }
 
     /// Relative error of a metric, where the reference establishes a nonzero value.
@@ -119,29 +126,6 @@ impl Ranked<'_> {
             .map(|c| self.error(&format!("Error of {c} peak"), &format!("{c}:peak_mean")))
             .collect()
     }
-
-    /// Observed orders before and after the first contact, of the first displacement for which they
-    /// are known.
-    fn orders(&self) -> [Column; 2] {
-        let orders = &self.study.phase_orders;
-        let named = orders.iter().find(|o| o.across.is_ok() || o.smooth.is_ok()).map(|o| o.column.clone());
-        let of = |arm: usize| {
-            let method = self.study.manifest.arms[arm].method();
-            orders.iter().find(|o| o.method == method && Some(&o.column) == named.as_ref())
-        };
-        let cell = |order: &Result<f64, Reason>| {
-            // Errors that grow with a shorter step have no order.
-            order.as_ref().ok().filter(|p| **p >= 0.0).map(|p| format!("{p:.2}"))
-        };
-        let head = |phase: &str| match &named {
-            Some(column) => format!("Order of {column} {phase} contact"),
-            None => format!("Order {phase} contact"),
-        };
-        [
-            self.column(&head("before"), |arm| cell(&of(arm)?.smooth)),
-            self.column(&head("after"), |arm| cell(&of(arm)?.across)),
-        ]
-    }
 }
 
 /// The tables.
@@ -162,15 +146,16 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
         .design
         .as_ref()
         .filter(|_| study.manifest.arms.iter().any(|a| study.manifest.by_cost(a)));
+    let error = if study.manifest.ensemble.is_some() { "Error, median of the ensemble" } else { "Error" };
     let mut first = vec![
         ranked.column(&with_unit("Δt", time_unit(study)), |arm| {
             step(&study.manifest.arms[arm], "time.step").map(five)
         }),
-        ranked.column("Error", |arm| place(arm).map(|i| errors[i].clone())),
+        ranked.column(error, |arm| place(arm).map(|i| errors[i].clone())),
         ranked.delay(),
-        ranked.metric("Steps", "steps"),
-        ranked.metric("Newton iterations", "newton_iterations"),
-        ranked.metric("Rejected", "rejected_steps"),
+        ranked.count("Steps", "steps"),
+        ranked.count("Newton iterations", "newton_iterations"),
+        ranked.count("Rejected", "rejected_steps"),
         ranked.metric("CPU (s)", "cpu_time"),
         ranked.metric("Wall (s)", "wall_time"),
     ];
@@ -193,22 +178,38 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
         ranked.error("Error of restitution", "restitution"),
         ranked.error("Error of contact duration", "contact_duration"),
     ];
-    let mut fourth = ranked.stresses();
-    fourth.extend(ranked.orders());
+    let fourth = ranked.stresses();
     html! {
         (table("Error and cost", ranking, study, &first))
         (table("Energy and roughness of the contact force", ranking, study, &second))
         (table("Penetration and errors", ranking, study, &third))
-        (table("Errors of stresses and orders of convergence", ranking, study, &fourth))
+        (table("Errors of stresses", ranking, study, &fourth))
     }
 }
 
 fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> Markup {
-    let (shown, missing): (Vec<_>, Vec<_>) =
+    let (known, missing): (Vec<_>, Vec<_>) =
         columns.iter().partition(|c| c.cells.iter().any(Option::is_some));
-    if shown.is_empty() {
+    if known.is_empty() {
         return Markup::default();
     }
+    // A few values are said below the table.
+    let is_sparse =
+        |c: &&Column| SPARSE * c.cells.iter().filter(|cell| cell.is_some()).count() < c.cells.len();
+    let (sparse, shown): (Vec<&Column>, Vec<&Column>) = known.into_iter().partition(is_sparse);
+    let arms: Vec<usize> = ranking.levels.iter().flatten().map(|r| r.arm).collect();
+    let values = |c: &Column| {
+        let each = c.cells.iter().zip(&arms);
+        let each =
+            each.filter_map(|(cell, arm)| Some(format!("{}: {}", study.rows[*arm].name, cell.as_ref()?)));
+        each.collect::<Vec<_>>().join("; ")
+    };
+    let steps = study.manifest.design.as_ref().map_or(&[][..], |design| &design.steps);
+    let level_words = |level: usize| match steps.get(level) {
+        Some(h) => format!("Level {}: Δt = {}", level + 1, in_time(study, *h)),
+        None => format!("Level {}", level + 1),
+    };
+    let chosen = ranking.verdict.as_ref().ok().map(|verdict| verdict.arm);
     // The cells of a column run through all levels.
     let mut rows = 0..;
     html! {
@@ -222,17 +223,22 @@ fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> M
             }
             @for (level, ranked) in ranking.levels.iter().enumerate() {
                 @if ranking.levels.len() > 1 {
-                    tr { td colspan=(shown.len() + 2) { b { "Level " (level + 1) } } }
+                    tr { td colspan=(shown.len() + 2) { b { (Label(&level_words(level))) } } }
                 }
                 @for (r, row) in ranked.iter().zip(rows.by_ref()) {
                     @let arm = &study.manifest.arms[r.arm];
                     tr {
                         td.n { (r.place) }
-                        td.method { (arm.method()) }
+                        td.method {
+                            @if chosen == Some(r.arm) { b { "▸ " (Label(arm.method())) } } @else { (Label(arm.method())) }
+                        }
                         @for column in &shown { td.n { (column.cells[row].as_deref().unwrap_or("–")) } }
                     }
                 }
             }
+        }
+        @for column in &sparse {
+            p.small { (Label(&column.head)) ": " (Label(&values(column))) "; of no other arm." }
         }
         @if !missing.is_empty() {
             p.small { "Not available: " (joined(missing.iter().map(|c| Label(&c.head)), ", ")) "." }

@@ -25,7 +25,7 @@ colors = @COLORS@
 dashes = @DASHES@
 styles = @STYLES@
 own = @OWN@  # colours of curves with one of their own
-apart = @APART@  # dashed grey, without influence on the axes
+apart = @APART@  # grey, without influence on the axes
 unlisted = @UNLISTED@  # not in the legend
 titles = @TITLES@
 y_labels = @Y_LABELS@
@@ -37,7 +37,7 @@ marked, direct, across = @MARKED@, @DIRECT@, @ACROSS@
 
 def style(label):
     if label in apart:
-        return {"color": "@APART_COLOR@", "ls": @APART_DASHES@, "zorder": 1}
+        return {"color": "@APART_COLOR@", "lw": 0.8, "zorder": 1}
     i = styles[label]
     color = own.get(label, colors[i % 8])
     if label in points:
@@ -59,7 +59,7 @@ for k, curves in enumerate(panes.values()):
     for label in sorted(curves, key=lambda label: label in apart):
         if label in apart and not apart.issuperset(curves):
             ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())
-        ax.plot(*curves[label], lw=1.2, label=None if label in unlisted else label, **style(label))
+        ax.plot(*curves[label], label=None if label in unlisted else label, **{"lw": 1.2, **style(label)})
     if fronts[k]:
         ax.plot(*zip(*fronts[k]), color="#222222", alpha=0.18, lw=5, zorder=0)
     for x, word in marks[k]:
@@ -138,8 +138,7 @@ impl Plot {
             ("STYLES", braced(styles)),
             ("OWN", braced(own.collect())),
             ("APART", set(&|c| c.apart)),
-            ("APART_COLOR", APART.0.to_owned()),
-            ("APART_DASHES", self::dashes(APART.1)),
+            ("APART_COLOR", APART.to_owned()),
             ("UNLISTED", set(&|c| !listed.contains(&c.label.as_str()))),
             ("TITLES", list(&|p| string(&plain(&p.title)))),
             ("Y_LABELS", list(&|p| string(&plain(&p.y_label)))),

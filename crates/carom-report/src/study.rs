@@ -3,20 +3,21 @@
 
 use std::path::Path;
 
-use carom_record::metrics;
-use carom_record::study::{Study, StudyManifest};
+use carom_record::study::{Row, Study, StudyManifest};
+use carom_record::{Status, metrics};
 
 use crate::collected::{Column, Measured, Origin, collect, named};
 use crate::curves::Keys;
-use crate::labels::{capitalised, file_name, with_unit};
+use crate::labels::{capitalised, file_name, listed, with_unit};
 use crate::plot::{Curve, Pane, Plot};
 use crate::publish::{ReportError, ReportSummary, publish, write};
+use crate::systems::Systems;
 use crate::{curves, laboratory, setup, study_page, trend};
 
-/// Curves in one figure; more arms need more figures.
-const MOST: usize = 8;
-/// Figures of one column that are shown; more of them are folded away.
-const FEW: usize = 2;
+/// Figures of one column that are shown; more of them are folded away, and with a goal, for which
+/// there are figures of all methods, more than `FEW_MORE`.
+const FEW: usize = 3;
+const FEW_MORE: usize = 2;
 
 /// Writes the figures, tables and page of a study directory, from the records alone. Arms are read
 /// one by one to limit the memory that long histories need.
@@ -28,29 +29,26 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     let mut time = String::new();
     let mut origins = Vec::new();
     let mut picture = None;
-    let mut measured = Measured(StudyManifest::read(directory)?.overlays);
-    let study = Study::open(directory, &mut |arm, run| {
-        run.history.unit("time").clone_into(&mut time);
+    let manifest = StudyManifest::read(directory)?;
+    let mut systems = Systems::of(&manifest);
+    let mut measured = Measured(manifest.overlays);
+    let mut study = Study::open(directory, &mut |arm, run| {
         picture = picture.take().or_else(|| setup::figure(run, &run.field(run.fields.first()?).ok()?));
-        measured.add(metrics::overlays(run));
-        collect(&mut columns, &measured, arm, run);
+        if systems.is_own(arm) {
+            run.history.unit("time").clone_into(&mut time);
+            measured.add(metrics::overlays(run));
+        }
+        collect(&mut columns, &measured, &mut systems, arm, run);
         origins.push(Origin::of(arm, run));
     })?;
     study.write_tables()?;
+    systems.convert(&mut study);
     let mut plots = laboratory::plots(&study, &columns, &measured, &time);
-    // What small multiples show already is not drawn again, unless they leave something out.
-    let drawn = |column: &&Column| laboratory::shows(&plots, &column.name);
-    let overlaid: Vec<Plot> = columns
-        .iter()
-        .flat_map(|column| {
-            overlays(column, &study, &measured, &time)
-                .into_iter()
-                .filter(move |plot| plot.direct || !drawn(&column))
-        })
-        .collect();
-    plots.extend(overlaid);
+    plots.extend(columns.iter().flat_map(|column| overlays(column, &study, &measured, &time)));
     plots.extend(trend::plots(&study));
-    let page = study_page::page(&study, picture.as_deref(), &plots, &origins);
+    // Figures that are folded away come last, so that those shown have successive numbers.
+    plots.sort_by_key(|plot| !plot.group.is_empty());
+    let page = study_page::page(&study, picture.as_deref(), &plots, &origins, &systems);
     let drawn = plots.iter().map(|p| (p.name.clone(), p.svg()));
     let all: Vec<(String, String)> =
         picture.into_iter().map(|svg| ("setup".to_owned(), svg)).chain(drawn).collect();
@@ -74,19 +72,8 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
 /// Curves that hide each other have panes of their own.
 fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> Vec<Plot> {
     let (label, what) = named(&column.name);
-    let arms = &study.manifest.arms;
-    // Arms of the same case are grouped.
-    let groups: Vec<Vec<usize>> = arms
-        .iter()
-        .enumerate()
-        .collect::<Vec<_>>()
-        .chunk_by(|a, b| a.1.case_path == b.1.case_path)
-        .flat_map(|same| {
-            // Nine arms are five and four, not eight and one.
-            let each = same.len().div_ceil(same.len().div_ceil(MOST));
-            same.chunks(each).map(|few| few.iter().map(|(i, _)| *i).collect())
-        })
-        .collect();
+    let groups = groups(study);
+    let few = if study.manifest.goal.is_some() { FEW_MORE } else { FEW };
     let keys = Keys::of(study.rows.iter().map(|row| row.name.as_str()));
     let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
     let figure = |group: usize| {
@@ -94,7 +81,7 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         let mine = column.curves.iter().filter(|(arm, ..)| members.contains(arm));
         let curves = mine.map(|(arm, x, y)| Curve {
             label: keys.label(&study.rows[*arm].name),
-            style: *arm % MOST,
+            style: laboratory::style_of(study, *arm),
             x: x.clone(),
             y: y.clone(),
             apart: study.rows[*arm].is_unsound(),
@@ -104,16 +91,14 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         let found = curves::merged(curves.collect());
         let names: Vec<_> =
             found.iter().map(|(curve, others)| (curve.label.clone(), others.clone())).collect();
-        let curves: Vec<Curve> = found.into_iter().map(|(curve, _)| curve).collect();
+        let curves: Vec<Curve> =
+            found.into_iter().map(|(curve, others)| curves::with(curve, &others)).collect();
         if curves.is_empty() {
             return None;
         }
         let file = file_name(&column.name);
-        let (name, part) = match (groups.len(), &members[..]) {
-            (2.., [first, .., last]) => {
-                (format!("{file}-{}", group + 1), format!(", arms {} to {}", first + 1, last + 1))
-            }
-            (2.., [only]) => (format!("{file}-{}", group + 1), format!(", arm {}", only + 1)),
+        let (name, part) = match groups.len() {
+            2.. => (format!("{file}-{}", group + 1), numbers(members)),
             _ => (file, String::new()),
         };
         let end = curves.iter().filter_map(|curve| curve.x.last()).copied().fold(0.0, f64::max);
@@ -122,14 +107,7 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         // A rough curve of a failed arm would cover the others.
         let (aside, curves): (Vec<Curve>, Vec<Curve>) =
             curves.into_iter().partition(|curve| curve.apart && curves::is_rough(curve));
-        let apart = match (curves.iter().any(|curve| curve.apart), aside.is_empty()) {
-            (false, true) => String::new(),
-            (_, none_is_rough) => format!(
-                " Dashed grey: arms that failed, up to the cross where they stopped, and arms that created \
-                 more energy than the default guard allows. They do not affect the axes{}.",
-                if none_is_rough { "" } else { ", and rough ones have panes of their own" }
-            ),
-        };
+        let apart = apart_words(study, members, !aside.is_empty());
         let rough = curves.iter().filter(|curve| curves::is_rough(curve)).count() > 1;
         let (panes, across, enlarged) = if rough {
             (
@@ -167,7 +145,7 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         };
         let panes: Vec<Pane> = panes.into_iter().chain(aside).map(with_points).collect();
         Some(Plot {
-            group: if groups.len() > FEW { capitalised(&what) } else { String::new() },
+            group: if groups.len() > few { capitalised(&what) } else { String::new() },
             name,
             caption: format!(
                 "{}{enlarged}{part}.{}{apart}{}",
@@ -186,14 +164,76 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
     (0..groups.len()).filter_map(figure).collect()
 }
 
+/// Arms of the same case and level, by which a colour means a method, in figures that are not too
+/// full; those of the reference are by themselves.
+fn groups(study: &Study) -> Vec<Vec<usize>> {
+    let arms = &study.manifest.arms;
+    let mut kinds: Vec<Vec<usize>> = Vec::new();
+    for i in 0..arms.len() {
+        let kind = |arm: usize| (&arms[arm].case_path, arms[arm].role.fine, arms[arm].role.level);
+        match kinds.iter_mut().find(|known| kind(known[0]) == kind(i)) {
+            Some(known) => known.push(i),
+            None => kinds.push(vec![i]),
+        }
+    }
+    let few = |same: Vec<usize>| {
+        same.chunks(laboratory::each(same.len())).map(<[usize]>::to_vec).collect::<Vec<_>>()
+    };
+    kinds.into_iter().flat_map(few).collect()
+}
+
+/// What is said of grey curves, for arms that failed or created energy.
+fn apart_words(study: &Study, members: &[usize], aside: bool) -> String {
+    let unsound = || members.iter().map(|arm| &study.rows[*arm]).filter(|row| row.is_unsound());
+    let fails = |row: &&Row| row.status == Some(Status::Failed);
+    let (failed, created) = (unsound().any(|row| fails(&row)), unsound().any(|row| !fails(&row)));
+    let which = match (failed, created) {
+        (false, false) => return String::new(),
+        (true, false) => "arms that failed (cross: where they stopped)",
+        (false, true) => "arms that created more energy than the default guard allows",
+        (true, true) => {
+            "arms that failed (cross: where they stopped) or created more energy than the default guard allows"
+        }
+    };
+    let aside = if aside { "; rough ones have panes of their own" } else { "" };
+    format!(" Grey: {which}. They do not affect the axes, and an arrowhead is where they leave them{aside}.")
+}
+
+/// What distinguishes a group: the numbers of its arms.
+fn numbers(members: &[usize]) -> String {
+    let every = members.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap_or(1);
+    match members {
+        [only] => format!(", arm {}", only + 1),
+        [first, .., last] if every == 1 => format!(", arms {} to {}", first + 1, last + 1),
+        _ => {
+            let all: Vec<String> = members.iter().map(|arm| (arm + 1).to_string()).collect();
+            format!(", arms {}", listed(&all.iter().map(String::as_str).collect::<Vec<_>>()))
+        }
+    }
+}
+
 /// Panes at the same scale with a curve each, its label as the title.
 fn multiples(curves: Vec<Curve>, y_label: &str, span: Option<(f64, f64)>) -> Vec<Pane> {
     let pane = |(k, curve): (usize, Curve)| Pane {
         title: curve.label.clone(),
         y_label: if k % 3 == 0 { y_label.to_owned() } else { String::new() },
-        curves: vec![Curve { unlisted: true, style: 1, ..curve }],
+        curves: vec![Curve { unlisted: true, ..curve }],
         span,
         ..Pane::default()
     };
     curves.into_iter().enumerate().map(pane).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::numbers;
+    use crate::laboratory::each;
+
+    #[test]
+    fn arms_are_split_evenly() {
+        let sizes = [1, 8, 9, 10, 11, 12, 15, 19].map(|arms| (arms, each(arms)));
+        assert_eq!(sizes, [(1, 1), (8, 8), (9, 3), (10, 5), (11, 6), (12, 6), (15, 5), (19, 7)]);
+        assert_eq!(numbers(&[3, 4, 5]), ", arms 4 to 6");
+        assert_eq!((numbers(&[0, 2, 4]), numbers(&[7])), (", arms 1, 3 and 5".into(), ", arm 8".into()));
+    }
 }

@@ -1,16 +1,21 @@
 //! `study.html`: recommendation, arms, ranking, figures and metrics of a study as a single
 //! self-contained page.
 
-use carom_record::study::{Row, Study};
+use carom_record::metrics::Metric;
+use carom_record::study::{Arm, Row, Study};
 use carom_record::{Status, metrics};
 use maud::{Markup, PreEscaped, Render, html};
 
 use crate::collected::{Origin, time_unit};
 use crate::digits::five;
 use crate::document::{document, figure, file, joined, minus, or_dash};
+use crate::laboratory::style_of;
 use crate::plot::{APART, Plot, style};
+use crate::systems::Systems;
 use crate::text::{Label, Prose, typeset};
-use crate::{by_arm, claims, convergence, design, ensemble, integrity, trend, verdict};
+use crate::{
+    by_arm, claims, convergence, design, ensemble, integrity, settings, study_warnings, trend, verdict,
+};
 
 /// Largest number of values of a key that are listed one by one.
 const FEW: usize = 4;
@@ -19,7 +24,13 @@ const FEW: usize = 4;
 const MANY: usize = 12;
 
 /// The page.
-pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins: &[Origin]) -> String {
+pub(crate) fn page(
+    study: &Study,
+    picture: Option<&str>,
+    plots: &[Plot],
+    origins: &[Origin],
+    systems: &Systems,
+) -> String {
     let failed = study.rows.iter().filter(|row| row.status == Some(Status::Failed)).count();
     let unsound = study.rows.iter().filter(|row| row.is_unsound()).count() - failed;
     let expectations = || study.rows.iter().flat_map(|row| &row.expectations).chain(&study.expectations);
@@ -32,7 +43,7 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
             ("failed", format!("{finished} of {all} arms finished; {} {rest}", all - finished))
         }
         Status::Finished if unsound > 0 => {
-            ("failed", format!("finished; {unsound} of {all} arms created more than 2 % of the energy"))
+            ("failed", format!("finished; in {unsound} of {all} arms the energy rose by more than 2 %"))
         }
         Status::Finished if missed > 0 => {
             ("failed", format!("finished; {missed} of {expected} expectations missed"))
@@ -49,11 +60,12 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         (arms(study))
         (verdict::rankings(study))
         (ensemble::section(study))
-        (self::expectations(study))
-        (warnings(study))
+        (self::expectations(study, systems))
+        (study_warnings::section(study, origins))
         h2 { "Figures" }
+        @if let Some(words) = systems.words() { p { (Prose(&words)) } }
         (figures(plots))
-        (metrics(study))
+        (metrics(study, systems))
         (trend::section(study))
         (convergence::section(study))
         (verdict::phases(study))
@@ -85,43 +97,93 @@ fn figures(plots: &[Plot]) -> Markup {
 
 /// The drawing of the case, the values that differ between arms, and the design.
 fn setup(study: &Study, picture: Option<&str>) -> Markup {
-    let mut varied: Vec<(&str, Vec<&str>)> = Vec::new();
-    let arms = || study.manifest.arms.iter().filter(|a| !a.role.fine);
-    let is_everywhere = |set: &String| arms().all(|arm| arm.sets.contains(set));
-    let sets = arms().flat_map(|arm| &arm.sets).filter(|set| !is_everywhere(set));
-    for (key, value) in sets.filter_map(|set| set.split_once('=')) {
-        let (key, value) = (key.trim(), value.trim());
-        match varied.iter_mut().find(|(k, _)| *k == key) {
-            Some((_, values)) if values.contains(&value) => {}
-            Some((_, values)) => values.push(value),
-            None => varied.push((key, vec![value])),
-        }
-    }
+    let (varied, shared) = (settings::varied(study), settings::shared(study));
+    let title = study.manifest.arms.first().and_then(|arm| arm.case.get("title")?.as_str());
+    let title = title.filter(|title| !title.is_empty());
     html! {
         h2 { "Setup" }
         @if let Some(svg) = picture {
             figure {
                 div.drawing { (PreEscaped(svg)) }
                 figcaption {
-                    "Initial configuration of the first arm, case "
-                    code { (study.manifest.source.case_path) } ". "
+                    "Initial configuration of the first arm"
+                    @if let Some(title) = title { ": " (Label(title)) }
+                    " (case " code { (study.manifest.source.case_path) } "). "
                     span.small { "(" (file("figures/setup.svg")) ")" }
                 }
             }
         }
+        @if picture.is_none() {
+            p { "Case: " code { (study.manifest.source.case_path) } ". No sketch: the arms recorded no fields." }
+        }
+        @if !shared.is_empty() { p { "Set in all arms: " (codes(&shared, ", ")) "." } }
         @if !varied.is_empty() {
-            p { "Values that differ between arms; an arm that does not set one has that of the case:" }
-            ul {
+            p { "Parameters that differ between arms (otherwise the value of the case file applies):" }
+            @if has_matrix(study) { (matrix(study, &varied)) } @else { (parameters(study, &varied)) }
+        }
+        (design::paragraphs(study))
+    }
+}
+
+/// Whether parameters are listed by arm, and not by value.
+fn has_matrix(study: &Study) -> bool {
+    study.rows.len() <= FEW
+}
+
+/// A table with a row for every parameter and a column for every arm.
+fn matrix(study: &Study, varied: &[(&str, Vec<Option<&str>>)]) -> Markup {
+    let of_case = |arm: usize, key: &str| settings::of_case(&study.manifest.arms[arm], key);
+    html! {
+        div.scroll {
+            table.metrics {
+                thead { tr { th { "Parameter" } @for row in &study.rows { th { (row.name) } } } }
                 @for (key, values) in varied {
-                    li {
-                        code { (key) } ": "
-                        @if values.len() > FEW { (values.len()) " values" } @else { (codes(&values, ", ")) }
+                    tr {
+                        td { code { (key) } }
+                        @for (arm, value) in values.iter().enumerate() {
+                            td {
+                                @match (value, of_case(arm, key)) {
+                                    (Some(value), _) => code { (settings::brief(value)) },
+                                    (None, Some(value)) => code { (settings::brief(&value)) },
+                                    (None, None) => span.small { "case file" },
+                                }
+                            }
+                        }
                     }
                 }
             }
         }
-        (design::paragraphs(study))
     }
+}
+
+/// A list of parameters, each with its distinct values and that of the case.
+fn parameters(study: &Study, varied: &[(&str, Vec<Option<&str>>)]) -> Markup {
+    let arms = || study.manifest.arms.iter().enumerate().filter(|(_, arm)| !arm.role.fine);
+    html! {
+        ul {
+            @for (key, values) in varied {
+                @let unset = arms().find(|(i, _)| values[*i].is_none());
+                @let base = unset.and_then(|(_, arm)| settings::of_case(arm, key));
+                @let distinct = distinct(values);
+                li {
+                    code { (key) } ": "
+                    @if distinct.len() > FEW { (distinct.len()) " values" } @else { (codes(&distinct, ", ")) }
+                    @if let Some(base) = base { "; in the case file " code { (base) } }
+                }
+            }
+        }
+    }
+}
+
+/// The values that are set, each once.
+fn distinct(values: &[Option<&str>]) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for value in values.iter().flatten().map(|value| settings::brief(value)) {
+        if !found.contains(&value) {
+            found.push(value);
+        }
+    }
+    found
 }
 
 /// Items set as code, with a separator between them.
@@ -131,30 +193,41 @@ fn codes(items: &[impl Render], separator: impl Render) -> Markup {
 
 fn arms(study: &Study) -> Markup {
     let m = &study.manifest;
+    let own = |arm: &Arm| {
+        let own = arm.sets.iter().filter(|set| !settings::is_shared(study, set));
+        own.map(|set| settings::brief(set)).collect::<Vec<_>>()
+    };
+    // What the table of parameters lists is not said twice.
+    let listed = m.arms.iter().any(|arm| arm.case_path.is_some())
+        || !has_matrix(study) && m.arms.iter().any(|arm| !own(arm).is_empty());
     html! {
         h2 { "Arms" }
         // A long list would push the results down the page.
         details open[study.rows.len() <= MANY] {
-            summary { (study.rows.len()) " arms (variants of the case) and their settings" }
+            summary { (study.rows.len()) " arms (variants of the case)" }
             table {
                 thead {
                     tr {
-                        th.n { "No." } th { "Line" } th { "Arm" } th { "Settings" } th.n { "Steps" }
-                        th { "Status" }
+                        th.n { "No." } th { "Line" } th { "Arm" }
+                        @if listed { th { "Settings" } }
+                        th.n { "Steps" } th { "Status" }
                     }
                 }
                 @for (i, (row, arm)) in study.rows.iter().zip(&m.arms).enumerate() {
                     tr {
                         td.n { (i + 1) }
-                        td { (line(i, row.is_unsound())) }
+                        td { (line(style_of(study, i), row.is_unsound())) }
                         td {
                             a href={ (arm.directory) "/report.html" } { (row.name) }
                             @if m.reference.as_ref() == Some(&row.name) { " (reference)" }
                         }
-                        td {
-                            @if let Some(path) = &arm.case_path { "case " code { (path) } }
-                            @if arm.case_path.is_some() && !arm.sets.is_empty() { br; }
-                            (codes(&arm.sets, html! { br; }))
+                        @if listed {
+                            @let sets = own(arm);
+                            td {
+                                @if let Some(path) = &arm.case_path { "case " code { (path) } }
+                                @if arm.case_path.is_some() && !sets.is_empty() { br; }
+                                (codes(&sets, html! { br; }))
+                            }
                         }
                         td.n { (arm.steps) }
                         (ended(study, i, row))
@@ -168,6 +241,7 @@ fn arms(study: &Study) -> Markup {
 /// How an arm ended, and why.
 fn ended(study: &Study, arm: usize, row: &Row) -> Markup {
     let (class, word) = match row.status {
+        Some(Status::Finished) if row.is_unsound() => ("undecided", "finished, created energy"),
         Some(Status::Finished) => ("pass", "finished"),
         Some(Status::Failed) => ("miss", "failed"),
         Some(Status::Running | Status::Stopped) => ("undecided", "not finished"),
@@ -184,12 +258,10 @@ fn ended(study: &Study, arm: usize, row: &Row) -> Markup {
 }
 
 /// The line of an arm in the figures.
-fn line(arm: usize, apart: bool) -> Markup {
-    let (color, dashes) = if apart { (APART.0, APART.1) } else { (style(arm % 8).0, "") };
+fn line(number: usize, apart: bool) -> Markup {
+    let (color, width) = if apart { (APART, "1") } else { (style(number).0, "2") };
     html! {
-        svg.line width="44" height="10" {
-            path d="M1 5h42" stroke=(color) stroke-width="2" stroke-dasharray=(dashes) {}
-        }
+        svg.line width="44" height="10" { path d="M1 5h42" stroke=(color) stroke-width=(width) {} }
     }
 }
 
@@ -213,11 +285,17 @@ fn unit_of_question(study: &Study, what: &str) -> String {
     .unwrap_or_default()
 }
 
-fn expectations(study: &Study) -> Markup {
+fn expectations(study: &Study, systems: &Systems) -> Markup {
     let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (row.name.as_str(), e)));
     let all: Vec<_> = arms.chain(study.expectations.iter().map(|e| ("", e))).collect();
     let met = all.iter().filter(|(_, e)| e.pass).count();
     let table = by_arm(study);
+    // Those of arms are in the units of their cases.
+    let unit = |what: &str| {
+        if systems.is_one() { unit_of_question(study, what) } else { String::new() }
+    };
+    let (of_arms, units) =
+        (all.iter().any(|(arm, _)| !arm.is_empty()), all.iter().any(|(_, e)| !unit(&e.what).is_empty()));
     html! {
         @if !all.is_empty() {
             h2 { "Expectations" }
@@ -228,8 +306,11 @@ fn expectations(study: &Study) -> Markup {
                 table {
                     thead {
                         tr {
-                            th { "Quantity" } th { "Arm" } th { "Expected" } th.n { "Result" } th { "Unit" } th {}
-                            th { "Source" }
+                            th { "Quantity" }
+                            @if of_arms { th { "Arm" } }
+                            th { "Expected" } th.n { "Result" }
+                            @if units { th { "Unit" } }
+                            th { "Met" } th { "Source" }
                         }
                     }
                     @for (arm, e) in all {
@@ -238,42 +319,15 @@ fn expectations(study: &Study) -> Markup {
                                 code { (e.what) }
                                 @if let Some(why) = &e.why { br; span.small { (why) } }
                             }
-                            td { (arm) }
+                            @if of_arms { td { (arm) } }
                             td { (minus(&e.expected)) }
                             td.n { (or_dash(e.got, five)) }
-                            td.unit { (Label(&unit_of_question(study, &e.what))) }
-                            @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
+                            @if units { td.unit { (Label(&unit(&e.what))) } }
+                            @if e.pass { td.pass { "yes" } } @else { td.miss { "missed" } }
                             td { @if let Some(source) = &e.source { (source) } }
                         }
                     }
                 }
-            }
-        }
-    }
-}
-
-/// The warnings of all arms; one that several arms share is listed once.
-fn warnings(study: &Study) -> Markup {
-    let shared = study.warnings();
-    html! {
-        @if !shared.is_empty() {
-            h2 { "Warnings" }
-            table {
-                thead { tr { th { "Warning" } th { "What was found, and why it matters" } th { "Try" } th { "Arms" } } }
-                @for (warning, arms) in &shared {
-                    tr {
-                        td { code { (warning.id) } }
-                        td { (typeset(&warning.place)) ": " (typeset(&warning.what)) "; " (typeset(&warning.why)) "." }
-                        td { (typeset(&warning.advice)) }
-                        td {
-                            @if arms.len() == study.rows.len() && arms.len() > 1 { "all" }
-                            @else { (joined(arms.iter().map(|arm| arm + 1), ", ")) }
-                        }
-                    }
-                }
-            }
-            @if shared.iter().any(|(_, arms)| arms.len() < study.rows.len() || arms.len() == 1) {
-                p.small { "Arms by their number." }
             }
         }
     }
@@ -317,7 +371,7 @@ fn by_arm(study: &Study) -> Option<Markup> {
     })
 }
 
-fn metrics(study: &Study) -> Markup {
+fn metrics(study: &Study, systems: &Systems) -> Markup {
     let mut shown = study.metrics();
     shown.retain(|m| study.rows.iter().any(|r| r.value(&m.name).is_some()));
     let groups = metrics::TITLES.map(|title| {
@@ -332,16 +386,32 @@ fn metrics(study: &Study) -> Markup {
                     html! { (or_dash(study.rows[arm].value(&metric.name), five)) }
                 }))
                 table {
-                    @for metric in members { tr { td { code { (metric.name) } } td { (metric.definition) } } }
+                    @for (names, definition) in definitions(members) {
+                        tr { td { (codes(&names, ", ")) } td { (definition) } }
+                    }
                 }
             }
         }
         p.small {
-            "Column headings are the numbers of the arms. Every value is computed from the directory of its \
+            "Column headings are the numbers of the arms. "
+            @if !systems.is_one() { "Values are in the units of the first arm. " }
+            "Every value is computed from the directory of its \
              arm alone. Data in full precision: " (file("study.csv")) ", and with measured times \
              " (file("study_tidy.csv")) "."
         }
     }
+}
+
+/// Definitions, each with all its metrics: those of columns have the same for every probe.
+fn definitions<'a>(metrics: &[&'a Metric]) -> Vec<(Vec<&'a str>, &'static str)> {
+    let mut found: Vec<(Vec<&str>, &str)> = Vec::new();
+    for metric in metrics {
+        match found.iter_mut().find(|(_, definition)| *definition == metric.definition) {
+            Some((names, _)) => names.push(&metric.name),
+            None => found.push((vec![&metric.name], metric.definition)),
+        }
+    }
+    found
 }
 
 /// A bibliography entry with the version of the program and the hash of the input.
@@ -371,12 +441,17 @@ const FILES: [&str; 9] = [
 
 fn reproduce(study: &Study) -> Markup {
     let m = &study.manifest;
+    let beside = m.source.case_path.rsplit('/').next().unwrap_or_default();
     let there = FILES.iter().filter(|name| study.directory.join(name).is_file());
     html! {
         h2 { "How to reproduce" }
         p {
             (Prose("Save the study file below as `study.toml` and the case file as "))
-            code { (m.source.case_path) } " relative to it, and run Carom " (m.version) ":"
+            code { (m.source.case_path) } " relative to it"
+            @if m.source.case_path.contains('/') {
+                " (or beside it, with " code { "case = \"" (beside) "\"" } " in the study file)"
+            }
+            ", and run Carom " (m.version) ":"
         }
         pre { "carom study study.toml" }
         p.small {

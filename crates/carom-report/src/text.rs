@@ -83,8 +83,10 @@ pub(crate) struct Label<'a>(pub(crate) &'a str);
 
 impl Render for Label<'_> {
     fn render(&self) -> Markup {
+        // `ρ∞ = 0.1` stays in one line.
+        let together = self.0.replace(" = ", "\u{a0}=\u{a0}");
         html! {
-            @for (level, text) in pieces(self.0) {
+            @for (level, text) in pieces(&together) {
                 @match level {
                     Level::Base => (text),
                     Level::Sub => sub { (text) },
@@ -178,7 +180,9 @@ pub(crate) fn broken(label: &str, most: f64) -> Vec<String> {
     while let Some(c) = after.next() {
         piece.push(c);
         depth += i32::from(c == '{') - i32::from(c == '}');
-        let ends = depth == 0 && matches!(c, ' ' | ',' | '+' | '-' | '*' | '/' | '(');
+        // `ρ∞ = 0.1` stays together.
+        let equals = c == ' ' && (piece.ends_with("= ") || after.peek() == Some(&'='));
+        let ends = depth == 0 && !equals && matches!(c, ' ' | ',' | '+' | '-' | '*' | '/' | '(');
         if !ends && after.peek().is_some() {
             continue;
         }
@@ -230,6 +234,7 @@ mod tests {
     #[test]
     fn long_labels_are_broken() {
         assert_eq!(broken("u_{x} = 0", 9.0), ["u_{x} = 0"]);
+        assert_eq!(broken("generalised α, ρ∞ = 0.1", 9.0), ["generalised α,", "ρ∞ = 0.1"]);
         let formula = "floor.top: u_{y} = 0.5*(1-cos(2*pi*t/0.25))*exp(-t/0.125)*X^2";
         let lines = broken(formula, 12.0);
         assert!(lines.len() > 2 && lines.iter().all(|line| width(line) <= 12.0), "{lines:?}");

@@ -12,10 +12,14 @@ use crate::digits::three;
 use crate::fit::Fit;
 use crate::labels::{file_name, with_unit};
 use crate::plot::{Band, Curve, Pane, Plot};
+use crate::settings::own_settings;
 use crate::text::Label;
 
 /// Fewest values of a key.
 const LEAST: usize = 3;
+/// Fewest values from which a line is fitted: through three, the interval of its slope is twelve
+/// times the standard error.
+const FITTED: usize = 4;
 /// Panes of a figure.
 const MOST: usize = 9;
 /// Factor between the largest and the smallest number from which logarithms are used.
@@ -56,17 +60,33 @@ fn points(study: &Study, group: &Refinement, metric: &str) -> (Vec<f64>, Vec<f64
     group.arms.iter().zip(&group.steps).filter_map(value).unzip()
 }
 
+/// Whether values differ by round-off only.
+fn is_constant(values: &[f64]) -> bool {
+    let (low, high) = crate::axis::range(values);
+    high - low <= 1e-9 * high.abs().max(low.abs())
+}
+
+/// Whether a metric is an instant or a duration, which is a whole number of steps: against the step
+/// it shows nothing else.
+fn is_whole_steps(study: &Study, key: &str, metric: &Metric) -> bool {
+    key == "time.step" && !metric.unit.is_empty() && metric.unit == time_unit(study)
+}
+
 /// Whether a metric is fitted as a power of the key: if both span the factor in every group that
 /// can be fitted.
 fn power(study: &Study, groups: &[Refinement], metric: &str) -> bool {
     let of = |group| points(study, group, metric);
-    groups.iter().map(of).filter(|(x, _)| x.len() >= LEAST).all(|(x, y)| spans(&x) && spans(&y))
+    groups.iter().map(of).filter(|(x, _)| x.len() >= FITTED).all(|(x, y)| spans(&x) && spans(&y))
 }
 
 fn trend(study: &Study, group: &Refinement, metric: &str, power: bool) -> Trend {
     let (x, y) = points(study, group, metric);
     let log = |v: &[f64]| v.iter().map(|v| v.ln()).collect::<Vec<_>>();
-    let fit = if power { Fit::of(&log(&x), &log(&y)) } else { Fit::of(&x, &y) };
+    let fit = match () {
+        () if x.len() < FITTED || is_constant(&y) => None,
+        () if power => Fit::of(&log(&x), &log(&y)),
+        () => Fit::of(&x, &y),
+    };
     Trend { x, y, fit, power }
 }
 
@@ -110,17 +130,17 @@ impl Trend {
 }
 
 /// Metrics that vary, those of [`FIRST`] first.
-fn metrics<'a>(study: &'a Study, groups: &[Refinement]) -> Vec<&'a Metric> {
+fn metrics<'a>(study: &'a Study, key: &str, groups: &[Refinement]) -> Vec<&'a Metric> {
     let known = |name: &str| {
         let values: Vec<f64> = groups.iter().flat_map(|group| points(study, group, name).1).collect();
-        let (low, high) = crate::axis::range(&values);
-        values.len() >= LEAST && high - low > 1e-9 * high.abs().max(low.abs())
+        values.len() >= LEAST && !is_constant(&values)
     };
     let rank = |name: &str| {
         let base = name.split_once(':').map_or(name, |(base, _)| base);
         FIRST.iter().position(|first| *first == base).unwrap_or(FIRST.len())
     };
-    let mut found: Vec<_> = study.metrics().into_iter().filter(|m| !m.is_work() && known(&m.name)).collect();
+    let is_shown = |m: &&Metric| !m.is_work() && known(&m.name) && !is_whole_steps(study, key, m);
+    let mut found: Vec<_> = study.metrics().into_iter().filter(is_shown).collect();
     found.sort_by_key(|m| rank(&m.name));
     found
 }
@@ -137,6 +157,7 @@ fn axis(study: &Study, key: &str) -> String {
         "cells" => "1/cells".to_owned(),
         "refine" => "1/refine".to_owned(),
         _ if TIMES.contains(&key) => with_unit(last, time_unit(study)),
+        "mu" => "μ".to_owned(),
         "rho_inf" => "ρ_{∞}".to_owned(),
         _ => last.to_owned(),
     }
@@ -150,12 +171,13 @@ pub(crate) fn plots(study: &Study) -> Vec<Plot> {
 fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
     let all: Vec<f64> = groups.iter().flat_map(|group| group.steps.iter().copied()).collect();
     let (wide, single) = (spans(&all), groups.len() == 1);
-    let labels = labels(groups);
+    let labels = labels(study, groups);
     let pane = |metric: &&Metric| {
         let power = power(study, groups, &metric.name);
         // The title differs between panes only by numbers.
         let name = metric.name.clone().into_owned();
-        let mut pane = Pane { y_label: with_unit(&name, &metric.unit), name, ..Pane::default() };
+        let words = name.replace('_', " ");
+        let mut pane = Pane { y_label: with_unit(&words, &metric.unit), name, ..Pane::default() };
         for (style, group) in groups.iter().enumerate() {
             let label = if single { "arms".to_owned() } else { labels[style].clone() };
             let trend = trend(study, group, &metric.name, power);
@@ -181,22 +203,37 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
         }
         pane
     };
-    let metrics = metrics(study, groups);
+    let metrics = metrics(study, key, groups);
     let panes: Vec<Pane> = metrics.iter().take(MOST).map(pane).collect();
     let which = if metrics.len() > MOST {
-        format!("The first {MOST} of {} metrics that vary,", metrics.len())
+        format!("{MOST} of the {} metrics that vary", metrics.len())
     } else {
         "Metrics".to_owned()
+    };
+    let arms: usize = groups.iter().map(|group| group.arms.len()).sum();
+    let of = match study.rows.len() {
+        all if all > arms => format!(", of the {arms} of {all} arms that differ in nothing else"),
+        _ => String::new(),
+    };
+    let fitted = panes.iter().flat_map(|pane| &pane.curves).any(|curve| !curve.marked);
+    let lines = match (fitted, wide) {
+        (false, _) => " No line is fitted to fewer than four values.",
+        (true, false) => " Lines: least squares.",
+        (true, true) => {
+            " Lines: least squares, of the logarithms of both where the metric also spans a factor of three."
+        }
     };
     (!panes.is_empty()).then(|| Plot {
         group: String::new(),
         name: format!("trend-{}", file_name(key)),
         caption: format!(
-            "{which} against `{key}`{}. Lines: least squares{}.{} Arms that failed or created energy are left \
-             out.",
-            if wide { " on a logarithmic axis, where straight lines look curved" } else { "" },
-            if wide { ", of the logarithms of both where the metric also spans a factor of three" } else { "" },
-            if single { " Grey: 95 % confidence interval of the line." } else { "" }
+            "{which} against `{key}`{}{of}.{lines}{} Arms that failed or created energy are left out.",
+            match (wide, fitted) {
+                (false, _) => "",
+                (true, false) => " on a logarithmic axis",
+                (true, true) => " on a logarithmic axis, where straight lines look curved",
+            },
+            if single && fitted { " Grey: 95 % confidence interval of the line." } else { "" }
         ),
         x_label: axis(study, key),
         log: [wide, false],
@@ -208,13 +245,14 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
 }
 
 /// The labels of groups, without the settings that all of them have.
-fn labels(groups: &[Refinement]) -> Vec<String> {
+fn labels(study: &Study, groups: &[Refinement]) -> Vec<String> {
     let keys = Keys::of(groups.iter().map(|group| group.common.as_str()));
     let is_shared = |part: &&str| {
         groups.len() > 1 && groups.iter().all(|group| group.common.split(", ").any(|other| other == *part))
     };
     let own = |group: &Refinement| {
-        let parts: Vec<&str> = group.common.split(", ").filter(|part| !is_shared(part)).collect();
+        let common = own_settings(study, &group.common);
+        let parts: Vec<&str> = common.split(", ").filter(|part| !is_shared(part)).collect();
         keys.label(&parts.join(", "))
     };
     groups.iter().map(own).collect()
@@ -222,17 +260,18 @@ fn labels(groups: &[Refinement]) -> Vec<String> {
 
 /// Slopes and exponents with their intervals.
 pub(crate) fn section(study: &Study) -> Markup {
-    let found = varied_keys(&study.manifest, LEAST);
+    let mut found = varied_keys(&study.manifest, LEAST);
+    found.retain(|_, groups| groups.iter().any(|group| group.arms.len() >= FITTED));
     html! {
         @if !found.is_empty() {
             h2 { "Trends" }
             @for (key, groups) in &found {
-                @let labels = labels(groups);
+                @let labels = labels(study, groups);
                 details {
                     summary { "Slopes and exponents in " code { (key) } }
                     table.metrics {
                         thead { tr { th { "Metric" } th { "Unit" } th { "Arms" } th { "95 % interval" } } }
-                        @for metric in metrics(study, groups) {
+                        @for metric in metrics(study, key, groups) {
                             @let power = power(study, groups, &metric.name);
                             @for (group, label) in groups.iter().zip(&labels) {
                                 @if let Some(words) = trend(study, group, &metric.name, power).words(&metric.unit, unit_of_key(study, key)) {
@@ -256,14 +295,14 @@ pub(crate) fn section(study: &Study) -> Markup {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use carom_record::Status;
     use carom_record::study::{Row, StudyManifest};
     use serde_json::json;
 
     /// A study of arms with these changes, and with values of metrics.
-    fn study(arms: &[(&str, Vec<(&'static str, f64)>)]) -> Study {
+    pub(crate) fn study(arms: &[(&str, Vec<(&'static str, f64)>)]) -> Study {
         let arm = |(sets, _): &(&str, _)| {
             let sets: Vec<&str> = sets.split(", ").collect();
             json!({ "name": sets.join(", "), "directory": "", "sets": sets, "steps": 1, "case": {} })
@@ -310,28 +349,30 @@ mod tests {
         plot.panes.iter().map(Pane::name).collect()
     }
 
-    /// Two groups have no slope in a title, and two metrics may have the same one.
+    /// Two groups have no slope in a title, and two metrics may have the same one. A duration is a
+    /// whole number of steps, and is not shown against the step.
     #[test]
     fn panes_are_named_by_metrics() {
-        let arm =
-            |x: f64| vec![("restitution", 1.0 - x), ("energy_lost", 2.0 - x), ("contact_duration", x * x)];
-        let keys = ["time.step=1, a.b=0", "time.step=2, a.b=0", "time.step=4, a.b=0"];
-        let one: Vec<_> = keys.iter().zip([1.0, 2.0, 4.0]).map(|(key, x)| (*key, arm(x))).collect();
-        let more = ["time.step=1, a.b=7", "time.step=2, a.b=7", "time.step=4, a.b=7"];
-        let two: Vec<_> = more.iter().zip([1.0, 2.0, 4.0]).map(|(key, x)| (*key, arm(x))).collect();
+        let arm = |x: f64| {
+            let metrics = [("restitution", 1.0 - x), ("energy_lost", 2.0 - x), ("impulse_y", x * x)];
+            metrics.into_iter().chain([("contact_duration", x)]).collect::<Vec<_>>()
+        };
+        let steps = [1.0, 2.0, 4.0, 8.0];
+        let keys = ["time.step=1, a.b=0", "time.step=2, a.b=0", "time.step=4, a.b=0", "time.step=8, a.b=0"];
+        let one: Vec<_> = keys.iter().zip(steps).map(|(key, x)| (*key, arm(x))).collect();
+        let more = ["time.step=1, a.b=7", "time.step=2, a.b=7", "time.step=4, a.b=7", "time.step=8, a.b=7"];
+        let two: Vec<_> = more.iter().zip(steps).map(|(key, x)| (*key, arm(x))).collect();
         for arms in [one.clone(), [one, two].concat()] {
             let plots = plots(&study(&arms));
             assert_eq!(plots.len(), 1);
-            assert_eq!(names(&plots[0]), ["restitution", "contact_duration", "energy_lost"]);
+            assert_eq!(names(&plots[0]), ["restitution", "impulse_y", "energy_lost"]);
             // The exponent of x² is 2; of 1 − x, which has no logarithm, the slope is −1.
-            let words = if arms.len() == 3 { ["slope −1 ±", "exponent 2 ±"] } else { ["", ""] };
+            let words = if arms.len() == 4 { ["slope −1 ±", "exponent 2 ±"] } else { ["", ""] };
             for (pane, words) in plots[0].panes.iter().zip(words) {
                 assert!(pane.title.starts_with(words), "{}", pane.title);
             }
             let table = plots[0].csv();
-            assert!(
-                table.contains("\"contact_duration\",\"95 % interval of the fit, low\"") == (arms.len() == 3)
-            );
+            assert!(table.contains("\"impulse_y\",\"95 % interval of the fit, low\"") == (arms.len() == 4));
             assert_eq!(plots[0].x_label, "step (ms)");
         }
     }
@@ -346,12 +387,12 @@ mod tests {
         let plots_of = |arms: &[_]| plots(&study(arms));
         let plot = plots_of(&arms).swap_remove(0);
         assert_eq!(
-            (plot.x_label.as_str(), plot.panes[0].curves[1].x.as_slice()),
+            (plot.x_label.as_str(), plot.panes[0].curves[0].x.as_slice()),
             ("ρ_{∞}", &[1.0, 0.5, 0.0][..])
         );
         let keys = ["a.v=-2", "a.v=-1", "a.v=3"];
         let arms: Vec<_> = keys.iter().zip([1.0, 2.0, 4.0]).map(|(key, y)| (*key, vec![("r", y)])).collect();
-        assert_eq!(plots_of(&arms)[0].panes[0].curves[1].x, [3.0, -1.0, -2.0]);
+        assert_eq!(plots_of(&arms)[0].panes[0].curves[0].x, [3.0, -1.0, -2.0]);
         let keys = ["a.v=[1, 0]", "a.v=[2, 0]", "a.v=[3, 0]"];
         let arms: Vec<_> = keys.iter().zip([1.0, 2.0, 4.0]).map(|(key, y)| (*key, vec![("r", y)])).collect();
         assert!(plots_of(&arms).is_empty());
@@ -366,36 +407,39 @@ mod tests {
             ("h=1, g=0", arm(1.0, 0.0)),
             ("h=2, g=0", arm(2.0, 0.0)),
             ("h=4, g=0", arm(4.0, 0.0)),
+            ("h=8, g=0", arm(8.0, 0.0)),
             ("h=1, g=1", arm(1.0, 0.0)),
-            ("h=2, g=1", arm(1.5, 0.0)),
-            ("h=4, g=1", arm(2.5, 0.0)),
-            ("h=8, g=1", arm(9.0, 1.0)),
+            ("h=2, g=1", arm(1.2, 0.0)),
+            ("h=4, g=1", arm(1.6, 0.0)),
+            ("h=8, g=1", arm(2.4, 0.0)),
+            ("h=16, g=1", arm(9.0, 1.0)),
         ];
         let study = study(&arms);
         let table = section(&study).into_string();
         assert!(
-            table.contains("slope 1 ±") && table.contains("slope 0.5 ±") && !table.contains("exponent "),
+            table.contains("slope 1 ±") && table.contains("slope 0.2 ±") && !table.contains("exponent "),
             "{table}"
         );
         let plot = plots(&study).swap_remove(0);
         let fit = &plot.panes[0].curves[0];
         let middle = fit.x.iter().zip(&fit.y).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-        assert!(middle < 1e-9 && plot.panes[0].curves[3].x == [4.0, 2.0, 1.0], "{:?}", plot.panes[0]);
+        assert!(middle < 1e-9 && plot.panes[0].curves[3].x == [8.0, 4.0, 2.0, 1.0], "{:?}", plot.panes[0]);
     }
 
     #[test]
     fn the_caption_says_what_is_left_out() {
         const NAMES: [&str; 10] = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j"];
         let arm = |y: f64| NAMES.map(|name| (name, y)).to_vec();
-        let arms = [("k=1", arm(1.0)), ("k=2", arm(2.0)), ("k=3", arm(2.5))];
+        let arms = [("k=1", arm(1.0)), ("k=2", arm(2.0)), ("k=3", arm(2.5)), ("k=3.5", arm(2.75))];
+        // Through three values no line is fitted.
+        let three = self::study(&arms[..3]);
+        assert!(section(&three).into_string().is_empty());
+        let plot = plots(&three).swap_remove(0);
+        assert!(plot.caption.contains("No line") && plot.panes[0].curves.len() == 1, "{}", plot.caption);
         let study = study(&arms);
         let plot = plots(&study).swap_remove(0);
         assert_eq!(plot.panes.len(), 9);
-        assert!(
-            plot.caption.starts_with("The first 9 of 10 metrics that vary, against `k`"),
-            "{}",
-            plot.caption
-        );
+        assert!(plot.caption.starts_with("9 of the 10 metrics that vary against `k`"), "{}", plot.caption);
         assert_eq!(section(&study).into_string().matches("slope ").count(), 10);
     }
 }

@@ -10,7 +10,8 @@ use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
 use crate::collected::{in_time, time_unit};
-use crate::digits::{five, three};
+use crate::design::is_off_budget;
+use crate::digits::{count, five, three};
 use crate::document::{file, joined, or_dash};
 use crate::labels::{capitalised, with_unit};
 use crate::laboratory::methods;
@@ -33,8 +34,22 @@ const SIDE_EFFECTS: [(&str, &str); 9] = [
 /// Tables with more rows are folded.
 const FEW: usize = 12;
 
+/// How places are given.
+const PLACES: &str = "The place of an arm is one plus the number of arms that are distinguishably better: by \
+    more than the uncertainty of the reference, more than the spreads of both over the ensemble added, and more \
+    than 5 %. So arms share a place though one of them may be distinguished from a third and the other not. Within \
+    a place arms are in the order of their cost.";
+
+/// Orders above it are not those of a scheme.
+const HIGHEST: f64 = 4.0;
+
+fn order(p: f64) -> String {
+    if p > HIGHEST { format!("({p:.2})") } else { format!("{p:.2}") }
+}
+
 /// What the columns of the ranking mean.
 const COLUMNS: [&str; 11] = [
+    "Error: by which the arms are ranked; with an ensemble its median ± the largest distance of a member from it. All other columns are of the arm as given.",
     "Errors are relative errors; energies are fractions of the largest kinetic + strain energy.",
     "± in a heading: relative uncertainty of the reference value; step only: without the error of its mesh, which was not refined.",
     "Delay: time by which the motion lags the reference; negative where it leads.",
@@ -45,7 +60,6 @@ const COLUMNS: [&str; 11] = [
     "High-frequency power: share of the power of the contact force above 16 cycles per contact.",
     "Chatter: switches of contact nodes, on and off, per time in contact.",
     "Peak: largest stress averaged over 1/16 of the contact.",
-    "Order: observed order of the errors at the two finest levels, before and after the first contact.",
 ];
 
 /// The recommendation at the top of the page; nothing for a study without a goal.
@@ -60,32 +74,36 @@ pub(crate) fn summary(study: &Study) -> Markup {
                     h2 { "No recommendation" }
                     p { (Prose(&goal)) }
                     ul {
-                        @for reason in reasons { li { (Label(reason)) } }
-                        @if let Err(why) = &ranking.measure { li { (Label(why)) } }
+                        @for reason in reasons { li { (Label(&capitalised(reason))) "." } }
+                        @if let Err(why) = &ranking.measure { li { (Label(&capitalised(why))) "." } }
                     }
                 }
             };
         }
     };
     let arm = &study.manifest.arms[verdict.arm];
-    let sets: Vec<&String> = arm.sets_without_step().collect();
+    let mut sets: Vec<String> = arm.sets_without_step().cloned().collect();
+    // The step of a design is among the settings to copy.
+    if arm.role.method.is_some() || sets.len() < arm.sets.len() {
+        sets.extend(step(arm, "time.step").map(|h| format!("time.step={h}")));
+    }
     let entry = |head: &str, lines: &[String]| {
         html! {
             dt { (head) }
-            @for line in lines { dd { (Prose(&capitalised(&typeset(line)))) } }
+            @for line in lines { dd { (Prose(&capitalised(&typeset(line)))) "." } }
         }
     };
     html! {
         section.verdict {
             h2 {
-                "Recommended: " (arm.method())
+                "Recommended: " (Label(arm.method()))
                 @if let Some(h) = step(arm, "time.step") { ", Δt = " (Label(&in_time(study, h))) }
             }
             p { (Prose(&goal)) }
             div.beside {
                 dl {
                     (entry("Reasons", &verdict.reasons))
-                    @if !verdict.alike.is_empty() { (entry("Tied with", &[verdict.alike.join(" · ")])) }
+                    @if !verdict.alike.is_empty() { (entry("Tied with, over all levels", &[verdict.alike.join("; ")])) }
                     (entry(&format!("Confidence: {}", verdict.confidence.word()), &verdict.confidence_reasons))
                 }
                 dl {
@@ -111,7 +129,8 @@ fn same_level(study: &Study, arm: usize) -> impl Iterator<Item = usize> {
 fn costs(study: &Study, arm: usize) -> String {
     let cost = |i: usize| study.rows[i].value("cpu_time");
     let least = same_level(study, arm).filter_map(cost).fold(f64::INFINITY, f64::min);
-    let of = |name: &str| or_dash(study.rows[arm].value(name), three);
+    let of = |name: &str| or_dash(study.rows[arm].value(name), count);
+    let cpu = or_dash(cost(arm), three);
     let against = match cost(arm) {
         Some(c) if c == least => " (the lowest of its level)".to_owned(),
         Some(c) if least > 0.0 && c.is_finite() => {
@@ -119,7 +138,7 @@ fn costs(study: &Study, arm: usize) -> String {
         }
         _ => String::new(),
     };
-    let (cpu, steps, newton) = (of("cpu_time"), of("steps"), of("newton_iterations"));
+    let (steps, newton) = (of("steps"), of("newton_iterations"));
     let (factorisations, rejected) = (of("factorisations"), of("rejected_steps"));
     format!(
         "{cpu} s of processor time{against}; {steps} steps, {newton} Newton iterations, {factorisations} \
@@ -131,29 +150,47 @@ fn costs(study: &Study, arm: usize) -> String {
 fn side_effects(study: &Study, arm: usize) -> Vec<String> {
     let mut lines = Vec::new();
     for (metric, words) in SIDE_EFFECTS {
-        let Standing::Established { value: right, .. } = standing(study.reference.as_ref(), metric) else {
+        let Standing::Established { value: right, uncertainty } = standing(study.reference.as_ref(), metric)
+        else {
             continue;
         };
         // A relative error needs a nonzero reference; energies are fractions already.
         if right == 0.0 && !metric.starts_with("energy") && !metric.starts_with("dissipated") {
             continue;
         }
-        let of = |i: usize| study.rows[i].value(metric).map(|v| error(v, right));
-        let Some(mine) = study.rows[arm].value(metric) else { continue };
-        let least = same_level(study, arm).filter_map(of).fold(f64::INFINITY, f64::min);
-        let shown = if right == 0.0 { mine } else { error(mine, right) };
+        // Energies keep their sign: one that was created is no loss.
+        let shown = |v: f64| if right == 0.0 { v } else { error(v, right) };
+        let of = |i: usize| study.rows[i].value(metric).map(shown);
+        let Some(mine) = of(arm) else { continue };
+        let values: Vec<f64> = same_level(study, arm).filter_map(of).collect();
+        let least = values.iter().copied().min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(mine);
+        let known = if right == 0.0 { 0.0 } else { uncertainty / right.abs() };
         let percent = |share: f64| format!("{} %", three(100.0 * share));
-        lines.push(format!("{words}: {} (smallest of its level: {})", percent(shown), percent(least)));
+        let beside = match () {
+            () if least.abs() < known => String::new(),
+            () if values.iter().any(|v| *v < 0.0) => {
+                format!(" (smallest magnitude of its level: {})", percent(least))
+            }
+            () => format!(" (smallest of its level: {})", percent(least)),
+        };
+        lines.push(if mine.abs() < known {
+            format!("{words}: below the uncertainty of the reference, {}", percent(known))
+        } else {
+            format!("{words}: {}{beside}", percent(mine))
+        });
     }
     if let Some((column, late)) =
         study.compared.get(arm).and_then(Option::as_ref).and_then(|c| c.late.clone())
     {
         let direction = if late < 0.0 { "leads" } else { "lags" };
-        lines.push(format!(
-            "{column} {direction} the reference by {} {}",
-            three(late.abs()),
-            time_unit(study)
-        ));
+        let instants = standing(study.reference.as_ref(), "contact_start").established();
+        let amount = match instants {
+            Some((_, known)) if late.abs() < known => {
+                format!("less than the uncertainty of its instants, {}", three(known))
+            }
+            _ => three(late.abs()),
+        };
+        lines.push(format!("{column} {direction} the reference by {amount} {}", time_unit(study)));
     }
     lines
 }
@@ -166,6 +203,7 @@ pub(crate) fn rankings(study: &Study) -> Markup {
         @if let Ok(measure) = &ranking.measure {
             @let uncertainty = three(measure.uncertainty);
             p { "Ranked by " (Label(&measure.words)) " (uncertainty of the errors: " (uncertainty) ")." }
+            p.small { (PLACES) @if ranking.verdict.is_ok() { " ▸: recommended." } }
             (ranked_table(study, ranking))
             (crosschecks(study, ranking))
         }
@@ -204,8 +242,8 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
         _ => format!("{} s of processor time", three(check.value)),
     };
     let best = |check: &Crosscheck| {
-        let shown = check.errors.iter().take(5).map(|(method, error)| format!("{method} {}", three(*error)));
-        shown.collect::<Vec<_>>().join(" · ")
+        let shown = check.errors.iter().take(5).map(|(method, error)| format!("{method}: {}", three(*error)));
+        shown.collect::<Vec<_>>().join("; ")
     };
     let judged = |level: &usize| ranking.crosschecks.iter().any(|check| check.level == *level);
     let unknown: Vec<String> = (0..ranking.levels.len())
@@ -225,10 +263,13 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
                 @for check in &ranking.crosschecks {
                     tr {
                         td.unit { "Δt = " (or_dash(design.steps.get(check.level).copied(), |h| in_time(study, h))) }
-                        td { (check.first) } td { (value(check)) } td { (best(check)) }
+                        td { (Label(&check.first)) } td { (value(check)) } td { (Label(&best(check))) }
                         td {
                             @match &check.better {
                                 Some(method) => { "changes: " (method) " is better" },
+                                None if check.errors.first().is_some_and(|best| best.0 != check.first) => {
+                                    "does not change: the difference is within the uncertainties of the errors"
+                                }
                                 None => "does not change",
                             }
                         }
@@ -277,14 +318,16 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                     @let estimate = reference.estimate(&metric.name).ok();
                     tr {
                         td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
-                        td.n { (three(value)) } td.n { (three(uncertainty)) }
-                        td.n { (or_dash(estimate.and_then(|e| e.order), |p| format!("{p:.2}"))) }
+                        td.n { (three(value)) }
+                        td.n { @if uncertainty == 0.0 { "exact" } @else { (three(uncertainty)) } }
+                        td.n { (or_dash(estimate.and_then(|e| e.order).filter(|_| uncertainty > 0.0), order)) }
                         td.n { (or_dash(estimate.map(|e| e.spread).filter(|s| *s > 0.0), three)) }
                     }
                 }
             }
             p.small {
-                "The uncertainty is that of the refinement (grid convergence index; with an ensemble the \
+                "An order above " (HIGHEST) " is in brackets: no scheme has it, so that the values do not \
+                 converge regularly yet. The uncertainty is that of the refinement (grid convergence index; with an ensemble the \
                  median over its members), plus the half-width of the ensemble, which is the largest \
                  distance of a member from the median, plus a step for instants (half a step with several \
                  phases), plus 5/4 of what averaging over 1/16 of the contact changes, for extremes and \
@@ -313,7 +356,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
 fn other_goals(study: &Study) -> Markup {
     html! {
         h3 { "Recommendations for the other goals" }
-        table {
+        div.scroll { table {
             thead {
                 tr { th { "Goal" } th { "Recommended" } th.n { (with_unit("Δt", time_unit(study))) } th { "Confidence" } th { "Ranked by" } }
             }
@@ -324,12 +367,12 @@ fn other_goals(study: &Study) -> Markup {
                         (Ok(verdict), Ok(measure)) => {
                             @let arm = &study.manifest.arms[verdict.arm];
                             td {
-                                (arm.method())
+                                (Label(arm.method()))
                                 @if !verdict.alike.is_empty() {
-                                    br; span.small { "tied with " (verdict.alike.join(" · ")) }
+                                    br; span.small { "tied with " (Label(&verdict.alike.join("; "))) }
                                 }
-                                @if let Some(depth) = verdict.penetration {
-                                    br; span.small { "a penalty: it penetrates by up to " (five(depth)) }
+                                @if let Some(depth) = &verdict.penetration {
+                                    br; span.small { "a penalty: " (depth) }
                                 }
                             }
                             td.n { (or_dash(step(arm, "time.step"), five)) }
@@ -342,7 +385,7 @@ fn other_goals(study: &Study) -> Markup {
                     }
                 }
             }
-        }
+        } }
     }
 }
 
@@ -362,43 +405,48 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
                  energy than the default guard allows: " (unsound.join("; ")) "."
             }
         }
-        p.small {
-            "The place of an arm is one plus the number of arms that are distinguishably better: by more than \
-             the uncertainty of the reference, more than the spreads of both over the ensemble added, and \
-             more than 5 %. Within a place arms are in the order of their cost."
-            @if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) {
-                " An exclamation mark means more than 10 % off the budget."
-            }
+        @if study.manifest.arms.iter().any(|arm| is_off_budget(study, arm)) {
+            p.small { "An exclamation mark means more than 10 % off the budget." }
         }
         ul.small { @for line in COLUMNS { li { (line) } } }
         p.small { "Data in full precision: " (file("ranking.csv")) ", " (file("reference.csv")) "." }
     }
 }
 
-/// Observed orders before the first contact and after it.
+/// Observed orders before the first contact and after it; why there is none is said below the
+/// table.
 pub(crate) fn phases(study: &Study) -> Markup {
-    let cell = |order: &Result<f64, Reason>| {
-        html! {
-            @match order {
-                Ok(order) if *order < 0.0 => span.small { "no order (errors grow with a shorter step)" },
-                Ok(order) => (format!("{order:.2}")),
-                Err(why) => span.small { "no order (" (why) ")" },
-            }
-        }
+    let mut reasons: Vec<String> = Vec::new();
+    let mut cell = |order: &Result<f64, Reason>| {
+        let why = match order {
+            Ok(order) if *order >= 0.0 => return format!("{order:.2}"),
+            Ok(_) => "errors grow with a shorter step".to_owned(),
+            Err(why) => why.to_string(),
+        };
+        let at = reasons.iter().position(|known| *known == why).unwrap_or_else(|| {
+            reasons.push(why);
+            reasons.len() - 1
+        });
+        format!("none^{{{}}}", at + 1)
     };
+    let cells: Vec<[String; 2]> =
+        study.phase_orders.iter().map(|o| [cell(&o.smooth), cell(&o.across)]).collect();
     html! {
         @if !study.phase_orders.is_empty() {
             h2 { "Order of convergence before and after the first contact" }
             details open[study.phase_orders.len() <= FEW] {
-                summary { "Orders of " (study.phase_orders.len()) " columns of methods" }
+                summary { "Orders by method and quantity" }
                 table {
-                    thead { tr { th { "Method" } th { "Column" } th { "Before" } th { "After" } } }
-                    @for o in &study.phase_orders {
+                    thead { tr { th { "Method" } th { "Quantity" } th.n { "Before" } th.n { "After" } } }
+                    @for (o, [before, after]) in study.phase_orders.iter().zip(&cells) {
                         tr {
-                            td { (o.method) } td { code { (o.column) } }
-                            td { (cell(&o.smooth)) } td { (cell(&o.across)) }
+                            td { (Label(&o.method)) } td { code { (o.column) } }
+                            td.n { (Label(before)) } td.n { (Label(after)) }
                         }
                     }
+                }
+                @for (k, why) in reasons.iter().enumerate() {
+                    p.small { sup { (k + 1) } " " (capitalised(why)) "." }
                 }
             }
             p.small {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use carom_record::verification::{Row, SetUp, Verification};
 use maud::{Markup, html};
 
+use crate::digits::{five, three};
 use crate::document::{document, file, minus, or_dash};
 use crate::labels::number;
 use crate::publish::{ReportError, write};
@@ -39,25 +40,24 @@ fn page(v: &Verification, directory: &Path) -> String {
         table {
             thead {
                 tr {
-                    th { "Family" } th.n { "Set-ups" } th.n { "With contact" } th.n { "Values" }
-                    th.n { "Missed" } th.n { "Time (s)" }
+                    th { "Family" } th.n { "Set-ups" } th.n { "With dynamic contact" } th.n { "Values" }
+                    th.n { "Missed" } th.n { "Sum of run times (s)" }
                 }
             }
             @for name in v.families() { (family(v, name)) }
         }
+        h2 { "Values" }
+        p.small { (WORDS) }
         @for name in v.families() {
-            h2 id=(name) { (name) }
             // What is missed is open; all the rest is a click away.
-            details open[missed(v, name) > 0] {
-                summary {
-                    (v.rows().filter(|(s, _)| s.family == name).count()) " values, " (missed(v, name)) " missed"
-                }
+            details id=(name) open[missed(v, name) > 0] {
+                summary { b { (name) } ": " (values(v, name)) ", " (missed(v, name)) " missed" }
                 div.scroll {
                     table {
                         thead {
                             tr {
                                 th { "Arm" } th { "Quantity" } th { "Expected" }
-                                th.n { "Result" } th.n { "Error" } th.n { "Tolerance" } th {} th { "Source" }
+                                th.n { "Result" } th.n { "Error" } th { "Met" } th { "Source" }
                             }
                         }
                         @for set_up in v.set_ups.iter().filter(|s| s.family == name) {
@@ -75,8 +75,10 @@ fn page(v: &Verification, directory: &Path) -> String {
 
 fn summary(v: &Verification) -> Markup {
     let (rows, missed, stopped) = (v.rows().count(), v.missed(), v.stopped());
+    let sourced = v.rows().filter(|(_, row)| row.verdict.source.is_some()).count();
     let (class, word) = match (missed, stopped) {
-        (0, 0) => ("finished", "every expectation is met".to_owned()),
+        (0, 0) if v.fast => ("finished", format!("all {rows} expected values of the fast selection are met")),
+        (0, 0) => ("finished", format!("all {rows} expected values are met")),
         (_, 0) => ("failed", format!("{missed} of {rows} expectations missed")),
         _ => {
             ("failed", format!("{missed} of {rows} expectations missed, {stopped} runs stopped unexpectedly"))
@@ -86,10 +88,10 @@ fn summary(v: &Verification) -> Markup {
         ("Set-ups", format!("{} (a study counts as one)", v.set_ups.len())),
         ("With dynamic contact", v.with_contact().to_string()),
         ("Simulations", v.set_ups.iter().map(|s| s.runs).sum::<usize>().to_string()),
-        ("Expected values", rows.to_string()),
+        ("Expected values", format!("{rows}, {sourced} with a stated source")),
         ("Missed", missed.to_string()),
         ("Unexpected stops", stopped.to_string()),
-        ("Wall time", format!("{} s, {} concurrent runs", number(v.wall), v.jobs)),
+        ("Wall time", format!("{} s, {} concurrent runs", three(v.wall), v.jobs)),
         ("Machine", format!("{} cores, {}, {}", v.machine.cpus, v.machine.os, v.machine.arch)),
         ("Date", v.started.clone()),
         ("Selection", if v.fast { "all but those marked slow (--fast)" } else { "all" }.to_owned()),
@@ -97,6 +99,19 @@ fn summary(v: &Verification) -> Markup {
     html! {
         p { span.status.(class) { (word) } }
         table.summary { @for (name, value) in lines { tr { th { (name) } td { (value) } } } }
+    }
+}
+
+/// What the tables of families show.
+const WORDS: &str = "Error: result − expected value; for a bound, the amount beyond it. An empty source: the \
+    case file states none beside the value; its comments may. Every value is computed from the run directory \
+    that its row links to. The hash after a title is the BLAKE3 hash of the files and options of its runs.";
+
+/// Number of values of a family, in words.
+fn values(v: &Verification, name: &str) -> String {
+    match v.rows().filter(|(set_up, _)| set_up.family == name).count() {
+        1 => "1 value".to_owned(),
+        count => format!("{count} values"),
     }
 }
 
@@ -116,7 +131,7 @@ fn family(v: &Verification, name: &str) -> Markup {
             td { a href={ "#" (name) } { (name) } }
             td.n { (mine.len()) } td.n { (mine.iter().filter(|s| s.contact).count()) } td.n { (rows.len()) }
             td.n.(if missed == 0 { "pass" } else { "miss" }) { (missed) }
-            td.n { (number(mine.iter().map(|s| s.wall).sum())) }
+            td.n { (three(mine.iter().map(|s| s.wall).sum())) }
         }
     }
 }
@@ -128,13 +143,13 @@ fn head(set_up: &SetUp, directory: &Path) -> Markup {
     let hash: String = set_up.input_hash.chars().take(10).collect();
     html! {
         tr.set-up {
-            td colspan="8" {
+            td colspan="7" {
                 b { (set_up.title) } " "
                 span.small {
                     a href={ (set_up.directory) "/" (page.unwrap_or_default()) } { (set_up.directory) }
                     @if set_up.runs != 1 { ", " (set_up.runs) " runs" }
                     @if set_up.contact { ", contact" }
-                    ", " (number(set_up.wall)) " s, "
+                    ", " (three(set_up.wall)) " s, "
                     code.hash title=(set_up.input_hash) { (hash) }
                 }
                 @for why in &set_up.stopped { br; "stopped: " (why) }
@@ -153,9 +168,8 @@ fn row(row: &Row) -> Markup {
                 @if let Some(why) = &verdict.why { br; span.small { (why) } }
             }
             td { (minus(&verdict.expected)) }
-            td.n { (or_dash(verdict.got, number)) } td.n { (or_dash(row.error(), number)) }
-            td.n { (or_dash(verdict.tolerance, number)) }
-            @if verdict.pass { td.pass { "met" } } @else { td.miss { "missed" } }
+            td.n { (or_dash(verdict.got, five)) } td.n { (or_dash(row.error(), three)) }
+            @if verdict.pass { td.pass { "yes" } } @else { td.miss { "missed" } }
             td.source { @if let Some(source) = &verdict.source { (source) } }
         }
     }
@@ -167,10 +181,7 @@ fn foot(v: &Verification) -> Markup {
         p { "Run Carom " (v.version) " in a folder with the cases:" }
         pre { "carom verify" @if v.fast { " --fast" } }
         p.small {
-            "Error: result − expected value; for a bound, the amount beyond it. The expected values and \
-             their sources are given in the case files. Every value is computed from the run directory that \
-             its row links to. The hash after a title is the BLAKE3 hash of the files and options of its \
-             runs. Results do not depend on the number of concurrent runs; wall times do. Data in full \
+            "Results do not depend on the number of concurrent runs; wall times do. Data in full \
              precision: "
             (file("verify.csv")) "."
         }

@@ -76,7 +76,7 @@ pub fn schema() -> Value {
         json!({ "type": "array", "items": object("An arm: one variant of the case that is simulated.", &ARM, arm, &["name"]) }),
         set(case::changes().into_iter().map(list).collect(), "Lists of values; every combination is an arm."),
         json!({ "type": "array", "items": case::measured() }),
-        json!({ "type": "array", "items": object("A claim about the arms, confirmed or denied by a comparison.", &CLAIM, claim, &CLAIM) }),
+        json!({ "type": "array", "items": object("A claim about the arms, confirmed or refuted by a comparison.", &CLAIM, claim, &CLAIM) }),
         expects(),
     ];
     let mut schema = object("A comparison of many runs of one case.", &KEYS, study, &[]);

@@ -110,18 +110,18 @@ impl Verdict {
         }
     }
 
-    /// `confirmed`, `denied` or `undecided`; over an ensemble that is not of one mind, `in most` or
-    /// `in some` of its members.
+    /// `confirmed`, `refuted` or `undecided`; over an ensemble that is not of one mind, `in most`
+    /// or `in some` of its members.
     pub fn word(&self) -> &'static str {
         match self.ensemble.as_ref().map(Confirmed::word) {
             Some("in all") => return "confirmed",
-            Some("in none") => return "denied",
+            Some("in none") => return "refuted",
             Some(word) => return word,
             None => {}
         }
         match self.holds {
             Some(true) => "confirmed",
-            Some(false) => "denied",
+            Some(false) => "refuted",
             None => "undecided",
         }
     }
@@ -245,7 +245,7 @@ mod tests {
         let numbers = [("r", "Hu, a", 6.0), ("q", "b > c", -0.5), ("r", "b > c", 2.0)];
         let of = |text| verdict(text, &numbers);
         assert_eq!(of("r of \"Hu, a\" > 2 * r of \"b > c\""), (Some(6.0), Some(4.0), "confirmed"));
-        assert_eq!(of("r of 'Hu, a' / r of 'b > c' - 1 <= 1.5"), (Some(2.0), Some(1.5), "denied"));
+        assert_eq!(of("r of 'Hu, a' / r of 'b > c' - 1 <= 1.5"), (Some(2.0), Some(1.5), "refuted"));
         assert_eq!(of("1 - 2 - 3 < q of 'b > c'"), (Some(-4.0), Some(-0.5), "confirmed"));
         assert_eq!(of("r of 'nobody' < 1"), (None, Some(1.0), "undecided"));
     }

@@ -29,13 +29,13 @@ impl Confidence {
 }
 
 /// What distinguishes the recommended method from all others.
-#[derive(Clone, Copy)]
 pub(super) enum DecidedBy {
     Error,
     /// Its error alone is small enough, though not distinguished from the others.
     Accuracy,
     Cost,
-    Nothing,
+    /// Nothing does from these methods.
+    Nothing(Vec<String>),
 }
 
 /// What the errors are known to be independent of.
@@ -82,13 +82,17 @@ pub(super) fn confidence(
                 "its error is not distinguished from that of other methods ({close}); its lower cost decides"
             ),
         ),
-        DecidedBy::Nothing if goal == Goal::Cost => at_most(
+        DecidedBy::Nothing(_) if goal == Goal::Cost => at_most(
             Confidence::Low,
             format!("other methods have the same cost (differences of at most {} %)", 100.0 * EQUAL_COST),
         ),
-        DecidedBy::Nothing => at_most(
+        DecidedBy::Nothing(others) => at_most(
             Confidence::Low,
-            format!("other methods are not distinguished from it, neither by error ({close}) nor by cost"),
+            format!(
+                "not distinguished from it, neither by error ({close}) nor by cost (at most {} % more): {}",
+                100.0 * EQUAL_COST,
+                others.join("; ")
+            ),
         ),
     }
     for (method, count) in sharing {

@@ -12,7 +12,7 @@ use super::design::{Goal, Kind};
 use super::digits::short;
 use super::manifest::StudyManifest;
 use super::measure::Measure;
-use super::places::{EQUAL_COST, Ranked};
+use super::places::{EQUAL_COST, Ranked, cheaper};
 use super::reference::Reference;
 use super::row::Row;
 
@@ -23,8 +23,8 @@ pub struct Verdict {
     pub arm: usize,
     /// Methods (arms in a study without methods) that are not distinguished from it.
     pub alike: Vec<String>,
-    /// Its penetration if its contact is enforced by a penalty.
-    pub penetration: Option<f64>,
+    /// Its penetration if its contact is enforced by a penalty, in words.
+    pub penetration: Option<String>,
     /// Reasons for the recommendation.
     pub reasons: Vec<String>,
     /// Confidence in it.
@@ -134,12 +134,15 @@ pub(super) fn recommended(
         against.push(inaccurate(manifest, &full, best, chosen));
     }
     if !against.is_empty() {
-        let first = |r: &&Ranked| r.place == 1;
-        for r in full.iter().flat_map(|l| l.iter()).filter(first) {
-            against.extend(penetration(manifest, r.arm, rows).map(|depth| {
-                let arm = &manifest.arms[r.arm].name;
-                format!("{arm} ranks first with a penalty: it penetrates by up to {}", short(depth))
-            }));
+        for ranked in &full {
+            let first = || ranked.iter().filter(|r| r.place == 1);
+            let place = if first().count() > 1 { "shares the first place" } else { "ranks first" };
+            for r in first() {
+                against.extend(penetration(manifest, r.arm, rows).map(|depth| {
+                    let arm = &manifest.arms[r.arm].name;
+                    format!("{arm} {place}; its contact is a penalty: {depth}")
+                }));
+            }
         }
         return Err(against);
     }
@@ -181,10 +184,10 @@ pub(super) fn recommended(
     // The least cost is that of any level.
     let first_at = if goal == Goal::Cost { full.len() } else { first_at };
     if goal != Goal::Cost {
-        reasons.push(format!(
-            "no method is distinguishably better at {first_at} of {}",
-            if full.len() == 1 { "1 level".to_owned() } else { format!("{} levels", full.len()) }
-        ));
+        reasons.push(match full.len() {
+            all if all == first_at => "no method is distinguishably better at any level".to_owned(),
+            all => format!("at {first_at} of {all} levels no method is distinguishably better"),
+        });
     }
     let next = costs.iter().enumerate().filter(|(i, _)| *i != picked).filter_map(|(i, c)| Some((i, (*c)?)));
     let next = next.min_by(|a, b| a.1.total_cmp(&b.1));
@@ -192,9 +195,9 @@ pub(super) fn recommended(
     let times = next.zip(costs[picked]).map(|((_, other), own)| other / own);
     if let Some(((i, other), own)) = next.zip(costs[picked]).filter(|_| goal != Goal::Cost) {
         let words = if other > (1.0 + EQUAL_COST) * own {
-            "cheapest of the methods that are not distinguished"
+            "cheapest of the methods tied with it over all levels"
         } else {
-            "none of the methods that are not distinguished is cheaper by more than 10 %"
+            "of the methods tied with it over all levels none is cheaper by more than 10 %"
         };
         reasons.push(format!(
             "{words}: {} s of processor time; {}: {} s",
@@ -204,19 +207,16 @@ pub(super) fn recommended(
         ));
     }
     if goal != Goal::Cost {
-        reasons.push(format!("the coarsest level at which its error is at most {accuracy}"));
+        reasons.push(format!("this is the coarsest level at which its error is at most {accuracy}"));
     }
     let penetration = penetration(manifest, chosen.arm, rows);
-    if let Some(depth) = penetration {
-        reasons.push(format!("its contact is a penalty: it penetrates by up to {}", short(depth)));
+    if let Some(depth) = &penetration {
+        reasons.push(format!("its contact is a penalty: {depth}"));
     }
     for other in &alike_ones {
         let depth = arm_of(other).and_then(|arm| self::penetration(manifest, arm.arm, rows));
         reasons.extend(depth.map(|depth| {
-            format!(
-                "the contact of {other}, which is not distinguished, is a penalty: it penetrates by up to {}",
-                short(depth)
-            )
+            format!("the contact of {other}, which is not distinguished, is a penalty: {depth}")
         }));
     }
     if !measure.left_out.is_empty() {
@@ -228,7 +228,14 @@ pub(super) fn recommended(
         (0, _) => DecidedBy::Error,
         (_, 1) => DecidedBy::Accuracy,
         _ if dearer => DecidedBy::Cost,
-        _ => DecidedBy::Nothing,
+        _ => {
+            // A method that costs more than 10 % more is distinguished by that.
+            let costs_as_much = |other: Option<f64>| {
+                !other.zip(costs[picked]).is_some_and(|(other, own)| cheaper(own, other))
+            };
+            let same = field.iter().zip(&costs).filter(|(m, cost)| **m != best && costs_as_much(**cost));
+            DecidedBy::Nothing(same.map(|(method, _)| (*method).to_owned()).collect())
+        }
     };
     let evidence = Evidence {
         mesh: reference.map_or_else(|| ensemble_refines(manifest), Reference::refines_mesh),
@@ -315,11 +322,32 @@ fn ensemble_refines(manifest: &StudyManifest) -> bool {
     manifest.ensemble.as_ref().is_some_and(|ensemble| ensemble.mesh.len() > 1)
 }
 
-/// Penetration of an arm whose contact is enforced by a penalty.
-fn penetration(manifest: &StudyManifest, arm: usize, rows: &[Row]) -> Option<f64> {
-    let contacts = manifest.arms[arm].case.get("contacts")?.as_array()?;
-    let penalty = contacts.iter().any(|c| c.get("enforcement").is_some_and(|e| e == "penalty"));
-    rows.get(arm)?.value("penetration").filter(|_| penalty)
+/// Whether contact of an arm is enforced by a penalty.
+fn is_penalty(manifest: &StudyManifest, arm: usize) -> bool {
+    let contacts = manifest.arms[arm].case.get("contacts").and_then(|contacts| contacts.as_array());
+    contacts.into_iter().flatten().any(|c| c.get("enforcement").is_some_and(|e| e == "penalty"))
+}
+
+/// Penetration of an arm whose contact is enforced by a penalty. Nodes that are not constrained
+/// penetrate without one too, so that its depth is given beside those of the other arms.
+fn penetration(manifest: &StudyManifest, arm: usize, rows: &[Row]) -> Option<String> {
+    if !is_penalty(manifest, arm) {
+        return None;
+    }
+    let unit = &rows.get(arm)?.metrics.iter().find(|m| m.name == "penetration")?.unit;
+    let depth = rows[arm].value("penetration")?;
+    let role = |arm: usize| (manifest.arms[arm].role.level, manifest.arms[arm].role.fine);
+    let others = (0..manifest.arms.len()).filter(|other| role(*other) == role(arm));
+    let others = others.filter(|other| !is_penalty(manifest, *other));
+    let depths: Vec<f64> = others.filter_map(|other| rows.get(other)?.value("penetration")).collect();
+    let (low, high) = depths.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), d| (a.min(*d), b.max(*d)));
+    let beside = if depths.is_empty() {
+        String::new()
+    } else {
+        format!(" (arms of its level without a penalty: {} to {})", short(low), short(high))
+    };
+    let depth = format!("{} {unit}", short(depth));
+    Some(format!("the largest penetration is {}{beside}", depth.trim_end()))
 }
 
 /// Index of the first method whose cost is within 10 % of the smallest; 0 if no cost is known.

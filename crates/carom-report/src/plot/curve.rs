@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::frame::Frame;
 use crate::chart::dots;
 use crate::palette::LINES;
 use crate::trace;
@@ -23,9 +24,9 @@ pub(crate) struct Curve {
     pub(crate) color: Option<&'static str>,
     /// Whether its label is for tables only.
     pub(crate) unlisted: bool,
-    /// Whether it is of an unsound run: dashed and grey, and without influence on the axes.
+    /// Whether it is of an unsound run: thin and grey, and without influence on the axes.
     pub(crate) apart: bool,
-    /// Whether it is of less interest: thin and grey.
+    /// Whether it is of less interest: thin.
     pub(crate) quiet: bool,
     /// Whether it is that of the recommended arm or method.
     pub(crate) chosen: bool,
@@ -36,31 +37,25 @@ pub(crate) struct Curve {
 impl Curve {
     /// Colour, dashes and marker number.
     pub(crate) fn style(&self) -> (&'static str, &'static str, usize) {
-        match () {
-            () if self.apart => APART,
-            () if self.quiet => (QUIET, "", self.style % 5),
-            () => {
-                let (color, dashes, marker) = style(self.style);
-                (self.color.unwrap_or(color), dashes, marker)
-            }
+        if self.apart {
+            return (APART, "", style(self.style).2);
         }
+        let (color, dashes, marker) = style(self.style);
+        (self.color.unwrap_or(color), dashes, marker)
     }
 }
 
-/// The style of every unsound run.
-pub(crate) const APART: (&str, &str, usize) = ("#b0b0b0", "4 3", 0);
+/// The colour of every unsound run; no other curve is grey.
+pub(crate) const APART: &str = "#8c8c8c";
 
-/// The colour of a curve of less interest.
-pub(crate) const QUIET: &str = "#9a9a9a";
+/// Number of colours: those of lines, and brown.
+pub(crate) const COLORS: usize = LINES.len() + 1;
 
-/// Number of colours: those of lines, and grey.
-const COLORS: usize = LINES.len() + 1;
-
-/// Colour, dashes and marker number of a style. Seven colours of Okabe and Ito and grey, with five
+/// Colour, dashes and marker number of a style. Seven colours of Okabe and Ito and brown, with five
 /// markers, give forty different styles.
 pub(crate) fn style(i: usize) -> (&'static str, &'static str, usize) {
     const DASHES: [&str; 8] = ["", "9 3", "3 2", "9 3 2 3", "14 4", "5 2 1.5 2 1.5 2", "1.5 2.5", "6 6"];
-    (LINES.get(i % COLORS).copied().unwrap_or("#777777"), DASHES[(i + i / COLORS) % 8], i % 5)
+    (LINES.get(i % COLORS).copied().unwrap_or("#7a4a1e"), DASHES[(i + i / COLORS) % 8], i % 5)
 }
 
 /// Whether a curve is dashed. One that is alone in its pane needs no dashes to be identified, nor
@@ -68,18 +63,18 @@ pub(crate) fn style(i: usize) -> (&'static str, &'static str, usize) {
 pub(super) fn is_dashed(curve: &Curve, direct: bool) -> bool {
     let is_first = curve.style < COLORS;
     match () {
-        () if curve.marked => !is_first && !curve.apart && !curve.quiet,
-        () if curve.apart => true,
-        () if curve.quiet || curve.label.is_empty() || curve.unlisted => false,
+        () if curve.apart || curve.quiet => false,
+        () if curve.marked => !is_first,
+        () if curve.label.is_empty() || curve.unlisted => false,
         () => !(direct && is_first),
     }
 }
 
-/// Draws a curve inside the rectangle `id`.
+/// Draws a curve inside the rectangle `id` of a frame.
 pub(super) fn draw(
     out: &mut String,
     curve: &Curve,
-    id: &str,
+    (id, frame): (&str, &Frame),
     direct: bool,
     to_x: &dyn Fn(f64) -> f64,
     to_y: &dyn Fn(f64) -> f64,
@@ -104,7 +99,10 @@ pub(super) fn draw(
     if curve.marked {
         let finite = |p: &(usize, (f64, f64))| p.1.0.is_finite() && p.1.1.is_finite();
         for (k, (x, y)) in points.into_iter().enumerate().filter(finite) {
-            mark(out, marker, color, x, y);
+            match frame.beyond((x, y)) {
+                None => mark(out, marker, color, x, y),
+                Some((at, to)) => arrowhead(out, color, at, to),
+            }
             if curve.ring == Some(k) {
                 let _ = writeln!(
                     out,
@@ -113,6 +111,15 @@ pub(super) fn draw(
             }
         }
     }
+}
+
+/// An arrowhead at the edge of a pane, for what lies outside it in a direction.
+pub(super) fn arrowhead(out: &mut String, color: &str, (x, y): (f64, f64), (dx, dy): (f64, f64)) {
+    let at = |along: f64, aside: f64| {
+        format!("{:.1} {:.1}", x + along * dx - aside * dy, y + along * dy + aside * dx)
+    };
+    let d = [at(0.0, 0.0), at(-7.0, 4.0), at(-7.0, -4.0)].join("L");
+    let _ = writeln!(out, "<path d=\"M{d}z\" fill=\"{color}\"/>");
 }
 
 /// Markers: circle, square, triangle, diamond, inverted triangle.

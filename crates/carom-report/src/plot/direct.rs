@@ -1,6 +1,6 @@
-//! Labels to the right of a pane, each joined to the end of its curve. Where curves end in one
-//! point or inside the pane, a piece of the line stands before the label instead; the label of a
-//! run that stopped stands where it stopped.
+//! Labels to the right of a pane, each with a piece of its line, joined to the end of its curve
+//! unless others end there too. The label of an unsound run that stops, or leaves the axes, stands
+//! where it does so.
 //!
 //! The heights of labels are those nearest to the ends of the curves, by the sum of squares, that
 //! are at least a line apart: with the k-th line subtracted, an isotonic regression, which the
@@ -9,6 +9,7 @@
 use std::fmt::Write as _;
 
 use super::Curve;
+use super::curve::arrowhead;
 use super::frame::Frame;
 use crate::chart::{dots, write_text};
 use crate::text;
@@ -16,7 +17,9 @@ use crate::text;
 /// Height of a line, font size, and room for the leader between pane and label.
 pub(super) const LINE: f64 = 13.5;
 const SIZE: f64 = 11.0;
-const LEADER: f64 = 20.0;
+const LEADER: f64 = 34.0;
+/// Where the piece of the line begins and ends in that room.
+const SWATCH: (f64, f64) = (12.0, 30.0);
 /// Largest width of a label.
 const MOST: f64 = 236.0;
 
@@ -57,63 +60,78 @@ const ONE: f64 = 4.0;
 /// A curve that ends further from the right edge ends inside the pane.
 const INSIDE: f64 = 24.0;
 
+/// Where a curve is last seen in its pane, in pixels.
+#[derive(Clone, Copy)]
+pub(super) struct End {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    /// Whether it leaves the axes there.
+    pub(super) leaves: bool,
+}
+
 /// Draws the labels; `ends` are where the curves end in the pane.
-pub(super) fn draw(out: &mut String, curves: &[&Curve], ends: &[(f64, f64)], frame: &Frame) {
+pub(super) fn draw(out: &mut String, curves: &[&Curve], ends: &[End], frame: &Frame) {
     let right = frame.right();
-    let inside = |k: &usize| ends[*k].0 < right - INSIDE;
+    let inside = |k: &usize| ends[*k].x < right - INSIDE;
     let (stopped, mut order): (Vec<usize>, Vec<usize>) =
-        (0..curves.len()).partition(|k| curves[*k].apart && inside(k));
+        (0..curves.len()).partition(|k| curves[*k].apart && !curves[*k].marked && inside(k));
     stops(out, &stopped.iter().map(|k| (curves[*k], ends[*k])).collect::<Vec<_>>(), frame);
-    order.sort_by(|a, b| ends[*a].1.total_cmp(&ends[*b].1));
-    let wanted: Vec<f64> = order.iter().map(|k| ends[*k].1).collect();
+    order.sort_by(|a, b| ends[*a].y.total_cmp(&ends[*b].y));
+    let wanted: Vec<f64> = order.iter().map(|k| ends[*k].y).collect();
     let heights = spread(&wanted, LINE, (frame.top + 4.0, frame.bottom() - 2.0));
     let alone = |k: usize| {
         let near =
-            |other: &&usize| **other != k && !inside(other) && (ends[**other].1 - ends[k].1).abs() < ONE;
-        !inside(&k) && !order.iter().any(|other| near(&other))
+            |other: &&usize| **other != k && !inside(other) && (ends[**other].y - ends[k].y).abs() < ONE;
+        (curves[k].apart || !inside(&k)) && !order.iter().any(|other| near(&other))
     };
     for (&k, y) in order.iter().zip(heights) {
-        let (curve, (x, from)) = (curves[k], ends[k]);
+        let (curve, End { x, y: from, .. }) = (curves[k], ends[k]);
         let (color, dashes, marker) = curve.style();
+        let (first, last) = (right + SWATCH.0, right + SWATCH.1);
         if alone(k) {
             let _ = writeln!(
                 out,
-                "<path d=\"M{x:.1} {from:.1}L{right:.1} {from:.1}L{:.1} {y:.1}\" fill=\"none\" \
-                 stroke=\"{color}\" stroke-width=\"0.7\" stroke-opacity=\"0.5\"/>",
-                right + LEADER - if curve.marked { 10.0 } else { 3.0 }
+                "<path d=\"M{x:.1} {from:.1}L{right:.1} {from:.1}L{first:.1} {y:.1}\" fill=\"none\" \
+                 stroke=\"{color}\" stroke-width=\"0.7\" stroke-opacity=\"0.5\"/>"
             );
-        } else if curve.points && !curve.marked {
-            dots(out, [4.0, 10.0].map(|by| (right + by, y)).into_iter(), color);
+        }
+        if curve.points && !curve.marked {
+            dots(out, [4.0, 14.0].map(|by| (first + by, y)).into_iter(), color);
         } else {
             let dashes = if super::curve::is_dashed(curve, true) { dashes } else { "" };
+            let width = if curve.apart || curve.quiet { 1.0 } else { 2.0 };
             let _ = writeln!(
                 out,
-                "<path d=\"M{:.1} {y:.1}h{:.1}\" stroke=\"{color}\" stroke-width=\"2\" \
-                 stroke-dasharray=\"{dashes}\"/>",
-                right + 3.0,
-                LEADER - 6.0
+                "<path d=\"M{first:.1} {y:.1}H{last:.1}\" stroke=\"{color}\" stroke-width=\"{width}\" \
+                 stroke-dasharray=\"{dashes}\"/>"
             );
         }
         if curve.marked {
-            super::curve::mark(out, marker, color, right + LEADER - 9.0, y);
+            super::curve::mark(out, marker, color, 0.5 * (first + last), y);
         }
         let weight = if curve.chosen { " font-weight=\"700\"" } else { "" };
-        let place = format!("font-size=\"{SIZE}\" fill=\"{}\"{weight}", ink(color));
+        let place = format!("font-size=\"{SIZE}\"{weight}");
         write_text(out, right + LEADER, y + 3.8, &place, &words(curve));
     }
 }
 
-/// A cross where each of some curves stops inside the pane, with its label.
-fn stops(out: &mut String, stopped: &[(&Curve, (f64, f64))], frame: &Frame) {
+/// A cross where each of some curves stops inside the pane, or an arrowhead where it leaves the
+/// axes, with its label.
+fn stops(out: &mut String, stopped: &[(&Curve, End)], frame: &Frame) {
     let mut taken: Vec<(f64, f64, f64)> = Vec::new();
-    for (curve, (x, y)) in stopped {
+    for (curve, End { x, y, leaves }) in stopped {
         let color = curve.style().0;
-        let _ = writeln!(
-            out,
-            "<path d=\"M{:.1} {:.1}l6 6m0 -6l-6 6\" stroke=\"{color}\" stroke-width=\"1.6\"/>",
-            x - 3.0,
-            y - 3.0
-        );
+        if *leaves {
+            let up = y - frame.top < frame.bottom() - y;
+            arrowhead(out, color, (*x, *y), (0.0, if up { -1.0 } else { 1.0 }));
+        } else {
+            let _ = writeln!(
+                out,
+                "<path d=\"M{:.1} {:.1}l6 6m0 -6l-6 6\" stroke=\"{color}\" stroke-width=\"1.6\"/>",
+                x - 3.0,
+                y - 3.0
+            );
+        }
         let wide = text::width(&words(curve)) * SIZE;
         let left = if x + 6.0 + wide < frame.right() { x + 6.0 } else { (x - 6.0 - wide).max(frame.left) };
         // The nearest line, below or above, that no other label has.
@@ -128,23 +146,9 @@ fn stops(out: &mut String, stopped: &[(&Curve, (f64, f64))], frame: &Frame) {
         let line = lines.into_iter().find(free).unwrap_or(first);
         taken.push((left, left + wide, line));
         let place = format!(
-            "font-size=\"{SIZE}\" fill=\"{}\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"",
-            ink(color)
+            "font-size=\"{SIZE}\" fill=\"#555\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\""
         );
         write_text(out, left, line, &place, &words(curve));
-    }
-}
-
-/// The colour of a label: that of its line, darkened where it would be hard to read as text.
-fn ink(color: &str) -> &str {
-    match color {
-        "#cc79a7" => "#9c3f74",
-        "#e69f00" => "#8a5f00",
-        "#56b4e9" => "#1f6f9f",
-        "#009e73" => "#00694f",
-        "#d55e00" => "#a84a00",
-        "#b0b0b0" | "#9a9a9a" | "#777777" => "#666666",
-        color => color,
     }
 }
 

@@ -6,7 +6,7 @@ pub(super) struct Frame {
     pub(super) top: f64,
     pub(super) wide: f64,
     pub(super) high: f64,
-    /// Room to the left of it.
+    /// Distance of the title of its vertical axis.
     pub(super) beside: f64,
 }
 
@@ -17,5 +17,13 @@ impl Frame {
 
     pub(super) fn bottom(&self) -> f64 {
         self.top + self.high
+    }
+
+    /// For a point outside: the nearest one on the edge, and the direction towards it.
+    pub(super) fn beyond(&self, (x, y): (f64, f64)) -> Option<((f64, f64), (f64, f64))> {
+        let edge = (x.clamp(self.left, self.right()), y.clamp(self.top, self.bottom()));
+        let away = (x - edge.0, y - edge.1);
+        let length = away.0.hypot(away.1);
+        (length > 0.5).then(|| (edge, (away.0 / length, away.1 / length)))
     }
 }

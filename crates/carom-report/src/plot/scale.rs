@@ -28,7 +28,7 @@ impl Scale {
         let tick = |d: i64, f: &f64| {
             let power = d.to_string().replace('-', "−");
             let label = match d {
-                -2..=2 if factors.len() > 1 => format!("{}", (f * 10f64.powi(d as i32) * 1e4).round() / 1e4),
+                -3..=2 if factors.len() > 1 => format!("{}", (f * 10f64.powi(d as i32) * 1e4).round() / 1e4),
                 _ if *f == 1.0 => format!("10^{{{power}}}"),
                 _ => format!("{f}·10^{{{power}}}"),
             };

@@ -1,0 +1,138 @@
+//! The settings of arms: those that all arms share, and those in which they differ.
+
+use carom_record::study::{Arm, Study};
+
+/// Arms other than those of a computed reference.
+fn arms(study: &Study) -> impl Iterator<Item = &Arm> {
+    study.manifest.arms.iter().filter(|arm| !arm.role.fine)
+}
+
+/// Whether all arms have a setting.
+pub(crate) fn is_shared(study: &Study, set: &str) -> bool {
+    study.manifest.arms.len() > 1 && arms(study).all(|arm| arm.sets.iter().any(|other| other == set))
+}
+
+/// Settings that all arms have.
+pub(crate) fn shared(study: &Study) -> Vec<&String> {
+    let first = arms(study).next();
+    first.into_iter().flat_map(|arm| &arm.sets).filter(|set| is_shared(study, set)).collect()
+}
+
+/// Settings joined by commas, without those that all arms have.
+pub(crate) fn own_settings(study: &Study, joined: &str) -> String {
+    // A value may contain a comma: shared settings are removed as a whole.
+    let mut own = joined.to_owned();
+    for set in shared(study) {
+        for (from, to) in [(format!(", {set}, "), ", "), (format!("{set}, "), ""), (format!(", {set}"), "")] {
+            own = own.replace(&from, to);
+        }
+        if own == *set {
+            own.clear();
+        }
+    }
+    own
+}
+
+/// The parameters in which arms differ, in order, each with the value of every arm that sets it.
+pub(crate) fn varied(study: &Study) -> Vec<(&str, Vec<Option<&str>>)> {
+    let mut found: Vec<(&str, Vec<Option<&str>>)> = Vec::new();
+    let count = study.manifest.arms.len();
+    for (i, arm) in study.manifest.arms.iter().enumerate().filter(|(_, arm)| !arm.role.fine) {
+        let own = arm.sets.iter().filter(|set| !is_shared(study, set));
+        for (key, value) in own.filter_map(|set| set.split_once('=')) {
+            let (key, value) = (key.trim(), value.trim());
+            let at = found.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
+                found.push((key, vec![None; count]));
+                found.len() - 1
+            });
+            found[at].1[i] = Some(value);
+        }
+    }
+    found
+}
+
+/// A value of the case that an arm without a setting has: a number, a word or a truth.
+pub(crate) fn of_case(arm: &Arm, key: &str) -> Option<String> {
+    let mut node = &arm.case;
+    let mut parts = key.split('.');
+    while let Some(part) = parts.next() {
+        // `body.disc.mass` is the entry named `disc` of the list `bodies`.
+        let list = match part {
+            "body" => "bodies".to_owned(),
+            part => format!("{part}s"),
+        };
+        node = match (node.get(part), node.get(&list).and_then(|list| list.as_array())) {
+            (Some(inner), _) if !inner.is_array() => inner,
+            (_, Some(list)) => {
+                let name = parts.next()?;
+                list.iter().find(|one| one.get("name").is_some_and(|own| own == name))?
+            }
+            _ => return None,
+        };
+    }
+    match node {
+        serde_json::Value::Number(number) => Some(number.to_string()),
+        serde_json::Value::String(word) => Some(format!("\"{word}\"")),
+        serde_json::Value::Bool(truth) => Some(truth.to_string()),
+        _ => None,
+    }
+}
+
+/// A value with at most five digits in each of its numbers.
+pub(crate) fn brief(value: &str) -> String {
+    let mut out = String::new();
+    let mut word = String::new();
+    let flush = |word: &mut String, out: &mut String| {
+        let digits = word.chars().filter(char::is_ascii_digit).count();
+        match word.parse::<f64>() {
+            Ok(number) if digits > 6 => out.push_str(&crate::digits::five(number)),
+            _ => out.push_str(word),
+        }
+        word.clear();
+    };
+    let mut quoted = false;
+    for c in value.chars() {
+        quoted ^= c == '"';
+        if !quoted && (c.is_alphanumeric() || matches!(c, '.' | '-' | '+' | '_')) {
+            word.push(c);
+        } else {
+            flush(&mut word, &mut out);
+            out.push(c);
+        }
+    }
+    flush(&mut word, &mut out);
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn long_numbers_are_shortened() {
+        assert_eq!(
+            brief("{ shape = \"disc-1234567\", size = 7.874015748031496 }"),
+            "{ shape = \"disc-1234567\", size = 7.874 }"
+        );
+        assert_eq!(brief("[-78.74015748031496, 1e-3, 0.00000903182300002092]"), "[−78.74, 1e-3, 9.032e−6]");
+    }
+
+    #[test]
+    fn values_of_the_case_are_found_by_name() {
+        let case = json!({
+            "time": { "step": 0.01, "scheme": { "kind": "hu" } },
+            "bodies": [{ "name": "a", "mass": "lumped" }, { "name": "b", "mass": "consistent" }],
+            "contacts": [{ "name": "strike", "mu": 0.0 }],
+        });
+        let arm: Arm = serde_json::from_value(
+            json!({ "name": "", "directory": "", "sets": [], "steps": 1, "case": case }),
+        )
+        .unwrap();
+        let of = |key| of_case(&arm, key);
+        assert_eq!(of("time.step").as_deref(), Some("0.01"));
+        assert_eq!(of("body.b.mass").as_deref(), Some("\"consistent\""));
+        assert_eq!(of("contact.strike.mu").as_deref(), Some("0.0"));
+        assert_eq!((of("time.scheme"), of("body.c.mass"), of("contact.strike.law")), (None, None, None));
+    }
+}

@@ -1,0 +1,102 @@
+//! The figure of the spectral properties of the schemes, with the frequencies of the model.
+
+use carom_record::study::{Study, step};
+
+use crate::curves;
+use crate::plot::{Curve, Pane, Plot};
+
+/// Spectral radius, damping and period error of every scheme, from `theory.csv`; frequencies of the
+/// model, from `frequencies.csv`.
+pub(crate) fn plot(study: &Study) -> Option<Plot> {
+    let rows = |name: &str| -> Option<Vec<csv::StringRecord>> {
+        csv::Reader::from_path(study.directory.join(name)).ok()?.records().collect::<Result<_, _>>().ok()
+    };
+    let table = rows("theory.csv")?;
+    let steps = study.manifest.arms.iter().filter(|a| !a.role.fine).filter_map(|a| step(a, "time.step"));
+    let (short, long) = steps.fold((f64::INFINITY, 0.0_f64), |(a, b), h| (a.min(h), b.max(h)));
+    let mut marks: Vec<(f64, String)> = Vec::new();
+    for row in rows("frequencies.csv").unwrap_or_default() {
+        let (word, Ok(omega)) = (&row[0], row[1].parse::<f64>()) else { continue };
+        let symbol = match word {
+            "1" => "ω_{1}Δt",
+            "highest" => "ω_{max}Δt",
+            "spring" => "ω_{c}Δt",
+            _ => continue,
+        };
+        marks.push((omega * long, symbol.to_owned()));
+        if short < 0.9 * long {
+            marks.push((omega * short, String::new()));
+        }
+    }
+    // The curves have no values below these.
+    let least = table.iter().filter_map(|row| row[1].parse::<f64>().ok()).fold(f64::INFINITY, f64::min);
+    marks.retain(|(at, _)| *at >= least);
+    let springs = if marks.iter().any(|m| m.1.starts_with("ω_{c}")) {
+        " ω_{c}: the stiffest penalty spring on its node alone, with the other side at rest."
+    } else {
+        ""
+    };
+    let mut names: Vec<&str> = Vec::new();
+    for row in &table {
+        if !names.contains(&&row[0]) {
+            names.push(&row[0]);
+        }
+    }
+    let methods = study.manifest.methods();
+    let curve = |column: usize| {
+        let (names, table, methods) = (&names, &table, &methods);
+        names.iter().enumerate().map(move |(k, name)| {
+            let known = methods.iter().position(|method| method == name);
+            let style = known.unwrap_or(methods.len() + k);
+            let of = table.iter().filter(|r| &r[0] == *name);
+            let points = of.filter_map(|r| Some((r[1].parse::<f64>().ok()?, r[column].parse::<f64>().ok()?)));
+            let (x, y) = points.unzip();
+            Curve { label: (*name).to_owned(), style, x, y, ..Curve::default() }
+        })
+    };
+    let mut once: Vec<(String, Vec<String>)> = Vec::new();
+    let mut together = |name: &str, others: &[String]| {
+        let at = once.iter().position(|(first, _)| first == name).unwrap_or_else(|| {
+            once.push((name.to_owned(), Vec::new()));
+            once.len() - 1
+        });
+        let known = &mut once[at].1;
+        known.extend(others.iter().filter(|other| !known.contains(other)).cloned().collect::<Vec<_>>());
+    };
+    let mut pane = |title: &str, y_label: &str, column: usize, limits: (f64, f64)| {
+        let found = curves::merged(curve(column).filter(|c| !c.x.is_empty()).collect());
+        for (curve, others) in found.iter().filter(|(_, others)| !others.is_empty()) {
+            together(&curve.label, others);
+        }
+        Pane {
+            title: title.into(),
+            y_label: y_label.into(),
+            curves: found.into_iter().map(|(curve, _)| curve).collect(),
+            marks: marks.clone(),
+            limits: Some(limits),
+            ..Pane::default()
+        }
+    };
+    let panes = vec![
+        pane("spectral radius", "ρ", 2, (0.0, 1.1)),
+        pane("numerical damping ratio", "ξ", 3, (0.0, 1.0)),
+        pane("relative period error", "(T − T_{0})/T_{0}", 4, (-0.1, 1.0)),
+    ];
+    Some(Plot {
+        group: String::new(),
+        name: "theory".into(),
+        caption: format!(
+            "Properties of the schemes for an undamped oscillator of angular frequency ω. Vertical lines: the \
+             lowest (ω_{{1}}) and the highest (ω_{{max}}) frequency of the model within the range of the axis, \
+             at the longest time step (labelled) and at the shortest.{springs} For a node constrained by a \
+             multiplier, ωΔt → ∞ and only ρ∞ matters.{}",
+            curves::drawn_once(&once)
+        ),
+        x_label: "ωΔt".into(),
+        log: [true, false],
+        across: 1,
+        same: false,
+        direct: true,
+        panes,
+    })
+}
