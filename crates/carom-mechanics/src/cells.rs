@@ -6,7 +6,7 @@ use carom_solid::Inverted;
 
 /// Cells computed while those before are added: enough to share among threads, few enough for their
 /// caches.
-const BLOCK: usize = 4096;
+const BLOCK: usize = 8192;
 /// Numbers of a block, at most.
 const NUMBERS: usize = 1 << 17;
 /// Cells per task of a thread, at most.
