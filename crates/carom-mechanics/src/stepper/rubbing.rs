@@ -49,19 +49,30 @@ pub(super) fn friction_state(kind: Kind, normal: f64, tangential: Along) -> Fric
 /// nodes along that tangent, they slip.
 pub(super) fn loose(model: &Model, gap: Row, slips: &Rows, x: &[f64]) -> impl Iterator<Item = Along> + use<> {
     let tangents = [[1.0, 0.0], [0.0, 1.0]];
+    let Some(first) = slips.iter().next() else { return tangents.into_iter().take(0) };
+    let e = first.first();
+    let t = if slips.len() < 2 { [0.0; 3] } else { slips.row(1).first() };
     let is_free = |&(dof, _): &(usize, f64)| !model.fixed[dof];
     let normal: Vec<(usize, f64)> = gap.entries().filter(is_free).collect();
     let square: f64 = normal.iter().map(|(_, slope)| slope * slope).sum();
-    // What is left of a row on free dofs, in the order of their nodes, and the motion of the others
-    // along it.
+    // The part along the facet on free dofs without what the row of the gap has in common with it,
+    // and the motion of the other dofs along it.
     let part = |row: Row| -> (Vec<f64>, f64) {
         let of_gap = |dof: usize| normal.iter().find(|entry| entry.0 == dof).map_or(0.0, |entry| entry.1);
-        let free: Vec<(usize, f64)> = row.entries().filter(is_free).collect();
-        let common: f64 =
-            free.iter().map(|&(dof, h)| h * of_gap(dof)).sum::<f64>() / square.max(f64::MIN_POSITIVE);
-        let rest = free.iter().map(|&(dof, h)| h - common * of_gap(dof)).collect();
-        let held = row.entries().filter(|entry| !is_free(entry));
-        (rest, held.map(|(dof, h)| h * x[dof]).sum())
+        let (mut free, mut moved, d) = (Vec::new(), 0.0, model.dimension);
+        for (node, h) in row.nodes.iter().zip(row.gradient.chunks_exact(d)) {
+            let [of_e, of_t] = [e, t].map(|tangent| (0..d).map(|i| h[i] * tangent[i]).sum::<f64>());
+            for (i, dof) in (d * node..).take(d).enumerate() {
+                let along = of_e * e[i] + of_t * t[i];
+                if model.fixed[dof] {
+                    moved += along * x[dof];
+                } else {
+                    free.push((along, of_gap(dof)));
+                }
+            }
+        }
+        let common = free.iter().map(|(h, n)| h * n).sum::<f64>() / square.max(f64::MIN_POSITIVE);
+        (free.iter().map(|(h, n)| h - common * n).collect(), moved)
     };
     let least = HELD * HELD;
     let rest = AT_REST * max_abs(x);
@@ -72,7 +83,7 @@ pub(super) fn loose(model: &Model, gap: Row, slips: &Rows, x: &[f64]) -> impl It
         };
         return tangents.into_iter().take(slips.iter().filter(|&row| !is_constrained(row)).count());
     }
-    let [first, second] = [slips.row(0), slips.row(1)];
+    let second = slips.row(1);
     let ((e, e_moved), (t, t_moved)) = (part(first), part(second));
     let [a, b, mixed] = [dot(&e, &e), dot(&t, &t), dot(&e, &t)];
     let most = 0.5 * (a + b) + (0.5 * (a - b)).hypot(mixed);

@@ -456,9 +456,9 @@ time = { end = 0.076, step = 0.00076, scheme = { kind = "bathe", rho_inf = 0.5 }
 }
 
 /// In a plane of symmetry a node moves along the plane only. Where the facet below it leans, its
-/// slip depends on its gap, and friction has no effect of its own; by symmetry it has none at all.
+/// slip depends on its gap, and the problem of stick and slip is singular.
 #[test]
-fn a_node_in_a_plane_of_symmetry_does_not_rub() {
+fn a_half_model_rubs_with_explicit_and_impulse_schemes() {
     let case = include_str!("../../../../cases/impact/impact.toml");
     for scheme in [r#"{ kind = "central-difference" }"#, r#"{ kind = "moreau-jean", theta = 0.5 }"#] {
         let sets = [
@@ -469,20 +469,15 @@ fn a_node_in_a_plane_of_symmetry_does_not_rub() {
             "body.prism.mass=lumped",
         ];
         let mut sim = simulation(case, &sets);
-        let (mut in_plane, mut rubs) = (0, 0);
+        let mut rubs = 0;
         while !sim.finished() {
+            let before = sim.state().ledger.total();
             sim.advance(&mut GridReport::default()).unwrap();
-            let model = sim.model();
-            for pair in sim.state().pairs[0].iter().filter(|pair| pair.active) {
-                let node = model.contacts[0].kinematics.secondary()[pair.node];
-                if model.reference[2 * node] == 0.0 {
-                    in_plane += 1;
-                    assert_eq!(pair.tangential.traction, [0.0; 2], "{scheme}");
-                } else {
-                    rubs += usize::from(pair.tangential.traction != [0.0; 2]);
-                }
-            }
+            let state = sim.state();
+            assert!(state.ledger.total() < before + 1e-3 * state.ledger.kinetic.abs(), "{}", state.time);
+            let touching = state.pairs[0].iter().filter(|pair| pair.active);
+            rubs += touching.filter(|pair| pair.tangential.traction != [0.0; 2]).count();
         }
-        assert!(in_plane > 10 && rubs > 10, "{scheme}: {in_plane} {rubs}");
+        assert!(rubs > 10, "{scheme}: {rubs}");
     }
 }
