@@ -298,7 +298,7 @@ fn energy(run: &Run) -> Option<Figure> {
         .flatten()
         .fold(0.0, |m: f64, x| m.max(x.abs()));
     let panels = vec![
-        panel("energy", unit, 200.0, curves(run, &overlays, &ENERGIES, size)),
+        panel("energy", unit, 200.0, curves(run, &overlays, &ENERGIES, 1e3 * size)),
         panel("work, dissipation", unit, 150.0, curves(run, &overlays, &WORKS, 1e-3 * size)),
     ];
     let works = if panels[1].series.is_empty() {
@@ -316,7 +316,7 @@ fn energy(run: &Run) -> Option<Figure> {
         .collect();
     let shown: Vec<&str> = shown.iter().map(String::as_str).collect();
     let caption = format!(
-        "Energy balance.{works}{} Quantities that remain zero are omitted. Data: `history.csv`, columns {}.",
+        "Energy balance.{works}{} Energies below 10^{{-6}} of the largest one, and work that remains zero, are omitted. Data: `history.csv`, columns {}.",
         shaded(run),
         listed(&shown)
     );
@@ -387,8 +387,9 @@ fn solver(run: &Run) -> Option<Figure> {
     let [ticks, log] =
         if run.log.is_empty() { [""; 2] } else { [" Ticks: events by kind.", "; `log.jsonl`"] };
     let caption = format!(
-        "{} per step.{none}{ticks} Data: `history.csv`, {} `{}`{log}.",
+        "{} per step.{none}{}{ticks} Data: `history.csv`, {} `{}`{log}.",
         capitalised(&listed(&words)),
+        shaded(run),
         if names.len() == 1 { "column" } else { "columns" },
         names.join("`, `")
     );
