@@ -59,8 +59,23 @@ fn setup(run: &Run) -> Option<Figure> {
         let is_rigid = |contact: &serde_json::Value| contact.pointer("/primary/side").is_none();
         let rigid = contacts.is_some_and(|contacts| contacts.iter().any(is_rigid));
         let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
-        let dashed = if svg.contains("stroke-dasharray") { " Dashed: what is turned away." } else { "" };
-        format!(" View: {}.{dashed}{rigid}", space::View::words())
+        let has = |key: &str| {
+            let items = run.manifest.case.get(key).and_then(|v| v.as_array());
+            items.is_some_and(|items| !items.is_empty())
+        };
+        let outlined = match (has("supports"), has("loads")) {
+            (true, true) => " Coloured outlines: supported and loaded faces",
+            (true, false) => " Coloured outlines: supported faces",
+            (false, true) => " Coloured outlines: loaded faces",
+            (false, false) => "",
+        };
+        let dashed = match (svg.contains("stroke-dasharray"), outlined.is_empty()) {
+            (true, true) => " Dashed: what is hidden.",
+            (true, false) => "; dashed where hidden.",
+            (false, true) => "",
+            (false, false) => ".",
+        };
+        format!(" View: {}.{outlined}{dashed}{rigid}", space::View::words())
     } else {
         String::new()
     };
