@@ -1,6 +1,8 @@
 //! Loads in the drawing of a case: arrows at sides and in bodies. Their directions are those at the
 //! end of the run or, where the load is then zero, at the last of a few earlier times.
 
+use std::fmt::Write as _;
+
 use carom_formula::Formula;
 use serde_json::Value;
 
@@ -63,13 +65,24 @@ fn without_dots(formula: &str) -> String {
         rest = &rest[word.len()..];
         out.push_str(word);
         let is_number = word == "π" || word.starts_with(|c: char| c.is_ascii_digit());
-        let Some(after) = rest.strip_prefix('·').filter(|_| can_start) else { continue };
-        let square = after.strip_prefix(word).filter(|_| !is_number);
-        if let Some(after) = square.filter(|s| !s.starts_with(|c| is_word(c) || matches!(c, '^' | '(' | '·')))
+        if !can_start {
+            continue;
+        }
+        let equal = |tail: &'_ str| -> Option<usize> {
+            let after = tail.strip_prefix('·')?.strip_prefix(word)?;
+            let ends = !after.starts_with(|c| is_word(c) || matches!(c, '^' | '('));
+            ends.then_some(tail.len() - after.len())
+        };
+        let mut power = 1;
+        while let Some(length) = equal(rest).filter(|_| !is_number) {
+            (power, rest) = (power + 1, &rest[length..]);
+        }
+        if power > 1 {
+            let _ = write!(out, "^{power}");
+        }
+        let after = rest.strip_prefix('·').filter(|_| is_number);
+        if let Some(after) = after.filter(|after| after.starts_with(|c: char| c.is_alphabetic() || c == '('))
         {
-            out.push_str("^2");
-            rest = after;
-        } else if is_number && after.starts_with(|c: char| c.is_alphabetic() || c == '(') {
             out.push('\u{202f}');
             rest = after;
         }
@@ -282,7 +295,7 @@ mod tests {
             ("X^2*t", "X^2·t"),
             ("X/t*t", "X/t·t"),
             ("t*t^2", "t·t^2"),
-            ("t*t*t", "t·t·t"),
+            ("t*t*t", "t^3"),
         ] {
             assert_eq!(typeset(formula), text);
         }
