@@ -260,6 +260,9 @@ fn expectations(run: &Run) -> Markup {
                     }
                 }
             }
+            @if run.manifest.expectations.iter().any(|e| e.got.is_some_and(|x| got(&e.what, x) == "≈ 0")) {
+                p.small { "≈ 0: round-off." }
+            }
             @for (k, source) in repeated.iter().enumerate() { p.small { "[" (k + 1) "] " (source) } }
         }
     }
