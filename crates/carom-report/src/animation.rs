@@ -16,7 +16,7 @@ use serde_json::json;
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::bodies::{Instant, frame, triangles};
 use crate::chart::{Chart, Options, Panel, Series, Track};
-use crate::labels::{amount, is_static, is_stress, symbol, time_label};
+use crate::labels::{amount, is_static, is_stress, number, symbol, time_label};
 use crate::noise;
 use crate::obstacles;
 use crate::palette::LINES;
@@ -230,6 +230,19 @@ pub(crate) fn of_files(frames: usize, files: usize) -> String {
     }
 }
 
+/// What the shades and the line in the time histories mean.
+pub(crate) fn histories_in_words(shaded: bool) -> String {
+    let shades = if shaded { " Shaded: contact." } else { "" };
+    format!("{shades} Vertical line, here and in the figures below: the instant shown.")
+}
+
+/// The time of the last frame, as a part of a sentence, where the record goes on after it.
+pub(crate) fn until(run: &Run, last: f64) -> String {
+    let ends = run.times().last().is_some_and(|end| end - last > 1e-9 * end.abs());
+    let unit = run.history.unit("time");
+    if ends { format!("; the last is at {} {unit}", number(last)) } else { String::new() }
+}
+
 /// How an animation is controlled; folded, because it is no part of what is shown.
 pub(crate) fn help(keys: &Markup) -> Markup {
     html! {
@@ -346,6 +359,8 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         "marked": surfaces.iter().map(|obstacle| obstacle.mark(run, 0.0).is_some()).collect::<Vec<_>>(),
     });
     let every = of_files(entries.len(), run.fields.len());
+    let last = frames.last().map_or_else(String::new, |(entry, _)| until(run, entry.time));
+    let of_histories = histories_in_words(!shades.is_empty());
     // Only `<` could end the script element.
     let data = data.to_string().replace('<', "\\u003c");
     let figure = html! {
@@ -365,12 +380,13 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                     " in the colours of figure " (figure) ", or " (Label("σ_{vM}"))
                     " (of nodal averages of the Cauchy stress)"
                 }
-                "; frames are " (every) ", without interpolation."
+                "; frames are " (every) ", without interpolation" (Label(&last)) "."
                 @if largest > 0.0 {
                     (Prose(" Arrows: contact forces on the secondary nodes (`contact.csv`); the longest is "))
                     (Label(&size(largest, run.history.unit("contact_force_x")))) "."
                 }
-                (arrowheads(quantities.iter().map(|q| q.legend.cut)))
+                (Label(&arrowheads(quantities.iter().map(|q| (q.legend.cut, q.legend.label.to_owned())))))
+                (of_histories)
                 @if !run.log.is_empty() { (Prose(EVENTS)) }
             }
             (help(&html! {

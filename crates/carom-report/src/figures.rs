@@ -59,8 +59,23 @@ fn setup(run: &Run) -> Option<Figure> {
         let is_rigid = |contact: &serde_json::Value| contact.pointer("/primary/side").is_none();
         let rigid = contacts.is_some_and(|contacts| contacts.iter().any(is_rigid));
         let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
-        let dashed = if svg.contains("stroke-dasharray") { " Dashed: what is turned away." } else { "" };
-        format!(" View: {}.{dashed}{rigid}", space::View::words())
+        let has = |key: &str| {
+            let items = run.manifest.case.get(key).and_then(|v| v.as_array());
+            items.is_some_and(|items| !items.is_empty())
+        };
+        let outlined = match (has("supports"), has("loads")) {
+            (true, true) => " Coloured outlines: supported and loaded faces",
+            (true, false) => " Coloured outlines: supported faces",
+            (false, true) => " Coloured outlines: loaded faces",
+            (false, false) => "",
+        };
+        let dashed = match (svg.contains("stroke-dasharray"), outlined.is_empty()) {
+            (true, true) => " Dashed: what is hidden.",
+            (true, false) => "; dashed where hidden.",
+            (false, true) => "",
+            (false, false) => ".",
+        };
+        format!(" View: {}.{outlined}{dashed}{rigid}", space::View::words())
     } else {
         String::new()
     };
@@ -298,7 +313,7 @@ fn energy(run: &Run) -> Option<Figure> {
         .flatten()
         .fold(0.0, |m: f64, x| m.max(x.abs()));
     let panels = vec![
-        panel("energy", unit, 200.0, curves(run, &overlays, &ENERGIES, size)),
+        panel("energy", unit, 200.0, curves(run, &overlays, &ENERGIES, 1e3 * size)),
         panel("work, dissipation", unit, 150.0, curves(run, &overlays, &WORKS, 1e-3 * size)),
     ];
     let works = if panels[1].series.is_empty() {
@@ -316,7 +331,7 @@ fn energy(run: &Run) -> Option<Figure> {
         .collect();
     let shown: Vec<&str> = shown.iter().map(String::as_str).collect();
     let caption = format!(
-        "Energy balance.{works}{} Quantities that remain zero are omitted. Data: `history.csv`, columns {}.",
+        "Energy balance.{works}{} Energies below 10^{{-6}} of the largest one, and work that remains zero, are omitted. Data: `history.csv`, columns {}.",
         shaded(run),
         listed(&shown)
     );
@@ -387,8 +402,9 @@ fn solver(run: &Run) -> Option<Figure> {
     let [ticks, log] =
         if run.log.is_empty() { [""; 2] } else { [" Ticks: events by kind.", "; `log.jsonl`"] };
     let caption = format!(
-        "{} per step.{none}{ticks} Data: `history.csv`, {} `{}`{log}.",
+        "{} per step.{none}{}{ticks} Data: `history.csv`, {} `{}`{log}.",
         capitalised(&listed(&words)),
+        shaded(run),
         if names.len() == 1 { "column" } else { "columns" },
         names.join("`, `")
     );

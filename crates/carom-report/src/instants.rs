@@ -107,15 +107,21 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
     let legend = Legend { bands: &bands, cut, label: "σ_{yy}", unit: &stress };
     let [svg, narrow] = [SHEET, NARROW]
         .map(|width| bodies::figure(&list, (&walks, &marks, wide), title, &legend, &length, width));
-    let arrow = arrowheads([cut]);
+    let arrow = arrowheads([(cut, String::new())]);
     let mark = if marks.iter().any(|marks| !marks.is_empty()) {
         " Triangle: a point of the plane that moves."
     } else {
         ""
     };
+    // Without either sign the outer half of the band around zero ends the bar.
+    let step = (bands.high - bands.low) / bands.count as f64;
+    let [compression, tension] = [
+        if bands.low < -0.75 * step { " Blue: compression." } else { "" },
+        if bands.high > 0.75 * step { " Red: tension." } else { "" },
+    ];
     let caption = format!(
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
-         the same scale; displacements are not magnified. Blue: compression. Red: tension.{mark}{arrow} Data: stress and displacement in the field files."
+         the same scale; displacements are not magnified.{compression}{tension}{mark}{arrow} Data: stress and displacement in the field files."
     );
     let figure = Figure::new("bodies", caption, svg).with_narrow(narrow);
     let figure = contours::with_files(figure, &times, &list, [unit, &length, &stress]);

@@ -3,7 +3,7 @@
 use carom_formula::instant;
 use carom_record::Run;
 
-use crate::scientific::significant;
+use crate::scientific::{given, significant};
 
 /// Symbol of a probe quantity: `σ_{yy}`.
 pub(crate) fn symbol(quantity: &str) -> String {
@@ -87,6 +87,16 @@ pub(crate) fn amount(x: f64, unit: &str) -> String {
     }
 }
 
+/// A value that was given, with a prefix where it is far from one.
+pub(crate) fn given_amount(x: f64, unit: &str) -> String {
+    let is_near = x == 0.0 || !x.is_finite() || (1e-3..1e6).contains(&x.abs());
+    let exponent = if is_near { 0 } else { 3 * (x.abs().log10() / 3.0).floor() as i32 };
+    match prefixed(unit, exponent) {
+        Some(unit) => format!("{} {unit}", given(x / 10f64.powi(exponent))),
+        None => format!("{} {unit}", given(x)).trim_end().to_owned(),
+    }
+}
+
 /// The unit with the prefix that stands for its own times 10^exponent: 10^{-6} MPa is Pa.
 fn prefixed(unit: &str, exponent: i32) -> Option<String> {
     const PREFIXES: [(&str, i32); 9] =
@@ -139,7 +149,7 @@ pub(crate) fn number(x: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{amount, number, scaled};
+    use super::{amount, given_amount, number, scaled};
 
     #[test]
     fn amounts_have_the_prefix_of_their_size() {
@@ -148,6 +158,9 @@ mod tests {
             assert_eq!(amount(x, unit), text);
         }
         assert_eq!(amount(-31.25e6, "kPa"), "−31.2 GPa");
+        let values = [(4.395e-5, "MPa"), (200.0, "Pa"), (2.1e11, "Pa"), (1e8, "lb/(in s^2)")];
+        let texts = ["43.95 Pa", "200 Pa", "210 GPa", "10^{8} lb/(in s^2)"];
+        assert_eq!(values.map(|(x, unit)| given_amount(x, unit)), texts);
     }
 
     /// 10^-6 MPa = 1 Pa, 10^3 N = 1 kN, 10^-3 m/s = 1 mm/s.

@@ -11,7 +11,7 @@ use crate::animation::Animation;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::figure::Figure;
 use crate::labels::{capitalised, is_static, number};
-use crate::results::results;
+use crate::results::{is_round_off, results};
 use crate::scientific::{powers, significant};
 use crate::setup::in_words;
 use crate::stopped;
@@ -228,6 +228,12 @@ fn repeated_sources(run: &Run) -> Vec<&String> {
 
 fn expectations(run: &Run) -> Markup {
     let repeated = repeated_sources(run);
+    let length = run.manifest.case.pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
+    let length = Label(length).render().into_string();
+    let is_length = |what: &str| !length.is_empty() && unit_of_question(run, what).into_string() == length;
+    let got = |what: &str, got: f64| {
+        if is_round_off(run, got) && is_length(what) { "≈ 0".to_owned() } else { significant(got, DIGITS) }
+    };
     html! {
         @if !run.manifest.expectations.is_empty() {
             h2 { "Expectations" }
@@ -241,7 +247,7 @@ fn expectations(run: &Run) -> Markup {
                 @for e in &run.manifest.expectations {
                     tr {
                         td { code { (e.what) } } td.expected { (Label(&expected(&e.expected))) }
-                        td.n { (Label(&or_dash(e.got, |x| significant(x, DIGITS)))) }
+                        td.n { (Label(&or_dash(e.got, |x| got(&e.what, x)))) }
                         td.unit { (unit_of_question(run, &e.what)) }
                         @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
                         td {
@@ -253,6 +259,9 @@ fn expectations(run: &Run) -> Markup {
                         }
                     }
                 }
+            }
+            @if run.manifest.expectations.iter().any(|e| e.got.is_some_and(|x| got(&e.what, x) == "≈ 0")) {
+                p.small { "≈ 0: round-off." }
             }
             @for (k, source) in repeated.iter().enumerate() { p.small { "[" (k + 1) "] " (source) } }
         }

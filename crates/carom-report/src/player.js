@@ -21,9 +21,13 @@ const player = (root, frames, unit, draw, first) => {
     const svg = axis.ownerSVGElement, ticks = svg.querySelector("g.ticks"), original = ticks?.innerHTML;
     // A map over time has a cursor and takes clicks, but is not enlarged.
     const range = () => shownFrom === null || !ticks ? [t0, t1] : [shownFrom, shownTo];
-    const line = document.createElementNS("http://www.w3.org/2000/svg", "path");
-    for (const [key, value] of [["stroke", ticks ? "#c0267e" : "#0072b2"], ["stroke-width", ticks ? "1.2" : "1.6"], ["class", "cursor"]]) line.setAttribute(key, value);
-    axis.append(line);
+    // On the colours of a map only black with a white casing can be seen everywhere.
+    const lines = (ticks ? [["#c0267e", 1.2]] : [["#fff", 4], ["#000", 1.6]]).map(([color, width]) => {
+      const line = document.createElementNS("http://www.w3.org/2000/svg", "path");
+      for (const [key, value] of [["stroke", color], ["stroke-width", width], ["class", "cursor"]]) line.setAttribute(key, value);
+      axis.append(line);
+      return line;
+    });
     const at = event => {
       const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
       const [from, to] = range();
@@ -47,7 +51,7 @@ const player = (root, frames, unit, draw, first) => {
       move: t => {
         const x = place(t);
         const parts = spans.map((y, i) => i % 2 ? `V${y}` : `M${x.toFixed(2)} ${y}`);
-        line.setAttribute("d", x < x0 - 1 || x > x1 + 1 ? "" : parts.join(""));
+        lines.forEach(line => line.setAttribute("d", x < x0 - 1 || x > x1 + 1 ? "" : parts.join("")));
       },
       rescale: () => {
         if (!ticks) return;

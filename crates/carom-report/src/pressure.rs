@@ -77,7 +77,9 @@ fn in_contact(run: &Run, sides: &[Side]) -> (f64, f64) {
     let (start, end) = range(run.times());
     let (first, last) = range(sides.iter().flat_map(|side| &side.rows).map(|(row, _)| &row.time));
     let margin = 0.04 * (last - first).max(0.02 * (end - start));
-    ((first - margin).max(start), (last + margin).min(end))
+    // A pressure is drawn up to the next instant.
+    let next = run.times().iter().copied().find(|t| *t > last).unwrap_or(last);
+    ((first - margin).max(start), (last + margin).max(next).min(end))
 }
 
 /// The map of every contact.
@@ -101,11 +103,12 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     } else {
         ""
     };
+    let bars = cuts.into_iter().zip(sides.iter().map(|side| format!("“{}”", side.name)));
     let caption = format!(
         "Contact pressure p during contact, over time and the arc length s of the secondary side in the reference \
          configuration; one band per node, grey where the node is not in contact.{thinned}{}{unmatched} Data: \
          `contact.csv`, column `pressure`.",
-        arrowheads(cuts)
+        arrowheads(bars)
     );
     let labels = [
         ("@P@", with_unit("p", &stress)),
@@ -208,6 +211,7 @@ fn map(
         let (first, last) = (run[0], run[run.len() - 1].1);
         let end = kept.get(last + 1).or(kept.last()).copied().unwrap_or_default();
         let [x, right] = [kept[first.1], end].map(to_x);
+        let right = right.max(x + 1.0);
         let [bottom, top] = first.3.map(to_y);
         paths[first.2].polygon(&[[x, top], [right, top], [right, bottom], [x, bottom]]);
     }

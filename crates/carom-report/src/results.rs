@@ -26,8 +26,7 @@ pub(crate) fn results(run: &Run) -> Markup {
         all.filter(|metric| metric.value.is_some() && is_meaningful(run, metric)).collect();
     let groups = metrics::TITLES
         .map(|title| (title, known.iter().filter(|m| metrics::group(&m.name) == title).collect::<Vec<_>>()));
-    let size = size(run);
-    let is_noise = |metric: &Metric| metric.value.is_some_and(|x| x != 0.0 && x.abs() < ROUND_OFF * size);
+    let is_noise = |metric: &Metric| metric.value.is_some_and(|x| is_round_off(run, x));
     html! {
         h2 { "Key results" }
         table.results {
@@ -57,6 +56,11 @@ fn value(metric: &Metric) -> String {
     // Times of rows have few digits.
     let is_exact = metric.name.starts_with("contact_") || (metric.unit.is_empty() && x.fract() == 0.0);
     if is_exact { number(x) } else { significant(x, DIGITS) }
+}
+
+/// Whether a length, such as the result of an expectation, is round-off.
+pub(crate) fn is_round_off(run: &Run, x: f64) -> bool {
+    x != 0.0 && x.abs() < ROUND_OFF * size(run)
 }
 
 /// The size of positions and of shares of energy, compared with which values are round-off.

@@ -12,8 +12,8 @@ use crate::scientific::{powers, significant};
 use crate::text::{Label, Prose, typeset};
 
 const ITERATIONS: &str = "Newton's iterations of the last attempt, each before its correction. Residual: as \
-    a fraction of the sum of the forces. Gap and correction: as fractions of the length of the model. \
-    Damping: the fraction of the correction that was applied.";
+    a fraction of the sum of the forces.";
+const DAMPING: &str = " Damping: the fraction of the correction that was applied.";
 
 /// The picture of the place.
 pub(crate) fn picture(run: &Run) -> Option<Figure> {
@@ -140,7 +140,7 @@ fn advice(stop: &Stop, unit: &str) -> Markup {
                     @for advice in &stop.advice {
                         tr {
                             td { (Prose(&advice.what)) }
-                            td { @for set in &advice.sets { code { "--set '" (breakable(set)) "'" } " " } }
+                            td { @for set in &advice.sets { code { span.option { "--set" } " '" (breakable(set)) "'" } " " } }
                             (result(advice))
                         }
                     }
@@ -160,7 +160,7 @@ fn breakable(set: &str) -> Markup {
 /// A fraction of a correction: it is halved, so a power of two.
 fn fraction(x: f64) -> String {
     let halvings = -x.log2();
-    if halvings > 2.0 && halvings.fract() == 0.0 { format!("2^{{−{halvings}}}") } else { number(x) }
+    if halvings > 9.0 && halvings.fract() == 0.0 { format!("2^{{−{halvings}}}") } else { number(x) }
 }
 
 fn iterations(iterations: &[StopIteration]) -> Markup {
@@ -194,7 +194,10 @@ fn iterations(iterations: &[StopIteration]) -> Markup {
                 }
             }
             p.small {
-                (Prose(ITERATIONS)) @if !pairs { " No pair was in contact." }
+                (ITERATIONS)
+                @if gaps { " Gap and correction: as fractions" } @else { " Correction: as a fraction" }
+                " of the length of the model." (DAMPING)
+                @if !pairs { " No pair was in contact." }
                 (Prose(" Data: `stopped.json`."))
             }
         }

@@ -104,7 +104,21 @@ impl Render for Prose<'_> {
     fn render(&self) -> Markup {
         html! {
             @for (i, part) in self.0.split('`').enumerate() {
-                @if i % 2 == 1 { code { (part) } } @else { (Label(part)) }
+                @if i % 2 == 1 { code { (Code(part)) } } @else { (Label(part)) }
+            }
+        }
+    }
+}
+
+/// Code of which options such as `--set` are not broken after their hyphens.
+struct Code<'a>(&'a str);
+
+impl Render for Code<'_> {
+    fn render(&self) -> Markup {
+        html! {
+            @for (i, word) in self.0.split(' ').enumerate() {
+                @if i > 0 { " " }
+                @if word.starts_with("--") { span.option { (word) } } @else { (word) }
             }
         }
     }

@@ -206,7 +206,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 28] = [
             Unit::None,
             "the ΔE(t_{a−1}) − ΔE(t_b) of largest absolute value, over E*",
             OWN,
-            "energy lost in the impact that changes the energy most, divided by the largest kinetic + strain energy; energy_lost:N: in the N-th impact",
+            "energy lost in the impact that changes the energy most, divided by the largest kinetic + strain energy; energy_lost:N is that of the N-th impact",
         ),
         ledger::at_worst_impact,
     ),

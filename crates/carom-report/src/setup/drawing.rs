@@ -23,6 +23,8 @@ pub(super) const BODIES: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"
 
 /// Fill colours of supported sides in space, one for each support in turn.
 pub(super) const SUPPORTS: [&str; 3] = ["#9db4ca", "#a3c4ab", "#c3aecf"];
+/// Colours of their outlines.
+pub(super) const SUPPORT_LINES: [&str; 3] = ["#44607c", "#34703f", "#75508c"];
 
 /// The polyline of a side in pixels, with outward unit normals.
 pub(super) type Walk = Vec<(Point, Point)>;

@@ -1,6 +1,8 @@
 //! Loads in the drawing of a case: arrows at sides and in bodies. Their directions are those at the
 //! end of the run or, where the load is then zero, at the last of a few earlier times.
 
+use std::fmt::Write as _;
+
 use carom_formula::Formula;
 use serde_json::Value;
 
@@ -40,8 +42,56 @@ fn depends_on_time(formula: &str) -> bool {
     formula.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == "t")
 }
 
-/// A formula with minus signs, dots of multiplication and π.
+/// A formula with minus signs, π, and dots of multiplication where they are needed.
 fn typeset(formula: &str) -> String {
+    without_dots(&signs(formula))
+}
+
+/// `40·t·t` as `40 t^2`, `2·π·t` as `2 π t`: a space that breaks no line stands for the dot after
+/// a number that is no divisor or exponent.
+fn without_dots(formula: &str) -> String {
+    let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
+    let mut out = String::with_capacity(formula.len());
+    let mut rest = formula;
+    while let Some(c) = rest.chars().next() {
+        let before = out.chars().last().unwrap_or(' ');
+        let can_start = !is_word(before) && !matches!(before, '/' | '^' | '{');
+        let word = &rest[..rest.find(|c| !is_word(c)).unwrap_or(rest.len())];
+        if word.is_empty() {
+            out.push(c);
+            rest = &rest[c.len_utf8()..];
+            continue;
+        }
+        rest = &rest[word.len()..];
+        out.push_str(word);
+        let is_number = word == "π" || word.starts_with(|c: char| c.is_ascii_digit());
+        if !can_start {
+            continue;
+        }
+        let equal = |tail: &'_ str| -> Option<usize> {
+            let after = tail.strip_prefix('·')?.strip_prefix(word)?;
+            let ends = !after.starts_with(|c| is_word(c) || matches!(c, '^' | '('));
+            ends.then_some(tail.len() - after.len())
+        };
+        let mut power = 1;
+        while let Some(length) = equal(rest).filter(|_| !is_number) {
+            (power, rest) = (power + 1, &rest[length..]);
+        }
+        if power > 1 {
+            let _ = write!(out, "^{power}");
+        }
+        let after = rest.strip_prefix('·').filter(|_| is_number);
+        if let Some(after) = after.filter(|after| after.starts_with(|c: char| c.is_alphabetic() || c == '('))
+        {
+            out.push('\u{202f}');
+            rest = after;
+        }
+    }
+    out
+}
+
+/// A formula with minus signs, dots of multiplication and π.
+fn signs(formula: &str) -> String {
     let mut out = String::with_capacity(formula.len());
     let mut word = String::new();
     let end = |word: &mut String, out: &mut String| {
@@ -150,7 +200,8 @@ impl Setup<'_> {
             let unit = self.load_unit(load.kind);
             let units = self.case().get("units").unwrap_or(&Value::Null);
             let is_formula = load.components.iter().any(|c| c.as_str().is_some_and(depends_on_time));
-            let time = if is_formula { format!(" (t in {})", text(units, "time")) } else { String::new() };
+            let time =
+                if is_formula { format!(", with t in {}", text(units, "time")) } else { String::new() };
             let amount = format!("{amount} {unit}{time}").trim_end().to_owned();
             let table = value.pointer("/table/file").and_then(Value::as_str);
             let table = table.map_or_else(String::new, |file| format!(" × {file}"));
@@ -182,7 +233,7 @@ impl Setup<'_> {
             let (length, time) = (text(units, "length"), text(units, "time"));
             let words = format!("{} = {} {length}", axis(axis_number.as_f64()?), written(formula));
             Some(if formula.as_str().is_some_and(depends_on_time) {
-                format!("{words} (t in {time})")
+                format!("{words}, with t in {time}")
             } else {
                 words
             })
@@ -228,4 +279,25 @@ fn distance(a: Point, b: Point) -> f64 {
 fn heading(vector: &[f64]) -> Option<Point> {
     let d = direction([0.0; 2], [vector.first().copied()?, -vector.get(1).copied().unwrap_or(0.0)]);
     (d != [0.0; 2]).then_some(d)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dots_are_left_out_where_nothing_changes() {
+        for (formula, text) in [
+            ("-40*t*t", "−40\u{202f}t^2"),
+            ("0.08443*(1 - cos(2*pi*t))", "0.08443\u{202f}(1 − cos(2\u{202f}π\u{202f}t))"),
+            ("X + Z*t", "X + Z·t"),
+            ("X/2*t", "X/2·t"),
+            ("X^2*t", "X^2·t"),
+            ("X/t*t", "X/t·t"),
+            ("t*t^2", "t·t^2"),
+            ("t*t*t", "t^3"),
+        ] {
+            assert_eq!(typeset(formula), text);
+        }
+    }
 }

@@ -5,11 +5,12 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORTS, Setup};
+use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, written};
 use super::values::{list, text as word, tuple, vector};
 use crate::bodies::fill_space;
 use crate::chart::write_text;
+use crate::labels::given_amount;
 use crate::scientific::given;
 use crate::symbols::{arrow, guides, motion, plus, rollers, wall};
 use crate::text;
@@ -81,8 +82,9 @@ impl Setup<'_> {
             // The manifest has Lamé's constants; μ is the coefficient of friction here.
             let poisson = lambda / (2.0 * (lambda + shear));
             let young = 2.0 * shear * (1.0 + poisson);
-            line("", &format!("E = {} {stress}, ν = {}", given(young), given(poisson)), false);
-            line("", &format!("λ = {} {stress}, G = {} {stress}", given(lambda), given(shear)), false);
+            line("", &format!("E = {}, ν = {}", given_amount(young, stress), given(poisson)), false);
+            let [lambda, shear] = [lambda, shear].map(|x| given_amount(x, stress));
+            line("", &format!("λ = {lambda}, G = {shear}"), false);
         }
         for (k, support) in list(self.case(), "supports").iter().enumerate() {
             if k == 0 {
@@ -95,8 +97,9 @@ impl Setup<'_> {
             if fill_space(self.fields) {
                 let _ = write!(
                     swatch,
-                    "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#44607c\"/>",
-                    SUPPORTS[k % SUPPORTS.len()]
+                    "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"{}\"/>",
+                    SUPPORTS[k % SUPPORTS.len()],
+                    SUPPORT_LINES[k % SUPPORT_LINES.len()]
                 );
             } else if let Some(axis) = Self::moved_axis(support).filter(|_| !self.flat) {
                 motion(&mut swatch, &[([10.0, 0.0], axis), ([10.0, 0.0], axis)], axis);
@@ -134,10 +137,14 @@ impl Setup<'_> {
             let shape = shape.map(|shape| if in_space && shape == "circle" { "sphere" } else { shape });
             let rigid = format!("rigid {}", shape.unwrap_or("plane"));
             let primary = side.unwrap_or(&rigid);
+            let secondary = word(contact, "secondary");
             // The sides are not coloured in the drawing of bodies in space.
-            let bar = |color: &str| if fill_space(self.fields) { String::new() } else { bar(color) };
-            line(&bar(SECONDARY), &format!("{} (secondary)", word(contact, "secondary")), false);
-            line(&bar(PRIMARY), &format!("{primary} (primary)"), false);
+            if fill_space(self.fields) {
+                line("", &format!("secondary: {secondary}, primary: {primary}"), false);
+            } else {
+                line(&bar(SECONDARY), &format!("{secondary} (secondary)"), false);
+                line(&bar(PRIMARY), &format!("{primary} (primary)"), false);
+            }
             if let Some(motion) = motion_in_words(contact, length, time) {
                 line("", &motion, false);
             }
@@ -188,7 +195,7 @@ fn motion_in_words(contact: &Value, length: &str, time: &str) -> Option<String> 
     });
     let turned = given.get("rotate").and_then(|turn| Some(format!("angle = ({})°", written(turn.get(0)?))));
     let words: Vec<String> = moved.chain(turned).collect();
-    (!words.is_empty()).then(|| format!("{} (t in {time})", words.join(", ")))
+    (!words.is_empty()).then(|| format!("{}, with t in {time}", words.join(", ")))
 }
 
 /// The coefficients of friction.

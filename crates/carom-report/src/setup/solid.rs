@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use carom_record::{FieldSet, Run};
 
-use super::drawing::{BODIES, KEY, ROOM, SUPPORTS, Setup};
+use super::drawing::{BODIES, KEY, ROOM, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, Load, load};
 use super::values::{list, text, vector};
 use crate::axis::round_step;
@@ -105,12 +105,6 @@ impl Solid<'_> {
         facets.iter().filter_map(|nodes| self.numbers.get(&corners(nodes))).flatten().copied().collect()
     }
 
-    /// Facets of all sides that are named in a list of the case.
-    fn named(&self, what: &str) -> Vec<Vec<usize>> {
-        let of = |item| list(item, "on").iter().filter_map(|side| side.as_str()).map(|side| self.side(side));
-        list(self.setup.case(), what).iter().flat_map(of).collect()
-    }
-
     /// Middle of a facet and its outward unit normal.
     fn middle(&self, facet: &Facet) -> (Place, Place) {
         let [a, b, c] = [0, 1, 2].map(|k| self.places[facet.nodes[k]]);
@@ -152,8 +146,8 @@ impl Solid<'_> {
     fn sides(&self, out: &mut String) {
         // An edge of two sides is drawn once: two lines of dashes would be a solid one.
         let mut drawn = HashSet::new();
-        for (what, color) in [("supports", "#44607c"), ("loads", COLOR)] {
-            for side in self.outlined(what) {
+        for what in ["supports", "loads"] {
+            for (color, side) in self.outlined(what) {
                 let mut found: HashMap<[usize; 2], (usize, usize)> = HashMap::new();
                 let mut order = Vec::new();
                 for &k in &side {
@@ -190,14 +184,18 @@ impl Solid<'_> {
         }
     }
 
-    /// The sides of supports or loads.
-    fn outlined(&self, what: &str) -> Vec<Vec<usize>> {
+    /// The sides of supports or loads, with the colours of their outlines.
+    fn outlined(&self, what: &str) -> Vec<(&'static str, Vec<usize>)> {
+        let sides = |item, color| {
+            let names = list(item, "on").iter().filter_map(|side| side.as_str());
+            names.map(move |side| (color, self.side(side)))
+        };
+        let items = list(self.setup.case(), what).iter();
         if what == "supports" {
-            return self.named(what);
+            let colors = SUPPORT_LINES.into_iter().cycle();
+            return items.zip(colors).flat_map(|(item, color)| sides(item, color)).collect();
         }
-        let loads = list(self.setup.case(), "loads").iter().filter_map(load);
-        let sides = loads.flat_map(|l| list(l.spec, "on").iter().filter_map(|side| side.as_str()));
-        sides.map(|side| self.side(side)).collect()
+        items.filter_map(load).flat_map(|load| sides(load.spec, COLOR)).collect()
     }
 
     /// An arrow along a vector that ends (`presses`) or begins at a place.

@@ -14,7 +14,9 @@ use serde_json::json;
 use super::skin::{Facet, Place, skin};
 use super::view::View;
 use super::wires::wires;
-use crate::animation::{Animation, EVENTS, PLAYER, controls, help, histories, of_files};
+use crate::animation::{
+    Animation, EVENTS, PLAYER, controls, help, histories, histories_in_words, of_files, until,
+};
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::labels::is_static;
 use crate::quantity::{Quantity, bars, choice, stresses};
@@ -285,6 +287,8 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         "rigid": lines, "moves": moves,
     });
     let every = of_files(chosen.len(), run.fields.len());
+    let last = chosen.last().map_or_else(String::new, |&k| until(run, entries[k].time));
+    let of_histories = histories_in_words(!shades.is_empty());
     // Only `<` could end the script element.
     let data = data.to_string().replace('<', "\\u003c");
     let figure = html! {
@@ -313,10 +317,11 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
             }
             figcaption {
                 b { "Scene." } " The bodies, initially in the view of figure " (figure) "; frames are " (every)
-                ", without interpolation. Displacements are not magnified. " (Label("σ_{vM}"))
+                ", without interpolation" (Label(&last)) ". Displacements are not magnified. " (Label("σ_{vM}"))
                 " and the mean stress " (Label("σ_{m}")) " = tr σ/3 (blue: compression, red: tension) are those of \
                  nodal averages of the Cauchy stress. The inside of a cut body is grey."
-                (arrowheads(quantities.iter().map(|q| q.legend.cut)))
+                (Label(&arrowheads(quantities.iter().map(|q| (q.legend.cut, q.legend.label.to_owned())))))
+                (of_histories)
                 @if !run.log.is_empty() { (Prose(EVENTS)) }
             }
             (help(&html! {
