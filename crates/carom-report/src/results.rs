@@ -78,8 +78,9 @@ fn is_meaningful(run: &Run, metric: &Metric) -> bool {
     let contacts = run.manifest.case.get("contacts").and_then(|list| list.as_array());
     let has_contacts = contacts.is_none_or(|list| !list.is_empty());
     let group = metrics::group(name);
-    let of_contact =
-        group.contains("ontact") || group == "Impulse and rebound" || name == "dissipated_contact";
+    let of_contact = group.to_lowercase().contains("contact")
+        || group == "Impulse and rebound"
+        || name == "dissipated_contact";
     if !has_contacts && of_contact {
         return false;
     }
