@@ -173,7 +173,7 @@ fn error_cost(study: &Study) -> Option<Plot> {
         let squares =
             columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
         let uncertainty = (squares.sum::<f64>() / columns.len().max(1) as f64).sqrt();
-        let floor = (uncertainty > 0.0).then(|| (uncertainty, "uncertainty of the reference".to_owned()));
+        let floor = (uncertainty > 0.0).then(|| (uncertainty, "uncertainty of the errors".to_owned()));
         panes.push(Pane {
             floor,
             title: "displacements".into(),
