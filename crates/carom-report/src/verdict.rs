@@ -401,6 +401,12 @@ fn other_goals(study: &Study) -> Markup {
                 }
             }
         } }
+        @if study.manifest.ensemble.is_some() {
+            p.small {
+                "An arm has the required accuracy, " (study.manifest.accuracy()) ", where neither the median of its \
+                 error over the ensemble nor the largest distance of a member from it is larger."
+            }
+        }
     }
 }
 
