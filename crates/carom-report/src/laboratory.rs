@@ -14,7 +14,7 @@ use crate::plot::{Band, COLORS, Curve, Pane, Plot};
 use crate::theory;
 
 /// Colour of the reference in small multiples.
-const REFERENCE: &str = "#777";
+const REFERENCE: &str = "#222";
 
 /// Largest number of small multiples in one figure.
 const MULTIPLES: usize = 24;
@@ -25,7 +25,7 @@ pub(crate) fn plots(study: &Study, columns: &[Column], measured: &Measured, time
         return Vec::new();
     }
     let mut plots: Vec<Plot> =
-        [error_cost(study), roughness_dissipation(study)].into_iter().flatten().collect();
+        [error_cost(study), roughness_dissipation(study)].into_iter().flatten().map(with_apart).collect();
     plots.extend(columns.iter().filter_map(|c| multiples(study, c, measured, time)));
     plots.extend(theory::plot(study));
     plots
@@ -131,20 +131,42 @@ fn front(points: &[(usize, (f64, f64))]) -> Vec<(usize, (f64, f64))> {
     sorted
 }
 
-/// What grey curves of these panes are.
-fn apart(panes: &[Pane]) -> &'static str {
-    if panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.apart) {
-        " Grey: arms that created more energy than the default guard allows; they do not affect the axes, and \
-         an arrowhead at the edge stands for one that lies outside."
+/// What is said of the grey curves and the arrowheads that a figure has.
+fn apart(plot: &Plot) -> String {
+    let outside = if plot.has_arrowheads() {
+        ", and an arrowhead at the edge stands for one that lies outside"
     } else {
         ""
+    };
+    if plot.panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.apart) {
+        format!(
+            " Grey: arms that created more energy than the default guard allows; they do not affect the \
+             axes{outside}."
+        )
+    } else {
+        String::new()
     }
+}
+
+/// A figure with what is said of its grey curves.
+fn with_apart(plot: Plot) -> Plot {
+    let caption = format!("{}{}", plot.caption, apart(&plot));
+    Plot { caption, ..plot }
 }
 
 /// What is said of the recommended arm where there is one.
 fn ring(panes: &[Pane]) -> &'static str {
     let has_ring = panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.ring.is_some());
     if has_ring { " Ring: recommended arm." } else { "" }
+}
+
+/// What is said of arms with a zero where one has no point in a logarithmic pane for it.
+fn omitted(points: impl IntoIterator<Item = Option<(f64, f64)>>) -> &'static str {
+    if points.into_iter().flatten().any(|(x, y)| x == 0.0 || y == 0.0) {
+        " Arms with a zero are omitted (logarithmic axes)."
+    } else {
+        ""
+    }
 }
 
 /// What thin curves of these panes are.
@@ -166,14 +188,17 @@ fn error_cost(study: &Study) -> Option<Plot> {
     let ranking = study.ranking.as_ref()?;
     let cost = |arm: usize| study.rows[arm].value("cpu_time");
     let mut panes = Vec::new();
+    let mut points = Vec::new();
+    let arms: Vec<usize> = methods(study).into_iter().flat_map(|(_, arms)| arms).collect();
     if let Some(reference) = &study.reference {
         let columns = established(reference, is_trajectory);
         let error = |arm: usize| Some((cost(arm)?, study.compared.get(arm)?.as_ref()?.mean(&columns)?));
         let pane = scatter(study, error);
+        points.extend(arms.iter().map(|arm| error(*arm)));
         let squares =
             columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
         let uncertainty = (squares.sum::<f64>() / columns.len().max(1) as f64).sqrt();
-        let floor = (uncertainty > 0.0).then(|| (uncertainty, "uncertainty of the reference".to_owned()));
+        let floor = (uncertainty > 0.0).then(|| (uncertainty, "uncertainty of the errors".to_owned()));
         panes.push(Pane {
             floor,
             title: "displacements".into(),
@@ -184,23 +209,24 @@ fn error_cost(study: &Study) -> Option<Plot> {
     if let Ok(measure) = &ranking.measure
         && !matches!(ranking.goal, Goal::Trajectory | Goal::Cost)
     {
-        let pane = scatter(study, |arm| Some((cost(arm)?, ranked(study, arm)?)));
+        let error = |arm: usize| Some((cost(arm)?, ranked(study, arm)?));
+        let pane = scatter(study, error);
+        points.extend(arms.iter().map(|arm| error(*arm)));
         let floor = (measure.uncertainty > 0.0)
             .then(|| (measure.uncertainty, "uncertainty of the errors".to_owned()));
         let title = format!("goal: {}", measure.name.replace('_', " "));
         panes.push(Pane { floor, title, y_label: "relative error".into(), ..pane });
     }
     panes.retain(|p| !p.curves.is_empty());
+    let omitted = omitted(points);
     (!panes.is_empty()).then(|| Plot {
         group: String::new(),
         name: "error-cost".into(),
         caption: format!(
             "Error against cost: one point per arm, one curve per method. Broad line: Pareto front.{}{} \
-             Cost: processor time of the time steps without output. Arms with a zero are omitted \
-             (logarithmic axes).{}",
+             Cost: processor time of the time steps without output.{omitted}",
             ring(&panes),
-            quiet(&panes),
-            apart(&panes)
+            quiet(&panes)
         ),
         x_label: "processor time (s)".into(),
         log: [true, true],
@@ -231,8 +257,12 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
     };
     let high = |arm: usize| study.rows[arm].value("force_high_frequency");
     let over = if right.is_some() { "TV / TV of the reference" } else { "TV / (2 × peak mean force)" };
-    let varied = scatter(study, |a| Some((lost(a)?, variation(a)?)));
-    let high = scatter(study, |a| Some((lost(a)?, high(a)?)));
+    let of_variation = |arm: usize| Some((lost(arm)?, variation(arm)?));
+    let of_power = |arm: usize| Some((lost(arm)?, high(arm)?));
+    let arms = methods(study).into_iter().flat_map(|(_, arms)| arms);
+    let omitted = omitted(arms.flat_map(|arm| [of_variation(arm), of_power(arm)]));
+    let varied = scatter(study, of_variation);
+    let high = scatter(study, of_power);
     let titled =
         |title: &str, y_label: &str, pane| Pane { title: title.into(), y_label: y_label.into(), ..pane };
     let mut panes = vec![
@@ -260,11 +290,9 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
         caption: format!(
             "Roughness of the contact force against energy drift: one point per arm, one curve per method. \
              Broad line: Pareto front.{}{} Numerical damping reduces roughness at the cost of energy; \
-             methods at the lower left are smooth without loss of energy. TV: total variation during the first contact. \
-             Arms with a zero are omitted (logarithmic axes).{least}{left_out}{}",
+             methods at the lower left are smooth without loss of energy. TV: total variation during the first contact.{omitted}{least}{left_out}",
             ring(&panes),
-            quiet(&panes),
-            apart(&panes)
+            quiet(&panes)
         ),
         x_label: "energy drift / largest energy".into(),
         log: [true, true],
@@ -289,7 +317,7 @@ fn reference_of(reference: &Reference, column: &str) -> Option<(Curve, Option<Ba
     let line = Curve {
         label: "reference".to_owned(),
         color: Some(REFERENCE),
-        quiet: true,
+        over: true,
         x,
         y: edge(0.0),
         unlisted: true,
@@ -351,30 +379,39 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
     };
     let grey = match (&line, &band) {
         (None, _) => "",
-        (_, Some(_)) => " Thin grey line: the reference, with the band of its uncertainty.",
-        (_, None) => " Thin grey line: the reference; its uncertainty is not established.",
+        (_, Some(_)) => " Dashed line: the reference, with the band of its uncertainty",
+        (_, None) => " Dashed line: the reference; its uncertainty is not established.",
     };
     let mark = if found.iter().any(|(curve, _)| curve.chosen) { " ▸: recommended." } else { "" };
     let is_apart = found.iter().any(|(curve, _)| curve.apart);
     let apart = if is_apart { " Methods that create energy do not affect the axes." } else { "" };
     let when = if span.is_some() { " during the first contact" } else { "" };
     let panes: Vec<Pane> = found.into_iter().enumerate().map(pane).collect();
-    Some(Plot {
+    let drawn_once = curves::drawn_once(&names);
+    let mut plot = Plot {
         group: String::new(),
         name: multiples_name(&column.name),
-        caption: format!(
-            "{}{when}, for each method at its finest level.{grey}{mark}{apart}{}{} All panels have the same axes.",
-            capitalised(&what),
-            curves::drawn_once(&names),
-            measured.words(&column.name)
-        ),
+        caption: String::new(),
         x_label: with_unit("time t", time),
         log: [false, false],
         across: 3,
         same: true,
         direct: false,
         panes,
-    })
+    };
+    let shown = plot.panes.first().map_or_else(Vec::new, |pane| plot.shown_band(pane));
+    let part = match () {
+        () if shown.is_empty() => "",
+        () if shown.iter().all(|shown| *shown) => ".",
+        () => ", where it does not exceed the axis.",
+    };
+    plot.caption = format!(
+        "{}{when}, for each method at its finest level.{grey}{part}{mark}{apart}{drawn_once}{} All panels have \
+         the same axes.",
+        capitalised(&what),
+        measured.words(&column.name)
+    );
+    Some(plot)
 }
 
 #[cfg(test)]

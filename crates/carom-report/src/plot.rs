@@ -116,6 +116,20 @@ impl Plot {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (c, d)| (a.min(c), b.max(d)))
     }
 
+    /// Where the band of a pane is drawn: not where it is higher than the axis.
+    pub(crate) fn shown_band(&self, pane: &Pane) -> Vec<bool> {
+        let (from, to) = self.y_range(pane);
+        let inside = |Band { low, high, .. }: &Band| {
+            low.iter().zip(high).map(|(low, high)| high - low <= to - from).collect()
+        };
+        pane.band.as_ref().map_or_else(Vec::new, inside)
+    }
+
+    /// Whether an arrowhead stands for something outside the axes.
+    pub(crate) fn has_arrowheads(&self) -> bool {
+        self.svg().contains(curve::OUTSIDE)
+    }
+
     /// A curve of each distinct label.
     pub(crate) fn legend(&self) -> Vec<&Curve> {
         let mut found: Vec<&Curve> = Vec::new();
@@ -237,6 +251,7 @@ pub(crate) mod tests {
         let svg = plot.svg();
         let tips = svg.lines().filter(|line| line.contains(&format!("z\" fill=\"{APART}\"")));
         let tips: Vec<f64> = tips.filter_map(|line| line.split(['M', ' ']).nth(2)?.parse().ok()).collect();
+        assert!(plot.has_arrowheads() && !self::plot().has_arrowheads());
         assert!(!tips.is_empty() && tips.iter().all(|x| (0.0..=720.0).contains(x)), "{tips:?} {svg}");
     }
 }

@@ -6,7 +6,7 @@ use carom_record::study::compared::is_stress;
 use carom_record::study::design::{Design, Kind};
 use carom_record::study::ranking::{Ranking, error, standing};
 use carom_record::study::reference::{Reference, Standing};
-use carom_record::study::{Study, step};
+use carom_record::study::{Arm, Study, step};
 use maud::{Markup, html};
 
 use crate::collected::{in_time, time_unit};
@@ -21,6 +21,10 @@ const STRESSES: usize = 3;
 
 /// A column with values in less than this fraction of its cells is none.
 const SPARSE: usize = 4;
+
+/// What is smaller than this share of the largest value of a column, or of one for shares, is
+/// round-off.
+const ROUND_OFF: f64 = 1e-12;
 
 /// A heading and the cells below it, in the order of the ranked arms.
 struct Column {
@@ -47,7 +51,15 @@ impl Ranked<'_> {
 
     /// The values of a metric.
     fn metric(&self, head: &str, metric: &str) -> Column {
-        self.column(head, |arm| self.study.rows[arm].value(metric).map(three))
+        let value = |arm: usize| self.study.rows[arm].value(metric);
+        let largest = self.arms.iter().filter_map(|arm| value(*arm)).fold(0.0, |m: f64, v| m.max(v.abs()));
+        let metrics = self.study.metrics();
+        let is_share = metrics.iter().any(|m| m.name == metric && m.unit.is_empty());
+        let least = ROUND_OFF * if is_share { largest.max(1.0) } else { largest };
+        self.column(head, |arm| {
+            let v = value(arm)?;
+            Some(if v != 0.0 && v.abs() < least { "≈ 0".to_owned() } else { three(v) })
+        })
     }
 
     /// The values of a metric that counts something.
@@ -128,8 +140,8 @@ impl Ranked<'_> {
     }
 }
 
-/// The tables.
-pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
+/// The tables, and the headings of what they show.
+pub(crate) fn tables(study: &Study, ranking: &Ranking) -> (Markup, Vec<String>) {
     let ranked = Ranked { study, arms: ranking.levels.iter().flatten().map(|r| r.arm).collect() };
     let errors: Vec<String> = ranking
         .levels
@@ -149,7 +161,9 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
     let error = if study.manifest.ensemble.is_some() { "Error, median of the ensemble" } else { "Error" };
     let mut first = vec![
         ranked.column(&with_unit("Δt", time_unit(study)), |arm| {
-            step(&study.manifest.arms[arm], "time.step").map(five)
+            let arm = &study.manifest.arms[arm];
+            // A step that was found has as many digits as are of use.
+            step(arm, "time.step").map(if study.manifest.by_cost(arm) { three } else { five })
         }),
         ranked.column(error, |arm| place(arm).map(|i| errors[i].clone())),
         ranked.delay(),
@@ -179,12 +193,15 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
         ranked.error("Error of contact duration", "contact_duration"),
     ];
     let fourth = ranked.stresses();
-    html! {
+    let all = first.iter().chain(&second).chain(&third).chain(&fourth);
+    let heads = all.filter(|c| c.cells.iter().any(Option::is_some)).map(|c| c.head.clone()).collect();
+    let tables = html! {
         (table("Error and cost", ranking, study, &first))
         (table("Energy and roughness of the contact force", ranking, study, &second))
         (table("Penetration and errors", ranking, study, &third))
         (table("Errors of stresses", ranking, study, &fourth))
-    }
+    };
+    (tables, heads)
 }
 
 fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> Markup {
@@ -210,6 +227,8 @@ fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> M
         None => format!("Level {}", level + 1),
     };
     let chosen = ranking.verdict.as_ref().ok().map(|verdict| verdict.arm);
+    let is_matched_step = study.manifest.design.as_ref().is_some_and(|d| d.kind == Kind::MatchedStep);
+    let by_cost = |arm: &Arm| is_matched_step && study.manifest.by_cost(arm);
     // The cells of a column run through all levels.
     let mut rows = 0..;
     html! {
@@ -231,6 +250,7 @@ fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> M
                         td.n { (r.place) }
                         td.method {
                             @if chosen == Some(r.arm) { b { "▸ " (Label(arm.method())) } } @else { (Label(arm.method())) }
+                            @if by_cost(arm) { span.small { " (matched by cost)" } }
                         }
                         @for column in &shown { td.n { (column.cells[row].as_deref().unwrap_or("–")) } }
                     }

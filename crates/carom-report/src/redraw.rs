@@ -32,6 +32,7 @@ y_labels = @Y_LABELS@
 bands = @BANDS@
 limits, floors, spans, fronts = @LIMITS@, @FLOORS@, @SPANS@, @FRONTS@
 marks = @MARKS@
+thin = @THIN@  # dashed, above the others
 points = @POINTS@  # without lines between them
 marked, direct, across = @MARKED@, @DIRECT@, @ACROSS@
 
@@ -40,6 +41,8 @@ def style(label):
         return {"color": "@APART_COLOR@", "lw": 0.8, "zorder": 1}
     i = styles[label]
     color = own.get(label, colors[i % 8])
+    if label in thin:
+        return {"color": color, "lw": 0.8, "ls": "--", "zorder": 3}
     if label in points:
         return {"color": color, "marker": "os^Dv"[i % 5], "ms": 4, "ls": "none"}
     if marked:
@@ -150,6 +153,7 @@ impl Plot {
             ("FLOORS", list(&|p| p.floor.as_ref().map_or("None".into(), mark))),
             ("MARKS", list(&|p| format!("[{}]", p.marks.iter().map(mark).collect::<Vec<_>>().join(", ")))),
             ("MARKED", truth(curves().any(|c| c.marked && !c.points))),
+            ("THIN", set(&|c| c.over)),
             ("POINTS", set(&|c| c.points)),
             ("DIRECT", truth(self.direct || curves().any(|c| c.points))),
             ("ACROSS", self.across.max(1).to_string()),

@@ -1,6 +1,7 @@
 //! The settings of arms: those that all arms share, and those in which they differ.
 
 use carom_record::study::{Arm, Study};
+use serde_json::Value;
 
 /// Arms other than those of a computed reference.
 fn arms(study: &Study) -> impl Iterator<Item = &Arm> {
@@ -48,10 +49,32 @@ pub(crate) fn varied(study: &Study) -> Vec<(&str, Vec<Option<&str>>)> {
             found[at].1[i] = Some(value);
         }
     }
+    found.retain(|(key, values)| !is_as_in_case(study, key, values));
     found
 }
 
-/// A value of the case that an arm without a setting has: a number, a word or a truth.
+/// Whether the arms that set a key give it the value that the others have from the case.
+fn is_as_in_case(study: &Study, key: &str, values: &[Option<&str>]) -> bool {
+    let arms = study.manifest.arms.iter().zip(values).filter(|(arm, _)| !arm.role.fine);
+    let mut all = arms.map(|(arm, set)| set.map(str::to_owned).or_else(|| of_case(arm, key)));
+    all.next().flatten().is_some_and(|first| all.all(|other| other.as_ref() == Some(&first)))
+}
+
+/// Largest number of entries of a table that is given as a value.
+const ENTRIES: usize = 4;
+
+/// A number, a word or a truth in TOML.
+fn plain(value: &Value) -> Option<String> {
+    match value {
+        Value::Number(number) => Some(number.to_string()),
+        Value::String(word) => Some(format!("\"{word}\"")),
+        Value::Bool(truth) => Some(truth.to_string()),
+        _ => None,
+    }
+}
+
+/// A value of the case that an arm without a setting has: a number, a word, a truth, or a short
+/// table of them, in which the kind comes first.
 pub(crate) fn of_case(arm: &Arm, key: &str) -> Option<String> {
     let mut node = &arm.case;
     let mut parts = key.split('.');
@@ -70,22 +93,22 @@ pub(crate) fn of_case(arm: &Arm, key: &str) -> Option<String> {
             _ => return None,
         };
     }
-    match node {
-        serde_json::Value::Number(number) => Some(number.to_string()),
-        serde_json::Value::String(word) => Some(format!("\"{word}\"")),
-        serde_json::Value::Bool(truth) => Some(truth.to_string()),
-        _ => None,
-    }
+    let Value::Object(table) = node else { return plain(node) };
+    let mut entries: Vec<_> = table.iter().filter(|(_, value)| !value.is_null()).collect();
+    entries.sort_by_key(|(key, _)| *key != "kind");
+    let entry = |(key, value): (&String, &Value)| Some(format!("{key} = {}", plain(value)?));
+    let shown = entries.into_iter().map(entry).collect::<Option<Vec<_>>>()?;
+    (1..=ENTRIES).contains(&shown.len()).then(|| format!("{{ {} }}", shown.join(", ")))
 }
 
-/// A value with at most five digits in each of its numbers.
+/// A value with at most five digits in each of its numbers, still in TOML.
 pub(crate) fn brief(value: &str) -> String {
     let mut out = String::new();
     let mut word = String::new();
     let flush = |word: &mut String, out: &mut String| {
         let digits = word.chars().filter(char::is_ascii_digit).count();
         match word.parse::<f64>() {
-            Ok(number) if digits > 6 => out.push_str(&crate::digits::five(number)),
+            Ok(number) if digits > 6 => out.push_str(&crate::digits::five(number).replace('−', "-")),
             _ => out.push_str(word),
         }
         word.clear();
@@ -115,13 +138,13 @@ mod tests {
             brief("{ shape = \"disc-1234567\", size = 7.874015748031496 }"),
             "{ shape = \"disc-1234567\", size = 7.874 }"
         );
-        assert_eq!(brief("[-78.74015748031496, 1e-3, 0.00000903182300002092]"), "[−78.74, 1e-3, 9.032e−6]");
+        assert_eq!(brief("[-78.74015748031496, 1e-3, 0.00000903182300002092]"), "[-78.74, 1e-3, 9.032e-6]");
     }
 
     #[test]
     fn values_of_the_case_are_found_by_name() {
         let case = json!({
-            "time": { "step": 0.01, "scheme": { "kind": "hu" } },
+            "time": { "step": 0.01, "scheme": { "rho_inf": 0.6, "kind": "hu" } },
             "bodies": [{ "name": "a", "mass": "lumped" }, { "name": "b", "mass": "consistent" }],
             "contacts": [{ "name": "strike", "mu": 0.0 }],
         });
@@ -133,6 +156,21 @@ mod tests {
         assert_eq!(of("time.step").as_deref(), Some("0.01"));
         assert_eq!(of("body.b.mass").as_deref(), Some("\"consistent\""));
         assert_eq!(of("contact.strike.mu").as_deref(), Some("0.0"));
-        assert_eq!((of("time.scheme"), of("body.c.mass"), of("contact.strike.law")), (None, None, None));
+        assert_eq!(of("time.scheme").as_deref(), Some("{ kind = \"hu\", rho_inf = 0.6 }"));
+        assert_eq!((of("time"), of("body.c.mass"), of("contact.strike.law")), (None, None, None));
+    }
+
+    /// What some arms set to the value of the case does not differ between arms.
+    #[test]
+    fn settings_equal_to_the_case_do_not_differ() {
+        let mut study = crate::trend::tests::study(&[("a", vec![]), ("b", vec![])]);
+        for arm in &mut study.manifest.arms {
+            arm.case = json!({ "time": { "step": 0.01 }, "contact": { "law": "position" } });
+            arm.sets.clear();
+        }
+        let sets = ["time.step=0.02", "contact.law=\"position\""];
+        study.manifest.arms[1].sets = sets.map(str::to_owned).into();
+        let keys: Vec<&str> = varied(&study).into_iter().map(|(key, _)| key).collect();
+        assert_eq!(keys, ["time.step"]);
     }
 }

@@ -107,7 +107,7 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         // A rough curve of a failed arm would cover the others.
         let (aside, curves): (Vec<Curve>, Vec<Curve>) =
             curves.into_iter().partition(|curve| curve.apart && curves::is_rough(curve));
-        let apart = apart_words(study, members, !aside.is_empty());
+        let (is_aside, is_all_aside) = (!aside.is_empty(), curves.iter().all(|curve| curve.apart));
         let rough = curves.iter().filter(|curve| curves::is_rough(curve)).count() > 1;
         let (panes, across, enlarged) = if rough {
             (
@@ -144,22 +144,33 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
             pane
         };
         let panes: Vec<Pane> = panes.into_iter().chain(aside).map(with_points).collect();
-        Some(Plot {
+        let mut plot = Plot {
             group: if groups.len() > few { capitalised(&what) } else { String::new() },
             name,
-            caption: format!(
-                "{}{enlarged}{part}.{}{apart}{}",
-                capitalised(&what),
-                curves::drawn_once(&names),
-                measured.words(&column.name)
-            ),
+            caption: String::new(),
             x_label: with_unit("time t", time),
             log: [false, false],
             across,
             same: rough,
             direct: !rough,
             panes,
-        })
+        };
+        let axes = match () {
+            () if is_all_aside => String::new(),
+            () => {
+                let tip = if plot.has_arrowheads() { "; an arrowhead is where one leaves them" } else { "" };
+                let own = if is_aside { "; rough ones have panes of their own" } else { "" };
+                format!(" They do not affect the axes of other arms{tip}{own}.")
+            }
+        };
+        let apart = apart_words(study, members, &axes);
+        plot.caption = format!(
+            "{}{enlarged}{part}.{}{apart}{}",
+            capitalised(&what),
+            curves::drawn_once(&names),
+            measured.words(&column.name)
+        );
+        Some(plot)
     };
     (0..groups.len()).filter_map(figure).collect()
 }
@@ -183,7 +194,7 @@ fn groups(study: &Study) -> Vec<Vec<usize>> {
 }
 
 /// What is said of grey curves, for arms that failed or created energy.
-fn apart_words(study: &Study, members: &[usize], aside: bool) -> String {
+fn apart_words(study: &Study, members: &[usize], axes: &str) -> String {
     let unsound = || members.iter().map(|arm| &study.rows[*arm]).filter(|row| row.is_unsound());
     let fails = |row: &&Row| row.status == Some(Status::Failed);
     let (failed, created) = (unsound().any(|row| fails(&row)), unsound().any(|row| !fails(&row)));
@@ -195,8 +206,7 @@ fn apart_words(study: &Study, members: &[usize], aside: bool) -> String {
             "arms that failed (cross: where they stopped) or created more energy than the default guard allows"
         }
     };
-    let aside = if aside { "; rough ones have panes of their own" } else { "" };
-    format!(" Grey: {which}. They do not affect the axes, and an arrowhead is where they leave them{aside}.")
+    format!(" Grey: {which}.{axes}")
 }
 
 /// What distinguishes a group: the numbers of its arms.

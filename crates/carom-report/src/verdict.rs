@@ -47,19 +47,34 @@ fn order(p: f64) -> String {
     if p > HIGHEST { format!("({p:.2})") } else { format!("{p:.2}") }
 }
 
-/// What the columns of the ranking mean.
-const COLUMNS: [&str; 11] = [
-    "Error: by which the arms are ranked; with an ensemble its median ± the largest distance of a member from it. All other columns are of the arm as given.",
-    "Errors are relative errors; energies are fractions of the largest kinetic + strain energy.",
-    "± in a heading: relative uncertainty of the reference value; step only: without the error of its mesh, which was not refined.",
-    "Delay: time by which the motion lags the reference; negative where it leads.",
-    "Energy drift: largest change of the energy at any time.",
-    "Lost in impact: energy lost over the impact that changes it most.",
-    "By integrator, by contact: energy dissipated until the end by the time integrator and by contact.",
-    "Excess variation: total variation of the contact force divided by that of the reference, minus 1.",
-    "High-frequency power: share of the power of the contact force above 16 cycles per contact.",
-    "Chatter: switches of contact nodes, on and off, per time in contact.",
-    "Peak: largest stress averaged over 1/16 of the contact.",
+/// What the columns of the ranking mean, each after a part of the headings that it explains.
+const COLUMNS: [(&str, &str); 11] = [
+    (
+        "Error",
+        "Error: by which the arms are ranked; with an ensemble its median ± the largest distance of a member from it. All other columns are of the arm as given.",
+    ),
+    ("Error", "Errors are relative errors; energies are fractions of the largest kinetic + strain energy."),
+    (
+        "±",
+        "± in a heading: relative uncertainty of the reference value; step only: without the error of its mesh, which was not refined.",
+    ),
+    ("Delay", "Delay: time by which the motion lags the reference; negative where it leads."),
+    ("Energy drift", "Energy drift: largest change of the energy at any time."),
+    ("Lost in impact", "Lost in impact: energy lost over the impact that changes it most."),
+    (
+        "By ",
+        "By integrator, by contact: energy dissipated until the end by the time integrator and by contact.",
+    ),
+    (
+        "Excess variation",
+        "Excess variation: total variation of the contact force divided by that of the reference, minus 1.",
+    ),
+    (
+        "High-frequency",
+        "High-frequency power: share of the power of the contact force above 16 cycles per contact.",
+    ),
+    ("Chatter", "Chatter: switches of contact nodes, on and off, per time in contact."),
+    ("peak", "Peak: largest stress averaged over 1/16 of the contact."),
 ];
 
 /// The recommendation at the top of the page; nothing for a study without a goal.
@@ -386,6 +401,12 @@ fn other_goals(study: &Study) -> Markup {
                 }
             }
         } }
+        @if study.manifest.ensemble.is_some() {
+            p.small {
+                "An arm has the required accuracy, " (study.manifest.accuracy()) ", where neither the median of its \
+                 error over the ensemble nor the largest distance of a member from it is larger."
+            }
+        }
     }
 }
 
@@ -396,8 +417,9 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
     let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "metric not available" };
     let unsound = ranking.levels.iter().flatten().filter(|r| !r.sound);
     let unsound: Vec<&str> = unsound.map(|r| study.rows[r.arm].name.as_str()).collect();
+    let (tables, heads) = ranked::tables(study, ranking);
     html! {
-        (ranked::tables(study, ranking))
+        (tables)
         @if !without.is_empty() { p.small { "Not ranked (" (why) "): " (without.join("; ")) "." } }
         @if !unsound.is_empty() {
             p.small {
@@ -408,7 +430,11 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
         @if study.manifest.arms.iter().any(|arm| is_off_budget(study, arm)) {
             p.small { "An exclamation mark means more than 10 % off the budget." }
         }
-        ul.small { @for line in COLUMNS { li { (line) } } }
+        ul.small {
+            @for (_, line) in COLUMNS.iter().filter(|(part, _)| heads.iter().any(|head| head.contains(part))) {
+                li { (line) }
+            }
+        }
         p.small { "Data in full precision: " (file("ranking.csv")) ", " (file("reference.csv")) "." }
     }
 }

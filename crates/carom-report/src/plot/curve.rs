@@ -28,6 +28,8 @@ pub(crate) struct Curve {
     pub(crate) apart: bool,
     /// Whether it is of less interest: thin.
     pub(crate) quiet: bool,
+    /// Whether it is of a reference: thin and dashed, above all others.
+    pub(crate) over: bool,
     /// Whether it is that of the recommended arm or method.
     pub(crate) chosen: bool,
     /// The point of the recommended arm.
@@ -63,7 +65,7 @@ pub(crate) fn style(i: usize) -> (&'static str, &'static str, usize) {
 pub(super) fn is_dashed(curve: &Curve, direct: bool) -> bool {
     let is_first = curve.style < COLORS;
     match () {
-        () if curve.apart || curve.quiet => false,
+        () if curve.apart => false,
         () if curve.marked => !is_first,
         () if curve.label.is_empty() || curve.unlisted => false,
         () => !(direct && is_first),
@@ -88,8 +90,12 @@ pub(super) fn draw(
         return;
     }
     let d = trace::path(points.iter().copied());
-    let dashes = if is_dashed(curve, direct) { dashes } else { "" };
-    let width = if curve.quiet || curve.apart { 0.9 } else { 1.5 };
+    let dashes = match () {
+        () if curve.over => "4 2",
+        () if is_dashed(curve, direct) => dashes,
+        () => "",
+    };
+    let width = if curve.quiet || curve.apart || curve.over { 0.9 } else { 1.5 };
     let d = if curve.points { String::new() } else { d };
     let _ = writeln!(
         out,
@@ -113,13 +119,16 @@ pub(super) fn draw(
     }
 }
 
+/// What distinguishes arrowheads from markers.
+pub(super) const OUTSIDE: &str = "class=\"outside\"";
+
 /// An arrowhead at the edge of a pane, for what lies outside it in a direction.
 pub(super) fn arrowhead(out: &mut String, color: &str, (x, y): (f64, f64), (dx, dy): (f64, f64)) {
     let at = |along: f64, aside: f64| {
         format!("{:.1} {:.1}", x + along * dx - aside * dy, y + along * dy + aside * dx)
     };
     let d = [at(0.0, 0.0), at(-7.0, 4.0), at(-7.0, -4.0)].join("L");
-    let _ = writeln!(out, "<path d=\"M{d}z\" fill=\"{color}\"/>");
+    let _ = writeln!(out, "<path d=\"M{d}z\" fill=\"{color}\" {OUTSIDE}/>");
 }
 
 /// Markers: circle, square, triangle, diamond, inverted triangle.

@@ -43,7 +43,12 @@ fn spread(wanted: &[f64], line: f64, (top, bottom): (f64, f64)) -> Vec<f64> {
 
 /// What is written beside a curve.
 fn words(curve: &Curve) -> String {
-    let name = text::fitted(&curve.label, MOST / SIZE);
+    let most = MOST / SIZE;
+    // The caption names the others.
+    let others = |rest: &str| rest.ends_with(" other") || rest.ends_with(" others");
+    let alone = curve.label.rsplit_once(" and ").filter(|(_, rest)| others(rest)).map(|(name, _)| name);
+    let short = alone.filter(|_| text::width(&curve.label) > most);
+    let name = text::fitted(short.unwrap_or(&curve.label), most);
     if curve.chosen { format!("▸ {name}") } else { name }
 }
 
@@ -155,6 +160,14 @@ fn stops(out: &mut String, stopped: &[(&Curve, End)], frame: &Frame) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The number of others goes first, so that the value of a parameter is not cut.
+    #[test]
+    fn a_long_label_loses_its_others_first() {
+        let label = |name: &str| Curve { label: format!("{name} and 1 other"), ..Curve::default() };
+        let long = "Chung–Hulbert, ρ∞ = 0.6, with smoothing";
+        assert_eq!((words(&label("Hu")).as_str(), words(&label(long)).as_str()), ("Hu and 1 other", long));
+    }
 
     /// By hand: 0, 1, 2 in lines of 10 are −10, 0, 10 about their mean 1, so −9, 1, 11; a label far
     /// away stays.

@@ -93,14 +93,18 @@ impl Plot {
              height=\"{high:.1}\"/></clipPath>"
         );
         if let Some(Band { x, low, high: up, .. }) = &pane.band {
-            let upper = x.iter().zip(up).map(|(x, y)| (to_x(*x), to_y(*y)));
-            let lower = x.iter().zip(low).map(|(x, y)| (to_x(*x), to_y(*y)));
-            let _ = writeln!(
-                out,
-                "<path clip-path=\"url(#{id})\" d=\"{}\" fill=\"#ececec\" stroke=\"#ececec\" \
-                 stroke-width=\"2.5\" stroke-linejoin=\"round\"/>",
-                trace::area(upper, lower)
-            );
+            let shown = self.shown_band(pane);
+            let rows: Vec<usize> = (0..x.len()).collect();
+            for part in rows.chunk_by(|a, b| shown[*a] == shown[*b]).filter(|part| shown[part[0]]) {
+                let upper = part.iter().map(|i| (to_x(x[*i]), to_y(up[*i])));
+                let lower = part.iter().map(|i| (to_x(x[*i]), to_y(low[*i])));
+                let _ = writeln!(
+                    out,
+                    "<path clip-path=\"url(#{id})\" d=\"{}\" fill=\"#ececec\" stroke=\"#ececec\" \
+                     stroke-width=\"2.5\" stroke-linejoin=\"round\"/>",
+                    trace::area(upper, lower)
+                );
+            }
         }
         self.axes(out, pane, frame, scales);
         if let Some((value, _)) = &pane.floor {
@@ -128,7 +132,7 @@ impl Plot {
         );
         // What failed or is of less interest lies behind, points before all.
         let mut order: Vec<&Curve> = pane.curves.iter().collect();
-        order.sort_by_key(|curve| (curve.points, !curve.apart, !curve.quiet, curve.chosen));
+        order.sort_by_key(|curve| (curve.points, curve.over, !curve.apart, !curve.quiet, curve.chosen));
         for curve in &order {
             curve::draw(out, curve, (id, frame), self.direct, &to_x, &to_y);
         }
