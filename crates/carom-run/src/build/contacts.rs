@@ -129,9 +129,10 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
         depths: match (spec.enforcement.is_exact(), spec.law) {
             (true, Some(ContactLaw::Position | ContactLaw::Predictor)) => AllowedDepths {
                 // A frozen contact point is not the closest one; springs leave a part of the gap;
-                // forward increments know the facet of the start of the step.
+                // forward increments know the facet of the start of the step, and a conserving
+                // force acts along a mean of both ends.
                 smooth: match (spec.enforcement, spec.detection) {
-                    _ if case.time.scheme.is_explicit() => 0.01,
+                    _ if case.time.scheme.is_explicit() || conserves => 0.01,
                     (Enforcement::Multiplier, Detection::ClosestPoint) => 1e-6,
                     _ => 0.01,
                 },
