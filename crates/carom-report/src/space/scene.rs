@@ -253,7 +253,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let (stress, length) = (unit("stress"), unit("displacement"));
     let kinds = [
         ("von Mises stress", "σ_{vM}", &stress),
-        ("mean stress", "σ_{m}", &stress),
+        ("pressure, as mean stress", "σ_{m} = −p", &stress),
         ("displacement", "|u|", &length),
     ];
     let quantities: Vec<Quantity> = scene
@@ -318,8 +318,8 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
             figcaption {
                 b { "Scene." } " The bodies, initially in the view of figure " (figure) "; frames are " (every)
                 ", without interpolation" (Label(&last)) ". Displacements are not magnified. " (Label("σ_{vM}"))
-                " and the mean stress " (Label("σ_{m}")) " = tr σ/3 (blue: compression, red: tension) are those of \
-                 nodal averages of the Cauchy stress. The inside of a cut body is grey."
+                " and the mean stress " (Label("σ_{m}")) " = tr σ/3 = −p, minus the pressure (blue: compression, \
+                 red: tension), are those of nodal averages of the Cauchy stress. The inside of a cut body is grey."
                 (Label(&arrowheads(quantities.iter().map(|q| (q.legend.cut, q.legend.label.to_owned())))))
                 (of_histories)
                 @if !run.log.is_empty() { (Prose(EVENTS)) }
