@@ -1,6 +1,8 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the nearest one that it was not behind before.
 
+use carom_algebra::Vector;
+
 use super::crossing::crossing;
 use super::node_to_patch::{NodeToPatch, PAST, REACH};
 use super::patch::place;
@@ -8,7 +10,6 @@ use super::paths::{NOISE, Paths, path};
 use crate::kinematics::candidate::AROUND;
 use crate::kinematics::{Kinematics, OneWay, SweptPatch};
 use crate::pair::Pair;
-use carom_algebra::Vector;
 
 /// A node this far behind a facet, relative to its length, at the start of a step has not crossed
 /// it.
