@@ -53,6 +53,11 @@ impl Pair {
             tangential: Tangential::default(),
         }
     }
+
+    /// The same of a facet with two coordinates.
+    pub(crate) fn opened(node: usize, facet: usize, [xi, eta]: [f64; 2]) -> Self {
+        Self { eta, ..Self::open(node, facet, xi) }
+    }
 }
 
 /// Margin around a facet's path within which a node is tracked, relative to the path's size: before

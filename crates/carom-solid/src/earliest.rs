@@ -23,14 +23,18 @@ pub trait Piece {
 /// The queue, kept between searches for its memory.
 #[derive(Clone, Debug)]
 pub struct Earliest<P> {
-    queue: BinaryHeap<Entry<P>>,
+    queue: BinaryHeap<Entry>,
+    /// The pieces that entries refer to: they are large, and the heap moves its entries.
+    pieces: Vec<P>,
+    /// Places of pieces that were taken from the queue.
+    free: Vec<usize>,
     budget: usize,
 }
 
-impl<P: Piece> Earliest<P> {
+impl<P: Piece + Clone> Earliest<P> {
     /// With a number of pieces examined before the search stops at the earliest one.
     pub fn new(budget: usize) -> Self {
-        Self { queue: BinaryHeap::new(), budget }
+        Self { queue: BinaryHeap::new(), pieces: Vec::new(), free: Vec::new(), budget }
     }
 
     /// The earliest piece of `whole`, which is not clear, that `discarded` does not reject and
@@ -43,47 +47,69 @@ impl<P: Piece> Earliest<P> {
         halves: impl Fn(&P) -> Option<[P; 2]>,
     ) -> Option<P> {
         self.queue.clear();
+        self.pieces.clear();
+        self.free.clear();
         if !discarded(&whole) {
-            self.queue.push(Entry(whole));
+            self.push(whole);
         }
         let mut examined = 0;
-        while let Some(Entry(piece)) = self.queue.pop() {
+        while let Some(Entry { at, .. }) = self.queue.pop() {
             examined += 2;
-            let Some(parts) = halves(&piece).filter(|_| examined <= self.budget) else {
-                return Some(piece);
+            let Some(parts) = halves(&self.pieces[at]).filter(|_| examined <= self.budget) else {
+                return Some(self.pieces[at].clone());
             };
+            self.free.push(at);
             for part in parts {
                 if !part.is_clear() && !discarded(&part) {
-                    self.queue.push(Entry(part));
+                    self.push(part);
                 }
             }
         }
         None
     }
+
+    fn push(&mut self, piece: P) {
+        let (theta, level, place) = (piece.theta(), piece.level(), piece.place());
+        let at = match self.free.pop() {
+            Some(at) => {
+                self.pieces[at] = piece;
+                at
+            }
+            None => {
+                self.pieces.push(piece);
+                self.pieces.len() - 1
+            }
+        };
+        self.queue.push(Entry { theta, level, place, at });
+    }
 }
 
 /// In the order of the queue: earlier first, then smaller, which ends the search sooner.
 #[derive(Clone, Debug)]
-struct Entry<P>(P);
+struct Entry {
+    theta: f64,
+    level: u32,
+    place: f64,
+    at: usize,
+}
 
-impl<P: Piece> Ord for Entry<P> {
+impl Ord for Entry {
     fn cmp(&self, other: &Self) -> Ordering {
-        let (a, b) = (&self.0, &other.0);
-        let earlier = b.theta().total_cmp(&a.theta());
-        earlier.then(a.level().cmp(&b.level())).then(b.place().total_cmp(&a.place()))
+        let earlier = other.theta.total_cmp(&self.theta);
+        earlier.then(self.level.cmp(&other.level)).then(other.place.total_cmp(&self.place))
     }
 }
 
-impl<P: Piece> PartialOrd for Entry<P> {
+impl PartialOrd for Entry {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl<P: Piece> PartialEq for Entry<P> {
+impl PartialEq for Entry {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl<P: Piece> Eq for Entry<P> {}
+impl Eq for Entry {}

@@ -39,6 +39,11 @@ impl Apart {
         Self { nodes, dimension, weight, places: Vec::new(), clearance: 0.0, margin: 0.0 }
     }
 
+    /// The nodes of both sets, ascending.
+    pub(crate) fn nodes(&self) -> &[usize] {
+        &self.nodes
+    }
+
     /// Whether nothing is near in a motion between these positions, flat over all nodes, with this
     /// margin around facets.
     pub(crate) fn holds(&self, margin: f64, [before, now]: [&[f64]; 2]) -> bool {

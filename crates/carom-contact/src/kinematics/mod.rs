@@ -16,6 +16,7 @@ mod one_way;
 mod opposed;
 mod passed;
 mod projection;
+mod recent;
 mod space;
 mod surface;
 mod swept;

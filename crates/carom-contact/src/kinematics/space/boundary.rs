@@ -111,6 +111,11 @@ impl Boundary {
         Patch { shape: self.shape, nodes: &self.nodes[facet * n..(facet + 1) * n] }
     }
 
+    /// The smallest length of a facet.
+    pub(super) fn shortest(&self, y: &[f64]) -> f64 {
+        (0..self.all()).map(|facet| self.patch(facet).length(y)).fold(f64::INFINITY, f64::min)
+    }
+
     /// Global numbers of the nodes of a facet.
     pub fn facet_nodes(&self, facet: usize) -> &[usize] {
         self.patch(facet).nodes

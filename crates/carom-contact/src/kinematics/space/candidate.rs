@@ -36,7 +36,7 @@ impl NodeToPatch {
         let (mut first, path) = ([None; 2], path(node, [before, now]));
         for &facet in near.iter().filter(|&&facet| paths.may_cross(&path, facet)) {
             let first = &mut first[usize::from(self.is_met(node, facet, normals))];
-            if let Some((theta, _)) = crossing(swept, self.primary.patch(facet), before, now, node)
+            if let Some((theta, _)) = crossing(swept, self.primary.patch(facet), [before, now], 1.0, node)
                 && first.is_none_or(|(least, _)| theta < least)
             {
                 *first = Some((theta, facet));
@@ -52,17 +52,20 @@ impl NodeToPatch {
     pub(super) fn candidate(
         &self,
         swept: &mut SweptPatch,
-        near_by: Near,
+        (near, paths, normals): (&mut Vec<usize>, &Paths, &[Vector<3>]),
         place_of: usize,
         before: &[f64],
         now: &[f64],
     ) -> Option<(usize, [f64; 2])> {
-        let (near, _, normals) = near_by;
         let (node, slack) = (self.secondary[place_of], self.slack(place_of));
+        self.retain_pressed(node, before, near);
+        if near.is_empty() {
+            return None;
+        }
+        let (near, near_by): (&[usize], Near) = (near, (near, paths, normals));
         let [start, end] = [before, now].map(|y| place(y, node));
         let is_met = |facet: usize| self.is_met(node, facet, normals);
         let mut closest: Option<(f64, usize, [f64; 2], f64)> = None;
-        let first = self.first(swept, near_by, node, before, now);
         for &facet in near {
             let patch = self.primary.patch(facet);
             let Some(xi) = patch.closest_point(now, end, REACH) else { continue };
@@ -87,6 +90,7 @@ impl NodeToPatch {
                 return None;
             }
         }
+        let first = self.first(swept, near_by, node, before, now);
         let faced = |facet: usize| {
             let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
             (!self.faces_nothing(facet, xi, now) && !self.ends_at(node, facet, xi, now)).then_some(xi)
@@ -135,6 +139,7 @@ impl NodeToPatch {
         }
         let around: Vec<usize> = held.iter().flat_map(|pair| self.primary.ring(pair.facet)).collect();
         near.retain(|facet| !around.contains(facet));
+        self.retain_pressed(node, before, near);
         let (_, facet) = self.first(swept, (near, paths, normals), node, before, now)?;
         let end = place(now, node);
         let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;

@@ -15,26 +15,30 @@ use crate::kinematics::swept::{PatchHit, SweptPatch};
 const TOLERANCE: f64 = 1e-6;
 /// A node this close to the facet, relative to its length, meets it: a node that starts behind by
 /// round-off must be detected.
-const SEPARATION: f64 = 1e-6;
+pub(super) const SEPARATION: f64 = 1e-6;
 /// Distance in θ and ξ from the isolated crossing at which Newton's method found another one.
 const ASTRAY: f64 = 0.05;
 
-/// Instant θ in [0, 1] at which a node's path first meets a facet's from outside, and ξ there, if
-/// it does.
+/// Instant θ in [0, until] at which a node's path first meets a facet's from outside, and ξ there,
+/// if it does.
 pub(super) fn crossing(
     swept: &mut SweptPatch,
     patch: Patch,
-    before: &[f64],
-    now: &[f64],
+    [before, now]: [&[f64]; 2],
+    until: f64,
     node: usize,
 ) -> Option<(f64, [f64; 2])> {
+    let ends = |n: usize| {
+        let (from, to) = (place(before, n), place(now, n));
+        [from, if until < 1.0 { from + (to - from) * until } else { to }]
+    };
     let mut places = [[Vector::ZERO; Net::POINTS]; 2];
-    for (places, y) in places.iter_mut().zip([before, now]) {
-        places.iter_mut().zip(patch.nodes).for_each(|(x, &n)| *x = place(y, n));
+    for (k, &n) in patch.nodes.iter().enumerate() {
+        [places[0][k], places[1][k]] = ends(n);
     }
-    let path = [before, now].map(|y| place(y, node));
     let facet = places.each_ref().map(|places| &places[..patch.nodes.len()]);
-    let hit = swept.first(path, facet, SEPARATION * patch.length(before))?;
+    let hit = swept.first(ends(node), facet, SEPARATION * patch.length(before))?;
+    let hit = PatchHit { theta: until * hit.theta, ..hit };
     Some(polished(patch, before, now, node, hit).unwrap_or((hit.theta, hit.xi)))
 }
 

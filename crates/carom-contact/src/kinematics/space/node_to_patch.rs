@@ -20,12 +20,14 @@ use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull};
 
 use super::boundary::Boundary;
+use super::crossing::SEPARATION;
 use super::folds::{PatchFolds, update_normals};
 use super::gap::PatchGap;
 use super::patch::{Feature, PatchPoint, cross, place};
 use super::paths::{NOISE, Paths};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::opposed::is_left;
+use crate::kinematics::recent::Recent;
 use crate::kinematics::tangents::tangents;
 use crate::kinematics::{Kinematics, OneWay, Passed, Side, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
@@ -70,6 +72,7 @@ pub struct NodeToPatch {
 pub(super) struct Tools {
     pub(super) paths: Paths,
     pub(super) apart: Apart,
+    pub(super) recent: Recent<[f64; 2]>,
     pub(super) swept: SweptPatch,
     /// Normals of the facets at the start of a step, if the side may meet itself.
     pub(super) normals: Vec<Vector<3>>,
@@ -87,10 +90,11 @@ impl NodeToPatch {
     /// Secondary nodes and primary boundary in global node numbers.
     pub fn new(secondary: Vec<usize>, primary: Boundary) -> Self {
         let hull = primary.hull();
-        let both = primary.nodes().iter().chain(&secondary).copied();
-        let apart = Apart::new(both, 3, hull.weight());
+        let apart = Apart::new(primary.nodes().iter().chain(&secondary).copied(), 3, hull.weight());
+        let recent = Recent::new(apart.nodes().to_vec(), 3, hull.weight(), secondary.len());
         let swept = SweptPatch::new(primary.shape());
-        let tools = Mutex::new(Tools { paths: Paths::default(), apart, swept, normals: Vec::new() });
+        let tools = Tools { paths: Paths::default(), apart, recent, swept, normals: Vec::new() };
+        let tools = Mutex::new(tools);
         Self {
             secondary,
             primary,
@@ -129,6 +133,14 @@ impl NodeToPatch {
             let height = (place(y, node) - here.position).dot(&here.normal);
             let sized = |other: usize| (self.primary.middle(other, y), self.primary.patch(other).length(y));
             !is_left(&here, height, || self.primary.bent_away(facet, y).map(sized), most_opposed)
+        }
+    }
+
+    /// Of facets near a node, those on which it can press.
+    pub(super) fn retain_pressed(&self, node: usize, y: &[f64], near: &mut Vec<usize>) {
+        if !near.is_empty() {
+            let may_press = self.may_press(node, y);
+            near.retain(|&facet| may_press(facet));
         }
     }
 
@@ -331,7 +343,7 @@ impl Kinematics for NodeToPatch {
                     Next::Concave(facet, [xi, eta]) => {
                         changed |= pair.active;
                         held.push((pair.node, facet));
-                        concave.push(Pair { eta, ..Pair::open(pair.node, facet, xi) });
+                        concave.push(Pair::opened(pair.node, facet, [xi, eta]));
                         return true;
                     }
                     Next::HandOver(facet, [xi, eta]) => {
@@ -364,54 +376,60 @@ impl Kinematics for NodeToPatch {
             in_order(pairs);
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { paths, apart, swept, normals } = &mut *tools;
+        let Tools { paths, apart, recent, swept, normals } = &mut *tools;
+        if starts {
+            recent.forget();
+        }
         if apart.holds(*margin, [before, now]) {
             return changed;
         }
-        paths.update(&self.primary, &self.hull, *margin, [before, now]);
-        if self.folds.is_some() {
-            update_normals(&self.primary, before, normals);
+        let separation = SEPARATION * self.primary.shortest(before);
+        let repeats = recent.repeats(*margin, [before, now], separation);
+        if !repeats {
+            recent.begin(*margin, [before, now]);
+            paths.update(&self.primary, &self.hull, *margin, [before, now]);
+            if self.folds.is_some() {
+                update_normals(&self.primary, before, normals);
+            }
+            let ends = |&node: &usize| [place(before, node).0, place(now, node).0];
+            let nodes: Bounds = self.secondary.iter().flat_map(ends).collect();
+            let boxes = [&paths.tree().bounds(), &nodes.grown(NOISE * nodes.size())];
+            apart.searched(boxes, [*margin, NOISE], now);
         }
-        let ends = |&node: &usize| [place(before, node).0, place(now, node).0];
-        let nodes: Bounds = self.secondary.iter().flat_map(ends).collect();
-        let boxes = [&paths.tree().bounds(), &nodes.grown(NOISE * nodes.size())];
-        apart.searched(boxes, [*margin, NOISE], now);
         let (known, mut next, mut near) = (pairs.len(), 0, Vec::new());
         for (k, &node) in self.secondary.iter().enumerate() {
             let first = next;
             while next < known && pairs[next].node == k {
                 next += 1;
             }
-            paths.find_into(node, [before, now], &mut near);
-            self.retain_met(node, normals, &mut near);
-            if near.is_empty() {
+            let held = &pairs[first..next];
+            if held.is_empty()
+                && repeats
+                && let Some(candidate) = recent.get(k)
+            {
+                pairs.extend(candidate.map(|(facet, xi)| Pair::opened(k, facet, xi)));
                 continue;
             }
-            let may_press = self.may_press(node, before);
-            near.retain(|&facet| may_press(facet));
-            if next > first {
-                let held = &pairs[first..next];
-                if let Some((facet, [xi, eta])) =
-                    self.elsewhere(swept, (&mut near, paths, normals), k, held, [before, now])
-                {
+            paths.find_into(node, [before, now], &mut near);
+            self.retain_met(node, normals, &mut near);
+            let near_by = (&mut near, &*paths, &normals[..]);
+            if !held.is_empty() {
+                if let Some((facet, xi)) = self.elsewhere(swept, near_by, k, held, [before, now]) {
                     changed = true;
-                    pairs.push(Pair { eta, ..Pair::open(k, facet, xi) });
+                    pairs.push(Pair::opened(k, facet, xi));
                 }
                 continue;
             }
-            if near.is_empty() {
-                continue;
-            }
-            let Some((facet, [xi, eta])) = self.candidate(swept, (&near, paths, normals), k, before, now)
-            else {
-                continue;
-            };
-            let gap = self.gap(facet, [xi, eta], place(now, node), now) + self.slack(k);
-            if self.allowed(k) > 0.0 && gap >= 0.0 {
-                continue;
+            let candidate = self.candidate(swept, near_by, k, before, now);
+            let gap = candidate.map_or(f64::INFINITY, |(facet, xi)| {
+                self.gap(facet, xi, place(now, node), now) + self.slack(k)
+            });
+            let candidate = candidate.filter(|_| self.allowed(k) == 0.0 || gap < 0.0);
+            if candidate.is_none() || gap > separation {
+                recent.set(k, candidate);
             }
             changed |= gap < 0.0;
-            pairs.push(Pair { eta, ..Pair::open(k, facet, xi) });
+            pairs.extend(candidate.map(|(facet, xi)| Pair::opened(k, facet, xi)));
         }
         in_order(pairs);
         changed
@@ -419,7 +437,8 @@ impl Kinematics for NodeToPatch {
 
     fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { paths, swept, normals, .. } = &mut *tools;
+        let Tools { paths, recent, swept, normals, .. } = &mut *tools;
+        recent.forget();
         paths.update(&self.primary, &self.hull, Pairing::default().margin, [before, now]);
         if self.folds.is_some() {
             update_normals(&self.primary, before, normals);
@@ -429,8 +448,7 @@ impl Kinematics for NodeToPatch {
             let node = self.secondary[k];
             paths.find_into(node, [before, now], &mut near);
             self.retain_met(node, normals, &mut near);
-            let may_press = self.may_press(node, before);
-            near.retain(|&facet| may_press(facet));
+            self.retain_pressed(node, before, &mut near);
             let first = self.first(swept, (&near, paths, normals), node, before, now);
             let (theta, _) = first.filter(|&(_, facet)| self.is_met(node, facet, normals))?;
             (self.slack(k) == 0.0).then(|| theta.clamp(0.0, 1.0))

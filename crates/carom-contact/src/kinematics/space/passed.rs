@@ -21,7 +21,8 @@ impl NodeToPatch {
     ) -> Option<Passed> {
         let (nodes, boundary) = (self.secondary(), &self.primary);
         let first = *nodes.first()?;
-        let Tools { paths, apart, swept, .. } = tools;
+        let Tools { paths, apart, recent, swept, .. } = tools;
+        recent.forget();
         // Within one piece, a path may begin and end on either side of its own boundary.
         let folds = self.folds.as_ref();
         if folds.is_some_and(|(folds, _)| !folds.has_pieces()) {
@@ -61,10 +62,16 @@ impl NodeToPatch {
             if !far {
                 continue;
             }
+            let fastest = amplification(boundary.shape()) * (of_body + moved(&node).sqrt());
+            // What enters later, or leaves earlier, is not inside for long enough.
+            let until = 1.0 - (SHARE * shortest + self.slack(k)) / fastest;
+            if until <= 0.0 {
+                continue;
+            }
             // The last exit is the first entry of the reversed motion.
-            let exit = self.earliest(swept, &near, node, [now, before]);
+            let exit = self.earliest(swept, &near, node, [now, before], until);
             near.retain(|&facet| !self.excludes(node, facet));
-            let entry = self.earliest(swept, &near, node, [before, now]);
+            let entry = self.earliest(swept, &near, node, [before, now], until);
             let exit = exit.map(|back| Met { theta: 1.0 - back.theta, ..back });
             let mut way = OnWay {
                 boundary,
@@ -77,7 +84,6 @@ impl NodeToPatch {
                 allowed: Allowed::default(),
                 from: entry.or(exit).map(|met| met.facet),
             };
-            let fastest = amplification(boundary.shape()) * (of_body + moved(&node).sqrt());
             let Some(found) = through(&mut way, [entry, exit], bounce, fastest) else { continue };
             let (depth, limit) = (found.depth, found.limit);
             if worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
@@ -87,16 +93,17 @@ impl NodeToPatch {
         worst
     }
 
-    /// The first entry through any facet of the boundary.
+    /// The first entry through any facet of the boundary, up to θ = `until`.
     fn earliest(
         &self,
         swept: &mut SweptPatch,
         near: &[usize],
         node: usize,
-        [from, to]: [&[f64]; 2],
+        ends: [&[f64]; 2],
+        until: f64,
     ) -> Option<Met> {
         let crossings = near.iter().filter_map(|&facet| {
-            let (theta, xi) = crossing(swept, self.primary.patch(facet), from, to, node)?;
+            let (theta, xi) = crossing(swept, self.primary.patch(facet), ends, until, node)?;
             Some(Met { theta, facet, xi })
         });
         crossings.min_by(|a, b| a.theta.total_cmp(&b.theta))
