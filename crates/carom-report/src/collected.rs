@@ -55,6 +55,12 @@ impl Origin {
     }
 }
 
+/// The first arm whose record is bitwise that of an arm, if it is another one.
+pub(crate) fn twin(origins: &[Origin], arm: usize) -> Option<usize> {
+    let own = origins.iter().find(|origin| origin.arm == arm && !origin.record.is_empty())?;
+    origins.iter().find(|origin| origin.record == own.record).map(|first| first.arm).filter(|first| *first != arm)
+}
+
 /// The measured data of a study and of the cases of its arms.
 pub(crate) struct Measured(pub(crate) Vec<Overlay>);
 
