@@ -7,8 +7,8 @@ use maud::{Markup, html};
 
 use crate::collected::Origin;
 use crate::digits::three;
-use crate::round_off::Scales;
 use crate::labels::with_unit;
+use crate::round_off::Scales;
 use crate::text::{Label, Prose};
 
 const HASHES: &str = "Input hash: BLAKE3 of the case and the settings of the arm. Record hash: BLAKE3 of \

@@ -154,6 +154,11 @@ fn with_apart(plot: Plot) -> Plot {
     Plot { caption, ..plot }
 }
 
+/// What the broad line is, where one is drawn.
+fn broad(panes: &[Pane]) -> &'static str {
+    if panes.iter().any(|pane| pane.front.len() > 1) { " Broad line: Pareto front." } else { "" }
+}
+
 /// What is said of the recommended arm where there is one.
 fn ring(panes: &[Pane]) -> &'static str {
     let has_ring = panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.ring.is_some());
@@ -223,8 +228,9 @@ fn error_cost(study: &Study) -> Option<Plot> {
         group: String::new(),
         name: "error-cost".into(),
         caption: format!(
-            "Error against cost: one point per arm, one curve per method. Broad line: Pareto front.{}{} \
+            "Error against cost: one point per arm, one curve per method.{}{}{} \
              Cost: processor time of the time steps without output.{omitted}",
+            broad(&panes),
             ring(&panes),
             quiet(&panes)
         ),
@@ -288,9 +294,10 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
         group: String::new(),
         name: "roughness-dissipation".into(),
         caption: format!(
-            "Roughness of the contact force against energy drift: one point per arm, one curve per method. \
-             Broad line: Pareto front.{}{} Numerical damping reduces roughness at the cost of energy; \
+            "Roughness of the contact force against energy drift: one point per arm, one curve per method.\
+             {}{}{} Numerical damping reduces roughness at the cost of energy; \
              methods at the lower left are smooth without loss of energy. TV: total variation during the first contact.{omitted}{least}{left_out}",
+            broad(&panes),
             ring(&panes),
             quiet(&panes)
         ),

@@ -309,12 +309,18 @@ mod tests {
     fn a_common_value_is_said_once() {
         let column = |cells: &[&str]| Column {
             head: String::new(),
-            cells: cells.iter().map(|cell| Some((*cell).to_owned()).filter(|cell| !cell.is_empty())).collect(),
+            cells: cells
+                .iter()
+                .map(|cell| Some((*cell).to_owned()).filter(|cell| !cell.is_empty()))
+                .collect(),
         };
         let long = column(&["0", "0", "5", "0", "0", "0", "0", "0"]);
         assert_eq!(said(&long, |row| format!("arm {row}")), "0, but arm 2: 5.");
         assert_eq!(common(&column(&["0", "0", "5", "0"])), None);
-        assert_eq!(said(&column(&["", "1", "", "", ""]), |row| format!("arm {row}")), "arm 1: 1; of no other arm.");
+        assert_eq!(
+            said(&column(&["", "1", "", "", ""]), |row| format!("arm {row}")),
+            "arm 1: 1; of no other arm."
+        );
         assert_eq!(said(&column(&["0"; 9]), |_| String::new()), "0 in all arms.");
     }
 }

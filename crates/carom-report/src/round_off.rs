@@ -40,7 +40,8 @@ mod tests {
     /// A penetration of 1e-13 m beside displacements of 5 m is none, one of 1e-11 m is one.
     #[test]
     fn what_is_tiny_beside_its_unit_is_round_off() {
-        let with = |depth: f64| crate::trend::tests::study(&[("a", vec![("penetration", depth), ("ux", -5.0)])]);
+        let with =
+            |depth: f64| crate::trend::tests::study(&[("a", vec![("penetration", depth), ("ux", -5.0)])]);
         let shown = |depth: f64| {
             let mut study = with(depth);
             study.rows[0].metrics.iter_mut().for_each(|metric| metric.unit = "m".into());

@@ -35,9 +35,9 @@ fn found(study: &Study) -> Vec<Found<'_>> {
 
 /// What several arms found, each with its arms; said once where only one number differs:
 /// `it rose by 70 % (a), 63 % (b) of its scale`.
-fn together(what: &[(&str, Vec<usize>)], names: impl Fn(&[usize]) -> String) -> String {
+fn together(what: &[(String, Vec<usize>)], names: impl Fn(&[usize]) -> String) -> String {
     if let [(only, _)] = what {
-        return (*only).to_owned();
+        return only.clone();
     }
     let parts: Vec<Vec<&str>> = what.iter().map(|(words, _)| words.split(' ').collect()).collect();
     let differs = |k: &usize| parts.iter().any(|words| words.get(*k) != parts[0].get(*k));
@@ -47,8 +47,9 @@ fn together(what: &[(&str, Vec<usize>)], names: impl Fn(&[usize]) -> String) -> 
         // The number goes with its unit.
         let end = at + 1 + usize::from(parts[0].get(at + 1) == Some(&"%"));
         let each = parts.iter().zip(what);
-        let each: Vec<String> =
-            each.map(|(words, (_, arms))| format!("{} ({})", words[*at..end].join(" "), names(arms))).collect();
+        let each: Vec<String> = each
+            .map(|(words, (_, arms))| format!("{} ({})", words[*at..end].join(" "), names(arms)))
+            .collect();
         let (before, after) = (parts[0][..*at].join(" "), parts[0][end..].join(" "));
         return format!("{before} {} {after}", each.join(", ")).trim().to_owned();
     }
@@ -115,7 +116,9 @@ pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
                         td {
                             // The last column names the runs.
                             @if warning.place != "the run" { (typeset(&warning.place)) ": " }
-                            (typeset(&together(what, |arms| names(study, arms)))) "; "
+                            // Names stay as they are.
+                            @let set: Vec<_> = what.iter().map(|(words, arms)| (typeset(words), arms.clone())).collect();
+                            (Label(&together(&set, |arms| names(study, arms)))) "; "
                             (typeset(&warning.why)) "."
                         }
                         td { (typeset(&warning.advice)) }
@@ -137,14 +140,14 @@ mod tests {
     #[test]
     fn what_differs_in_a_number_is_said_once() {
         let names = |arms: &[usize]| format!("arm {}", arms[0]);
-        let one = ("it rose by 70.3 % of its scale", vec![6]);
-        let other = ("it rose by 62.7 % of its scale", vec![9]);
+        let one = ("it rose by 70.3 % of its scale".to_owned(), vec![6]);
+        let other = ("it rose by 62.7 % of its scale".to_owned(), vec![9]);
         assert_eq!(together(&[one.clone()], names), "it rose by 70.3 % of its scale");
         assert_eq!(
             together(&[one.clone(), other], names),
             "it rose by 70.3 % (arm 6), 62.7 % (arm 9) of its scale"
         );
-        let third = ("it fell", vec![2]);
+        let third = ("it fell".to_owned(), vec![2]);
         assert_eq!(together(&[one, third], names), "it rose by 70.3 % of its scale (arm 6); it fell (arm 2)");
     }
 }

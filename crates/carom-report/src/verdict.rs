@@ -200,7 +200,10 @@ fn side_effects(study: &Study, arm: usize) -> Vec<String> {
             }
             _ => three(late.abs()),
         };
-        lines.push(format!("the motion ({column}) {direction} the reference by {amount} {}", time_unit(study)));
+        lines.push(format!(
+            "the motion ({column}) {direction} the reference by {amount} {}",
+            time_unit(study)
+        ));
     }
     lines
 }
