@@ -30,6 +30,7 @@ mod integrity;
 mod labels;
 mod laboratory;
 mod meshes;
+mod multiples;
 mod noise;
 mod obstacles;
 mod overlap;

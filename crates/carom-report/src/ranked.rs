@@ -23,8 +23,8 @@ const STRESSES: usize = 3;
 /// A column with values in less than this fraction of its cells is none.
 const SPARSE: usize = 4;
 
-/// In tables of at least `LONG` rows, a value in more than this fraction of the cells of a column is
-/// said below the table.
+/// In tables of at least `LONG` rows, a value in more than this fraction of the cells of a column
+/// is said below the table.
 const COMMON: f64 = 0.75;
 const LONG: usize = 8;
 

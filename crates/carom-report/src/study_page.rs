@@ -8,10 +8,10 @@ mod results;
 
 use carom_record::Status;
 use carom_record::study::Study;
-use maud::{Markup, Render, html};
+use maud::{Markup, html};
 
 use crate::collected::Origin;
-use crate::document::{document, figure, joined};
+use crate::document::{document, figure};
 use crate::plot::Plot;
 use crate::systems::Systems;
 use crate::text::{Label, Prose};
@@ -87,9 +87,4 @@ fn figures(plots: &[Plot]) -> Markup {
             }
         }
     }
-}
-
-/// Items set as code, with a separator between them.
-fn codes(items: &[impl Render], separator: impl Render) -> Markup {
-    joined(items.iter().map(|item| html! { code { (item) } }), separator)
 }

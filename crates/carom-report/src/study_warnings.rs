@@ -142,7 +142,7 @@ mod tests {
         let names = |arms: &[usize]| format!("arm {}", arms[0]);
         let one = ("it rose by 70.3 % of its scale".to_owned(), vec![6]);
         let other = ("it rose by 62.7 % of its scale".to_owned(), vec![9]);
-        assert_eq!(together(&[one.clone()], names), "it rose by 70.3 % of its scale");
+        assert_eq!(together(std::slice::from_ref(&one), names), "it rose by 70.3 % of its scale");
         assert_eq!(
             together(&[one.clone(), other], names),
             "it rose by 70.3 % (arm 6), 62.7 % (arm 9) of its scale"

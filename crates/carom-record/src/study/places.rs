@@ -37,8 +37,8 @@ pub(super) fn alike(a: (f64, f64), b: (f64, f64), reference: f64) -> bool {
     (a.0 - b.0).abs() <= f64::max(reference, own)
 }
 
-/// Assigns places: one plus the number of arms that are distinguishably better, of which twins count
-/// as one. An arm that created much energy is worse than any that did not.
+/// Assigns places: one plus the number of arms that are distinguishably better, of which twins
+/// count as one. An arm that created much energy is worse than any that did not.
 pub(super) fn places(
     ranked: &mut [Ranked],
     better: impl Fn(&Ranked, &Ranked) -> bool,

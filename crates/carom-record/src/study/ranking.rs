@@ -8,9 +8,9 @@
 //! not distinguished if their errors differ by no more than the sum of their uncertainties, than
 //! that of the reference, or than 5 %. The place of an arm is one plus the number of arms that are
 //! distinguishably better, of which twins, with the same results to the last bit, count as one; a
-//! method that is a twin of an earlier one at all levels is no competitor of it. Within a place arms are in the order of their cost. An arm that created
-//! so much energy that the default guard would have stopped it is placed behind all others; a
-//! member that did counts as failed.
+//! method that is a twin of an earlier one at all levels is no competitor of it. Within a place
+//! arms are in the order of their cost. An arm that created so much energy that the default guard
+//! would have stopped it is placed behind all others; a member that did counts as failed.
 //!
 //! An arm has the required accuracy if neither its error nor its uncertainty exceeds that. The goal
 //! of least cost ranks the arms that have it by their own processor times,

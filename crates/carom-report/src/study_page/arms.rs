@@ -4,8 +4,9 @@ use carom_record::Status;
 use carom_record::study::{Arm, Row, Study};
 use maud::{Markup, html};
 
-use super::{codes, parameters};
+use super::parameters;
 use crate::collected::{Origin, twin};
+use crate::document::codes;
 use crate::laboratory::style_of;
 use crate::plot::{APART, style};
 use crate::settings;

@@ -4,8 +4,7 @@
 use carom_record::study::Study;
 use maud::{Markup, PreEscaped, html};
 
-use super::codes;
-use crate::document::file;
+use crate::document::{codes, file};
 use crate::text::Label;
 use crate::{design, settings, setup};
 

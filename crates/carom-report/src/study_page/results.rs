@@ -4,11 +4,10 @@ use carom_record::metrics::{self, Metric};
 use carom_record::study::{Row, Study};
 use maud::{Markup, html};
 
-use super::codes;
 use crate::by_arm;
 use crate::collected::time_unit;
 use crate::digits::five;
-use crate::document::{file, joined, minus, or_dash};
+use crate::document::{codes, file, joined, minus, or_dash};
 use crate::round_off::Scales;
 use crate::systems::Systems;
 use crate::text::Label;
