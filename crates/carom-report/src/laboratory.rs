@@ -1,5 +1,5 @@
-//! Figures that compare time integrators by a point for every arm: error against cost, and roughness
-//! against dissipation.
+//! Figures that compare time integrators by a point for every arm: error against cost, and
+//! roughness against dissipation.
 
 use carom_record::Status;
 use carom_record::study::Study;

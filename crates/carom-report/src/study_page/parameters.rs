@@ -140,3 +140,21 @@ fn distinct(values: &[Option<&str>]) -> Vec<String> {
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::elsewhere;
+
+    /// A default that depends on the scheme is not one value of the case file.
+    #[test]
+    fn all_values_of_the_other_arms_are_named() {
+        let words = |others: &[Option<&str>]| {
+            let others: Vec<_> = others.iter().map(|other| other.map(str::to_owned)).collect();
+            elsewhere(&others).into_string()
+        };
+        assert_eq!(words(&[]), "; set in every arm");
+        assert_eq!(words(&[None, None]), "; without a value in the other arms");
+        assert_eq!(words(&[Some("1"), Some("1")]), "; in the other arms <code>1</code>");
+        assert!(words(&[Some("1"), Some("2")]).ends_with("<code>1</code> or <code>2</code>"));
+    }
+}
