@@ -19,7 +19,7 @@ const OTHERS: [(&str, &str, &str); 5] = [
     ("contact_impulse_x", "P_{x}", "contact impulse in x direction"),
     ("contact_impulse_y", "P_{y}", "contact impulse in y direction"),
     ("contact_impulse_z", "P_{z}", "contact impulse in z direction"),
-    ("dissipation", "dissipation", "accumulated dissipation of the scheme"),
+    ("dissipation", "dissipation", "energy dissipated by the time integrator"),
 ];
 
 /// A column of all arms, thinned.
@@ -53,6 +53,16 @@ impl Origin {
             (run.manifest.input_hash.clone(), fingerprint(&run.directory).unwrap_or_default());
         Self { arm, input, record, rejected, fallbacks }
     }
+}
+
+/// The first arm whose record is bitwise that of an arm, if it is another one.
+pub(crate) fn twin(origins: &[Origin], arm: usize) -> Option<usize> {
+    let own = origins.iter().find(|origin| origin.arm == arm && !origin.record.is_empty())?;
+    origins
+        .iter()
+        .find(|origin| origin.record == own.record)
+        .map(|first| first.arm)
+        .filter(|first| *first != arm)
 }
 
 /// The measured data of a study and of the cases of its arms.

@@ -50,6 +50,11 @@ pub(crate) fn joined(items: impl IntoIterator<Item = impl Render>, separator: im
     }
 }
 
+/// Items set as code, with a separator between them.
+pub(crate) fn codes(items: &[impl Render], separator: impl Render) -> Markup {
+    joined(items.iter().map(|item| html! { code { (item) } }), separator)
+}
+
 /// An expected value with minus signs in place of hyphens.
 pub(crate) fn minus(expected: &str) -> String {
     expected.replace('-', "−")

@@ -2,13 +2,13 @@
 //! and its record, and the arm that was recomputed.
 
 use carom_record::Status;
-use carom_record::study::Study;
+use carom_record::study::{Row, Study};
 use maud::{Markup, html};
 
 use crate::collected::Origin;
 use crate::digits::three;
-use crate::document::or_dash;
 use crate::labels::with_unit;
+use crate::round_off::Scales;
 use crate::text::{Label, Prose};
 
 const HASHES: &str = "Input hash: BLAKE3 of the case and the settings of the arm. Record hash: BLAKE3 of \
@@ -20,6 +20,23 @@ fn short(hash: &str) -> &str {
     hash.get(..12).unwrap_or(hash)
 }
 
+/// What is not as it should be in an arm.
+fn exception(study: &Study, origin: &Origin) -> String {
+    let finished = study.rows[origin.arm].status == Some(Status::Finished);
+    let number = |count: u64, one: &str, more: &str| match count {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        _ => Some(format!("{count} {more}")),
+    };
+    let words = [
+        (!finished).then(|| "not finished".to_owned()),
+        number(origin.rejected, "rejected step", "rejected steps"),
+        number(origin.fallbacks as u64, "cycle or fallback", "cycles and fallbacks"),
+    ];
+    let words: Vec<String> = words.into_iter().flatten().collect();
+    format!("{}: {}", study.rows[origin.arm].name, words.join(", "))
+}
+
 /// The section of the page.
 pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
     let metrics = study.metrics();
@@ -29,10 +46,19 @@ pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
     };
     let exceptions: Vec<&Origin> = origins.iter().filter(is_exception).collect();
     let is_short = origins.len() <= 4;
+    let scales = Scales::of(study);
+    let depth = |row: &Row| {
+        let metric = row.metrics.iter().find(|m| m.name == "penetration");
+        let value = metric.and_then(|m| Some(scales.shown(m, m.value?, three)));
+        value.unwrap_or_else(|| "–".to_owned())
+    };
     let penetration = with_unit("Max. penetration", unit);
     html! {
         h2 { "Integrity" }
-        details open[is_short || !exceptions.is_empty()] {
+        @if !is_short && !exceptions.is_empty() {
+            p { (exceptions.iter().map(|origin| exception(study, origin)).collect::<Vec<_>>().join("; ")) "." }
+        }
+        details open[is_short] {
         summary { "How each arm ended, and hashes of its input and its record" }
         table.metrics.ranking {
             thead {
@@ -47,7 +73,7 @@ pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
                     td { (row.name) }
                     td { @if row.status == Some(Status::Finished) { "finished" } @else { "not finished" } }
                     td.n { (origin.rejected) } td.n { (origin.fallbacks) }
-                    td.n { (or_dash(row.value("penetration"), three)) }
+                    td.n { (depth(row)) }
                     td { code { (short(&origin.input)) } } td { code { (short(&origin.record)) } }
                 }
             }

@@ -1,34 +1,19 @@
-//! Figures that compare time integrators: error against cost, roughness against dissipation, and
-//! the histories of each method with the reference.
+//! Figures that compare time integrators by a point for every arm: error against cost, and
+//! roughness against dissipation.
 
 use carom_record::Status;
 use carom_record::study::Study;
 use carom_record::study::compared::{established, is_trajectory};
 use carom_record::study::design::Goal;
-use carom_record::study::reference::{FORCE, Reference};
 
-use crate::collected::{Column, Measured, named};
-use crate::curves;
-use crate::labels::{capitalised, file_name, with_unit};
-use crate::plot::{Band, COLORS, Curve, Pane, Plot};
-use crate::theory;
-
-/// Colour of the reference in small multiples.
-const REFERENCE: &str = "#222";
-
-/// Largest number of small multiples in one figure.
-const MULTIPLES: usize = 24;
+use crate::plot::{COLORS, Curve, Pane, Plot};
 
 /// The figures of a study with a goal; none for a study without.
-pub(crate) fn plots(study: &Study, columns: &[Column], measured: &Measured, time: &str) -> Vec<Plot> {
+pub(crate) fn plots(study: &Study) -> Vec<Plot> {
     if study.manifest.goal.is_none() {
         return Vec::new();
     }
-    let mut plots: Vec<Plot> =
-        [error_cost(study), roughness_dissipation(study)].into_iter().flatten().map(with_apart).collect();
-    plots.extend(columns.iter().filter_map(|c| multiples(study, c, measured, time)));
-    plots.extend(theory::plot(study));
-    plots
+    [error_cost(study), roughness_dissipation(study)].into_iter().flatten().map(with_apart).collect()
 }
 
 /// The style of an arm in all figures: that of its method, where there are methods.
@@ -154,6 +139,11 @@ fn with_apart(plot: Plot) -> Plot {
     Plot { caption, ..plot }
 }
 
+/// What the broad line is, where one is drawn.
+fn broad(panes: &[Pane]) -> &'static str {
+    if panes.iter().any(|pane| pane.front.len() > 1) { " Broad line: Pareto front." } else { "" }
+}
+
 /// What is said of the recommended arm where there is one.
 fn ring(panes: &[Pane]) -> &'static str {
     let has_ring = panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.ring.is_some());
@@ -223,8 +213,9 @@ fn error_cost(study: &Study) -> Option<Plot> {
         group: String::new(),
         name: "error-cost".into(),
         caption: format!(
-            "Error against cost: one point per arm, one curve per method. Broad line: Pareto front.{}{} \
+            "Error against cost: one point per arm, one curve per method.{}{}{} \
              Cost: processor time of the time steps without output.{omitted}",
+            broad(&panes),
             ring(&panes),
             quiet(&panes)
         ),
@@ -288,9 +279,10 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
         group: String::new(),
         name: "roughness-dissipation".into(),
         caption: format!(
-            "Roughness of the contact force against energy drift: one point per arm, one curve per method. \
-             Broad line: Pareto front.{}{} Numerical damping reduces roughness at the cost of energy; \
+            "Roughness of the contact force against energy drift: one point per arm, one curve per method.\
+             {}{}{} Numerical damping reduces roughness at the cost of energy; \
              methods at the lower left are smooth without loss of energy. TV: total variation during the first contact.{omitted}{least}{left_out}",
+            broad(&panes),
             ring(&panes),
             quiet(&panes)
         ),
@@ -301,117 +293,6 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
         direct: true,
         panes,
     })
-}
-
-/// The reference of a column as a line, and where its value is established, the band of its
-/// uncertainty.
-fn reference_of(reference: &Reference, column: &str) -> Option<(Curve, Option<Band>)> {
-    let (x, y) = reference.column(column)?;
-    let off = reference.band(column);
-    let every = x.len().div_ceil(1200).max(1);
-    let rows = (0..x.len()).step_by(every);
-    let edge = |sign: f64| rows.clone().map(|i| y[i] + sign * off[i]).collect();
-    let x: Vec<f64> = rows.clone().map(|i| x[i]).collect();
-    let known = reference.uncertainty(column).established().is_some();
-    let band = known.then(|| Band { name: "uncertainty", x: x.clone(), low: edge(-1.0), high: edge(1.0) });
-    let line = Curve {
-        label: "reference".to_owned(),
-        color: Some(REFERENCE),
-        over: true,
-        x,
-        y: edge(0.0),
-        unlisted: true,
-        ..Curve::default()
-    };
-    Some((line, band))
-}
-
-/// Name of the figure with small multiples of a column.
-fn multiples_name(column: &str) -> String {
-    format!("each-{}", file_name(if column == FORCE { "contact-force" } else { column }))
-}
-
-/// A column of every method at its finest level, one pane each; during the first contact, if this
-/// is a small part of the time. Methods with the same curve share a pane.
-fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) -> Option<Plot> {
-    let reference = study.reference.as_ref().and_then(|r| reference_of(r, &column.name));
-    let (line, band) = reference.map_or((None, None), |(line, band)| (Some(line), band));
-    let (label, what) = named(&column.name);
-    let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
-    let curve = |(name, arms): (&str, Vec<usize>)| {
-        let finest = arms.last()?;
-        let (_, x, y) = column.curves.iter().find(|(arm, ..)| arm == finest)?;
-        let chosen = arms.iter().any(|arm| chosen == Some(*arm));
-        let (style, apart) = (style_of(study, *finest), study.rows[*finest].is_unsound());
-        let label = name.to_owned();
-        Some(Curve { label, style, apart, x: x.clone(), y: y.clone(), chosen, ..Curve::default() })
-    };
-    let found = curves::merged(methods(study).into_iter().filter_map(curve).take(MULTIPLES).collect());
-    // A single pane compares nothing; the overlays show the column as well.
-    if found.len() < 2 {
-        return None;
-    }
-    let end = found.iter().filter_map(|(curve, _)| curve.x.last()).copied().fold(0.0, f64::max);
-    let span = curves::contact(study, end);
-    let names: Vec<_> = found.iter().map(|(curve, others)| (curve.label.clone(), others.clone())).collect();
-    let points = measured.points(&column.name, end, true);
-    let pane = |(k, (curve, others)): (usize, (Curve, Vec<String>))| {
-        let mark = if curve.chosen { "▸ " } else { "" };
-        let more = match &others[..] {
-            [] => String::new(),
-            [other] => format!(" and {other}"),
-            others => format!(" and {} others", others.len()),
-        };
-        let creates = if curve.apart { ", creates energy" } else { "" };
-        let title = format!("{mark}{}{more}{creates}", curve.label);
-        let name = curve.label.clone();
-        let curve = Curve { unlisted: true, ..curve };
-        let curves = line.iter().cloned().chain([curve]).chain(points.iter().cloned()).collect();
-        Pane {
-            name,
-            title,
-            y_label: if k % 3 == 0 { with_unit(&label, &column.unit) } else { String::new() },
-            curves,
-            band: band.clone(),
-            span,
-            ..Pane::default()
-        }
-    };
-    let grey = match (&line, &band) {
-        (None, _) => "",
-        (_, Some(_)) => " Dashed line: the reference, with the band of its uncertainty",
-        (_, None) => " Dashed line: the reference; its uncertainty is not established.",
-    };
-    let mark = if found.iter().any(|(curve, _)| curve.chosen) { " ▸: recommended." } else { "" };
-    let is_apart = found.iter().any(|(curve, _)| curve.apart);
-    let apart = if is_apart { " Methods that create energy do not affect the axes." } else { "" };
-    let when = if span.is_some() { " during the first contact" } else { "" };
-    let panes: Vec<Pane> = found.into_iter().enumerate().map(pane).collect();
-    let drawn_once = curves::drawn_once(&names);
-    let mut plot = Plot {
-        group: String::new(),
-        name: multiples_name(&column.name),
-        caption: String::new(),
-        x_label: with_unit("time t", time),
-        log: [false, false],
-        across: 3,
-        same: true,
-        direct: false,
-        panes,
-    };
-    let shown = plot.panes.first().map_or_else(Vec::new, |pane| plot.shown_band(pane));
-    let part = match () {
-        () if shown.is_empty() => "",
-        () if shown.iter().all(|shown| *shown) => ".",
-        () => ", where it does not exceed the axis.",
-    };
-    plot.caption = format!(
-        "{}{when}, for each method at its finest level.{grey}{part}{mark}{apart}{drawn_once}{} All panels have \
-         the same axes.",
-        capitalised(&what),
-        measured.words(&column.name)
-    );
-    Some(plot)
 }
 
 #[cfg(test)]

@@ -9,11 +9,12 @@ use carom_record::study::reference::{Reference, Standing};
 use carom_record::study::{Arm, Study, step};
 use maud::{Markup, html};
 
-use crate::collected::{in_time, time_unit};
+use crate::collected::{Origin, in_time, time_unit, twin};
 use crate::design::OFF_BUDGET;
-use crate::digits::{count, five, three};
+use crate::digits::{count, five, three, three_digits};
 use crate::document::joined;
 use crate::labels::with_unit;
+use crate::round_off::Scales;
 use crate::text::Label;
 
 /// Largest number of probe stresses that have a column.
@@ -22,9 +23,10 @@ const STRESSES: usize = 3;
 /// A column with values in less than this fraction of its cells is none.
 const SPARSE: usize = 4;
 
-/// What is smaller than this share of the largest value of a column, or of one for shares, is
-/// round-off.
-const ROUND_OFF: f64 = 1e-12;
+/// In tables of at least `LONG` rows, a value in more than this fraction of the cells of a column
+/// is said below the table.
+const COMMON: f64 = 0.75;
+const LONG: usize = 8;
 
 /// A heading and the cells below it, in the order of the ranked arms.
 struct Column {
@@ -36,6 +38,7 @@ struct Column {
 struct Ranked<'a> {
     study: &'a Study,
     arms: Vec<usize>,
+    scales: Scales,
 }
 
 impl Ranked<'_> {
@@ -51,14 +54,9 @@ impl Ranked<'_> {
 
     /// The values of a metric.
     fn metric(&self, head: &str, metric: &str) -> Column {
-        let value = |arm: usize| self.study.rows[arm].value(metric);
-        let largest = self.arms.iter().filter_map(|arm| value(*arm)).fold(0.0, |m: f64, v| m.max(v.abs()));
-        let metrics = self.study.metrics();
-        let is_share = metrics.iter().any(|m| m.name == metric && m.unit.is_empty());
-        let least = ROUND_OFF * if is_share { largest.max(1.0) } else { largest };
         self.column(head, |arm| {
-            let v = value(arm)?;
-            Some(if v != 0.0 && v.abs() < least { "≈ 0".to_owned() } else { three(v) })
+            let metric = self.study.rows[arm].metrics.iter().find(|m| m.name == metric)?;
+            Some(self.scales.shown(metric, metric.value?, three_digits))
         })
     }
 
@@ -84,7 +82,7 @@ impl Ranked<'_> {
             self.study.rows[arm]
                 .value(metric)
                 .filter(|_| relative.is_finite())
-                .map(|v| three(error(v, right)))
+                .map(|v| three_digits(error(v, right)))
         })
     }
 
@@ -93,14 +91,14 @@ impl Ranked<'_> {
         let right = standing(self.study.reference.as_ref(), "force_variation").established();
         let right = right.map(|known| known.0).filter(|right| *right > 0.0);
         self.column("Excess variation", |arm| {
-            Some(three(self.study.rows[arm].value("force_variation")? / right? - 1.0))
+            Some(three_digits(self.study.rows[arm].value("force_variation")? / right? - 1.0))
         })
     }
 
     /// Time by which an arm lags the reference.
     fn delay(&self) -> Column {
         self.column(&with_unit("Delay", time_unit(self.study)), |arm| {
-            Some(three(self.study.compared.get(arm)?.as_ref()?.late.as_ref()?.1))
+            Some(three_digits(self.study.compared.get(arm)?.as_ref()?.late.as_ref()?.1))
         })
     }
 
@@ -108,7 +106,7 @@ impl Ranked<'_> {
     fn budgets(&self, design: &Design) -> [Column; 2] {
         let share = |share: f64| {
             let mark = if (share - 1.0).abs() <= OFF_BUDGET { "" } else { " !" };
-            format!("{}{mark}", three(share))
+            format!("{}{mark}", three_digits(share))
         };
         let parts = |arm: usize| &self.study.manifest.arms[arm].role;
         let measured = |arm: usize| {
@@ -141,15 +139,16 @@ impl Ranked<'_> {
 }
 
 /// The tables, and the headings of what they show.
-pub(crate) fn tables(study: &Study, ranking: &Ranking) -> (Markup, Vec<String>) {
-    let ranked = Ranked { study, arms: ranking.levels.iter().flatten().map(|r| r.arm).collect() };
+pub(crate) fn tables(study: &Study, ranking: &Ranking, origins: &[Origin]) -> (Markup, Vec<String>) {
+    let arms = ranking.levels.iter().flatten().map(|r| r.arm).collect();
+    let ranked = Ranked { study, arms, scales: Scales::of(study) };
     let errors: Vec<String> = ranking
         .levels
         .iter()
         .flatten()
         .map(|r| match r.uncertainty {
-            0.0 => three(r.error),
-            range => format!("{} ± {}", three(r.error), three(range)),
+            0.0 => three_digits(r.error),
+            range => format!("{} ± {}", three_digits(r.error), three_digits(range)),
         })
         .collect();
     let place = |arm: usize| ranked.arms.iter().position(|a| *a == arm);
@@ -195,32 +194,66 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking) -> (Markup, Vec<String>) 
     let fourth = ranked.stresses();
     let all = first.iter().chain(&second).chain(&third).chain(&fourth);
     let heads = all.filter(|c| c.cells.iter().any(Option::is_some)).map(|c| c.head.clone()).collect();
+    let same = |arm: usize| {
+        let first = twin(origins, arm).filter(|first| ranked.arms.contains(first))?;
+        Some(study.manifest.arms[first].method())
+    };
+    let table = |title: &str, columns: &[Column]| table(title, ranking, study, columns, &same);
     let tables = html! {
-        (table("Error and cost", ranking, study, &first))
-        (table("Energy and roughness of the contact force", ranking, study, &second))
-        (table("Penetration and errors", ranking, study, &third))
-        (table("Errors of stresses", ranking, study, &fourth))
+        (table("Error and cost", &first))
+        (table("Energy and roughness of the contact force", &second))
+        (table("Penetration and errors", &third))
+        (table("Errors of stresses", &fourth))
     };
     (tables, heads)
 }
 
-fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> Markup {
+/// The value that nearly all cells of a long column have.
+fn common(column: &Column) -> Option<&str> {
+    let mut texts: Vec<&str> = column.cells.iter().flatten().map(String::as_str).collect();
+    texts.sort_unstable();
+    let most = texts.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?;
+    let cells = column.cells.len();
+    (cells >= LONG && most.len() as f64 > COMMON * cells as f64).then(|| most[0])
+}
+
+/// What a column says that is not shown as one: the values of a few arms, or the common one and
+/// the others.
+fn said(column: &Column, name: impl Fn(usize) -> String) -> String {
+    let common = common(column);
+    let others = column.cells.iter().enumerate().filter(|(_, cell)| cell.as_deref() != common);
+    let others = others.filter_map(|(row, cell)| match (cell, common) {
+        (None, None) => None,
+        (cell, _) => Some(format!("{}: {}", name(row), cell.as_deref().unwrap_or("–"))),
+    });
+    let others: Vec<String> = others.collect();
+    match common {
+        None => format!("{}; of no other arm.", others.join("; ")),
+        Some(value) if others.is_empty() => format!("{value} in all arms."),
+        Some(value) => format!("{value}, but {}.", others.join("; ")),
+    }
+}
+
+/// A table of the ranked arms; `same` is the method that an arm is identical to.
+fn table<'a>(
+    title: &str,
+    ranking: &Ranking,
+    study: &Study,
+    columns: &[Column],
+    same: &impl Fn(usize) -> Option<&'a str>,
+) -> Markup {
     let (known, missing): (Vec<_>, Vec<_>) =
         columns.iter().partition(|c| c.cells.iter().any(Option::is_some));
     if known.is_empty() {
         return Markup::default();
     }
-    // A few values are said below the table.
-    let is_sparse =
-        |c: &&Column| SPARSE * c.cells.iter().filter(|cell| cell.is_some()).count() < c.cells.len();
-    let (sparse, shown): (Vec<&Column>, Vec<&Column>) = known.into_iter().partition(is_sparse);
-    let arms: Vec<usize> = ranking.levels.iter().flatten().map(|r| r.arm).collect();
-    let values = |c: &Column| {
-        let each = c.cells.iter().zip(&arms);
-        let each =
-            each.filter_map(|(cell, arm)| Some(format!("{}: {}", study.rows[*arm].name, cell.as_ref()?)));
-        each.collect::<Vec<_>>().join("; ")
+    // A few values are said below the table, and so is one that nearly all arms have.
+    let is_said = |c: &&Column| {
+        SPARSE * c.cells.iter().filter(|cell| cell.is_some()).count() < c.cells.len() || common(c).is_some()
     };
+    let (told, shown): (Vec<&Column>, Vec<&Column>) = known.into_iter().partition(is_said);
+    let arms: Vec<usize> = ranking.levels.iter().flatten().map(|r| r.arm).collect();
+    let name = |row: usize| study.rows[arms[row]].name.clone();
     let steps = study.manifest.design.as_ref().map_or(&[][..], |design| &design.steps);
     let level_words = |level: usize| match steps.get(level) {
         Some(h) => format!("Level {}: Δt = {}", level + 1, in_time(study, *h)),
@@ -251,17 +284,43 @@ fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> M
                         td.method {
                             @if chosen == Some(r.arm) { b { "▸ " (Label(arm.method())) } } @else { (Label(arm.method())) }
                             @if by_cost(arm) { span.small { " (matched by cost)" } }
+                            @if let Some(first) = same(r.arm) { span.small { " (identical to " (Label(first)) ")" } }
                         }
                         @for column in &shown { td.n { (column.cells[row].as_deref().unwrap_or("–")) } }
                     }
                 }
             }
         }
-        @for column in &sparse {
-            p.small { (Label(&column.head)) ": " (Label(&values(column))) "; of no other arm." }
+        @for column in &told {
+            p.small { (Label(&column.head)) ": " (Label(&said(column, name))) }
         }
         @if !missing.is_empty() {
             p.small { "Not available: " (joined(missing.iter().map(|c| Label(&c.head)), ", ")) "." }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seven of eight cells are the same; of three of four, a short table, all are shown.
+    #[test]
+    fn a_common_value_is_said_once() {
+        let column = |cells: &[&str]| Column {
+            head: String::new(),
+            cells: cells
+                .iter()
+                .map(|cell| Some((*cell).to_owned()).filter(|cell| !cell.is_empty()))
+                .collect(),
+        };
+        let long = column(&["0", "0", "5", "0", "0", "0", "0", "0"]);
+        assert_eq!(said(&long, |row| format!("arm {row}")), "0, but arm 2: 5.");
+        assert_eq!(common(&column(&["0", "0", "5", "0"])), None);
+        assert_eq!(
+            said(&column(&["", "1", "", "", ""]), |row| format!("arm {row}")),
+            "arm 1: 1; of no other arm."
+        );
+        assert_eq!(said(&column(&["0"; 9]), |_| String::new()), "0 in all arms.");
     }
 }

@@ -63,12 +63,16 @@ fn is_as_in_case(study: &Study, key: &str, values: &[Option<&str>]) -> bool {
 /// Largest number of entries of a table that is given as a value.
 const ENTRIES: usize = 4;
 
-/// A number, a word or a truth in TOML.
+/// A number, a word, a truth or a short list of them in TOML.
 fn plain(value: &Value) -> Option<String> {
     match value {
         Value::Number(number) => Some(number.to_string()),
         Value::String(word) => Some(format!("\"{word}\"")),
         Value::Bool(truth) => Some(truth.to_string()),
+        Value::Array(list) if (1..=ENTRIES).contains(&list.len()) => {
+            let all: Option<Vec<String>> = list.iter().map(plain).collect();
+            all.map(|all| format!("[{}]", all.join(", ")))
+        }
         _ => None,
     }
 }
@@ -85,7 +89,7 @@ pub(crate) fn of_case(arm: &Arm, key: &str) -> Option<String> {
             part => format!("{part}s"),
         };
         node = match (node.get(part), node.get(&list).and_then(|list| list.as_array())) {
-            (Some(inner), _) if !inner.is_array() => inner,
+            (Some(inner), _) => inner,
             (_, Some(list)) => {
                 let name = parts.next()?;
                 list.iter().find(|one| one.get("name").is_some_and(|own| own == name))?

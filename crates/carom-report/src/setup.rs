@@ -89,7 +89,9 @@ fn drawn(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
     } else {
         [right + margin + 36.0 + KEY, (bottom + 44.0).max(lines + 8.0)]
     };
-    let mut out = open("Initial configuration", width, height);
+    // In the plane there are no shades: a dark page shows it on dark ground.
+    let out = open("Initial configuration", width, height);
+    let mut out = out.replacen("class=\"picture\"", "class=\"picture sketch\"", 1);
     setup.axes(&mut out, [left - margin, right + margin, top - margin, bottom]);
     setup.bodies(&mut out);
     setup.planes(&mut out, &planes, 0.6 * margin);

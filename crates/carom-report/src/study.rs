@@ -12,7 +12,7 @@ use crate::labels::{capitalised, file_name, listed, with_unit};
 use crate::plot::{Curve, Pane, Plot};
 use crate::publish::{ReportError, ReportSummary, publish, write};
 use crate::systems::Systems;
-use crate::{curves, laboratory, setup, study_page, trend};
+use crate::{curves, laboratory, multiples, setup, study_page, theory, trend};
 
 /// Figures of one column that are shown; more of them are folded away, and with a goal, for which
 /// there are figures of all methods, more than `FEW_MORE`.
@@ -43,7 +43,9 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     })?;
     study.write_tables()?;
     systems.convert(&mut study);
-    let mut plots = laboratory::plots(&study, &columns, &measured, &time);
+    let mut plots = laboratory::plots(&study);
+    plots.extend(multiples::plots(&study, &columns, &measured, &time));
+    plots.extend(theory::plot(&study).filter(|_| study.manifest.goal.is_some()));
     plots.extend(columns.iter().flat_map(|column| overlays(column, &study, &measured, &time)));
     plots.extend(trend::plots(&study));
     // Figures that are folded away come last, so that those shown have successive numbers.

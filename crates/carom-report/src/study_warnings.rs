@@ -33,6 +33,30 @@ fn found(study: &Study) -> Vec<Found<'_>> {
     found
 }
 
+/// What several arms found, each with its arms; said once where only one number differs:
+/// `it rose by 70 % (a), 63 % (b) of its scale`.
+fn together(what: &[(String, Vec<usize>)], names: impl Fn(&[usize]) -> String) -> String {
+    if let [(only, _)] = what {
+        return only.clone();
+    }
+    let parts: Vec<Vec<&str>> = what.iter().map(|(words, _)| words.split(' ').collect()).collect();
+    let differs = |k: &usize| parts.iter().any(|words| words.get(*k) != parts[0].get(*k));
+    let apart: Vec<usize> = (0..parts[0].len()).filter(differs).collect();
+    let is_one = parts.iter().all(|words| words.len() == parts[0].len());
+    if let ([at], true) = (&apart[..], is_one) {
+        // The number goes with its unit.
+        let end = at + 1 + usize::from(parts[0].get(at + 1) == Some(&"%"));
+        let each = parts.iter().zip(what);
+        let each: Vec<String> = each
+            .map(|(words, (_, arms))| format!("{} ({})", words[*at..end].join(" "), names(arms)))
+            .collect();
+        let (before, after) = (parts[0][..*at].join(" "), parts[0][end..].join(" "));
+        return format!("{before} {} {after}", each.join(", ")).trim().to_owned();
+    }
+    let each: Vec<String> = what.iter().map(|(words, arms)| format!("{words} ({})", names(arms))).collect();
+    each.join("; ")
+}
+
 /// Names of arms, or where there are many, their numbers.
 fn names(study: &Study, arms: &[usize]) -> String {
     match arms.len() {
@@ -70,7 +94,10 @@ pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
     html! {
         @if !found.is_empty() || !identical.is_empty() { h2 { "Warnings" } }
         @if !identical.is_empty() {
-            p { "Arms with bitwise identical records count as several, but are one:" }
+            p {
+                "Arms with bitwise identical records"
+                @if study.ranking.is_some() { ", which the ranking counts once" } ":"
+            }
             ul {
                 @for (names, same) in &identical {
                     li {
@@ -87,13 +114,12 @@ pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
                     tr {
                         td { code { (warning.id) } }
                         td {
-                            (typeset(&warning.place)) ": "
-                            @for (k, (words, arms)) in what.iter().enumerate() {
-                                @if k > 0 { "; " }
-                                (typeset(words))
-                                @if what.len() > 1 { " (" (names(study, arms)) ")" }
-                            }
-                            "; " (typeset(&warning.why)) "."
+                            // The last column names the runs.
+                            @if warning.place != "the run" { (typeset(&warning.place)) ": " }
+                            // Names stay as they are.
+                            @let set: Vec<_> = what.iter().map(|(words, arms)| (typeset(words), arms.clone())).collect();
+                            (Label(&together(&set, |arms| names(study, arms)))) "; "
+                            (typeset(&warning.why)) "."
                         }
                         td { (typeset(&warning.advice)) }
                         td {
@@ -104,5 +130,24 @@ pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::together;
+
+    #[test]
+    fn what_differs_in_a_number_is_said_once() {
+        let names = |arms: &[usize]| format!("arm {}", arms[0]);
+        let one = ("it rose by 70.3 % of its scale".to_owned(), vec![6]);
+        let other = ("it rose by 62.7 % of its scale".to_owned(), vec![9]);
+        assert_eq!(together(std::slice::from_ref(&one), names), "it rose by 70.3 % of its scale");
+        assert_eq!(
+            together(&[one.clone(), other], names),
+            "it rose by 70.3 % (arm 6), 62.7 % (arm 9) of its scale"
+        );
+        let third = ("it fell".to_owned(), vec![2]);
+        assert_eq!(together(&[one, third], names), "it rose by 70.3 % of its scale (arm 6); it fell (arm 2)");
     }
 }

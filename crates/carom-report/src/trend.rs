@@ -121,7 +121,7 @@ impl Trend {
         }
         let unit = match (metric, key) {
             ("" | "1", "") => String::new(),
-            ("" | "1", key) => format!(" /{key}"),
+            ("" | "1", key) => format!(" 1/{key}"),
             (metric, "") => format!(" {metric}"),
             (metric, key) => format!(" {metric}/{key}"),
         };

@@ -1,7 +1,5 @@
-//! The recommendation of a study and its basis: ranking, reference values, orders before and after
-//! the first contact.
+//! The recommendation of a study and its basis: ranking and reference values.
 
-use carom_record::Reason;
 use carom_record::metrics::Metric;
 use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ranking::{Crosscheck, Ranking, error, standing};
@@ -9,7 +7,7 @@ use carom_record::study::reference::{Reference, Standing};
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
-use crate::collected::{in_time, time_unit};
+use crate::collected::{Origin, in_time, time_unit};
 use crate::design::is_off_budget;
 use crate::digits::{count, five, three};
 use crate::document::{file, joined, or_dash};
@@ -31,12 +29,9 @@ const SIDE_EFFECTS: [(&str, &str); 9] = [
     ("restitution", "error of the restitution"),
 ];
 
-/// Tables with more rows are folded.
-const FEW: usize = 12;
-
 /// How places are given.
-const PLACES: &str = "The place of an arm is one plus the number of arms that are distinguishably better: by \
-    more than the uncertainty of the reference, more than the spreads of both over the ensemble added, and more \
+const PLACES: &str = "The place of an arm is one plus the number of arms that are distinguishably better, of \
+    which identical ones count once: by more than the uncertainty of the reference, more than the spreads of both over the ensemble added, and more \
     than 5 %. So arms share a place though one of them may be distinguished from a third and the other not. Within \
     a place arms are in the order of their cost.";
 
@@ -205,13 +200,16 @@ fn side_effects(study: &Study, arm: usize) -> Vec<String> {
             }
             _ => three(late.abs()),
         };
-        lines.push(format!("{column} {direction} the reference by {amount} {}", time_unit(study)));
+        lines.push(format!(
+            "the motion ({column}) {direction} the reference by {amount} {}",
+            time_unit(study)
+        ));
     }
     lines
 }
 
 /// The ranking and the reference behind it.
-pub(crate) fn rankings(study: &Study) -> Markup {
+pub(crate) fn rankings(study: &Study, origins: &[Origin]) -> Markup {
     let Some(ranking) = &study.ranking else { return Markup::default() };
     html! {
         h2 { "Ranking" }
@@ -219,7 +217,7 @@ pub(crate) fn rankings(study: &Study) -> Markup {
             @let uncertainty = three(measure.uncertainty);
             p { "Ranked by " (Label(&measure.words)) " (uncertainty of the errors: " (uncertainty) ")." }
             p.small { (PLACES) @if ranking.verdict.is_ok() { " ▸: recommended." } }
-            (ranked_table(study, ranking))
+            (ranked_table(study, ranking, origins))
             (crosschecks(study, ranking))
         }
         (other_goals(study))
@@ -410,14 +408,14 @@ fn other_goals(study: &Study) -> Markup {
     }
 }
 
-fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
+fn ranked_table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
     let placed = |arm: &usize| ranking.levels.iter().flatten().any(|r| r.arm == *arm);
     let without = methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|arm| !placed(arm));
     let without: Vec<&str> = without.map(|arm| study.rows[arm].name.as_str()).collect();
     let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "metric not available" };
     let unsound = ranking.levels.iter().flatten().filter(|r| !r.sound);
     let unsound: Vec<&str> = unsound.map(|r| study.rows[r.arm].name.as_str()).collect();
-    let (tables, heads) = ranked::tables(study, ranking);
+    let (tables, heads) = ranked::tables(study, ranking, origins);
     html! {
         (tables)
         @if !without.is_empty() { p.small { "Not ranked (" (why) "): " (without.join("; ")) "." } }
@@ -436,50 +434,5 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
             }
         }
         p.small { "Data in full precision: " (file("ranking.csv")) ", " (file("reference.csv")) "." }
-    }
-}
-
-/// Observed orders before the first contact and after it; why there is none is said below the
-/// table.
-pub(crate) fn phases(study: &Study) -> Markup {
-    let mut reasons: Vec<String> = Vec::new();
-    let mut cell = |order: &Result<f64, Reason>| {
-        let why = match order {
-            Ok(order) if *order >= 0.0 => return format!("{order:.2}"),
-            Ok(_) => "errors grow with a shorter step".to_owned(),
-            Err(why) => why.to_string(),
-        };
-        let at = reasons.iter().position(|known| *known == why).unwrap_or_else(|| {
-            reasons.push(why);
-            reasons.len() - 1
-        });
-        format!("none^{{{}}}", at + 1)
-    };
-    let cells: Vec<[String; 2]> =
-        study.phase_orders.iter().map(|o| [cell(&o.smooth), cell(&o.across)]).collect();
-    html! {
-        @if !study.phase_orders.is_empty() {
-            h2 { "Order of convergence before and after the first contact" }
-            details open[study.phase_orders.len() <= FEW] {
-                summary { "Orders by method and quantity" }
-                table {
-                    thead { tr { th { "Method" } th { "Quantity" } th.n { "Before" } th.n { "After" } } }
-                    @for (o, [before, after]) in study.phase_orders.iter().zip(&cells) {
-                        tr {
-                            td { (Label(&o.method)) } td { code { (o.column) } }
-                            td.n { (Label(before)) } td.n { (Label(after)) }
-                        }
-                    }
-                }
-                @for (k, why) in reasons.iter().enumerate() {
-                    p.small { sup { (k + 1) } " " (capitalised(why)) "." }
-                }
-            }
-            p.small {
-                "Orders of the root mean square errors against the reference, from the two finest levels. \
-                 Before: rows before the first contact of the reference. After: rows after the end of this \
-                 contact."
-            }
-        }
     }
 }

@@ -37,12 +37,22 @@ pub(super) fn alike(a: (f64, f64), b: (f64, f64), reference: f64) -> bool {
     (a.0 - b.0).abs() <= f64::max(reference, own)
 }
 
-/// Assigns places: one plus the number of arms that are distinguishably better. An arm that created
-/// much energy is worse than any that did not.
-pub(super) fn places(ranked: &mut [Ranked], better: impl Fn(&Ranked, &Ranked) -> bool) {
+/// Assigns places: one plus the number of arms that are distinguishably better, of which twins
+/// count as one. An arm that created much energy is worse than any that did not.
+pub(super) fn places(
+    ranked: &mut [Ranked],
+    better: impl Fn(&Ranked, &Ranked) -> bool,
+    is_twin: impl Fn(&Ranked, &Ranked) -> bool,
+) {
     let better = |a: &Ranked, b: &Ranked| if a.sound == b.sound { better(a, b) } else { a.sound };
     for i in 0..ranked.len() {
-        ranked[i].place = 1 + ranked.iter().filter(|r| better(r, &ranked[i])).count();
+        let mut ahead: Vec<&Ranked> = Vec::new();
+        for r in ranked.iter().filter(|r| better(r, &ranked[i])) {
+            if !ahead.iter().any(|other| is_twin(other, r)) {
+                ahead.push(r);
+            }
+        }
+        ranked[i].place = 1 + ahead.len();
     }
 }
 
@@ -70,7 +80,7 @@ mod tests {
             place: 0,
         };
         let mut ranked: Vec<Ranked> = errors.iter().enumerate().map(ranked).collect();
-        places(&mut ranked, |a, b| more_accurate(a, b, reference));
+        places(&mut ranked, |a, b| more_accurate(a, b, reference), |_, _| false);
         ranked.iter().map(|r| r.place).collect()
     }
 

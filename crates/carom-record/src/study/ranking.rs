@@ -7,9 +7,10 @@
 //! ranked within a level only, that is, at the same step or the same cost. Two arms of a level are
 //! not distinguished if their errors differ by no more than the sum of their uncertainties, than
 //! that of the reference, or than 5 %. The place of an arm is one plus the number of arms that are
-//! distinguishably better; within a place arms are in the order of their cost. An arm that created
-//! so much energy that the default guard would have stopped it is placed behind all others; a
-//! member that did counts as failed.
+//! distinguishably better, of which twins, with the same results to the last bit, count as one; a
+//! method that is a twin of an earlier one at all levels is no competitor of it. Within a place
+//! arms are in the order of their cost. An arm that created so much energy that the default guard
+//! would have stopped it is placed behind all others; a member that did counts as failed.
 //!
 //! An arm has the required accuracy if neither its error nor its uncertainty exceeds that. The goal
 //! of least cost ranks the arms that have it by their own processor times,
@@ -112,26 +113,52 @@ impl Ranking {
                 })
             };
             let mut ranked: Vec<Ranked> = not_reference.filter_map(one).collect();
+            let is_twin = |a: &Ranked, b: &Ranked| rows[a.arm].is_twin(&rows[b.arm]);
             let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);
             ranked.sort_by(|a, b| a.error.total_cmp(&b.error));
             if goal == Goal::Cost {
                 ranked.retain(|r| r.has_accuracy(manifest.accuracy()) && cost(r).is_finite());
-                places(&mut ranked, |a, b| cheaper(cost(a), cost(b)));
+                places(&mut ranked, |a, b| cheaper(cost(a), cost(b)), is_twin);
             } else {
-                places(&mut ranked, |a, b| more_accurate(a, b, measure.uncertainty));
+                places(&mut ranked, |a, b| more_accurate(a, b, measure.uncertainty), is_twin);
             }
             ranked.sort_by(|a, b| a.place.cmp(&b.place).then(cost(a).total_cmp(&cost(b))));
             ranked
         };
         let levels: Vec<Vec<Ranked>> = (0..count).map(level).collect();
-        let verdict = recommended(goal, manifest, &measure, &levels, rows, reference);
+        let single = without_twins(manifest, rows, &levels);
+        let verdict = recommended(goal, manifest, &measure, &single, rows, reference);
         let crosschecks = if goal == Goal::Cost {
             Vec::new()
         } else {
-            crosscheck::of(manifest, rows, &levels, measure.uncertainty)
+            crosscheck::of(manifest, rows, &single, measure.uncertainty)
         };
         Self { goal, measure: Ok(measure), levels, crosschecks, verdict }
     }
+}
+
+/// The levels without methods whose arms are all twins of those of an earlier method: of the same
+/// runs, one is enough.
+fn without_twins(manifest: &StudyManifest, rows: &[Row], levels: &[Vec<Ranked>]) -> Vec<Vec<Ranked>> {
+    let mut methods: Vec<(&str, Vec<usize>)> = Vec::new();
+    let mut arms: Vec<usize> = levels.iter().flatten().map(|r| r.arm).collect();
+    arms.sort_unstable();
+    for arm in arms {
+        let name = manifest.arms[arm].method();
+        match methods.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, mine)) => mine.push(arm),
+            None => methods.push((name, vec![arm])),
+        }
+    }
+    let is_twin = |mine: &[usize], others: &[usize]| {
+        mine.len() == others.len() && mine.iter().zip(others).all(|(a, b)| rows[*a].is_twin(&rows[*b]))
+    };
+    let twins: Vec<usize> = (1..methods.len())
+        .filter(|k| methods[..*k].iter().any(|(_, others)| is_twin(&methods[*k].1, others)))
+        .flat_map(|k| methods[k].1.clone())
+        .collect();
+    let single = |level: &Vec<Ranked>| level.iter().filter(|r| !twins.contains(&r.arm)).cloned().collect();
+    levels.iter().map(single).collect()
 }
 
 #[cfg(test)]

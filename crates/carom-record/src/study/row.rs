@@ -40,6 +40,17 @@ impl Row {
         matches!(self.status, Some(Status::Finished | Status::Failed))
     }
 
+    /// Whether all its results are those of another run, to the last bit; measured times differ
+    /// from run to run.
+    pub fn is_twin(&self, other: &Self) -> bool {
+        let results = |row: &Self| -> Vec<(String, Option<u64>)> {
+            let kept = row.metrics.iter().filter(|metric| !metric.is_measured());
+            kept.map(|metric| (metric.name.to_string(), metric.value.map(f64::to_bits))).collect()
+        };
+        let own = results(self);
+        own.iter().any(|(_, value)| value.is_some()) && own == results(other)
+    }
+
     /// Value of a metric.
     pub fn value(&self, metric: &str) -> Option<f64> {
         self.metrics.iter().find(|m| m.name == metric)?.value

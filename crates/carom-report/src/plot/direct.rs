@@ -87,7 +87,8 @@ pub(super) fn draw(out: &mut String, curves: &[&Curve], ends: &[End], frame: &Fr
     let alone = |k: usize| {
         let near =
             |other: &&usize| **other != k && !inside(other) && (ends[**other].y - ends[k].y).abs() < ONE;
-        (curves[k].apart || !inside(&k)) && !order.iter().any(|other| near(&other))
+        // Markers identify the others.
+        (curves[k].apart || !inside(&k) && !curves[k].marked) && !order.iter().any(|other| near(&other))
     };
     for (&k, y) in order.iter().zip(heights) {
         let (curve, End { x, y: from, .. }) = (curves[k], ends[k]);

@@ -167,12 +167,14 @@ impl Setup<'_> {
         y + 12.0
     }
 
-    /// `plane strain, thickness 1 m`; none in bars and in space.
+    /// `plane strain, thickness 1 m`, in bars `cross-section 1 m²`; none in space.
     fn plane_in_words(&self, length: &str) -> Option<String> {
-        let is_plane = self.case().get("dimension").and_then(Value::as_u64) == Some(2);
-        let thickness = self.case().get("thickness").and_then(Value::as_f64)?;
-        is_plane
-            .then(|| format!("plane {}, thickness {} {length}", word(self.case(), "plane"), given(thickness)))
+        let thickness = given(self.case().get("thickness").and_then(Value::as_f64)?);
+        match self.case().get("dimension").and_then(Value::as_u64) {
+            Some(1) => Some(format!("bar, cross-section {thickness} {length}^2")),
+            Some(2) => Some(format!("plane {}, thickness {thickness} {length}", word(self.case(), "plane"))),
+            _ => None,
+        }
     }
 }
 

@@ -118,7 +118,9 @@ pub(super) fn energy_created(case: &Case, run: &Run) -> Vec<Found> {
     }
     let metric = metrics::all(&run.history).into_iter().find(|metric| metric.name == "energy_created");
     let share = metric.and_then(|metric| metric.value).filter(|share| *share > MUCH_CREATED);
-    let what = |share: f64| format!("it created {} % of its energy scale", short(100.0 * share));
+    let what = |share: f64| {
+        format!("the total energy rose by {} % of its scale beyond the work of loads", short(100.0 * share))
+    };
     share.map(|share| Found { place: "the run".into(), what: what(share) }).into_iter().collect()
 }
 

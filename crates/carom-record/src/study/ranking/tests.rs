@@ -229,15 +229,29 @@ fn one_sound_member_has_the_scatter_of_all() {
 /// one.
 #[test]
 fn least_cost_is_looked_for_over_all_levels() {
-    let runs = [("a", 0, 0.2, 0.5), ("b", 0, 0.2, 1.0), ("a", 1, 0.01, 3.0), ("b", 1, 0.01, 2.0)];
+    let runs = [("a", 0, 0.2, 0.5), ("b", 0, 0.2, 1.0), ("a", 1, 0.01, 3.0), ("b", 1, 0.0101, 2.0)];
     let verdict = by_cost(&study(&runs)).verdict.unwrap();
     assert!(verdict.arm == 3 && verdict.alike.is_empty(), "{verdict:?}");
     // A is accurate at both: its coarse arm is the cheapest, though B ranks first at the fine
     // level.
-    let runs = [("a", 0, 0.04, 1.5), ("b", 0, 0.2, 1.0), ("a", 1, 0.01, 3.0), ("b", 1, 0.01, 2.0)];
+    let runs = [("a", 0, 0.04, 1.5), ("b", 0, 0.2, 1.0), ("a", 1, 0.01, 3.0), ("b", 1, 0.0101, 2.0)];
     assert_eq!(by_cost(&study(&runs)).verdict.unwrap().arm, 0);
     let none = by_cost(&study(&[("a", 0, 0.2, 1.0)])).verdict.unwrap_err();
     assert_eq!(none, ["no arm has the required accuracy, 0.05"]);
+}
+
+/// B has all results of A: it takes no place from C, and is no competitor of A. With another
+/// result it is both.
+#[test]
+fn identical_arms_count_once() {
+    let found = |b: f64| {
+        let runs = [("a", 0, 0.01, 1.0), ("b", 0, b, 1.0), ("c", 0, 0.04, 1.0)];
+        let ranking = by_energy(&study(&runs));
+        let places: Vec<_> = ranking.levels[0].iter().map(|r| (r.arm, r.place)).collect();
+        (places, ranking.verdict.unwrap().alike)
+    };
+    assert_eq!(found(0.01), (vec![(0, 1), (1, 1), (2, 2)], vec![]));
+    assert_eq!(found(0.0101), (vec![(0, 1), (1, 1), (2, 3)], vec!["b".to_owned()]));
 }
 
 /// Of three arms the one with the smallest drift created 3 % of energy; the guard allows 2 %.
