@@ -7,6 +7,7 @@
 
 mod animation;
 mod arc;
+mod asked;
 mod axis;
 mod bands;
 mod bars;
@@ -29,6 +30,7 @@ mod instants;
 mod integrity;
 mod labels;
 mod laboratory;
+mod measured;
 mod meshes;
 mod noise;
 mod obstacles;
@@ -61,6 +63,7 @@ mod theory;
 mod timing;
 mod trace;
 mod trend;
+mod unshown;
 mod verdict;
 mod verify_page;
 

@@ -168,7 +168,7 @@ fn parameters(study: &Study, varied: &[(&str, Vec<Option<&str>>)]) -> Markup {
                 li {
                     code { (key) } ": "
                     @if distinct.len() > FEW { (distinct.len()) " values" } @else { (codes(&distinct, ", ")) }
-                    @if let Some(base) = base { "; in the case file " code { (base) } }
+                    @if let Some(base) = base { "; in the case file " code { (settings::brief(&base)) } }
                 }
             }
         }

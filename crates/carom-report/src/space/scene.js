@@ -51,7 +51,8 @@
     void main() {
       if (dot(cut.xyz, body) > cut.w) discard;
       vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
-      float light = 0.7 + 0.3 * max(0.0, dot(normal, vec3(-0.32, 0.51, 0.8)));
+      // Little shade, so that colours are found at the bar.
+      float light = 0.91 + 0.09 * max(0.0, dot(normal, vec3(-0.32, 0.51, 0.8)));
       int band = clamp(int(floor(share * float(count))), 0, count - 1);
       vec3 surface = share < -0.001 ? vec3(1.0) : texelFetch(colors, ivec2(band, 0), 0).rgb;
       color = vec4(lines ? vec3(grey) : gl_FrontFacing ? surface * light : vec3(0.62), 1.0);
