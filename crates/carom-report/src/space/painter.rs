@@ -143,9 +143,11 @@ pub(crate) fn paint(out: &mut String, pieces: &[Piece], paint: &Paint) {
         }
         if !pen.is_empty() {
             let width = EDGE * GRID;
+            // Small pictures have more lines than colour.
+            let faint = if matches!(paint, Paint::Bands(_)) { " stroke-opacity=\"0.45\"" } else { "" };
             let _ = writeln!(
                 out,
-                "<path d=\"{}\" fill=\"none\" stroke=\"{LINE}\" stroke-width=\"{width}\"/>",
+                "<path d=\"{}\" fill=\"none\" stroke=\"{LINE}\" stroke-width=\"{width}\"{faint}/>",
                 pen.data()
             );
         }

@@ -96,10 +96,12 @@
   canvas.width = W * ratio; canvas.height = H * ratio;
   canvas.style.width = W + "px"; canvas.style.aspectRatio = W + " / " + H;
   corner.width = corner.height = 160;
+  // A fifth of the picture, so that it stays beside the bodies of a small one.
+  corner.style.cssText = "width: 20%; height: auto; max-width: 80px";
   const flat = corner.getContext("2d");
 
   let turn, zoom, shift, frame = 0, quantity = 0, cut = [0, 0, 0, 1], queued = false;
-  const home = () => { turn = data.view.map(axis => [...axis]); zoom = 1; shift = [0, 0]; };
+  const home = () => { turn = data.view.map(axis => [...axis]); zoom = 1; shift = [0, 0.06 * radius]; };
   home();
   const render = () => {
     queued = false;
@@ -124,11 +126,11 @@
     gl.drawArrays(gl.LINES, 0, corners);
     flat.setTransform(2, 0, 0, 2, 0, 0);
     flat.clearRect(0, 0, 80, 80);
-    flat.font = "italic 13px Helvetica, Arial, sans-serif"; flat.textAlign = "center"; flat.textBaseline = "middle";
+    flat.font = `italic ${13 * Math.min(1.3, Math.max(1, 80 / (corner.clientWidth || 80)))}px Helvetica, Arial, sans-serif`; flat.textAlign = "center"; flat.textBaseline = "middle";
     ["x", "y", "z"].forEach((name, d) => {
       const [x, y] = [40 + 24 * turn[0][d], 40 - 24 * turn[1][d]];
       flat.beginPath(); flat.moveTo(40, 40); flat.lineTo(x, y); flat.stroke();
-      flat.fillText(name, 40 + 33 * turn[0][d], 40 - 33 * turn[1][d]);
+      flat.fillText(name, 40 + 32 * turn[0][d], 40 - 32 * turn[1][d]);
     });
   };
   const redraw = () => { if (!queued) { queued = true; requestAnimationFrame(render); } };
