@@ -14,6 +14,7 @@ use crate::figure::{Figure, NARROW};
 use crate::labels::{amount, with_unit};
 use crate::pen::{Pen, open_grid};
 use crate::redraw::filled;
+use crate::scientific::significant;
 use crate::sheet::{Legend, arrowheads, color_bar};
 
 const WIDTH: f64 = 720.0;
@@ -161,14 +162,18 @@ fn draw(run: &Run, sides: &[Side], width: f64) -> (String, Vec<[bool; 2]>, usize
     (out, cuts, stride)
 }
 
-/// By how much neighbouring colours can differ, which a map of nearly one pressure makes look large.
+/// The range of pressure of one colour, which a map of nearly one pressure makes look large.
 fn classes(sides: &[Side], stress: &str) -> String {
     let [side] = sides else { return String::new() };
     let bands = positive_bands(side.rows.iter().map(|(row, _)| row.pressure)).0;
-    format!(
-        " One colour covers {} of pressure.",
-        amount((bands.high - bands.low) / bands.count as f64, stress)
-    )
+    let step = (bands.high - bands.low) / bands.count as f64;
+    // Steps are round.
+    let step = if (0.01..1000.0).contains(&step) {
+        format!("{} {stress}", significant(step, 1))
+    } else {
+        amount(step, stress)
+    };
+    format!(" One colour covers {step}.")
 }
 
 /// `Every second`, `Every third`, `Every 4th`.
