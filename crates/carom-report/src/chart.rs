@@ -163,7 +163,9 @@ impl Chart<'_> {
             }
             out.push_str("</svg>\n");
             let label = y_axis.label(&panel.label, &panel.unit);
-            write_turned(&mut out, &label, y0 + 0.5 * h, h + 24.0);
+            let widest = y_axis.ticks.iter().map(|tick| text::width(&tick.1)).fold(0.0, f64::max) * FONT;
+            let left = LEFT - 8.0 - widest;
+            write_turned(&mut out, &label, (left, y0 + 0.5 * h), h + 24.0);
             y0 = bottom;
         }
         let above = y0;
@@ -201,17 +203,20 @@ impl Chart<'_> {
     }
 }
 
-/// The label of a vertical axis: where it is too long, its unit has a line of its own, and what is
-/// still too long is smaller.
-fn write_turned(out: &mut String, label: &str, middle: f64, room: f64) {
-    let is_long = text::width(label) * FONT > room;
+/// Place of the second line of such a label; exponents need room above it.
+const SECOND: f64 = 27.0;
+
+/// The label of a vertical axis whose tick labels begin at `left`: where it is too long and there is
+/// room for it, its unit has a line of its own; what is still too long is smaller.
+fn write_turned(out: &mut String, label: &str, (left, middle): (f64, f64), room: f64) {
+    let is_long = text::width(label) * FONT > room && left > SECOND + 3.0;
     let lines: Vec<&str> = match label.rsplit_once(" (") {
         Some((words, _)) if is_long => vec![words, &label[words.len() + 1..]],
         _ => vec![label],
     };
     for (k, line) in lines.iter().enumerate() {
         let size = FONT.min(room / text::width(line).max(1e-9));
-        let x = if lines.len() == 1 { 14.0 } else { 11.0 + 14.0 * k as f64 };
+        let x = if lines.len() == 1 { 14.0 } else { [10.5, SECOND][k.min(1)] };
         let turned = format!(
             "text-anchor=\"middle\" font-size=\"{size:.1}\" transform=\"translate({x} {middle:.1}) rotate(-90)\""
         );

@@ -1,6 +1,8 @@
 //! Measured data and expected values as points beside the columns that they belong to, and their
 //! differences.
 
+use std::fmt::Write as _;
+
 use carom_record::question::{Form, Quantity, Question};
 use carom_record::{Expression, Run, metrics};
 
@@ -126,7 +128,7 @@ pub(crate) fn sources(run: &Run, all: &[Points], columns: &[&str]) -> String {
     let mut differ = false;
     for overlay in metrics::overlays(run).into_iter().filter(|overlay| of(&overlay.column)) {
         let source = overlay.source.map_or_else(String::new, |source| format!(" ({source})"));
-        out.push_str(&format!(" Dots: data “{}”{source}.", overlay.name));
+        let _ = write!(out, " Dots: data “{}”{source}.", overlay.name);
         differ = true;
     }
     if differ {

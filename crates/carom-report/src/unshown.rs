@@ -81,7 +81,7 @@ pub(crate) fn expected(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
     for (name, members) in &groups {
         let members: Vec<&str> = members.iter().map(String::as_str).collect();
         let label = if let [one] = members[..] { one } else { name };
-        let mut panel = panel(run, &points, &members, &label.replace('_', " "));
+        let mut panel = panel(run, &points, &members, label);
         for (_, text, y) in formulas.iter().filter(|(column, ..)| members.contains(&column.as_str())) {
             panel.series.push(Series {
                 label: format!("expected: {text}"),
@@ -114,7 +114,7 @@ fn in_words(columns: &[&str]) -> String {
 fn panel<'a>(run: &'a Run, points: &'a [Points], columns: &[&str], label: &str) -> Panel<'a> {
     let curve = |(k, column): (usize, &&str)| {
         Some(Series {
-            label: column.replace('_', " "),
+            label: (*column).to_owned(),
             // The second colour is that of expected values.
             color: LINES[if k == 0 { 0 } else { k + 2 } % LINES.len()],
             x: run.times(),
