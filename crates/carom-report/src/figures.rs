@@ -1,16 +1,16 @@
 //! The figures of a run, and the columns and files from which they are drawn.
 
-use carom_record::{Run, contact_axes, metrics};
+use carom_record::{Run, contact_axes};
 
 use crate::animation::Animation;
-use crate::chart::{Chart, Options, Panel, Series};
-use crate::figure::{Figure, NARROW};
+use crate::chart::{Panel, Series};
+use crate::figure::Figure;
 use crate::instants::instants;
-use crate::labels::{capitalised, is_stress, listed, symbol, time_label, words};
+use crate::labels::{capitalised, is_stress, listed, symbol, words};
 use crate::measured::{Points, add_points, differences, sources};
 use crate::meshes::Pane;
+use crate::over_time::{chart, names, shades};
 use crate::palette::LINES;
-use crate::redraw::of_chart;
 use crate::{animation, bodies, meshes, noise, pressure, setup, space, stick_slip, stopped, unshown};
 
 /// Everything that can be drawn from a record.
@@ -103,19 +103,6 @@ fn setup(run: &Run) -> Option<Figure> {
     Some(meshes::with_files(figure, &fields, &[pane], length, String::new()))
 }
 
-/// Share of the recorded time from which shading says nothing.
-const THROUGHOUT: f64 = 0.97;
-
-/// Contact intervals to shade; none where one lasts throughout.
-fn shades(run: &Run) -> Vec<(f64, f64)> {
-    let t = run.times();
-    let end = |e: &metrics::Episode| e.end.map_or(t[t.len() - 1], |i| t[i]);
-    let all: Vec<(f64, f64)> =
-        metrics::episodes(&run.history, 0.0).iter().map(|e| (t[e.start], end(e))).collect();
-    let lasts = |(from, to): &(f64, f64)| to - from > THROUGHOUT * (t[t.len() - 1] - t[0]);
-    if all.iter().any(lasts) { Vec::new() } else { all }
-}
-
 /// What the shading means.
 fn shaded(run: &Run) -> &'static str {
     if !shades(run).is_empty() {
@@ -125,26 +112,6 @@ fn shaded(run: &Run) -> &'static str {
     } else {
         ""
     }
-}
-
-/// A chart over time with its files.
-pub(crate) fn chart<'a>(
-    run: &Run,
-    (name, title): (&'static str, &'a str),
-    caption: String,
-    panels: Vec<Panel<'a>>,
-) -> Option<Figure> {
-    let panels: Vec<Panel> = panels.into_iter().filter(|p| !p.series.is_empty()).collect();
-    let x_label = time_label(run);
-    (!panels.is_empty()).then(|| {
-        let tracks = if title == "Solver" { animation::tracks(run) } else { Vec::new() };
-        let options = Options { tracks: &tracks, time: true, ..Options::default() };
-        let chart = Chart { title, x_label, shades: shades(run), panels };
-        let plot = of_chart(name, &chart);
-        let narrow = chart.draw(&Options { width: NARROW, ..options });
-        let figure = Figure::new(name, caption, chart.draw(&options)).with_narrow(narrow);
-        figure.with(plot.csv(), plot.script())
-    })
 }
 
 /// Curves of columns with their labels, without those that are missing or, compared with `size`,
@@ -170,12 +137,6 @@ fn curves<'a>(run: &'a Run, points: &'a [Points], columns: &[(&str, &str)], size
 
 fn panel<'a>(label: &str, unit: &str, height: f64, series: Vec<Series<'a>>) -> Panel<'a> {
     Panel { label: label.into(), unit: unit.into(), height, series }
-}
-
-/// Names of the items of a list of the resolved case.
-pub(crate) fn names<'a>(run: &'a Run, list: &str) -> Vec<&'a str> {
-    let items = run.manifest.case.get(list).and_then(|v| v.as_array());
-    items.into_iter().flatten().filter_map(|item| item.get("name")?.as_str()).collect()
 }
 
 /// Time histories of all probes, one panel per quantity.

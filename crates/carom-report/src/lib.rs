@@ -34,6 +34,7 @@ mod measured;
 mod meshes;
 mod noise;
 mod obstacles;
+mod over_time;
 mod overlap;
 mod page;
 mod palette;

@@ -6,10 +6,10 @@ use carom_record::Run;
 
 use crate::chart::{Panel, Series};
 use crate::figure::Figure;
-use crate::figures::{chart, names};
 use crate::labels::listed;
 use crate::measured::{Points, add_points, differences, sources};
 use crate::noise::largest;
+use crate::over_time::{chart, names};
 use crate::palette::LINES;
 
 /// A column below this size shows only round-off.
