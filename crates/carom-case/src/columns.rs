@@ -48,6 +48,13 @@ pub(super) fn quantity(quantity: Quantity) -> &'static str {
     }
 }
 
+impl Quantity {
+    /// Its name in columns.
+    pub fn name(self) -> &'static str {
+        quantity(self)
+    }
+}
+
 /// Whether a quantity exists in a space of this dimension: its name has no axis beyond it.
 pub(super) fn exists(of: Quantity, dimension: usize) -> bool {
     let axes = quantity(of).trim_start_matches("sigma_");

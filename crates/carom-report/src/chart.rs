@@ -103,8 +103,7 @@ impl Chart<'_> {
         let width = options.width;
         let plot = width - LEFT - RIGHT;
         let below = if options.tracks.is_empty() { 0.0 } else { 10.0 + ROW * options.tracks.len() as f64 };
-        let x_axis =
-            Axis::new(range(self.panels.iter().flat_map(|p| &p.series).flat_map(|s| s.x)), plot / 78.0, true);
+        let x_axis = Axis::new(self.x_range(), plot / 78.0, true);
         let rows: Vec<Vec<Vec<usize>>> = self.panels.iter().map(|p| legend_rows(p, plot)).collect();
         let tops = rows.iter().map(|r| GAP + r.len() as f64 * 18.0);
         let height = tops.zip(&self.panels).map(|(top, p)| top + p.height).sum::<f64>() + 48.0 + below;
@@ -164,17 +163,9 @@ impl Chart<'_> {
             }
             out.push_str("</svg>\n");
             let label = y_axis.label(&panel.label, &panel.unit);
-            let size = FONT.min((h + 24.0) / text::width(&label).max(1e-9));
-            let middle = y0 + 0.5 * h;
-            write_text(
-                &mut out,
-                0.0,
-                0.0,
-                &format!(
-                    "text-anchor=\"middle\" font-size=\"{size:.1}\" transform=\"translate(14 {middle:.1}) rotate(-90)\""
-                ),
-                &label,
-            );
+            let widest = y_axis.ticks.iter().map(|tick| text::width(&tick.1)).fold(0.0, f64::max) * FONT;
+            let left = LEFT - 8.0 - widest;
+            write_turned(&mut out, &label, (left, y0 + 0.5 * h), h + 24.0);
             y0 = bottom;
         }
         let above = y0;
@@ -212,7 +203,38 @@ impl Chart<'_> {
     }
 }
 
+/// Place of the second line of such a label; exponents need room above it.
+const SECOND: f64 = 27.0;
+
+/// The label of a vertical axis whose tick labels begin at `left`: where it is too long and there is
+/// room for it, its unit has a line of its own; what is still too long is smaller.
+fn write_turned(out: &mut String, label: &str, (left, middle): (f64, f64), room: f64) {
+    let is_long = text::width(label) * FONT > room && left > SECOND + 3.0;
+    let lines: Vec<&str> = match label.rsplit_once(" (") {
+        Some((words, _)) if is_long => vec![words, &label[words.len() + 1..]],
+        _ => vec![label],
+    };
+    for (k, line) in lines.iter().enumerate() {
+        let size = FONT.min(room / text::width(line).max(1e-9));
+        let x = if lines.len() == 1 { 14.0 } else { [10.5, SECOND][k.min(1)] };
+        let turned = format!(
+            "text-anchor=\"middle\" font-size=\"{size:.1}\" transform=\"translate({x} {middle:.1}) rotate(-90)\""
+        );
+        write_text(out, 0.0, 0.0, &turned, line);
+    }
+}
+
 impl Chart<'_> {
+    /// The range of x, with room for a point at its end.
+    fn x_range(&self) -> (f64, f64) {
+        let all = || self.panels.iter().flat_map(|p| &p.series);
+        let (low, high) = range(all().flat_map(|s| s.x));
+        let dotted = range(all().filter(|s| s.dotted).flat_map(|s| s.x));
+        let room = 0.008 * (high - low);
+        let [before, after] = [dotted.0 < low + room, dotted.1 > high - room].map(f64::from);
+        (low - before * room, high + after * room)
+    }
+
     /// The vertical axes. Those of one unit have one power of ten where that leaves few decimals:
     /// their quantities are compared.
     fn y_axes(&self) -> Vec<Axis> {

@@ -1,18 +1,17 @@
 //! The figures of a run, and the columns and files from which they are drawn.
 
-use carom_record::{Run, contact_axes, metrics};
+use carom_record::{Run, contact_axes};
 
 use crate::animation::Animation;
-use crate::axis::range;
-use crate::chart::{Chart, Options, Panel, Series};
-use crate::collected::measured_label;
-use crate::figure::{Figure, NARROW};
+use crate::chart::{Panel, Series};
+use crate::figure::Figure;
 use crate::instants::instants;
-use crate::labels::{capitalised, is_stress, listed, symbol, time_label, words};
+use crate::labels::{capitalised, is_stress, listed, symbol, words};
+use crate::measured::{Points, add_points, differences, sources};
 use crate::meshes::Pane;
+use crate::over_time::{chart, names, shades};
 use crate::palette::LINES;
-use crate::redraw::of_chart;
-use crate::{animation, bodies, meshes, noise, pressure, setup, space, stick_slip, stopped};
+use crate::{animation, bodies, meshes, noise, pressure, setup, space, stick_slip, stopped, unshown};
 
 /// Everything that can be drawn from a record.
 #[derive(Clone, Debug, Default)]
@@ -42,8 +41,10 @@ pub(crate) fn all(run: &Run) -> Shown {
     }
     let map = stick_slip::figure(run);
     let pressure = pressure::figure(run);
+    let lists = [&FORCES[..], &IMPULSES, &ENERGIES, &WORKS];
+    let (measured, expected) = (unshown::measured(run, &lists), unshown::expected(run, &lists));
     shown.figures.extend(
-        [probes(run), force(run), pressure, map, energy(run), measured(run), solver(run)]
+        [probes(run), force(run), pressure, map, energy(run), measured, expected, solver(run)]
             .into_iter()
             .flatten(),
     );
@@ -102,19 +103,6 @@ fn setup(run: &Run) -> Option<Figure> {
     Some(meshes::with_files(figure, &fields, &[pane], length, String::new()))
 }
 
-/// Share of the recorded time from which shading says nothing.
-const THROUGHOUT: f64 = 0.97;
-
-/// Contact intervals to shade; none where one lasts throughout.
-fn shades(run: &Run) -> Vec<(f64, f64)> {
-    let t = run.times();
-    let end = |e: &metrics::Episode| e.end.map_or(t[t.len() - 1], |i| t[i]);
-    let all: Vec<(f64, f64)> =
-        metrics::episodes(&run.history, 0.0).iter().map(|e| (t[e.start], end(e))).collect();
-    let lasts = |(from, to): &(f64, f64)| to - from > THROUGHOUT * (t[t.len() - 1] - t[0]);
-    if all.iter().any(lasts) { Vec::new() } else { all }
-}
-
 /// What the shading means.
 fn shaded(run: &Run) -> &'static str {
     if !shades(run).is_empty() {
@@ -126,62 +114,9 @@ fn shaded(run: &Run) -> &'static str {
     }
 }
 
-/// A chart over time with its files.
-fn chart<'a>(
-    run: &Run,
-    (name, title): (&'static str, &'a str),
-    caption: String,
-    panels: Vec<Panel<'a>>,
-) -> Option<Figure> {
-    let panels: Vec<Panel> = panels.into_iter().filter(|p| !p.series.is_empty()).collect();
-    let x_label = time_label(run);
-    (!panels.is_empty()).then(|| {
-        let tracks = if title == "Solver" { animation::tracks(run) } else { Vec::new() };
-        let options = Options { tracks: &tracks, time: true, ..Options::default() };
-        let chart = Chart { title, x_label, shades: shades(run), panels };
-        let plot = of_chart(name, &chart);
-        let narrow = chart.draw(&Options { width: NARROW, ..options });
-        let figure = Figure::new(name, caption, chart.draw(&options)).with_narrow(narrow);
-        figure.with(plot.csv(), plot.script())
-    })
-}
-
-/// Adds the measured data of a column to its panel, which also limits them to the time of the run.
-fn add_measured<'a>(overlays: &'a [Cut], column: &str, panel: &mut Vec<Series<'a>>) {
-    for overlay in overlays.iter().filter(|overlay| overlay.column == column) {
-        panel.push(Series {
-            label: overlay.label.clone(),
-            color: [LINES[2], LINES[4], LINES[3]][panel.iter().filter(|s| s.dotted).count() % 3],
-            x: &overlay.x,
-            y: overlay.y.clone(),
-            dotted: true,
-            unlisted: false,
-        });
-    }
-}
-
-/// Measured data within the time of the run.
-struct Cut {
-    label: String,
-    column: String,
-    x: Vec<f64>,
-    y: Vec<f64>,
-}
-
-impl Cut {
-    fn all(run: &Run) -> Vec<Self> {
-        let (first, last) = range(run.times());
-        let cut = |o: &metrics::Overlay| {
-            let (x, y) = o.within(first, last);
-            Self { label: measured_label(o), column: o.column.clone(), x, y }
-        };
-        metrics::overlays(run).iter().map(cut).collect()
-    }
-}
-
 /// Curves of columns with their labels, without those that are missing or, compared with `size`,
 /// zero throughout.
-fn curves<'a>(run: &'a Run, overlays: &'a [Cut], columns: &[(&str, &str)], size: f64) -> Vec<Series<'a>> {
+fn curves<'a>(run: &'a Run, points: &'a [Points], columns: &[(&str, &str)], size: f64) -> Vec<Series<'a>> {
     let found = columns.iter().enumerate().filter_map(|(i, (name, label))| {
         let y = run.column(name)?;
         let shown = size == 0.0 || y.iter().any(|y| y.abs() > 1e-9 * size);
@@ -196,7 +131,7 @@ fn curves<'a>(run: &'a Run, overlays: &'a [Cut], columns: &[(&str, &str)], size:
         shown.then(|| series(y))
     });
     let mut found: Vec<Series> = found.collect();
-    columns.iter().for_each(|(name, _)| add_measured(overlays, name, &mut found));
+    columns.iter().for_each(|(name, _)| add_points(points, name, &mut found));
     found
 }
 
@@ -204,15 +139,9 @@ fn panel<'a>(label: &str, unit: &str, height: f64, series: Vec<Series<'a>>) -> P
     Panel { label: label.into(), unit: unit.into(), height, series }
 }
 
-/// Names of the items of a list of the resolved case.
-fn names<'a>(run: &'a Run, list: &str) -> Vec<&'a str> {
-    let items = run.manifest.case.get(list).and_then(|v| v.as_array());
-    items.into_iter().flatten().filter_map(|item| item.get("name")?.as_str()).collect()
-}
-
 /// Time histories of all probes, one panel per quantity.
 fn probes(run: &Run) -> Option<Figure> {
-    let (probes, overlays) = (names(run, "probes"), Cut::all(run));
+    let (probes, points) = (names(run, "probes"), Points::all(run));
     let mut panels: Vec<(String, Panel)> = Vec::new();
     let mut columns: Vec<&str> = Vec::new();
     for column in &run.history.columns {
@@ -240,7 +169,7 @@ fn probes(run: &Run) -> Option<Figure> {
             dotted: false,
             unlisted: false,
         });
-        add_measured(&overlays, &column.name, series);
+        add_points(&points, &column.name, series);
     }
     // No axis of the plane is horizontal or vertical in space.
     let solid = run.manifest.case.get("dimension").and_then(serde_json::Value::as_u64) == Some(3);
@@ -256,12 +185,18 @@ fn probes(run: &Run) -> Option<Figure> {
         "Time histories at the probes: {}.{}{} Data: `history.csv`, {} `{}`.",
         listed(&list),
         shaded(run),
-        sources(run),
+        sources(run, &points, &columns),
         if columns.len() == 1 { "column" } else { "columns" },
         columns.join("`, `")
     );
-    let panels = panels.into_iter().map(|(_, p)| p).collect();
-    chart(run, ("probes", "Time histories at the probes"), caption, panels)
+    let mut drawn = Vec::new();
+    for (quantity, panel) in panels {
+        drawn.push(panel);
+        let of = |column: &&&str| column.rsplit_once('.').is_some_and(|(_, q)| q == quantity);
+        let one = |column: &&str| differences(run, &points, column, &symbol(&quantity));
+        drawn.extend(columns.iter().filter(of).filter_map(one));
+    }
+    chart(run, ("probes", "Time histories at the probes"), caption, drawn)
 }
 
 /// Columns of figures, with their labels.
@@ -278,6 +213,23 @@ const WORKS: [(&str, &str); 4] = [
     ("friction_work", "friction work"),
 ];
 
+/// A component below this share of the largest one has a panel of its own.
+const SMALL: f64 = 0.125;
+
+/// A panel, or two of which the second has the components that would be flat in the first.
+fn by_size(all: Panel) -> Vec<Panel> {
+    let peak = |series: &Series| noise::largest(&series.y);
+    let most = all.series.iter().map(peak).fold(0.0, f64::max);
+    let (large, small): (Vec<Series>, Vec<Series>) =
+        all.series.into_iter().partition(|series| peak(series) >= SMALL * most);
+    let other = Panel { label: all.label.clone(), unit: all.unit.clone(), height: 110.0, series: small };
+    let first = Panel {
+        series: large,
+        ..Panel { label: all.label, unit: all.unit, height: all.height, series: Vec::new() }
+    };
+    [first, other].into_iter().filter(|panel| !panel.series.is_empty()).collect()
+}
+
 /// Contact force and impulse against time.
 fn force(run: &Run) -> Option<Figure> {
     let h = &run.history;
@@ -287,25 +239,27 @@ fn force(run: &Run) -> Option<Figure> {
         .filter_map(|c| run.column(c))
         .flatten();
     let largest = impulse.fold(f64::MIN_POSITIVE, |m: f64, x| m.max(x.abs()));
-    let overlays = Cut::all(run);
-    let (forces, impulses) =
-        (curves(run, &overlays, &FORCES, size), curves(run, &overlays, &IMPULSES, largest));
-    let panels = vec![
+    let points = Points::all(run);
+    let (forces, impulses) = (curves(run, &points, &FORCES, size), curves(run, &points, &IMPULSES, largest));
+    let panels = [
         panel("contact force f", h.unit("contact_force_x"), 200.0, forces),
         panel("impulse P", h.unit("contact_impulse_x"), 130.0, impulses),
     ];
+    let panels = panels.into_iter().flat_map(by_size).collect();
+    let shown: Vec<&str> = FORCES.iter().chain(&IMPULSES).map(|(name, _)| *name).collect();
     let caption = format!(
         "Contact force on the secondary side at the end of each step, and its accumulated impulse, which also has \
          the forces within a step.{} Single peaks of the force depend on the time step far more than the impulse \
-         does. Data: `history.csv`, columns `contact_force_…` and `contact_impulse_…`.",
-        shaded(run)
+         does.{} Data: `history.csv`, columns `contact_force_…` and `contact_impulse_…`.",
+        shaded(run),
+        sources(run, &points, &shown)
     );
     chart(run, ("force", "Contact force and impulse"), caption, panels)
 }
 
 /// The energy balance.
 fn energy(run: &Run) -> Option<Figure> {
-    let (unit, overlays) = (run.history.unit("total"), Cut::all(run));
+    let (unit, points) = (run.history.unit("total"), Points::all(run));
     let size = run
         .column("total")
         .into_iter()
@@ -313,8 +267,8 @@ fn energy(run: &Run) -> Option<Figure> {
         .flatten()
         .fold(0.0, |m: f64, x| m.max(x.abs()));
     let panels = vec![
-        panel("energy", unit, 200.0, curves(run, &overlays, &ENERGIES, 1e3 * size)),
-        panel("work, dissipation", unit, 150.0, curves(run, &overlays, &WORKS, 1e-3 * size)),
+        panel("energy", unit, 200.0, curves(run, &points, &ENERGIES, 1e3 * size)),
+        panel("work, dissipation", unit, 150.0, curves(run, &points, &WORKS, 1e-3 * size)),
     ];
     let works = if panels[1].series.is_empty() {
         " All work and dissipation are below 10^{-12} of the largest energy and omitted."
@@ -329,46 +283,15 @@ fn energy(run: &Run) -> Option<Figure> {
         .filter(|(_, label)| panels.iter().flat_map(|p| &p.series).any(|s| s.label == *label))
         .map(|(column, _)| format!("`{column}`"))
         .collect();
+    let names: Vec<&str> = ENERGIES.iter().chain(&WORKS).map(|(name, _)| *name).collect();
     let shown: Vec<&str> = shown.iter().map(String::as_str).collect();
     let caption = format!(
-        "Energy balance.{works}{} Energies below 10^{{-6}} of the largest one, and work that remains zero, are omitted. Data: `history.csv`, columns {}.",
+        "Energy balance.{works}{} Energies below 10^{{-6}} of the largest one, and work that remains zero, are omitted.{} Data: `history.csv`, columns {}.",
         shaded(run),
+        sources(run, &points, &names),
         listed(&shown)
     );
     chart(run, ("energy", "Energy balance"), caption, panels)
-}
-
-/// Measured data of columns that no other figure shows, with these columns.
-fn measured(run: &Run) -> Option<Figure> {
-    let (probes, overlays) = (names(run, "probes"), Cut::all(run));
-    let lists = [&FORCES[..], &IMPULSES, &ENERGIES, &WORKS];
-    let is_shown = |column: &str| {
-        column.rsplit_once('.').is_some_and(|(probe, _)| probes.contains(&probe))
-            || lists.iter().any(|list| list.iter().any(|(name, _)| *name == column))
-    };
-    let mut columns: Vec<&str> =
-        overlays.iter().map(|overlay| overlay.column.as_str()).filter(|column| !is_shown(column)).collect();
-    columns.sort_unstable();
-    columns.dedup();
-    let of = |column: &&str| {
-        panel(column, run.history.unit(column), 190.0, curves(run, &overlays, &[(column, "computed")], 0.0))
-    };
-    let caption = format!(
-        "Measured data and the columns that they belong to.{} Data: `history.csv`, {} `{}`.",
-        sources(run),
-        if columns.len() == 1 { "column" } else { "columns" },
-        columns.join("`, `")
-    );
-    chart(run, ("measured", "Measured data"), caption, columns.iter().map(of).collect())
-}
-
-/// Where the measured data, drawn as dots, come from.
-fn sources(run: &Run) -> String {
-    let source = |overlay: metrics::Overlay| {
-        let source = overlay.source.map_or_else(String::new, |source| format!(" ({source})"));
-        format!(" Dots: data “{}”{source}.", overlay.name)
-    };
-    metrics::overlays(run).into_iter().map(source).collect()
 }
 
 /// Iterations, active nodes and rejections by step.

@@ -7,6 +7,7 @@
 
 mod animation;
 mod arc;
+mod asked;
 mod axis;
 mod bands;
 mod bars;
@@ -29,10 +30,12 @@ mod instants;
 mod integrity;
 mod labels;
 mod laboratory;
+mod measured;
 mod meshes;
 mod multiples;
 mod noise;
 mod obstacles;
+mod over_time;
 mod overlap;
 mod page;
 mod palette;
@@ -64,6 +67,7 @@ mod theory;
 mod timing;
 mod trace;
 mod trend;
+mod unshown;
 mod verdict;
 mod verify_page;
 

@@ -9,7 +9,7 @@ use crate::labels::is_stress;
 const SHARE: f64 = 1e-10;
 
 /// The largest magnitude of some values.
-fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
+pub(crate) fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values.into_iter().filter(|x| x.is_finite()).fold(0.0, |most, x| most.max(x.abs()))
 }
 

@@ -1,13 +1,13 @@
 //! `report.html`: the report of a run as a single self-contained page, for screen and print.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use carom_record::metrics;
 use carom_record::{FieldFormat, Run, Status, Warning};
 use maud::{Markup, Render, html};
 use serde_json::Value;
 
 use crate::animation::Animation;
+use crate::asked;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::figure::Figure;
 use crate::labels::{capitalised, is_static, number};
@@ -186,30 +186,10 @@ fn expected(text: &str) -> String {
     powers(&minus(&exact)).replace(" ± ", "\u{a0}±\u{a0}").replace(" %", "\u{a0}%")
 }
 
-/// The unit of a metric, or of an expression that adds columns of one unit; a dash for numbers,
-/// nothing for other expressions.
+/// The unit of what an expectation asks for: a dash for numbers, nothing where it is not known.
 fn unit_of_question(run: &Run, what: &str) -> Markup {
-    let unit = |unit: &str| html! { @if unit.is_empty() { "–" } @else { (Label(unit)) } };
-    let overlays = metrics::overlays(run);
-    let measured = overlays.iter().flat_map(|overlay| metrics::of_measured(&run.history, overlay));
-    if let Some(metric) = metrics::all(&run.history).into_iter().chain(measured).find(|m| m.name == what) {
-        return unit(&metric.unit);
-    }
-    let form = what.split(' ').next().unwrap_or_default();
-    if form == "time" {
-        return unit(run.history.unit("time"));
-    }
-    // Factors may have units, those of functions of t have.
-    let sum = what.split_once("− (").map_or(what, |(column, _)| column);
-    let columns: Vec<&str> = sum
-        .split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | ':')))
-        .filter(|word| run.column(word).is_some() && *word != "time")
-        .collect();
-    let units: BTreeSet<&str> = columns.iter().map(|column| run.history.unit(column)).collect();
-    match units.first() {
-        Some(_) if sum.contains('/') && columns.len() == 2 && units.len() == 1 => unit(""),
-        Some(one) if units.len() == 1 && !sum.contains(['/', '*']) => unit(one),
-        _ => html! {},
+    html! {
+        @if let Some(unit) = asked::unit(run, what) { @if unit.is_empty() { "–" } @else { (Label(&unit)) } }
     }
 }
 
@@ -254,7 +234,7 @@ fn expectations(run: &Run) -> Markup {
                             @if let Some(source) = &e.source {
                                 @if let Some(k) = repeated.iter().position(|other| *other == source) {
                                     "[" (k + 1) "]"
-                                } @else { (source) }
+                                } @else { (Label(source)) }
                             }
                         }
                     }
@@ -263,7 +243,7 @@ fn expectations(run: &Run) -> Markup {
             @if run.manifest.expectations.iter().any(|e| e.got.is_some_and(|x| got(&e.what, x) == "≈ 0")) {
                 p.small { "≈ 0: round-off." }
             }
-            @for (k, source) in repeated.iter().enumerate() { p.small { "[" (k + 1) "] " (source) } }
+            @for (k, source) in repeated.iter().enumerate() { p.small { "[" (k + 1) "] " (Label(source)) } }
         }
     }
 }

@@ -11,9 +11,10 @@ use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
 use crate::chart::{ground, open_chart, time_axis, write_text};
 use crate::figure::{Figure, NARROW};
-use crate::labels::with_unit;
+use crate::labels::{amount, with_unit};
 use crate::pen::{Pen, open_grid};
 use crate::redraw::filled;
+use crate::scientific::significant;
 use crate::sheet::{Legend, arrowheads, color_bar};
 
 const WIDTH: f64 = 720.0;
@@ -103,10 +104,11 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     } else {
         ""
     };
+    let classes = classes(&sides, &stress);
     let bars = cuts.into_iter().zip(sides.iter().map(|side| format!("“{}”", side.name)));
     let caption = format!(
         "Contact pressure p during contact, over time and the arc length s of the secondary side in the reference \
-         configuration; one band per node, grey where the node is not in contact.{thinned}{}{unmatched} Data: \
+         configuration; one band per node, grey where the node is not in contact.{classes}{thinned}{}{unmatched} Data: \
          `contact.csv`, column `pressure`.",
         arrowheads(bars)
     );
@@ -158,6 +160,20 @@ fn draw(run: &Run, sides: &[Side], width: f64) -> (String, Vec<[bool; 2]>, usize
     out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans));
     out.push_str("</svg>\n");
     (out, cuts, stride)
+}
+
+/// The range of pressure of one colour, which a map of nearly one pressure makes look large.
+fn classes(sides: &[Side], stress: &str) -> String {
+    let [side] = sides else { return String::new() };
+    let bands = positive_bands(side.rows.iter().map(|(row, _)| row.pressure)).0;
+    let step = (bands.high - bands.low) / bands.count as f64;
+    // Steps are round.
+    let step = if (0.01..1000.0).contains(&step) {
+        format!("{} {stress}", significant(step, 1))
+    } else {
+        amount(step, stress)
+    };
+    format!(" One colour covers {step}.")
 }
 
 /// `Every second`, `Every third`, `Every 4th`.

@@ -84,6 +84,11 @@ fn is_meaningful(run: &Run, metric: &Metric) -> bool {
     if !has_contacts && of_contact {
         return false;
     }
+    // Without a release nodes have closed once, and did not chatter.
+    let has_releases = run.column("releases").is_none_or(|column| column.iter().any(|x| *x > 0.0));
+    if name == "chatter" && !has_releases {
+        return false;
+    }
     let rebound = ["restitution", "turning_time", "apex", "apex_time"].contains(&name);
     let episode = metrics::first_episode(&run.history);
     let restitution = metrics::all(&run.history).into_iter().find(|m| m.name == "restitution");

@@ -24,8 +24,9 @@ use crate::chart::{open, write_text};
 use crate::figure::NARROW;
 use crate::obstacles;
 use crate::pen::{Pen, Point, open_grid};
-use crate::symbols::{arrow, direction, guides, motion, plus, rollers, wall};
+use crate::symbols::{arrow, direction, guides, motion, plus, probe_mark, rollers, wall};
 use drawing::{BAR, KEY, PRIMARY, ROOM, SECONDARY, Setup, Walk};
+pub(crate) use forces::typeset as formula_in_words;
 use values::{list, text, vector};
 pub(crate) use words::in_words;
 
@@ -312,12 +313,7 @@ impl Setup<'_> {
             let at = vector(probe.get("at"));
             let p =
                 self.to(self.moved([at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0)]));
-            let _ = writeln!(
-                out,
-                "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" \
-                 stroke-width=\"1.8\"/>",
-                p[0], p[1]
-            );
+            out.push_str(&probe_mark(p));
             let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
                         paint-order=\"stroke\" stroke-linejoin=\"round\"";
             let [x, y] =

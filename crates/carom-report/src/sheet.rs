@@ -178,7 +178,9 @@ pub(crate) fn color_bar(out: &mut String, legend: &Legend, x: f64, (top, bottom)
         write_text(out, x + width + 7.0, y + 4.3, "", tick);
     }
     let label = axis.label(label, unit);
-    // Smaller where it is wider than the bar with its ticks.
-    let size = ROOM.min(13.0 * text::width(&label)) / text::width(&label).max(1e-9);
-    write_text(out, x - 2.0, top - 20.0, &format!("font-size=\"{size:.1}\""), &label);
+    // Further left, then smaller, where it is wider than the bar with its ticks.
+    let wide = 13.0 * text::width(&label);
+    let left = (wide - ROOM).clamp(0.0, 14.0);
+    let size = (ROOM + left).min(wide) / text::width(&label).max(1e-9);
+    write_text(out, x - 2.0 - left, top - 20.0, &format!("font-size=\"{size:.1}\""), &label);
 }

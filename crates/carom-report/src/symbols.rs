@@ -136,3 +136,12 @@ pub(crate) fn guides(out: &mut String, line: &[(Point, Point)], constrained: Poi
         );
     }
 }
+
+/// A probe: a diamond, which is not taken for a roller.
+pub(crate) fn probe_mark([x, y]: Point) -> String {
+    format!(
+        "<path d=\"M{x:.1} {:.1}l5.2 5.2l-5.2 5.2l-5.2 -5.2z\" fill=\"#000\" stroke=\"#fff\" \
+         stroke-width=\"1.6\" paint-order=\"stroke\"/>\n",
+        y - 5.2
+    )
+}

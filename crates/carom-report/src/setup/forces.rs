@@ -43,7 +43,7 @@ fn depends_on_time(formula: &str) -> bool {
 }
 
 /// A formula with minus signs, π, and dots of multiplication where they are needed.
-fn typeset(formula: &str) -> String {
+pub(crate) fn typeset(formula: &str) -> String {
     without_dots(&signs(formula))
 }
 

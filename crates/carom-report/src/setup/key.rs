@@ -12,7 +12,7 @@ use crate::bodies::fill_space;
 use crate::chart::write_text;
 use crate::labels::given_amount;
 use crate::scientific::given;
-use crate::symbols::{arrow, guides, motion, plus, rollers, wall};
+use crate::symbols::{arrow, guides, motion, plus, probe_mark, rollers, wall};
 use crate::text;
 
 /// The smallest size of letters in pixels.
@@ -157,9 +157,8 @@ impl Setup<'_> {
                 line("", "Probes", true);
             }
             let at = vector(probe.get("at"));
-            let dot = "<circle cx=\"10\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>";
             line(
-                dot,
+                &probe_mark([10.0, 0.0]),
                 &format!("{}: {} at {} {length}", word(probe, "name"), word(probe, "body"), tuple(&at)),
                 false,
             );

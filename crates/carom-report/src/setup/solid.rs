@@ -17,7 +17,7 @@ use crate::space::{
     DRAWN, Facet, Paint, Place, View, box_of, corners, cross, draw, frame, minus, pieces, places, skin,
     underlay, wires,
 };
-use crate::symbols::{arrow, direction, plus};
+use crate::symbols::{arrow, direction, plus, probe_mark};
 
 /// Length in pixels of an arrow parallel to the page, and about how many are drawn on a side.
 const LENGTH: f64 = 30.0;
@@ -281,13 +281,16 @@ impl Solid<'_> {
             // Inside a body, or on faces that are all turned away.
             let of_node = |k: &usize| self.skin[*k].nodes.iter().any(|node| self.places[*node] == *to);
             let is_seen = (0..self.skin.len()).filter(of_node).any(|k| self.seen(k));
-            let (fill, dashes) =
-                if is_seen { ("#fff", "") } else { ("none", " stroke-dasharray=\"2.2 1.6\"") };
-            let _ = writeln!(
-                out,
-                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.2\" fill=\"{fill}\" stroke=\"#000\" \
-                 stroke-width=\"1.8\"{dashes}/>"
-            );
+            if is_seen {
+                out.push_str(&probe_mark([x, y]));
+            } else {
+                let _ = writeln!(
+                    out,
+                    "<path d=\"M{x:.1} {:.1}l5.2 5.2l-5.2 5.2l-5.2 -5.2z\" fill=\"none\" stroke=\"#000\" \
+                     stroke-width=\"1.6\" stroke-dasharray=\"2.2 1.6\"/>",
+                    y - 5.2
+                );
+            }
             let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
                         paint-order=\"stroke\" stroke-linejoin=\"round\"";
             write_text(out, x + 8.0, y - 7.0, bold, text(probe, "name"));

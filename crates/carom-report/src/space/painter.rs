@@ -43,6 +43,15 @@ impl Paint<'_> {
         }
     }
 
+    /// The colour with a number on a piece of a brightness. Colours that stand for values are shaded
+    /// less, so that they are found at the bar.
+    pub(crate) fn lit(&self, color: [u8; 3], brightness: f64) -> [u8; 3] {
+        match self {
+            Self::Bands(_) => lit(color, 1.0 - 0.3 * (1.0 - brightness)),
+            Self::Parts(_) => lit(color, brightness),
+        }
+    }
+
     /// The parts of a piece by colour.
     fn parts(&self, piece: &Piece) -> Vec<(usize, Vec<Point>)> {
         let flat = piece.corners.map(|[x, y, _]| [x, y]);
@@ -54,7 +63,7 @@ impl Paint<'_> {
 }
 
 /// A colour in the light of a brightness.
-pub(crate) fn lit(color: [u8; 3], brightness: f64) -> [u8; 3] {
+fn lit(color: [u8; 3], brightness: f64) -> [u8; 3] {
     color.map(|part| (f64::from(part) * brightness).round() as u8)
 }
 
@@ -121,7 +130,7 @@ pub(crate) fn paint(out: &mut String, pieces: &[Piece], paint: &Paint) {
         for (number, polygon) in paint.parts(piece) {
             let mut pen = Pen::default();
             pen.polygon(&polygon);
-            let [r, g, b] = lit(paint.rgb(number), piece.brightness);
+            let [r, g, b] = paint.lit(paint.rgb(number), piece.brightness);
             // A stroke in the colour of the fill closes the hairlines between neighbours.
             let color = format!("#{r:02x}{g:02x}{b:02x}");
             let _ = writeln!(out, "<path d=\"{}\" fill=\"{color}\" stroke=\"{color}\"/>", pen.data());
@@ -134,9 +143,11 @@ pub(crate) fn paint(out: &mut String, pieces: &[Piece], paint: &Paint) {
         }
         if !pen.is_empty() {
             let width = EDGE * GRID;
+            // Small pictures have more lines than colour.
+            let faint = if matches!(paint, Paint::Bands(_)) { " stroke-opacity=\"0.45\"" } else { "" };
             let _ = writeln!(
                 out,
-                "<path d=\"{}\" fill=\"none\" stroke=\"{LINE}\" stroke-width=\"{width}\"/>",
+                "<path d=\"{}\" fill=\"none\" stroke=\"{LINE}\" stroke-width=\"{width}\"{faint}/>",
                 pen.data()
             );
         }

@@ -4,7 +4,7 @@
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::painter::{EDGE, LINE, Paint, Piece, lit};
+use super::painter::{EDGE, LINE, Paint, Piece};
 use super::skin::Place;
 use crate::palette::rgb;
 use crate::pen::Point;
@@ -67,7 +67,7 @@ impl Samples {
                 self.color[at] = if on_edge {
                     line
                 } else if value.is_finite() {
-                    lit(colors[paint.of(value)], piece.brightness)
+                    paint.lit(colors[paint.of(value)], piece.brightness)
                 } else {
                     [255; 3]
                 };

@@ -51,7 +51,8 @@
     void main() {
       if (dot(cut.xyz, body) > cut.w) discard;
       vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
-      float light = 0.7 + 0.3 * max(0.0, dot(normal, vec3(-0.32, 0.51, 0.8)));
+      // Little shade, so that colours are found at the bar.
+      float light = 0.91 + 0.09 * max(0.0, dot(normal, vec3(-0.32, 0.51, 0.8)));
       int band = clamp(int(floor(share * float(count))), 0, count - 1);
       vec3 surface = share < -0.001 ? vec3(1.0) : texelFetch(colors, ivec2(band, 0), 0).rgb;
       color = vec4(lines ? vec3(grey) : gl_FrontFacing ? surface * light : vec3(0.62), 1.0);
@@ -95,10 +96,12 @@
   canvas.width = W * ratio; canvas.height = H * ratio;
   canvas.style.width = W + "px"; canvas.style.aspectRatio = W + " / " + H;
   corner.width = corner.height = 160;
+  // A fifth of the picture, so that it stays beside the bodies of a small one.
+  corner.style.cssText = "width: 20%; height: auto; max-width: 80px";
   const flat = corner.getContext("2d");
 
   let turn, zoom, shift, frame = 0, quantity = 0, cut = [0, 0, 0, 1], queued = false;
-  const home = () => { turn = data.view.map(axis => [...axis]); zoom = 1; shift = [0, 0]; };
+  const home = () => { turn = data.view.map(axis => [...axis]); zoom = 1; shift = [0, 0.06 * radius]; };
   home();
   const render = () => {
     queued = false;
@@ -123,11 +126,11 @@
     gl.drawArrays(gl.LINES, 0, corners);
     flat.setTransform(2, 0, 0, 2, 0, 0);
     flat.clearRect(0, 0, 80, 80);
-    flat.font = "italic 13px Helvetica, Arial, sans-serif"; flat.textAlign = "center"; flat.textBaseline = "middle";
+    flat.font = `italic ${13 * Math.min(1.3, Math.max(1, 80 / (corner.clientWidth || 80)))}px Helvetica, Arial, sans-serif`; flat.textAlign = "center"; flat.textBaseline = "middle";
     ["x", "y", "z"].forEach((name, d) => {
       const [x, y] = [40 + 24 * turn[0][d], 40 - 24 * turn[1][d]];
       flat.beginPath(); flat.moveTo(40, 40); flat.lineTo(x, y); flat.stroke();
-      flat.fillText(name, 40 + 33 * turn[0][d], 40 - 33 * turn[1][d]);
+      flat.fillText(name, 40 + 32 * turn[0][d], 40 - 32 * turn[1][d]);
     });
   };
   const redraw = () => { if (!queued) { queued = true; requestAnimationFrame(render); } };

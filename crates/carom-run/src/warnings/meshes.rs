@@ -24,6 +24,8 @@ struct Zone {
     sides: [Vec<Near>; 2],
     /// Unit normal of the surfaces where they are closest.
     normal: Place,
+    /// Middle of the primary facet there.
+    closest: Place,
 }
 
 /// A facet near the other side.
@@ -86,13 +88,13 @@ fn zone(case: &Case, model: &Model, contact: usize) -> Option<Zone> {
         [0, 1].map(|s| middles[s].iter().map(|&middle| gap(middle, &middles[1 - s])).collect());
     let (closest, least) =
         gaps[1].iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).filter(|g| g.1.is_finite())?;
-    let normal = sides[1][closest].normal();
+    let (normal, closest) = (sides[1][closest].normal(), middles[1][closest]);
     let mut gaps = gaps.into_iter();
     let sides = sides.map(|side| {
         let near = side.into_iter().zip(gaps.next().unwrap_or_default());
         near.filter(|(_, gap)| *gap <= least + reach).map(|(facet, _)| facet).collect()
     });
-    Some(Zone { sides, normal })
+    Some(Zone { sides, normal, closest })
 }
 
 impl Near {
@@ -116,6 +118,19 @@ impl Zone {
     fn spacing(&self, side: usize) -> f64 {
         let spacing = |facet: &Near| facet.length / facet.degree as f64;
         self.sides[side].iter().map(spacing).sum::<f64>() / self.sides[side].len() as f64
+    }
+
+    /// Whether a place is within a facet's length of a side, and not much further from the other one
+    /// than this side is: on a coarse round body the far end may be in the zone, too.
+    fn reaches(&self, at: Place) -> bool {
+        let height = |y: Place| dot(minus(y, self.closest), self.normal).abs();
+        self.sides.iter().any(|side| {
+            let least = side.iter().flat_map(|f| &f.nodes).map(|&y| height(y)).fold(f64::INFINITY, f64::min);
+            side.iter().any(|facet| {
+                facet.nodes.iter().any(|&y| distance(at, y) <= facet.length)
+                    && height(at) <= least + 2.0 * facet.length
+            })
+        })
     }
 
     /// Whether every secondary node has a node of the primary at the same place along the surface.
@@ -161,22 +176,16 @@ pub(super) fn unmatched_pressure(case: &Case, model: &Model) -> Vec<Found> {
         let Some(zone) = zone(case, model, k).filter(|zone| !zone.matches()) else { continue };
         let mut readers = Vec::new();
         if expected {
-            readers.push("an expectation".to_owned());
+            readers.push("an expectation reads a pressure there".to_owned());
         }
-        let near = |at: Place| {
-            let facets = zone.sides.iter().flatten();
-            facets.into_iter().any(|facet| facet.nodes.iter().any(|&y| distance(at, y) <= facet.length))
-        };
         for probe in &probes {
-            if near(std::array::from_fn(|i| probe.at.get(i).copied().unwrap_or(0.0))) {
-                readers.push(format!("probe \"{}\"", probe.name));
+            if zone.reaches(std::array::from_fn(|i| probe.at.get(i).copied().unwrap_or(0.0))) {
+                let names: Vec<&str> = probe.record.iter().filter(|q| stress(q)).map(|q| q.name()).collect();
+                readers.push(format!("probe \"{}\" reads {} there", probe.name, names.join(", ")));
             }
         }
         if !readers.is_empty() {
-            let what = format!(
-                "the nodes of its sides do not match, and {} reads stress or pressure there",
-                readers.join(" and ")
-            );
+            let what = format!("the nodes of its sides do not match, and {}", readers.join(" and "));
             found.push(Found::of_contact(&contact.name, what));
         }
     }

@@ -30,7 +30,7 @@ pub(super) fn long_step(case: &Case, model: &Model) -> Vec<Found> {
             found.push(Found::of_body(
                 &part.name,
                 format!(
-                    "a pressure wave crosses {} cells of size {} {unit} in a step (Courant number); waves shorter than {} {unit} are not resolved in time",
+                    "its Courant number is {0}: a pressure wave crosses {0} cells of size {1} {unit} in a step, and waves shorter than {2} {unit} are not resolved in time",
                     short(courant),
                     short(cell),
                     short(2.0 * std::f64::consts::PI * courant * cell)

@@ -1,0 +1,148 @@
+//! Figures of the columns that measured data belong to or expectations evaluate, where no other
+//! figure shows them.
+
+use carom_formula::Formula;
+use carom_record::Run;
+
+use crate::chart::{Panel, Series};
+use crate::figure::Figure;
+use crate::labels::listed;
+use crate::measured::{Points, add_points, differences, sources};
+use crate::noise::largest;
+use crate::over_time::{chart, names};
+use crate::palette::LINES;
+
+/// A column below this size shows only round-off.
+const ROUND_OFF: f64 = 1e-12;
+/// Columns of the figure of expected values; more make it longer than a page.
+const MOST: usize = 8;
+
+/// Whether another figure shows a column; `lists` are the columns of the figures of all runs.
+fn is_shown(run: &Run, lists: &[&[(&str, &str)]], column: &str) -> bool {
+    let is_probed = |probe: &str| names(run, "probes").contains(&probe);
+    column.rsplit_once('.').is_some_and(|(probe, _)| is_probed(probe))
+        || lists.iter().any(|list| list.iter().any(|(name, _)| *name == column))
+        || ["time", "step", "active", "newton", "rejected"].contains(&column)
+}
+
+/// Measured data of columns that no other figure shows, with these columns.
+pub(crate) fn measured(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
+    let points = Points::all(run);
+    let mut columns: Vec<String> = carom_record::metrics::overlays(run)
+        .into_iter()
+        .map(|overlay| overlay.column)
+        .filter(|column| !is_shown(run, lists, column))
+        .collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let mut panels = Vec::new();
+    for column in &columns {
+        panels.push(panel(run, &points, &[column], column));
+        panels.extend(differences(run, &points, column, column));
+    }
+    let all: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let caption = format!(
+        "Measured data and the columns that they belong to.{} Data: `history.csv`, {}.",
+        sources(run, &points, &all),
+        in_words(&all)
+    );
+    chart(run, ("measured", "Measured data"), caption, panels)
+}
+
+/// The columns that expectations evaluate and no other figure shows, with the expected values.
+pub(crate) fn expected(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
+    let points = Points::all(run);
+    let measured = carom_record::metrics::overlays(run);
+    let mut groups: Vec<(String, Vec<String>)> = Vec::new();
+    let asked = run.manifest.expectations.iter().flat_map(|e| columns_in(run, &e.what));
+    let worth = |column: &String| {
+        !is_shown(run, lists, column)
+            && measured.iter().all(|overlay| overlay.column != *column)
+            && run.column(column).is_some_and(|values| largest(values) > ROUND_OFF)
+    };
+    let mut columns: Vec<String> = Vec::new();
+    for column in asked.filter(worth) {
+        if !columns.contains(&column) && columns.len() < MOST {
+            columns.push(column);
+        }
+    }
+    // The components of a vector have one panel.
+    for column in &columns {
+        let stem = column.strip_suffix(['x', 'y', 'z']).filter(|stem| stem.ends_with('_'));
+        let stem = stem.map_or(column.as_str(), |stem| stem.trim_end_matches('_'));
+        match groups.iter_mut().find(|(name, _)| name == stem) {
+            Some((_, members)) => members.push(column.clone()),
+            None => groups.push((stem.to_owned(), vec![column.clone()])),
+        }
+    }
+    let formulas: Vec<(String, String, Vec<f64>)> =
+        run.manifest.expectations.iter().filter_map(|e| formula(run, &e.what)).collect();
+    let mut panels = Vec::new();
+    for (name, members) in &groups {
+        let members: Vec<&str> = members.iter().map(String::as_str).collect();
+        let label = if let [one] = members[..] { one } else { name };
+        let mut panel = panel(run, &points, &members, label);
+        for (_, text, y) in formulas.iter().filter(|(column, ..)| members.contains(&column.as_str())) {
+            panel.series.push(Series {
+                label: format!("expected: {text}"),
+                color: LINES[2],
+                x: run.times(),
+                y: y.clone(),
+                dotted: false,
+                unlisted: false,
+            });
+        }
+        panels.push(panel);
+    }
+    let all: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let caption = format!(
+        "Columns that expectations evaluate and no other figure shows.{} Data: `history.csv`, {}.",
+        sources(run, &points, &all),
+        in_words(&all)
+    );
+    chart(run, ("expected", "Columns of expectations"), caption, panels)
+}
+
+/// `columns a and b`.
+fn in_words(columns: &[&str]) -> String {
+    let coded: Vec<String> = columns.iter().map(|column| format!("`{column}`")).collect();
+    let coded: Vec<&str> = coded.iter().map(String::as_str).collect();
+    format!("{} {}", if columns.len() == 1 { "column" } else { "columns" }, listed(&coded))
+}
+
+/// A panel with columns of one unit and their points.
+fn panel<'a>(run: &'a Run, points: &'a [Points], columns: &[&str], label: &str) -> Panel<'a> {
+    let curve = |(k, column): (usize, &&str)| {
+        Some(Series {
+            label: (*column).to_owned(),
+            // The second colour is that of expected values.
+            color: LINES[if k == 0 { 0 } else { k + 2 } % LINES.len()],
+            x: run.times(),
+            y: run.column(column)?.to_vec(),
+            dotted: false,
+            unlisted: false,
+        })
+    };
+    let mut series: Vec<Series> = columns.iter().enumerate().filter_map(curve).collect();
+    columns.iter().for_each(|column| add_points(points, column, &mut series));
+    let unit = columns.first().map_or("", |column| run.history.unit(column)).to_owned();
+    Panel { label: label.to_owned(), unit, height: 150.0, series }
+}
+
+/// The names of columns in what an expectation asks for.
+fn columns_in(run: &Run, what: &str) -> Vec<String> {
+    let sum = what.split_once("− (").map_or(what, |(column, _)| column);
+    sum.split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | ':')))
+        .filter(|word| run.column(word).is_some())
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Column, text and values of the formula that it is compared with.
+fn formula(run: &Run, what: &str) -> Option<(String, String, Vec<f64>)> {
+    let (column, text) = what.split_once(" − (")?;
+    let (column, text) = (column.rsplit_once('|')?.1, text.rsplit_once(")|")?.0);
+    let formula = Formula::parse(text, &["t"]).ok()?;
+    let text = crate::setup::formula_in_words(text);
+    Some((column.to_owned(), text, run.times().iter().map(|t| formula.value(&[*t])).collect()))
+}
