@@ -9,6 +9,7 @@ use maud::{Markup, PreEscaped, Render, html};
 use crate::collected::{Origin, time_unit};
 use crate::digits::five;
 use crate::document::{document, figure, file, joined, minus, or_dash};
+use crate::figure::pictures;
 use crate::laboratory::style_of;
 use crate::plot::{APART, Plot, style};
 use crate::systems::Systems;
@@ -26,7 +27,7 @@ const MANY: usize = 12;
 /// The page.
 pub(crate) fn page(
     study: &Study,
-    picture: Option<&str>,
+    picture: Option<&[String; 2]>,
     plots: &[Plot],
     origins: &[Origin],
     systems: &Systems,
@@ -79,7 +80,8 @@ pub(crate) fn page(
 fn figures(plots: &[Plot]) -> Markup {
     let numbered: Vec<(usize, &Plot)> = plots.iter().enumerate().collect();
     let one = |(i, plot): &(usize, &Plot)| {
-        figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &plot.svg())
+        let drawn = pictures(&plot.svg(), &plot.narrow());
+        figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &drawn)
     };
     html! {
         @for together in numbered.chunk_by(|a, b| !a.1.group.is_empty() && a.1.group == b.1.group) {
@@ -96,15 +98,15 @@ fn figures(plots: &[Plot]) -> Markup {
 }
 
 /// The drawing of the case, the values that differ between arms, and the design.
-fn setup(study: &Study, picture: Option<&str>) -> Markup {
+fn setup(study: &Study, picture: Option<&[String; 2]>) -> Markup {
     let (varied, shared) = (settings::varied(study), settings::shared(study));
     let title = study.manifest.arms.first().and_then(|arm| arm.case.get("title")?.as_str());
     let title = title.filter(|title| !title.is_empty());
     html! {
         h2 { "Setup" }
-        @if let Some(svg) = picture {
+        @if let Some([svg, narrow]) = picture {
             figure {
-                div.drawing { (PreEscaped(svg)) }
+                div.drawing { (PreEscaped(pictures(svg, narrow))) }
                 figcaption {
                     "Initial configuration of the first arm"
                     @if let Some(title) = title { ": " (Label(title)) }

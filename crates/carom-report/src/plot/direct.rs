@@ -42,7 +42,7 @@ fn spread(wanted: &[f64], line: f64, (top, bottom): (f64, f64)) -> Vec<f64> {
 }
 
 /// What is written beside a curve.
-fn words(curve: &Curve) -> String {
+pub(super) fn words(curve: &Curve) -> String {
     let most = MOST / SIZE;
     // The caption names the others.
     let others = |rest: &str| rest.ends_with(" other") || rest.ends_with(" others");
@@ -74,13 +74,15 @@ pub(super) struct End {
     pub(super) leaves: bool,
 }
 
-/// Draws the labels; `ends` are where the curves end in the pane.
-pub(super) fn draw(out: &mut String, curves: &[&Curve], ends: &[End], frame: &Frame) {
+/// Draws the labels, those outside the pane only if they are `beside` it; `ends` are where the
+/// curves end in the pane.
+pub(super) fn draw(out: &mut String, curves: &[&Curve], ends: &[End], frame: &Frame, beside: bool) {
     let right = frame.right();
     let inside = |k: &usize| ends[*k].x < right - INSIDE;
     let (stopped, mut order): (Vec<usize>, Vec<usize>) =
         (0..curves.len()).partition(|k| curves[*k].apart && !curves[*k].marked && inside(k));
     stops(out, &stopped.iter().map(|k| (curves[*k], ends[*k])).collect::<Vec<_>>(), frame);
+    order.retain(|_| beside);
     order.sort_by(|a, b| ends[*a].y.total_cmp(&ends[*b].y));
     let wanted: Vec<f64> = order.iter().map(|k| ends[*k].y).collect();
     let heights = spread(&wanted, LINE, (frame.top + 4.0, frame.bottom() - 2.0));
