@@ -50,6 +50,7 @@ mod settings;
 mod setup;
 mod sheet;
 mod space;
+mod stacked;
 mod stick_slip;
 mod stopped;
 mod study;
