@@ -12,7 +12,7 @@ SCHEMES = ("light", "dark")
 # Boxes of letters are smaller than the browser's boxes of lines: a fifth of the height at the top
 # and at the bottom is empty.
 PROBLEMS = r"""(() => {
-  const SMALLEST = 8.5;
+  const SMALLEST = 9;
   const found = [], say = text => { if (found.length < 40) found.push(text); };
   const short = e => JSON.stringify(e.textContent.trim().replace(/\s+/g, " ").slice(0, 40));
   const name = svg => {

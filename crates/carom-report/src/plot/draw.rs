@@ -146,9 +146,9 @@ impl Plot {
         };
         // Markers lie outside the frame, too, and keep their size.
         if order.iter().any(|curve| curve.marked) {
-            draw(out)
+            draw(out);
         } else {
-            place.shared(out, "lines", draw)
+            place.shared(out, "lines", draw);
         }
         if self.direct {
             let shown: Vec<(&Curve, End)> = pane
@@ -227,8 +227,9 @@ fn end(curve: &Curve, frame: &Frame, to_x: &dyn Fn(f64) -> f64, to_y: &dyn Fn(f6
     let (top, bottom) = (frame.top, frame.bottom());
     if curve.marked {
         let last = *points.last()?;
-        let (x, y) = frame.beyond(last).map_or(last, |(edge, _)| edge);
-        return Some(End { x, y, leaves: false });
+        let beyond = frame.beyond(last);
+        let (x, y) = beyond.map_or(last, |(edge, _)| edge);
+        return Some(End { x, y, leaves: beyond.is_some() });
     }
     points.retain(|p| p.0 >= frame.left - 0.5 && p.0 <= frame.right() + 0.5);
     let last = *points.last()?;

@@ -100,7 +100,7 @@ impl Plot {
         let of_row =
             self.panes.iter().enumerate().all(|(k, pane)| k % across == 0 || pane.y_label.is_empty());
         match of_row && across > 1 {
-            true if i % columns == 0 => &self.panes[i - i % across].y_label,
+            true if i.is_multiple_of(columns) => &self.panes[i - i % across].y_label,
             true => "",
             false => &self.panes[i].y_label,
         }
