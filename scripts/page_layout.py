@@ -1,8 +1,9 @@
 """Layout of a page, by the browser's own rectangles: `check_page.py` calls `layout`.
 
-At every width and in both colour schemes: text of a figure lies inside the figure, labels of a
-figure do not overlap, nothing makes the page wider than the window, and text stands out from its
-background by a contrast of at least 3 (WCAG 2.2, § 1.4.11; 4.5 for the text of the page, § 1.4.3).
+At every width and in both colour schemes: figures lie inside the window and do not scroll, text of a
+figure lies inside the figure and is not too small, labels of a figure do not overlap, nothing makes
+the page wider than the window, the first column of a table that scrolls stays, and text stands out
+from its background by a contrast of at least 3 (WCAG 2.2, § 1.4.11; 4.5 for the text of the page, § 1.4.3).
 """
 
 WIDTHS = (1300, 480)
@@ -11,6 +12,7 @@ SCHEMES = ("light", "dark")
 # Boxes of letters are smaller than the browser's boxes of lines: a fifth of the height at the top
 # and at the bottom is empty.
 PROBLEMS = r"""(() => {
+  const SMALLEST = 9;
   const found = [], say = text => { if (found.length < 40) found.push(text); };
   const short = e => JSON.stringify(e.textContent.trim().replace(/\s+/g, " ").slice(0, 40));
   const name = svg => {
@@ -42,10 +44,20 @@ PROBLEMS = r"""(() => {
     say(`the page is ${root.scrollWidth} pixels wide in a window of ${root.clientWidth}: ` +
       (e ? `<${e.tagName.toLowerCase()}> ${short(e)}` : "?"));
   }
+  const scrolls = e => e.scrollWidth > e.clientWidth + 1 && /auto|scroll/.test(getComputedStyle(e).overflowX);
+  for (const e of document.querySelectorAll("table, .scroll, .drawing, .stage")) {
+    if (!shown(e) || !scrolls(e)) continue;
+    const row = e.querySelector("tbody tr, tr");
+    const stays = row && [...row.children].some(cell => getComputedStyle(cell).position === "sticky");
+    if (!stays) say(`<${e.tagName.toLowerCase()} class="${e.className}"> ${short(e)} scrolls, and nothing in it stays`);
+  }
   for (const svg of document.querySelectorAll("svg")) {
     if (!shown(svg)) continue;
     const box = svg.getBoundingClientRect(), scale = box.width / (svg.viewBox.baseVal.width || box.width);
     if (!box.width) continue;
+    if (!svg.ownerSVGElement && box.right > root.clientWidth + 1 && !svg.closest("table")) {
+      say(`“${name(svg)}” ends ${(box.right - root.clientWidth).toFixed()} pixels to the right of the window`);
+    }
     const ground = svg.querySelector("rect");
     const level = ground ? luminance(getComputedStyle(ground).fill) : behind(svg);
     const texts = [...svg.querySelectorAll("text")].filter(t => t.textContent.trim() && shown(t)).map(t => {
@@ -56,6 +68,8 @@ PROBLEMS = r"""(() => {
     for (const { t, left, right, top, bottom } of texts) {
       const over = Math.max(box.left - left, right - box.right, box.top - top, bottom - box.bottom);
       if (over > 0.5) say(`“${name(svg)}”: ${short(t)} leaves the figure by ${over.toFixed(1)} pixels`);
+      const size = scale * parseFloat(getComputedStyle(t).fontSize);
+      if (size < SMALLEST) say(`“${name(svg)}”: ${short(t)} has letters of ${size.toFixed(1)} pixels`);
       const own = luminance(getComputedStyle(t).fill);
       const halo = t.getAttribute("paint-order") ? luminance(getComputedStyle(t).stroke) : level;
       if (own !== null && contrast(own, halo) < 3) {

@@ -2,8 +2,8 @@
 
 use carom_record::Run;
 
-use crate::chart::{Chart, Panel, Series};
-use crate::figure::Figure;
+use crate::chart::{Chart, Options, Panel, Series};
+use crate::figure::{Figure, NARROW};
 use crate::labels::{instant_label, with_unit};
 use crate::palette::sequence;
 use crate::redraw::of_chart;
@@ -57,5 +57,6 @@ pub(crate) fn figure(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: 
          {during}. Data: displacement and stress in the field files."
     );
     let plot = of_chart("bodies", &chart);
-    Figure::new("bodies", caption, chart.svg()).with(plot.csv(), plot.script())
+    let narrow = chart.draw(&Options { width: NARROW, ..Options::default() });
+    Figure::new("bodies", caption, chart.svg()).with_narrow(narrow).with(plot.csv(), plot.script())
 }

@@ -230,7 +230,7 @@ pub(crate) fn colors(instants: &[Instant]) -> (Bands, [bool; 2]) {
     color_bands(instants.iter().flat_map(used))
 }
 
-/// The figure; `obstacles` are the surfaces at each instant within `frame`, and `marks` points on
+/// The figure, broad and narrow; `obstacles` are the surfaces at each instant within `frame`, and `marks` points on
 /// them with normals.
 pub(crate) fn figure(
     instants: &[Instant],
@@ -238,11 +238,9 @@ pub(crate) fn figure(
     title: &str,
     legend: &Legend,
     length: &str,
-    width: f64,
-) -> String {
-    let mut sheet = Sheet::new(title, instants.len(), frame, (width, 34.0));
-    for (k, instant) in instants.iter().enumerate() {
-        sheet.heading(k, &instant.time);
+) -> [String; 2] {
+    let draw = |sheet: &mut Sheet, k: usize| {
+        let instant = &instants[k];
         let (to, scale) = (sheet.map(k), sheet.scale);
         let out = &mut sheet.out;
         out.push_str(&open_grid());
@@ -271,8 +269,9 @@ pub(crate) fn figure(
         for &(p, n) in marks.get(k).into_iter().flatten() {
             mark(out, to(p), [-n[0], n[1]]);
         }
-    }
-    sheet.finish(legend, length)
+    };
+    let headings = instants.iter().map(|instant| instant.time.as_str());
+    Sheet::pair(title, headings, frame, 34.0, draw).map(|sheet| sheet.finish(legend, length))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
+use crate::stacked::with_headings;
 use crate::text::Prose;
 
 /// A self-contained page; `style` is added to the style sheet of all pages.
@@ -18,7 +19,7 @@ pub(crate) fn document(title: &str, style: &str, body: &Markup) -> String {
             body { h1 { (title) } (body) }
         }
     };
-    page.into_string()
+    with_headings(&page.into_string())
 }
 
 /// A numbered figure with its caption and links to its files.

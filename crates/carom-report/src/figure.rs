@@ -31,13 +31,7 @@ impl Figure {
 
     /// The pictures on the page.
     pub(crate) fn pictures(&self) -> String {
-        let named =
-            |svg: &str, name: &str| svg.replacen("<svg class=\"", &format!("<svg class=\"{name} "), 1);
-        if self.narrow.is_empty() {
-            self.svg.clone()
-        } else {
-            named(&self.svg, "broad") + &named(&self.narrow, "narrow")
-        }
+        pictures(&self.svg, &self.narrow)
     }
 
     /// With its data as a table, and a script that redraws it.
@@ -49,5 +43,14 @@ impl Figure {
     /// Endings of all its files.
     pub(crate) fn endings(&self) -> Vec<&'static str> {
         std::iter::once("svg").chain(self.files.iter().map(|(ending, _)| *ending)).collect()
+    }
+}
+
+/// A picture with that for a narrow window, which may be empty.
+pub(crate) fn pictures(broad: &str, narrow: &str) -> String {
+    let named = |svg: &str, name: &str| svg.replacen("<svg class=\"", &format!("<svg class=\"{name} "), 1);
+    match narrow {
+        "" => broad.to_owned(),
+        narrow => named(broad, "broad") + &named(narrow, "narrow"),
     }
 }

@@ -4,12 +4,12 @@ use carom_record::{Cell, FieldEntry, Run, Stop, metrics};
 
 use crate::bands::Bands;
 use crate::bodies::{self, Instant};
-use crate::figure::{Figure, NARROW};
+use crate::figure::Figure;
 use crate::labels::{instant_label, with_unit};
 use crate::meshes::Pane;
 use crate::obstacles;
 use crate::quantity::stresses;
-use crate::sheet::{Legend, SHEET, arrowheads};
+use crate::sheet::{Legend, arrowheads};
 use crate::{animation, bars, contours, meshes, space};
 
 /// The field files nearest to five equidistant instants of the first contact; of the run if there
@@ -105,8 +105,7 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
         .map(|walks| walks.iter().flat_map(|walk| obstacles::clipped(walk, wide)).collect())
         .collect();
     let legend = Legend { bands: &bands, cut, label: "σ_{yy}", unit: &stress };
-    let [svg, narrow] = [SHEET, NARROW]
-        .map(|width| bodies::figure(&list, (&walks, &marks, wide), title, &legend, &length, width));
+    let [svg, narrow] = bodies::figure(&list, (&walks, &marks, wide), title, &legend, &length);
     let arrow = arrowheads([(cut, String::new())]);
     let mark = if marks.iter().any(|marks| !marks.is_empty()) {
         " Triangle: a point of the plane that moves."

@@ -5,6 +5,7 @@
 //! network request, and all text from the user is escaped. One small script plays the animation of
 //! a run; without it, and in print, the figures remain.
 
+mod again;
 mod animation;
 mod arc;
 mod asked;
@@ -55,6 +56,7 @@ mod settings;
 mod setup;
 mod sheet;
 mod space;
+mod stacked;
 mod stick_slip;
 mod stopped;
 mod study;

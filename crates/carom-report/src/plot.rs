@@ -241,6 +241,33 @@ pub(crate) mod tests {
         }
     }
 
+    /// The narrow picture has the lines of the broad one, and a legend in place of labels.
+    #[test]
+    fn the_narrow_picture_shows_the_lines_of_the_broad_one_again() {
+        let mut plot = plot();
+        (plot.log, plot.direct, plot.across) = ([false, false], true, 1);
+        plot.panes[0].curves[0].marked = false;
+        let (broad, narrow) = (plot.svg(), plot.narrow());
+        assert!(
+            broad.contains("<g id=\"error-cost-0-lines\"") && narrow.contains("href=\"#error-cost-0-lines\"")
+        );
+        assert!(narrow.starts_with("<svg class=\"chart\"") && narrow.contains("width=\"440\""), "{narrow}");
+        // Frame, ticks and the piece of line of the legend; no curve.
+        assert!(!narrow.contains("stroke-linejoin=\"round\"") && narrow.contains(">Hu, "), "{narrow}");
+    }
+
+    /// Three panes of a row, of which the first has the title of the vertical axis, are two of a
+    /// row of the narrow picture and one of the next, whose first has it, too.
+    #[test]
+    fn the_title_of_a_row_moves_with_its_panes() {
+        let mut plot = plot();
+        (plot.across, plot.same) = (3, true);
+        let pane = Pane { y_label: String::new(), ..plot.panes[0].clone() };
+        plot.panes.extend([pane.clone(), pane]);
+        let titles = |svg: &str| svg.matches("rotate(-90)").count();
+        assert_eq!([titles(&plot.svg()), titles(&plot.narrow())], [1, 2]);
+    }
+
     /// A point outside the axes is an arrowhead at the edge, and nothing lies outside the figure.
     #[test]
     fn points_outside_the_axes_are_at_their_edge() {

@@ -3,19 +3,23 @@
 
 use std::fmt::Write as _;
 
+use crate::again::{again, once};
 use crate::axis::{Axis, round_step};
 use crate::bands::Bands;
 use crate::chart::{open, write_text};
+use crate::figure::NARROW;
 use crate::pen::Point;
 use crate::text;
 
 /// Usual width of a sheet; one of half of it has half as many columns.
-pub(crate) const SHEET: f64 = 940.0;
+const SHEET: f64 = 940.0;
 /// Room for the colour bar, between pictures, and for a heading.
 const BAR: f64 = 96.0;
 /// Room for the label of a colour bar.
 const ROOM: f64 = 78.0;
 const GAP: f64 = 14.0;
+/// Least scale of a picture that is shown again, relative to the first one.
+const ALIKE: f64 = 0.7;
 /// Greatest height of a colour bar.
 const TALLEST: f64 = 420.0;
 const LINE: f64 = 30.0;
@@ -45,7 +49,7 @@ pub(crate) struct Sheet {
 
 impl Sheet {
     /// A sheet of a width for a number of pictures, with `foot` pixels below them.
-    pub(crate) fn new(title: &str, count: usize, frame: [f64; 4], (width, foot): (f64, f64)) -> Self {
+    fn new(title: &str, count: usize, frame: [f64; 4], (width, foot): (f64, f64)) -> Self {
         let [x0, x1, y0, y1] = frame;
         let aspect = (x1 - x0) / (y1 - y0).max(1e-12 * (x1 - x0).abs()).max(f64::MIN_POSITIVE);
         let most = if aspect < 1.3 {
@@ -62,6 +66,36 @@ impl Sheet {
         let pictures = count.div_ceil(columns) as f64 * ((y1 - y0) * scale + LINE + GAP);
         let height = pictures + foot;
         Self { out: open(title, width, height), frame, scale, columns, width, pictures, height }
+    }
+
+    /// The broad and the narrow sheet of pictures with headings, of which `draw` draws one. The narrow
+    /// one shows those of the broad one again, unless their lines would become too thin.
+    pub(crate) fn pair<'a>(
+        title: &str,
+        headings: impl ExactSizeIterator<Item = &'a str>,
+        frame: [f64; 4],
+        foot: f64,
+        draw: impl Fn(&mut Self, usize),
+    ) -> [Self; 2] {
+        let [mut broad, mut narrow] =
+            [SHEET, NARROW].map(|width| Self::new(title, headings.len(), frame, (width, foot)));
+        let is_alike = narrow.scale > ALIKE * broad.scale;
+        for (k, heading) in headings.enumerate() {
+            broad.heading(k, heading);
+            narrow.heading(k, heading);
+            let before = broad.out.len();
+            draw(&mut broad, k);
+            if is_alike {
+                let (name, content) = (format!("picture-{k}"), broad.out.split_off(before));
+                once(&mut broad.out, &name, "picture", &content);
+                let [from, to] = [&broad, &narrow].map(|sheet| sheet.picture(k));
+                let rectangle = |([left, top], [width, height]): (Point, Point)| [left, top, width, height];
+                again(&mut narrow.out, &name, rectangle(from), rectangle(to));
+            } else {
+                draw(&mut narrow, k);
+            }
+        }
+        [broad, narrow]
     }
 
     /// Left end of the room of picture `k`, and top of the picture.
@@ -89,7 +123,7 @@ impl Sheet {
     }
 
     /// Letter and time of picture `k`.
-    pub(crate) fn heading(&mut self, k: usize, time: &str) {
+    fn heading(&mut self, k: usize, time: &str) {
         let [room, top] = self.corner(k);
         let left = self.picture(k).0[0].min(room + 0.5 * self.cell_width() - 50.0);
         let letter = char::from(b'a' + (k % 25) as u8);

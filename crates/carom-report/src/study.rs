@@ -33,7 +33,10 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     let mut systems = Systems::of(&manifest);
     let mut measured = Measured(manifest.overlays);
     let mut study = Study::open(directory, &mut |arm, run| {
-        picture = picture.take().or_else(|| setup::figure(run, &run.field(run.fields.first()?).ok()?));
+        picture = picture.take().or_else(|| {
+            let fields = run.field(run.fields.first()?).ok()?;
+            Some([setup::figure(run, &fields)?, setup::narrow(run, &fields)?])
+        });
         if systems.is_own(arm) {
             run.history.unit("time").clone_into(&mut time);
             measured.add(metrics::overlays(run));
@@ -50,10 +53,10 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     plots.extend(trend::plots(&study));
     // Figures that are folded away come last, so that those shown have successive numbers.
     plots.sort_by_key(|plot| !plot.group.is_empty());
-    let page = study_page::page(&study, picture.as_deref(), &plots, &origins, &systems);
+    let page = study_page::page(&study, picture.as_ref(), &plots, &origins, &systems);
     let drawn = plots.iter().map(|p| (p.name.clone(), p.svg()));
     let all: Vec<(String, String)> =
-        picture.into_iter().map(|svg| ("setup".to_owned(), svg)).chain(drawn).collect();
+        picture.into_iter().map(|[svg, _]| ("setup".to_owned(), svg)).chain(drawn).collect();
     let summary = publish(
         directory,
         "study.html",

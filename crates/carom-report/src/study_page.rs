@@ -12,6 +12,7 @@ use maud::{Markup, html};
 
 use crate::collected::Origin;
 use crate::document::{document, figure};
+use crate::figure::pictures;
 use crate::plot::Plot;
 use crate::systems::Systems;
 use crate::text::{Label, Prose};
@@ -20,7 +21,7 @@ use crate::{claims, convergence, ensemble, integrity, phases, study_warnings, tr
 /// The page.
 pub(crate) fn page(
     study: &Study,
-    picture: Option<&str>,
+    picture: Option<&[String; 2]>,
     plots: &[Plot],
     origins: &[Origin],
     systems: &Systems,
@@ -73,7 +74,8 @@ pub(crate) fn page(
 fn figures(plots: &[Plot]) -> Markup {
     let numbered: Vec<(usize, &Plot)> = plots.iter().enumerate().collect();
     let one = |(i, plot): &(usize, &Plot)| {
-        figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &plot.svg())
+        let drawn = pictures(&plot.svg(), &plot.narrow());
+        figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &drawn)
     };
     html! {
         @for together in numbered.chunk_by(|a, b| !a.1.group.is_empty() && a.1.group == b.1.group) {

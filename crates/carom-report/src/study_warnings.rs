@@ -108,7 +108,7 @@ pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
             }
         }
         @if !found.is_empty() {
-            table {
+            table.stack {
                 thead { tr { th { "Warning" } th { "What was found, and why it matters" } th { "Try" } th { "Arms" } } }
                 @for Found { warning, what } in &found {
                     tr {

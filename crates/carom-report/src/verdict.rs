@@ -266,7 +266,7 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
     html! {
         h3 { "The same at " (other) }
         div.scroll {
-            table {
+            table.stack {
                 thead {
                     tr {
                         th { "Level" } th { "First in the table" } th { "Compared at" }
@@ -369,7 +369,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
 fn other_goals(study: &Study) -> Markup {
     html! {
         h3 { "Recommendations for the other goals" }
-        div.scroll { table {
+        div.scroll { table.stack {
             thead {
                 tr { th { "Goal" } th { "Recommended" } th.n { (with_unit("Δt", time_unit(study))) } th { "Confidence" } th { "Ranked by" } }
             }

@@ -72,7 +72,7 @@ pub(super) fn is_dashed(curve: &Curve, direct: bool) -> bool {
     }
 }
 
-/// Draws a curve inside the rectangle `id` of a frame.
+/// Draws a curve inside the rectangle `id` of a frame, to which one without markers is clipped by its caller.
 pub(super) fn draw(
     out: &mut String,
     curve: &Curve,
@@ -84,9 +84,7 @@ pub(super) fn draw(
     let (color, dashes, marker) = curve.style();
     let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y))).collect();
     if curve.points && !curve.marked {
-        let _ = writeln!(out, "<g clip-path=\"url(#{id})\">");
         dots(out, points.into_iter(), color);
-        out.push_str("</g>\n");
         return;
     }
     let d = trace::path(points.iter().copied());
@@ -97,10 +95,11 @@ pub(super) fn draw(
     };
     let width = if curve.quiet || curve.apart || curve.over { 0.9 } else { 1.5 };
     let d = if curve.points { String::new() } else { d };
+    let clip = if curve.marked { format!(" clip-path=\"url(#{id})\"") } else { String::new() };
     let _ = writeln!(
         out,
-        "<path clip-path=\"url(#{id})\" d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" \
-         stroke-linejoin=\"round\" stroke-dasharray=\"{dashes}\"/>"
+        "<path{clip} d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" \
+         stroke-linejoin=\"round\" stroke-dasharray=\"{dashes}\" vector-effect=\"non-scaling-stroke\"/>"
     );
     if curve.marked {
         let finite = |p: &(usize, (f64, f64))| p.1.0.is_finite() && p.1.1.is_finite();

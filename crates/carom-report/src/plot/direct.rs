@@ -42,7 +42,7 @@ fn spread(wanted: &[f64], line: f64, (top, bottom): (f64, f64)) -> Vec<f64> {
 }
 
 /// What is written beside a curve.
-fn words(curve: &Curve) -> String {
+pub(super) fn words(curve: &Curve) -> String {
     let most = MOST / SIZE;
     // The caption names the others.
     let others = |rest: &str| rest.ends_with(" other") || rest.ends_with(" others");
@@ -74,13 +74,20 @@ pub(super) struct End {
     pub(super) leaves: bool,
 }
 
-/// Draws the labels; `ends` are where the curves end in the pane.
-pub(super) fn draw(out: &mut String, curves: &[&Curve], ends: &[End], frame: &Frame) {
+/// Draws the labels, those outside the pane only if they are `beside` it; `ends` are where the
+/// curves end in the pane.
+pub(super) fn draw(out: &mut String, curves: &[&Curve], ends: &[End], frame: &Frame, beside: bool) {
     let right = frame.right();
     let inside = |k: &usize| ends[*k].x < right - INSIDE;
+    // All unsound runs are grey, so that no legend can tell them apart where they have no markers.
+    let within = |k: &usize| match curves[*k].marked {
+        marked if beside => !marked && inside(k),
+        marked => !marked || ends[*k].leaves,
+    };
     let (stopped, mut order): (Vec<usize>, Vec<usize>) =
-        (0..curves.len()).partition(|k| curves[*k].apart && !curves[*k].marked && inside(k));
+        (0..curves.len()).partition(|k| curves[*k].apart && within(k));
     stops(out, &stopped.iter().map(|k| (curves[*k], ends[*k])).collect::<Vec<_>>(), frame);
+    order.retain(|_| beside);
     order.sort_by(|a, b| ends[*a].y.total_cmp(&ends[*b].y));
     let wanted: Vec<f64> = order.iter().map(|k| ends[*k].y).collect();
     let heights = spread(&wanted, LINE, (frame.top + 4.0, frame.bottom() - 2.0));
@@ -121,13 +128,15 @@ pub(super) fn draw(out: &mut String, curves: &[&Curve], ends: &[End], frame: &Fr
     }
 }
 
-/// A cross where each of some curves stops inside the pane, or an arrowhead where it leaves the
-/// axes, with its label.
+/// The labels of some curves inside the pane, with a cross where one stops, or an arrowhead where it
+/// leaves the axes.
 fn stops(out: &mut String, stopped: &[(&Curve, End)], frame: &Frame) {
     let mut taken: Vec<(f64, f64, f64)> = Vec::new();
     for (curve, End { x, y, leaves }) in stopped {
         let color = curve.style().0;
-        if *leaves {
+        if curve.marked || !leaves && *x >= frame.right() - INSIDE {
+            // It has its marker, or goes on to the end.
+        } else if *leaves {
             let up = y - frame.top < frame.bottom() - y;
             arrowhead(out, color, (*x, *y), (0.0, if up { -1.0 } else { 1.0 }));
         } else {

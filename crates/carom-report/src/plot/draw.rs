@@ -3,22 +3,18 @@
 use std::fmt::Write as _;
 
 use super::direct::End;
-use super::frame::Frame;
+use super::frame::{Frame, LEFT, Layout, RIGHT, TICK};
 use super::scale::Scale;
 use super::{Band, Curve, Pane, Plot, curve, direct, legend};
+use crate::again::{again, once};
 use crate::chart::{open_chart, write_text};
+use crate::figure::NARROW;
 use crate::labels::unit_of;
 use crate::{text, trace};
 
 const WIDTH: f64 = 720.0;
-const LEFT: f64 = 62.0;
-const RIGHT: f64 = 12.0;
 /// Width of bold letters relative to others.
 const BOLD: f64 = 1.12;
-/// Font size of ticks.
-const TICK: f64 = 11.0;
-const TOP: f64 = 30.0;
-const BELOW: f64 = 34.0;
 
 /// The scales of a pane.
 struct Scales {
@@ -26,64 +22,72 @@ struct Scales {
     y: Scale,
 }
 
+/// Where a pane is drawn: name, place, and for one of the narrow picture its place in the broad one.
+struct Place {
+    id: String,
+    frame: Frame,
+    broad: Option<Frame>,
+}
+
+impl Place {
+    /// Adds lines within the frame, which the narrow picture shows again.
+    fn shared(&self, out: &mut String, part: &str, lines: impl FnOnce(&mut String)) {
+        let _ = writeln!(out, "<g clip-path=\"url(#{})\">", self.id);
+        let name = format!("{}-{part}", self.id.trim_end_matches(SMALL));
+        if let Some(broad) = &self.broad {
+            again(out, &name, broad.rectangle(), self.frame.rectangle());
+        } else {
+            let mut content = String::new();
+            lines(&mut content);
+            once(out, &name, "chart", &content);
+        }
+        out.push_str("</g>\n");
+    }
+}
+
+/// The end of names in the narrow picture.
+const SMALL: &str = "-narrow";
+
 impl Plot {
     /// The figure.
     pub(crate) fn svg(&self) -> String {
-        let columns = self.across.max(1);
-        let across = columns as f64;
-        let labels = if self.direct { direct::room(self.legend().into_iter()) } else { 0.0 };
-        let cell = WIDTH / across;
-        let y_of = |pane: &Pane, high: f64| {
-            Scale::new(self.y_range(pane), (high / 40.0).max(2.0), false, self.log[1])
-        };
-        let most = self.panes.iter().map(|pane| pane.curves.len()).max().unwrap_or(0);
-        let high = match (columns, self.panes.len()) {
-            (3.., _) => 150.0,
-            (2, _) => 230.0,
-            (_, 2..) => 190.0,
-            _ => 320.0_f64,
-        };
-        let high = if self.direct { high.max(direct::LINE * most as f64 + 6.0) } else { high };
-        let y_scales: Vec<Scale> = self.panes.iter().map(|pane| y_of(pane, high)).collect();
-        let ticks = y_scales.iter().flat_map(|scale| &scale.axis.ticks);
-        let widest = ticks.map(|(_, label)| text::width(label) * TICK).fold(0.0, f64::max);
-        let left = LEFT.max(widest + 32.0);
-        // A title of an axis keeps away from the pane to its left.
-        let titled = self.panes.iter().enumerate().any(|(i, p)| i % columns > 0 && !p.y_label.is_empty());
-        let right = if titled { 3.0 * RIGHT } else { RIGHT };
-        let wide = cell - left - right.max(labels);
-        let rows = self.panes.len().div_ceil(columns);
-        let entries = if self.direct { Vec::new() } else { self.legend() };
-        let lines = legend::lines(&entries, WIDTH - LEFT);
-        let height = rows as f64 * (TOP + high + BELOW) + 22.0 + legend::LINE * lines.len() as f64 + 6.0;
-        let mut out = open_chart(&self.name, WIDTH, height);
+        self.drawn(&Layout::new(self, WIDTH, self.direct), None)
+    }
+
+    /// The figure for a narrow window, on a page with the other one; its legend is below.
+    pub(crate) fn narrow(&self) -> String {
+        let broad = Layout::new(self, WIDTH, self.direct);
+        self.drawn(&Layout::new(self, NARROW, false), Some(&broad))
+    }
+
+    fn drawn(&self, layout: &Layout, broad: Option<&Layout>) -> String {
+        let mut out = open_chart(&self.name, layout.width, layout.height());
         let mut axis = None;
-        for ((i, pane), y) in self.panes.iter().enumerate().zip(y_scales) {
-            let frame = Frame {
-                left: (i % columns) as f64 * cell + left,
-                top: (i / columns) as f64 * (TOP + high + BELOW) + TOP,
-                wide,
-                high,
-                beside: widest + 19.0,
+        let end = if broad.is_some() { SMALL } else { "" };
+        for (i, pane) in self.panes.iter().enumerate() {
+            let frame = layout.frame(i);
+            let count = frame.wide / if self.log[0] { 58.0 } else { 64.0 };
+            let scales = Scales {
+                x: Scale::new(self.x_range(pane), count.max(2.0), !self.log[0], self.log[0]),
+                y: self.y_scale(pane, frame.high),
             };
-            let count = if self.log[0] { wide / 58.0 } else { wide / 64.0 };
-            let scales =
-                Scales { x: Scale::new(self.x_range(pane), count.max(2.0), !self.log[0], self.log[0]), y };
-            let id = format!("{}-{i}", self.name.replace(|c: char| !c.is_alphanumeric(), "-"));
-            self.pane(&mut out, pane, &frame, &scales, &id);
+            let name = self.name.replace(|c: char| !c.is_alphanumeric(), "-");
+            let place =
+                Place { id: format!("{name}-{i}{end}"), frame, broad: broad.map(|broad| broad.frame(i)) };
+            self.pane(&mut out, i, &place, &scales, layout);
             axis = Some(scales.x.axis);
         }
-        let end = rows as f64 * (TOP + high + BELOW);
         let (words, unit) = unit_of(&self.x_label);
         let label = axis.map_or_else(|| self.x_label.clone(), |axis| axis.label(words, unit));
-        let middle = if columns > 1 { 0.5 * WIDTH } else { left + 0.5 * wide };
-        write_text(&mut out, middle, end + 6.0, "text-anchor=\"middle\"", &label);
-        legend::draw(&mut out, &entries, &lines, LEFT, end + 24.0);
+        write_text(&mut out, layout.middle(), layout.end + 6.0, "text-anchor=\"middle\"", &label);
+        let legend = (&layout.entries[..], &layout.lines[..], self.direct);
+        legend::draw(&mut out, legend, (LEFT, layout.end + 24.0), layout.width);
         out.push_str("</svg>\n");
         out
     }
 
-    fn pane(&self, out: &mut String, pane: &Pane, frame: &Frame, scales: &Scales, id: &str) {
+    fn pane(&self, out: &mut String, i: usize, place: &Place, scales: &Scales, layout: &Layout) {
+        let (pane, Place { id, frame, .. }) = (&self.panes[i], place);
         let Frame { left: x0, top: y0, wide, high, .. } = *frame;
         let to_x = |x: f64| x0 + wide * scales.x.position(x);
         let to_y = |y: f64| y0 + high * (1.0 - scales.y.position(y));
@@ -95,18 +99,20 @@ impl Plot {
         if let Some(Band { x, low, high: up, .. }) = &pane.band {
             let shown = self.shown_band(pane);
             let rows: Vec<usize> = (0..x.len()).collect();
-            for part in rows.chunk_by(|a, b| shown[*a] == shown[*b]).filter(|part| shown[part[0]]) {
-                let upper = part.iter().map(|i| (to_x(x[*i]), to_y(up[*i])));
-                let lower = part.iter().map(|i| (to_x(x[*i]), to_y(low[*i])));
-                let _ = writeln!(
-                    out,
-                    "<path clip-path=\"url(#{id})\" d=\"{}\" fill=\"#ececec\" stroke=\"#ececec\" \
-                     stroke-width=\"2.5\" stroke-linejoin=\"round\"/>",
-                    trace::area(upper, lower)
-                );
-            }
+            place.shared(out, "band", |out| {
+                for part in rows.chunk_by(|a, b| shown[*a] == shown[*b]).filter(|part| shown[part[0]]) {
+                    let upper = part.iter().map(|i| (to_x(x[*i]), to_y(up[*i])));
+                    let lower = part.iter().map(|i| (to_x(x[*i]), to_y(low[*i])));
+                    let _ = writeln!(
+                        out,
+                        "<path d=\"{}\" fill=\"#ececec\" stroke=\"#ececec\" stroke-width=\"2.5\" \
+                         stroke-linejoin=\"round\"/>",
+                        trace::area(upper, lower)
+                    );
+                }
+            });
         }
-        self.axes(out, pane, frame, scales);
+        self.axes(out, i, frame, scales, layout);
         if let Some((value, _)) = &pane.floor {
             let y = to_y(*value);
             let _ = writeln!(
@@ -133,8 +139,16 @@ impl Plot {
         // What failed or is of less interest lies behind, points before all.
         let mut order: Vec<&Curve> = pane.curves.iter().collect();
         order.sort_by_key(|curve| (curve.points, curve.over, !curve.apart, !curve.quiet, curve.chosen));
-        for curve in &order {
-            curve::draw(out, curve, (id, frame), self.direct, &to_x, &to_y);
+        let draw = |out: &mut String| {
+            for curve in &order {
+                curve::draw(out, curve, (id, frame), self.direct, &to_x, &to_y);
+            }
+        };
+        // Markers lie outside the frame, too, and keep their size.
+        if order.iter().any(|curve| curve.marked) {
+            draw(out);
+        } else {
+            place.shared(out, "lines", draw);
         }
         if self.direct {
             let shown: Vec<(&Curve, End)> = pane
@@ -144,7 +158,7 @@ impl Plot {
                 .filter_map(|curve| Some((curve, end(curve, frame, &to_x, &to_y)?)))
                 .collect();
             let (curves, ends): (Vec<&Curve>, Vec<End>) = shown.into_iter().unzip();
-            direct::draw(out, &curves, &ends, frame);
+            direct::draw(out, &curves, &ends, frame, place.broad.is_none());
         }
         if let Some((value, word)) = &pane.floor {
             let place = "text-anchor=\"end\" font-size=\"10\" fill=\"#555\" stroke=\"#fff\" stroke-width=\"3\" \
@@ -154,7 +168,8 @@ impl Plot {
     }
 
     /// Ticks, labels and title of a pane.
-    fn axes(&self, out: &mut String, pane: &Pane, frame: &Frame, scales: &Scales) {
+    fn axes(&self, out: &mut String, i: usize, frame: &Frame, scales: &Scales, layout: &Layout) {
+        let (pane, y_label) = (&self.panes[i], self.y_label(i, layout.columns));
         let Frame { left: x0, top: y0, wide, high, beside } = *frame;
         for (value, label) in &scales.y.axis.ticks {
             let y = y0 + high * (1.0 - scales.y.axis.position(*value));
@@ -169,7 +184,7 @@ impl Plot {
             let x = x0 + wide * scales.x.axis.position(*value);
             let _ = writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v4\" stroke=\"#222\" stroke-width=\"0.8\"/>");
             // The label of the last tick may not leave the figure.
-            let middle = x.min(WIDTH - 2.0 - 0.5 * TICK * text::width(label));
+            let middle = x.min(layout.width - 2.0 - 0.5 * TICK * text::width(label));
             write_text(out, middle, bottom + 16.0, "text-anchor=\"middle\" font-size=\"11\"", label);
         }
         let size = if self.across > 2 { 10.5 } else { 12.0 };
@@ -180,8 +195,8 @@ impl Plot {
         for (k, line) in lines.iter().rev().enumerate() {
             write_text(out, x0, y0 - above - 12.0 * k as f64, &place, line);
         }
-        if !pane.y_label.is_empty() {
-            let (words, unit) = unit_of(&pane.y_label);
+        if !y_label.is_empty() {
+            let (words, unit) = unit_of(y_label);
             let label = scales.y.axis.label(words, unit);
             // Smaller where it is longer than the pane is high.
             let size = (12.0_f64).min((high + 24.0) / text::width(&label).max(1e-9));
@@ -212,8 +227,9 @@ fn end(curve: &Curve, frame: &Frame, to_x: &dyn Fn(f64) -> f64, to_y: &dyn Fn(f6
     let (top, bottom) = (frame.top, frame.bottom());
     if curve.marked {
         let last = *points.last()?;
-        let (x, y) = frame.beyond(last).map_or(last, |(edge, _)| edge);
-        return Some(End { x, y, leaves: false });
+        let beyond = frame.beyond(last);
+        let (x, y) = beyond.map_or(last, |(edge, _)| edge);
+        return Some(End { x, y, leaves: beyond.is_some() });
     }
     points.retain(|p| p.0 >= frame.left - 0.5 && p.0 <= frame.right() + 0.5);
     let last = *points.last()?;

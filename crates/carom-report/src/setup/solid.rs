@@ -9,6 +9,7 @@ use carom_record::{FieldSet, Run};
 use super::drawing::{BODIES, KEY, ROOM, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, Load, load};
 use super::values::{list, text, vector};
+use crate::again::{again, once};
 use crate::axis::round_step;
 use crate::chart::{open, write_text};
 use crate::figure::NARROW;
@@ -50,9 +51,9 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
         return None;
     }
     let margin = 52.0;
-    let room = if narrow { NARROW - 2.0 * margin } else { ROOM };
-    let scale = (room / (x1 - x0)).min(430.0 / (y1 - y0));
-    let size = [(x1 - x0) * scale, (y1 - y0) * scale];
+    let scales = [ROOM, NARROW - 2.0 * margin].map(|room: f64| (room / (x1 - x0)).min(430.0 / (y1 - y0)));
+    let scale = scales[usize::from(narrow)];
+    let [broad, size] = [scales[0], scale].map(|scale| [(x1 - x0) * scale, (y1 - y0) * scale]);
     let (left, top) = (margin, margin);
     let points = places.iter().map(|p| view.of(*p)).map(|[x, y, _]| [x, y]).collect();
     let origin = [left - x0 * scale, top + y1 * scale];
@@ -74,7 +75,13 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
     }
     let solid = Solid { setup, view, places, skin, numbers };
     underlay(&mut out, &rigid, &view, &|p| solid.setup.to(p));
-    solid.bodies(&mut out, ([left, top], size));
+    if narrow {
+        again(&mut out, "setup-bodies", [left, top, broad[0], broad[1]], [left, top, size[0], size[1]]);
+    } else {
+        let mut bodies = String::new();
+        solid.bodies(&mut bodies, ([left, top], size));
+        once(&mut out, "setup-bodies", "picture", &bodies);
+    }
     solid.sides(&mut out);
     solid.loads(&mut out);
     solid.probes(&mut out);

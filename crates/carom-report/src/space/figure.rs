@@ -10,11 +10,10 @@ use super::skin::{Facet, Place, places, skin};
 use super::view::View;
 use super::wires::wires;
 use crate::bands::{Bands, positive_bands};
-use crate::figure::NARROW;
 use crate::labels::instant_label;
 use crate::pen::{GRID, Pen, Point, open_grid};
 use crate::quantity::stresses;
-use crate::sheet::{Legend, SHEET, Sheet};
+use crate::sheet::{Legend, Sheet};
 
 /// Largest number of triangles of a figure that are drawn one by one.
 pub(crate) const DRAWN: usize = 6000;
@@ -79,25 +78,26 @@ pub(crate) fn instants(
         return None;
     }
     let unit = sets[0].1.array("stress")?.unit.clone();
-    let drawn = |width: f64| {
-        let mut sheet = Sheet::new("Deformed bodies with von Mises stress", list.len(), wide, (width, FOOT));
-        let seen = |(k, (_, places, mises)): (usize, &(String, Vec<Place>, Vec<f64>))| {
-            pieces(&skin, places, &|_, node| mises[node], &view, &sheet.map(k), sheet.scale)
-        };
-        let all: Vec<Vec<Piece>> = list.iter().enumerate().map(seen).collect();
-        let drawn = all.iter().map(Vec::len).sum::<usize>() <= DRAWN;
-        for (k, ((heading, ..), pieces)) in list.iter().zip(&all).enumerate() {
-            sheet.heading(k, heading);
-            let place = sheet.picture(k);
-            let to = sheet.map(k);
-            underlay(&mut sheet.out, &lines[k], &view, &to);
-            draw(&mut sheet.out, pieces, (&Paint::Bands(&bands), bands.count), place, drawn);
-        }
+    let seen = |k: usize, to: &dyn Fn(Point) -> Point, scale: f64| {
+        let (_, places, mises) = &list[k];
+        pieces(&skin, places, &|_, node| mises[node], &view, to, scale)
+    };
+    // How many there are does not depend on their size.
+    let count: usize = (0..list.len()).map(|k| seen(k, &|p| p, 1.0).len()).sum();
+    let picture = |sheet: &mut Sheet, k: usize| {
+        let (place, to) = (sheet.picture(k), sheet.map(k));
+        underlay(&mut sheet.out, &lines[k], &view, &to);
+        let pieces = seen(k, &to, sheet.scale);
+        draw(&mut sheet.out, &pieces, (&Paint::Bands(&bands), bands.count), place, count <= DRAWN);
+    };
+    let finish = |mut sheet: Sheet| {
         let triad = [36.0, sheet.pictures + 36.0];
         view.triad(&mut sheet.out, triad, 28.0);
         sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit: &unit }, length)
     };
-    let pictures = [SHEET, NARROW].map(drawn);
+    let headings = list.iter().map(|(heading, ..)| heading.as_str());
+    let pictures =
+        Sheet::pair("Deformed bodies with von Mises stress", headings, wide, FOOT, picture).map(finish);
     let caption = caption(&bands, cut, &unit, during, !rigid.is_empty());
     Some((pictures, caption, bands))
 }

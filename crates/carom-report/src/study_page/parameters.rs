@@ -5,6 +5,7 @@ use carom_record::study::Study;
 use maud::{Markup, PreEscaped, html};
 
 use crate::document::{codes, file};
+use crate::figure::pictures;
 use crate::text::Label;
 use crate::{design, settings, setup};
 
@@ -12,15 +13,15 @@ use crate::{design, settings, setup};
 const FEW: usize = 4;
 
 /// The section of the page.
-pub(super) fn section(study: &Study, picture: Option<&str>) -> Markup {
+pub(super) fn section(study: &Study, picture: Option<&[String; 2]>) -> Markup {
     let (varied, shared) = (settings::varied(study), settings::shared(study));
     let title = study.manifest.arms.first().and_then(|arm| arm.case.get("title")?.as_str());
     let title = title.filter(|title| !title.is_empty());
     html! {
         h2 { "Setup" }
-        @if let Some(svg) = picture {
+        @if let Some([svg, narrow]) = picture {
             figure {
-                div.drawing { (PreEscaped(svg)) }
+                div.drawing { (PreEscaped(pictures(svg, narrow))) }
                 figcaption {
                     "Initial configuration of the first arm"
                     @if let Some(title) = title { ": " (Label(title)) }

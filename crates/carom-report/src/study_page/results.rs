@@ -51,7 +51,7 @@ pub(super) fn expectations(study: &Study, systems: &Systems) -> Markup {
             @if let Some(table) = &table { (table) }
             details open[table.is_none()] {
                 summary { "All expectations with their sources" }
-                table {
+                table.stack {
                     thead {
                         tr {
                             th { "Quantity" }
