@@ -29,8 +29,8 @@ impl Quantity<'_> {
 /// The colour bars of quantities: the first is shown.
 pub(crate) fn bars(quantities: &[Quantity]) -> Markup {
     let bar = |quantity: &Quantity| {
-        let mut out = open(&format!("Colour bar: {}", quantity.name), 92.0, 336.0);
-        color_bar(&mut out, &quantity.legend, 8.0, (14.0, 318.0));
+        let mut out = open(&format!("Colour bar: {}", quantity.name), 106.0, 336.0);
+        color_bar(&mut out, &quantity.legend, 16.0, (14.0, 318.0));
         PreEscaped(out + "</svg>\n")
     };
     html! {
