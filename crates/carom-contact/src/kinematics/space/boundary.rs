@@ -33,6 +33,8 @@ pub struct Boundary {
     neighbours: Vec<[Option<(usize, usize)>; 4]>,
     /// Facets at each node of an edge.
     around: HashMap<usize, Vec<usize>>,
+    /// Around each facet.
+    rings: Vec<Vec<usize>>,
     side: usize,
     siblings: usize,
     is_whole: bool,
@@ -61,12 +63,21 @@ impl Boundary {
             })
         };
         let neighbours: Vec<[Option<(usize, usize)>; 4]> = facets.iter().map(neighbours).collect();
+        let ring = |(facet, nodes): (usize, &&Vec<usize>)| {
+            let around = nodes[..count].iter().flat_map(|corner| &around[corner]);
+            let mut ring: Vec<usize> = around.copied().filter(|&other| other != facet).collect();
+            ring.sort_unstable();
+            ring.dedup();
+            ring
+        };
+        let rings = facets.iter().enumerate().map(ring).collect();
         Self {
             shape,
             is_whole: neighbours.iter().all(|across| across[..count].iter().all(Option::is_some)),
             neighbours,
             nodes: facets.iter().flat_map(|nodes| nodes.iter().copied()).collect(),
             around,
+            rings,
             side: side.len(),
             siblings: side.len() + siblings,
         }
@@ -163,13 +174,8 @@ impl Boundary {
     }
 
     /// The facets that share a corner with a facet, without itself, ascending.
-    pub(crate) fn ring(&self, facet: usize) -> Vec<usize> {
-        let corners = &self.patch(facet).nodes[..self.shape.corners()];
-        let around = |corner: &usize| self.around.get(corner).into_iter().flatten();
-        let mut ring: Vec<usize> = corners.iter().flat_map(around).copied().filter(|&f| f != facet).collect();
-        ring.sort_unstable();
-        ring.dedup();
-        ring
+    pub(crate) fn ring(&self, facet: usize) -> &[usize] {
+        &self.rings[facet]
     }
 
     /// Outward normals on both sides of an edge, at s from its first corner.
@@ -195,7 +201,7 @@ impl Boundary {
     /// The facets that share a corner with a facet and bend away from it by more than 30°.
     pub(super) fn bent_away(&self, facet: usize, y: &[f64]) -> impl Iterator<Item = usize> {
         let here = self.middle(facet, y);
-        self.ring(facet).into_iter().filter(move |&other| {
+        self.ring(facet).iter().copied().filter(move |&other| {
             let there = self.middle(other, y);
             let way = there.position - here.position;
             here.normal.dot(&there.normal) < SHARP
@@ -279,7 +285,12 @@ impl Boundary {
 
     /// Where a point lies whose nearest facet is known.
     pub(crate) fn depth(&self, facet: usize, point: Vector<3>, y: &[f64]) -> Depth {
-        let (nearest, d, normal) = self.nearest(facet, point, y);
+        self.depth_from(facet, self.patch(facet).nearest(y, point), point, y)
+    }
+
+    /// The same with the nearest point of the facet.
+    pub(super) fn depth_from(&self, facet: usize, nearest: Nearest, point: Vector<3>, y: &[f64]) -> Depth {
+        let (d, normal) = self.way(facet, nearest, point, y);
         let distance = if d.dot(&normal) >= 0.0 { nearest.distance } else { -nearest.distance };
         Depth { distance, facet, xi: nearest.xi }
     }
@@ -287,22 +298,17 @@ impl Boundary {
     /// Distance between a point and a facet, and its height along the normal of the boundary at the
     /// nearest point.
     pub(super) fn height(&self, facet: usize, point: Vector<3>, y: &[f64]) -> (f64, f64) {
-        let (nearest, d, normal) = self.nearest(facet, point, y);
+        let nearest = self.patch(facet).nearest(y, point);
+        let (d, normal) = self.way(facet, nearest, point, y);
         let size = normal.norm();
         // Where two normals are opposite, none points outwards.
         (nearest.distance, if size > FOLDED { d.dot(&normal) / size } else { 0.0 })
     }
 
-    /// The point of a facet nearest to a given one, the way from the first to the second, and the
-    /// normal of the boundary there, not of length one.
-    pub(super) fn nearest(
-        &self,
-        facet: usize,
-        point: Vector<3>,
-        y: &[f64],
-    ) -> (Nearest, Vector<3>, Vector<3>) {
+    /// The way from the nearest point of a facet to a given one, and the normal of the boundary
+    /// there, not of length one.
+    fn way(&self, facet: usize, nearest: Nearest, point: Vector<3>, y: &[f64]) -> (Vector<3>, Vector<3>) {
         let patch = self.patch(facet);
-        let nearest = patch.nearest(y, point);
         let at = patch.at(y, nearest.xi);
         let d = point - at.position;
         let normal = match nearest.at {
@@ -318,7 +324,7 @@ impl Boundary {
             }
             Feature::Corner(corner) => self.normal_at_corner(patch.nodes[corner], y),
         };
-        (nearest, d, normal)
+        (d, normal)
     }
 
     /// Sum of the normals at a corner, weighted with the facets' angles.

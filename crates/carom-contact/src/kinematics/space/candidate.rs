@@ -1,8 +1,6 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the nearest one that it was not behind before.
 
-use carom_algebra::Vector;
-
 use super::crossing::crossing;
 use super::node_to_patch::{NodeToPatch, PAST, REACH};
 use super::patch::place;
@@ -18,9 +16,8 @@ const BEHIND: f64 = 0.02;
 /// neighbouring side.
 const TOGETHER: f64 = 1e-4;
 
-/// Facets near a node, ascending, and of all facets the boxes of their paths and, if the side may
-/// meet itself, their normals.
-pub(super) type Near<'a> = (&'a [usize], &'a Paths, &'a [Vector<3>]);
+/// Facets near a node, ascending, and the paths of all facets.
+pub(super) type Near<'a> = (&'a [usize], &'a Paths);
 
 impl NodeToPatch {
     /// θ and facet of the first crossing of trajectories of a node, of those near it; of facets
@@ -28,14 +25,14 @@ impl NodeToPatch {
     pub(super) fn first(
         &self,
         swept: &mut SweptPatch,
-        (near, paths, normals): Near,
+        (near, paths): Near,
         node: usize,
         before: &[f64],
         now: &[f64],
     ) -> Option<(f64, usize)> {
         let (mut first, path) = ([None; 2], path(node, [before, now]));
         for &facet in near.iter().filter(|&&facet| paths.may_cross(&path, facet)) {
-            let first = &mut first[usize::from(self.is_met(node, facet, normals))];
+            let first = &mut first[usize::from(self.is_met(node, facet, paths))];
             if let Some((theta, _)) = crossing(swept, self.primary.patch(facet), [before, now], 1.0, node)
                 && first.is_none_or(|(least, _)| theta < least)
             {
@@ -52,19 +49,19 @@ impl NodeToPatch {
     pub(super) fn candidate(
         &self,
         swept: &mut SweptPatch,
-        (near, paths, normals): (&mut Vec<usize>, &Paths, &[Vector<3>]),
+        (near, paths): (&mut Vec<usize>, &Paths),
         place_of: usize,
         before: &[f64],
         now: &[f64],
     ) -> Option<(usize, [f64; 2])> {
         let (node, slack) = (self.secondary[place_of], self.slack(place_of));
-        self.retain_pressed(node, before, near);
+        self.retain_pressed(node, before, paths, near);
         if near.is_empty() {
             return None;
         }
-        let (near, near_by): (&[usize], Near) = (near, (near, paths, normals));
+        let (near, near_by): (&[usize], Near) = (near, (near, paths));
         let [start, end] = [before, now].map(|y| place(y, node));
-        let is_met = |facet: usize| self.is_met(node, facet, normals);
+        let is_met = |facet: usize| self.is_met(node, facet, paths);
         let mut closest: Option<(f64, usize, [f64; 2], f64)> = None;
         for &facet in near {
             let patch = self.primary.patch(facet);
@@ -126,7 +123,7 @@ impl NodeToPatch {
     pub(super) fn elsewhere(
         &self,
         swept: &mut SweptPatch,
-        (near, paths, normals): (&mut Vec<usize>, &Paths, &[Vector<3>]),
+        (near, paths): (&mut Vec<usize>, &Paths),
         place_of: usize,
         held: &[Pair],
         [before, now]: [&[f64]; 2],
@@ -137,13 +134,12 @@ impl NodeToPatch {
         if near.is_empty() {
             return None;
         }
-        let around: Vec<usize> = held.iter().flat_map(|pair| self.primary.ring(pair.facet)).collect();
-        near.retain(|facet| !around.contains(facet));
-        self.retain_pressed(node, before, near);
-        let (_, facet) = self.first(swept, (near, paths, normals), node, before, now)?;
+        near.retain(|facet| held.iter().all(|pair| !self.primary.ring(pair.facet).contains(facet)));
+        self.retain_pressed(node, before, paths, near);
+        let (_, facet) = self.first(swept, (near, paths), node, before, now)?;
         let end = place(now, node);
         let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
-        let enters = self.is_met(node, facet, normals)
+        let enters = self.is_met(node, facet, paths)
             && !self.faces_nothing(facet, xi, now)
             && !self.ends_at(node, facet, xi, now)
             && self.gap(facet, xi, end, now) + self.slack(place_of) < 0.0;
@@ -155,14 +151,14 @@ impl NodeToPatch {
     /// side, as in the plane.
     fn around_end(
         &self,
-        (near, _, normals): Near,
+        (near, paths): Near,
         place_of: usize,
         before: &[f64],
         now: &[f64],
     ) -> Option<(usize, [f64; 2])> {
         let (node, slack) = (self.secondary[place_of], self.slack(place_of));
         let [start, end] = [before, now].map(|y| place(y, node));
-        near.iter().filter(|&&facet| self.is_met(node, facet, normals)).find_map(|&facet| {
+        near.iter().filter(|&&facet| self.is_met(node, facet, paths)).find_map(|&facet| {
             let patch = self.primary.patch(facet);
             let xi = patch.closest_point(now, end, REACH)?;
             let from = patch.closest_point(before, start, REACH)?;

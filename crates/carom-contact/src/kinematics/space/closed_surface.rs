@@ -6,6 +6,7 @@ use carom_solid::{Hull, Tree};
 
 use super::boundary::Boundary;
 use super::folds::{PatchFolds, update_normals};
+use super::patch::Nearest;
 use crate::depth::Depth;
 use crate::kinematics::amplification;
 
@@ -47,10 +48,19 @@ impl ClosedSurface {
     /// Where a point lies at the positions of the last update, searched from a facet near it if one
     /// is known; `None` without a boundary.
     pub fn depth(&self, point: [f64; 3], from: Option<usize>, y: &[f64]) -> Option<Depth> {
-        let at = Vector(point);
-        let distance = |facet: usize| Some(self.boundary.patch(facet).nearest(y, at).distance);
-        let (facet, _) = self.tree.nearest(&at.0, from, distance)?;
-        Some(self.boundary.depth(facet, at, y))
+        let (at, mut last) = (Vector(point), None::<(usize, Nearest)>);
+        let (facet, _) = self.tree.nearest(&at.0, from, |facet| {
+            let nearest = self.boundary.patch(facet).nearest(y, at);
+            if last.is_none_or(|(_, least)| nearest.distance < least.distance) {
+                last = Some((facet, nearest));
+            }
+            Some(nearest.distance)
+        })?;
+        // Of equally near facets the first one counts, which may not be the one asked first.
+        Some(match last.filter(|(asked, _)| *asked == facet) {
+            Some((_, nearest)) => self.boundary.depth_from(facet, nearest, at, y),
+            None => self.boundary.depth(facet, at, y),
+        })
     }
 
     /// Distance between a point and the boundary at ξ of a facet.

@@ -18,7 +18,7 @@ impl NodeToPatch {
         let mut least = self.gap(own, xi, from, y) - NOISE * self.primary.patch(own).length(y);
         let mut deepest = None;
         let is_met = |&facet: &usize| self.primary.is_of_side(facet) && self.may_take(node, facet, y);
-        for facet in self.primary.ring(own).into_iter().filter(is_met) {
+        for facet in self.primary.ring(own).iter().copied().filter(is_met) {
             let patch = self.primary.patch(facet);
             let Some(xi) = patch.closest_point(y, from, REACH) else { continue };
             let gap = self.gap(facet, xi, from, y);

@@ -5,12 +5,11 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use carom_algebra::Vector;
-
 use super::boundary::Boundary;
 use super::edge_to_edge::EdgeToEdge;
 use super::folds::PatchFolds;
 use super::node_to_patch::{NodeToPatch, PAST};
+use super::paths::Paths;
 use super::with_edges::WithEdges;
 use crate::kinematics::{BothSides, Side};
 
@@ -62,21 +61,21 @@ impl NodeToPatch {
     pub(super) fn may_take(&self, node: usize, facet: usize, y: &[f64]) -> bool {
         let normal = |facet: usize| self.primary.middle(facet, y).normal;
         self.folds.as_ref().is_none_or(|(folds, side)| folds.met(node, facet, normal) == Some(*side))
-            && self.may_press(node, y)(facet)
+            && self.may_press(node, y, |facet| self.primary.middle(facet, y))(facet)
     }
 
-    /// Of facets near a node, those that it may meet at positions with these normals, in either
-    /// direction: those of the other one tell where it enters.
-    pub(super) fn retain_met(&self, node: usize, normals: &[Vector<3>], near: &mut Vec<usize>) {
+    /// Of facets near a node, those that it may meet as they are at the start of the step, in
+    /// either direction: those of the other one tell where it enters.
+    pub(super) fn retain_met(&self, node: usize, paths: &Paths, near: &mut Vec<usize>) {
         if let Some((folds, _)) = &self.folds {
-            near.retain(|&facet| folds.met(node, facet, |facet| normals[facet]).is_some());
+            near.retain(|&facet| folds.met(node, facet, |facet| paths.middle(facet).normal).is_some());
         }
     }
 
     /// Whether a node may have a pair with a facet near it.
-    pub(super) fn is_met(&self, node: usize, facet: usize, normals: &[Vector<3>]) -> bool {
+    pub(super) fn is_met(&self, node: usize, facet: usize, paths: &Paths) -> bool {
         let of_fold = |(folds, side): &(Arc<PatchFolds>, Side)| {
-            folds.met(node, facet, |facet| normals[facet]) == Some(*side)
+            folds.met(node, facet, |facet| paths.middle(facet).normal) == Some(*side)
         };
         self.primary.is_of_side(facet) && self.folds.as_ref().is_none_or(of_fold)
     }

@@ -21,7 +21,7 @@ use carom_solid::{Bounds, Hull};
 
 use super::boundary::Boundary;
 use super::crossing::SEPARATION;
-use super::folds::{PatchFolds, update_normals};
+use super::folds::PatchFolds;
 use super::gap::PatchGap;
 use super::patch::{Feature, PatchPoint, cross, place};
 use super::paths::{NOISE, Paths};
@@ -74,8 +74,6 @@ pub(super) struct Tools {
     pub(super) apart: Apart,
     pub(super) recent: Recent<[f64; 2]>,
     pub(super) swept: SweptPatch,
-    /// Normals of the facets at the start of a step, if the side may meet itself.
-    pub(super) normals: Vec<Vector<3>>,
 }
 
 /// Where a pair belongs.
@@ -93,8 +91,7 @@ impl NodeToPatch {
         let apart = Apart::new(primary.nodes().iter().chain(&secondary).copied(), 3, hull.weight());
         let recent = Recent::new(apart.nodes().to_vec(), 3, hull.weight(), secondary.len());
         let swept = SweptPatch::new(primary.shape());
-        let tools = Tools { paths: Paths::default(), apart, recent, swept, normals: Vec::new() };
-        let tools = Mutex::new(tools);
+        let tools = Mutex::new(Tools { paths: Paths::default(), apart, recent, swept });
         Self {
             secondary,
             primary,
@@ -119,8 +116,14 @@ impl NodeToPatch {
         Self { own: Some(own), ..self }
     }
 
-    /// The facets on which a node can press, rather than on one beside them (`opposed.rs`).
-    pub(super) fn may_press<'a>(&'a self, node: usize, y: &'a [f64]) -> impl Fn(usize) -> bool + 'a {
+    /// The facets with these middles on which a node can press, rather than on one beside them
+    /// (`opposed.rs`).
+    pub(super) fn may_press<'a>(
+        &'a self,
+        node: usize,
+        y: &'a [f64],
+        middle: impl Fn(usize) -> PatchPoint + 'a,
+    ) -> impl Fn(usize) -> bool + 'a {
         let around = self.own.as_ref().map(|own| {
             own.facets_around(node).iter().map(|&facet| own.middle(facet, y).normal).collect::<Vec<_>>()
         });
@@ -129,17 +132,17 @@ impl NodeToPatch {
             let most_opposed = |there: &PatchPoint| {
                 around.iter().map(|own| own.dot(&there.normal)).fold(f64::INFINITY, f64::min)
             };
-            let here = self.primary.middle(facet, y);
+            let here = middle(facet);
             let height = (place(y, node) - here.position).dot(&here.normal);
-            let sized = |other: usize| (self.primary.middle(other, y), self.primary.patch(other).length(y));
+            let sized = |other: usize| (middle(other), self.primary.patch(other).length(y));
             !is_left(&here, height, || self.primary.bent_away(facet, y).map(sized), most_opposed)
         }
     }
 
-    /// Of facets near a node, those on which it can press.
-    pub(super) fn retain_pressed(&self, node: usize, y: &[f64], near: &mut Vec<usize>) {
+    /// Of facets near a node, those on which it can press at the start of a step.
+    pub(super) fn retain_pressed(&self, node: usize, before: &[f64], paths: &Paths, near: &mut Vec<usize>) {
         if !near.is_empty() {
-            let may_press = self.may_press(node, y);
+            let may_press = self.may_press(node, before, |facet| paths.middle(facet));
             near.retain(|&facet| may_press(facet));
         }
     }
@@ -193,7 +196,7 @@ impl NodeToPatch {
         let from = place(y, node);
         let own = patch.nearest(y, from);
         let mut best = None;
-        for facet in self.primary.ring(pair.facet) {
+        for &facet in self.primary.ring(pair.facet) {
             if !self.may_take(node, facet, y) {
                 continue;
             }
@@ -376,7 +379,7 @@ impl Kinematics for NodeToPatch {
             in_order(pairs);
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { paths, apart, recent, swept, normals } = &mut *tools;
+        let Tools { paths, apart, recent, swept } = &mut *tools;
         if starts {
             recent.forget();
         }
@@ -388,9 +391,6 @@ impl Kinematics for NodeToPatch {
         if !repeats {
             recent.begin(*margin, [before, now]);
             paths.update(&self.primary, &self.hull, *margin, [before, now]);
-            if self.folds.is_some() {
-                update_normals(&self.primary, before, normals);
-            }
             let ends = |&node: &usize| [place(before, node).0, place(now, node).0];
             let nodes: Bounds = self.secondary.iter().flat_map(ends).collect();
             let boxes = [&paths.tree().bounds(), &nodes.grown(NOISE * nodes.size())];
@@ -411,8 +411,8 @@ impl Kinematics for NodeToPatch {
                 continue;
             }
             paths.find_into(node, [before, now], &mut near);
-            self.retain_met(node, normals, &mut near);
-            let near_by = (&mut near, &*paths, &normals[..]);
+            self.retain_met(node, paths, &mut near);
+            let near_by = (&mut near, &*paths);
             if !held.is_empty() {
                 if let Some((facet, xi)) = self.elsewhere(swept, near_by, k, held, [before, now]) {
                     changed = true;
@@ -437,20 +437,17 @@ impl Kinematics for NodeToPatch {
 
     fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { paths, recent, swept, normals, .. } = &mut *tools;
+        let Tools { paths, recent, swept, .. } = &mut *tools;
         recent.forget();
         paths.update(&self.primary, &self.hull, Pairing::default().margin, [before, now]);
-        if self.folds.is_some() {
-            update_normals(&self.primary, before, normals);
-        }
         let mut near = Vec::new();
         let mut met = |&k: &usize| {
             let node = self.secondary[k];
             paths.find_into(node, [before, now], &mut near);
-            self.retain_met(node, normals, &mut near);
-            self.retain_pressed(node, before, &mut near);
-            let first = self.first(swept, (&near, paths, normals), node, before, now);
-            let (theta, _) = first.filter(|&(_, facet)| self.is_met(node, facet, normals))?;
+            self.retain_met(node, paths, &mut near);
+            self.retain_pressed(node, before, paths, &mut near);
+            let first = self.first(swept, (&near, paths), node, before, now);
+            let (theta, _) = first.filter(|&(_, facet)| self.is_met(node, facet, paths))?;
             (self.slack(k) == 0.0).then(|| theta.clamp(0.0, 1.0))
         };
         nodes.iter().map(&mut met).collect()

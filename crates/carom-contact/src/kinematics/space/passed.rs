@@ -137,7 +137,7 @@ impl Way for OnWay<'_, '_> {
             Some(patch.nearest(self.between.with(theta, patch.nodes), point).distance)
         };
         let (facet, _) = self.tree.nearest(&point.0, self.from, distance)?;
-        for facet in boundary.ring(facet) {
+        for &facet in boundary.ring(facet) {
             self.between.with(theta, boundary.facet_nodes(facet));
         }
         let found = boundary.depth(facet, point, self.between.with(theta, boundary.facet_nodes(facet)));

@@ -3,7 +3,7 @@
 use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::Boundary;
-use super::patch::place;
+use super::patch::{PatchPoint, place};
 
 /// Depth relative to the length of a facet that round-off feigns.
 pub(super) const NOISE: f64 = 1e-9;
@@ -18,6 +18,33 @@ pub(super) struct Paths {
     tree: Tree,
     /// Without one.
     tight: Vec<Bounds>,
+    start: Start,
+}
+
+/// The facets at the start of a step, which several searches share.
+#[derive(Debug, Default)]
+struct Start {
+    /// Coordinates of their nodes.
+    places: Vec<f64>,
+    boxes: Vec<Bounds>,
+    /// Their middles.
+    middles: Vec<PatchPoint>,
+}
+
+impl Start {
+    fn update(&mut self, primary: &Boundary, hull: &Hull, y: &[f64]) {
+        let places = || primary.nodes().iter().flat_map(|&node| place(y, node).0);
+        if !self.places.is_empty() && self.places.iter().copied().eq(places()) {
+            return;
+        }
+        let Self { places: known, boxes, middles } = self;
+        known.clear();
+        known.extend(places());
+        boxes.clear();
+        boxes.extend((0..primary.all()).map(|facet| primary.bounds(hull, facet, y)));
+        middles.clear();
+        middles.extend((0..primary.all()).map(|facet| primary.middle(facet, y)));
+    }
 }
 
 impl Paths {
@@ -29,18 +56,21 @@ impl Paths {
         margin: f64,
         [before, now]: [&[f64]; 2],
     ) {
-        let swept = |facet: usize| {
-            let [old, new] = [before, now].map(|y| primary.bounds(hull, facet, y));
-            old.union(&new)
-        };
+        self.start.update(primary, hull, before);
+        let boxes = self.start.boxes.iter().enumerate();
         self.tight.clear();
-        self.tight.extend((0..primary.all()).map(swept));
+        self.tight.extend(boxes.map(|(facet, old)| old.union(&primary.bounds(hull, facet, now))));
         let grown = |facet: usize| self.tight[facet].grown(margin * self.tight[facet].size());
         if self.tree.is_empty() {
             self.tree = Tree::new(self.tight.len(), grown);
         } else {
             self.tree.update(grown);
         }
+    }
+
+    /// The middle of a facet at the start of the step.
+    pub(super) fn middle(&self, facet: usize) -> PatchPoint {
+        self.start.middles[facet]
     }
 
     /// The boxes with the margin.

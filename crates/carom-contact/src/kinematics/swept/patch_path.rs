@@ -221,10 +221,11 @@ impl Piece for PatchPath {
         let corner = |k: usize| self.points[0][k] + self.points[1][k];
         let points = [&self.points[0][..self.count], &self.points[1][..self.count]];
         let sum = points.iter().flat_map(|c| c.iter()).fold(Vector::ZERO, |sum, x| sum + *x);
+        let error = self.error();
         let separates = |direction: &Vector<3>| {
-            let sides = points.map(|c| excludes_zero(c, direction, self.separation, self.error()));
             // Both ends on the same side.
-            sides == [true; 2] && (direction.dot(&points[0][0]) > 0.0) == (direction.dot(&points[1][0]) > 0.0)
+            (direction.dot(&points[0][0]) > 0.0) == (direction.dot(&points[1][0]) > 0.0)
+                && points.iter().all(|c| excludes_zero(c, direction, self.separation, error))
         };
         let last = self.count - 1;
         let middle = if self.sides == 3 { last } else { last - self.degree };

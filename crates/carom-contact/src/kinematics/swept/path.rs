@@ -253,16 +253,16 @@ pub(super) fn excludes_zero<const D: usize>(
     separation: f64,
     error: f64,
 ) -> bool {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for c in coefficients {
-        let at = direction.dot(c);
-        low = low.min(at);
-        high = high.max(at);
-    }
     let slack = separation * direction.norm() * (1.0 + 4.0 * f64::EPSILON)
         + error * sum_of(*direction)
         + f64::MIN_POSITIVE;
-    low > slack || high < -slack
+    // Most directions fail at one of the first points. A NaN is no proof.
+    let Some(first) = coefficients.first().map(|c| direction.dot(c)) else { return false };
+    if first > slack {
+        coefficients.iter().all(|c| direction.dot(c) > slack)
+    } else {
+        first < -slack && coefficients.iter().all(|c| direction.dot(c) < -slack)
+    }
 }
 
 /// Bernstein coefficients of degree 3 of a curve from its nodal values, whose largest component is
