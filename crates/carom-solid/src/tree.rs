@@ -134,10 +134,12 @@ impl Tree {
         best: &mut Option<(usize, f64)>,
     ) {
         let away = |k: usize| self.nodes[k].bounds.distance(point);
-        if best.is_some_and(|(_, least)| away(k) > least) {
+        let node = &self.nodes[k];
+        // Where the search began is not asked again.
+        let is_known = |item: usize| node.is_leaf(k) && node.item == item;
+        if best.is_some_and(|(item, least)| away(k) > least || is_known(item)) {
             return;
         }
-        let node = &self.nodes[k];
         if !node.is_leaf(k) {
             let [left, right] = self.branches(k);
             let (first, second) = if away(right) < away(left) { (right, left) } else { (left, right) };
