@@ -11,7 +11,7 @@ use crate::measured::{Points, add_points, differences, sources};
 use crate::meshes::Pane;
 use crate::over_time::{chart, names, shades};
 use crate::palette::LINES;
-use crate::{animation, bodies, meshes, noise, pressure, setup, space, stick_slip, stopped, unshown};
+use crate::{animation, bodies, energy, meshes, noise, pressure, setup, space, stick_slip, stopped, unshown};
 
 /// Everything that can be drawn from a record.
 #[derive(Clone, Debug, Default)]
@@ -44,7 +44,7 @@ pub(crate) fn all(run: &Run) -> Shown {
     let lists = [&FORCES[..], &IMPULSES, &ENERGIES, &WORKS];
     let (measured, expected) = (unshown::measured(run, &lists), unshown::expected(run, &lists));
     shown.figures.extend(
-        [probes(run), force(run), pressure, map, energy(run), measured, expected, solver(run)]
+        [probes(run), force(run), pressure, map, energy::figure(run), measured, expected, solver(run)]
             .into_iter()
             .flatten(),
     );
@@ -104,7 +104,7 @@ fn setup(run: &Run) -> Option<Figure> {
 }
 
 /// What the shading means.
-fn shaded(run: &Run) -> &'static str {
+pub(crate) fn shaded(run: &Run) -> &'static str {
     if !shades(run).is_empty() {
         " Shaded: contact."
     } else if noise::has_contact(run) {
@@ -116,7 +116,12 @@ fn shaded(run: &Run) -> &'static str {
 
 /// Curves of columns with their labels, without those that are missing or, compared with `size`,
 /// zero throughout.
-fn curves<'a>(run: &'a Run, points: &'a [Points], columns: &[(&str, &str)], size: f64) -> Vec<Series<'a>> {
+pub(crate) fn curves<'a>(
+    run: &'a Run,
+    points: &'a [Points],
+    columns: &[(&str, &str)],
+    size: f64,
+) -> Vec<Series<'a>> {
     let found = columns.iter().enumerate().filter_map(|(i, (name, label))| {
         let y = run.column(name)?;
         let shown = size == 0.0 || y.iter().any(|y| y.abs() > 1e-9 * size);
@@ -135,7 +140,7 @@ fn curves<'a>(run: &'a Run, points: &'a [Points], columns: &[(&str, &str)], size
     found
 }
 
-fn panel<'a>(label: &str, unit: &str, height: f64, series: Vec<Series<'a>>) -> Panel<'a> {
+pub(crate) fn panel<'a>(label: &str, unit: &str, height: f64, series: Vec<Series<'a>>) -> Panel<'a> {
     Panel { label: label.into(), unit: unit.into(), height, series }
 }
 
@@ -204,9 +209,9 @@ const FORCES: [(&str, &str); 3] =
     [("contact_force_x", "f_{x}"), ("contact_force_y", "f_{y}"), ("contact_force_z", "f_{z}")];
 const IMPULSES: [(&str, &str); 3] =
     [("contact_impulse_x", "P_{x}"), ("contact_impulse_y", "P_{y}"), ("contact_impulse_z", "P_{z}")];
-const ENERGIES: [(&str, &str); 4] =
+pub(crate) const ENERGIES: [(&str, &str); 4] =
     [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
-const WORKS: [(&str, &str); 4] = [
+pub(crate) const WORKS: [(&str, &str); 4] = [
     ("dissipation", "dissipation"),
     ("external_work", "external work"),
     ("contact_work", "contact work"),
@@ -214,7 +219,7 @@ const WORKS: [(&str, &str); 4] = [
 ];
 
 /// A component below this share of the largest one has a panel of its own.
-const SMALL: f64 = 0.125;
+pub(crate) const SMALL: f64 = 0.125;
 
 /// A panel, or two of which the second has the components that would be flat in the first.
 fn by_size(all: Panel) -> Vec<Panel> {
@@ -255,43 +260,6 @@ fn force(run: &Run) -> Option<Figure> {
         sources(run, &points, &shown)
     );
     chart(run, ("force", "Contact force and impulse"), caption, panels)
-}
-
-/// The energy balance.
-fn energy(run: &Run) -> Option<Figure> {
-    let (unit, points) = (run.history.unit("total"), Points::all(run));
-    let size = run
-        .column("total")
-        .into_iter()
-        .chain(run.column("kinetic"))
-        .flatten()
-        .fold(0.0, |m: f64, x| m.max(x.abs()));
-    let panels = vec![
-        panel("energy", unit, 200.0, curves(run, &points, &ENERGIES, 1e3 * size)),
-        panel("work, dissipation", unit, 150.0, curves(run, &points, &WORKS, 1e-3 * size)),
-    ];
-    let works = if panels[1].series.is_empty() {
-        " All work and dissipation are below 10^{-12} of the largest energy and omitted."
-    } else {
-        " Top: energies. Bottom: accumulated work and dissipation. The dissipation is the sum of all work less the \
-         change of the total energy. It falls where the integrator creates energy, or where the work of a force that \
-         varies within a step is inexact; the metric `energy_created` leaves out the latter."
-    };
-    let shown: Vec<String> = ENERGIES
-        .iter()
-        .chain(&WORKS)
-        .filter(|(_, label)| panels.iter().flat_map(|p| &p.series).any(|s| s.label == *label))
-        .map(|(column, _)| format!("`{column}`"))
-        .collect();
-    let names: Vec<&str> = ENERGIES.iter().chain(&WORKS).map(|(name, _)| *name).collect();
-    let shown: Vec<&str> = shown.iter().map(String::as_str).collect();
-    let caption = format!(
-        "Energy balance.{works}{} Energies below 10^{{-6}} of the largest one, and work that remains zero, are omitted.{} Data: `history.csv`, columns {}.",
-        shaded(run),
-        sources(run, &points, &names),
-        listed(&shown)
-    );
-    chart(run, ("energy", "Energy balance"), caption, panels)
 }
 
 /// Iterations, active nodes and rejections by step.
