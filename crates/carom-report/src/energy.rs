@@ -19,12 +19,16 @@ const BALANCE: &str = " Top: energies. Bottom: accumulated work and dissipation.
 const DYNAMIC: &str = " It falls where the integrator creates energy, or where the work of a force that varies within \
     a step is inexact; the metric `energy_created` leaves out the latter.";
 /// There is no integrator.
-const STATIC: &str = " In a static analysis it is the error of the external work, which is summed over load steps.";
+const STATIC: &str =
+    " In a static analysis it is the error of the external work, which is summed over load steps.";
 
 /// The figure.
 pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let (unit, points) = (run.history.unit("total"), Points::all(run));
-    let size = ["total", "kinetic"].map(|name| run.column(name).map_or(0.0, largest)).into_iter().fold(0.0, f64::max);
+    let size = ["total", "kinetic"]
+        .map(|name| run.column(name).map_or(0.0, largest))
+        .into_iter()
+        .fold(0.0, f64::max);
     let energies = curves(run, &points, &ENERGIES, 1e9 * SHARE * size);
     let works = without_small(curves(run, &points, &WORKS, 1e-3 * size));
     let words = match (works.is_empty(), is_static(run)) {
@@ -37,7 +41,8 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let shown: Vec<String> =
         known().filter(|(_, label)| is_drawn(label)).map(|(column, _)| format!("`{column}`")).collect();
     // That there is no work at all is said above.
-    let without = |label: &str| !is_drawn(label) && !(works.is_empty() && WORKS.iter().any(|(_, work)| *work == label));
+    let without =
+        |label: &str| !is_drawn(label) && !(works.is_empty() && WORKS.iter().any(|(_, work)| *work == label));
     let omitted: Vec<&str> = known().map(|(_, label)| *label).filter(|label| without(label)).collect();
     let omitted = if omitted.is_empty() {
         String::new()
@@ -59,8 +64,29 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
 /// Work without that which would lie on the axis; the dissipation is always of interest.
 fn without_small(works: Vec<Series>) -> Vec<Series> {
     let most = works.iter().map(|series| largest(&series.y)).fold(0.0, f64::max);
-    let is_large = |series: &Series| {
-        series.dotted || series.label == "dissipation" || largest(&series.y) > SHARE * most
-    };
+    let is_large =
+        |series: &Series| series.dotted || series.label == "dissipation" || largest(&series.y) > SHARE * most;
     works.into_iter().filter(is_large).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_work_is_left_out_but_not_the_dissipation() {
+        let series = |label: &str, y: f64| Series {
+            label: label.to_owned(),
+            color: "",
+            x: &[0.0],
+            y: vec![y],
+            dotted: false,
+            unlisted: false,
+        };
+        let works =
+            [("dissipation", 1e-9), ("external work", -2.0), ("contact work", 1e-6), ("friction work", 1e-5)];
+        let kept = without_small(works.map(|(label, y)| series(label, y)).into());
+        let kept: Vec<&str> = kept.iter().map(|series| &*series.label).collect();
+        assert_eq!(kept, ["dissipation", "external work", "friction work"]);
+    }
 }

@@ -220,10 +220,10 @@ fn units_in_messages(run: &Run) -> String {
     let messages = || run.log.iter().filter(|e| e.kind != "warning").map(|e| &*e.message);
     let has_numbers =
         messages().any(|text| text.contains(" = ") || text.contains(|c: char| c.is_ascii_digit()));
-    if !has_numbers {
+    let length = run.manifest.case.pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
+    if !has_numbers || length.is_empty() {
         return String::new();
     }
-    let length = run.manifest.case.pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
     let time =
         if is_static(run) { String::new() } else { format!("times in {}, ", run.history.unit("time")) };
     let model =
