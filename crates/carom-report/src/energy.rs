@@ -4,11 +4,20 @@ use carom_record::Run;
 
 use crate::chart::Series;
 use crate::figure::Figure;
-use crate::figures::{ENERGIES, WORKS, curves, panel, shaded};
 use crate::labels::{is_static, listed};
 use crate::measured::{Points, sources};
 use crate::noise::largest;
-use crate::over_time::chart;
+use crate::over_time::{chart, curves, panel, shaded};
+
+/// Columns of both panes, with their labels.
+pub(crate) const ENERGIES: [(&str, &str); 4] =
+    [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
+pub(crate) const WORKS: [(&str, &str); 4] = [
+    ("dissipation", "dissipation"),
+    ("external_work", "external work"),
+    ("contact_work", "contact work"),
+    ("friction_work", "friction work"),
+];
 
 /// Energies and work below this share of the largest in their pane are not drawn.
 const SHARE: f64 = 1e-6;
@@ -42,7 +51,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         known().filter(|(_, label)| is_drawn(label)).map(|(column, _)| format!("`{column}`")).collect();
     // That there is no work at all is said above.
     let without =
-        |label: &str| !is_drawn(label) && !(works.is_empty() && WORKS.iter().any(|(_, work)| *work == label));
+        |label: &str| !(is_drawn(label) || works.is_empty() && WORKS.iter().any(|(_, work)| *work == label));
     let omitted: Vec<&str> = known().map(|(_, label)| *label).filter(|label| without(label)).collect();
     let omitted = if omitted.is_empty() {
         String::new()

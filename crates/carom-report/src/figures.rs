@@ -4,12 +4,13 @@ use carom_record::{Run, contact_axes};
 
 use crate::animation::Animation;
 use crate::chart::{Panel, Series};
+use crate::energy::{ENERGIES, WORKS};
 use crate::figure::Figure;
 use crate::instants::instants;
 use crate::labels::{capitalised, is_stress, listed, symbol, words};
 use crate::measured::{Points, add_points, differences, sources};
 use crate::meshes::Pane;
-use crate::over_time::{chart, names, shades};
+use crate::over_time::{by_size, chart, curves, names, panel, shaded, shades};
 use crate::palette::LINES;
 use crate::{animation, bodies, energy, meshes, noise, pressure, setup, space, stick_slip, stopped, unshown};
 
@@ -103,47 +104,6 @@ fn setup(run: &Run) -> Option<Figure> {
     Some(meshes::with_files(figure, &fields, &[pane], length, String::new()))
 }
 
-/// What the shading means.
-pub(crate) fn shaded(run: &Run) -> &'static str {
-    if !shades(run).is_empty() {
-        " Shaded: contact."
-    } else if noise::has_contact(run) {
-        " In contact throughout."
-    } else {
-        ""
-    }
-}
-
-/// Curves of columns with their labels, without those that are missing or, compared with `size`,
-/// zero throughout.
-pub(crate) fn curves<'a>(
-    run: &'a Run,
-    points: &'a [Points],
-    columns: &[(&str, &str)],
-    size: f64,
-) -> Vec<Series<'a>> {
-    let found = columns.iter().enumerate().filter_map(|(i, (name, label))| {
-        let y = run.column(name)?;
-        let shown = size == 0.0 || y.iter().any(|y| y.abs() > 1e-9 * size);
-        let series = |y: &[f64]| Series {
-            label: (*label).into(),
-            color: LINES[i % LINES.len()],
-            x: run.times(),
-            y: y.to_vec(),
-            dotted: false,
-            unlisted: false,
-        };
-        shown.then(|| series(y))
-    });
-    let mut found: Vec<Series> = found.collect();
-    columns.iter().for_each(|(name, _)| add_points(points, name, &mut found));
-    found
-}
-
-pub(crate) fn panel<'a>(label: &str, unit: &str, height: f64, series: Vec<Series<'a>>) -> Panel<'a> {
-    Panel { label: label.into(), unit: unit.into(), height, series }
-}
-
 /// Time histories of all probes, one panel per quantity.
 fn probes(run: &Run) -> Option<Figure> {
     let (probes, points) = (names(run, "probes"), Points::all(run));
@@ -209,32 +169,6 @@ const FORCES: [(&str, &str); 3] =
     [("contact_force_x", "f_{x}"), ("contact_force_y", "f_{y}"), ("contact_force_z", "f_{z}")];
 const IMPULSES: [(&str, &str); 3] =
     [("contact_impulse_x", "P_{x}"), ("contact_impulse_y", "P_{y}"), ("contact_impulse_z", "P_{z}")];
-pub(crate) const ENERGIES: [(&str, &str); 4] =
-    [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
-pub(crate) const WORKS: [(&str, &str); 4] = [
-    ("dissipation", "dissipation"),
-    ("external_work", "external work"),
-    ("contact_work", "contact work"),
-    ("friction_work", "friction work"),
-];
-
-/// A component below this share of the largest one has a panel of its own.
-pub(crate) const SMALL: f64 = 0.125;
-
-/// A panel, or two of which the second has the components that would be flat in the first.
-fn by_size(all: Panel) -> Vec<Panel> {
-    let peak = |series: &Series| noise::largest(&series.y);
-    let most = all.series.iter().map(peak).fold(0.0, f64::max);
-    let (large, small): (Vec<Series>, Vec<Series>) =
-        all.series.into_iter().partition(|series| peak(series) >= SMALL * most);
-    let other = Panel { label: all.label.clone(), unit: all.unit.clone(), height: 110.0, series: small };
-    let first = Panel {
-        series: large,
-        ..Panel { label: all.label, unit: all.unit, height: all.height, series: Vec::new() }
-    };
-    [first, other].into_iter().filter(|panel| !panel.series.is_empty()).collect()
-}
-
 /// Contact force and impulse against time.
 fn force(run: &Run) -> Option<Figure> {
     let h = &run.history;

@@ -6,11 +6,10 @@ use carom_record::Run;
 
 use crate::chart::{Panel, Series};
 use crate::figure::Figure;
-use crate::figures::SMALL;
 use crate::labels::listed;
 use crate::measured::{Points, add_points, differences, sources};
 use crate::noise::largest;
-use crate::over_time::{chart, names};
+use crate::over_time::{SMALL, chart, names};
 use crate::palette::LINES;
 
 /// A column below this size shows only round-off.
@@ -79,7 +78,7 @@ pub(crate) fn expected(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
     let formulas: Vec<(String, String, Vec<f64>)> =
         run.manifest.expectations.iter().filter_map(|e| formula(run, &e.what)).collect();
     let mut panels = Vec::new();
-    let peak = |column: &str| run.column(column).map_or(0.0, |values| largest(values));
+    let peak = |column: &str| run.column(column).map_or(0.0, largest);
     let by_size = groups.iter().flat_map(|(name, members)| {
         let most = members.iter().map(|column| peak(column)).fold(0.0, f64::max);
         let (large, small): (Vec<&str>, Vec<&str>) =
