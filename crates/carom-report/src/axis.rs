@@ -25,6 +25,25 @@ pub(crate) fn round_step(span: f64, count: f64) -> f64 {
     factor * power
 }
 
+/// The roundest number within about the length of a range from its lower end, so that labels need
+/// only the digits that differ, and the offset few.
+fn round_near(low: f64, span: f64) -> f64 {
+    let finest = span.log10().ceil() as i32;
+    let rounded = |power: i32| {
+        let unit = 10f64.powi(power);
+        (low / unit).round() * unit
+    };
+    let is_near = |x: &f64| (x - low).abs() <= 2.0 * span;
+    (finest..finest + 16).map(rounded).take_while(is_near).last().unwrap_or_else(|| rounded(finest))
+}
+
+/// A number with the fewest digits that give it within a thousandth of `span`.
+fn digits_within(x: f64, span: f64) -> String {
+    let text = (0..16).map(|decimals| format!("{x:.decimals$}"));
+    let is_exact = |text: &String| text.parse().is_ok_and(|y: f64| (x - y).abs() < 1e-3 * span);
+    text.into_iter().find(is_exact).map_or_else(|| number(x), |text| text.replace('-', "−"))
+}
+
 impl Axis {
     /// An axis that ends at the data (`tight`) or at round numbers around them.
     pub(crate) fn new(range: (f64, f64), count: f64, tight: bool) -> Self {
@@ -48,13 +67,7 @@ impl Axis {
             high = if high == 0.0 { 0.0 } else { ((high + air) / half).ceil() * half };
         }
         let size = low.abs().max(high.abs());
-        // A round number below the range, so that labels need only the digits that differ.
-        let offset = if high - low < NARROW * size {
-            let round = 10f64.powi((high - low).log10().ceil() as i32);
-            (low / round).round() * round
-        } else {
-            0.0
-        };
+        let offset = if high - low < NARROW * size { round_near(low, high - low) } else { 0.0 };
         let size = (low - offset).abs().max((high - offset).abs());
         let order = size.log10().floor() as i32;
         let decimals = |exponent: i32| {
@@ -98,8 +111,8 @@ impl Axis {
     pub(crate) fn label(&self, quantity: &str, unit: &str) -> String {
         // The offset is in the unit without a prefix: “F − 0.06 N (µN)”.
         let amount = |offset: f64| match unit {
-            "" | "1" => number(offset),
-            unit => format!("{} {unit}", number(offset)),
+            "" | "1" => digits_within(offset, self.high - self.low),
+            unit => format!("{} {unit}", digits_within(offset, self.high - self.low)),
         };
         let quantity = match self.offset {
             0.0 => quantity.to_owned(),
@@ -157,6 +170,24 @@ mod tests {
         assert_eq!(axis.label("F", "N"), "F − 0.06 N (µN)");
         assert_eq!(axis.label("n", "1"), "n − 0.06 (10^{-6})");
         assert_eq!(Axis::new((-300.0, -299.9), 2.0, true).label("y", "m"), "y + 300 m (m)");
+    }
+
+    /// An energy from 2.50044992 J to 2.50045 J: the offset in the label is the one subtracted.
+    #[test]
+    fn offsets_are_written_with_all_their_digits() {
+        for (range, label) in [
+            ((2.500_449_92, 2.500_450_001), "E − 2.50045 J (nJ)"),
+            ((1.234_567_81, 1.234_567_89), "E − 1.234568 J (nJ)"),
+        ] {
+            let axis = Axis::new(range, 4.0, false);
+            let text = axis.label("E", "J");
+            assert_eq!(text, label);
+            let written: f64 = text.split(' ').nth(2).unwrap().parse().unwrap();
+            for (value, tick) in &axis.ticks {
+                let tick: f64 = tick.replace('−', "-").parse().unwrap();
+                assert!((written + 1e-9 * tick - value).abs() < 1e-12, "{text}: {tick} at {value}");
+            }
+        }
     }
 
     #[test]

@@ -9,7 +9,11 @@ use crate::palette::sequence;
 use crate::redraw::of_chart;
 
 /// At several instants.
-pub(crate) fn figure(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Figure {
+pub(crate) fn figure(
+    run: &Run,
+    sets: &[(f64, carom_record::FieldSet)],
+    (during, files): (&str, &str),
+) -> Figure {
     // Positions and values of a component along the bars, with a gap after each bar.
     let along =
         |set: &carom_record::FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
@@ -54,7 +58,7 @@ pub(crate) fn figure(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: 
         Chart { title: "Displacement and stress along the bars", x_label, shades: Vec::new(), panels };
     let caption = format!(
         "Displacement u_{{x}} and Cauchy stress σ_{{xx}} (nodal averages) along the bars at instants \
-         {during}. Data: displacement and stress in the field files."
+         {during}. Data: displacement and stress in {files}."
     );
     let plot = of_chart("bodies", &chart);
     let narrow = chart.draw(&Options { width: NARROW, ..Options::default() });

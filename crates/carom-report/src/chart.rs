@@ -204,7 +204,7 @@ impl Chart<'_> {
 }
 
 /// Place of the second line of such a label; exponents need room above it.
-const SECOND: f64 = 27.0;
+const SECOND: f64 = 28.5;
 
 /// The label of a vertical axis whose tick labels begin at `left`: where it is too long and there is
 /// room for it, its unit has a line of its own; what is still too long is smaller.

@@ -4,14 +4,15 @@ use carom_record::{Run, contact_axes};
 
 use crate::animation::Animation;
 use crate::chart::{Panel, Series};
+use crate::energy::{ENERGIES, WORKS};
 use crate::figure::Figure;
 use crate::instants::instants;
 use crate::labels::{capitalised, is_stress, listed, symbol, words};
 use crate::measured::{Points, add_points, differences, sources};
 use crate::meshes::Pane;
-use crate::over_time::{chart, names, shades};
+use crate::over_time::{by_size, chart, curves, names, panel, shaded, shades};
 use crate::palette::LINES;
-use crate::{animation, bodies, meshes, noise, pressure, setup, space, stick_slip, stopped, unshown};
+use crate::{animation, bodies, energy, meshes, noise, pressure, setup, space, stick_slip, stopped, unshown};
 
 /// Everything that can be drawn from a record.
 #[derive(Clone, Debug, Default)]
@@ -44,7 +45,7 @@ pub(crate) fn all(run: &Run) -> Shown {
     let lists = [&FORCES[..], &IMPULSES, &ENERGIES, &WORKS];
     let (measured, expected) = (unshown::measured(run, &lists), unshown::expected(run, &lists));
     shown.figures.extend(
-        [probes(run), force(run), pressure, map, energy(run), measured, expected, solver(run)]
+        [probes(run), force(run), pressure, map, energy::figure(run), measured, expected, solver(run)]
             .into_iter()
             .flatten(),
     );
@@ -101,42 +102,6 @@ fn setup(run: &Run) -> Option<Figure> {
     let length = fields.array("displacement").map_or("", |a| a.unit.as_str());
     let figure = Figure::new("setup", caption, svg).with_narrow(setup::narrow(run, &fields)?);
     Some(meshes::with_files(figure, &fields, &[pane], length, String::new()))
-}
-
-/// What the shading means.
-fn shaded(run: &Run) -> &'static str {
-    if !shades(run).is_empty() {
-        " Shaded: contact."
-    } else if noise::has_contact(run) {
-        " In contact throughout."
-    } else {
-        ""
-    }
-}
-
-/// Curves of columns with their labels, without those that are missing or, compared with `size`,
-/// zero throughout.
-fn curves<'a>(run: &'a Run, points: &'a [Points], columns: &[(&str, &str)], size: f64) -> Vec<Series<'a>> {
-    let found = columns.iter().enumerate().filter_map(|(i, (name, label))| {
-        let y = run.column(name)?;
-        let shown = size == 0.0 || y.iter().any(|y| y.abs() > 1e-9 * size);
-        let series = |y: &[f64]| Series {
-            label: (*label).into(),
-            color: LINES[i % LINES.len()],
-            x: run.times(),
-            y: y.to_vec(),
-            dotted: false,
-            unlisted: false,
-        };
-        shown.then(|| series(y))
-    });
-    let mut found: Vec<Series> = found.collect();
-    columns.iter().for_each(|(name, _)| add_points(points, name, &mut found));
-    found
-}
-
-fn panel<'a>(label: &str, unit: &str, height: f64, series: Vec<Series<'a>>) -> Panel<'a> {
-    Panel { label: label.into(), unit: unit.into(), height, series }
 }
 
 /// Time histories of all probes, one panel per quantity.
@@ -204,32 +169,6 @@ const FORCES: [(&str, &str); 3] =
     [("contact_force_x", "f_{x}"), ("contact_force_y", "f_{y}"), ("contact_force_z", "f_{z}")];
 const IMPULSES: [(&str, &str); 3] =
     [("contact_impulse_x", "P_{x}"), ("contact_impulse_y", "P_{y}"), ("contact_impulse_z", "P_{z}")];
-const ENERGIES: [(&str, &str); 4] =
-    [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
-const WORKS: [(&str, &str); 4] = [
-    ("dissipation", "dissipation"),
-    ("external_work", "external work"),
-    ("contact_work", "contact work"),
-    ("friction_work", "friction work"),
-];
-
-/// A component below this share of the largest one has a panel of its own.
-const SMALL: f64 = 0.125;
-
-/// A panel, or two of which the second has the components that would be flat in the first.
-fn by_size(all: Panel) -> Vec<Panel> {
-    let peak = |series: &Series| noise::largest(&series.y);
-    let most = all.series.iter().map(peak).fold(0.0, f64::max);
-    let (large, small): (Vec<Series>, Vec<Series>) =
-        all.series.into_iter().partition(|series| peak(series) >= SMALL * most);
-    let other = Panel { label: all.label.clone(), unit: all.unit.clone(), height: 110.0, series: small };
-    let first = Panel {
-        series: large,
-        ..Panel { label: all.label, unit: all.unit, height: all.height, series: Vec::new() }
-    };
-    [first, other].into_iter().filter(|panel| !panel.series.is_empty()).collect()
-}
-
 /// Contact force and impulse against time.
 fn force(run: &Run) -> Option<Figure> {
     let h = &run.history;
@@ -255,43 +194,6 @@ fn force(run: &Run) -> Option<Figure> {
         sources(run, &points, &shown)
     );
     chart(run, ("force", "Contact force and impulse"), caption, panels)
-}
-
-/// The energy balance.
-fn energy(run: &Run) -> Option<Figure> {
-    let (unit, points) = (run.history.unit("total"), Points::all(run));
-    let size = run
-        .column("total")
-        .into_iter()
-        .chain(run.column("kinetic"))
-        .flatten()
-        .fold(0.0, |m: f64, x| m.max(x.abs()));
-    let panels = vec![
-        panel("energy", unit, 200.0, curves(run, &points, &ENERGIES, 1e3 * size)),
-        panel("work, dissipation", unit, 150.0, curves(run, &points, &WORKS, 1e-3 * size)),
-    ];
-    let works = if panels[1].series.is_empty() {
-        " All work and dissipation are below 10^{-12} of the largest energy and omitted."
-    } else {
-        " Top: energies. Bottom: accumulated work and dissipation. The dissipation is the sum of all work less the \
-         change of the total energy. It falls where the integrator creates energy, or where the work of a force that \
-         varies within a step is inexact; the metric `energy_created` leaves out the latter."
-    };
-    let shown: Vec<String> = ENERGIES
-        .iter()
-        .chain(&WORKS)
-        .filter(|(_, label)| panels.iter().flat_map(|p| &p.series).any(|s| s.label == *label))
-        .map(|(column, _)| format!("`{column}`"))
-        .collect();
-    let names: Vec<&str> = ENERGIES.iter().chain(&WORKS).map(|(name, _)| *name).collect();
-    let shown: Vec<&str> = shown.iter().map(String::as_str).collect();
-    let caption = format!(
-        "Energy balance.{works}{} Energies below 10^{{-6}} of the largest one, and work that remains zero, are omitted.{} Data: `history.csv`, columns {}.",
-        shaded(run),
-        sources(run, &points, &names),
-        listed(&shown)
-    );
-    chart(run, ("energy", "Energy balance"), caption, panels)
 }
 
 /// Iterations, active nodes and rejections by step.

@@ -51,23 +51,25 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
         }
     }
     // The state at which a run failed is in a file of its own.
+    let mut files = "the field files";
     if let Some(stop) = &run.stop
         && let Ok(Some(set)) = Stop::fields(&run.directory, &run.manifest)
         && sets.last().is_some_and(|(time, last)| stop.last > *time && last.points.len() == set.points.len())
     {
         sets.truncate(4);
         sets.push((stop.last, set));
+        files = "the field files and, of the last instant, in `stopped.vtu`";
     }
     let first = &sets.first()?.1;
     let unit = run.history.unit("time");
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
         let strips: Vec<Instant> =
             sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
-        return Some((bars::figure(run, &sets, during), bodies::colors(&strips).0));
+        return Some((bars::figure(run, &sets, (during, files)), bodies::colors(&strips).0));
     }
     if bodies::fill_space(first) {
         let length = first.array("displacement").map_or("", |a| a.unit.as_str());
-        let ([svg, narrow], caption, bands) = space::instants(run, &sets, length, during)?;
+        let ([svg, narrow], caption, bands) = space::instants(run, &sets, length, (during, files))?;
         let panes: Vec<Pane> = sets
             .iter()
             .filter_map(|(time, set)| {
@@ -120,7 +122,7 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
     ];
     let caption = format!(
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
-         the same scale; displacements are not magnified.{compression}{tension}{mark}{arrow} Data: stress and displacement in the field files."
+         the same scale; displacements are not magnified.{compression}{tension}{mark}{arrow} Data: stress and displacement in {files}."
     );
     let figure = Figure::new("bodies", caption, svg).with_narrow(narrow);
     let figure = contours::with_files(figure, &times, &list, [unit, &length, &stress]);

@@ -3,9 +3,12 @@
 use carom_record::{Run, metrics};
 
 use crate::animation;
-use crate::chart::{Chart, Options, Panel};
+use crate::chart::{Chart, Options, Panel, Series};
 use crate::figure::{Figure, NARROW};
 use crate::labels::time_label;
+use crate::measured::{Points, add_points};
+use crate::noise::{has_contact, largest};
+use crate::palette::LINES;
 use crate::redraw::of_chart;
 
 /// Share of the recorded time from which shading says nothing.
@@ -19,6 +22,64 @@ pub(crate) fn shades(run: &Run) -> Vec<(f64, f64)> {
         metrics::episodes(&run.history, 0.0).iter().map(|e| (t[e.start], end(e))).collect();
     let lasts = |(from, to): &(f64, f64)| to - from > THROUGHOUT * (t[t.len() - 1] - t[0]);
     if all.iter().any(lasts) { Vec::new() } else { all }
+}
+
+/// What the shading means.
+pub(crate) fn shaded(run: &Run) -> &'static str {
+    if !shades(run).is_empty() {
+        " Shaded: contact."
+    } else if has_contact(run) {
+        " In contact throughout."
+    } else {
+        ""
+    }
+}
+
+/// Curves of columns with their labels, without those that are missing or, compared with `size`,
+/// zero throughout.
+pub(crate) fn curves<'a>(
+    run: &'a Run,
+    points: &'a [Points],
+    columns: &[(&str, &str)],
+    size: f64,
+) -> Vec<Series<'a>> {
+    let found = columns.iter().enumerate().filter_map(|(i, (name, label))| {
+        let y = run.column(name)?;
+        let shown = size == 0.0 || y.iter().any(|y| y.abs() > 1e-9 * size);
+        let series = |y: &[f64]| Series {
+            label: (*label).into(),
+            color: LINES[i % LINES.len()],
+            x: run.times(),
+            y: y.to_vec(),
+            dotted: false,
+            unlisted: false,
+        };
+        shown.then(|| series(y))
+    });
+    let mut found: Vec<Series> = found.collect();
+    columns.iter().for_each(|(name, _)| add_points(points, name, &mut found));
+    found
+}
+
+pub(crate) fn panel<'a>(label: &str, unit: &str, height: f64, series: Vec<Series<'a>>) -> Panel<'a> {
+    Panel { label: label.into(), unit: unit.into(), height, series }
+}
+
+/// A component below this share of the largest one has a panel of its own.
+pub(crate) const SMALL: f64 = 0.125;
+
+/// A panel, or two of which the second has the components that would be flat in the first.
+pub(crate) fn by_size(all: Panel) -> Vec<Panel> {
+    let peak = |series: &Series| largest(&series.y);
+    let most = all.series.iter().map(peak).fold(0.0, f64::max);
+    let (large, small): (Vec<Series>, Vec<Series>) =
+        all.series.into_iter().partition(|series| peak(series) >= SMALL * most);
+    let other = Panel { label: all.label.clone(), unit: all.unit.clone(), height: 110.0, series: small };
+    let first = Panel {
+        series: large,
+        ..Panel { label: all.label, unit: all.unit, height: all.height, series: Vec::new() }
+    };
+    [first, other].into_iter().filter(|panel| !panel.series.is_empty()).collect()
 }
 
 /// A chart over time with its files.

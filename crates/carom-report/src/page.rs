@@ -7,13 +7,13 @@ use maud::{Markup, Render, html};
 use serde_json::Value;
 
 use crate::animation::Animation;
-use crate::asked;
-use crate::document::{document, figure, file, joined, minus, or_dash};
+use crate::document::{document, figure, file, joined};
+use crate::expectations::expectations;
 use crate::figure::Figure;
-use crate::labels::{capitalised, is_static, number};
-use crate::results::{is_round_off, results};
-use crate::scientific::{powers, significant};
-use crate::setup::in_words;
+use crate::labels::{capitalised, instant_label, is_static, number};
+use crate::results::results;
+use crate::scientific::powers;
+use crate::setup::{in_words, model_in_words};
 use crate::stopped;
 use crate::text::{Label, Prose, typeset};
 use crate::timing::{three, timing};
@@ -95,19 +95,19 @@ fn header(run: &Run) -> Markup {
             @if let Some(name) = run.directory.file_name() { (row("Run", name.to_string_lossy())) }
             @if run.fields.is_empty() {
                 // Nothing is drawn of the model.
-                @for (name, lines) in in_words(&m.case) {
+                @for (name, lines) in in_words(&m.case).into_iter().chain(model_in_words(&m.case)) {
                     (row(name, html! { @for (i, line) in lines.iter().enumerate() { @if i > 0 { br; } (Label(line)) } }))
                 }
             } @else if !bodies.is_empty() { (row("Bodies", bodies.join(", "))) }
             @if !m.source.sets.is_empty() {
                 (row("Changed options", html! {
-                    @for (i, set) in m.source.sets.iter().enumerate() { @if i > 0 { br; } code { (set) } }
+                    @for (i, set) in m.source.sets.iter().enumerate() { @if i > 0 { br; } code.set { (set) } }
                 }))
             }
             (row("Carom version", &m.version))
             (row("Input hash", html! { code.hash { (m.input_hash) } }))
             (row("Record", html! {
-                (rows) " recorded steps, up to t = " (number(last)) " " (Label(run.history.unit("time")))
+                (rows) @if rows == 1 { " row" } @else { " rows" } ", up to " (Label(&instant_label(run, last)))
             }))
             @if let Some(time) = integration(&m.case, run.history.unit("time")) {
                 (row(if is_static(run) { "Analysis" } else { "Time integration" }, Label(&time)))
@@ -177,77 +177,6 @@ fn symbol_of(key: &str) -> &str {
     }
 }
 
-/// Significant digits of a result beside its tolerance.
-const DIGITS: usize = 6;
-
-/// An expected value with its tolerance, which stay on one line.
-fn expected(text: &str) -> String {
-    let exact = text.strip_suffix(" ± 0").map_or_else(|| text.to_owned(), |value| format!("= {value}"));
-    powers(&minus(&exact)).replace(" ± ", "\u{a0}±\u{a0}").replace(" %", "\u{a0}%")
-}
-
-/// The unit of what an expectation asks for: a dash for numbers, nothing where it is not known.
-fn unit_of_question(run: &Run, what: &str) -> Markup {
-    html! {
-        @if let Some(unit) = asked::unit(run, what) { @if unit.is_empty() { "–" } @else { (Label(&unit)) } }
-    }
-}
-
-/// Sources of more than one expectation that are too long to be repeated.
-fn repeated_sources(run: &Run) -> Vec<&String> {
-    let mut found: Vec<&String> = Vec::new();
-    let sources: Vec<&String> = run.manifest.expectations.iter().filter_map(|e| e.source.as_ref()).collect();
-    for source in &sources {
-        let is_repeated = sources.iter().filter(|other| other == &source).count() > 1;
-        if source.chars().count() > 40 && is_repeated && !found.contains(source) {
-            found.push(source);
-        }
-    }
-    found
-}
-
-fn expectations(run: &Run) -> Markup {
-    let repeated = repeated_sources(run);
-    let length = run.manifest.case.pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
-    let length = Label(length).render().into_string();
-    let is_length = |what: &str| !length.is_empty() && unit_of_question(run, what).into_string() == length;
-    let got = |what: &str, got: f64| {
-        if is_round_off(run, got) && is_length(what) { "≈ 0".to_owned() } else { significant(got, DIGITS) }
-    };
-    html! {
-        @if !run.manifest.expectations.is_empty() {
-            h2 { "Expectations" }
-            table.expectations {
-                thead {
-                    tr {
-                        th { "Quantity" } th { "Expected" } th.n { "Result" } th { "Unit" } th { "Verdict" }
-                        th { "Source" }
-                    }
-                }
-                @for e in &run.manifest.expectations {
-                    tr {
-                        td { code { (e.what) } } td.expected { (Label(&expected(&e.expected))) }
-                        td.n { (Label(&or_dash(e.got, |x| got(&e.what, x)))) }
-                        td.unit { (unit_of_question(run, &e.what)) }
-                        @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
-                        td {
-                            @if let Some(source) = &e.source {
-                                @if let Some(k) = repeated.iter().position(|other| *other == source) {
-                                    "[" (k + 1) "]"
-                                } @else { (Label(source)) }
-                            }
-                        }
-                    }
-                }
-            }
-            @if run.manifest.expectations.iter().any(|e| e.got.is_some_and(|x| got(&e.what, x) == "≈ 0")) {
-                p.small { "≈ 0: round-off." }
-            }
-            @for (k, source) in repeated.iter().enumerate() { p.small { "[" (k + 1) "] " (Label(source)) } }
-        }
-    }
-}
-
 fn events(run: &Run) -> Markup {
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
     for event in &run.log {
@@ -277,15 +206,35 @@ fn events(run: &Run) -> Markup {
                 }
             }
         }
-        @if all > 0 { p.small { (Prose("Data: `log.jsonl`, one event per line.")) } }
+        @if all > 0 {
+            p.small {
+                (Label(&units_in_messages(run))) (Prose("Data: `log.jsonl`, one event per line."))
+            }
+        }
     }
+}
+
+/// The units of numbers in messages, which state none.
+fn units_in_messages(run: &Run) -> String {
+    // Warnings do.
+    let messages = || run.log.iter().filter(|e| e.kind != "warning").map(|e| &*e.message);
+    let has_numbers =
+        messages().any(|text| text.contains(" = ") || text.contains(|c: char| c.is_ascii_digit()));
+    let length = run.manifest.case.pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
+    if !has_numbers || length.is_empty() {
+        return String::new();
+    }
+    let time =
+        if is_static(run) { String::new() } else { format!("times in {}, ", run.history.unit("time")) };
+    let model =
+        if messages().any(|text| text.contains(" L (")) { "; L is the length of the model" } else { "" };
+    format!("In messages: {time}lengths in {length}, energies in {}{model}. ", run.history.unit("total"))
 }
 
 fn reproduce(run: &Run) -> Markup {
     let source = &run.manifest.source;
     // Inside single quotes a shell has no escape: the quote is closed, written and opened again.
-    let sets: String =
-        source.sets.iter().map(|s| [" --set '", &s.replace('\'', r"'\''"), "'"].concat()).collect();
+    let sets: Vec<String> = source.sets.iter().map(|s| s.replace('\'', r"'\''")).collect();
     let fields = match run.field_format {
         _ if run.fields.is_empty() => None,
         FieldFormat::Vtu => Some("fields.pvd"),
@@ -295,7 +244,7 @@ fn reproduce(run: &Run) -> Markup {
     html! {
         h2 { "How to reproduce" }
         p { (Prose("Save the case file below as `case.toml` and run Carom ")) (run.manifest.version) ":" }
-        pre { "carom run case.toml" (sets) }
+        pre { "carom run case.toml" @for set in &sets { " " span.option { "--set" } " '" (set) "'" } }
         details { summary { "Case file" } pre { (source.text) } }
         p { "Files beside this page: " (joined(files.map(file), ", ")) "." }
     }

@@ -11,10 +11,9 @@ use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
 use crate::chart::{ground, open_chart, time_axis, write_text};
 use crate::figure::{Figure, NARROW};
-use crate::labels::{amount, with_unit};
+use crate::labels::{number, scaled, with_unit};
 use crate::pen::{Pen, open_grid};
 use crate::redraw::filled;
-use crate::scientific::significant;
 use crate::sheet::{Legend, arrowheads, color_bar};
 
 const WIDTH: f64 = 720.0;
@@ -167,13 +166,10 @@ fn classes(sides: &[Side], stress: &str) -> String {
     let [side] = sides else { return String::new() };
     let bands = positive_bands(side.rows.iter().map(|(row, _)| row.pressure)).0;
     let step = (bands.high - bands.low) / bands.count as f64;
-    // Steps are round.
-    let step = if (0.01..1000.0).contains(&step) {
-        format!("{} {stress}", significant(step, 1))
-    } else {
-        amount(step, stress)
-    };
-    format!(" One colour covers {step}.")
+    // Steps are round, and have the unit of the colour bar.
+    let exponent = Axis::new((bands.low, bands.high), 6.0, true).exponent;
+    let (step, unit) = (number(step / 10f64.powi(exponent)), scaled(stress, exponent));
+    format!(" One colour covers {step} {unit}.")
 }
 
 /// `Every second`, `Every third`, `Every 4th`.

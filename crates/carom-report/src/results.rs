@@ -4,7 +4,7 @@ use carom_record::Run;
 use carom_record::metrics::{self, Metric};
 use maud::{Markup, html};
 
-use crate::labels::{is_static, number};
+use crate::labels::{instant_label, is_static, number};
 use crate::noise::has_contact;
 use crate::scientific::significant;
 use crate::text::{Label, Prose};
@@ -44,7 +44,7 @@ pub(crate) fn results(run: &Run) -> Markup {
             }
         }
         @if known.iter().any(is_noise) { p.small { "≈ 0: round-off." } }
-        @if let Some(note) = unfinished(run) { p.small { (note) } }
+        @if let Some(note) = unfinished(run) { p.small { (Label(&note)) } }
         @if let Some(body) = metrics::striker(&run.history).filter(|_| has_contact(run)) {
             p.small { "Striker: " (body) ". " (Prose(DATA)) }
         }
@@ -111,10 +111,9 @@ fn definition(run: &Run, metric: &Metric) -> String {
 fn unfinished(run: &Run) -> Option<String> {
     let episode = metrics::first_episode(&run.history).filter(|episode| episode.end.is_none())?;
     let last = run.times().last().filter(|last| run.times()[episode.start] < **last)?;
-    let unit = run.history.unit("time");
     Some(format!(
         "The first contact lasts to the end of the record: its end, duration and rebound are not known, and impulses are \
-         those up to t = {} {unit}.",
-        number(*last)
+         those up to {}.",
+        instant_label(run, *last).replace(' ', "\u{a0}")
     ))
 }

@@ -28,7 +28,7 @@ use crate::symbols::{arrow, direction, guides, motion, plus, probe_mark, rollers
 use drawing::{BAR, KEY, PRIMARY, ROOM, SECONDARY, Setup, Walk};
 pub(crate) use forces::typeset as formula_in_words;
 use values::{list, text, vector};
-pub(crate) use words::in_words;
+pub(crate) use words::{in_words, model_in_words};
 
 /// The figure, from the initial fields, with the key beside the drawing; nothing without cells.
 pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
@@ -111,6 +111,11 @@ fn drawn(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
 
 /// Shortest support that is recognisable, in pixels.
 const SHORTEST: f64 = 24.0;
+/// How far the name of a body is above its middle, the room that its letters need above their line,
+/// and half the height below which it is written above the body, in pixels.
+const RISE: f64 = 24.0;
+const LETTERS: f64 = 16.0;
+const FLAT: f64 = 22.0;
 
 /// A side, or a straight line of a length in its middle if it is shorter.
 fn at_least(walk: Walk, length: f64) -> Walk {
@@ -260,7 +265,7 @@ impl Setup<'_> {
             let [x, y] = if self.flat {
                 [center[0], center[1] + 0.5 * BAR + 20.0]
             } else {
-                [center[0], center[1] - 24.0]
+                [center[0], center[1] - self.rise(text(body, "name"), center[1])]
             };
             let halo = "text-anchor=\"middle\" font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" \
                         stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
@@ -294,6 +299,15 @@ impl Setup<'_> {
                 write_text(out, label[0], label[1] + 4.0, &halo.replace("15", "14"), symbol);
             }
         }
+    }
+
+    /// How far the name of a body is above its middle: less where its letters would cross the upper
+    /// edge, unless the body is too flat for them.
+    fn rise(&self, body: &str, middle: f64) -> f64 {
+        let block = self.fields.blocks.iter().find(|b| b.body == body);
+        let nodes = block.into_iter().flat_map(|b| &b.connectivity).map(|&k| self.node(k));
+        let half = nodes.fold(0.0, |half: f64, p| half.max(middle - p[1]));
+        if half < FLAT { RISE.max(half + 6.0) } else { RISE.min(half - LETTERS) }
     }
 
     /// The smaller side of the box around a body, in pixels.

@@ -28,8 +28,8 @@ pub(crate) fn section(run: &Run, picture: Option<Markup>) -> Markup {
         h2 { "Why it stopped" }
         p.reason { (Label(&powers(&capitalised(&typeset(&stop.reason))))) "." }
         p.small {
-            "The last accepted state is at t = " (number(stop.last)) " " (Label(unit)) "; the last attempt began at t = "
-            (number(stop.time)) " " (Label(unit)) ". t and Δt are in " (Label(unit)) "; L is the length of the model."
+            "The last accepted state is at t = " (number(stop.last)) "\u{a0}" (Label(unit)) "; the last attempt began at t = "
+            (number(stop.time)) "\u{a0}" (Label(unit)) ". t and Δt are in " (Label(unit)) "; L is the length of the model."
         }
         @if let Some(place) = &stop.place { (where_table(place, length_unit(run))) }
         @if let Some(picture) = picture { (picture) }

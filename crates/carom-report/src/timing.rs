@@ -56,8 +56,8 @@ pub(crate) fn timing(m: &Manifest) -> Markup {
         }
         @if let Some(&cpu) = m.timings.get("cpu") {
             p {
-                "Processor time of the first thread in the time steps: " (three(cpu)) " s (" (each(1e3 * cpu))
-                " ms per step)."
+                "Processor time of the first thread in the time steps: " (three(cpu)) "\u{a0}s (" (each(1e3 * cpu))
+                "\u{a0}ms per step)."
             }
         }
         table {

@@ -9,7 +9,7 @@ use crate::figure::Figure;
 use crate::labels::listed;
 use crate::measured::{Points, add_points, differences, sources};
 use crate::noise::largest;
-use crate::over_time::{chart, names};
+use crate::over_time::{SMALL, chart, names};
 use crate::palette::LINES;
 
 /// A column below this size shows only round-off.
@@ -66,7 +66,7 @@ pub(crate) fn expected(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
             columns.push(column);
         }
     }
-    // The components of a vector have one panel.
+    // The components of a vector have one panel, those that would be flat in it a second one.
     for column in &columns {
         let stem = column.strip_suffix(['x', 'y', 'z']).filter(|stem| stem.ends_with('_'));
         let stem = stem.map_or(column.as_str(), |stem| stem.trim_end_matches('_'));
@@ -78,8 +78,14 @@ pub(crate) fn expected(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
     let formulas: Vec<(String, String, Vec<f64>)> =
         run.manifest.expectations.iter().filter_map(|e| formula(run, &e.what)).collect();
     let mut panels = Vec::new();
-    for (name, members) in &groups {
-        let members: Vec<&str> = members.iter().map(String::as_str).collect();
+    let peak = |column: &str| run.column(column).map_or(0.0, largest);
+    let by_size = groups.iter().flat_map(|(name, members)| {
+        let most = members.iter().map(|column| peak(column)).fold(0.0, f64::max);
+        let (large, small): (Vec<&str>, Vec<&str>) =
+            members.iter().map(String::as_str).partition(|column| peak(column) >= SMALL * most);
+        [large, small].map(|members| (name, members))
+    });
+    for (name, members) in by_size.filter(|(_, members)| !members.is_empty()) {
         let label = if let [one] = members[..] { one } else { name };
         let mut panel = panel(run, &points, &members, label);
         for (_, text, y) in formulas.iter().filter(|(column, ..)| members.contains(&column.as_str())) {
@@ -130,7 +136,7 @@ fn panel<'a>(run: &'a Run, points: &'a [Points], columns: &[&str], label: &str) 
 }
 
 /// The names of columns in what an expectation asks for.
-fn columns_in(run: &Run, what: &str) -> Vec<String> {
+pub(crate) fn columns_in(run: &Run, what: &str) -> Vec<String> {
     let sum = what.split_once("− (").map_or(what, |(column, _)| column);
     sum.split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | ':')))
         .filter(|word| run.column(word).is_some())

@@ -77,7 +77,8 @@ fn figures_and_page() {
         "<td>assembly</td><td class=\"n\">1.25</td><td class=\"n\">3.13</td><td class=\"n\">50 %</td>",
         "<td>other</td><td class=\"n\">0.5</td><td class=\"n\">1.25</td><td class=\"n\">20 %</td>",
         "<td>Newton iterations</td><td class=\"n\">1532</td><td class=\"n\">3.83</td>",
-        r"--set 'title='\''x'\'''",
+        r#"<span class="option">--set</span> 'title='\''x'\'''"#,
+        ", up to t\u{a0}=\u{a0}",
     ] {
         assert!(page.contains(part), "{part}");
     }

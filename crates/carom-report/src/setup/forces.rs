@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::drawing::Setup;
 use super::values::{list, text, vector};
+use crate::labels::is_static;
 use crate::pen::Point;
 use crate::scientific::given;
 use crate::symbols::{along, arrow, direction, plus};
@@ -80,7 +81,8 @@ fn without_dots(formula: &str) -> String {
         if power > 1 {
             let _ = write!(out, "^{power}");
         }
-        let after = rest.strip_prefix('·').filter(|_| is_number);
+        // `2 if(t < 1, …)` would be read as a condition.
+        let after = rest.strip_prefix('·').filter(|after| is_number && !after.starts_with("if("));
         if let Some(after) = after.filter(|after| after.starts_with(|c: char| c.is_alphabetic() || c == '('))
         {
             out.push('\u{202f}');
@@ -198,16 +200,23 @@ impl Setup<'_> {
             let sides: Vec<&str> = list(load.spec, "on").iter().filter_map(Value::as_str).collect();
             let place = if sides.is_empty() { text(load.spec, "body").to_owned() } else { sides.join(", ") };
             let unit = self.load_unit(load.kind);
-            let units = self.case().get("units").unwrap_or(&Value::Null);
             let is_formula = load.components.iter().any(|c| c.as_str().is_some_and(depends_on_time));
-            let time =
-                if is_formula { format!(", with t in {}", text(units, "time")) } else { String::new() };
+            let time = if is_formula { self.with_time() } else { String::new() };
             let amount = format!("{amount} {unit}{time}").trim_end().to_owned();
             let table = value.pointer("/table/file").and_then(Value::as_str);
             let table = table.map_or_else(String::new, |file| format!(" × {file}"));
             Some(format!("{place}: {} {amount}{table}", load.kind.replace('-', " ")))
         };
         list(self.case(), "loads").iter().filter_map(words).collect()
+    }
+
+    /// What t is in a formula: a time or, in a static analysis, a parameter without a unit.
+    pub(super) fn with_time(&self) -> String {
+        if is_static(self.run) {
+            return ", with the load parameter t".to_owned();
+        }
+        let units = self.case().get("units").unwrap_or(&Value::Null);
+        format!(", with t in {}", text(units, "time"))
     }
 
     /// The unit of the values of a load.
@@ -230,13 +239,10 @@ impl Setup<'_> {
         let moved = list(support, "move").iter().filter_map(|m| {
             let [axis_number, formula] = m.as_array()?.as_slice() else { return None };
             let units = self.case().get("units").unwrap_or(&Value::Null);
-            let (length, time) = (text(units, "length"), text(units, "time"));
-            let words = format!("{} = {} {length}", axis(axis_number.as_f64()?), written(formula));
-            Some(if formula.as_str().is_some_and(depends_on_time) {
-                format!("{words}, with t in {time}")
-            } else {
-                words
-            })
+            let words =
+                format!("{} = {} {}", axis(axis_number.as_f64()?), written(formula), text(units, "length"));
+            let is_formula = formula.as_str().is_some_and(depends_on_time);
+            Some(if is_formula { words + &self.with_time() } else { words })
         });
         fixed.into_iter().chain(moved).collect::<Vec<_>>().join(", ")
     }
@@ -296,6 +302,7 @@ mod tests {
             ("X/t*t", "X/t·t"),
             ("t*t^2", "t·t^2"),
             ("t*t*t", "t^3"),
+            ("2*if(t < 1, t, 1)", "2·if(t < 1, t, 1)"),
         ] {
             assert_eq!(typeset(formula), text);
         }

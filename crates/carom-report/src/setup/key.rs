@@ -52,10 +52,10 @@ impl Setup<'_> {
             );
             let cells = block.map_or(0, |b| b.cells().count());
             let (element, material) = (word(body, "element"), word(body, "material"));
-            let material = if material == word(body, "name") { "the material" } else { material };
+            let of = if material == word(body, "name") { "material " } else { "" };
             line(
                 &swatch,
-                &format!("{}: {material}, {cells} {element} cells, {nodes} nodes", word(body, "name")),
+                &format!("{}: {of}{material}, {cells} {element} cells, {nodes} nodes", word(body, "name")),
                 false,
             );
             for (key, symbol, unit) in [
@@ -68,7 +68,7 @@ impl Setup<'_> {
                 }
             }
         }
-        if let Some(plane) = self.plane_in_words(length) {
+        if let Some(plane) = plane_in_words(self.case(), length) {
             line("", "Model", true);
             line("", &plane, false);
         }
@@ -145,7 +145,7 @@ impl Setup<'_> {
                 line(&bar(SECONDARY), &format!("{secondary} (secondary)"), false);
                 line(&bar(PRIMARY), &format!("{primary} (primary)"), false);
             }
-            if let Some(motion) = motion_in_words(contact, length, time) {
+            if let Some(motion) = motion_in_words(contact, length, &self.with_time()) {
                 line("", &motion, false);
             }
             if let Some(friction) = friction_in_words(contact, length, time) {
@@ -165,15 +165,15 @@ impl Setup<'_> {
         }
         y + 12.0
     }
+}
 
-    /// `plane strain, thickness 1 m`, in bars `cross-section 1 m²`; none in space.
-    fn plane_in_words(&self, length: &str) -> Option<String> {
-        let thickness = given(self.case().get("thickness").and_then(Value::as_f64)?);
-        match self.case().get("dimension").and_then(Value::as_u64) {
-            Some(1) => Some(format!("bar, cross-section {thickness} {length}^2")),
-            Some(2) => Some(format!("plane {}, thickness {thickness} {length}", word(self.case(), "plane"))),
-            _ => None,
-        }
+/// `plane strain, thickness 1 m`, in bars `cross-section 1 m²`; none in space.
+pub(super) fn plane_in_words(case: &Value, length: &str) -> Option<String> {
+    let thickness = given(case.get("thickness").and_then(Value::as_f64)?);
+    match case.get("dimension").and_then(Value::as_u64) {
+        Some(1) => Some(format!("bar, cross-section {thickness} {length}^2")),
+        Some(2) => Some(format!("plane {}, thickness {thickness} {length}", word(case, "plane"))),
+        _ => None,
     }
 }
 
@@ -187,7 +187,7 @@ pub(super) fn law_name(law: &str) -> &str {
 }
 
 /// How a rigid primary moves.
-fn motion_in_words(contact: &Value, length: &str, time: &str) -> Option<String> {
+fn motion_in_words(contact: &Value, length: &str, with_time: &str) -> Option<String> {
     let given = contact.pointer("/motion/prescribed")?;
     let moved = list(given, "moves").iter().filter_map(|m| {
         let [axis, formula] = m.as_array()?.as_slice() else { return None };
@@ -196,7 +196,7 @@ fn motion_in_words(contact: &Value, length: &str, time: &str) -> Option<String> 
     });
     let turned = given.get("rotate").and_then(|turn| Some(format!("angle = ({})°", written(turn.get(0)?))));
     let words: Vec<String> = moved.chain(turned).collect();
-    (!words.is_empty()).then(|| format!("{}, with t in {time}", words.join(", ")))
+    (!words.is_empty()).then(|| words.join(", ") + with_time)
 }
 
 /// The coefficients of friction.

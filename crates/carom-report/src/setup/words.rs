@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use super::key::law_name;
+use super::key::{law_name, plane_in_words};
 use super::values::{list, text, tuple, vector};
 use crate::scientific::given;
 
@@ -54,4 +54,13 @@ pub(crate) fn in_words(case: &Value) -> Vec<(&'static str, Vec<String>)> {
         ("Probes", all("probes", &probe)),
     ];
     rows.into_iter().filter(|(_, lines)| !lines.is_empty()).collect()
+}
+
+/// Elements and idealisation, which the arms of a study may change.
+pub(crate) fn model_in_words(case: &Value) -> Vec<(&'static str, Vec<String>)> {
+    let length = text(case.get("units").unwrap_or(&Value::Null), "length");
+    let element = |body: &Value| format!("{}: {}", text(body, "name"), text(body, "element"));
+    let elements: Vec<String> = list(case, "bodies").iter().map(element).collect();
+    let plane: Vec<String> = plane_in_words(case, length).into_iter().collect();
+    [("Elements", elements), ("Model", plane)].into_iter().filter(|(_, lines)| !lines.is_empty()).collect()
 }

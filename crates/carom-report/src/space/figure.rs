@@ -53,7 +53,7 @@ pub(crate) fn instants(
     run: &Run,
     sets: &[(f64, FieldSet)],
     length: &str,
-    during: &str,
+    words: (&str, &str),
 ) -> Option<([String; 2], String, Bands)> {
     let view = View::axonometric();
     let skin = skin(&sets.first()?.1);
@@ -98,7 +98,7 @@ pub(crate) fn instants(
     let headings = list.iter().map(|(heading, ..)| heading.as_str());
     let pictures =
         Sheet::pair("Deformed bodies with von Mises stress", headings, wide, FOOT, picture).map(finish);
-    let caption = caption(&bands, cut, &unit, during, !rigid.is_empty());
+    let caption = caption(&bands, cut, &unit, words, !rigid.is_empty());
     Some((pictures, caption, bands))
 }
 
@@ -139,7 +139,7 @@ pub(crate) fn underlay(out: &mut String, lines: &[[Place; 2]], view: &View, to: 
     );
 }
 
-fn caption(bands: &Bands, cut: [bool; 2], unit: &str, during: &str, rigid: bool) -> String {
+fn caption(bands: &Bands, cut: [bool; 2], unit: &str, (during, files): (&str, &str), rigid: bool) -> String {
     let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
     let arrow = if cut[1] {
         format!(
@@ -153,7 +153,7 @@ fn caption(bands: &Bands, cut: [bool; 2], unit: &str, during: &str, rigid: bool)
     format!(
         "Deformed bodies with von Mises stress (of nodal averages of the Cauchy stress) at instants \
          {during}. All at the same scale; displacements are not magnified. View: {}. The scale applies to \
-         lengths parallel to the page.{rigid}{arrow} Data: stress and displacement in the field files.",
+         lengths parallel to the page.{rigid}{arrow} Data: stress and displacement in {files}.",
         View::words()
     )
 }

@@ -1,0 +1,98 @@
+//! "Expectations": what the case expects of the run, and what came out.
+
+use carom_record::{Expectation, Run};
+use maud::{Markup, html};
+
+use crate::asked;
+use crate::document::{minus, or_dash};
+use crate::noise::largest;
+use crate::results::is_round_off;
+use crate::scientific::{powers, significant};
+use crate::text::Label;
+use crate::unshown::columns_in;
+
+/// Significant digits of a result beside its tolerance.
+const DIGITS: usize = 6;
+/// A result below this share of its columns is round-off.
+const ROUND_OFF: f64 = 1e-12;
+
+/// An expected value with its tolerance, which stay on one line.
+fn expected(text: &str) -> String {
+    let exact = text.strip_suffix(" ± 0").map_or_else(|| text.to_owned(), |value| format!("= {value}"));
+    powers(&minus(&exact)).replace(" ± ", "\u{a0}±\u{a0}").replace(" %", "\u{a0}%")
+}
+
+/// The unit of what an expectation asks for: a dash for numbers, nothing where it is not known.
+fn unit_of_question(run: &Run, what: &str) -> Markup {
+    html! {
+        @if let Some(unit) = asked::unit(run, what) { @if unit.is_empty() { "–" } @else { (Label(&unit)) } }
+    }
+}
+
+/// Sources of more than one expectation that are too long to be repeated.
+fn repeated_sources(run: &Run) -> Vec<&String> {
+    let mut found: Vec<&String> = Vec::new();
+    let sources: Vec<&String> = run.manifest.expectations.iter().filter_map(|e| e.source.as_ref()).collect();
+    for source in &sources {
+        let is_repeated = sources.iter().filter(|other| other == &source).count() > 1;
+        if source.chars().count() > 40 && is_repeated && !found.contains(source) {
+            found.push(source);
+        }
+    }
+    found
+}
+
+/// Whether a result is round-off of its columns or, as a length, of the model, and its tolerance is
+/// not of that size.
+fn is_zero(run: &Run, e: &Expectation) -> bool {
+    let (Some(got), Some(unit)) = (e.got, asked::unit(run, &e.what).filter(|unit| !unit.is_empty())) else {
+        return false;
+    };
+    let length = run.manifest.case.pointer("/units/length").and_then(|unit| unit.as_str());
+    let columns = columns_in(run, &e.what).into_iter().filter(|column| run.history.unit(column) == unit);
+    let most = columns.filter_map(|column| run.column(&column).map(largest)).fold(0.0, f64::max);
+    let is_tiny = got != 0.0 && got.abs() < ROUND_OFF * most;
+    (is_tiny || length == Some(&unit) && is_round_off(run, got))
+        && e.tolerance.is_none_or(|tolerance| tolerance > got.abs())
+}
+
+/// The section of the page; nothing where the case has none.
+pub(crate) fn expectations(run: &Run) -> Markup {
+    let all = &run.manifest.expectations;
+    let repeated = repeated_sources(run);
+    html! {
+        @if !all.is_empty() {
+            h2 { "Expectations" }
+            table.expectations {
+                thead {
+                    tr {
+                        th { "Quantity" } th { "Expected" } th.n { "Result" } th { "Unit" } th { "Verdict" }
+                        th { "Source" }
+                    }
+                }
+                @for e in all {
+                    tr {
+                        td { code { (e.what) } } td.expected { (Label(&expected(&e.expected))) }
+                        td.n {
+                            @if is_zero(run, e) { "≈ 0" } @else { (Label(&or_dash(e.got, |x| significant(x, DIGITS)))) }
+                        }
+                        td.unit { (unit_of_question(run, &e.what)) }
+                        @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
+                        td {
+                            @if let Some(source) = &e.source {
+                                @if let Some(k) = repeated.iter().position(|other| *other == source) {
+                                    "[" (k + 1) "]"
+                                } @else { (Label(source)) }
+                            }
+                        }
+                    }
+                }
+            }
+            @if all.iter().any(|e| is_zero(run, e)) { p.small { "≈ 0: round-off." } }
+            @if all.iter().any(|e| asked::unit(run, &e.what).is_none()) {
+                p.small { "Without a unit: the numbers in the quantity may have units, which the record does not contain." }
+            }
+            @for (k, source) in repeated.iter().enumerate() { p.small { "[" (k + 1) "] " (Label(source)) } }
+        }
+    }
+}
