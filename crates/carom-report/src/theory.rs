@@ -1,6 +1,6 @@
 //! The figure of the spectral properties of the schemes, with the frequencies of the model.
 
-use carom_record::study::{Arm, Study, step};
+use carom_record::study::{Study, step};
 
 use crate::curves;
 use crate::plot::{Curve, Pane, Plot};
@@ -121,6 +121,6 @@ fn same_scheme(study: &Study, names: &[&str]) -> String {
     if found.is_empty() {
         return String::new();
     }
-    let words: Vec<String> = found.iter().map(|(one, other)| format!("“{one}” is “{other}”")).collect();
-    format!(" Methods with the same scheme have one curve: {}.", words.join("; "))
+    let words: Vec<String> = found.iter().map(|(one, other)| format!("“{one}” that of “{other}”")).collect();
+    format!(" Methods with the scheme of another one have its curve: {}.", words.join("; "))
 }

@@ -453,6 +453,27 @@ pub(crate) mod tests {
         assert!(middle < 1e-9 && plot.panes[0].curves[3].x == [8.0, 4.0, 2.0, 1.0], "{:?}", plot.panes[0]);
     }
 
+    /// What differs between groups only is no trend; arms are said to be left out where some are.
+    #[test]
+    fn a_trend_varies_against_its_key() {
+        let arm =
+            |start: f64, r: f64, created: f64| vec![("start", start), ("r", r), ("energy_created", created)];
+        let mut arms = vec![
+            ("k=1, g=0", arm(1.0, 1.0, 0.0)),
+            ("k=2, g=0", arm(1.0, 2.0, 0.0)),
+            ("k=3, g=0", arm(1.0, 4.0, 0.0)),
+            ("k=1, g=1", arm(2.0, 1.0, 0.0)),
+            ("k=2, g=1", arm(2.0, 2.0, 0.0)),
+            ("k=3, g=1", arm(2.0, 4.0, 0.0)),
+        ];
+        let plot_of = |arms: &[_]| plots(&study(arms)).swap_remove(0);
+        let plot = plot_of(&arms);
+        assert_eq!(names(&plot), ["r"]);
+        assert!(!plot.caption.contains("left out"), "{}", plot.caption);
+        arms[5].1[2].1 = 1.0;
+        assert!(plot_of(&arms).caption.contains("left out"));
+    }
+
     #[test]
     fn the_caption_says_what_is_left_out() {
         const NAMES: [&str; 10] = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j"];
