@@ -1,6 +1,6 @@
 //! The figure of the spectral properties of the schemes, with the frequencies of the model.
 
-use carom_record::study::{Study, step};
+use carom_record::study::{Arm, Study, step};
 
 use crate::curves;
 use crate::plot::{Curve, Pane, Plot};
