@@ -8,9 +8,17 @@ pub(crate) fn five(x: f64) -> String {
         format!("{x}")
     } else {
         let decimals = (4 - x.abs().log10().floor() as i32).clamp(0, 8) as usize;
-        format!("{x:.decimals$}").trim_end_matches('0').trim_end_matches('.').to_owned()
+        without_zeros(format!("{x:.decimals$}"))
     };
     text.replace('-', "−")
+}
+
+/// Without zeros at the end of a fraction; those of 19500 stay.
+fn without_zeros(number: String) -> String {
+    if !number.contains('.') {
+        return number;
+    }
+    number.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// A count, with all its digits; a mean of counts with three.
@@ -58,6 +66,16 @@ mod tests {
         for (x, text) in cases {
             assert_eq!(three_digits(x), text);
         }
+    }
+
+    /// Only zeros of a fraction are left out.
+    #[test]
+    fn large_numbers_keep_their_zeros() {
+        let cases = [(19_500.411, "19500"), (120_000.4, "120000"), (-99_999.7, "−100000"), (2.5, "2.5")];
+        for (x, text) in cases {
+            assert_eq!(five(x), text);
+        }
+        assert_eq!(three(19_500.411), "19500");
     }
 
     #[test]

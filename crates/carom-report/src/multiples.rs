@@ -12,6 +12,9 @@ use crate::plot::{Band, Curve, Pane, Plot};
 /// Colour of the reference in small multiples.
 const REFERENCE: &str = "#222";
 
+/// Most points of the reference in a pane.
+const POINTS: usize = 1200;
+
 /// Largest number of small multiples in one figure.
 const MULTIPLES: usize = 24;
 
@@ -28,22 +31,47 @@ pub(crate) fn plots(study: &Study, columns: &[Column], measured: &Measured, time
 fn reference_of(reference: &Reference, column: &str) -> Option<(Curve, Option<Band>)> {
     let (x, y) = reference.column(column)?;
     let off = reference.band(column);
-    let every = x.len().div_ceil(1200).max(1);
-    let rows = (0..x.len()).step_by(every);
-    let edge = |sign: f64| rows.clone().map(|i| y[i] + sign * off[i]).collect();
-    let x: Vec<f64> = rows.clone().map(|i| x[i]).collect();
+    let piece = (2 * x.len()).div_ceil(POINTS).max(1);
+    if x.is_empty() {
+        return None;
+    }
+    let rows = extremes(y, piece);
+    let around = |i: usize| i / piece * piece..(i / piece * piece + piece).min(y.len());
+    let low = |i: &usize| around(*i).map(|k| y[k] - off[k]).fold(f64::INFINITY, f64::min);
+    let high = |i: &usize| around(*i).map(|k| y[k] + off[k]).fold(f64::NEG_INFINITY, f64::max);
+    let x: Vec<f64> = rows.iter().map(|i| x[*i]).collect();
     let known = reference.uncertainty(column).established().is_some();
-    let band = known.then(|| Band { name: "uncertainty", x: x.clone(), low: edge(-1.0), high: edge(1.0) });
+    let band = known.then(|| Band {
+        name: "uncertainty",
+        x: x.clone(),
+        low: rows.iter().map(low).collect(),
+        high: rows.iter().map(high).collect(),
+    });
     let line = Curve {
         label: "reference".to_owned(),
         color: Some(REFERENCE),
         over: true,
         x,
-        y: edge(0.0),
+        y: rows.iter().map(|i| y[*i]).collect(),
         unlisted: true,
         ..Curve::default()
     };
     Some((line, band))
+}
+
+/// The rows with the least and the largest value of every piece, and both ends: no peak is lost.
+fn extremes(y: &[f64], piece: usize) -> Vec<usize> {
+    let mut found = vec![0];
+    for from in (0..y.len()).step_by(piece.max(1)) {
+        let rows = || from..(from + piece).min(y.len());
+        let least = rows().min_by(|a, b| y[*a].total_cmp(&y[*b]));
+        let largest = rows().max_by(|a, b| y[*a].total_cmp(&y[*b]));
+        found.extend(least.into_iter().chain(largest));
+    }
+    found.push(y.len().saturating_sub(1));
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// Name of the figure with small multiples of a column.
@@ -132,4 +160,21 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
         measured.words(&column.name)
     );
     Some(plot)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::extremes;
+
+    /// A peak of one row is drawn, wherever it lies in its piece.
+    #[test]
+    fn no_peak_is_lost() {
+        for at in 0..40 {
+            let mut y = vec![1.0; 40];
+            y[at] = 7.0;
+            let rows = extremes(&y, 9);
+            assert!(rows.contains(&at) && rows.contains(&0) && rows.contains(&39), "{at}: {rows:?}");
+            assert!(rows.len() <= 12);
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! The figure of the spectral properties of the schemes, with the frequencies of the model.
 
-use carom_record::study::{Study, step};
+use carom_record::study::{Arm, Study, step};
 
 use crate::curves;
 use crate::plot::{Curve, Pane, Plot};
@@ -87,9 +87,10 @@ pub(crate) fn plot(study: &Study) -> Option<Plot> {
         name: "theory".into(),
         caption: format!(
             "Properties of the schemes for an undamped oscillator of angular frequency ω. Vertical lines: the \
-             lowest (ω_{{1}}) and the highest (ω_{{max}}) frequency of the model within the range of the axis, \
-             at the longest time step (labelled) and at the shortest.{springs} For a node constrained by a \
-             multiplier, ωΔt → ∞ and only ρ∞ matters.{}",
+             lowest (ω_{{1}}) and the highest (ω_{{max}}) frequency of the model of the first arm within the \
+             range of the curves, at the longest time step (labelled) and at the shortest.{springs} For a node constrained by a \
+             multiplier, ωΔt → ∞ and only ρ∞ matters.{}{}",
+            same_scheme(study, &names),
             curves::drawn_once(&once)
         ),
         x_label: "ωΔt".into(),
@@ -99,4 +100,27 @@ pub(crate) fn plot(study: &Study) -> Option<Plot> {
         direct: true,
         panes,
     })
+}
+
+/// Which methods have no curve of their own, since they have the scheme of another one.
+fn same_scheme(study: &Study, names: &[&str]) -> String {
+    let arms = || study.manifest.arms.iter().filter(|arm| !arm.role.fine);
+    let mut found: Vec<(&str, &str)> = Vec::new();
+    for arm in arms().filter(|arm| !names.contains(&arm.method())) {
+        let scheme = arm.case.pointer("/time/scheme");
+        let is_same = |other: &&Arm| {
+            names.contains(&other.method())
+                && scheme.is_some()
+                && other.case.pointer("/time/scheme") == scheme
+        };
+        let Some(other) = arms().find(is_same) else { continue };
+        if !found.iter().any(|(known, _)| *known == arm.method()) {
+            found.push((arm.method(), other.method()));
+        }
+    }
+    if found.is_empty() {
+        return String::new();
+    }
+    let words: Vec<String> = found.iter().map(|(one, other)| format!("“{one}” that of “{other}”")).collect();
+    format!(" Methods with the scheme of another one have its curve: {}.", words.join("; "))
 }

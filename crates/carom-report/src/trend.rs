@@ -20,6 +20,8 @@ const LEAST: usize = 3;
 /// Fewest values from which a line is fitted: through three, the interval of its slope is twelve
 /// times the standard error.
 const FITTED: usize = 4;
+/// What is said where there are fewer.
+const NOT_FITTED: &str = " No line is fitted to fewer than four values.";
 /// Panes of a figure.
 const MOST: usize = 9;
 /// Factor between the largest and the smallest number from which logarithms are used.
@@ -117,23 +119,26 @@ impl Trend {
         // An interval of round-off says nothing.
         let interval = if fit.uncertainty < 1e-6 * fit.slope.abs() { "0" } else { &interval };
         if self.power {
-            return Some(format!("exponent {slope} ± {interval}"));
+            return Some(format!("exponent {slope} ±\u{a0}{interval}"));
         }
         let unit = match (metric, key) {
             ("" | "1", "") => String::new(),
-            ("" | "1", key) => format!(" 1/{key}"),
+            ("" | "1", key) => format!(" per {key}"),
             (metric, "") => format!(" {metric}"),
-            (metric, key) => format!(" {metric}/{key}"),
+            (metric, key) => format!(" {metric} per {key}"),
         };
-        Some(format!("slope {slope} ± {interval}{unit}"))
+        // The unit stays in one line.
+        let unit = unit.trim_start().replace(' ', "\u{a0}");
+        Some(format!("slope {slope} ±\u{a0}{interval} {unit}").trim_end().to_owned())
     }
 }
 
 /// Metrics that vary, those of [`FIRST`] first.
 fn metrics<'a>(study: &'a Study, key: &str, groups: &[Refinement]) -> Vec<&'a Metric> {
     let known = |name: &str| {
-        let values: Vec<f64> = groups.iter().flat_map(|group| points(study, group, name).1).collect();
-        values.len() >= LEAST && !is_constant(&values)
+        let values: Vec<Vec<f64>> = groups.iter().map(|group| points(study, group, name).1).collect();
+        // What differs between groups only does not vary against the key.
+        values.iter().map(Vec::len).sum::<usize>() >= LEAST && values.iter().any(|own| !is_constant(own))
     };
     let rank = |name: &str| {
         let base = name.split_once(':').map_or(name, |(base, _)| base);
@@ -217,31 +222,53 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
     };
     let fitted = panes.iter().flat_map(|pane| &pane.curves).any(|curve| !curve.marked);
     let lines = match (fitted, wide) {
-        (false, _) => " No line is fitted to fewer than four values.",
+        (false, _) => NOT_FITTED,
         (true, false) => " Lines: least squares.",
         (true, true) => {
             " Lines: least squares, of the logarithms of both where the metric also spans a factor of three."
         }
     };
-    (!panes.is_empty()).then(|| Plot {
+    let few = |curve: &Curve| curve.marked && curve.x.len() < FITTED;
+    let short = fitted && panes.iter().flat_map(|pane| &pane.curves).any(few);
+    let short = if short { NOT_FITTED } else { "" };
+    let unsound = |arm: &usize| study.rows[*arm].is_unsound();
+    let left_out = if groups.iter().flat_map(|group| &group.arms).any(unsound) {
+        " Arms that failed or created energy are left out."
+    } else {
+        ""
+    };
+    let mut plot = Plot {
         group: String::new(),
         name: format!("trend-{}", file_name(key)),
-        caption: format!(
-            "{which} against `{key}`{}{of}.{lines}{} Arms that failed or created energy are left out.",
-            match (wide, fitted) {
-                (false, _) => "",
-                (true, false) => " on a logarithmic axis",
-                (true, true) => " on a logarithmic axis, where straight lines look curved",
-            },
-            if single && fitted { " Grey: 95 % confidence interval of the line." } else { "" }
-        ),
+        caption: String::new(),
         x_label: axis(study, key),
         log: [wide, false],
         across: 3,
         same: false,
         direct: false,
         panes,
-    })
+    };
+    if plot.panes.is_empty() {
+        return None;
+    }
+    let grey = if single && fitted { interval(&plot) } else { "" };
+    let scale = match (wide, fitted) {
+        (false, _) => "",
+        (true, false) => " on a logarithmic axis",
+        (true, true) => " on a logarithmic axis, where straight lines look curved",
+    };
+    plot.caption = format!("{which} against `{key}`{scale}{of}.{lines}{short}{grey}{left_out}");
+    Some(plot)
+}
+
+/// What is said of the intervals, of which no part higher than the pane is drawn.
+fn interval(plot: &Plot) -> &'static str {
+    let all = plot.panes.iter().all(|pane| plot.shown_band(pane).iter().all(|shown| *shown));
+    if all {
+        " Grey: 95 % confidence interval of the line."
+    } else {
+        " Grey: 95 % confidence interval of the line, where it does not exceed the axis."
+    }
 }
 
 /// The labels of groups, without the settings that all of them have.
@@ -424,6 +451,27 @@ pub(crate) mod tests {
         let fit = &plot.panes[0].curves[0];
         let middle = fit.x.iter().zip(&fit.y).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
         assert!(middle < 1e-9 && plot.panes[0].curves[3].x == [8.0, 4.0, 2.0, 1.0], "{:?}", plot.panes[0]);
+    }
+
+    /// What differs between groups only is no trend; arms are said to be left out where some are.
+    #[test]
+    fn a_trend_varies_against_its_key() {
+        let arm =
+            |start: f64, r: f64, created: f64| vec![("start", start), ("r", r), ("energy_created", created)];
+        let mut arms = vec![
+            ("k=1, g=0", arm(1.0, 1.0, 0.0)),
+            ("k=2, g=0", arm(1.0, 2.0, 0.0)),
+            ("k=3, g=0", arm(1.0, 4.0, 0.0)),
+            ("k=1, g=1", arm(2.0, 1.0, 0.0)),
+            ("k=2, g=1", arm(2.0, 2.0, 0.0)),
+            ("k=3, g=1", arm(2.0, 4.0, 0.0)),
+        ];
+        let plot_of = |arms: &[_]| plots(&study(arms)).swap_remove(0);
+        let plot = plot_of(&arms);
+        assert_eq!(names(&plot), ["r"]);
+        assert!(!plot.caption.contains("left out"), "{}", plot.caption);
+        arms[5].1[2].1 = 1.0;
+        assert!(plot_of(&arms).caption.contains("left out"));
     }
 
     #[test]

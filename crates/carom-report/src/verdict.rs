@@ -359,7 +359,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
             summary { "Quantities without an established reference value (not used for ranking)" }
             table {
                 thead { tr { th { "Quantity" } th { "Reason" } } }
-                @for (name, why) in not { tr { td { code { (name) } } td { (why) } } }
+                @for (name, why) in not { tr { td { code { (name) } } td { (typeset(&why)) } } }
             }
         }
     }

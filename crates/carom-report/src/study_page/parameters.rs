@@ -41,7 +41,7 @@ pub(super) fn section(study: &Study, picture: Option<&[String; 2]>) -> Markup {
         }
         @if !shared.is_empty() { p { "Set in all arms: " (codes(&shared, ", ")) "." } }
         @if !varied.is_empty() {
-            p { "Parameters that differ between arms:" }
+            p { "Parameters that differ between arms" @if is_rounded(study, &varied) { ", rounded to five digits" } ":" }
             @if has_matrix(study) { (matrix(study, &varied)) } @else { (parameters(study, &varied)) }
         }
         (design::paragraphs(study))
@@ -51,6 +51,14 @@ pub(super) fn section(study: &Study, picture: Option<&[String; 2]>) -> Markup {
 /// Whether parameters are listed by arm, and not by value.
 pub(super) fn has_matrix(study: &Study) -> bool {
     study.rows.len() <= FEW
+}
+
+/// Whether a number that is shown has fewer digits than in its file.
+fn is_rounded(study: &Study, varied: &[(&str, Vec<Option<&str>>)]) -> bool {
+    // Longer lists of values are only counted.
+    let shown = |values: &&Vec<Option<&str>>| has_matrix(study) || distinct(values).len() <= FEW;
+    let values = varied.iter().map(|(_, values)| values).filter(shown).flatten().flatten();
+    values.into_iter().any(|value| settings::brief(value) != **value)
 }
 
 /// A table with a row for every parameter and a column for every arm.
