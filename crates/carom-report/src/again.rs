@@ -1,4 +1,5 @@
-//! What the broad picture of a figure has, shown again in the narrow one, so that a page holds it once.
+//! What the broad picture of a figure has, shown again in the narrow one, so that a page holds it
+//! once.
 
 use std::fmt::Write as _;
 

@@ -230,8 +230,8 @@ pub(crate) fn colors(instants: &[Instant]) -> (Bands, [bool; 2]) {
     color_bands(instants.iter().flat_map(used))
 }
 
-/// The figure, broad and narrow; `obstacles` are the surfaces at each instant within `frame`, and `marks` points on
-/// them with normals.
+/// The figure, broad and narrow; `obstacles` are the surfaces at each instant within `frame`, and
+/// `marks` points on them with normals.
 pub(crate) fn figure(
     instants: &[Instant],
     (obstacles, marks, frame): (&[Vec<Walk>], &[Walk], [f64; 4]),

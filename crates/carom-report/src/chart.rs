@@ -206,8 +206,8 @@ impl Chart<'_> {
 /// Place of the second line of such a label; exponents need room above it.
 const SECOND: f64 = 28.5;
 
-/// The label of a vertical axis whose tick labels begin at `left`: where it is too long and there is
-/// room for it, its unit has a line of its own; what is still too long is smaller.
+/// The label of a vertical axis whose tick labels begin at `left`: where it is too long and there
+/// is room for it, its unit has a line of its own; what is still too long is smaller.
 fn write_turned(out: &mut String, label: &str, (left, middle): (f64, f64), room: f64) {
     let is_long = text::width(label) * FONT > room && left > SECOND + 3.0;
     let lines: Vec<&str> = match label.rsplit_once(" (") {

@@ -77,7 +77,8 @@ pub(crate) fn add_points<'a>(all: &'a [Points], column: &str, panel: &mut Vec<Se
         let number = panel.iter().filter(|s| s.dotted).count();
         let is_named = panel.iter().any(|s| s.dotted && s.label == points.label);
         panel.push(Series {
-            // Several curves of a panel can have expected values; one entry of the legend is enough.
+            // Several curves of a panel can have expected values; one entry of the legend is
+            // enough.
             label: points.label.clone(),
             color: if points.measured.is_none() {
                 LINES[1]

@@ -9,6 +9,7 @@ mod curve;
 mod direct;
 mod draw;
 mod frame;
+mod layout;
 mod legend;
 mod scale;
 

@@ -68,8 +68,8 @@ impl Sheet {
         Self { out: open(title, width, height), frame, scale, columns, width, pictures, height }
     }
 
-    /// The broad and the narrow sheet of pictures with headings, of which `draw` draws one. The narrow
-    /// one shows those of the broad one again, unless their lines would become too thin.
+    /// The broad and the narrow sheet of pictures with headings, of which `draw` draws one. The
+    /// narrow one shows those of the broad one again, unless their lines would become too thin.
     pub(crate) fn pair<'a>(
         title: &str,
         headings: impl ExactSizeIterator<Item = &'a str>,

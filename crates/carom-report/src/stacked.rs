@@ -1,4 +1,5 @@
-//! Tables whose cells stand below each other in a narrow window, each with the heading of its column.
+//! Tables whose cells stand below each other in a narrow window, each with the heading of its
+//! column.
 //!
 //! The style sheet does so for tables of the class `stack`; it reads the headings from the cells.
 

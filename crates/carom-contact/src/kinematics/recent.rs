@@ -1,16 +1,16 @@
 //! The last search of a solve. A node without a candidate keeps having none, and an open candidate
 //! stays open, while positions at the end of the step change by less than the distance that
-//! certificates leave: Newton's method converges, and most of the searches of a solve repeat the one
-//! before.
+//! certificates leave: Newton's method converges, and most of the searches of a solve repeat the
+//! one before.
 //!
 //! ```text
 //! δ = largest change of a coordinate at the end of the step
 //! distance of a node to a facet, anywhere on their paths    > s − 2√3 (1 + A) δ
 //! ```
 //!
-//! with s the separation of the certified test (`swept`), A as in `apart.rs`, and δ for what was found
-//! at one repetition and is used at another. No search outlives
-//! its solve, so that results do not depend on where a run was resumed.
+//! with s the separation of the certified test (`swept`), A as in `apart.rs`, and δ for what was
+//! found at one repetition and is used at another. No search outlives its solve, so that results do
+//! not depend on where a run was resumed.
 
 /// Facet and ξ of possible contact of a node, if there is one.
 pub(crate) type Candidate<X> = Option<(usize, X)>;

@@ -72,7 +72,8 @@ pub(super) fn is_dashed(curve: &Curve, direct: bool) -> bool {
     }
 }
 
-/// Draws a curve inside the rectangle `id` of a frame, to which one without markers is clipped by its caller.
+/// Draws a curve inside the rectangle `id` of a frame, to which one without markers is clipped by
+/// its caller.
 pub(super) fn draw(
     out: &mut String,
     curve: &Curve,

@@ -128,8 +128,8 @@ pub(super) fn draw(out: &mut String, curves: &[&Curve], ends: &[End], frame: &Fr
     }
 }
 
-/// The labels of some curves inside the pane, with a cross where one stops, or an arrowhead where it
-/// leaves the axes.
+/// The labels of some curves inside the pane, with a cross where one stops, or an arrowhead where
+/// it leaves the axes.
 fn stops(out: &mut String, stopped: &[(&Curve, End)], frame: &Frame) {
     let mut taken: Vec<(f64, f64, f64)> = Vec::new();
     for (curve, End { x, y, leaves }) in stopped {

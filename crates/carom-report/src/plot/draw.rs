@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use super::direct::End;
-use super::frame::{Frame, LEFT, Layout, RIGHT, TICK};
+use super::frame::Frame;
+use super::layout::{LEFT, Layout, RIGHT, TICK};
 use super::scale::Scale;
 use super::{Band, Curve, Pane, Plot, curve, direct, legend};
 use crate::again::{again, once};
@@ -22,7 +23,8 @@ struct Scales {
     y: Scale,
 }
 
-/// Where a pane is drawn: name, place, and for one of the narrow picture its place in the broad one.
+/// Where a pane is drawn: name, place, and for one of the narrow picture its place in the broad
+/// one.
 struct Place {
     id: String,
     frame: Frame,

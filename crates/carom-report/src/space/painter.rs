@@ -43,8 +43,8 @@ impl Paint<'_> {
         }
     }
 
-    /// The colour with a number on a piece of a brightness. Colours that stand for values are shaded
-    /// less, so that they are found at the bar.
+    /// The colour with a number on a piece of a brightness. Colours that stand for values are
+    /// shaded less, so that they are found at the bar.
     pub(crate) fn lit(&self, color: [u8; 3], brightness: f64) -> [u8; 3] {
         match self {
             Self::Bands(_) => lit(color, 1.0 - 0.3 * (1.0 - brightness)),

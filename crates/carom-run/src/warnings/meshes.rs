@@ -120,8 +120,8 @@ impl Zone {
         self.sides[side].iter().map(spacing).sum::<f64>() / self.sides[side].len() as f64
     }
 
-    /// Whether a place is within a facet's length of a side, and not much further from the other one
-    /// than this side is: on a coarse round body the far end may be in the zone, too.
+    /// Whether a place is within a facet's length of a side, and not much further from the other
+    /// one than this side is: on a coarse round body the far end may be in the zone, too.
     fn reaches(&self, at: Place) -> bool {
         let height = |y: Place| dot(minus(y, self.closest), self.normal).abs();
         self.sides.iter().any(|side| {

@@ -1,8 +1,8 @@
 //! Creases of the primary: concave edges, and the points where several of them meet. The nearest
 //! point of a node below one is on an edge, and its own facet is not the only one that it enters.
 
-use super::node_to_patch::{NodeToPatch, REACH, WANDER};
-use super::patch::place;
+use super::node_to_patch::{NodeToPatch, REACH};
+use super::patch::{WANDER, place};
 use super::paths::NOISE;
 
 impl NodeToPatch {

@@ -7,8 +7,7 @@
 use carom_algebra::{Mat, Vector};
 use carom_solid::Net;
 
-use super::node_to_patch::WANDER;
-use super::patch::{Patch, cross, place};
+use super::patch::{Patch, WANDER, cross, place};
 use crate::kinematics::swept::{PatchHit, SweptPatch};
 
 /// θ and ξ beyond their ranges: a node exactly on the surface has crossed it.

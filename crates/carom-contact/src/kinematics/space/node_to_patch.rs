@@ -23,7 +23,7 @@ use super::boundary::Boundary;
 use super::crossing::SEPARATION;
 use super::folds::PatchFolds;
 use super::gap::PatchGap;
-use super::patch::{Feature, PatchPoint, cross, place};
+use super::patch::{Feature, PatchPoint, WANDER, cross, place};
 use super::paths::{NOISE, Paths};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::opposed::is_left;
@@ -35,8 +35,6 @@ use crate::rows::Rows;
 
 /// Distance past an edge, over the height of the facet, up to which a facet is extrapolated.
 pub(super) const REACH: f64 = 0.2;
-/// The same before Newton's method has converged.
-pub(super) const WANDER: f64 = 2.0;
 /// The same beyond which a pair is handed over before Newton's method has converged.
 const HAND_OVER: f64 = 0.02;
 const HAND_BACK: f64 = 0.1;

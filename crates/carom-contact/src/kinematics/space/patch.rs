@@ -53,6 +53,9 @@ pub(crate) enum Feature {
 
 /// Steps of Newton's method; it needs fewer than ten from any good guess.
 const STEPS: usize = 40;
+/// Distance past an edge, over the height of the facet, up to which a facet is extrapolated before
+/// Newton's method has converged.
+pub(super) const WANDER: f64 = 2.0;
 /// How far beyond an edge, over the height of the facet, the search of a point on it may go.
 const PASSES: f64 = 0.25;
 
