@@ -70,15 +70,12 @@ impl<P: Piece + Clone> Earliest<P> {
 
     fn push(&mut self, piece: P) {
         let (theta, level, place) = (piece.theta(), piece.level(), piece.place());
-        let at = match self.free.pop() {
-            Some(at) => {
-                self.pieces[at] = piece;
-                at
-            }
-            None => {
-                self.pieces.push(piece);
-                self.pieces.len() - 1
-            }
+        let at = if let Some(at) = self.free.pop() {
+            self.pieces[at] = piece;
+            at
+        } else {
+            self.pieces.push(piece);
+            self.pieces.len() - 1
         };
         self.queue.push(Entry { theta, level, place, at });
     }
