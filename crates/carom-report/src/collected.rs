@@ -189,6 +189,11 @@ pub(crate) fn time_unit(study: &Study) -> &str {
     metrics.filter(|m| times.contains(&&*m.name)).map(|m| m.unit.as_str()).next().unwrap_or_default()
 }
 
+/// The unit of time of all arms; empty if they have several.
+pub(crate) fn common_time(study: &Study) -> &str {
+    if Systems::of(&study.manifest).is_one() { time_unit(study) } else { "" }
+}
+
 /// A time with its unit.
 pub(crate) fn in_time(study: &Study, value: f64) -> String {
     format!("{} {}", five(value), time_unit(study)).trim_end().to_owned()

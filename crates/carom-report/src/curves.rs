@@ -94,7 +94,11 @@ pub(crate) fn is_rough(curve: &Curve) -> bool {
 }
 
 /// The keys in the names of arms.
-pub(crate) struct Keys<'a>(Vec<&'a str>);
+pub(crate) struct Keys<'a> {
+    all: Vec<&'a str>,
+    /// The unit of time, empty where arms have several.
+    time: &'a str,
+}
 
 /// The key and the value of a part of a name.
 fn setting(part: &str) -> Option<(&str, &str)> {
@@ -107,7 +111,12 @@ impl<'a> Keys<'a> {
             names.flat_map(|name| name.split(", ")).filter_map(setting).map(|s| s.0).collect();
         keys.sort_unstable();
         keys.dedup();
-        Self(keys)
+        Self { all: keys, time: "" }
+    }
+
+    /// The same with a unit of time.
+    pub(crate) fn in_time(self, time: &'a str) -> Self {
+        Self { time, ..self }
     }
 
     /// The last part of a key, with as many parts before it as distinguish it from the other keys.
@@ -117,7 +126,7 @@ impl<'a> Keys<'a> {
             let rest = other.strip_suffix(end).filter(|_| other != key);
             rest.is_some_and(|rest| rest.is_empty() || rest.ends_with('.'))
         };
-        ends.find(|end| !self.0.iter().any(|other| is_another(other, end))).unwrap_or(key)
+        ends.find(|end| !self.all.iter().any(|other| is_another(other, end))).unwrap_or(key)
     }
 
     /// The name of an arm as a label: without the tables of its keys, and without a word that says
@@ -127,6 +136,7 @@ impl<'a> Keys<'a> {
             Some(("time.scheme", value)) => value.to_owned(),
             Some((key, value)) => match self.short(key) {
                 "mu" => format!("μ = {value}"),
+                "step" if key == "time.step" => format!("Δt = {value} {}", self.time).trim_end().to_owned(),
                 short => format!("{short} = {value}"),
             },
             _ => part.to_owned(),
@@ -180,7 +190,9 @@ mod tests {
     #[test]
     fn labels_have_no_tables() {
         let label = |name| Keys::of([name].into_iter()).label(name);
-        assert_eq!(label("time.scheme=hu, time.step=0.001875"), "hu, step = 0.001875");
+        assert_eq!(label("time.scheme=hu, time.step=0.001875"), "hu, Δt = 0.001875");
+        let timed = Keys::of(["time.step=0.1"].into_iter()).in_time("s");
+        assert_eq!(timed.label("time.step=0.1"), "Δt = 0.1 s");
         assert_eq!(label("Bathe, ρ∞ = 0.5"), "Bathe, ρ∞ = 0.5");
         assert_eq!(label("contact.a.mu=0.2"), "μ = 0.2");
     }
@@ -190,7 +202,7 @@ mod tests {
         let names = ["body.a.young=1", "body.b.young=1, time.step=1e-3", "material.a.young=1", "young=1"];
         let keys = Keys::of(names.into_iter());
         let labels: Vec<String> = names.iter().map(|name| keys.label(name)).collect();
-        let wanted = ["body.a.young = 1", "b.young = 1, step = 1e-3", "material.a.young = 1", "young = 1"];
+        let wanted = ["body.a.young = 1", "b.young = 1, Δt = 1e-3", "material.a.young = 1", "young = 1"];
         assert_eq!(labels, wanted);
     }
 

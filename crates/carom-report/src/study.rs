@@ -6,7 +6,7 @@ use std::path::Path;
 use carom_record::study::{Row, Study, StudyManifest};
 use carom_record::{Status, metrics};
 
-use crate::collected::{Column, Measured, Origin, collect, named};
+use crate::collected::{Column, Measured, Origin, collect, common_time, named};
 use crate::curves::Keys;
 use crate::labels::{capitalised, file_name, listed, with_unit};
 use crate::plot::{Curve, Pane, Plot};
@@ -79,7 +79,7 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
     let (label, what) = named(&column.name);
     let groups = groups(study);
     let few = if study.manifest.goal.is_some() { FEW_MORE } else { FEW };
-    let keys = Keys::of(study.rows.iter().map(|row| row.name.as_str()));
+    let keys = Keys::of(study.rows.iter().map(|row| row.name.as_str())).in_time(common_time(study));
     let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
     let figure = |group: usize| {
         let members = &groups[group];

@@ -6,7 +6,7 @@ use carom_record::metrics::Metric;
 use carom_record::study::{Refinement, Study, varied_keys};
 use maud::{Markup, html};
 
-use crate::collected::time_unit;
+use crate::collected::{common_time, time_unit};
 use crate::curves::Keys;
 use crate::digits::three;
 use crate::fit::Fit;
@@ -273,7 +273,7 @@ fn interval(plot: &Plot) -> &'static str {
 
 /// The labels of groups, without the settings that all of them have.
 fn labels(study: &Study, groups: &[Refinement]) -> Vec<String> {
-    let keys = Keys::of(groups.iter().map(|group| group.common.as_str()));
+    let keys = Keys::of(groups.iter().map(|group| group.common.as_str())).in_time(common_time(study));
     let is_shared = |part: &&str| {
         groups.len() > 1 && groups.iter().all(|group| group.common.split(", ").any(|other| other == *part))
     };

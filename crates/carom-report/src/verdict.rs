@@ -307,12 +307,12 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
     let known = |m: &&Metric| study.rows.iter().any(|row| row.value(&m.name).is_some());
     for metric in study.metrics().into_iter().filter(known).filter(|m| !m.is_work()) {
         match standing(Some(reference), &metric.name) {
-            Standing::Not(why) => not.push((metric.name.to_string(), why)),
+            Standing::Not(why) => not.push((metric.name.to_string(), metric.unit.clone(), why)),
             Standing::Established { value, uncertainty } => yes.push((metric, value, uncertainty)),
         }
     }
     not.extend(reference.columns().into_iter().filter_map(|c| match reference.uncertainty(c) {
-        Standing::Not(why) => Some((format!("deviation of {c}"), why)),
+        Standing::Not(why) => Some((format!("deviation of {c}"), String::new(), why)),
         Standing::Established { .. } => None,
     }));
     html! {
@@ -358,8 +358,10 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
         details {
             summary { "Quantities without an established reference value (not used for ranking)" }
             table {
-                thead { tr { th { "Quantity" } th { "Reason" } } }
-                @for (name, why) in not { tr { td { code { (name) } } td { (typeset(&why)) } } }
+                thead { tr { th { "Quantity" } th { "Unit" } th { "Reason" } } }
+                @for (name, unit, why) in not {
+                    tr { td { code { (name) } } td.unit { (Label(&unit)) } td { (typeset(&why)) } }
+                }
             }
         }
     }

@@ -189,7 +189,10 @@ impl Plot {
             let middle = x.min(layout.width - 2.0 - 0.5 * TICK * text::width(label));
             write_text(out, middle, bottom + 16.0, "text-anchor=\"middle\" font-size=\"11\"", label);
         }
-        let size = if self.across > 2 { 10.5 } else { 12.0 };
+        // Smaller where the title does not fit.
+        let fits = |size: &f64| text::broken(&pane.title, (wide + RIGHT) / (BOLD * size)).len() <= 2;
+        let size =
+            [if self.across > 2 { 10.5 } else { 12.0 }, 10.0, 9.0].into_iter().find(fits).unwrap_or(9.0);
         let place = format!("font-size=\"{size}\" font-weight=\"600\"");
         // Above the labels of vertical lines.
         let above = if pane.marks.is_empty() { 9.0 } else { 20.0 };
