@@ -132,8 +132,8 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
                 // forward increments know the facet of the start of the step, and a conserving
                 // force acts along a mean of both ends.
                 smooth: match (spec.enforcement, spec.detection) {
-                    (Enforcement::Multiplier, Detection::ClosestPoint) => {
-                        if case.time.scheme.is_explicit() || conserves { 1e-5 } else { 1e-6 }
+                    (Enforcement::Multiplier, Detection::ClosestPoint) if !conserves => {
+                        if case.time.scheme.is_explicit() { 1e-5 } else { 1e-6 }
                     }
                     _ => 0.01,
                 },
