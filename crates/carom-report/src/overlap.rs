@@ -17,7 +17,7 @@ use crate::pen::Point;
 use crate::place::mesh;
 use crate::symbols::wall;
 
-const WIDTH: f64 = 720.0;
+const WIDTH: f64 = 640.0;
 const TOP: f64 = 30.0;
 const FILLS: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
 /// Radius of the circle of the deepest node, where there is room for it, and of a node that
