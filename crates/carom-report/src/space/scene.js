@@ -40,8 +40,8 @@
     out vec3 seen; out vec3 body; out float share;
     void main() {
       seen = turn * (place - middle); body = place; share = value;
-      // Edges lie a little before their faces, which would hide parts of them.
-      gl_Position = vec4((seen.xy + view.xy) * view.zw, -seen.z / reach - (lines ? 0.002 : 0.0), 1.0);
+      // Edges lie a little before their faces, which would hide them where depths are coarse.
+      gl_Position = vec4((seen.xy + view.xy) * view.zw, -seen.z / reach - (lines ? 0.015 : 0.0), 1.0);
     }`;
   const fragment = `#version 300 es
     precision highp float;
