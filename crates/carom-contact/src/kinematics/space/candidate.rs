@@ -170,3 +170,41 @@ impl NodeToPatch {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use carom_solid::FacetShape;
+
+    use super::*;
+    use crate::Pairing;
+    use crate::kinematics::space::boundary::Boundary;
+
+    /// Four nodes over a square of four facets: one near it, one that enters, two far away. A search
+    /// that repeats another one finds what a first one does.
+    #[test]
+    fn a_repeated_search_finds_the_same() {
+        let grid = (0..9).flat_map(|k| [f64::from(k % 3), f64::from(k / 3), 0.0]);
+        let grid: Vec<f64> = grid.collect();
+        let facets: Vec<Vec<usize>> = [0, 1, 3, 4].map(|k| vec![k, k + 1, k + 4, k + 3]).to_vec();
+        let contact = || NodeToPatch::new((9..13).collect(), Boundary::new(FacetShape::Q4, &facets, &[], 0));
+        let at = |heights: [f64; 4]| {
+            let xy = [[0.4, 0.3], [1.6, 1.2], [0.5, 1.5], [1.5, 0.4]];
+            let nodes = xy.iter().zip(heights).flat_map(|([x, y], z)| [*x, *y, z]);
+            [grid.clone(), nodes.collect()].concat()
+        };
+        let before = at([0.3, 0.2, 5.0, 5.0]);
+        let (now, again) = (at([0.05, -0.1, 4.9, 4.9]), at([0.05 + 1e-9, -0.1, 4.9, 4.9]));
+        let search = |contact: &NodeToPatch, now: &[f64], fresh: bool| {
+            let mut pairing = Pairing { fresh, ..Pairing::new(Vec::new()) };
+            let changed = contact.search(&before, now, &mut pairing, &mut Vec::new());
+            (changed, pairing.pairs)
+        };
+        let (first, other) = (contact(), contact());
+        let known = search(&first, &now, true);
+        assert_eq!(known.1.iter().map(|pair| (pair.node, pair.facet)).collect::<Vec<_>>(), [(0, 0), (1, 3)]);
+        assert_eq!(search(&first, &again, false), search(&other, &again, true));
+        // Beyond what the certificates leave, everything is searched: the first node enters, too.
+        let deep = at([-0.05, -0.1, 4.9, 4.9]);
+        assert_eq!(search(&first, &deep, false), search(&contact(), &deep, true));
+    }
+}
