@@ -179,8 +179,8 @@ mod tests {
     use crate::Pairing;
     use crate::kinematics::space::boundary::Boundary;
 
-    /// Four nodes over a square of four facets: one near it, one that enters, two far away. A search
-    /// that repeats another one finds what a first one does.
+    /// Four nodes over a square of four facets: one near it, one that enters, two far away. A
+    /// search that repeats another one finds what a first one does.
     #[test]
     fn a_repeated_search_finds_the_same() {
         let grid = (0..9).flat_map(|k| [f64::from(k % 3), f64::from(k / 3), 0.0]);
