@@ -1,122 +1,79 @@
-//! Direct solution: the matrices of the bodies over free dofs, in one pattern: the constant mass M,
-//! the tangent K = ∂f_int/∂y at given positions, and the symmetric part of K_ext = ∂f_ext/∂y of
-//! follower pressures (equal to it if the pressure is uniform and the side closed or constrained at
-//! its ends); and their factors.
+//! Direct solution: the frozen tangent is factored, with the bodies condensed to the interface nodes,
+//! on which contact can act; contact is solved on those alone.
 //!
-//! The pattern is built once, with the slots of every cell. It excludes contact, whose rows act on
-//! the last unknowns of a factor (`tangent_factor.rs`).
+//! ```text
+//! [ A + Σ w λ∇²g  Fᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the frozen point
+//! [ G             0  ] [Δλ] = [−g]       (or M where velocities are projected)
+//! ```
+//!
+//! F = G except with friction. Gradients and second derivatives of the gaps are those of the
+//! current iterate: nodes may come, leave and slide without a new factor. Only A is old.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
-use carom_algebra::{LinearError, Pattern};
+use carom_algebra::{Condensed, Elimination, LinearError, Pattern, Precision, Saddle};
 
-use crate::cells;
 use crate::constraints::Constraints;
-use crate::model::{LoadsAt, Model};
+use crate::matrices::Matrices;
+use crate::model::Model;
 use crate::preconditioner::Preconditioner;
 use crate::rejected::Rejected;
 use crate::renewal::Point;
-use crate::tangent_factor::{TangentFactor, boundary};
-
-/// Slot of an entry that is not stored: of a constrained dof, or in a facet's upper triangle.
-const SKIP: u32 = u32::MAX;
 
 /// Cost of forming and factoring a tangent, in solves with the frozen one.
 const COST: f64 = 6.0;
+/// Unknowns above which a factor exceeds the processor's caches.
+const LARGE: usize = 10_000;
+/// Largest ratio of stiffness to mass, (ωΔt)² times a factor, on the diagonal of a single-precision
+/// factor.
+const STIFF: f64 = 1e3;
+/// Number of stored structures.
+const REMEMBERED: usize = 2;
+/// Stiffness added along the rows, as a multiple of theirs: enough to outweigh the curvature terms
+/// of contact.
+const STIFFENING: f64 = 10.0;
+/// Margin around the nodes of the rows, relative to their extent.
+const MARGIN: f64 = 0.3;
 
-/// Matrices and factors.
+/// The matrices of the bodies, factors of the frozen tangent and of the mass, and buffers of their
+/// solves.
 pub(crate) struct Direct {
-    pattern: Pattern,
-    stiffness: Vec<f64>,
-    mass: Vec<f64>,
-    /// The pattern of a lumped mass, which fills nothing when it is factored; else that of all.
-    diagonal: Option<Pattern>,
-    /// Empty without follower loads.
-    follower: Vec<f64>,
-    /// Diagonals of both, cached.
-    diagonals: [Vec<f64>; 2],
-    /// Slots of each cell's pairs of dofs, the lower triangle by rows, cell after cell over all
-    /// bodies.
-    slots: Vec<u32>,
-    /// Slots of every pair of dofs of the facets under pressure.
-    facet_slots: Vec<u32>,
-    /// The reused factor, and that of the mass.
-    factor: TangentFactor,
+    pub matrices: Matrices,
+    /// The point of the tangent's factor.
+    point: Option<Arc<Point>>,
+    positive: bool,
+    tangent: Option<Condensed>,
+    mass: Option<Condensed>,
+    of_mass: bool,
+    /// Interface nodes and structures, most recent first, of matrices of the bodies' pattern and of
+    /// diagonal ones: tangent and mass usually share them, and a rejected step returns to the
+    /// previous one.
+    latest: [VecDeque<(Vec<usize>, Arc<Elimination>)>; 2],
+    saddle: Saddle,
+    /// The row of each constraint in the dense system; none for springs.
+    places: Vec<Option<usize>>,
+    /// Right-hand side and solution, over unknowns and rows; and in elimination order.
+    solution: Vec<f64>,
+    inner: Vec<f64>,
 }
 
 impl Direct {
-    /// Pattern and slots of the bodies of a model.
+    /// For the bodies of a model.
     pub(crate) fn new(model: &Model) -> Self {
-        let pattern = pattern(model);
-        let mut slots = Vec::new();
-        for_each_cell_pair(model, |pair| {
-            slots.push(pair.and_then(|(a, b)| pattern.slot(a, b)).map_or(SKIP, |s| s as u32));
-        });
-        let (d, mut mass) = (model.dimension, vec![0.0; pattern.len()]);
-        for node in 0..model.mass.nodes() {
-            for (other, value) in model.mass.row(node) {
-                for i in 0..d {
-                    if let (Some(a), Some(b)) = (model.unknown(node * d + i), model.unknown(other * d + i))
-                        && a >= b
-                        && let Some(slot) = pattern.slot(a, b)
-                    {
-                        mass[slot] += value;
-                    }
-                }
-            }
-        }
-        let mut facet_slots = Vec::new();
-        model.loads.each_facet_tangent(d, None, |nodes, _| {
-            let dofs =
-                || nodes.iter().flat_map(|n| (0..d).map(move |i| n * d + i)).map(|dof| model.unknown(dof));
-            for a in dofs() {
-                for b in dofs() {
-                    let slot = a.zip(b).filter(|(a, b)| a >= b).and_then(|(a, b)| pattern.slot(a, b));
-                    facet_slots.push(slot.map_or(SKIP, |s| s as u32));
-                }
-            }
-        });
-        let follower = vec![0.0; if model.loads.follow_sides() { pattern.len() } else { 0 }];
-        let diagonals = [diagonal_of(&pattern, &mass), vec![0.0; model.free.len()]];
-        let n = pattern.size();
-        let is_diagonal =
-            (0..n).all(|j| mass[pattern.starts[j] + 1..pattern.starts[j + 1]].iter().all(|m| *m == 0.0));
-        let diagonal = is_diagonal.then(|| Pattern::from_entries(n, (0..n).map(|i| (i, i))));
-        let stiffness = vec![0.0; pattern.len()];
         Self {
-            pattern,
-            stiffness,
-            mass,
-            diagonal,
-            follower,
-            diagonals,
-            slots,
-            facet_slots,
-            factor: TangentFactor::default(),
+            matrices: Matrices::new(model),
+            point: None,
+            positive: false,
+            tangent: None,
+            mass: None,
+            of_mass: false,
+            latest: [VecDeque::new(), VecDeque::new()],
+            saddle: Saddle::default(),
+            places: Vec::new(),
+            solution: Vec::new(),
+            inner: Vec::new(),
         }
-    }
-
-    /// Assembles the symmetric part of the loads' tangent at a time and positions `y`, which matter
-    /// in space only.
-    fn assemble_loads(&mut self, model: &Model, time: f64, y: &[f64]) -> Result<(), Rejected> {
-        let (mut at, mut slots) = (LoadsAt::default(), self.facet_slots.iter());
-        model.loads.at(&model.parts, model.dofs(), time, &mut at)?;
-        self.follower.fill(0.0);
-        let follower = &mut self.follower;
-        model.loads.each_facet_tangent(model.dimension, Some((&at, y)), |nodes, k| {
-            let n = nodes.len() * model.dimension;
-            for entry in 0..n * n {
-                if let Some(&slot) = slots.next().filter(|slot| **slot != SKIP) {
-                    follower[slot as usize] += 0.5 * (k[entry] + k[entry % n * n + entry / n]);
-                }
-            }
-        });
-        Ok(())
-    }
-
-    /// out += K x over the free dofs, with the last tangent.
-    pub(crate) fn stiffness_product(&self, x: &[f64], out: &mut [f64]) {
-        self.pattern.multiply_add(&self.stiffness, x, out);
     }
 
     /// Factors the last tangent with the coefficients of a point; returns whether it is positive
@@ -130,7 +87,79 @@ impl Direct {
         point: &Arc<Point>,
         double: bool,
     ) -> Result<bool, LinearError> {
-        self.factor.factor(model, &self.pattern, point, double, [&self.mass, &self.stiffness, &self.follower])
+        self.point = None;
+        let Self { matrices, latest, .. } = self;
+        let Matrices { pattern, mass, stiffness, follower, .. } = matrices;
+        let elimination = elimination(latest, model, pattern, &point.boundary)?;
+        let single = !double && single_is_enough(pattern, point, mass, stiffness);
+        let precision = if single { Precision::Single } else { Precision::Double };
+        let fits = |t: &Condensed| Arc::ptr_eq(t.elimination(), &elimination) && t.precision() == precision;
+        // Free the old factor before allocating the new one.
+        self.tangent = self.tangent.take().filter(fits);
+        let new = || Condensed::new(&elimination, precision).on(&model.threads);
+        self.positive = self.tangent.get_or_insert_with(new).factor(|k| {
+            let internal = point.mass * mass[k] + point.stiffness * stiffness[k];
+            if follower.is_empty() { internal } else { internal - point.follower * follower[k] }
+        })?;
+        self.point = Some(point.clone());
+        Ok(self.positive)
+    }
+
+    /// The dense system on the interface. A spring adds its stiffness instead of a row. Returns
+    /// whether all is positive definite.
+    fn constrain(&mut self, model: &Model, rows: &Constraints, curved: bool) -> Result<bool, LinearError> {
+        let Some(condensed) = (if self.of_mass { &self.mass } else { &self.tangent }) else {
+            return Err(no_factor(model));
+        };
+        let (saddle, elimination) = (&mut self.saddle, condensed.elimination());
+        self.places.clear();
+        for compliance in &rows.compliances {
+            let index = self.places.iter().flatten().count();
+            self.places.push((*compliance == 0.0).then_some(index));
+        }
+        saddle.begin(condensed.schur(), elimination.schur_size(), self.places.iter().flatten().count());
+        let place = |unknown: usize| elimination.schur_place(unknown);
+        rows.each_entry(model, |r, unknown, slope| {
+            let included = !(self.of_mass && model.massless[model.free[unknown]]);
+            if let (Some(row), Some(a)) = (self.places[r].filter(|_| included), place(unknown)) {
+                saddle.add_row(row, a, slope);
+            }
+        });
+        if rows.is_skew || rows.yields.iter().any(|compliance| *compliance != 0.0) {
+            saddle.direct();
+            rows.each_direction(model, |r, unknown, slope| {
+                let included = !(self.of_mass && model.massless[model.free[unknown]]);
+                if let (Some(row), Some(a)) = (self.places[r].filter(|_| included), place(unknown)) {
+                    saddle.add_direction(row, a, slope);
+                }
+            });
+            let yields = rows.yields.iter().zip(&rows.weights).zip(&self.places);
+            for ((compliance, weight), row) in yields.filter(|((compliance, _), _)| **compliance != 0.0) {
+                row.iter().for_each(|&row| saddle.yields(row, weight * compliance));
+            }
+        }
+        let mut add = |a: usize, b: usize, value: f64| {
+            if let (Some(a), Some(b)) = (place(a), place(b)) {
+                saddle.add(a.max(b), a.min(b), value);
+            }
+        };
+        rows.each_spring(model, &mut add);
+        if curved {
+            rows.each_curvature(model, &mut add);
+        }
+        if !self.of_mass {
+            saddle.augment(STIFFENING);
+        }
+        Ok(saddle.factor()? && (self.of_mass || self.positive))
+    }
+
+    /// Overwrites a right-hand side over unknowns and rows with the factor's solution.
+    fn solve_all(&mut self, unknowns: usize, x: &mut [f64]) {
+        let Some(condensed) = (if self.of_mass { &mut self.mass } else { &mut self.tangent }) else { return };
+        let (x, multipliers) = x.split_at_mut(unknowns);
+        condensed.eliminate_into(x, &mut self.inner);
+        self.saddle.solve(condensed.schur_part(&mut self.inner), multipliers);
+        condensed.substitute_into(&mut self.inner, x);
     }
 }
 
@@ -140,72 +169,89 @@ impl Preconditioner for Direct {
     }
 
     fn diagonals(&self) -> &[Vec<f64>; 2] {
-        &self.diagonals
+        &self.matrices.diagonals
     }
 
     fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
-        self.stiffness.fill(0.0);
-        let mut slots = self.slots.iter();
-        for part in &model.parts {
-            let (mesh, stiffness) = (part.body.mesh(), &mut self.stiffness);
-            let n = mesh.element.dofs();
-            let compute = |cell: usize, local: &mut [f64]| {
-                let (force, tangent) = local.split_at_mut(n);
-                part.body.cell_tangent(cell, part.of(y), force, tangent)
-            };
-            let add = |_: usize, local: &[f64]| {
-                for (row, k) in local[n..].chunks_exact(n).enumerate() {
-                    for (value, slot) in k[..=row].iter().zip(slots.by_ref()) {
-                        if *slot != SKIP {
-                            stiffness[*slot as usize] += value;
-                        }
-                    }
-                }
-            };
-            let (count, numbers) = (mesh.cell_count(), n + n * n);
-            let compute = cells::one_by_one(numbers, compute);
-            let add = cells::added_one_by_one(numbers, add);
-            cells::for_each(&model.threads, count, numbers, compute, add)
-                .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
-        }
-        self.diagonals[1] = diagonal_of(&self.pattern, &self.stiffness);
-        Ok(())
+        self.matrices.assemble(model, y)
     }
 
     fn of(&self, point: &Arc<Point>) -> Option<bool> {
-        self.factor.of(point)
+        (self.point.as_ref() == Some(point)).then_some(self.positive)
     }
 
     fn form(&mut self, model: &Model, point: &Arc<Point>, double: bool) -> Result<bool, Rejected> {
-        self.assemble(model, &point.at)?;
+        self.matrices.assemble(model, &point.at)?;
         if point.follower != 0.0 {
-            self.assemble_loads(model, point.time, &point.at)?;
+            self.matrices.assemble_loads(model, point.time, &point.at)?;
         }
         Ok(self.factor(model, point, double)?)
     }
 
     fn form_mass(&mut self, model: &Model, rows: &Constraints) -> Result<(), Rejected> {
-        let (pattern, mass) = match &self.diagonal {
-            Some(diagonal) => (diagonal, &self.diagonals[0]),
-            None => (&self.pattern, &self.mass),
+        let Self { matrices, latest, .. } = self;
+        let (pattern, mass) = match &matrices.diagonal {
+            Some(diagonal) => (diagonal, &matrices.diagonals[0]),
+            None => (&matrices.pattern, &matrices.mass),
         };
-        self.factor.factor_mass(model, pattern, mass, rows)
+        let current = self.point.as_ref().filter(|point| spans(&point.boundary, rows));
+        let boundary = current.map_or_else(|| rows.nodes(), |point| point.boundary.clone());
+        let elimination = elimination(latest, model, pattern, &boundary)?;
+        if !self.mass.as_ref().is_some_and(|factor| Arc::ptr_eq(factor.elimination(), &elimination)) {
+            self.mass = None;
+            let mut factor = Condensed::new(&elimination, Precision::Double).on(&model.threads);
+            let mut mass = mass.clone();
+            for place in (0..model.free.len()).filter(|&place| model.massless[model.free[place]]) {
+                mass[pattern.starts[place]] = 1.0;
+            }
+            if !factor.factor(|k| mass[k])? {
+                return Err(Rejected::NegativeMass);
+            }
+            self.mass = Some(factor);
+        }
+        self.of_mass = true;
+        Ok(self.constrain(model, rows, false).map(|_| ())?)
     }
 
+    /// Those of the rows and nearby ones on the sides in contact, so that the choice lasts. The last
+    /// choice is reused while it includes the rows and is not much too large.
     fn boundary(&self, model: &Model, y: &[f64], rows: &Constraints, last: Option<&Point>) -> Vec<usize> {
-        boundary(model, y, rows, last)
+        let (row_nodes, d) = (rows.nodes(), model.dimension);
+        let last = last.map_or(&[][..], |point| &point.boundary);
+        if row_nodes.is_empty() {
+            return last.to_vec();
+        }
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &node in &row_nodes {
+            for i in 0..d {
+                (low[i], high[i]) = (low[i].min(y[node * d + i]), high[i].max(y[node * d + i]));
+            }
+        }
+        let margin = MARGIN * (0..d).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+        let within = |x: f64, i: usize| x >= low[i] - margin && x <= high[i] + margin;
+        let near = |node: &usize| (0..d).all(|i| within(y[*node * d + i], i));
+        let around = model.contacts.iter().flat_map(|contact| contact.surface.iter().copied().filter(near));
+        let mut chosen: Vec<usize> = row_nodes.iter().copied().chain(around).collect();
+        chosen.sort_unstable();
+        chosen.dedup();
+        if spans(last, rows) && last.len() <= 2 * chosen.len() { last.to_vec() } else { chosen }
     }
 
     fn spans(&self, rows: &Constraints) -> bool {
-        self.factor.spans(rows)
+        self.point.as_ref().is_some_and(|point| spans(&point.boundary, rows))
     }
 
     fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<bool, LinearError> {
-        self.factor.prepare(model, rows)
+        self.of_mass = false;
+        // An inaccurate multiplier can make the curvature terms too large: without second
+        // derivatives there is still a descent direction.
+        Ok(self.constrain(model, rows, true)?
+            || self.constrain(model, rows, false)?
+            || self.constrain(model, rows, true)?)
     }
 
     fn regularity(&self) -> Option<f64> {
-        self.factor.regularity()
+        self.saddle.regularity()
     }
 
     fn solve(
@@ -215,55 +261,81 @@ impl Preconditioner for Direct {
         increment: &mut [f64],
         multipliers: &mut Vec<f64>,
     ) -> Result<(), LinearError> {
-        self.factor.solve(model, forces, gaps, increment, multipliers)
+        let unknowns = model.free.len();
+        let mut x = std::mem::take(&mut self.solution);
+        x.clear();
+        x.extend(model.free.iter().map(|&dof| forces[dof]));
+        x.extend(self.places.iter().zip(gaps).filter_map(|(place, gap)| place.map(|_| *gap)));
+        self.solve_all(unknowns, &mut x);
+        increment.fill(0.0);
+        for (value, &dof) in x.iter().zip(&model.free) {
+            increment[dof] = *value;
+        }
+        multipliers.clear();
+        multipliers.extend(self.places.iter().map(|place| place.map_or(0.0, |row| x[unknowns + row])));
+        let finite = x.iter().all(|x| x.is_finite());
+        self.solution = x;
+        if finite { Ok(()) } else { Err(LinearError::Inaccurate { size: unknowns, residual: f64::NAN }) }
     }
 }
 
-/// The diagonal of a symmetric matrix: the first entry of each column of its lower triangle.
-fn diagonal_of(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
-    pattern.starts[..pattern.size()].iter().map(|&slot| values[slot]).collect()
+/// The elimination order of a pattern with these nodes last; `latest`: those of recent ones.
+fn elimination(
+    latest: &mut [VecDeque<(Vec<usize>, Arc<Elimination>)>; 2],
+    model: &Model,
+    pattern: &Pattern,
+    boundary: &[usize],
+) -> Result<Arc<Elimination>, LinearError> {
+    let latest = &mut latest[usize::from(pattern.is_diagonal())];
+    if let Some(known) = latest.iter().position(|(nodes, _)| nodes == boundary) {
+        latest.swap(0, known);
+        return Ok(latest[0].1.clone());
+    }
+    let d = model.dimension;
+    let groups: Vec<usize> = model.free.iter().map(|dof| dof / d).collect();
+    let dofs = boundary.iter().flat_map(|node| (0..d).map(move |i| node * d + i));
+    let last: Vec<usize> = dofs.filter_map(|dof| model.unknown(dof)).collect();
+    let elimination = Arc::new(Elimination::new(pattern, &groups, &last)?);
+    latest.truncate(REMEMBERED - 1);
+    latest.push_front((boundary.to_vec(), elimination.clone()));
+    Ok(elimination)
 }
 
-/// The pattern of the bodies: unknowns of every two nodes that share a cell. Nodes are paired
-/// first, which avoids a list of all pairs of dofs.
-fn pattern(model: &Model) -> Pattern {
-    let (d, mut neighbours) = (model.dimension, vec![Vec::new(); model.dofs() / model.dimension]);
-    for part in &model.parts {
-        let mesh = part.body.mesh();
-        for cell in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
-            for &a in cell {
-                let below = cell.iter().filter(|b| **b <= a).map(|b| part.first_node + b);
-                neighbours[part.first_node + a].extend(below);
-            }
-        }
-    }
-    for (node, nodes) in neighbours.iter_mut().enumerate() {
-        // The mass of a rigid obstacle has no cells.
-        if nodes.is_empty() {
-            nodes.push(node);
-        }
-        nodes.sort_unstable();
-        nodes.dedup();
-    }
-    let pairs = neighbours.iter().enumerate().flat_map(|(a, below)| below.iter().map(move |&b| (a, b)));
-    let entries = pairs.flat_map(|(a, b)| (0..d * d).map(move |k| (a * d + k / d, b * d + k % d)));
-    let unknowns = entries.filter_map(|(a, b)| model.unknown(a).zip(model.unknown(b)));
-    Pattern::from_entries(model.free.len(), unknowns)
+/// Whether single precision suffices for a factor: it is large, so that reading it dominates the
+/// cost of a solve, and the matrix is so well conditioned that the rounding error of a correction
+/// is far below the error of an old tangent. Scaled to a unit diagonal, and with a positive
+/// semidefinite stiffness, the matrix has a condition number of at most some hundred times the
+/// largest quotient of its diagonal and the mass's: λ_max is at most the number of dofs of a cell,
+/// and λ_min at least that of the scaled mass matrix over that quotient. An indefinite stiffness
+/// may be worse; iterations then converge slowly, and it is refactored.
+fn single_is_enough(pattern: &Pattern, point: &Point, mass: &[f64], stiffness: &[f64]) -> bool {
+    let mut diagonal = pattern.starts[..pattern.size()].iter();
+    let soft = |&k: &usize| point.stiffness * stiffness[k] <= STIFF * point.mass * mass[k];
+    pattern.size() >= LARGE && diagonal.all(soft)
 }
 
-/// Calls `visit` with the unknowns of every two dofs of every cell, the larger first, in the order
-/// of the lower triangles of the cells' tangents; with none if one is constrained.
-fn for_each_cell_pair(model: &Model, mut visit: impl FnMut(Option<(usize, usize)>)) {
-    let mut unknowns = Vec::new();
-    for part in &model.parts {
-        for cell in 0..part.body.mesh().cell_count() {
-            unknowns.clear();
-            unknowns.extend(part.cell_dofs(cell).iter().map(|dof| model.unknown(*dof as usize)));
-            for (row, a) in unknowns.iter().enumerate() {
-                for b in &unknowns[..=row] {
-                    visit(a.zip(*b).map(|(a, b)| (a.max(b), a.min(b))));
-                }
-            }
-        }
+fn no_factor(model: &Model) -> LinearError {
+    LinearError::Engine { size: model.free.len(), reason: "solve before factor".into() }
+}
+
+fn spans(boundary: &[usize], rows: &Constraints) -> bool {
+    rows.rows.iter().flat_map(|row| row.nodes).all(|node| boundary.binary_search(node).is_ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_the_digits_are_for_large_factors_that_mass_holds_together() {
+        let point = Point { mass: 2.0, stiffness: 2.0, ..Point::default() };
+        let enough = |size: usize, mass: f64, stiffness: f64| {
+            let pattern = Pattern::from_entries(size, []);
+            let (mut masses, mut stiffnesses) = (vec![1.0; size], vec![10.0; size]);
+            (masses[7], stiffnesses[7]) = (mass, stiffness);
+            single_is_enough(&pattern, &point, &masses, &stiffnesses)
+        };
+        assert!(enough(LARGE, 1.0, 999.0));
+        assert!(!enough(LARGE - 1, 1.0, 999.0) && !enough(LARGE, 1.0, 1001.0) && !enough(LARGE, 0.0, 1.0));
     }
 }

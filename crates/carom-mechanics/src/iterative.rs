@@ -10,12 +10,12 @@ use std::sync::Arc;
 
 use carom_algebra::{ConjugateGradients, ConstraintRows, DiagonalBlocks, LinearError, NodeMatrix};
 
-use crate::cells;
 use crate::constraints::Constraints;
 use crate::model::Model;
 use crate::preconditioner::Preconditioner;
 use crate::rejected::Rejected;
 use crate::renewal::Point;
+use crate::tangents::{coupled, each_tangent};
 
 /// Cost of assembling a tangent, in solves with it and evaluations of the residual.
 const COST: f64 = 2.0;
@@ -101,36 +101,23 @@ impl Iterative {
         let (matrix, [_, diagonal], d) = (&mut self.matrix, &mut self.diagonals, model.dimension);
         diagonal.fill(0.0);
         let mut slots = self.slots.iter();
-        for part in &model.parts {
+        each_tangent(model, y, |part, cell, tangent| {
             let mesh = part.body.mesh();
             let n = mesh.element.dofs();
-            let compute = |cell: usize, local: &mut [f64]| {
-                let (force, tangent) = local.split_at_mut(n);
-                part.body.cell_tangent(cell, part.of(y), force, tangent)
-            };
-            let add = |cell: usize, local: &[f64]| {
-                let tangent = &local[n..];
-                for (a, b) in stored(mesh.cell(cell)) {
-                    let Some(slot) = slots.next() else { return };
-                    for (i, row) in matrix.block_mut(*slot as usize).chunks_exact_mut(d).enumerate() {
-                        let from = (a * d + i) * n + b * d;
-                        let entries = row.iter_mut().zip(&tangent[from..from + d]);
-                        entries.for_each(|(entry, k)| *entry += (factor * k) as f32);
-                    }
+            for (a, b) in stored(mesh.cell(cell)) {
+                let Some(slot) = slots.next() else { return };
+                for (i, row) in matrix.block_mut(*slot as usize).chunks_exact_mut(d).enumerate() {
+                    let from = (a * d + i) * n + b * d;
+                    let entries = row.iter_mut().zip(&tangent[from..from + d]);
+                    entries.for_each(|(entry, k)| *entry += (factor * k) as f32);
                 }
-                for (i, dof) in part.cell_dofs(cell).iter().enumerate() {
-                    if let Some(unknown) = model.unknown(*dof as usize) {
-                        diagonal[unknown] += tangent[i * n + i];
-                    }
+            }
+            for (i, dof) in part.cell_dofs(cell).iter().enumerate() {
+                if let Some(unknown) = model.unknown(*dof as usize) {
+                    diagonal[unknown] += tangent[i * n + i];
                 }
-            };
-            let (count, numbers) = (mesh.cell_count(), n + n * n);
-            let compute = cells::one_by_one(numbers, compute);
-            let add = cells::added_one_by_one(numbers, add);
-            cells::for_each(&model.threads, count, numbers, compute, add)
-                .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
-        }
-        Ok(())
+            }
+        })
     }
 
     /// Prepares solves with these rows, over the dofs that are `included`.
@@ -350,18 +337,4 @@ impl Patches {
 fn stored(cell: &[usize]) -> impl Iterator<Item = (usize, usize)> + '_ {
     let pairs = (0..cell.len()).flat_map(move |a| (0..cell.len()).map(move |b| (a, b)));
     pairs.filter(|&(a, b)| cell[a] <= cell[b])
-}
-
-/// The nodes that share a cell with each node.
-fn coupled(model: &Model) -> Vec<Vec<u32>> {
-    let mut coupled = vec![Vec::new(); model.dofs() / model.dimension];
-    for part in &model.parts {
-        let mesh = part.body.mesh();
-        for cell in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
-            for a in cell {
-                coupled[part.first_node + a].extend(cell.iter().map(|b| (part.first_node + b) as u32));
-            }
-        }
-    }
-    coupled
 }

@@ -16,7 +16,6 @@ mod created;
 mod direct;
 mod equations;
 mod evaluation;
-mod factor;
 pub mod frequencies;
 mod friction;
 mod friction_state;
@@ -27,6 +26,7 @@ mod independent;
 mod iterative;
 mod ledger;
 mod linear_problem;
+mod matrices;
 mod mixing;
 pub mod model;
 mod newton;
@@ -56,9 +56,9 @@ mod stopped;
 mod substeps;
 mod sums;
 mod system;
-mod tangent_factor;
 #[cfg(test)]
 mod tangent_tests;
+mod tangents;
 #[cfg(test)]
 mod testing;
 mod timings;

@@ -57,6 +57,8 @@ pub(crate) struct Goal {
     pub fresh: bool,
     /// A first correction larger than this is useless: it is returned as it is.
     pub trust: f64,
+    /// Number of earlier corrections that are mixed with each.
+    pub mixing: usize,
 }
 
 /// Right-hand sides, buffers and the history of corrections.
@@ -89,8 +91,7 @@ impl LinearProblem {
         self.mixing.restart();
     }
 
-    /// Solves to the goal, or until a new factor is due; `depth` earlier corrections are used for
-    /// mixing.
+    /// Solves to the goal, or until a new factor is due.
     ///
     /// # Errors
     /// If a cell is inverted where the tangent is applied, or a solve failed.
@@ -102,7 +103,6 @@ impl LinearProblem {
         preconditioner: &mut dyn Preconditioner,
         renewal: &mut Renewal,
         goal: Goal,
-        depth: usize,
         timings: &mut Timings,
     ) -> Result<Correction, Rejected> {
         let is_slip = || rows.slips.iter().map(Option::is_some);
@@ -116,7 +116,7 @@ impl LinearProblem {
         let mut total = Correction::default();
         (total.increment, total.multipliers) = (self.increment.clone(), vec![0.0; rows.len()]);
         loop {
-            self.correct(equations, rows, preconditioner, depth, &mut total, timings)?;
+            self.correct(equations, rows, preconditioner, goal.mixing, &mut total, timings)?;
             if total.last == 0.0 {
                 // Without a residual no correction can be compared with another one.
                 self.restart();

@@ -43,7 +43,7 @@ const BISECTIONS: usize = 8;
 const TRUST: f64 = 0.5;
 
 /// Cost and events of a solve.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Effort {
     /// Linear solves.
     pub iterations: u32,
@@ -56,6 +56,13 @@ pub(crate) struct Effort {
     pub frozen: FrozenTangent,
 }
 
+impl Default for Effort {
+    fn default() -> Self {
+        let (events, frozen) = (Events::new(), FrozenTangent::default());
+        Self { iterations: 0, events, regularity: f64::INFINITY, frozen }
+    }
+}
+
 /// Solves a stage from a guess. `frozen`: the factor of the previous stage; `before`: positions at
 /// its end, for trajectories.
 pub(crate) fn solve_stage(
@@ -63,193 +70,284 @@ pub(crate) fn solve_stage(
     frozen: &FrozenTangent,
     before: &[f64],
     settings: &Settings,
-    mut guess: Iterate,
+    guess: Iterate,
     work: &mut Workspace,
 ) -> Result<(Evaluation, Effort), Rejected> {
-    let (model, state, tolerance) = (equations.model, equations.state, settings.tolerance);
-    let mut effort = Effort { regularity: f64::INFINITY, ..Effort::default() };
-    let (mass, stiffness) = (equations.mass_factor(), equations.factor_stiffness());
-    let cost = work.system.preconditioner.cost();
-    let mut renewal = Renewal::new(frozen, [mass, stiffness], settings.tangent != Tangent::Frozen, cost);
-    // Without inertia corrections may grow before they shrink, and the residual tolerance is mostly
-    // round-off of positions: a remaining residual would appear in reactions.
-    let (full, is_static) = (settings.tangent == Tangent::Full, equations.stage.is_static());
-    work.linear.restart();
-    work.trace.start();
-    augmented::start(model, &mut guess);
-    // Where contact begins, velocities and accelerations jump from node to node. Extrapolated over
-    // a step, that motion distorts or inverts cells, and Newton's method starts better without a
-    // predictor.
-    let predicted = max_abs(&guess.increment);
-    let mut fallback = Some(Iterate {
-        increment: before.iter().zip(&state.y).map(|(start, old)| start - old).collect(),
-        pairings: guess.pairings.clone(),
-        stiffer: 0,
-    })
-    .filter(|_| !is_static);
-    let mut now = match begin(equations, before, guess, &mut effort.events, work) {
-        Err(Rejected::Inverted { .. }) if let Some(fallback) = fallback.take() => {
-            begin(equations, before, fallback, &mut effort.events, work)?
-        }
-        begun => begun?,
-    };
-    if is_static && activate_initial(model, &mut now) {
-        now = again(equations, now, work)?;
-    }
-    work.restore_factor(equations, &renewal)?;
-    let digits = if is_static { DIGITS } else { 1.0 };
-    let iterates = work.system.preconditioner.iterations().is_some();
-    let (mut contact, mut rounds) = (ContactUpdate::new(model), Rounds::new());
-    let (mut step, mut ratio, mut grown, mut iteration) = (f64::INFINITY, 1.0_f64, 0, 0);
+    let (mut newton, mut now) = Newton::begin(equations, frozen, before, settings, guess, work)?;
     loop {
-        // The error of an inexact linear solve shrinks with the residual, so the residual is
-        // reduced further if linear problems are solved inexactly.
-        let noise = work.system.round_off(equations);
-        let enough = DIGITS * tolerance * now.measure.forces + noise;
-        let settled = step * if is_static { 1.0 } else { ratio.min(1.0) } <= tolerance * model.scale
-            && now.measure.residual <= enough
-            && (now.measure.gap <= model.gap_tolerance
-                || now.measure.has_slip && Constraints::gap(equations, &now) <= model.gap_tolerance)
-            && (is_static || are_balanced(equations, &now, noise));
-        let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
-        work.trace.push(iterate(equations, &now, iteration, step, changed), &now.y);
+        let converged = newton.has_converged(&now);
+        let changed = newton.change_contacts(&mut now, converged)?;
         if changed
-            && iteration == 0
-            && iterates
-            && let Some(fallback) = fallback.take()
+            && newton.is_costly_guess()
+            && let Some(start) = newton.start.take()
         {
-            // The predictor would be tried at the cost of an iteration.
-            work.spare.put(now);
-            contact.restart();
-            work.linear.restart();
-            now = begin(equations, before, fallback, &mut effort.events, work)?;
+            now = newton.restart(now, start)?;
             continue;
         }
-        if settled && !changed {
-            if rounds.next(equations, &mut now)? {
-                // A solve of its own, from the solution of the last one.
-                now = again(equations, now, work)?;
-                contact.restart();
-                work.linear.restart();
-                (step, ratio, grown, iteration) = (f64::INFINITY, 1.0, 0, 0);
+        if converged && !changed {
+            if newton.rounds.next(equations, &mut now)? {
+                now = newton.next_round(now)?;
                 continue;
             }
-            effort.frozen = renewal.finish();
-            return Ok((now, effort));
+            newton.effort.frozen = newton.renewal.finish();
+            return Ok((now, newton.effort));
         }
         if changed {
-            // The existing rows belong to the previous pairs.
-            now = again(equations, now, work)?;
-            work.linear.restart();
+            now = newton.again(now)?;
         }
-        if iteration >= settings.max_iterations || (!is_static && grown > PATIENCE) {
-            work.trace.blame(&now.residual, &model.free);
-            check_satisfiable(equations, &now)?;
-            return Err(Rejected::NoConvergence {
-                iterations: iteration as u32,
-                step: [step / model.scale, tolerance],
-                residual: [now.measure.residual, enough]
-                    .map(|r| r / now.measure.forces.max(f64::MIN_POSITIVE)),
-                gap: Some([now.measure.gap, model.gap_tolerance].map(|gap| gap / model.scale)),
-                unbalanced: !is_static && !are_balanced(equations, &now, noise),
-                changing: changed,
-            });
-        }
+        newton.check_progress(&now, changed)?;
         let rows = Constraints::of(equations, &now);
-        if is_static {
-            let (rows, slips) = (rows.rows.iter(), now.slipping());
-            check_rigid_modes(&model.parts, &model.unconstrained, &now.place, rows, slips)?;
-        }
-        let made = renewal.made;
-        renewal.due |= full;
-        work.factor_for(equations, &now, &rows, &mut renewal)?;
-        let regularity = work.system.preconditioner.regularity().filter(|_| rows.is_skew);
-        effort.regularity = regularity.unwrap_or(f64::INFINITY);
-        contact.regularity = contact.regularity.min(effort.regularity);
-        let trust = if fallback.is_some() && predicted > 0.0 { TRUST * predicted } else { f64::INFINITY };
-        // Limited by the progress of the outer iteration, and by its convergence criterion.
-        let pace = if changed { 1.0 } else { ratio };
-        let forcing = digits * FORCING.min(FORCING_RATIO * pace).max(enough / now.measure.residual);
-        let goal = Goal { forcing, step: tolerance * model.scale, fresh: renewal.made != made, trust };
-        let Workspace { linear, system, timings, .. } = work;
-        let correction = linear.solve(
-            equations,
-            &now,
-            &rows,
-            &mut *system.preconditioner,
-            &mut renewal,
-            goal,
-            settings.mixing,
-            timings,
-        )?;
-        (iteration, effort.iterations) = (iteration + 1, effort.iterations + correction.solves);
-        if let Some(fallback) = fallback.take()
-            && correction.first > trust
+        let correction = newton.correct(&now, &rows, changed)?;
+        if let Some(start) = newton.start.take()
+            && correction.first > newton.trust
         {
-            work.spare.put(now);
-            contact.restart();
-            work.linear.restart();
-            now = begin(equations, before, fallback, &mut effort.events, work)?;
-            // A tangent of the discarded motion misleads where it is all that is known; a factor is
-            // corrected by products, and dearer.
-            renewal.due |= renewal.made > 0 && iterates;
-            step = f64::INFINITY;
+            newton.doubt_tangent();
+            now = newton.restart(now, start)?;
             continue;
         }
-        let size = max_abs(&correction.increment);
-        grown += u32::from(!changed && size > step && size > tolerance * model.scale);
-        step = size;
-        let residual = now.measure.residual;
-        now = advance(equations, now, &correction, &rows, !changed, work)?;
-        ratio = now.measure.residual / residual.max(f64::MIN_POSITIVE);
+        now = newton.advance(now, &correction, &rows, changed)?;
     }
 }
 
-/// An iterate for the trace.
-fn iterate(
-    equations: &Equations,
-    now: &Evaluation,
-    number: usize,
-    correction: f64,
-    changed: bool,
-) -> Iteration {
-    let Measure { residual, forces, gap, .. } = now.measure;
-    Iteration {
-        number: number as u32,
-        residual: residual / forces.max(f64::MIN_POSITIVE),
-        gap: gap / equations.model.scale,
-        correction: correction / equations.model.scale,
-        length: 1.0,
-        active: now.pressing().count() as u32,
-        changed,
-    }
+/// A stage that is being solved.
+struct Newton<'a> {
+    equations: &'a Equations<'a>,
+    before: &'a [f64],
+    settings: &'a Settings,
+    work: &'a mut Workspace,
+    contact: ContactUpdate,
+    renewal: Renewal,
+    rounds: Rounds,
+    /// A guess without predictor, until the predictor is known to help. Where contact begins,
+    /// velocities and accelerations jump from node to node. Extrapolated over a step, that motion
+    /// distorts or inverts cells, and Newton's method starts better without it.
+    start: Option<Iterate>,
+    /// The first correction, at most, of a useful predictor.
+    trust: f64,
+    iteration: usize,
+    /// ‖Δy‖∞ of the last correction, and the reduction of the residual by it.
+    step: f64,
+    ratio: f64,
+    /// Number of corrections that grew.
+    grown: u32,
+    /// Residual at convergence, and the part of it that is round-off.
+    enough: f64,
+    noise: f64,
+    effort: Effort,
 }
 
-/// Finds the pairs of a guess and evaluates it.
-fn begin(
-    equations: &Equations,
-    before: &[f64],
-    mut guess: Iterate,
-    events: &mut Events,
-    work: &mut Workspace,
-) -> Result<Evaluation, Rejected> {
-    let y: Vec<f64> = equations.state.y.iter().zip(&guess.increment).map(|(y, d)| y + d).collect();
-    timed(&mut work.timings.contact, || search(equations.model, before, &y, &mut guess.pairings, events));
-    equations.evaluate(guess, &mut work.spare, &mut work.timings)
-}
-
-/// Re-evaluates an iterate whose pairs have changed.
-fn again(
-    equations: &Equations,
-    mut evaluation: Evaluation,
-    work: &mut Workspace,
-) -> Result<Evaluation, Rejected> {
-    match equations.change_contacts(&mut evaluation, &mut work.timings) {
-        Ok(()) => Ok(evaluation),
-        Err(rejected) => {
-            work.spare.put(evaluation);
-            Err(rejected)
+impl<'a> Newton<'a> {
+    /// Evaluates the guess; one that inverts a cell, without predictor.
+    fn begin(
+        equations: &'a Equations<'a>,
+        frozen: &FrozenTangent,
+        before: &'a [f64],
+        settings: &'a Settings,
+        mut guess: Iterate,
+        work: &'a mut Workspace,
+    ) -> Result<(Self, Evaluation), Rejected> {
+        let (model, state, is_static) = (equations.model, equations.state, equations.stage.is_static());
+        augmented::start(model, &mut guess);
+        let predicted = max_abs(&guess.increment);
+        let start = || Iterate {
+            increment: before.iter().zip(&state.y).map(|(start, old)| start - old).collect(),
+            pairings: guess.pairings.clone(),
+            stiffer: 0,
+        };
+        let factors = [equations.mass_factor(), equations.factor_stiffness()];
+        let (double, cost) = (settings.tangent != Tangent::Frozen, work.system.preconditioner.cost());
+        work.trace.start();
+        let mut newton = Self {
+            equations,
+            before,
+            settings,
+            work,
+            contact: ContactUpdate::new(model),
+            renewal: Renewal::new(frozen, factors, double, cost),
+            rounds: Rounds::new(),
+            start: (!is_static).then(start),
+            trust: if predicted > 0.0 { TRUST * predicted } else { f64::INFINITY },
+            iteration: 0,
+            step: f64::INFINITY,
+            ratio: 1.0,
+            grown: 0,
+            enough: 0.0,
+            noise: 0.0,
+            effort: Effort::default(),
+        };
+        newton.work.linear.restart();
+        let mut now = match newton.evaluate(guess) {
+            Err(Rejected::Inverted { .. }) if let Some(start) = newton.start.take() => {
+                newton.evaluate(start)?
+            }
+            evaluated => evaluated?,
+        };
+        if is_static && activate_initial(model, &mut now) {
+            now = newton.again(now)?;
         }
+        let Workspace { system, timings, .. } = &mut *newton.work;
+        timed(&mut timings.factor, || system.restore(model, &newton.renewal))?;
+        Ok((newton, now))
+    }
+
+    /// Finds the pairs of a guess and evaluates it.
+    fn evaluate(&mut self, mut guess: Iterate) -> Result<Evaluation, Rejected> {
+        let Workspace { spare, timings, .. } = &mut *self.work;
+        let Equations { model, state, .. } = self.equations;
+        let y: Vec<f64> = state.y.iter().zip(&guess.increment).map(|(y, d)| y + d).collect();
+        let (pairings, events) = (&mut guess.pairings, &mut self.effort.events);
+        timed(&mut timings.contact, || search(model, self.before, &y, pairings, events));
+        self.equations.evaluate(guess, spare, timings)
+    }
+
+    /// Evaluates an iterate whose pairs have changed again. The existing rows belong to the previous
+    /// pairs.
+    fn again(&mut self, mut now: Evaluation) -> Result<Evaluation, Rejected> {
+        self.work.linear.restart();
+        match self.equations.change_contacts(&mut now, &mut self.work.timings) {
+            Ok(()) => Ok(now),
+            Err(rejected) => {
+                self.work.spare.put(now);
+                Err(rejected)
+            }
+        }
+    }
+
+    /// Starts from another guess.
+    fn restart(&mut self, now: Evaluation, guess: Iterate) -> Result<Evaluation, Rejected> {
+        self.work.spare.put(now);
+        self.contact.restart();
+        self.work.linear.restart();
+        self.evaluate(guess)
+    }
+
+    /// Starts the next round, a solve of its own, from the solution of the last one.
+    fn next_round(&mut self, now: Evaluation) -> Result<Evaluation, Rejected> {
+        self.contact.restart();
+        (self.iteration, self.step, self.ratio, self.grown) = (0, f64::INFINITY, 1.0, 0);
+        self.again(now)
+    }
+
+    /// Whether the contacts of the guess would be tried at the cost of an iteration.
+    fn is_costly_guess(&self) -> bool {
+        self.iteration == 0 && self.work.system.preconditioner.iterations().is_some()
+    }
+
+    /// A tangent of a discarded motion misleads where it is all that is known; a factor is corrected
+    /// by products, and dearer.
+    fn doubt_tangent(&mut self) {
+        self.renewal.due |= self.renewal.made > 0 && self.work.system.preconditioner.iterations().is_some();
+        self.step = f64::INFINITY;
+    }
+
+    /// Whether all criteria are met that the contacts do not decide. The error of an inexact linear
+    /// solve shrinks with the residual, so the residual is reduced further if linear problems are
+    /// solved inexactly. Without inertia corrections may grow before they shrink.
+    fn has_converged(&mut self, now: &Evaluation) -> bool {
+        let (equations, model, measure) = (self.equations, self.equations.model, &now.measure);
+        let (is_static, tolerance) = (equations.stage.is_static(), self.settings.tolerance);
+        self.noise = self.work.system.round_off(equations);
+        self.enough = DIGITS * tolerance * measure.forces + self.noise;
+        self.step * if is_static { 1.0 } else { self.ratio.min(1.0) } <= tolerance * model.scale
+            && measure.residual <= self.enough
+            && (measure.gap <= model.gap_tolerance
+                || measure.has_slip && Constraints::gap(equations, now) <= model.gap_tolerance)
+            && (is_static || are_balanced(equations, now, self.noise))
+    }
+
+    /// Updates the contacts of an iterate; returns whether one changed.
+    fn change_contacts(&mut self, now: &mut Evaluation, converged: bool) -> Result<bool, Rejected> {
+        let (equations, events, scale) =
+            (self.equations, &mut self.effort.events, self.equations.model.scale);
+        let changed =
+            self.contact.update(equations, self.before, now, events, converged, self.step, self.work)?;
+        let iterate = Iteration {
+            number: self.iteration as u32,
+            residual: now.measure.residual / now.measure.forces.max(f64::MIN_POSITIVE),
+            gap: now.measure.gap / scale,
+            correction: self.step / scale,
+            length: 1.0,
+            active: now.pressing().count() as u32,
+            changed,
+        };
+        self.work.trace.push(iterate, &now.y);
+        Ok(changed)
+    }
+
+    /// # Errors
+    /// After too many iterations, or corrections that grow.
+    fn check_progress(&mut self, now: &Evaluation, changed: bool) -> Result<(), Rejected> {
+        let (equations, model, measure) = (self.equations, self.equations.model, &now.measure);
+        let is_static = equations.stage.is_static();
+        if self.iteration < self.settings.max_iterations && (is_static || self.grown <= PATIENCE) {
+            return Ok(());
+        }
+        self.work.trace.blame(&now.residual, &model.free);
+        check_satisfiable(equations, now)?;
+        Err(Rejected::NoConvergence {
+            iterations: self.iteration as u32,
+            step: [self.step / model.scale, self.settings.tolerance],
+            residual: [measure.residual, self.enough].map(|r| r / measure.forces.max(f64::MIN_POSITIVE)),
+            gap: Some([measure.gap, model.gap_tolerance].map(|gap| gap / model.scale)),
+            unbalanced: !is_static && !are_balanced(equations, now, self.noise),
+            changing: changed,
+        })
+    }
+
+    /// Solves the linear problem of an iterate with these rows, as accurately as the progress of
+    /// the outer iteration and its convergence criterion require. In load steps a remaining residual
+    /// would appear in reactions: its tolerance is mostly round-off of positions.
+    fn correct(
+        &mut self,
+        now: &Evaluation,
+        rows: &Constraints,
+        changed: bool,
+    ) -> Result<Correction, Rejected> {
+        let (equations, model, settings) = (self.equations, self.equations.model, self.settings);
+        let is_static = equations.stage.is_static();
+        if is_static {
+            let (gaps, slips) = (rows.rows.iter(), now.slipping());
+            check_rigid_modes(&model.parts, &model.unconstrained, &now.place, gaps, slips)?;
+        }
+        let made = self.renewal.made;
+        self.renewal.due |= settings.tangent == Tangent::Full;
+        let Workspace { linear, system, timings, .. } = &mut *self.work;
+        timed(&mut timings.factor, || system.prepare(equations, now, rows, &mut self.renewal))?;
+        let regularity = system.preconditioner.regularity().filter(|_| rows.is_skew);
+        self.effort.regularity = regularity.unwrap_or(f64::INFINITY);
+        self.contact.regularity = self.contact.regularity.min(self.effort.regularity);
+        let pace = if changed { 1.0 } else { self.ratio };
+        let digits = if is_static { DIGITS } else { 1.0 };
+        let goal = Goal {
+            forcing: digits * FORCING.min(FORCING_RATIO * pace).max(self.enough / now.measure.residual),
+            step: settings.tolerance * model.scale,
+            fresh: self.renewal.made != made,
+            trust: if self.start.is_some() { self.trust } else { f64::INFINITY },
+            mixing: settings.mixing,
+        };
+        let preconditioner = &mut *system.preconditioner;
+        let correction =
+            linear.solve(equations, now, rows, preconditioner, &mut self.renewal, goal, timings)?;
+        self.iteration += 1;
+        self.effort.iterations += correction.solves;
+        Ok(correction)
+    }
+
+    /// Adds a correction, and observes the progress.
+    fn advance(
+        &mut self,
+        now: Evaluation,
+        correction: &Correction,
+        rows: &Constraints,
+        changed: bool,
+    ) -> Result<Evaluation, Rejected> {
+        let (size, residual) = (max_abs(&correction.increment), now.measure.residual);
+        let is_small = size <= self.settings.tolerance * self.equations.model.scale;
+        self.grown += u32::from(!changed && size > self.step && !is_small);
+        self.step = size;
+        let next = advance(self.equations, now, correction, rows, !changed, self.work)?;
+        self.ratio = next.measure.residual / residual.max(f64::MIN_POSITIVE);
+        Ok(next)
     }
 }
 

@@ -9,9 +9,8 @@
 
 use carom_solid::cell_lumped_mass;
 
-use crate::direct::Direct;
+use crate::matrices::Matrices;
 use crate::model::Model;
-use crate::preconditioner::Preconditioner;
 use crate::sums::dot;
 
 /// Fraction of 2/ω_max that is accepted as a step.
@@ -32,7 +31,7 @@ pub struct StableStep {
 /// Stable step of a model with lumped masses for its initial tangent; `None` if a cell is inverted
 /// or a free node is massless.
 pub fn stable_step(model: &Model) -> Option<StableStep> {
-    let mut system = Direct::new(model);
+    let mut system = Matrices::new(model);
     system.assemble(model, &model.initial_position).ok()?;
     let mass: Vec<f64> = lumped(model)
         .into_iter()

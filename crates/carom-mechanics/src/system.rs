@@ -1,5 +1,5 @@
-//! The linear system of a model: its preconditioner, counted, and the scales that follow from its
-//! diagonal.
+//! The linear system of a model: its preconditioner, restored, prepared for the rows of an iterate
+//! or formed anew, and the scales that follow from its diagonal.
 
 use std::sync::Arc;
 
@@ -8,11 +8,12 @@ use carom_algebra::LinearError;
 use crate::constraints::Constraints;
 use crate::direct::Direct;
 use crate::equations::Equations;
+use crate::evaluation::Evaluation;
 use crate::iterative::Iterative;
 use crate::model::Model;
 use crate::preconditioner::Preconditioner;
 use crate::rejected::Rejected;
-use crate::renewal::Point;
+use crate::renewal::{Point, Renewal};
 use crate::settings::Linear;
 use crate::sums::max_abs;
 
@@ -76,6 +77,68 @@ impl System {
             self.factorisations += 1;
         }
         Ok(positive)
+    }
+
+    /// Forms the tangent of the state's point, which only a resumed run lacks.
+    ///
+    /// # Errors
+    /// If a cell is inverted there.
+    pub(crate) fn restore(&mut self, model: &Model, renewal: &Renewal) -> Result<(), Rejected> {
+        match &renewal.frozen.point {
+            Some(point) if !renewal.due => self.tangent_at(model, point, renewal.double).map(|_| ()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Prepares solves with a tangent and the rows of an iterate, with a new tangent if it is due.
+    ///
+    /// # Errors
+    /// If a cell is inverted, or the rows are linearly dependent.
+    pub(crate) fn prepare(
+        &mut self,
+        equations: &Equations,
+        now: &Evaluation,
+        rows: &Constraints,
+        renewal: &mut Renewal,
+    ) -> Result<(), Rejected> {
+        for again in [true, false] {
+            if renewal.due || !self.preconditioner.spans(rows) {
+                self.renew(equations, now, rows, renewal)?;
+            }
+            if self.preconditioner.prepare(equations.model, rows)? || !again {
+                break;
+            }
+            renewal.due = true;
+        }
+        Ok(())
+    }
+
+    /// Forms the tangent at the current positions, or else at those of the step's start.
+    fn renew(
+        &mut self,
+        equations: &Equations,
+        now: &Evaluation,
+        rows: &Constraints,
+        renewal: &mut Renewal,
+    ) -> Result<(), Rejected> {
+        renewal.due = false;
+        let (model, last) = (equations.model, renewal.frozen.point.as_deref());
+        let boundary = self.preconditioner.boundary(model, &now.place, rows, last);
+        // Far from the solution the tangent may be indefinite; with inertia, that at the step's
+        // start is almost always positive definite.
+        let [present, start] = [&now.place, &equations.state.y].map(|at| equations.point(at, &boundary));
+        let mut chosen = &present;
+        if !self.tangent_at(model, &present, renewal.double)? && !equations.stage.is_static() {
+            chosen = &start;
+            if !self.tangent_at(model, &start, renewal.double)? {
+                chosen = &present;
+                self.tangent_at(model, &present, renewal.double)?;
+            }
+        }
+        if renewal.frozen.point.as_ref() != Some(chosen) {
+            renewal.renewed(chosen.clone());
+        }
+        Ok(())
     }
 
     /// Prepares solves with [M Gᵀ; G 0] over the free dofs that have mass.

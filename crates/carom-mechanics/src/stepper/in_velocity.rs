@@ -45,7 +45,7 @@ pub(super) fn solve_in_velocity(
 ) -> Result<(Evaluation, Effort), Rejected> {
     let (model, state) = (equations.model, equations.state);
     let shares = ImpulseShares { force: 1.0 / dt, ..ImpulseShares::default() };
-    let mut effort = Effort { regularity: f64::INFINITY, ..Effort::default() };
+    let mut effort = Effort::default();
     let mut increment = vec![0.0; state.y.len()];
     equations.arrive(&mut increment);
     let mut measured = Vec::new();
