@@ -418,16 +418,7 @@ fn dot(threads: &Threads, sums: &mut Vec<f64>, a: &[f64], b: &[f64]) -> f64 {
     sums.resize(a.len().div_ceil(BLOCK), 0.0);
     threads.for_each(sums.iter_mut(), |k, sum| {
         let range = k * BLOCK..((k + 1) * BLOCK).min(a.len());
-        let (a, b) = (&a[range.clone()], &b[range]);
-        let mut lanes = [0.0; 8];
-        let ((a, a_tail), (b, b_tail)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
-        for (a, b) in a.iter().zip(b) {
-            for l in 0..8 {
-                lanes[l] += a[l] * b[l];
-            }
-        }
-        let tail: f64 = a_tail.iter().zip(b_tail).map(|(a, b)| a * b).sum();
-        *sum = lanes.iter().sum::<f64>() + tail;
+        *sum = crate::sums::dot(&a[range.clone()], &b[range]);
     });
     sums.iter().sum()
 }

@@ -23,8 +23,8 @@ use crate::independent::{DEPENDENT, independent_above, slip_remainder};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
-use crate::sums::max_abs;
 use crate::system::System;
+use carom_algebra::sums::max_abs;
 
 /// Most changes of stick and slip in one solve.
 const CHANGES: usize = 200;
@@ -364,8 +364,7 @@ impl Closed {
             rows.push_plain(self.places[i], slips.row(name), Some(along));
             targets.push(inner(along, right.slips[i]));
             if turns && let Some(compliance) = ways[i].turns {
-                let last = rows.yields.len() - 1;
-                rows.yields[last] = compliance;
+                rows.list.iter_mut().last().into_iter().for_each(|row| row.yields = compliance);
             }
         }
         system.mass_with(model, &rows)?;

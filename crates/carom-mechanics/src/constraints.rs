@@ -6,64 +6,80 @@
 //! node in two contacts with one facet keeps one of them, for any contacts and nodes (Gaussian
 //! elimination of the sparse rows).
 
-use carom_contact::{Along, Direction, DiscreteGradient, FrictionState, Pair, Row, Rows, inner, length};
+use carom_contact::{
+    Along, Answer, Direction, DiscreteGradient, FrictionState, Pair, Row, Rows, inner, length,
+};
 
 use crate::balance::contact_weights;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
-use crate::model::Model;
 use crate::prevented_slips::PreventedSlips;
 use crate::slip_derivatives::SlipDerivatives;
 
 /// Largest gap per unit of a multiplier: of a slip whose traction is round-off.
 const LOOSE: f64 = 1e100;
 
+/// A row of a linear system, apart from its gradient and the direction of its force.
+#[derive(Clone, Debug)]
+pub(crate) struct Constraint {
+    /// Contact and pair.
+    pub place: (usize, usize),
+    /// The components of a slip that is prevented; others are gaps.
+    pub slip: Option<Along>,
+    /// Weight of the contact force in the balance.
+    pub weight: f64,
+    /// Gap per unit of multiplier.
+    pub compliance: f64,
+    /// Gap per unit of a multiplier that is an unknown: of the direction of a slip, and of an
+    /// augmented Lagrangian.
+    pub yields: f64,
+    /// Gap still to be closed.
+    pub open: f64,
+    /// λ times the derivative of the direction over the nodes of the row, row-major: λ∇²g, or not
+    /// symmetric for a discrete gradient. Empty if not requested.
+    pub curvature: Vec<f64>,
+}
+
+impl Constraint {
+    /// One of weight 1, without second derivatives.
+    fn plain(place: (usize, usize), slip: Option<Along>) -> Self {
+        Self { place, slip, weight: 1.0, compliance: 0.0, yields: 0.0, open: 0.0, curvature: Vec::new() }
+    }
+
+    /// Entry (i, j) of what a row with this gradient adds to the tangent of positions: w/C ∇g ∇gᵀ of
+    /// a spring, and, if `curved`, w·λ∇²g, symmetrised.
+    pub(crate) fn stiffness(&self, gradient: &[f64], [i, j]: [usize; 2], spring: f64, curved: bool) -> f64 {
+        let n = gradient.len();
+        let spring = if spring == 0.0 { 0.0 } else { gradient[i] * gradient[j] / spring };
+        let bent = if curved && !self.curvature.is_empty() {
+            0.5 * (self.curvature[i * n + j] + self.curvature[j * n + i])
+        } else {
+            0.0
+        };
+        self.weight * (spring + bent)
+    }
+}
+
 /// Rows of a linear system.
 #[derive(Clone, Debug)]
 pub(crate) struct Constraints {
-    /// Contact and pair of each row.
-    pub places: Vec<(usize, usize)>,
-    /// The components of each row that is a slip which is prevented; others are gaps.
-    pub slips: Vec<Option<Along>>,
+    pub list: Vec<Constraint>,
     /// Gradients of the gaps.
     pub rows: Rows,
     /// Directions of the forces.
     pub directions: Rows,
     /// Whether friction turns some of these, which the factor then takes into account.
     pub is_skew: bool,
-    /// Weight of the contact force in the balance.
-    pub weights: Vec<f64>,
-    /// Gap per unit of multiplier.
-    pub compliances: Vec<f64>,
-    /// Gap per unit of a multiplier that is an unknown: of the direction of a slip, and of an
-    /// augmented Lagrangian.
-    pub yields: Vec<f64>,
-    /// Gap still to be closed.
-    pub open: Vec<f64>,
     /// Contact, pair and components of slips of sticks that depend on these rows, and have no
     /// traction.
     pub dropped: Vec<((usize, usize), Along)>,
-    /// λ times the derivative of the direction over the nodes of each row, row-major: λ∇²g, or not
-    /// symmetric for a discrete gradient. Empty if not requested.
-    pub curvatures: Vec<Vec<f64>>,
 }
 
 impl Constraints {
     /// No rows.
     pub(crate) fn none(dimension: usize) -> Self {
-        Self {
-            places: Vec::new(),
-            slips: Vec::new(),
-            rows: Rows::new(dimension),
-            directions: Rows::new(dimension),
-            is_skew: false,
-            weights: Vec::new(),
-            compliances: Vec::new(),
-            yields: Vec::new(),
-            open: Vec::new(),
-            dropped: Vec::new(),
-            curvatures: Vec::new(),
-        }
+        let [rows, directions] = [Rows::new(dimension), Rows::new(dimension)];
+        Self { list: Vec::new(), rows, directions, is_skew: false, dropped: Vec::new() }
     }
 
     /// Rows as constraints of weight 1, without second derivatives, to solve for velocities or
@@ -79,14 +95,9 @@ impl Constraints {
 
     /// Adds such a row; `slip`: the components of a slip that is prevented.
     pub(crate) fn push_plain(&mut self, place: (usize, usize), row: Row, slip: Option<Along>) {
-        self.places.push(place);
-        self.slips.push(slip);
+        self.list.push(Constraint::plain(place, slip));
         self.rows.push_row(row);
         self.directions.push_row(row);
-        self.weights.push(1.0);
-        self.compliances.push(0.0);
-        self.yields.push(0.0);
-        self.open.push(0.0);
     }
 
     /// The rows of an evaluation, with second derivatives.
@@ -116,15 +127,19 @@ impl Constraints {
                 equations.slip_curvature_into(evaluation, place, &mut derivatives, &mut curvature);
                 constraints.is_skew = true;
             }
-            constraints.places.push(place);
-            constraints.slips.push(None);
             constraints.rows.push_row(evaluation.rows[k].row(p));
             constraints.directions.push_row(evaluation.directions(k).row(p));
-            constraints.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
-            constraints.compliances.push(answer.compliance);
-            constraints.yields.push(answer.yields);
-            constraints.open.push(answer.open);
-            constraints.curvatures.push(curvature);
+            let weight = contact_weights(&equations.stage, contact.at_the_end).0;
+            let Answer { compliance, yields, open, .. } = *answer;
+            constraints.list.push(Constraint {
+                place,
+                slip: None,
+                weight,
+                compliance,
+                yields,
+                open,
+                curvature,
+            });
         }
         constraints
     }
@@ -143,7 +158,6 @@ impl Constraints {
         let pair = &evaluation.at.pairings[k].pairs[p];
         equations.slip_derivatives_into(evaluation, (k, p), derivatives);
         let traction = pair.tangential.traction;
-        let spring = equations.spring_yields(k, pair, evaluation.slip_of((k, p)));
         let mut curvature = vec![0.0; slip.gradient.len().pow(2)];
         self.rows.push_row(slip);
         self.directions.push_row(slip);
@@ -159,18 +173,25 @@ impl Constraints {
             }
         }
         self.is_skew = true;
-        self.places.push((k, p));
-        self.slips.push(Some(along));
-        self.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
-        self.compliances.push(spring.unwrap_or(0.0));
-        let forward = inner(pair.tangential.friction_state.direction(), evaluation.slip_of((k, p)));
-        let stiffer = evaluation.at.stiffer;
+        let moved = evaluation.slip_of((k, p));
+        let forward = inner(pair.tangential.friction_state.direction(), moved);
         let turns = if forward > 0.0 { (forward / length(traction)).min(LOOSE) } else { 0.0 };
-        let yields = equations.stick_yields(k, pair, stiffer).unwrap_or(turns);
-        self.yields.push(if spring.is_some() { 0.0 } else { yields });
-        let open = slip.gap - equations.stretch(k, pair, along, stiffer);
-        self.open.push(if spring.is_some() { 0.0 } else { open });
-        self.curvatures.push(curvature);
+        let stiffer = evaluation.at.stiffer;
+        let [yields, open] = if equations.stick_spring(k, pair).is_some() {
+            [0.0; 2]
+        } else {
+            let yields = equations.stick_yields(k, pair, stiffer).unwrap_or(turns);
+            [yields, slip.gap - equations.stretch(k, pair, along, stiffer)]
+        };
+        self.list.push(Constraint {
+            place: (k, p),
+            slip: Some(along),
+            weight: contact_weights(&equations.stage, contact.at_the_end).0,
+            compliance: equations.spring_yields(k, pair, moved).unwrap_or(0.0),
+            yields,
+            open,
+            curvature,
+        });
     }
 
     /// Largest gap that a constraint has to close. The slip of a stick that depends on other rows,
@@ -194,12 +215,12 @@ impl Constraints {
 
     /// Number of rows.
     pub(crate) fn len(&self) -> usize {
-        self.places.len()
+        self.list.len()
     }
 
     /// Whether there are no rows.
     pub(crate) fn is_empty(&self) -> bool {
-        self.places.is_empty()
+        self.list.is_empty()
     }
 
     /// The nodes of all rows, ascending.
@@ -208,58 +229,6 @@ impl Constraints {
         nodes.sort_unstable();
         nodes.dedup();
         nodes
-    }
-
-    /// Calls `visit(row, dof, slope)` for the entries w·∇g of all rows at unknowns.
-    pub(crate) fn each_entry(&self, model: &Model, visit: impl FnMut(usize, usize, f64)) {
-        self.each_of(&self.rows, model, visit);
-    }
-
-    /// Calls `visit(row, dof, slope)` for the entries of the directions, with their weights.
-    pub(crate) fn each_direction(&self, model: &Model, visit: impl FnMut(usize, usize, f64)) {
-        self.each_of(&self.directions, model, visit);
-    }
-
-    fn each_of(&self, rows: &Rows, model: &Model, mut visit: impl FnMut(usize, usize, f64)) {
-        for (r, row) in rows.iter().enumerate() {
-            for (dof, slope) in row.entries() {
-                if let Some(unknown) = model.unknown(dof) {
-                    visit(r, unknown, self.weights[r] * slope);
-                }
-            }
-        }
-    }
-
-    /// Calls `visit(a, b, value)` for the entries w/C·∇g ∇gᵀ of the springs at unknowns a ≥ b.
-    pub(crate) fn each_spring(&self, model: &Model, mut visit: impl FnMut(usize, usize, f64)) {
-        for (r, row) in self.rows.iter().enumerate().filter(|(r, _)| self.compliances[*r] != 0.0) {
-            let stiffness = self.weights[r] / self.compliances[r];
-            let slopes = || row.entries().filter_map(|(dof, slope)| Some((model.unknown(dof)?, slope)));
-            for (a, slope) in slopes() {
-                slopes()
-                    .filter(|(b, _)| a >= *b)
-                    .for_each(|(b, other)| visit(a, b, stiffness * slope * other));
-            }
-        }
-    }
-
-    /// Calls `visit(a, b, value)` for the entries w·λ∇²g of all rows at unknowns a ≥ b,
-    /// symmetrised.
-    pub(crate) fn each_curvature(&self, model: &Model, mut visit: impl FnMut(usize, usize, f64)) {
-        for (r, (row, curvature)) in self.rows.iter().zip(&self.curvatures).enumerate() {
-            let count = row.gradient.len();
-            for (i, (dof, _)) in row.entries().enumerate() {
-                let Some(a) = model.unknown(dof) else { continue };
-                for (j, (other, _)) in row.entries().enumerate() {
-                    if let Some(b) = model.unknown(other)
-                        && a >= b
-                    {
-                        let mean = 0.5 * (curvature[i * count + j] + curvature[j * count + i]);
-                        visit(a, b, self.weights[r] * mean);
-                    }
-                }
-            }
-        }
     }
 }
 

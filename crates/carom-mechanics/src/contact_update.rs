@@ -176,7 +176,7 @@ impl ContactUpdate {
                 pairs.iter().zip(evaluation.rows[k].iter()).map(contender).collect();
             let changes = self.sets[k].changes(&contenders, settled).map_err(|cycle| Rejected::Cycle {
                 contact: contact.name.clone(),
-                nodes: cycle.pairs.iter().map(|&p| contact.kinematics.secondary()[pairs[p].node]).collect(),
+                nodes: cycle.pairs.iter().map(|&p| contact.node(&pairs[p])).collect(),
             })?;
             for p in changes {
                 (pairs[p].active, pairs[p].lambda, changed) = (!pairs[p].active, 0.0, true);
@@ -217,11 +217,7 @@ impl ContactUpdate {
             let changes =
                 self.holds[k].changes(&rubs, settled).map_err(|cycle| Rejected::StickSlipCycle {
                     contact: contact.name.clone(),
-                    nodes: cycle
-                        .pairs
-                        .iter()
-                        .map(|&p| contact.kinematics.secondary()[pairs[p].node])
-                        .collect(),
+                    nodes: cycle.pairs.iter().map(|&p| contact.node(&pairs[p])).collect(),
                     regularity: self.regularity,
                 })?;
             for (p, friction_state) in changes {
@@ -258,12 +254,11 @@ fn update_facets(model: &Model, evaluation: &mut Evaluation, found: &mut Events)
 pub(crate) fn check_satisfiable(equations: &Equations, evaluation: &Evaluation) -> Result<(), Rejected> {
     let model = equations.model;
     let rows = Constraints::of(equations, evaluation);
-    let gaps = rows.places.iter().zip(&rows.slips).filter(|(_, slip)| slip.is_none());
-    let gaps: BTreeSet<_> = gaps.map(|(place, _)| *place).collect();
+    let gaps: BTreeSet<_> = rows.list.iter().filter(|row| row.slip.is_none()).map(|row| row.place).collect();
     for (k, p) in evaluation.pressing().filter(|place| !gaps.contains(place)) {
         let (contact, depth) = (&model.contacts[k], -evaluation.rows[k].row(p).gap);
         if contact.interface.is_constraint() && depth > model.gap_tolerance {
-            let node = contact.kinematics.secondary()[evaluation.at.pairings[k].pairs[p].node];
+            let node = contact.node(&evaluation.at.pairings[k].pairs[p]);
             return Err(Rejected::Overconstrained { contact: contact.name.clone(), node, depth });
         }
     }

@@ -51,8 +51,8 @@ pub(crate) struct Direct {
     /// previous one.
     latest: [VecDeque<(Vec<usize>, Arc<Elimination>)>; 2],
     saddle: Saddle,
-    /// The row of each constraint in the dense system; none for springs.
-    places: Vec<Option<usize>>,
+    /// Whether each constraint is a spring, which has no row in the dense system.
+    springs: Vec<bool>,
     /// Right-hand side and solution, over unknowns and rows; and in elimination order.
     solution: Vec<f64>,
     inner: Vec<f64>,
@@ -70,7 +70,7 @@ impl Direct {
             of_mass: false,
             latest: [VecDeque::new(), VecDeque::new()],
             saddle: Saddle::default(),
-            places: Vec::new(),
+            springs: Vec::new(),
             solution: Vec::new(),
             inner: Vec::new(),
         }
@@ -112,40 +112,48 @@ impl Direct {
             return Err(no_factor(model));
         };
         let (saddle, elimination) = (&mut self.saddle, condensed.elimination());
-        self.places.clear();
-        for compliance in &rows.compliances {
-            let index = self.places.iter().flatten().count();
-            self.places.push((*compliance == 0.0).then_some(index));
-        }
-        saddle.begin(condensed.schur(), elimination.schur_size(), self.places.iter().flatten().count());
-        let place = |unknown: usize| elimination.schur_place(unknown);
-        rows.each_entry(model, |r, unknown, slope| {
-            let included = !(self.of_mass && model.massless[model.free[unknown]]);
-            if let (Some(row), Some(a)) = (self.places[r].filter(|_| included), place(unknown)) {
-                saddle.add_row(row, a, slope);
-            }
-        });
-        if rows.is_skew || rows.yields.iter().any(|compliance| *compliance != 0.0) {
+        self.springs.clear();
+        self.springs.extend(rows.list.iter().map(|row| row.compliance != 0.0));
+        let count = self.springs.iter().filter(|is_spring| !**is_spring).count();
+        saddle.begin(condensed.schur(), elimination.schur_size(), count);
+        let is_turned = rows.is_skew || rows.list.iter().any(|row| row.yields != 0.0);
+        if is_turned {
             saddle.direct();
-            rows.each_direction(model, |r, unknown, slope| {
-                let included = !(self.of_mass && model.massless[model.free[unknown]]);
-                if let (Some(row), Some(a)) = (self.places[r].filter(|_| included), place(unknown)) {
-                    saddle.add_direction(row, a, slope);
-                }
-            });
-            let yields = rows.yields.iter().zip(&rows.weights).zip(&self.places);
-            for ((compliance, weight), row) in yields.filter(|((compliance, _), _)| **compliance != 0.0) {
-                row.iter().for_each(|&row| saddle.yields(row, weight * compliance));
-            }
         }
-        let mut add = |a: usize, b: usize, value: f64| {
-            if let (Some(a), Some(b)) = (place(a), place(b)) {
-                saddle.add(a.max(b), a.min(b), value);
-            }
+        let place = |dof: usize| {
+            let unknown = model.unknown(dof).filter(|_| !(self.of_mass && model.massless[dof]));
+            unknown.and_then(|unknown| elimination.schur_place(unknown))
         };
-        rows.each_spring(model, &mut add);
-        if curved {
-            rows.each_curvature(model, &mut add);
+        let mut count = 0;
+        for ((row, gradient), direction) in rows.list.iter().zip(rows.rows.iter()).zip(rows.directions.iter())
+        {
+            if row.compliance == 0.0 {
+                let at_places = |(dof, slope): (usize, f64)| Some((place(dof)?, row.weight * slope));
+                gradient
+                    .entries()
+                    .filter_map(at_places)
+                    .for_each(|(a, slope)| saddle.add_row(count, a, slope));
+                if is_turned {
+                    let slopes = direction.entries().filter_map(at_places);
+                    slopes.for_each(|(a, slope)| saddle.add_direction(count, a, slope));
+                }
+                saddle.yields(count, row.weight * row.yields);
+                count += 1;
+            }
+            if row.compliance == 0.0 && !curved {
+                continue;
+            }
+            let places: Vec<Option<usize>> = gradient.entries().map(|(dof, _)| place(dof)).collect();
+            for (i, a) in places.iter().enumerate() {
+                for (j, b) in places.iter().enumerate() {
+                    if let (Some(a), Some(b)) = (*a, *b)
+                        && a >= b
+                    {
+                        let value = row.stiffness(gradient.gradient, [i, j], row.compliance, curved);
+                        saddle.add(a, b, value);
+                    }
+                }
+            }
         }
         if !self.of_mass {
             saddle.augment(STIFFENING);
@@ -265,14 +273,16 @@ impl Preconditioner for Direct {
         let mut x = std::mem::take(&mut self.solution);
         x.clear();
         x.extend(model.free.iter().map(|&dof| forces[dof]));
-        x.extend(self.places.iter().zip(gaps).filter_map(|(place, gap)| place.map(|_| *gap)));
+        x.extend(self.springs.iter().zip(gaps).filter(|(is_spring, _)| !**is_spring).map(|(_, gap)| *gap));
         self.solve_all(unknowns, &mut x);
         increment.fill(0.0);
         for (value, &dof) in x.iter().zip(&model.free) {
             increment[dof] = *value;
         }
         multipliers.clear();
-        multipliers.extend(self.places.iter().map(|place| place.map_or(0.0, |row| x[unknowns + row])));
+        let mut found = x[unknowns..].iter().copied();
+        let of = |is_spring: &bool| if *is_spring { None } else { found.next() };
+        multipliers.extend(self.springs.iter().map(of).map(Option::unwrap_or_default));
         let finite = x.iter().all(|x| x.is_finite());
         self.solution = x;
         if finite { Ok(()) } else { Err(LinearError::Inaccurate { size: unknowns, residual: f64::NAN }) }

@@ -24,7 +24,7 @@ use crate::direct::Direct;
 use crate::model::Model;
 use crate::preconditioner::Preconditioner;
 use crate::renewal::Point;
-use crate::sums::dot;
+use carom_algebra::sums::dot;
 
 /// Maximum iterations per vector, and relative change of the quotient at convergence.
 const ITERATIONS: usize = 400;

@@ -38,10 +38,11 @@ pub(crate) struct Iterative {
     constrained: Vec<usize>,
     massless: Vec<usize>,
     of_mass: bool,
+    /// The rows of contacts as they are, and over the included dofs; and whether the second
+    /// derivatives of the former count.
+    contacts: Constraints,
     rows: ConstraintRows,
-    /// Gap per unit of multiplier of rows whose multiplier is an unknown.
-    yields: Vec<f64>,
-    patches: Patches,
+    curved: bool,
     method: ConjugateGradients,
     iterations: u64,
     forces: Vec<f64>,
@@ -84,9 +85,9 @@ impl Iterative {
             constrained: (0..model.dofs()).filter(|dof| model.fixed[*dof]).collect(),
             massless: model.free.iter().copied().filter(|dof| model.massless[*dof]).collect(),
             of_mass: false,
+            contacts: Constraints::none(d),
             rows: ConstraintRows::default(),
-            yields: Vec::new(),
-            patches: Patches::default(),
+            curved: false,
             method: ConjugateGradients::default(),
             iterations: 0,
             forces: Vec::new(),
@@ -129,14 +130,14 @@ impl Iterative {
     ) -> Result<(), LinearError> {
         debug_assert!(!rows.is_skew, "friction is solved directly");
         self.rows.clear();
-        for (r, row) in rows.rows.iter().enumerate() {
-            let weight = rows.weights[r];
+        for (row, constraint) in rows.rows.iter().zip(&rows.list) {
+            let weight = constraint.weight;
             let entries = row.entries().filter(|(dof, _)| !model.fixed[*dof] && included(*dof));
             let entries = entries.map(|(dof, slope)| (dof, weight * slope));
             // A row that yields is eliminated like a spring, and its multiplier found afterwards.
-            self.rows.push(weight * (rows.compliances[r] + rows.yields[r]), entries);
+            self.rows.push(weight * (constraint.compliance + constraint.yields), entries);
         }
-        self.yields.clone_from(&rows.yields);
+        self.contacts.clone_from(rows);
         self.rows.factor(&self.blocks[usize::from(self.of_mass)])
     }
 }
@@ -188,7 +189,6 @@ impl Preconditioner for Iterative {
 
     fn form_mass(&mut self, model: &Model, rows: &Constraints) -> Result<(), Rejected> {
         self.of_mass = true;
-        self.patches.clear();
         Ok(self.constrain(model, rows, |dof| !model.massless[dof])?)
     }
 
@@ -202,7 +202,7 @@ impl Preconditioner for Iterative {
 
     fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<bool, LinearError> {
         self.of_mass = false;
-        self.patches.fill(model, rows);
+        self.curved = rows.list.iter().any(|row| row.curvature.iter().any(|value| *value != 0.0));
         self.constrain(model, rows, |_| true)?;
         Ok(true)
     }
@@ -218,24 +218,23 @@ impl Preconditioner for Iterative {
         increment: &mut [f64],
         multipliers: &mut Vec<f64>,
     ) -> Result<(), LinearError> {
+        let Self { matrix, contacts, rows, curved, constrained, massless, of_mass, .. } = self;
         self.forces.clear();
         self.forces.extend_from_slice(forces);
-        self.constrained.iter().for_each(|dof| self.forces[*dof] = 0.0);
+        constrained.iter().for_each(|dof| self.forces[*dof] = 0.0);
         self.gaps.clear();
-        self.gaps.extend((0..gaps.len()).map(|r| if self.rows.is_spring(r) { 0.0 } else { gaps[r] }));
+        self.gaps.extend((0..gaps.len()).map(|r| if rows.is_spring(r) { 0.0 } else { gaps[r] }));
         multipliers.resize(gaps.len(), 0.0);
-        for r in (0..gaps.len()).filter(|r| self.yields[*r] != 0.0) {
-            self.rows.pull(r, gaps[r], &mut self.forces);
-        }
+        let yielding = contacts.list.iter().enumerate().filter(|(_, row)| row.yields != 0.0);
+        yielding.clone().for_each(|(r, _)| rows.pull(r, gaps[r], &mut self.forces));
         loop {
-            let Self { matrix, patches, constrained, massless, of_mass, .. } = self;
             let product = |x: &[f64], out: &mut [f64]| {
                 if *of_mass {
                     model.mass.multiply_into(x, out);
                     massless.iter().for_each(|dof| out[*dof] = x[*dof]);
                 } else {
                     matrix.multiply_into(x, out);
-                    patches.add_product(x, out);
+                    add_contacts(contacts, *curved, x, out);
                 }
                 constrained.iter().for_each(|dof| out[*dof] = 0.0);
             };
@@ -243,16 +242,15 @@ impl Preconditioner for Iterative {
                 &model.threads,
                 product,
                 &self.blocks[usize::from(*of_mass)],
-                &mut self.rows,
+                rows,
                 [&self.forces, &self.gaps],
                 [increment, multipliers],
                 (if *of_mass { ROUND_OFF } else { REDUCTION }, MOST),
             );
             self.iterations += ended.iterations as u64;
-            if ended.is_indefinite && self.patches.is_curved() {
+            if ended.is_indefinite && std::mem::take(curved) {
                 // An inaccurate multiplier can make the curvature terms too large: without second
                 // derivatives there is still a descent direction.
-                self.patches.straighten();
                 continue;
             }
             let unusable = ended.iterations == MOST || ended.is_indefinite && ended.iterations == 1;
@@ -260,75 +258,23 @@ impl Preconditioner for Iterative {
                 let (iterations, reduction) = (ended.iterations, ended.reduction);
                 return Err(LinearError::Stalled { size: model.free.len(), iterations, reduction });
             }
-            for r in (0..gaps.len()).filter(|r| self.yields[*r] != 0.0) {
-                multipliers[r] = self.rows.pulled(r, gaps[r], increment);
-            }
+            yielding.for_each(|(r, _)| multipliers[r] = rows.pulled(r, gaps[r], increment));
             return Ok(());
         }
     }
 }
 
-/// The terms of the active rows in the tangent, w/C ∇g ∇gᵀ of springs and w·λ∇²g, symmetrised: a
-/// dense matrix over the dofs of each row.
-#[derive(Default)]
-struct Patches {
-    starts: Vec<usize>,
-    dofs: Vec<usize>,
-    /// Of springs, and of the second derivatives; the latter empty if they are left out.
-    springs: Vec<f64>,
-    curved: Vec<f64>,
-}
-
-impl Patches {
-    fn clear(&mut self) {
-        self.starts.clear();
-        self.starts.push(0);
-        self.dofs.clear();
-        self.springs.clear();
-        self.curved.clear();
-    }
-
-    fn fill(&mut self, model: &Model, rows: &Constraints) {
-        self.clear();
-        for (r, row) in rows.rows.iter().enumerate() {
-            let (weight, n) = (rows.weights[r], row.gradient.len());
-            let compliance = rows.compliances[r] + rows.yields[r];
-            self.dofs.extend(row.entries().map(|(dof, _)| dof));
-            self.starts.push(self.dofs.len());
-            let free: Vec<bool> = row.entries().map(|(dof, _)| !model.fixed[dof]).collect();
-            let curvature = rows.curvatures.get(r);
-            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-                let factor = if free[i] && free[j] { weight } else { 0.0 };
-                let bent = curvature.map_or(0.0, |c| 0.5 * (c[i * n + j] + c[j * n + i]));
-                let spring =
-                    if compliance == 0.0 { 0.0 } else { row.gradient[i] * row.gradient[j] / compliance };
-                self.springs.push(factor * spring);
-                self.curved.push(factor * bent);
-            }
+/// out += of what the rows of contacts add to the tangent of positions times x; rows whose multiplier
+/// is an unknown count as springs.
+fn add_contacts(rows: &Constraints, curved: bool, x: &[f64], out: &mut [f64]) {
+    for (row, constraint) in rows.rows.iter().zip(&rows.list) {
+        let spring = constraint.compliance + constraint.yields;
+        if spring == 0.0 && !curved {
+            continue;
         }
-    }
-
-    fn is_curved(&self) -> bool {
-        self.curved.iter().any(|value| *value != 0.0)
-    }
-
-    /// Leaves the second derivatives out.
-    fn straighten(&mut self) {
-        self.curved.fill(0.0);
-    }
-
-    /// out += of these terms times x.
-    fn add_product(&self, x: &[f64], out: &mut [f64]) {
-        let mut from = 0;
-        for range in self.starts.windows(2) {
-            let dofs = &self.dofs[range[0]..range[1]];
-            let n = dofs.len();
-            for (i, dof) in dofs.iter().enumerate() {
-                let values = from + i * n..from + (i + 1) * n;
-                let both = self.springs[values.clone()].iter().zip(&self.curved[values]);
-                out[*dof] += both.zip(dofs).map(|((spring, bent), j)| (spring + bent) * x[*j]).sum::<f64>();
-            }
-            from += n * n;
+        for (i, (dof, _)) in row.entries().enumerate() {
+            let entry = |j: usize| constraint.stiffness(row.gradient, [i, j], spring, curved);
+            out[dof] += row.entries().enumerate().map(|(j, (other, _))| entry(j) * x[other]).sum::<f64>();
         }
     }
 }

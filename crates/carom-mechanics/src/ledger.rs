@@ -26,7 +26,7 @@ use crate::friction::secondary_friction;
 use crate::friction_state::each_slip;
 use crate::model::Model;
 use crate::state::{Means, Previous, State};
-use crate::sums::dot;
+use carom_algebra::sums::dot;
 
 /// Adds a solved stage to the means over the step (cleared before the first stage). `previous`: the
 /// previous step of a two-step scheme.

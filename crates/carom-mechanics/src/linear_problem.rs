@@ -17,14 +17,14 @@ use carom_algebra::LinearError;
 use crate::constraints::Constraints;
 use crate::equations::Equations;
 use crate::evaluation::Evaluation;
-use crate::mixing::Mixing;
 use crate::model::Model;
 use crate::preconditioner::Preconditioner;
 use crate::rejected::Rejected;
 use crate::renewal::Renewal;
-use crate::sums::max_abs;
 use crate::timings::{Timings, timed};
 use crate::wholes::Wholes;
+use carom_algebra::Mixing;
+use carom_algebra::sums::max_abs;
 
 /// Maximum number of solves of one linear problem; then the current solution is used.
 const MOST_SOLVES: u32 = 30;
@@ -73,9 +73,8 @@ pub(crate) struct LinearProblem {
     mixing: Mixing,
     /// Size of the last correction, if comparable with the next.
     comparable: Option<f64>,
-    rows: Vec<(usize, usize)>,
-    /// Whether each row is one of friction.
-    slips: Vec<bool>,
+    /// Contact and pair of each row, and whether it is one of friction.
+    rows: Vec<((usize, usize), bool)>,
 }
 
 impl LinearProblem {
@@ -105,12 +104,11 @@ impl LinearProblem {
         goal: Goal,
         timings: &mut Timings,
     ) -> Result<Correction, Rejected> {
-        let is_slip = || rows.slips.iter().map(Option::is_some);
-        if goal.fresh || self.rows != rows.places || !is_slip().eq(self.slips.iter().copied()) {
+        let names = || rows.list.iter().map(|row| (row.place, row.slip.is_some()));
+        if goal.fresh || !names().eq(self.rows.iter().copied()) {
             self.restart();
-            self.rows.clone_from(&rows.places);
-            self.slips.clear();
-            self.slips.extend(is_slip());
+            self.rows.clear();
+            self.rows.extend(names());
         }
         self.begin(equations, now, rows, timings)?;
         let mut total = Correction::default();
@@ -149,7 +147,7 @@ impl LinearProblem {
         self.forces.clear();
         self.forces.extend(now.residual.iter().map(|r| -r));
         self.gaps.clear();
-        self.gaps.extend(rows.weights.iter().zip(&rows.open).map(|(w, open)| -w * open));
+        self.gaps.extend(rows.list.iter().map(|row| -row.weight * row.open));
         self.increment.clear();
         self.increment.resize(now.residual.len(), 0.0);
         self.multipliers.clear();
@@ -218,11 +216,10 @@ impl LinearProblem {
         equations.product_into(now, &self.increment, &mut self.product, timings)?;
         self.forces.iter_mut().zip(&self.product).for_each(|(right, product)| *right -= product);
         subtract_contact_forces(rows, [&self.increment, &self.multipliers], &mut self.forces);
-        for r in (0..rows.len()).filter(|&r| rows.compliances[r] == 0.0) {
-            let weight = rows.weights[r];
-            self.gaps[r] -= weight * rows.rows.row(r).along(&self.increment);
-            if rows.yields[r] != 0.0 {
-                self.gaps[r] += weight * rows.yields[r] * self.multipliers[r];
+        for (r, row) in rows.list.iter().enumerate().filter(|(_, row)| row.compliance == 0.0) {
+            self.gaps[r] -= row.weight * rows.rows.row(r).along(&self.increment);
+            if row.yields != 0.0 {
+                self.gaps[r] += row.weight * row.yields * self.multipliers[r];
             }
         }
         Ok(())
@@ -245,14 +242,14 @@ impl LinearProblem {
 
 /// Subtracts the forces of the contacts that a correction of positions and multipliers causes.
 fn subtract_contact_forces(rows: &Constraints, [increment, multipliers]: [&[f64]; 2], forces: &mut [f64]) {
-    for r in 0..rows.len() {
-        let (row, weight) = (rows.rows.row(r), rows.weights[r]);
-        let multiplier = match rows.compliances[r] {
+    for (r, constraint) in rows.list.iter().enumerate() {
+        let (row, weight) = (rows.rows.row(r), constraint.weight);
+        let multiplier = match constraint.compliance {
             0.0 => multipliers[r],
             compliance => row.along(increment) / compliance,
         };
         rows.directions.row(r).add_to(-weight * multiplier, forces);
-        let curvature = rows.curvatures[r].chunks_exact(row.gradient.len());
+        let curvature = constraint.curvature.chunks_exact(row.gradient.len());
         for ((dof, _), curved) in row.entries().zip(curvature) {
             let bent: f64 =
                 curved.iter().zip(row.entries()).map(|(c, (other, _))| c * increment[other]).sum();

@@ -22,10 +22,10 @@ use crate::renewal::{FrozenTangent, Renewal};
 use crate::resultants::are_balanced;
 use crate::rounds::Rounds;
 use crate::settings::{Settings, Tangent};
-use crate::sums::max_abs;
 use crate::timings::timed;
 use crate::trace::Iteration;
 use crate::workspace::Workspace;
+use carom_algebra::sums::max_abs;
 
 /// Factor below the tolerance to which the residual is reduced if linear problems are solved
 /// inexactly.
@@ -372,11 +372,12 @@ fn advance(
         if length == 1.0 {
             equations.arrive(&mut at.increment);
         }
-        for ((&(k, p), along), change) in rows.places.iter().zip(&rows.slips).zip(&correction.multipliers) {
+        for (row, change) in rows.list.iter().zip(&correction.multipliers) {
+            let (k, p) = row.place;
             let pair = &mut at.pairings[k].pairs[p];
-            match along {
+            match row.slip {
                 None => pair.lambda += length * change,
-                Some(along) => pair.tangential.pull(*along, length * change),
+                Some(along) => pair.tangential.pull(along, length * change),
             }
         }
         for &((k, p), along) in &rows.dropped {

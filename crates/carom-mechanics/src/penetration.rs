@@ -285,7 +285,7 @@ impl Penetration {
                 let mut pair = *pair;
                 contact.kinematics.start_step(&mut pair, y);
                 if contact.kinematics.measure(&mut pair, y, rows).is_ok() {
-                    let node = contact.kinematics.secondary()[pair.node];
+                    let node = contact.node(&pair);
                     let facet = contact.kinematics.facet_nodes(&pair);
                     paired.push((node, (-rows.row(0).gap).max(0.0), of_facet(facet)));
                 }

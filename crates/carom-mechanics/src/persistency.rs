@@ -26,8 +26,8 @@ use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::restitution::{Impact, take};
 use crate::state::State;
-use crate::sums::max_abs;
 use crate::system::System;
+use carom_algebra::sums::max_abs;
 
 /// Contact and pair.
 type Place = (usize, usize);

@@ -23,8 +23,8 @@ use crate::ledger::book_kinetic;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
-use crate::sums::max_abs;
 use crate::system::System;
+use carom_algebra::sums::max_abs;
 
 /// Solutions for the factor of speeds with friction, and its change that is round-off.
 const ROUNDS: usize = 50;

@@ -11,7 +11,7 @@ use carom_solid::cell_lumped_mass;
 
 use crate::matrices::Matrices;
 use crate::model::Model;
-use crate::sums::dot;
+use carom_algebra::sums::dot;
 
 /// Fraction of 2/ω_max that is accepted as a step.
 pub const SAFETY: f64 = 0.95;

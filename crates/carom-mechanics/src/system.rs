@@ -15,7 +15,7 @@ use crate::preconditioner::Preconditioner;
 use crate::rejected::Rejected;
 use crate::renewal::{Point, Renewal};
 use crate::settings::Linear;
-use crate::sums::max_abs;
+use carom_algebra::sums::max_abs;
 
 /// The preconditioner of a model.
 pub(crate) struct System {

@@ -14,9 +14,9 @@ use crate::linear_problem::LinearProblem;
 use crate::model::{Friction, Load, Loads, Model, Motions};
 use crate::start::press;
 use crate::state::State;
-use crate::sums::dot;
 use crate::testing::{contact, loaded, model, nodes, parts};
 use crate::timings::Timings;
+use carom_algebra::sums::dot;
 
 /// An iterate with its tangent.
 struct Tangent<'a> {
@@ -65,7 +65,8 @@ impl<'a> Tangent<'a> {
         let (free, mut at) = (&equations.model.free, at.clone());
         let (dofs, multipliers) = u.split_at(free.len());
         free.iter().zip(dofs).for_each(|(&dof, u)| at.increment[dof] += e * u);
-        for ((&(k, p), slip), u) in rows.places.iter().zip(&rows.slips).zip(multipliers) {
+        for (row, u) in rows.list.iter().zip(multipliers) {
+            let ((k, p), slip) = (row.place, &row.slip);
             let pair = &mut at.pairings[k].pairs[p];
             match slip {
                 None => pair.lambda += e * u,
@@ -81,8 +82,8 @@ impl<'a> Tangent<'a> {
             };
             across.map_or(now.rows[k].row(p).gap, |along| inner(along, now.slip_of((k, p))))
         };
-        let gaps = rows.places.iter().zip(&rows.slips).map(gap);
-        let gaps = gaps.zip(&rows.weights).map(|(gap, weight)| weight * gap);
+        let gaps = rows.list.iter().map(|row| gap((&row.place, &row.slip)));
+        let gaps = gaps.zip(&rows.list).map(|(gap, row)| row.weight * gap);
         free.iter().map(|&dof| now.residual[dof]).chain(gaps).collect()
     }
 
@@ -243,7 +244,8 @@ fn the_whole_tangent_with_friction_is_the_derivative_of_the_residual() {
         closed.take(2).for_each(|pair| pair.active = false);
         let equations = equations(&model, &state, &scheme, DT, DT);
         let mut tangent = Tangent::from(&equations, at, 1e-3);
-        let (sticks, rows) = (tangent.rows.slips.iter().flatten().count(), tangent.rows.len());
+        let (sticks, rows) =
+            (tangent.rows.list.iter().filter_map(|row| row.slip).count(), tangent.rows.len());
         assert!(sticks >= 2 && rows - sticks > sticks, "{sticks} {rows}");
         let u = tangent.direction(0.1);
         let ku = tangent.product(&u);
@@ -306,9 +308,11 @@ fn the_whole_tangent_with_friction_in_space_is_the_derivative_of_the_residual() 
             pair.tangential.friction_state = FrictionState::of([cos * x - sin * y, sin * x + cos * y], 0.0);
         }
         let mut tangent = Tangent::from(&equations, at, 1e-3);
-        let slips = tangent.rows.slips.iter().flatten();
+        let slips = tangent.rows.list.iter().filter_map(|row| row.slip);
         let (sticks, rows) = (slips.clone().filter(|along| along.contains(&1.0)).count(), tangent.rows.len());
-        assert!(sticks > 2 && slips.count() > sticks + 1 && tangent.rows.yields.iter().any(|c| *c > 0.0));
+        assert!(
+            sticks > 2 && slips.count() > sticks + 1 && tangent.rows.list.iter().any(|row| row.yields > 0.0)
+        );
         assert!(rows > 12, "{rows}");
         let u = tangent.direction(0.1);
         let ku = tangent.product(&u);

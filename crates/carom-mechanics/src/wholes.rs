@@ -55,7 +55,7 @@ impl Wholes {
     /// from which those of its contacts due to the increment are subtracted; `factor`: w.mass a'.
     /// The balance of one on springs is one with that of their other side.
     pub(crate) fn close(&self, forces: &[f64], factor: f64, rows: &Constraints, increment: &mut [f64]) {
-        let springs: Vec<usize> = (0..rows.len()).filter(|&r| rows.compliances[r] > 0.0).collect();
+        let springs: Vec<usize> = (0..rows.len()).filter(|&r| rows.list[r].compliance > 0.0).collect();
         let is_on = |whole: &Whole, r: usize| rows.rows.row(r).entries().any(|(dof, _)| whole.has(dof));
         for whole in self.0.iter().filter(|whole| !springs.iter().any(|&r| is_on(whole, r))) {
             let (mut force, mut inertia) = (0.0, 0.0);

@@ -1,6 +1,6 @@
 //! A contact of two sides, of a side and a rigid obstacle, or of a side with itself.
 
-use carom_contact::{Direction, Interface, Kinematics};
+use carom_contact::{Direction, Interface, Kinematics, Pair};
 use carom_solid::FacetShape;
 
 use super::friction::Friction;
@@ -62,6 +62,11 @@ pub struct Augmentation {
 }
 
 impl Contact {
+    /// The secondary node of a pair; an edge has the number of one of its nodes.
+    pub(crate) fn node(&self, pair: &Pair) -> usize {
+        self.kinematics.secondary()[pair.node]
+    }
+
     /// Whether it is a constraint whose closed gaps do no work.
     pub(crate) fn conserves(&self) -> bool {
         self.interface.is_constraint() && self.interface.direction() == Direction::DiscreteGradient

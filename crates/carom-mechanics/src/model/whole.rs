@@ -13,7 +13,7 @@ use super::motion::Motions;
 use super::probe::Probe;
 use super::rigid::Mode;
 use crate::cells;
-use crate::sums::{dot, sum};
+use carom_algebra::sums::{dot, sum};
 
 /// A named support: the dofs whose reaction is recorded.
 pub struct Support {

@@ -39,9 +39,9 @@ use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stability::{SAFETY, lumped};
 use crate::state::{HalfStepVelocity, State};
-use crate::sums::sum;
 use crate::timings::timed;
 use crate::workspace::Workspace;
+use carom_algebra::sums::sum;
 
 /// Work of internal forces, relative to the energies, that may be round-off.
 const ROUND_OFF: f64 = 1e-12;

@@ -22,8 +22,8 @@ use crate::rejected::{Rejected, SINGULAR};
 use crate::restitution::{self, Impact, separate};
 use crate::settings::{Linear, Settings};
 use crate::state::{Means, Previous, State};
-use crate::sums::dot;
 use crate::workspace::Workspace;
+use carom_algebra::sums::dot;
 
 /// The implicit stepper.
 pub struct Implicit {

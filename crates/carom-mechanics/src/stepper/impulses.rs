@@ -197,7 +197,7 @@ impl Impulses {
         if self.dependent {
             proximal(&mut matrix, &mut right, &self.values);
         }
-        if self.rows.slips.iter().any(Option::is_some) {
+        if self.rows.list.iter().any(|row| row.slip.is_some()) {
             for i in 0..count {
                 (0..i).for_each(|j| matrix[j * count + i] = matrix[i * count + j]);
             }
@@ -227,18 +227,18 @@ impl Impulses {
         for (r, (row, impulse)) in self.rows.rows.iter().zip(&self.values).enumerate() {
             let normal = row.normal();
             for i in 0..3 {
-                next.contact_forces[self.rows.places[r].0][i] += impulse * normal[i] / dt;
-                next.impulses[self.rows.places[r].0][i] += impulse * normal[i];
+                next.contact_forces[self.rows.list[r].place.0][i] += impulse * normal[i] / dt;
+                next.impulses[self.rows.list[r].place.0][i] += impulse * normal[i];
             }
             let work = 0.5 * impulse * (self.before[r] + row.along(&next.v));
-            let is_slip = self.rows.slips[r].is_some();
+            let is_slip = self.rows.list[r].slip.is_some();
             *(if is_slip { &mut next.ledger.friction_work } else { &mut next.ledger.contact_work }) += work;
             if !is_slip {
-                let (k, p) = self.rows.places[r];
+                let (k, p) = self.rows.list[r].place;
                 pairings[k].pairs[p].lambda = -impulse / dt;
             }
         }
-        let along: Vec<Along> = self.rows.slips.iter().copied().flatten().collect();
+        let along: Vec<Along> = self.rows.list.iter().filter_map(|row| row.slip).collect();
         let first = self.values.len() - along.len();
         let mut rubbed = vec![[0.0; 2]; first];
         for (of, impulse) in combined(&self.kinds, &along, &self.values[first..]) {
@@ -246,7 +246,7 @@ impl Impulses {
         }
         let slips: Vec<f64> = self.rows.rows.iter().skip(first).map(|row| dt * row.along(&next.v)).collect();
         for ((of, slip), kind) in combined(&self.kinds, &along, &slips).zip(&self.kinds[first..]) {
-            let (k, p) = self.rows.places[of];
+            let (k, p) = self.rows.list[of].place;
             let tangential = &mut pairings[k].pairs[p].tangential;
             tangential.friction_state = friction_state(*kind, self.values[of], rubbed[of]);
             tangential.traction = rubbed[of].map(|impulse| -impulse / dt);

@@ -37,11 +37,11 @@ use crate::rejected::Rejected;
 use crate::settings::{Settings, Tangent};
 use crate::skins::length;
 use crate::state::State;
-use crate::sums::max_abs;
 use crate::timings::timed;
 use crate::trace::Iteration;
 use crate::watched::has_gaps;
 use crate::workspace::Workspace;
+use carom_algebra::sums::max_abs;
 
 /// Share of the allowed depth by which a node may sink in a step.
 const SINKS: f64 = 0.1;

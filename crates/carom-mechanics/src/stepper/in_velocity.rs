@@ -77,7 +77,8 @@ pub(super) fn solve_in_velocity(
         for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
             (pair.active, pair.lambda) = (false, 0.0);
         }
-        for (&(k, p), impulse) in impulses.rows.places.iter().zip(&impulses.values) {
+        for (row, impulse) in impulses.rows.list.iter().zip(&impulses.values) {
+            let (k, p) = row.place;
             let pair = &mut pairings[k].pairs[p];
             (pair.active, pair.lambda) = (*impulse > 0.0, -impulse / dt);
         }
@@ -112,12 +113,12 @@ fn close(model: &Model, pairings: &mut [Pairing], measured: &[Rows]) -> f64 {
 
 /// The directions in which the impulses act, a row per pair.
 fn turn(pairings: &[Pairing], impulses: &Impulses, turned: &mut [Rows]) {
-    let places = &impulses.rows.places;
+    let rows = &impulses.rows;
     for (k, (pairing, turned)) in pairings.iter().zip(turned).enumerate() {
         turned.clear();
         for p in 0..pairing.pairs.len() {
-            match places.binary_search(&(k, p)) {
-                Ok(row) => turned.push_row(impulses.rows.rows.row(row)),
+            match rows.list.binary_search_by_key(&(k, p), |row| row.place) {
+                Ok(row) => turned.push_row(rows.rows.row(row)),
                 Err(_) => turned.push_open(),
             }
         }

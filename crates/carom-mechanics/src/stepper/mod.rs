@@ -24,9 +24,9 @@ use crate::penetration::Depths;
 use crate::rejected::Rejected;
 use crate::settings::Linear;
 use crate::state::State;
-use crate::sums::max_abs;
 use crate::timings::timed;
 use crate::workspace::Workspace;
+use carom_algebra::sums::max_abs;
 
 /// Events of a step, for the record.
 #[derive(Clone, Debug, Default)]
@@ -150,7 +150,7 @@ fn difference(model: &Model, a: &State, b: &State) -> Vec<(usize, usize)> {
         let mut others = b.pairs[k].iter().filter(|pair| pair.active).peekable();
         for pair in a.pairs[k].iter().filter(|pair| pair.active) {
             while others.next_if(|other| other.node < pair.node).is_some() {}
-            let node = (k, contact.kinematics.secondary()[pair.node]);
+            let node = (k, contact.node(pair));
             if others.peek().is_none_or(|other| other.node != pair.node) && nodes.last() != Some(&node) {
                 nodes.push(node);
             }

@@ -9,7 +9,7 @@ use crate::cone::AT_REST;
 use crate::independent::HELD;
 use crate::model::Model;
 use crate::state::State;
-use crate::sums::{dot, max_abs};
+use carom_algebra::sums::{dot, max_abs};
 
 /// Distance from the edge of the cone, relative to its radius, at which a node slips.
 const EDGE: f64 = 1e-12;

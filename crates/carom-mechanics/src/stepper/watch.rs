@@ -46,7 +46,7 @@ pub(super) fn moves(model: &Model, row: Row) -> bool {
 
 /// The rejection of a gap that supports prevent from opening.
 pub(super) fn overconstrained(contact: &Contact, pair: &Pair, gap: f64) -> Rejected {
-    let node = contact.kinematics.secondary()[pair.node];
+    let node = contact.node(pair);
     Rejected::Overconstrained { contact: contact.name.clone(), node, depth: -gap }
 }
 

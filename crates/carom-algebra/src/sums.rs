@@ -10,7 +10,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Σ term(aᵢ, bᵢ, …) over vectors of the same length.
 #[inline(always)]
-pub(crate) fn sum<const K: usize>(of: [&[f64]; K], term: impl Fn([f64; K]) -> f64) -> f64 {
+pub fn sum<const K: usize>(of: [&[f64]; K], term: impl Fn([f64; K]) -> f64) -> f64 {
     let (whole, tails) = (of.map(|x| x.as_chunks::<LANES>().0), of.map(|x| x.as_chunks::<LANES>().1));
     let mut sums = [0.0; LANES];
     for i in 0..whole[0].len() {
@@ -24,7 +24,7 @@ pub(crate) fn sum<const K: usize>(of: [&[f64]; K], term: impl Fn([f64; K]) -> f6
 }
 
 /// Largest absolute value; infinite if a number is not finite.
-pub(crate) fn max_abs(x: &[f64]) -> f64 {
+pub fn max_abs(x: &[f64]) -> f64 {
     let (whole, tail) = x.as_chunks::<LANES>();
     let (mut most, mut zeros) = ([0.0_f64; LANES], [0.0; LANES]);
     for x in whole {

@@ -35,7 +35,7 @@ struct Change {
 
 /// The history of iterations with one factor and one set of contacts.
 #[derive(Debug, Default)]
-pub(crate) struct Mixing {
+pub struct Mixing {
     /// The last correction and the step taken for it, if any.
     last: Iterate,
     taken: Iterate,
@@ -48,13 +48,13 @@ pub(crate) struct Mixing {
 
 impl Mixing {
     /// Clears the history: with another factor or other contacts it is meaningless.
-    pub(crate) fn restart(&mut self) {
+    pub fn restart(&mut self) {
         self.begun = false;
         self.spare.extend(self.changes.drain(..));
     }
 
     /// Replaces a correction by the step to take; `depth` changes are stored.
-    pub(crate) fn improve(&mut self, correction: [&mut [f64]; 2], depth: usize) {
+    pub fn improve(&mut self, correction: [&mut [f64]; 2], depth: usize) {
         if depth == 0 {
             return;
         }
