@@ -19,12 +19,13 @@
 
 use std::sync::Arc;
 
-use crate::constraints::Constraints;
-use crate::direct::Direct;
-use crate::model::Model;
-use crate::preconditioner::Preconditioner;
-use crate::renewal::Point;
 use carom_algebra::sums::dot;
+
+use crate::contact::constraints::Constraints;
+use crate::linear::direct::Direct;
+use crate::linear::preconditioner::Preconditioner;
+use crate::model::Model;
+use crate::stage::renewal::Point;
 
 /// Maximum iterations per vector, and relative change of the quotient at convergence.
 const ITERATIONS: usize = 400;

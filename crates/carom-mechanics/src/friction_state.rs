@@ -4,9 +4,9 @@
 
 use carom_contact::{FrictionState, Pair, Row, Rows, Tangential, length};
 
-use crate::equations::Equations;
-use crate::evaluation::Evaluation;
 use crate::model::{Contact, Model};
+use crate::stage::equations::Equations;
+use crate::stage::evaluation::Evaluation;
 use crate::state::State;
 
 /// Calls `visit(contact, pair, q, H)` for every tangent of the closed pairs of a state that have

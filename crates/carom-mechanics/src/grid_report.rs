@@ -2,8 +2,8 @@
 
 use carom_contact::PairEvent;
 
-use crate::overlapping::Overlap;
-use crate::penetration::Depths;
+use crate::check::overlapping::Overlap;
+use crate::check::penetration::Depths;
 use crate::rejected::Rejected;
 use crate::stepper::StepReport;
 

@@ -16,17 +16,17 @@
 
 use std::borrow::Cow;
 
+use carom_algebra::sums::dot;
 use carom_contact::{Pair, Row, Rows};
 use carom_time::{Stage, Weights};
 
-use crate::balance::mean_acceleration;
-use crate::equations::Equations;
-use crate::evaluation::Evaluation;
-use crate::friction::secondary_friction;
+use crate::contact::friction::secondary_friction;
 use crate::friction_state::each_slip;
 use crate::model::Model;
+use crate::stage::balance::mean_acceleration;
+use crate::stage::equations::Equations;
+use crate::stage::evaluation::Evaluation;
 use crate::state::{Means, Previous, State};
-use carom_algebra::sums::dot;
 
 /// Adds a solved stage to the means over the step (cleared before the first stage). `previous`: the
 /// previous step of a two-step scheme.

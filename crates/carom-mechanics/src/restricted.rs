@@ -1,12 +1,12 @@
 //! The part of a state that belongs to some of the bodies and contacts of a model.
 
-use crate::active_rows::measure_all;
 use crate::ledger::book_kinetic;
 use crate::model::Model;
 use crate::rejected::Rejected;
-use crate::renewal::FrozenTangent;
+use crate::stage::renewal::FrozenTangent;
 use crate::start::press;
 use crate::state::{Ledger, Previous, State};
+use crate::velocity::active_rows::measure_all;
 
 impl State {
     /// The state of a model with fewer bodies and contacts: `dofs` and `contacts` are their numbers

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use carom_contact::Passed;
 
-use crate::audit::audit;
+use crate::check::audit::audit;
 use crate::grid::Grid;
 use crate::grid_report::{Attempt, GridReport, LogEvent};
 use crate::model::Model;

@@ -7,11 +7,11 @@
 //! M_e^{-½}‖_F bounds that one. [`SAFETY`] covers the first percent and some stiffening. A body
 //! that stiffens much more in compression needs a shorter step; the energy guard detects that.
 
+use carom_algebra::sums::dot;
 use carom_solid::cell_lumped_mass;
 
-use crate::matrices::Matrices;
+use crate::linear::matrices::Matrices;
 use crate::model::Model;
-use carom_algebra::sums::dot;
 
 /// Fraction of 2/ω_max that is accepted as a step.
 pub const SAFETY: f64 = 0.95;

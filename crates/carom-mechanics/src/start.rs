@@ -14,13 +14,13 @@ use std::collections::BTreeMap;
 
 use carom_contact::{Pair, Point, Rows};
 
-use crate::active_rows::measure_all;
 use crate::ledger::{book_contact_forces, book_kinetic};
+use crate::linear::system::System;
 use crate::model::{LoadsAt, Model};
-use crate::persistency::{self, averaged_contact_into};
 use crate::rejected::Rejected;
 use crate::state::{Carried, State};
-use crate::system::System;
+use crate::velocity::active_rows::measure_all;
+use crate::velocity::persistency::{self, averaged_contact_into};
 
 /// The start of a run, if not the initial positions.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,9 +3,9 @@
 use carom_contact::{Pair, Pairing};
 use serde::{Deserialize, Serialize};
 
+use crate::check::overlapping::Overlap;
 use crate::model::Model;
-use crate::overlapping::Overlap;
-use crate::renewal::FrozenTangent;
+use crate::stage::renewal::FrozenTangent;
 
 /// Bisections of a grid step that the fallback takes, and of the next one.
 pub(crate) const FEW: u32 = 4;

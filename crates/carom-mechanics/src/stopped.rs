@@ -2,7 +2,7 @@
 
 use carom_formula::instant;
 
-use crate::audit::AuditFailure;
+use crate::check::audit::AuditFailure;
 use crate::rejected::Rejected;
 
 /// Why a simulation stopped before its end; the state of the last grid time is preserved.

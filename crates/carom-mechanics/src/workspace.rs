@@ -1,17 +1,17 @@
 //! The workspace of a step: buffers that outlive it.
 
-use crate::evaluation::Spare;
-use crate::linear_problem::LinearProblem;
+use crate::check::penetration::Penetration;
+use crate::check::undeclared::Undeclared;
+use crate::check::valid_cells::ValidCells;
+use crate::linear::system::System;
 use crate::model::Model;
-use crate::penetration::Penetration;
 use crate::settings::Linear;
+use crate::stage::evaluation::Spare;
+use crate::stage::linear_problem::LinearProblem;
 use crate::state::State;
 use crate::stepper::Scratch;
-use crate::system::System;
 use crate::timings::Timings;
 use crate::trace::Trace;
-use crate::undeclared::Undeclared;
-use crate::valid_cells::ValidCells;
 
 /// Buffers that may be discarded: no result depends on them.
 pub struct Workspace {

@@ -2,6 +2,7 @@
 //! `dimension` components per node.
 
 use carom_algebra::Threads;
+use carom_algebra::sums::{dot, sum};
 use carom_solid::Inverted;
 
 use super::body_instance::BodyInstance;
@@ -13,7 +14,6 @@ use super::motion::Motions;
 use super::probe::Probe;
 use super::rigid::Mode;
 use crate::cells;
-use carom_algebra::sums::{dot, sum};
 
 /// A named support: the dofs whose reaction is recorded.
 pub struct Support {
@@ -77,6 +77,12 @@ const GAP_TOLERANCE: f64 = 1e-12;
 pub fn gap_tolerance(scale: f64, positions: &[f64]) -> f64 {
     let furthest = positions.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     GAP_TOLERANCE * scale + 4.0 * f64::EPSILON * furthest
+}
+
+impl std::fmt::Debug for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Model").field("dofs", &self.dofs()).finish_non_exhaustive()
+    }
 }
 
 impl Model {

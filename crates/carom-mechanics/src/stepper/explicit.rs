@@ -30,6 +30,8 @@
 //! The first step, and one of another size, starts with v_{n−½} := v_n − Δt/2 M⁻¹f_n; a contact
 //! force at t_n then acts over a whole step.
 
+use carom_algebra::sums::sum;
+
 use super::increments::Increments;
 use super::watch::{active, approach, depth};
 use super::{Accepted, StepReport, Stepper, difference};
@@ -41,7 +43,6 @@ use crate::stability::{SAFETY, lumped};
 use crate::state::{HalfStepVelocity, State};
 use crate::timings::timed;
 use crate::workspace::Workspace;
-use carom_algebra::sums::sum;
 
 /// Work of internal forces, relative to the energies, that may be round-off.
 const ROUND_OFF: f64 = 1e-12;

@@ -2,6 +2,7 @@
 //! contact. And single steps of backward Euler with contact implicit in velocity (`in_velocity.rs`)
 //! in place of a step that is not accepted.
 
+use carom_algebra::sums::dot;
 use carom_contact::{Direction, Pairing, Rows};
 use carom_time::schemes::backward_euler::BackwardEuler;
 use carom_time::{Kernel, Memory, PreviousStep, Stage, Weights};
@@ -10,20 +11,19 @@ use super::in_velocity::solve_in_velocity;
 use super::meetings::{Path, meetings};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::carried;
-use crate::contact_update::{search, start_step};
-use crate::equations::Equations;
-use crate::evaluation::Iterate;
+use crate::contact::update::{search, start_step};
 use crate::friction_state::{book_states, take_slips};
 use crate::ledger;
 use crate::model::{Contact, LoadsAt, Model};
-use crate::newton::solve_stage;
-use crate::persistency::{averaged_contact_into, project};
 use crate::rejected::{Rejected, SINGULAR};
-use crate::restitution::{self, Impact, separate};
 use crate::settings::{Linear, Settings};
+use crate::stage::equations::Equations;
+use crate::stage::evaluation::Iterate;
+use crate::stage::newton::solve_stage;
 use crate::state::{Means, Previous, State};
+use crate::velocity::persistency::{averaged_contact_into, project};
+use crate::velocity::restitution::{self, Impact, separate};
 use crate::workspace::Workspace;
-use carom_algebra::sums::dot;
 
 /// The implicit stepper.
 pub struct Implicit {
@@ -99,9 +99,8 @@ impl Stepper for Implicit {
                 solve_stage(&equations, &next.frozen, before, &self.settings, guess, work)?
             };
             report.newton += effort.iterations;
-            if effort.regularity < SINGULAR {
-                let before = report.ambiguity.unwrap_or(f64::INFINITY);
-                report.ambiguity = Some(before.min(effort.regularity));
+            if let Some(regularity) = effort.regularity.filter(|regularity| *regularity < SINGULAR) {
+                report.ambiguity = Some(report.ambiguity.map_or(regularity, |before| before.min(regularity)));
             }
             report.events.extend(effort.events);
             next.frozen = effort.frozen;

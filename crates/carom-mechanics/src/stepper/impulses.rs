@@ -14,12 +14,12 @@ use carom_time::ImpulseShares;
 
 use super::rubbing::{combined, friction_state, kind, loose};
 use super::watch::{active, measure_into, moves, overconstrained};
-use crate::constraints::Constraints;
-use crate::equations::Equations;
-use crate::evaluation::Evaluation;
-use crate::independent::is_dependent;
+use crate::contact::constraints::Constraints;
+use crate::contact::independent::is_dependent;
 use crate::model::Model;
 use crate::rejected::Rejected;
+use crate::stage::equations::Equations;
+use crate::stage::evaluation::Evaluation;
 use crate::state::State;
 use crate::workspace::Workspace;
 

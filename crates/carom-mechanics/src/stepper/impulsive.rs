@@ -18,6 +18,7 @@
 //! constrained, not positions: an arriving node penetrates by up to Δt times its speed, which is
 //! recorded as it is.
 
+use carom_algebra::sums::max_abs;
 use carom_contact::{Pairing, Rows, Tangential};
 use carom_time::{Impulse, ImpulseShares, Kernel, Memory, Stage};
 
@@ -25,23 +26,22 @@ use super::impulses::{Impulses, TIE};
 use super::meetings::{Path, meetings};
 use super::watch::{approach, carry_into, depth, gap_at, measure_into};
 use super::{Accepted, StepReport, Stepper, difference};
-use crate::balance::residual_into;
-use crate::constraints::Constraints;
-use crate::contact_update::search;
-use crate::equations::Equations;
-use crate::evaluation::{Evaluation, Iterate};
+use crate::check::skins::length;
+use crate::check::watched::has_gaps;
+use crate::contact::constraints::Constraints;
+use crate::contact::update::search;
 use crate::friction_state::book_states;
 use crate::ledger::{book_kinetic, change_of_loads, work_of_loads};
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
 use crate::settings::{Settings, Tangent};
-use crate::skins::length;
+use crate::stage::balance::residual_into;
+use crate::stage::equations::Equations;
+use crate::stage::evaluation::{Evaluation, Iterate};
 use crate::state::State;
 use crate::timings::timed;
 use crate::trace::Iteration;
-use crate::watched::has_gaps;
 use crate::workspace::Workspace;
-use carom_algebra::sums::max_abs;
 
 /// Share of the allowed depth by which a node may sink in a step.
 const SINKS: f64 = 0.1;

@@ -19,13 +19,13 @@ use carom_time::ImpulseShares;
 use super::impulses::Impulses;
 use super::impulsive;
 use super::watch::measure_into;
-use crate::contact_update::search;
-use crate::equations::Equations;
-use crate::evaluation::Evaluation;
+use crate::contact::update::search;
 use crate::model::Model;
-use crate::newton::Effort;
 use crate::rejected::Rejected;
 use crate::settings::Settings;
+use crate::stage::equations::Equations;
+use crate::stage::evaluation::Evaluation;
+use crate::stage::newton::Effort;
 use crate::timings::timed;
 use crate::workspace::Workspace;
 

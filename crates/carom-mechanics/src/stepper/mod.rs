@@ -17,16 +17,16 @@ pub use implicit::Implicit;
 pub use impulsive::Impulsive;
 pub(crate) use scratch::Scratch;
 
+use carom_algebra::sums::max_abs;
 use carom_contact::PairEvent;
 
+use crate::check::penetration::Depths;
 use crate::model::Model;
-use crate::penetration::Depths;
 use crate::rejected::Rejected;
 use crate::settings::Linear;
 use crate::state::State;
 use crate::timings::timed;
 use crate::workspace::Workspace;
-use carom_algebra::sums::max_abs;
 
 /// Events of a step, for the record.
 #[derive(Clone, Debug, Default)]

@@ -3,13 +3,13 @@
 //! that comes into contact while it moves along the other side slips from the start.
 
 use carom_algebra::Kind;
+use carom_algebra::sums::{dot, max_abs};
 use carom_contact::{Along, FrictionState, Law, Pair, Row, Rows, length};
 
-use crate::cone::AT_REST;
-use crate::independent::HELD;
+use crate::contact::independent::HELD;
 use crate::model::Model;
 use crate::state::State;
-use carom_algebra::sums::{dot, max_abs};
+use crate::velocity::cone::AT_REST;
 
 /// Distance from the edge of the cone, relative to its radius, at which a node slips.
 const EDGE: f64 = 1e-12;

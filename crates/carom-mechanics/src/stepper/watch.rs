@@ -4,11 +4,11 @@
 
 use carom_contact::{Pair, Pairing, Row, Rows};
 
-use crate::independent::DEPENDENT;
+use crate::check::watched::has_gaps;
+use crate::contact::independent::DEPENDENT;
 use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
 use crate::state::State;
-use crate::watched::has_gaps;
 
 /// The initial pairs of a step: those in contact or penetrating, deactivated and without
 /// multiplier; `watch` sets the search margin for others.

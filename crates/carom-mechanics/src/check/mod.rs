@@ -1,0 +1,12 @@
+//! Checks of positions that no equation asks for: depths, overlaps, valid cells.
+
+pub(crate) mod audit;
+pub(crate) mod outline;
+pub(crate) mod overlap;
+pub(crate) mod overlapping;
+pub(crate) mod penetration;
+pub(crate) mod skins;
+pub(crate) mod tips;
+pub(crate) mod undeclared;
+pub(crate) mod valid_cells;
+pub(crate) mod watched;

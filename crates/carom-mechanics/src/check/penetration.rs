@@ -1,0 +1,452 @@
+//! Penetration, measured over all nodes of both sides of every contact, and in space over points of
+//! their sharp edges, whatever pairs there are: a node that a search has lost is found here. A step
+//! in which one is deeper than its contact allows is rejected.
+//!
+//! A node outside, at a distance d from a body, cannot be inside before the two have moved by d
+//! together. Until then it is not measured; no result depends on when it was.
+
+use carom_contact::{Rows, Side};
+use serde::{Deserialize, Serialize};
+
+use crate::check::skins::{BodySkin, folding_skin, kinks, length, part_of, skin};
+use crate::check::tips::{Pierced, Tip};
+use crate::check::watched::{Way, edge_points, has_gaps, watched};
+use crate::model::{BodyInstance, Contact, Model};
+use crate::rejected::Rejected;
+use crate::state::State;
+
+/// Measures penetration. A cache: its content affects no result.
+#[derive(Debug, Default)]
+pub struct Penetration {
+    skins: Vec<Option<BodySkin>>,
+    /// Nodes at the kinks of each body that must not be entered.
+    kinks: Vec<Vec<usize>>,
+    pub(crate) ways: Vec<Way>,
+    tips: Vec<Tip>,
+    /// Positions to which the clearances refer.
+    y: Vec<f64>,
+    /// Bodies whose skins have their positions of this step.
+    current: Vec<bool>,
+    /// Depths of the active pairs of a contact, lengths of their facets, and whether those are at a
+    /// kink, by node.
+    paired: Vec<(usize, f64, Entered)>,
+    rows: Option<Rows>,
+}
+
+/// A facet that a node entered.
+#[derive(Clone, Copy, Debug)]
+struct Entered {
+    length: f64,
+    /// Whether it has a node at a kink.
+    is_at_kink: bool,
+}
+
+/// Largest depths of nodes of the sides of contacts in the other body, ≥ 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Depths {
+    /// Of all nodes.
+    pub all: f64,
+    /// Of the nodes that a contact constrains: secondary nodes and corners.
+    pub constrained: f64,
+}
+
+impl Depths {
+    /// The larger ones.
+    #[must_use]
+    pub fn max(self, other: Self) -> Self {
+        Self { all: self.all.max(other.all), constrained: self.constrained.max(other.constrained) }
+    }
+
+    fn add(&mut self, depth: f64, constrained: bool) {
+        let constrained = if constrained { depth } else { 0.0 };
+        *self = self.max(Self { all: depth, constrained });
+    }
+}
+
+/// What lies inside a body, and is said of the node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum What {
+    Node,
+    /// A point of an edge that begins with it.
+    Edge,
+    /// A round part of an obstacle, near it.
+    Obstacle,
+}
+
+impl What {
+    /// Words that the node's number follows.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Node => "node",
+            Self::Edge => "the sharp edge at node",
+            Self::Obstacle => "the rigid obstacle beside node",
+        }
+    }
+}
+
+/// A node inside a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Inside {
+    pub node: usize,
+    pub what: What,
+    pub depth: f64,
+    pub limit: f64,
+}
+
+impl Penetration {
+    /// For the contacts of a model.
+    pub fn of_contacts(model: &Model) -> Self {
+        let mut ways = Vec::new();
+        for (k, contact) in model.contacts.iter().enumerate() {
+            if contact.itself {
+                ways.extend([Side::Later, Side::Earlier].map(|side| Way::of_itself(model, k, side)));
+                continue;
+            }
+            let (Some(primary), [(_, secondary_facets), (_, primary_facets)]) =
+                (contact.primary_part, &contact.facets[..])
+            else {
+                continue;
+            };
+            if model.dimension < 2 {
+                continue;
+            }
+            let Some(secondary) = secondary_facets.first().and_then(|f| part_of(model, f[0])) else {
+                continue;
+            };
+            for (body, own, facets) in
+                [(primary, secondary, secondary_facets), (secondary, primary, primary_facets)]
+            {
+                let mut nodes = watched(model, contact, facets);
+                nodes.append(&mut edge_points(model, contact, own, facets));
+                ways.push(Way::new(model, Some(k), body, nodes));
+            }
+        }
+        Self::new(model, ways, Tip::all(model))
+    }
+
+    pub(crate) fn new(model: &Model, ways: Vec<Way>, tips: Vec<Tip>) -> Self {
+        let skin = |body: usize| {
+            let part = &model.parts[body];
+            let mut of_body = ways.iter().filter(|way| way.body == body).peekable();
+            if of_body.peek().is_none() && tips.iter().all(|tip| tip.part != body) {
+                return None;
+            }
+            let folds = of_body.any(|way| way.itself.is_some());
+            if folds { folding_skin(model, part) } else { skin(part) }
+        };
+        let skins: Vec<_> = (0..model.parts.len()).map(skin).collect();
+        let of_body = |(part, skin): (&BodyInstance, &Option<BodySkin>)| {
+            skin.as_ref().map_or_else(Vec::new, |_| kinks(model, part))
+        };
+        let kinks = model.parts.iter().zip(&skins).map(of_body).collect();
+        Self { skins, kinks, ways, tips, ..Self::default() }
+    }
+
+    /// Penetration at the state.
+    ///
+    /// # Errors
+    /// A node that is deeper than its contact allows.
+    pub(crate) fn check(&mut self, model: &Model, state: &State) -> Result<Depths, Rejected> {
+        let (deepest, beyond) = self.measure(model, state);
+        match beyond {
+            None => Ok(deepest),
+            Some((contact, body, inside)) => Err(Rejected::Penetration {
+                contact: model.contacts[contact].name.clone(),
+                what: inside.what.words(),
+                node: inside.node,
+                body: model.parts[body].name.clone(),
+                depth: inside.depth,
+                limit: inside.limit,
+            }),
+        }
+    }
+
+    /// Penetration at the state, and the first node beyond its limit with contact and body.
+    fn measure(&mut self, model: &Model, state: &State) -> (Depths, Option<(usize, usize, Inside)>) {
+        self.begin(model, &state.y);
+        let (mut deepest, mut beyond) = (Depths::default(), None);
+        for k in 0..self.ways.len() {
+            let (depths, inside) = self.deepest(model, k, Some(state));
+            deepest = deepest.max(depths);
+            let of_way = inside.zip(self.ways[k].contact);
+            beyond = beyond.or(of_way.map(|(inside, contact)| (contact, self.ways[k].body, inside)));
+        }
+        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.itself) {
+            if let Some((body, inside)) = self.folded(model, contact, &state.y) {
+                deepest.add(inside.depth, false);
+                beyond = beyond.or((inside.depth > inside.limit).then_some((k, body, inside)));
+            }
+        }
+        for (contact, part, pierced) in self.pierced(model, &state.y) {
+            let Pierced { node, depth, limit } = pierced;
+            let inside = Inside { node, what: What::Obstacle, depth, limit };
+            beyond = beyond.or((depth > limit).then_some((contact, part, inside)));
+        }
+        for contact in model.contacts.iter().filter(|contact| has_gaps(model, contact)) {
+            for node in 0..contact.kinematics.secondary().len() {
+                let gap = contact.kinematics.signed_distance(node, &state.y);
+                deepest.add(-gap.unwrap_or(0.0), true);
+            }
+        }
+        (deepest, beyond)
+    }
+
+    /// The deepest node of a body in contact with itself where its boundary crosses itself, pair or
+    /// not.
+    fn folded(&mut self, model: &Model, contact: &Contact, y: &[f64]) -> Option<(usize, Inside)> {
+        let body = contact.primary_part?;
+        let skin = self.skins[body].as_mut()?;
+        if !std::mem::replace(&mut self.current[body], true) {
+            skin.update(y);
+        }
+        if !skin.crosses_itself(y, |_, _| false) {
+            return None;
+        }
+        let (node, facet, depth) = skin.deepest_in_itself(y)?;
+        let length = length(model, skin.facet_nodes(facet));
+        // Chords do not tell smaller depths from none.
+        (depth > CHORDS * length).then_some((
+            body,
+            Inside { node, what: What::Node, depth, limit: contact.depths.others * length },
+        ))
+    }
+
+    /// The round parts of rigid obstacles that may have met a body, with contact and body.
+    fn pierced(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize, Pierced)> {
+        let Self { skins, tips, current, .. } = self;
+        let of_tip = |tip: &mut Tip| {
+            let found = tip.pierced(model, skins[tip.part].as_mut()?, &mut current[tip.part], y)?;
+            Some((tip.contact, tip.part, found))
+        };
+        tips.iter_mut().filter_map(of_tip).collect()
+    }
+
+    /// Subtracts the motion since the last call from the clearances.
+    pub(crate) fn begin(&mut self, model: &Model, y: &[f64]) {
+        if self.y.len() == y.len() {
+            let moved = |node: usize| square(&self.y, y, model.dimension, node);
+            for way in &mut self.ways {
+                if way.nodes.iter().any(|watched| watched.clearance > 0.0) {
+                    let nodes = way.boundary.iter().map(|&node| moved(node)).fold(0.0, f64::max).sqrt();
+                    let body = nodes * self.skins[way.body].as_ref().map_or(1.0, BodySkin::amplification);
+                    for watched in way.nodes.iter_mut().filter(|watched| watched.clearance > 0.0) {
+                        watched.clearance -= watched.motion(moved) + body;
+                    }
+                }
+            }
+        }
+        if self.y.len() == y.len() {
+            for tip in &mut self.tips {
+                let amplification = self.skins[tip.part].as_ref().map_or(1.0, BodySkin::amplification);
+                tip.approach(|node| square(&self.y, y, model.dimension, node), amplification);
+            }
+        }
+        self.y.clear();
+        if !self.ways.is_empty() || !self.tips.is_empty() {
+            self.y.extend_from_slice(y);
+        }
+        self.current.clear();
+        self.current.resize(model.parts.len(), false);
+    }
+
+    /// Depths of the nodes of a way, and the node that is furthest beyond its limit.
+    pub(crate) fn deepest(
+        &mut self,
+        model: &Model,
+        way: usize,
+        state: Option<&State>,
+    ) -> (Depths, Option<Inside>) {
+        let Self { skins, kinks, ways, y, current, paired, rows, .. } = self;
+        let Way { contact, body, itself, nodes, first, .. } = &mut ways[way];
+        let (mut deepest, mut worst) = (Depths::default(), None::<Inside>);
+        let Some(skin) = skins[*body].as_mut() else { return (deepest, worst) };
+        paired.clear();
+        let kinks = &kinks[*body];
+        let of_facet = |facet: &[usize]| Entered {
+            length: length(model, facet),
+            is_at_kink: facet.iter().any(|node| kinks.binary_search(node).is_ok()),
+        };
+        if let (Some(k), Some(state)) = (*contact, state)
+            && nodes.iter().any(|watched| watched.clearance <= 0.0)
+        {
+            // An active pair on its facet is no deeper than its gap.
+            let rows = rows.get_or_insert_with(|| Rows::new(model.dimension));
+            let contact = &model.contacts[k];
+            let half = contact.kinematics.nodes() / 2;
+            let of_way = |node: usize| itself.is_none_or(|side| (side == Side::Later) == (node < half));
+            for pair in state.pairs[k].iter().filter(|pair| {
+                pair.active
+                    && contact.kinematics.is_on_facet(pair)
+                    && contact.kinematics.allowed(pair.node) == 0.0
+                    && of_way(pair.node)
+            }) {
+                rows.clear();
+                // A frozen contact point is not the closest one.
+                let mut pair = *pair;
+                contact.kinematics.start_step(&mut pair, y);
+                if contact.kinematics.measure(&mut pair, y, rows).is_ok() {
+                    let node = contact.node(&pair);
+                    let facet = contact.kinematics.facet_nodes(&pair);
+                    paired.push((node, (-rows.row(0).gap).max(0.0), of_facet(facet)));
+                }
+            }
+            // A node in a concave corner has two pairs: the deeper one counts.
+            paired.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+            paired.dedup_by_key(|(node, ..)| *node);
+        }
+        let start = *first;
+        for i in 0..nodes.len() {
+            // `start` comes before those that precede it.
+            let k = if i == 0 { start } else { i - usize::from(i <= start) };
+            let watched = &mut nodes[k];
+            if watched.clearance > 0.0 {
+                continue;
+            }
+            let node = watched.node;
+            let of_node = paired.binary_search_by_key(&node, |(paired, ..)| *paired).ok();
+            let (depth, entered) = if let Some(p) = of_node.filter(|_| watched.between.is_empty()) {
+                (paired[p].1, paired[p].2)
+            } else {
+                if !std::mem::replace(&mut current[*body], true) {
+                    skin.update(y);
+                }
+                let entered = |facet: usize| of_facet(skin.facet_nodes(facet));
+                if let Some(side) = *itself {
+                    let found = skin.depth_of(node, side, watched.reach, y);
+                    watched.clearance = found.map_or(watched.reach, |found| found.distance);
+                    let Some(found) = found else { continue };
+                    (-found.distance - watched.kept, entered(found.facet))
+                } else {
+                    // No deeper than any point of the boundary is away: neither the deepest nor too
+                    // deep.
+                    let known = if watched.constrained { deepest.constrained } else { deepest.all };
+                    let point = watched.point(y, model.dimension);
+                    if let Some((facet, xi)) = watched.near {
+                        let bound = skin.distance(facet, xi, point, y);
+                        if bound <= known && bound <= watched.limit(entered(facet).length) {
+                            continue;
+                        }
+                    }
+                    let Some(found) = skin.depth(point, watched.near.map(|near| near.0), y) else {
+                        continue;
+                    };
+                    (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
+                    (-found.distance - watched.kept, entered(found.facet))
+                }
+            };
+            if depth > deepest.all {
+                *first = k;
+            }
+            deepest.add(depth, watched.constrained);
+            let mut limit = watched.limit(entered.length);
+            if watched.constrained
+                && entered.is_at_kink
+                && let Some(k) = *contact
+            {
+                limit = limit.max(model.contacts[k].depths.kinks * entered.length);
+            }
+            if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
+                let what = if watched.between.is_empty() { What::Node } else { What::Edge };
+                worst = Some(Inside { node, what, depth, limit });
+            }
+        }
+        (deepest, worst)
+    }
+
+    /// As the function [`inside`], for positions that follow each other. What is measured so is not
+    /// for `Penetration::check`.
+    pub fn inside(&mut self, model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> {
+        self.begin(model, y);
+        self.ways.iter_mut().flat_map(|way| &mut way.nodes).for_each(|watched| watched.share = 0.0);
+        let mut found: Vec<(usize, usize, f64)> = Vec::new();
+        for k in 0..self.ways.len() {
+            let (_, deepest) = self.deepest(model, k, None);
+            let of_contact = deepest.zip(self.ways[k].contact);
+            found.extend(of_contact.map(|(inside, contact)| (contact, inside.node, inside.depth)));
+        }
+        // Chords of facets lie in what their nodes touch.
+        let pierced = self.pierced(model, y).into_iter().filter(|(.., p)| p.depth > p.limit);
+        found.extend(pierced.map(|(contact, _, pierced)| (contact, pierced.node, pierced.depth)));
+        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| has_gaps(model, contact))
+        {
+            let secondary = contact.kinematics.secondary().iter().enumerate();
+            let depth =
+                |(place, &node)| (k, node, -contact.kinematics.signed_distance(place, y).unwrap_or(0.0));
+            found.extend(secondary.map(depth));
+        }
+        found.retain(|(.., depth)| *depth > limit);
+        found.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.total_cmp(&a.2)));
+        found.dedup_by_key(|(contact, ..)| *contact);
+        found
+    }
+}
+
+/// Penetration at a state.
+pub fn penetration(model: &Model, state: &State) -> Depths {
+    Penetration::of_contacts(model).measure(model, state).0
+}
+
+/// The deepest node of each contact in which a node lies deeper than `limit` at positions `y`:
+/// (contact, node, depth).
+pub fn inside(model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> {
+    Penetration::of_contacts(model).inside(model, y, limit)
+}
+
+/// Depth over the length of a facet that a chord of it may feign.
+const CHORDS: f64 = 0.01;
+/// Square of the distance between two positions of a node.
+fn square(a: &[f64], b: &[f64], dimension: usize, node: usize) -> f64 {
+    (dimension * node..dimension * (node + 1)).map(|dof| (a[dof] - b[dof]).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_solid::{Element, Law, generate};
+
+    use super::*;
+    use crate::model::{Loads, Motions};
+    use crate::testing::{contact, model, parts};
+
+    /// What is too deep where a block of this many cells lies this deep in a wider one, whose
+    /// facets are 0.5 long, from x = 0 to 4, in the plane or in space.
+    fn too_deep(dimension: usize, cells: usize, from: f64, depth: f64) -> Option<Inside> {
+        let (wide, high) = (0.5 * cells as f64, 1.0 - depth);
+        let law = Law::NeoHookean { lambda: 1.0, mu: 1.0 };
+        let (meshes, [below, above]) = if dimension == 2 {
+            let block = |min, max, cells| generate::rectangle(Element::T3, min, max, cells).unwrap();
+            let upper = block([from, high], [from + wide, high + 1.0], [cells, 1]);
+            ([block([0.0, 0.0], [4.0, 1.0], [8, 2]), upper], ["bottom", "top"])
+        } else {
+            let block = |min, max, cells| generate::cuboid(Element::Tet4, min, max, cells).unwrap();
+            let upper = block([from, 1.2, high], [from + wide, 1.2 + wide, high + 1.0], [cells, cells, 1]);
+            ([block([0.0; 3], [4.0, 4.0, 1.0], [8, 8, 2]), upper], ["bottom", "top"])
+        };
+        let parts = parts(meshes, law, 1.0);
+        let mut strike = contact(&parts, (1, below), (0, above));
+        let mesh = parts[0].body.mesh();
+        let facets = mesh.sides[above].iter().map(|facet| facet.nodes.clone()).collect();
+        strike.facets.push((mesh.element.facet_shape(), facets));
+        let model = model(parts, &[], Motions::default(), Loads::default(), vec![strike]);
+        let mut penetration = Penetration::of_contacts(&model);
+        penetration.begin(&model, &model.reference);
+        (0..penetration.ways.len()).find_map(|way| penetration.deepest(&model, way, None).1)
+    }
+
+    #[test]
+    fn constrained_nodes_are_held_to_a_millionth_of_a_facet_away_from_kinks() {
+        for dimension in [2, 3] {
+            for (depth, is_too_deep) in [(4e-7, false), (6e-7, true)] {
+                let found = too_deep(dimension, 3, 1.2, depth);
+                assert_eq!(found.is_some(), is_too_deep, "{dimension} {depth}");
+                if let Some(found) = found {
+                    assert!((found.depth - depth).abs() < 1e-12 && (found.limit - 5e-7).abs() < 1e-12);
+                }
+            }
+            // The block with one cell has no other nodes but its corners.
+            for (depth, is_too_deep) in [(4e-3, false), (6e-3, true)] {
+                let found = too_deep(dimension, 1, 1.2, depth);
+                assert_eq!(found.is_some(), is_too_deep, "{dimension} {depth}: {found:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,330 @@
+//! The rows that active contacts add to the linear system, and their data.
+//!
+//! Not every active pair is a row: a redundant one would make the system singular, which its
+//! residual would not reveal. A row is kept if its gradient on free dofs is linearly independent of
+//! those of the rows before. A node on a symmetry axis keeps its support and its contact; a corner
+//! node in two contacts with one facet keeps one of them, for any contacts and nodes (Gaussian
+//! elimination of the sparse rows).
+
+use carom_contact::{
+    Along, Answer, Direction, DiscreteGradient, FrictionState, Pair, Pairing, Row, Rows, inner, length,
+};
+
+use crate::contact::prevented_slips::PreventedSlips;
+use crate::contact::slip_derivatives::SlipDerivatives;
+use crate::stage::balance::contact_weights;
+use crate::stage::equations::Equations;
+use crate::stage::evaluation::Evaluation;
+
+/// Largest gap per unit of a multiplier: of a slip whose traction is round-off.
+const LOOSE: f64 = 1e100;
+
+/// A row of a linear system, apart from its gradient and the direction of its force.
+#[derive(Clone, Debug)]
+pub(crate) struct Constraint {
+    /// Contact and pair.
+    pub place: (usize, usize),
+    /// The components of a slip that is prevented; others are gaps.
+    pub slip: Option<Along>,
+    /// Weight of the contact force in the balance.
+    pub weight: f64,
+    /// Gap per unit of multiplier.
+    pub compliance: f64,
+    /// Gap per unit of a multiplier that is an unknown: of the direction of a slip, and of an
+    /// augmented Lagrangian.
+    pub yields: f64,
+    /// Gap still to be closed.
+    pub open: f64,
+    /// λ times the derivative of the direction over the nodes of the row, row-major: λ∇²g, or not
+    /// symmetric for a discrete gradient. Empty if not requested.
+    pub curvature: Vec<f64>,
+}
+
+impl Constraint {
+    /// One of weight 1, without second derivatives.
+    fn plain(place: (usize, usize), slip: Option<Along>) -> Self {
+        Self { place, slip, weight: 1.0, compliance: 0.0, yields: 0.0, open: 0.0, curvature: Vec::new() }
+    }
+
+    /// Entry (i, j) of what a row with this gradient adds to the tangent of positions: w/C ∇g ∇gᵀ
+    /// of a spring, and, if `curved`, w·λ∇²g, symmetrised.
+    pub(crate) fn stiffness(&self, gradient: &[f64], [i, j]: [usize; 2], spring: f64, curved: bool) -> f64 {
+        let n = gradient.len();
+        let spring = if spring == 0.0 { 0.0 } else { gradient[i] * gradient[j] / spring };
+        let bent = if curved && !self.curvature.is_empty() {
+            0.5 * (self.curvature[i * n + j] + self.curvature[j * n + i])
+        } else {
+            0.0
+        };
+        self.weight * (spring + bent)
+    }
+}
+
+/// Rows of a linear system.
+#[derive(Clone, Debug)]
+pub(crate) struct Constraints {
+    pub list: Vec<Constraint>,
+    /// Gradients of the gaps.
+    pub rows: Rows,
+    /// Directions of the forces.
+    pub directions: Rows,
+    /// Whether friction turns some of these, which the factor then takes into account.
+    pub is_skew: bool,
+    /// Contact, pair and components of slips of sticks that depend on these rows, and have no
+    /// traction.
+    pub dropped: Vec<((usize, usize), Along)>,
+}
+
+impl Constraints {
+    /// No rows.
+    pub(crate) fn none(dimension: usize) -> Self {
+        let [rows, directions] = [Rows::new(dimension), Rows::new(dimension)];
+        Self { list: Vec::new(), rows, directions, is_skew: false, dropped: Vec::new() }
+    }
+
+    /// Rows as constraints of weight 1, without second derivatives, to solve for velocities or
+    /// accelerations.
+    pub(crate) fn plain<'a>(
+        dimension: usize,
+        rows: impl IntoIterator<Item = ((usize, usize), Row<'a>)>,
+    ) -> Self {
+        let mut plain = Self::none(dimension);
+        rows.into_iter().for_each(|(place, row)| plain.push_plain(place, row, None));
+        plain
+    }
+
+    /// Adds such a row; `slip`: the components of a slip that is prevented.
+    pub(crate) fn push_plain(&mut self, place: (usize, usize), row: Row, slip: Option<Along>) {
+        self.list.push(Constraint::plain(place, slip));
+        self.rows.push_row(row);
+        self.directions.push_row(row);
+    }
+
+    /// The rows of an evaluation, with second derivatives.
+    pub(crate) fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
+        let model = equations.model;
+        let mut constraints = Self::none(model.dimension);
+        let (mut rows, mut gradient) = (Rows::new(model.dimension), DiscreteGradient::default());
+        let mut derivatives = SlipDerivatives::new(model.dimension);
+        let slips = PreventedSlips::of(equations, evaluation);
+        let places = slips.independent(equations, evaluation);
+        constraints.dropped = slips.dropped(evaluation, &places);
+        for (k, p, number) in places {
+            let place = (k, p);
+            if number > 0 {
+                let slip = slips.find((k, p, number));
+                constraints.push_slip(equations, evaluation, slip, place, &mut derivatives);
+                continue;
+            }
+            let contact = &model.contacts[k];
+            let answer = &evaluation.answers[k][p];
+            let mut curvature =
+                derivative_of_direction(equations, evaluation, place, &mut rows, &mut gradient);
+            let pair = &evaluation.at.pairings[k].pairs[p];
+            curvature.iter_mut().for_each(|c| *c *= answer.lambda);
+            let rubs = equations.laws[k].get(pair.node).is_some_and(|law| !law.is_none());
+            if rubs && pair.tangential.friction_state != FrictionState::Stick {
+                equations.slip_curvature_into(evaluation, place, &mut derivatives, &mut curvature);
+                constraints.is_skew = true;
+            }
+            constraints.rows.push_row(evaluation.rows[k].row(p));
+            constraints.directions.push_row(evaluation.directions(k).row(p));
+            let weight = contact_weights(&equations.stage, contact.at_the_end).0;
+            let Answer { compliance, yields, open, .. } = *answer;
+            constraints.list.push(Constraint {
+                place,
+                slip: None,
+                weight,
+                compliance,
+                yields,
+                open,
+                curvature,
+            });
+        }
+        constraints
+    }
+
+    /// Adds the row of a slip that is prevented: of a pair that sticks, or across the direction of
+    /// a slip.
+    fn push_slip(
+        &mut self,
+        equations: &Equations,
+        evaluation: &Evaluation,
+        (along, slip): (Along, Row),
+        (k, p): (usize, usize),
+        derivatives: &mut SlipDerivatives,
+    ) {
+        let contact = &equations.model.contacts[k];
+        let pair = &evaluation.at.pairings[k].pairs[p];
+        equations.slip_derivatives_into(evaluation, (k, p), derivatives);
+        let traction = pair.tangential.traction;
+        let mut curvature = vec![0.0; slip.gradient.len().pow(2)];
+        self.rows.push_row(slip);
+        self.directions.push_row(slip);
+        let gradient = self.rows.gradient_mut(self.rows.len() - 1);
+        gradient.fill(0.0);
+        for tangent in (0..2).filter(|&tangent| along[tangent] != 0.0) {
+            let (turned, slope) = (&derivatives.turned[tangent], &derivatives.slopes[tangent]);
+            gradient.iter_mut().zip(slope).for_each(|(sum, slope)| *sum += along[tangent] * slope);
+            // The force of a slip is that of its gap.
+            if pair.tangential.friction_state == FrictionState::Stick {
+                let force = along[tangent] * traction[tangent];
+                curvature.iter_mut().zip(turned).for_each(|(sum, h)| *sum += force * h);
+            }
+        }
+        self.is_skew = true;
+        let moved = evaluation.slip_of((k, p));
+        let forward = inner(pair.tangential.friction_state.direction(), moved);
+        let turns = if forward > 0.0 { (forward / length(traction)).min(LOOSE) } else { 0.0 };
+        let stiffer = evaluation.at.stiffer;
+        let [yields, open] = if equations.stick_spring(k, pair).is_some() {
+            [0.0; 2]
+        } else {
+            let yields = equations.stick_yields(k, pair, stiffer).unwrap_or(turns);
+            [yields, slip.gap - equations.stretch(k, pair, along, stiffer)]
+        };
+        self.list.push(Constraint {
+            place: (k, p),
+            slip: Some(along),
+            weight: contact_weights(&equations.stage, contact.at_the_end).0,
+            compliance: equations.spring_yields(k, pair, moved).unwrap_or(0.0),
+            yields,
+            open,
+            curvature,
+        });
+    }
+
+    /// Largest gap that a constraint has to close. The slip of a stick that depends on other rows,
+    /// as of a node on a symmetry axis, is theirs.
+    pub(crate) fn gap(equations: &Equations, evaluation: &Evaluation) -> f64 {
+        let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
+        let gaps = evaluation.pressing().map(of_pair).fold(0.0, f64::max);
+        let slips = PreventedSlips::of(equations, evaluation);
+        let open = |(k, p, number): (usize, usize, usize)| {
+            let pair = &evaluation.at.pairings[k].pairs[p];
+            let is_spring = number == 0 || equations.stick_spring(k, pair).is_some();
+            if is_spring {
+                return 0.0;
+            }
+            let weight = equations.weight_of_slip(pair, evaluation.slip_of((k, p)));
+            let (along, slip) = slips.find((k, p, number));
+            weight * (slip.gap - equations.stretch(k, pair, along, evaluation.at.stiffer)).abs()
+        };
+        slips.independent(equations, evaluation).into_iter().map(open).fold(gaps, f64::max)
+    }
+
+    /// Adds a share of a correction to the multipliers of the pairs.
+    pub(crate) fn add_to(&self, pairings: &mut [Pairing], share: f64, multipliers: &[f64]) {
+        for (row, change) in self.list.iter().zip(multipliers) {
+            let pair = &mut pairings[row.place.0].pairs[row.place.1];
+            match row.slip {
+                None => pair.lambda += share * change,
+                Some(along) => pair.tangential.pull(along, share * change),
+            }
+        }
+        for &((k, p), along) in &self.dropped {
+            // Other rows constrain it.
+            let tangential = &mut pairings[k].pairs[p].tangential;
+            tangential.pull(along, -inner(along, tangential.traction));
+        }
+    }
+
+    /// Subtracts the forces that a correction of positions and multipliers causes.
+    pub(crate) fn subtract_forces(&self, [increment, multipliers]: [&[f64]; 2], forces: &mut [f64]) {
+        for (r, (constraint, row)) in self.list.iter().zip(self.rows.iter()).enumerate() {
+            let multiplier = match constraint.compliance {
+                0.0 => multipliers[r],
+                compliance => row.along(increment) / compliance,
+            };
+            self.directions.row(r).add_to(-constraint.weight * multiplier, forces);
+            let curvature = constraint.curvature.chunks_exact(row.gradient.len());
+            for ((dof, _), curved) in row.entries().zip(curvature) {
+                let bent: f64 =
+                    curved.iter().zip(row.entries()).map(|(c, (other, _))| c * increment[other]).sum();
+                forces[dof] -= constraint.weight * bent;
+            }
+        }
+    }
+
+    /// Subtracts what such a correction closes of the gaps of constraints.
+    pub(crate) fn subtract_gaps(&self, [increment, multipliers]: [&[f64]; 2], gaps: &mut [f64]) {
+        let rows = self.list.iter().zip(self.rows.iter()).enumerate();
+        for (r, (constraint, row)) in rows.filter(|(_, (constraint, _))| constraint.compliance == 0.0) {
+            gaps[r] -= constraint.weight * row.along(increment);
+            if constraint.yields != 0.0 {
+                gaps[r] += constraint.weight * constraint.yields * multipliers[r];
+            }
+        }
+    }
+
+    /// Number of rows.
+    pub(crate) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Whether there are no rows.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// The nodes of all rows, ascending.
+    pub(crate) fn nodes(&self) -> Vec<usize> {
+        let mut nodes: Vec<usize> = self.rows.iter().flat_map(|row| row.nodes.iter().copied()).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}
+
+/// Derivative of the direction of a pair's force to the positions at the end of the step, over the
+/// nodes of its row, row-major; `rows` and `gradient` are buffers.
+fn derivative_of_direction(
+    equations: &Equations,
+    evaluation: &Evaluation,
+    (k, p): (usize, usize),
+    rows: &mut Rows,
+    gradient: &mut DiscreteGradient,
+) -> Vec<f64> {
+    let contact = &equations.model.contacts[k];
+    let (row, pair) = (evaluation.rows[k].row(p), &evaluation.at.pairings[k].pairs[p]);
+    let Evaluation { y, place, at, .. } = evaluation;
+    let mut matrix = vec![0.0; row.gradient.len().pow(2)];
+    match contact.interface.direction() {
+        Direction::End => contact.kinematics.curvature_into(pair, y, &mut matrix),
+        Direction::Midpoint => {
+            contact.kinematics.curvature_into(pair, place, &mut matrix);
+            matrix.iter_mut().for_each(|entry| *entry *= 0.5);
+        }
+        Direction::DiscreteGradient => {
+            // Both were measured in the evaluation.
+            rows.clear();
+            let mut middle = *pair;
+            if let Ok(start) = equations.gap_at_start(k, pair, rows)
+                && contact.kinematics.measure(&mut middle, place, rows).is_ok()
+            {
+                gradient.evaluate(rows.row(0), row.gap - start, place, &at.increment);
+                contact.kinematics.curvature_into(&middle, place, &mut matrix);
+                gradient.derivative_into(row, &mut matrix);
+            }
+        }
+    }
+    matrix
+}
+
+impl Evaluation {
+    /// Contact and pair of all active ones.
+    pub(crate) fn pressing(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let pairs = self.at.pairings.iter().enumerate();
+        pairs.flat_map(|(k, pairing)| {
+            let active = pairing.pairs.iter().enumerate().filter(|(_, pair)| pair.active);
+            active.map(move |(p, _)| (k, p))
+        })
+    }
+
+    /// The rows H of those that slip.
+    pub(crate) fn slipping(&self) -> impl Iterator<Item = Row<'_>> {
+        let slips = |pair: &Pair| pair.tangential.friction_state != FrictionState::Stick;
+        let places = self.pressing().filter(move |&(k, p)| slips(&self.at.pairings[k].pairs[p]));
+        places.filter(|&(k, _)| !self.slips[k].is_empty()).flat_map(|place| self.slip_rows(place))
+    }
+}

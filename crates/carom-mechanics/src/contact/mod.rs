@@ -1,0 +1,12 @@
+//! Contact and friction in the equations of a stage.
+
+pub(crate) mod augmented;
+pub(crate) mod constraints;
+pub(crate) mod forces;
+pub(crate) mod friction;
+pub(crate) mod friction_tangent;
+pub(crate) mod independent;
+pub(crate) mod prevented_slips;
+pub(crate) mod rounds;
+pub(crate) mod slip_derivatives;
+pub(crate) mod update;

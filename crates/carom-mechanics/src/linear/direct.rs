@@ -1,0 +1,351 @@
+//! Direct solution: the frozen tangent is factored, with the bodies condensed to the interface
+//! nodes, on which contact can act; contact is solved on those alone.
+//!
+//! ```text
+//! [ A + Σ w λ∇²g  Fᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the frozen point
+//! [ G             0  ] [Δλ] = [−g]       (or M where velocities are projected)
+//! ```
+//!
+//! F = G except with friction. Gradients and second derivatives of the gaps are those of the
+//! current iterate: nodes may come, leave and slide without a new factor. Only A is old.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use carom_algebra::{Condensed, Elimination, LinearError, Pattern, Precision, Saddle};
+
+use crate::contact::constraints::Constraints;
+use crate::linear::matrices::Matrices;
+use crate::linear::preconditioner::Preconditioner;
+use crate::model::Model;
+use crate::rejected::Rejected;
+use crate::stage::renewal::Point;
+
+/// Cost of forming and factoring a tangent, in solves with the frozen one.
+const COST: f64 = 6.0;
+/// Unknowns above which a factor exceeds the processor's caches.
+const LARGE: usize = 10_000;
+/// Largest ratio of stiffness to mass, (ωΔt)² times a factor, on the diagonal of a single-precision
+/// factor.
+const STIFF: f64 = 1e3;
+/// Number of stored structures.
+const REMEMBERED: usize = 2;
+/// Stiffness added along the rows, as a multiple of theirs: enough to outweigh the curvature terms
+/// of contact.
+const STIFFENING: f64 = 10.0;
+/// Margin around the nodes of the rows, relative to their extent.
+const MARGIN: f64 = 0.3;
+
+/// The matrices of the bodies, factors of the frozen tangent and of the mass, and buffers of their
+/// solves.
+pub(crate) struct Direct {
+    pub matrices: Matrices,
+    /// The point of the tangent's factor.
+    point: Option<Arc<Point>>,
+    positive: bool,
+    tangent: Option<Condensed>,
+    mass: Option<Condensed>,
+    of_mass: bool,
+    /// Interface nodes and structures, most recent first, of matrices of the bodies' pattern and of
+    /// diagonal ones: tangent and mass usually share them, and a rejected step returns to the
+    /// previous one.
+    latest: [VecDeque<(Vec<usize>, Arc<Elimination>)>; 2],
+    saddle: Saddle,
+    /// Whether each constraint is a spring, which has no row in the dense system.
+    springs: Vec<bool>,
+    /// Right-hand side and solution, over unknowns and rows; and in elimination order.
+    solution: Vec<f64>,
+    inner: Vec<f64>,
+}
+
+impl Direct {
+    /// For the bodies of a model.
+    pub(crate) fn new(model: &Model) -> Self {
+        Self {
+            matrices: Matrices::new(model),
+            point: None,
+            positive: false,
+            tangent: None,
+            mass: None,
+            of_mass: false,
+            latest: [VecDeque::new(), VecDeque::new()],
+            saddle: Saddle::default(),
+            springs: Vec::new(),
+            solution: Vec::new(),
+            inner: Vec::new(),
+        }
+    }
+
+    /// Factors the last tangent with the coefficients of a point; returns whether it is positive
+    /// definite.
+    ///
+    /// # Errors
+    /// If a number is not finite.
+    pub(crate) fn factor(
+        &mut self,
+        model: &Model,
+        point: &Arc<Point>,
+        double: bool,
+    ) -> Result<bool, LinearError> {
+        self.point = None;
+        let Self { matrices, latest, .. } = self;
+        let Matrices { pattern, mass, stiffness, follower, .. } = matrices;
+        let elimination = elimination(latest, model, pattern, &point.boundary)?;
+        let single = !double && single_is_enough(pattern, point, mass, stiffness);
+        let precision = if single { Precision::Single } else { Precision::Double };
+        let fits = |t: &Condensed| Arc::ptr_eq(t.elimination(), &elimination) && t.precision() == precision;
+        // Free the old factor before allocating the new one.
+        self.tangent = self.tangent.take().filter(fits);
+        let new = || Condensed::new(&elimination, precision).on(&model.threads);
+        self.positive = self.tangent.get_or_insert_with(new).factor(|k| {
+            let internal = point.mass * mass[k] + point.stiffness * stiffness[k];
+            if follower.is_empty() { internal } else { internal - point.follower * follower[k] }
+        })?;
+        self.point = Some(point.clone());
+        Ok(self.positive)
+    }
+
+    /// The dense system on the interface. A spring adds its stiffness instead of a row. Returns
+    /// whether all is positive definite.
+    fn constrain(&mut self, model: &Model, rows: &Constraints, curved: bool) -> Result<bool, LinearError> {
+        let Some(condensed) = (if self.of_mass { &self.mass } else { &self.tangent }) else {
+            return Err(no_factor(model));
+        };
+        let (saddle, elimination) = (&mut self.saddle, condensed.elimination());
+        self.springs.clear();
+        self.springs.extend(rows.list.iter().map(|row| row.compliance != 0.0));
+        let count = self.springs.iter().filter(|is_spring| !**is_spring).count();
+        saddle.begin(condensed.schur(), elimination.schur_size(), count);
+        let is_turned = rows.is_skew || rows.list.iter().any(|row| row.yields != 0.0);
+        if is_turned {
+            saddle.direct();
+        }
+        let place = |dof: usize| {
+            let unknown = model.unknown(dof).filter(|_| !(self.of_mass && model.massless[dof]));
+            unknown.and_then(|unknown| elimination.schur_place(unknown))
+        };
+        let mut count = 0;
+        for ((row, gradient), direction) in rows.list.iter().zip(rows.rows.iter()).zip(rows.directions.iter())
+        {
+            if row.compliance == 0.0 {
+                let at_places = |(dof, slope): (usize, f64)| Some((place(dof)?, row.weight * slope));
+                gradient
+                    .entries()
+                    .filter_map(at_places)
+                    .for_each(|(a, slope)| saddle.add_row(count, a, slope));
+                if is_turned {
+                    let slopes = direction.entries().filter_map(at_places);
+                    slopes.for_each(|(a, slope)| saddle.add_direction(count, a, slope));
+                }
+                saddle.yields(count, row.weight * row.yields);
+                count += 1;
+            }
+            if row.compliance == 0.0 && !curved {
+                continue;
+            }
+            let places: Vec<Option<usize>> = gradient.entries().map(|(dof, _)| place(dof)).collect();
+            for (i, a) in places.iter().enumerate() {
+                for (j, b) in places.iter().enumerate() {
+                    if let (Some(a), Some(b)) = (*a, *b)
+                        && a >= b
+                    {
+                        let value = row.stiffness(gradient.gradient, [i, j], row.compliance, curved);
+                        saddle.add(a, b, value);
+                    }
+                }
+            }
+        }
+        if !self.of_mass {
+            saddle.augment(STIFFENING);
+        }
+        Ok(saddle.factor()? && (self.of_mass || self.positive))
+    }
+
+    /// Overwrites a right-hand side over unknowns and rows with the factor's solution.
+    fn solve_all(&mut self, unknowns: usize, x: &mut [f64]) {
+        let Some(condensed) = (if self.of_mass { &mut self.mass } else { &mut self.tangent }) else { return };
+        let (x, multipliers) = x.split_at_mut(unknowns);
+        condensed.eliminate_into(x, &mut self.inner);
+        self.saddle.solve(condensed.schur_part(&mut self.inner), multipliers);
+        condensed.substitute_into(&mut self.inner, x);
+    }
+}
+
+impl Preconditioner for Direct {
+    fn cost(&self) -> f64 {
+        COST
+    }
+
+    fn diagonals(&self) -> &[Vec<f64>; 2] {
+        &self.matrices.diagonals
+    }
+
+    fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
+        self.matrices.assemble(model, y)
+    }
+
+    fn of(&self, point: &Arc<Point>) -> Option<bool> {
+        (self.point.as_ref() == Some(point)).then_some(self.positive)
+    }
+
+    fn form(&mut self, model: &Model, point: &Arc<Point>, double: bool) -> Result<bool, Rejected> {
+        self.matrices.assemble(model, &point.at)?;
+        if point.follower != 0.0 {
+            self.matrices.assemble_loads(model, point.time, &point.at)?;
+        }
+        Ok(self.factor(model, point, double)?)
+    }
+
+    fn form_mass(&mut self, model: &Model, rows: &Constraints) -> Result<(), Rejected> {
+        let Self { matrices, latest, .. } = self;
+        let (pattern, mass) = match &matrices.diagonal {
+            Some(diagonal) => (diagonal, &matrices.diagonals[0]),
+            None => (&matrices.pattern, &matrices.mass),
+        };
+        let current = self.point.as_ref().filter(|point| spans(&point.boundary, rows));
+        let boundary = current.map_or_else(|| rows.nodes(), |point| point.boundary.clone());
+        let elimination = elimination(latest, model, pattern, &boundary)?;
+        if !self.mass.as_ref().is_some_and(|factor| Arc::ptr_eq(factor.elimination(), &elimination)) {
+            self.mass = None;
+            let mut factor = Condensed::new(&elimination, Precision::Double).on(&model.threads);
+            let mut mass = mass.clone();
+            for place in (0..model.free.len()).filter(|&place| model.massless[model.free[place]]) {
+                mass[pattern.starts[place]] = 1.0;
+            }
+            if !factor.factor(|k| mass[k])? {
+                return Err(Rejected::NegativeMass);
+            }
+            self.mass = Some(factor);
+        }
+        self.of_mass = true;
+        Ok(self.constrain(model, rows, false).map(|_| ())?)
+    }
+
+    /// Those of the rows and nearby ones on the sides in contact, so that the choice lasts. The
+    /// last choice is reused while it includes the rows and is not much too large.
+    fn boundary(&self, model: &Model, y: &[f64], rows: &Constraints, last: Option<&Point>) -> Vec<usize> {
+        let (row_nodes, d) = (rows.nodes(), model.dimension);
+        let last = last.map_or(&[][..], |point| &point.boundary);
+        if row_nodes.is_empty() {
+            return last.to_vec();
+        }
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &node in &row_nodes {
+            for i in 0..d {
+                (low[i], high[i]) = (low[i].min(y[node * d + i]), high[i].max(y[node * d + i]));
+            }
+        }
+        let margin = MARGIN * (0..d).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+        let within = |x: f64, i: usize| x >= low[i] - margin && x <= high[i] + margin;
+        let near = |node: &usize| (0..d).all(|i| within(y[*node * d + i], i));
+        let around = model.contacts.iter().flat_map(|contact| contact.surface.iter().copied().filter(near));
+        let mut chosen: Vec<usize> = row_nodes.iter().copied().chain(around).collect();
+        chosen.sort_unstable();
+        chosen.dedup();
+        if spans(last, rows) && last.len() <= 2 * chosen.len() { last.to_vec() } else { chosen }
+    }
+
+    fn spans(&self, rows: &Constraints) -> bool {
+        self.point.as_ref().is_some_and(|point| spans(&point.boundary, rows))
+    }
+
+    fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<bool, LinearError> {
+        self.of_mass = false;
+        // An inaccurate multiplier can make the curvature terms too large: without second
+        // derivatives there is still a descent direction.
+        Ok(self.constrain(model, rows, true)?
+            || self.constrain(model, rows, false)?
+            || self.constrain(model, rows, true)?)
+    }
+
+    fn regularity(&self) -> Option<f64> {
+        self.saddle.regularity()
+    }
+
+    fn solve(
+        &mut self,
+        model: &Model,
+        [forces, gaps]: [&[f64]; 2],
+        increment: &mut [f64],
+        multipliers: &mut Vec<f64>,
+    ) -> Result<(), LinearError> {
+        let unknowns = model.free.len();
+        let mut x = std::mem::take(&mut self.solution);
+        x.clear();
+        x.extend(model.free.iter().map(|&dof| forces[dof]));
+        x.extend(self.springs.iter().zip(gaps).filter(|(is_spring, _)| !**is_spring).map(|(_, gap)| *gap));
+        self.solve_all(unknowns, &mut x);
+        increment.fill(0.0);
+        for (value, &dof) in x.iter().zip(&model.free) {
+            increment[dof] = *value;
+        }
+        multipliers.clear();
+        let mut found = x[unknowns..].iter().copied();
+        let of = |is_spring: &bool| if *is_spring { None } else { found.next() };
+        multipliers.extend(self.springs.iter().map(of).map(Option::unwrap_or_default));
+        let finite = x.iter().all(|x| x.is_finite());
+        self.solution = x;
+        if finite { Ok(()) } else { Err(LinearError::Inaccurate { size: unknowns, residual: f64::NAN }) }
+    }
+}
+
+/// The elimination order of a pattern with these nodes last; `latest`: those of recent ones.
+fn elimination(
+    latest: &mut [VecDeque<(Vec<usize>, Arc<Elimination>)>; 2],
+    model: &Model,
+    pattern: &Pattern,
+    boundary: &[usize],
+) -> Result<Arc<Elimination>, LinearError> {
+    let latest = &mut latest[usize::from(pattern.is_diagonal())];
+    if let Some(known) = latest.iter().position(|(nodes, _)| nodes == boundary) {
+        latest.swap(0, known);
+        return Ok(latest[0].1.clone());
+    }
+    let d = model.dimension;
+    let groups: Vec<usize> = model.free.iter().map(|dof| dof / d).collect();
+    let dofs = boundary.iter().flat_map(|node| (0..d).map(move |i| node * d + i));
+    let last: Vec<usize> = dofs.filter_map(|dof| model.unknown(dof)).collect();
+    let elimination = Arc::new(Elimination::new(pattern, &groups, &last)?);
+    latest.truncate(REMEMBERED - 1);
+    latest.push_front((boundary.to_vec(), elimination.clone()));
+    Ok(elimination)
+}
+
+/// Whether single precision suffices for a factor: it is large, so that reading it dominates the
+/// cost of a solve, and the matrix is so well conditioned that the rounding error of a correction
+/// is far below the error of an old tangent. Scaled to a unit diagonal, and with a positive
+/// semidefinite stiffness, the matrix has a condition number of at most some hundred times the
+/// largest quotient of its diagonal and the mass's: λ_max is at most the number of dofs of a cell,
+/// and λ_min at least that of the scaled mass matrix over that quotient. An indefinite stiffness
+/// may be worse; iterations then converge slowly, and it is refactored.
+fn single_is_enough(pattern: &Pattern, point: &Point, mass: &[f64], stiffness: &[f64]) -> bool {
+    let mut diagonal = pattern.starts[..pattern.size()].iter();
+    let soft = |&k: &usize| point.stiffness * stiffness[k] <= STIFF * point.mass * mass[k];
+    pattern.size() >= LARGE && diagonal.all(soft)
+}
+
+fn no_factor(model: &Model) -> LinearError {
+    LinearError::Engine { size: model.free.len(), reason: "solve before factor".into() }
+}
+
+fn spans(boundary: &[usize], rows: &Constraints) -> bool {
+    rows.rows.iter().flat_map(|row| row.nodes).all(|node| boundary.binary_search(node).is_ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_the_digits_are_for_large_factors_that_mass_holds_together() {
+        let point = Point { mass: 2.0, stiffness: 2.0, ..Point::default() };
+        let enough = |size: usize, mass: f64, stiffness: f64| {
+            let pattern = Pattern::from_entries(size, []);
+            let (mut masses, mut stiffnesses) = (vec![1.0; size], vec![10.0; size]);
+            (masses[7], stiffnesses[7]) = (mass, stiffness);
+            single_is_enough(&pattern, &point, &masses, &stiffnesses)
+        };
+        assert!(enough(LARGE, 1.0, 999.0));
+        assert!(!enough(LARGE - 1, 1.0, 999.0) && !enough(LARGE, 1.0, 1001.0) && !enough(LARGE, 0.0, 1.0));
+    }
+}

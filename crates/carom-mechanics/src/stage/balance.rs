@@ -1,0 +1,103 @@
+//! The balance of forces, eq. (15), which combines space, contact and time.
+//!
+//! ```text
+//! r(d, λ) =  w.mass M a(d) + w.internal f_int + w.contact Gᵀλ − w.external f_ext
+//!          + b.mass M a_s  + b.internal f_int,s + b.contact f_cont,s − b.external f_ext,s
+//! ```
+//!
+//! with y = y_s + d, a(d) and the weights w (end of stage) and b (start of step) from the stage.
+//! The unknown is the increment d: formed from rounded positions, the acceleration would carry
+//! their last digit divided by Δt². A massless dof has no inertia to average with: its balance
+//! is enforced at s + 1 only. f_ext is gravity and the loads, evaluated at the same time (and, for
+//! pressures, positions) as f_int. The residual of a constrained dof is its reaction force.
+//!
+//! At prescribed dofs the acceleration ü is known, and M ü acts on the neighbours like an external
+//! force, averaged with α_f. The scheme's own a is another quantity, with a delay of (α_f − α_m)Δt
+//! (Erlicher, Bonaventura, Bursi 2002): averaging ü with α_m instead costs an order.
+
+use carom_time::{Stage, Weights};
+
+use crate::model::Model;
+use crate::state::State;
+
+/// The forces of one evaluation, flat over all dofs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Forces {
+    /// M a(d).
+    pub inertia: Vec<f64>,
+    /// f_int.
+    pub internal: Vec<f64>,
+    /// f_ext without gravity.
+    pub loads: Vec<f64>,
+    /// Σ w.contact Gᵀλ, weighted per contact.
+    pub contact: Vec<f64>,
+    /// The part of friction in them; empty without friction.
+    pub friction: Vec<f64>,
+}
+
+/// Weights of a contact's force at the end and the start: averaged as in eq. (15), or end only.
+pub(crate) fn contact_weights(stage: &Stage, at_the_end: bool) -> (f64, f64) {
+    if at_the_end { (1.0, 0.0) } else { (stage.weights.contact, stage.before.contact) }
+}
+
+/// Mean over the step of the known acceleration of a prescribed dof, with the weights of external
+/// forces.
+pub(crate) fn mean_acceleration(stage: &Stage, now: f64, before: f64) -> f64 {
+    let (weight, known) = (stage.weights.external, stage.before.external);
+    weight * (1.0 - stage.average) * now + (known + weight * stage.average) * before
+}
+
+/// The second line of the balance: terms known from the state at the step's start.
+pub(crate) fn known_into(model: &Model, stage: &Stage, state: &State, known: &mut Vec<f64>) {
+    let Weights { mass, internal, external, contact } = stage.before;
+    known.clear();
+    known.resize(model.dofs(), 0.0);
+    if stage.before == Weights::default() {
+        return;
+    }
+    model.mass.multiply_into(&state.a, known);
+    for i in 0..known.len() {
+        known[i] = if model.massless[i] {
+            0.0
+        } else {
+            mass * known[i] + internal * state.f_internal[i] + contact * state.f_contact[i]
+                - external * (model.gravity[i] + state.f_external[i])
+        };
+    }
+}
+
+/// The terms of r at a dof: of inertia, of internal, contact and external forces, and those known.
+pub(crate) fn terms(model: &Model, stage: &Stage, forces: &Forces, known: &[f64], dof: usize) -> [f64; 5] {
+    let Weights { mass, internal, external, .. } = stage.weights;
+    [
+        mass * forces.inertia[dof],
+        internal * forces.internal[dof],
+        forces.contact[dof],
+        -external * (model.gravity[dof] + forces.loads[dof]),
+        known[dof],
+    ]
+}
+
+/// r over all dofs. Returns its norm over the free ones, and the sum of the norms of its terms as
+/// reference.
+pub(crate) fn residual_into(
+    model: &Model,
+    stage: &Stage,
+    forces: &Forces,
+    known: &[f64],
+    residual: &mut [f64],
+) -> (f64, f64) {
+    let mut squares = [0.0_f64; 6];
+    for i in 0..residual.len() {
+        let terms = terms(model, stage, forces, known, i);
+        residual[i] = terms.iter().sum();
+        if !model.fixed[i] {
+            for (square, term) in squares.iter_mut().zip(terms) {
+                *square += term * term;
+            }
+            squares[5] += residual[i] * residual[i];
+        }
+    }
+    let norms = squares.map(f64::sqrt);
+    (norms[5], norms[..5].iter().sum())
+}

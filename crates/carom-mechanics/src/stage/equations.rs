@@ -1,0 +1,229 @@
+//! A stage as a system of equations: the balance of forces and the contact conditions, evaluated at
+//! an iterate.
+//!
+//! ```text
+//! r(d, λ) = 0   (balance.rs),   c(d, λ) = 0 for each active pair   (carom_contact::Interface)
+//! ```
+
+use std::sync::Arc;
+
+use carom_contact::Law;
+use carom_time::{Internal, Stage};
+
+use crate::contact::augmented;
+use crate::model::{LoadsAt, Model, Prescribed};
+use crate::rejected::Rejected;
+use crate::stage::balance::{known_into, mean_acceleration, residual_into};
+use crate::stage::evaluation::{Evaluation, Iterate, Spare};
+use crate::stage::renewal::Point as FactorPoint;
+use crate::state::State;
+use crate::timings::{Timings, timed};
+
+/// The equations of a stage.
+#[derive(Debug)]
+pub(crate) struct Equations<'a> {
+    pub model: &'a Model,
+    /// The state at the step's start.
+    pub state: &'a State,
+    pub stage: Stage,
+    /// The time at which internal forces are evaluated, and the loads then.
+    pub time: f64,
+    pub loads: LoadsAt,
+    /// Prescribed dofs at the stage's end.
+    pub motions: Vec<Prescribed>,
+    /// Terms of the balance known from the step's start.
+    pub known: Vec<f64>,
+    /// Laws of friction of the secondary nodes of each contact at the stage's end.
+    pub laws: Vec<Vec<Law>>,
+    /// Stiffnesses of augmented Lagrangians at the secondary nodes of each contact, normal and
+    /// tangential.
+    pub augmented: Vec<Vec<[f64; 2]>>,
+    /// Time since the step's start.
+    pub duration: f64,
+}
+
+impl<'a> Equations<'a> {
+    /// The equations of a stage that ends at the time `to`.
+    ///
+    /// # Errors
+    /// If a load or a motion has no value.
+    pub(crate) fn new(model: &'a Model, state: &'a State, stage: Stage, to: f64) -> Result<Self, Rejected> {
+        let average = stage.average;
+        let time = if average == 0.0 { to } else { (1.0 - average) * to + average * state.time };
+        let mut equations = Self {
+            model,
+            state,
+            stage,
+            time,
+            loads: LoadsAt::default(),
+            motions: Vec::new(),
+            known: Vec::new(),
+            laws: model.friction_laws(to)?,
+            augmented: Vec::new(),
+            duration: to - state.time,
+        };
+        if !model.loads.is_empty() {
+            model.loads.at(&model.parts, model.dofs(), time, &mut equations.loads)?;
+        }
+        model.motions.at(to, &mut equations.motions)?;
+        known_into(model, &equations.stage, state, &mut equations.known);
+        let factors = [equations.mass_factor(), equations.stiffness_factor()];
+        equations.augmented = augmented::springs(model, &equations.stage, factors);
+        Ok(equations)
+    }
+
+    /// Whether internal forces are a discrete gradient over the step.
+    pub(crate) fn between(&self) -> bool {
+        self.stage.internal == Internal::DiscreteGradient
+    }
+
+    /// Factor of the mass matrix in the tangent.
+    pub(crate) fn mass_factor(&self) -> f64 {
+        self.stage.weights.mass * self.stage.acceleration.slope
+    }
+
+    /// Factor of the internal tangent.
+    pub(crate) fn stiffness_factor(&self) -> f64 {
+        match self.stage.internal {
+            Internal::Gradient => self.stage.weights.internal * (1.0 - self.stage.average),
+            // Its tangent already refers to the end of the step.
+            Internal::DiscreteGradient => self.stage.weights.internal,
+        }
+    }
+
+    /// Factor of the internal tangent at one configuration: for a discrete gradient, the end
+    /// contributes half of the tangent at the midpoint.
+    pub(crate) fn factor_stiffness(&self) -> f64 {
+        if self.between() { 0.5 * self.stiffness_factor() } else { self.stiffness_factor() }
+    }
+
+    /// Factor of the loads' tangent.
+    pub(crate) fn follower_factor(&self) -> f64 {
+        self.stage.weights.external * (1.0 - self.stage.average)
+    }
+
+    /// The point of a factor at these positions, with these nodes eliminated last.
+    pub(crate) fn point(&self, at: &[f64], boundary: &[usize]) -> Arc<FactorPoint> {
+        let follows = self.model.loads.follow_sides();
+        let [follower, time] = if follows { [self.follower_factor(), self.time] } else { [0.0; 2] };
+        let (mass, stiffness) = (self.mass_factor(), self.factor_stiffness());
+        let (at, boundary) = (at.to_vec(), boundary.to_vec());
+        Arc::new(FactorPoint { at, mass, stiffness, follower, time, boundary })
+    }
+
+    /// Prescribed dofs and their displacements in the step.
+    fn prescribed(&self) -> impl Iterator<Item = (usize, f64)> {
+        let to = |moved: &Prescribed| self.model.reference[moved.dof] + moved.motion[0];
+        self.motions.iter().map(move |moved| (moved.dof, to(moved) - self.state.y[moved.dof]))
+    }
+
+    /// Remaining displacements of prescribed dofs.
+    pub(crate) fn remaining(&self, at: &Iterate) -> impl Iterator<Item = (usize, f64)> {
+        self.prescribed().map(|(dof, whole)| (dof, whole - at.increment[dof]))
+    }
+
+    /// Sets prescribed dofs to their exact positions.
+    pub(crate) fn arrive(&self, increment: &mut [f64]) {
+        self.prescribed().for_each(|(dof, whole)| increment[dof] = whole);
+    }
+
+    /// Forces, gaps and residual at an iterate.
+    ///
+    /// # Errors
+    /// If a cell is inverted, or an active pair has no gap.
+    pub(crate) fn evaluate(
+        &self,
+        at: Iterate,
+        spare: &mut Spare,
+        timings: &mut Timings,
+    ) -> Result<Evaluation, Rejected> {
+        let mut evaluation = spare.take();
+        evaluation.at = at;
+        self.fill(&mut evaluation, timings)?;
+        Ok(evaluation)
+    }
+
+    fn fill(&self, evaluation: &mut Evaluation, timings: &mut Timings) -> Result<(), Rejected> {
+        let Self { model, state, stage, .. } = self;
+        let Evaluation { at, y, place, forces, acceleration, residual, .. } = evaluation;
+        let dofs = model.dofs();
+        for vector in [&mut *y, place, acceleration, residual, &mut forces.inertia, &mut forces.internal] {
+            vector.resize(dofs, 0.0);
+        }
+        forces.loads.resize(dofs, 0.0);
+        let share = if self.between() { 0.5 } else { 1.0 - stage.average };
+        for i in 0..dofs {
+            y[i] = state.y[i] + at.increment[i];
+            place[i] = state.y[i] + share * at.increment[i];
+        }
+        evaluation.strain = timed(&mut timings.assembly, || {
+            if self.between() {
+                model.internal_between(&state.y, y, &mut forces.internal)
+            } else {
+                model.internal_force(place, &mut forces.internal)
+            }
+        })
+        .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+        if !model.loads.is_empty() {
+            model.loads.force_into(&self.loads, place, &mut forces.loads);
+        }
+        stage.acceleration.value_into(&at.increment, acceleration);
+        if !stage.is_static() {
+            for moved in &self.motions {
+                // The acceleration for which the balance, with its averages, gives this mean.
+                let before = state.a[moved.dof];
+                let mean = mean_acceleration(stage, moved.motion[2], before);
+                acceleration[moved.dof] = (mean - stage.before.mass * before) / stage.weights.mass;
+            }
+        }
+        model.mass.multiply_into(acceleration, &mut forces.inertia);
+        self.change_contacts(evaluation, timings)
+    }
+
+    /// Contact forces, gaps and residual of an iterate whose pairs have changed.
+    ///
+    /// # Errors
+    /// If an active pair has no gap.
+    pub(crate) fn change_contacts(
+        &self,
+        evaluation: &mut Evaluation,
+        timings: &mut Timings,
+    ) -> Result<(), Rejected> {
+        let Self { model, stage, .. } = self;
+        timed(&mut timings.contact, || self.evaluate_contacts(evaluation))?;
+        let Evaluation { forces, residual, measure, .. } = evaluation;
+        (measure.residual, measure.forces) = residual_into(model, stage, forces, &self.known, residual);
+        Ok(())
+    }
+
+    /// ∂r/∂y · `change` of bodies and loads at an iterate, without contact; exact and not
+    /// symmetrised.
+    ///
+    /// # Errors
+    /// A cell is inverted.
+    pub(crate) fn product_into(
+        &self,
+        now: &Evaluation,
+        change: &[f64],
+        product: &mut [f64],
+        timings: &mut Timings,
+    ) -> Result<(), Rejected> {
+        let Self { model, state, .. } = self;
+        let (before, at) = if self.between() { (Some(&state.y[..]), &now.y) } else { (None, &now.place) };
+        timed(&mut timings.assembly, || model.internal_product(before, at, change, product))
+            .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+        let (mass, stiffness, d) = (self.mass_factor(), self.stiffness_factor(), model.dimension);
+        model.mass.add_product(change, mass, stiffness, product);
+        if model.loads.follow_sides() {
+            let factor = self.follower_factor();
+            model.loads.each_facet_tangent(d, Some((&self.loads, &now.place)), |nodes, tangent| {
+                let dofs: Vec<usize> = nodes.iter().flat_map(|n| (0..d).map(move |i| n * d + i)).collect();
+                for (dof, row) in dofs.iter().zip(tangent.chunks_exact(dofs.len())) {
+                    product[*dof] -=
+                        factor * row.iter().zip(&dofs).map(|(k, other)| k * change[*other]).sum::<f64>();
+                }
+            });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,251 @@
+//! Persistency: at activation of a contact, velocities and accelerations are made compatible with
+//! the active constraints (g ġ = 0).
+//!
+//! ```text
+//! M Δv + Gᵀp = 0,   G (v + Δv) = 0            then       M a + Gᵀλ = f_ext − f_int,
+//!                                                        λ ≤ 0,  g̈ ≥ 0,  λ g̈ = 0,   g̈ = G a + v·∇²g·v
+//! ```
+//!
+//! with all active rows as equalities of the velocities. Projecting v alone would retain the
+//! accelerations of the impact and does not remove the oscillations (theory.md §5.3). A multiplier
+//! that would pull is zero, and its gap may open; the others keep g̈ = 0. Massless dofs keep their
+//! velocity: they follow the massive side. With friction both systems have its impulses and forces
+//! (`cone.rs`). With a restitution, energy is returned (`restitution.rs`) before the accelerations
+//! are solved for.
+
+use std::collections::BTreeMap;
+
+use carom_algebra::sums::max_abs;
+use carom_contact::{ActiveSet, Along, Contender, FrictionState, Row, Rows, inner, length};
+
+use crate::contact::independent::independent_rows;
+use crate::friction_state::each_slip;
+use crate::ledger::{book_contact_forces, book_kinetic};
+use crate::linear::system::System;
+use crate::model::Model;
+use crate::rejected::Rejected;
+use crate::state::State;
+use crate::velocity::active_rows::{measure_all, pressing};
+use crate::velocity::cone::{AT_REST, Closed, Right};
+use crate::velocity::restitution::{Impact, take};
+
+/// Contact and pair.
+type Place = (usize, usize);
+
+/// Solves in which pairs that were let go may be held again; after that they are only let go, so
+/// that in the end none pulls.
+const ROUNDS: usize = 50;
+/// Multiplier, as a fraction of the largest force, and acceleration, as a fraction of the largest
+/// one, that are round-off.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Projects `state`, the end of the step `impact`, if one of the new contacts (contact, node)
+/// requires it. The jump of kinetic energy is recorded as contact work and returned.
+pub(crate) fn project(
+    model: &Model,
+    state: &mut State,
+    impact: &Impact,
+    activations: &[(usize, usize)],
+    system: &mut System,
+) -> Result<Option<f64>, Rejected> {
+    let asks = |&(k, _): &(usize, usize)| model.contacts[k].projects;
+    if !activations.iter().any(asks) {
+        return Ok(None);
+    }
+    let gaps = measure_all(model, state)?;
+    let mut places = independent_rows(model, pressing(state), &gaps);
+    places.retain(asks);
+    let closed = Closed::new(model, state, places, &gaps)?;
+    let rows = &closed.normals;
+    let dofs = model.dofs();
+
+    let closing: Vec<f64> = rows.rows.iter().map(|row| -row.along(&state.v)).collect();
+    let slips = closed.slip_rates(&state.v);
+    let stopping: Vec<Along> = slips.iter().map(|rate| rate.map(|rate| -rate)).collect();
+    let right = Right { forces: &vec![0.0; dofs], gaps: &closing, slips: &stopping };
+    let slid = closed.holds(state, impact.pairs);
+    let jump = closed.impulse(model, state, &right, system)?;
+    for i in (0..dofs).filter(|&i| !model.massless[i]) {
+        state.v[i] += jump.x[i];
+    }
+    for (k, impulse) in closed.impulses(&jump) {
+        (0..3).for_each(|i| state.impulses[k][i] += impulse[i]);
+    }
+    let after = closed.slip_rates(&state.v);
+    let mean = |(before, after): (&Along, &Along)| [0, 1].map(|i| 0.5 * (before[i] + after[i]));
+    let rates = slips.iter().zip(&after).map(mean);
+    let mut rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| inner(rate, *q)).sum::<f64>();
+
+    // Velocities at the end of a step ring from node to node, its slips do not: a pair slips on in
+    // the direction of its slip, unless the impulse turns it round. One that sticks has slip rates
+    // of the size that the step's tolerance leaves, which are none.
+    let still = AT_REST * max_abs(&state.v);
+    let left = still.max(model.gap_tolerance * impact.slope);
+    let goes_on = slips.iter().zip(&after).map(|(a, b)| [length(*a), length(*b), inner(*a, *b)]);
+    let slid =
+        slid.into_iter().zip(goes_on).map(|(friction_state, [before, now, along])| match friction_state? {
+            FrictionState::Stick => Some(FrictionState::Stick).filter(|_| now <= left),
+            slip @ FrictionState::Slip(_) => Some(slip).filter(|_| before > still && along > 0.0),
+        });
+    let slid = closed
+        .places
+        .iter()
+        .zip(slid)
+        .filter_map(|(place, friction_state)| Some((*place, friction_state?)))
+        .collect();
+
+    let before = state.ledger.kinetic;
+    take(model, state, before - model.kinetic(&state.v) + rubbed);
+    rubbed += impact.restitute(model, state, &closed, system)?;
+    accelerate(model, state, &gaps, asks, &slid, system)?;
+
+    averaged_contact_into(model, state, &gaps);
+    book_contact_forces(model, state);
+    book_kinetic(model, state);
+    let jump = state.ledger.kinetic - before;
+    state.ledger.contact_work += jump - rubbed;
+    state.ledger.friction_work += rubbed;
+    Ok(Some(jump))
+}
+
+/// Accelerations and multipliers of a state with closed pairs, of those that are asked for; `slid`:
+/// which pairs stick, and directions in which pairs slip, of the others those of their slip rates.
+///
+/// A pair that pulls is let go, with its friction, and one whose gap would close is held again, by
+/// the rules for the pairs of a step (`carom-contact/src/active_set.rs`): ties change together.
+pub(crate) fn accelerate(
+    model: &Model,
+    state: &mut State,
+    gaps: &[Rows],
+    asks: impl Fn(&Place) -> bool,
+    slid: &BTreeMap<Place, FrictionState>,
+    system: &mut System,
+) -> Result<(), Rejected> {
+    let pairs: Vec<Place> = pressing(state).filter(&asks).collect();
+    let bent = bending(model, state, gaps, &pairs);
+    let mut held = vec![true; pairs.len()];
+    let mut set = ActiveSet::new(0.0, true);
+    for round in 0.. {
+        let is_held = |place: &Place| pairs.binary_search(place).is_ok_and(|i| held[i]);
+        // Of rows that depend on each other the next one takes over where one is let go.
+        let candidates = pressing(state).filter(|place| !asks(place) || is_held(place));
+        let mut places = independent_rows(model, candidates, gaps);
+        places.retain(&asks);
+        let closed = Closed::new(model, state, places, gaps)?;
+        let of_place = |place: &Place| pairs.binary_search(place).map_or(0.0, |i| bent[i]);
+        let bending: Vec<f64> = closed.places.iter().map(of_place).collect();
+        let forces = drive(model, state, gaps, &closed);
+        let turning: Vec<Along> =
+            closed.slip_curvatures(model, state).iter().map(|bent| bent.map(|b| -b)).collect();
+        let right = Right { forces: &forces, gaps: &bending, slips: &turning };
+        let known: Vec<Option<FrictionState>> =
+            closed.places.iter().map(|place| slid.get(place).copied()).collect();
+        let motion = closed.accelerate(model, state, &right, &known, system)?;
+
+        let [force, acceleration] = [&forces, &motion.x].map(|x| ROUND_OFF * max_abs(x));
+        let contender = |(i, &(k, p)): (usize, &Place)| {
+            let row = closed.places.binary_search(&(k, p));
+            let lambda = row.map_or(0.0, |row| motion.normal[row]);
+            let apart = gaps[k].row(p).along(&motion.x) - bent[i];
+            Contender {
+                active: held[i],
+                gap: if apart < -acceleration { apart } else { 0.0 },
+                lambda: if lambda.abs() > force { lambda } else { 0.0 },
+                // Compares a force with an acceleration where one pair changes at a time.
+                stiffness: force.max(f64::MIN_POSITIVE) / acceleration.max(f64::MIN_POSITIVE),
+            }
+        };
+        let contenders: Vec<Contender> = pairs.iter().enumerate().map(contender).collect();
+        let pulls = |i: &usize| held[*i] && contenders[*i].lambda > 0.0;
+        let changes = if round < ROUNDS { set.changes(&contenders, true).ok() } else { None };
+        let changes = changes.unwrap_or_else(|| (0..pairs.len()).filter(pulls).collect());
+        if changes.is_empty() {
+            for (&(k, p), lambda) in closed.places.iter().zip(&motion.normal) {
+                state.pairs[k][p].lambda = *lambda;
+            }
+            for &i in &model.free {
+                // Moving supports keep theirs.
+                state.a[i] = if model.massless[i] { 0.0 } else { motion.x[i] };
+            }
+            break;
+        }
+        changes.iter().for_each(|&i| held[i] = !held[i]);
+        for &(k, p) in &pairs {
+            let pair = &mut state.pairs[k][p];
+            (pair.lambda, pair.tangential.traction) = (0.0, [0.0; 2]);
+        }
+    }
+    Ok(())
+}
+
+/// Right-hand side of M a + Gᵀλ = f_ext − f_int for these constraints, minus the contributions of
+/// the accelerations of moving supports, in `state`, and of the forces of all other active pairs,
+/// including springs.
+fn drive(model: &Model, state: &State, gaps: &[Rows], closed: &Closed) -> Vec<f64> {
+    let dofs = model.dofs();
+    let mut carried = vec![0.0; dofs];
+    if let Some(moved) = moved(model, state) {
+        model.mass.multiply_into(&moved, &mut carried);
+    }
+    let others = |place: Place| !closed.places.contains(&place);
+    for (k, p) in pressing(state).filter(|&place| others(place)) {
+        gaps[k].row(p).add_to(state.pairs[k][p].lambda, &mut carried);
+    }
+    each_slip(model, state, |k, p, traction, row| {
+        if others((k, p)) {
+            row.add_to(traction, &mut carried);
+        }
+    });
+    let force = |i: usize| model.gravity[i] + state.f_external[i] - state.f_internal[i] - carried[i];
+    (0..dofs).map(|i| if model.massless[i] { 0.0 } else { force(i) }).collect()
+}
+
+/// −v·∇²g·v of these pairs, minus the acceleration of the gap by moving supports.
+fn bending(model: &Model, state: &State, gaps: &[Rows], pairs: &[Place]) -> Vec<f64> {
+    let moved = moved(model, state);
+    let mut second = Vec::new();
+    let of_pair = |&(k, p): &Place| {
+        let row = gaps[k].row(p);
+        second.resize(row.gradient.len().pow(2), 0.0);
+        model.contacts[k].kinematics.curvature_into(&state.pairs[k][p], &state.y, &mut second);
+        -curvature(row, &second, &state.v) - moved.as_ref().map_or(0.0, |moved| row.along(moved))
+    };
+    pairs.iter().map(of_pair).collect()
+}
+
+/// Accelerations of moving supports, zero elsewhere, if there are any.
+fn moved(model: &Model, state: &State) -> Option<Vec<f64>> {
+    let mut moved = vec![0.0; model.dofs()];
+    model.motions.dofs().for_each(|dof| moved[dof] = state.a[dof]);
+    (!model.motions.is_empty()).then_some(moved)
+}
+
+/// Σ Gᵀλ over the contacts with averaged forces, for the next step.
+pub(crate) fn averaged_contact_into(model: &Model, state: &mut State, rows: &[Rows]) {
+    let State { f_contact, pairs, .. } = state;
+    f_contact.fill(0.0);
+    for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| !contact.at_the_end) {
+        debug_assert_eq!(rows[k].len(), pairs[k].len(), "rows of contact {}", contact.name);
+        for (pair, row) in pairs[k].iter().zip(rows[k].iter()).filter(|(pair, _)| pair.active) {
+            row.add_to(pair.lambda, f_contact);
+        }
+    }
+    state.f_friction.clear();
+    if model.has_friction() {
+        let mut friction = vec![0.0; model.dofs()];
+        each_slip(model, state, |k, _, traction, row| {
+            if !model.contacts[k].at_the_end {
+                row.add_to(traction, &mut friction);
+            }
+        });
+        state.f_contact.iter_mut().zip(&friction).for_each(|(force, part)| *force += part);
+        state.f_friction = friction;
+    }
+}
+
+/// v·∇²g·v of a row, with row-major ∇²g.
+fn curvature(row: Row, second: &[f64], v: &[f64]) -> f64 {
+    let along: Vec<f64> = row.entries().map(|(dof, _)| v[dof]).collect();
+    let rows = second.chunks_exact(along.len());
+    along.iter().zip(rows).map(|(v, row)| v * row.iter().zip(&along).map(|(c, w)| c * w).sum::<f64>()).sum()
+}
