@@ -75,7 +75,7 @@ pub(crate) fn solve_stage(
         let changed = newton.change_contacts(&mut now, converged)?;
         if changed
             && newton.is_costly_guess()
-            && let Some(start) = newton.start.take()
+            && let Some(start) = newton.unpredicted.take()
         {
             now = newton.restart(now, start)?;
             continue;
@@ -94,7 +94,7 @@ pub(crate) fn solve_stage(
         newton.check_progress(&now, changed)?;
         let rows = Constraints::of(equations, &now);
         let correction = newton.correct(&now, &rows, changed)?;
-        if let Some(start) = newton.start.take()
+        if let Some(start) = newton.unpredicted.take()
             && correction.first > newton.trust
         {
             newton.doubt_tangent();
@@ -116,7 +116,7 @@ struct Newton<'a> {
     /// A guess without predictor, until the predictor is known to help. Where contact begins,
     /// velocities and accelerations jump from node to node. Extrapolated over a step, that motion
     /// distorts or inverts cells, and Newton's method starts better without it.
-    start: Option<Iterate>,
+    unpredicted: Option<Iterate>,
     /// The first correction, at most, of a useful predictor.
     trust: f64,
     iteration: usize,
@@ -159,7 +159,7 @@ impl<'a> Newton<'a> {
             contact: ContactUpdate::new(equations, before),
             renewal: Renewal::new(frozen, factors, double, cost),
             rounds: Rounds::new(),
-            start: (!is_static).then(start),
+            unpredicted: (!is_static).then(start),
             trust: if predicted > 0.0 { TRUST * predicted } else { f64::INFINITY },
             iteration: 0,
             step: f64::INFINITY,
@@ -171,7 +171,7 @@ impl<'a> Newton<'a> {
         };
         newton.work.linear.restart();
         let mut now = match newton.evaluate(guess) {
-            Err(Rejected::Inverted { .. }) if let Some(start) = newton.start.take() => {
+            Err(Rejected::Inverted { .. }) if let Some(start) = newton.unpredicted.take() => {
                 newton.evaluate(start)?
             }
             evaluated => evaluated?,
@@ -307,7 +307,7 @@ impl<'a> Newton<'a> {
             forcing: digits * FORCING.min(FORCING_RATIO * pace).max(self.enough / now.measure.residual),
             step: settings.tolerance * model.scale,
             fresh: self.renewal.made != made,
-            trust: if self.start.is_some() { self.trust } else { f64::INFINITY },
+            trust: if self.unpredicted.is_some() { self.trust } else { f64::INFINITY },
             mixing: settings.mixing,
         };
         let preconditioner = &mut *system.preconditioner;
