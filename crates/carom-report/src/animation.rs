@@ -19,6 +19,7 @@ use crate::chart::{Chart, Options, Panel, Series, Track};
 use crate::labels::{amount, is_static, is_stress, number, symbol, time_label};
 use crate::noise;
 use crate::obstacles;
+use crate::ordered::grouped;
 use crate::palette::LINES;
 use crate::pen::Point;
 use crate::pressure;
@@ -26,6 +27,7 @@ use crate::quantity::{Quantity, bars, choice, stresses};
 use crate::scientific::significant;
 use crate::sheet::{Legend, arrowheads};
 use crate::text::{Label, Prose};
+use crate::values::{self, list, names, text};
 
 /// Largest number of bytes of positions and stresses in the page; field files are skipped evenly to
 /// stay below.
@@ -103,13 +105,8 @@ fn forces(run: &Run) -> HashMap<u64, Vec<[f64; 4]>> {
 
 /// Times of the events of each kind, the rarest kind first.
 pub(crate) fn tracks(run: &Run) -> Vec<Track> {
-    let mut tracks: Vec<Track> = Vec::new();
-    for event in &run.log {
-        match tracks.iter_mut().find(|t| t.label == event.kind) {
-            Some(track) => track.times.push(event.time),
-            None => tracks.push(Track { label: event.kind.clone(), times: vec![event.time] }),
-        }
-    }
+    let kinds = grouped(run.log.iter().map(|event| (event.kind.clone(), event.time)));
+    let mut tracks: Vec<Track> = kinds.into_iter().map(|(label, times)| Track { label, times }).collect();
     tracks.sort_by_key(|t| t.times.len());
     tracks.truncate(KINDS);
     tracks
@@ -118,17 +115,10 @@ pub(crate) fn tracks(run: &Run) -> Vec<Track> {
 /// Time histories beside the picture: contact force (its label is short, for a low panel), then the
 /// probes.
 pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
-    let h = &run.history;
+    let (h, case) = (&run.history, &run.manifest.case);
     let series = |name: &str, label: String, k: usize| {
         let y = h.column(name)?.to_vec();
-        Some(Series {
-            label,
-            color: LINES[k % LINES.len()],
-            x: run.times(),
-            y,
-            dotted: false,
-            unlisted: false,
-        })
+        Some(Series { label, color: LINES[k % LINES.len()], x: run.times(), y, ..Series::default() })
     };
     // In the plane y, as in the figures; in space the component that grows largest.
     let peak = |name: &str| h.column(name).map(|x| x.iter().fold(0.0_f64, |most, x| most.max(x.abs())));
@@ -151,9 +141,7 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     }
     for column in &h.columns {
         let Some((probe, quantity)) = column.name.rsplit_once('.') else { continue };
-        let probes = run.manifest.case.get("probes").and_then(|p| p.as_array());
-        let known = |p: &serde_json::Value| p.get("name").and_then(|n| n.as_str()) == Some(probe);
-        let Some(k) = probes.and_then(|list| list.iter().position(known)) else { continue };
+        let Some(k) = names(case, "probes").iter().position(|name| *name == probe) else { continue };
         if is_stress(quantity) && noise::is_noise(run, &column.name) {
             continue;
         }
@@ -183,25 +171,18 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
 /// Rigid planes: a point, which in 1D is that at a recorded time, and the normal out of the rigid
 /// body.
 fn planes(run: &Run, flat: bool, time: f64) -> Vec<[Point; 2]> {
-    let contacts = run.manifest.case.get("contacts").and_then(|c| c.as_array()).into_iter().flatten();
-    let vector = |v: &serde_json::Value, key: &str| {
-        let list = v.get(key).and_then(|v| v.as_array()).cloned().unwrap_or_default();
-        [0, 1].map(|i| list.get(i).and_then(serde_json::Value::as_f64).unwrap_or(0.0))
-    };
-    let plane = |c: &serde_json::Value| {
-        c.pointer("/primary/plane").map(|p| [vector(p, "point"), vector(p, "normal")])
-    };
-    let at = |c: &serde_json::Value| {
-        let [p, n] = plane(c)?;
+    let at = |contact: &serde_json::Value| {
+        let plane = contact.pointer("/primary/plane")?;
+        let [p, n] = ["point", "normal"].map(|key| values::flat(plane.get(key)));
         if !flat {
             return Some([p, n]);
         }
-        let name = c.get("name").and_then(serde_json::Value::as_str).unwrap_or_default();
+        let name = text(contact, "name");
         let row = run.times().partition_point(|t| *t < time - 1e-12 * time.abs());
         let place = run.column(&format!("{name}.center_x")).and_then(|column| column.get(row)).copied();
         Some([[place.unwrap_or(p[0]), 0.0], [n[0], 0.0]])
     };
-    contacts.filter_map(at).collect()
+    list(&run.manifest.case, "contacts").iter().filter_map(at).collect()
 }
 
 /// Field files that are used as frames, of which each has so many numbers.
@@ -314,7 +295,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let own = color_bands(values.iter().copied()).0;
     let bands = if flat { &own } else { bands };
     let cut = [range.0 < bands.low, range.1 > bands.high];
-    let unit = first.array("stress").map_or("", |a| a.unit.as_str());
+    let unit = first.unit("stress");
     let label = if flat { "σ_{xx}" } else { "σ_{yy}" };
     let along = Quantity {
         name: if flat { "axial stress" } else { "vertical stress" },

@@ -35,8 +35,7 @@ pub(crate) fn figure(
         sets.iter().filter_map(line).collect()
     };
     let (u, stress) = (lines("displacement", 0), lines("stress", 0));
-    let unit =
-        |array: &str| sets.first().and_then(|s| s.1.array(array)).map(|a| a.unit.clone()).unwrap_or_default();
+    let unit = |array: &str| sets.first().map_or("", |(_, set)| set.unit(array));
     let mut panels = Vec::new();
     for (label, array, lines) in [("u_{x}", "displacement", &u), ("σ_{xx}", "stress", &stress)] {
         let series = lines.iter().enumerate().map(|(i, (t, x, y))| Series {
@@ -44,16 +43,16 @@ pub(crate) fn figure(
             color: sequence(i, sets.len()),
             x,
             y: y.clone(),
-            dotted: false,
             // Both panels share one legend.
             unlisted: !panels.is_empty(),
+            ..Series::default()
         });
         let series: Vec<Series> = series.collect();
         if !series.is_empty() {
-            panels.push(Panel { label: label.into(), unit: unit(array), height: 200.0, series });
+            panels.push(Panel { label: label.into(), unit: unit(array).into(), height: 200.0, series });
         }
     }
-    let x_label = with_unit("reference position X", &unit("displacement"));
+    let x_label = with_unit("reference position X", unit("displacement"));
     let chart =
         Chart { title: "Displacement and stress along the bars", x_label, shades: Vec::new(), panels };
     let caption = format!(

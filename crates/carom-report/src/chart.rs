@@ -13,6 +13,7 @@ const RIGHT: f64 = 14.0;
 const FONT: f64 = 13.0;
 
 /// A curve.
+#[derive(Default)]
 pub(crate) struct Series<'a> {
     pub(crate) label: String,
     pub(crate) color: &'static str,

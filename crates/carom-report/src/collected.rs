@@ -10,6 +10,7 @@ use carom_record::study::reference::FORCE;
 use crate::digits::five;
 use crate::labels::{is_stress, symbol, words};
 use crate::noise;
+use crate::ordered::distinct;
 use crate::plot::Curve;
 use crate::systems::Systems;
 
@@ -146,13 +147,8 @@ pub(crate) fn collect(
         let stress = name.rsplit_once('.').is_some_and(|(_, quantity)| is_stress(quantity));
         !(stress && noise::is_noise(run, name))
     });
-    let mut names: Vec<&str> = probes.chain(others).collect();
-    for overlay in &measured.0 {
-        if !names.contains(&overlay.column.as_str()) {
-            names.push(&overlay.column);
-        }
-    }
-    for name in names {
+    let of_data = measured.0.iter().map(|overlay| overlay.column.as_str());
+    for name in distinct(probes.chain(others).chain(of_data)) {
         let Some(values) = run.column(name) else { continue };
         put(name, values, run.history.unit(name));
     }

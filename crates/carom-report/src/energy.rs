@@ -59,7 +59,6 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         format!(" Omitted, as zero or below 10^{{-6}} of the largest in the pane: {}.", listed(&omitted))
     };
     let names: Vec<&str> = ENERGIES.iter().chain(&WORKS).map(|(name, _)| *name).collect();
-    let shown: Vec<&str> = shown.iter().map(String::as_str).collect();
     let caption = format!(
         "Energy balance.{words}{}{omitted}{} Data: `history.csv`, columns {}.",
         shaded(run),

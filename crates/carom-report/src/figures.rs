@@ -1,17 +1,19 @@
 //! The figures of a run, and the columns and files from which they are drawn.
 
-use carom_record::{Run, contact_axes};
+use carom_record::{Column, Run, contact_axes};
 
 use crate::animation::Animation;
-use crate::chart::{Panel, Series};
+use crate::chart::Series;
 use crate::energy::{ENERGIES, WORKS};
 use crate::figure::Figure;
 use crate::instants::instants;
 use crate::labels::{capitalised, is_stress, listed, symbol, words};
 use crate::measured::{Points, add_points, differences, sources};
 use crate::meshes::Pane;
-use crate::over_time::{by_size, chart, curves, names, panel, shaded, shades};
+use crate::ordered::grouped;
+use crate::over_time::{by_size, chart, curves, panel, shaded, shades};
 use crate::palette::LINES;
+use crate::values::{is_in_space, list, names};
 use crate::{animation, bodies, energy, meshes, noise, pressure, setup, space, stick_slip, stopped, unshown};
 
 /// Everything that can be drawn from a record.
@@ -56,15 +58,12 @@ pub(crate) fn all(run: &Run) -> Shown {
 fn setup(run: &Run) -> Option<Figure> {
     let fields = run.field(run.fields.first()?).ok()?;
     let svg = setup::figure(run, &fields)?;
+    let case = &run.manifest.case;
+    let has = |key: &str| !list(case, key).is_empty();
     let view = if bodies::fill_space(&fields) {
-        let contacts = run.manifest.case.get("contacts").and_then(|v| v.as_array());
         let is_rigid = |contact: &serde_json::Value| contact.pointer("/primary/side").is_none();
-        let rigid = contacts.is_some_and(|contacts| contacts.iter().any(is_rigid));
+        let rigid = list(case, "contacts").iter().any(is_rigid);
         let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
-        let has = |key: &str| {
-            let items = run.manifest.case.get(key).and_then(|v| v.as_array());
-            items.is_some_and(|items| !items.is_empty())
-        };
         let outlined = match (has("supports"), has("loads")) {
             (true, true) => " Coloured outlines: supported and loaded faces",
             (true, false) => " Coloured outlines: supported faces",
@@ -81,10 +80,7 @@ fn setup(run: &Run) -> Option<Figure> {
     } else {
         String::new()
     };
-    let there = |(key, words): &(&'static str, &'static str)| {
-        let items = run.manifest.case.get(*key).and_then(|v| v.as_array());
-        items.is_some_and(|items| !items.is_empty()).then_some(*words)
-    };
+    let there = |(key, words): &(&'static str, &'static str)| has(key).then_some(*words);
     // The sides of contacts are not coloured in space.
     let contacts = if bodies::fill_space(&fields) { "" } else { "contacts" };
     let parts =
@@ -99,53 +95,34 @@ fn setup(run: &Run) -> Option<Figure> {
         points: meshes::moved(&fields, "displacement"),
         values: Vec::new(),
     };
-    let length = fields.array("displacement").map_or("", |a| a.unit.as_str());
+    let length = fields.unit("displacement");
     let figure = Figure::new("setup", caption, svg).with_narrow(setup::narrow(run, &fields)?);
     Some(meshes::with_files(figure, &fields, &[pane], length, String::new()))
 }
 
 /// Time histories of all probes, one panel per quantity.
-fn probes(run: &Run) -> Option<Figure> {
-    let (probes, points) = (names(run, "probes"), Points::all(run));
-    let mut panels: Vec<(String, Panel)> = Vec::new();
-    let mut columns: Vec<&str> = Vec::new();
-    for column in &run.history.columns {
-        let Some((probe, quantity)) = column.name.rsplit_once('.').filter(|(p, _)| probes.contains(p)) else {
-            continue;
-        };
-        let Some(values) = run.column(&column.name) else { continue };
+fn probes<'a>(run: &'a Run) -> Option<Figure> {
+    let (probes, points) = (names(&run.manifest.case, "probes"), Points::all(run));
+    let of_probe = |column: &'a Column| {
+        let (probe, quantity) = column.name.rsplit_once('.')?;
+        let number = probes.iter().position(|name| *name == probe)?;
         // Stresses of a body that is not deformed.
-        if is_stress(quantity) && noise::is_noise(run, &column.name) {
-            continue;
-        }
-        columns.push(&column.name);
-        let at = panels.iter().position(|(q, _)| q == quantity).unwrap_or_else(|| {
-            panels.push((quantity.to_string(), panel(&symbol(quantity), &column.unit, 190.0, Vec::new())));
-            panels.len() - 1
-        });
-        let color = LINES[probes.iter().position(|p| *p == probe).unwrap_or(0) % LINES.len()];
-        let label = format!("{} at {probe}", symbol(quantity));
-        let series = &mut panels[at].1.series;
-        series.push(Series {
-            label,
-            color,
-            x: run.times(),
-            y: values.to_vec(),
-            dotted: false,
-            unlisted: false,
-        });
-        add_points(&points, &column.name, series);
-    }
+        let is_idle = is_stress(quantity) && noise::is_noise(run, &column.name);
+        (!is_idle).then_some((quantity, (number, column)))
+    };
+    let shown: Vec<(&str, (usize, &Column))> = run.history.columns.iter().filter_map(of_probe).collect();
+    let columns: Vec<&str> = shown.iter().map(|(_, (_, column))| column.name.as_str()).collect();
+    let quantities = grouped(shown);
     // No axis of the plane is horizontal or vertical in space.
-    let solid = run.manifest.case.get("dimension").and_then(serde_json::Value::as_u64) == Some(3);
+    let solid = is_in_space(&run.manifest.case);
     let words = |q: &str| {
         let words = words(q);
         let plain = words.strip_prefix("horizontal ").or(words.strip_prefix("vertical ")).filter(|_| solid);
         plain.map_or(words.clone(), str::to_owned)
     };
-    let mut list: Vec<String> = panels.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
+    let mut list: Vec<String> =
+        quantities.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
-    let list: Vec<&str> = list.iter().map(String::as_str).collect();
     let caption = format!(
         "Time histories at the probes: {}.{}{} Data: `history.csv`, {} `{}`.",
         listed(&list),
@@ -155,11 +132,17 @@ fn probes(run: &Run) -> Option<Figure> {
         columns.join("`, `")
     );
     let mut drawn = Vec::new();
-    for (quantity, panel) in panels {
-        drawn.push(panel);
-        let of = |column: &&&str| column.rsplit_once('.').is_some_and(|(_, q)| q == quantity);
-        let one = |column: &&str| differences(run, &points, column, &symbol(&quantity));
-        drawn.extend(columns.iter().filter(of).filter_map(one));
+    for (quantity, members) in &quantities {
+        let (symbol, mut series) = (symbol(quantity), Vec::new());
+        for (number, column) in members {
+            let (label, color) = (format!("{symbol} at {}", probes[*number]), LINES[number % LINES.len()]);
+            let y = run.column(&column.name).unwrap_or_default().to_vec();
+            series.push(Series { label, color, x: run.times(), y, ..Series::default() });
+            add_points(&points, &column.name, &mut series);
+        }
+        drawn.push(panel(&symbol, &members[0].1.unit, 190.0, series));
+        let names = members.iter().map(|(_, column)| column.name.as_str());
+        drawn.extend(names.filter_map(|name| differences(run, &points, name, &symbol)));
     }
     chart(run, ("probes", "Time histories at the probes"), caption, drawn)
 }

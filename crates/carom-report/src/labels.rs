@@ -1,5 +1,7 @@
 //! Labels of columns and numbers in figures and tables.
 
+use std::borrow::Borrow;
+
 use carom_formula::instant;
 use carom_record::Run;
 
@@ -121,11 +123,11 @@ pub(crate) fn capitalised(text: &str) -> String {
 }
 
 /// `a`, `a and b`, `a, b and c`.
-pub(crate) fn listed(items: &[&str]) -> String {
+pub(crate) fn listed(items: &[impl Borrow<str>]) -> String {
     match items {
         [] => String::new(),
-        [one] => (*one).to_owned(),
-        [front @ .., last] => format!("{} and {last}", front.join(", ")),
+        [one] => one.borrow().to_owned(),
+        [front @ .., last] => format!("{} and {}", front.join(", "), last.borrow()),
     }
 }
 

@@ -38,6 +38,7 @@ mod meshes;
 mod multiples;
 mod noise;
 mod obstacles;
+mod ordered;
 mod over_time;
 mod overlap;
 mod page;
@@ -72,6 +73,7 @@ mod timing;
 mod trace;
 mod trend;
 mod unshown;
+mod values;
 mod verdict;
 mod verify_page;
 

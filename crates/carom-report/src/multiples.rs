@@ -85,7 +85,7 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
     let reference = study.reference.as_ref().and_then(|r| reference_of(r, &column.name));
     let (line, band) = reference.map_or((None, None), |(line, band)| (Some(line), band));
     let (label, what) = named(&column.name);
-    let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
+    let chosen = study.recommended();
     let curve = |(name, arms): (&str, Vec<usize>)| {
         let finest = arms.last()?;
         let (_, x, y) = column.curves.iter().find(|(arm, ..)| arm == finest)?;
@@ -137,15 +137,12 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
     let panes: Vec<Pane> = found.into_iter().enumerate().map(pane).collect();
     let drawn_once = curves::drawn_once(&names);
     let mut plot = Plot {
-        group: String::new(),
         name: multiples_name(&column.name),
-        caption: String::new(),
         x_label: with_unit("time t", time),
-        log: [false, false],
         across: 3,
         same: true,
-        direct: false,
         panes,
+        ..Plot::default()
     };
     let shown = plot.panes.first().map_or_else(Vec::new, |pane| plot.shown_band(pane));
     let part = match () {

@@ -5,6 +5,7 @@ use carom_record::Run;
 use serde_json::Value;
 
 use crate::pen::Point;
+use crate::values::{list, place, text};
 
 /// Points with unit normals out of the rigid body.
 pub(crate) type Walk = Vec<(Point, Point)>;
@@ -35,13 +36,7 @@ pub(crate) fn all(run: &Run, frame: [f64; 4]) -> Vec<Obstacle> {
 
 /// The obstacles of a case, likewise.
 pub(crate) fn of_case(case: &Value, frame: [f64; 4]) -> Vec<Obstacle> {
-    let contacts = case.get("contacts").and_then(Value::as_array);
-    contacts.into_iter().flatten().filter_map(|contact| one(contact, frame)).collect()
-}
-
-fn point(value: Option<&Value>) -> Option<Point> {
-    let list = value?.as_array()?;
-    Some([list.first()?.as_f64()?, list.get(1)?.as_f64()?])
+    list(case, "contacts").iter().filter_map(|contact| one(contact, frame)).collect()
 }
 
 fn one(contact: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Option<Obstacle> {
@@ -49,7 +44,7 @@ fn one(contact: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Option<Obstacle> {
     let far = 4.0 * (x1 - x0).hypot(y1 - y0);
     let plane = primary.get("plane");
     let (walk, first) = if let Some(plane) = plane {
-        let (p, n) = (point(plane.get("point"))?, point(plane.get("normal"))?);
+        let (p, n) = (place(plane.get("point"))?, place::<2>(plane.get("normal"))?);
         let n = n.map(|x| x / n[0].hypot(n[1]));
         // Around the point nearest to the bodies.
         let middle = [0.5 * (x0 + x1), 0.5 * (y0 + y1)];
@@ -64,23 +59,21 @@ fn one(contact: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Option<Obstacle> {
             p,
         )
     } else if let Some(circle) = primary.get("circle") {
-        let (c, r) = (point(circle.get("center"))?, circle.get("radius")?.as_f64()?);
+        let (c, r) = (place(circle.get("center"))?, circle.get("radius")?.as_f64()?);
         let side = if circle.get("inside").and_then(Value::as_bool) == Some(true) { -1.0 } else { 1.0 };
         (arc(c, r, [0.0, side * std::f64::consts::TAU], side, ROUND), c)
     } else {
         let line = primary.get("polyline")?;
-        let points: Vec<Point> =
-            line.get("points")?.as_array()?.iter().filter_map(|p| point(Some(p))).collect();
+        let points: Vec<Point> = list(line, "points").iter().filter_map(|p| place(Some(p))).collect();
         (polyline(&points, line.get("radius").and_then(Value::as_f64).unwrap_or(0.0), far), *points.first()?)
     };
-    let name = contact.get("name").and_then(Value::as_str).unwrap_or_default();
     let rotate = contact.pointer("/motion/prescribed/rotate").filter(|v| !v.is_null());
     let angle = rotate.and_then(|rotate| match rotate.get(0)? {
         Value::String(text) => Formula::parse(text, &["t"]).ok(),
         number => Some(Formula::constant(number.as_f64()?)),
     });
-    let about = rotate.and_then(|rotate| point(rotate.get(1))).unwrap_or(first);
-    let center = ["x", "y"].map(|axis| format!("{name}.center_{axis}"));
+    let about = rotate.and_then(|rotate| place(rotate.get(1))).unwrap_or(first);
+    let center = ["x", "y"].map(|axis| format!("{}.center_{axis}", text(contact, "name")));
     Some(Obstacle { walk, is_plane: plane.is_some(), center, about, angle })
 }
 

@@ -10,6 +10,7 @@ use crate::measured::{Points, add_points};
 use crate::noise::{has_contact, largest};
 use crate::palette::LINES;
 use crate::redraw::of_chart;
+use crate::text::said_if;
 
 /// Share of the recorded time from which shading says nothing.
 const THROUGHOUT: f64 = 0.97;
@@ -26,12 +27,10 @@ pub(crate) fn shades(run: &Run) -> Vec<(f64, f64)> {
 
 /// What the shading means.
 pub(crate) fn shaded(run: &Run) -> &'static str {
-    if !shades(run).is_empty() {
-        " Shaded: contact."
-    } else if has_contact(run) {
-        " In contact throughout."
+    if shades(run).is_empty() {
+        said_if(has_contact(run), " In contact throughout.")
     } else {
-        ""
+        " Shaded: contact."
     }
 }
 
@@ -51,8 +50,7 @@ pub(crate) fn curves<'a>(
             color: LINES[i % LINES.len()],
             x: run.times(),
             y: y.to_vec(),
-            dotted: false,
-            unlisted: false,
+            ..Series::default()
         };
         shown.then(|| series(y))
     });
@@ -100,10 +98,4 @@ pub(crate) fn chart<'a>(
         let figure = Figure::new(name, caption, chart.draw(&options)).with_narrow(narrow);
         figure.with(plot.csv(), plot.script())
     })
-}
-
-/// Names of the items of a list of the resolved case.
-pub(crate) fn names<'a>(run: &'a Run, list: &str) -> Vec<&'a str> {
-    let items = run.manifest.case.get(list).and_then(|v| v.as_array());
-    items.into_iter().flatten().filter_map(|item| item.get("name")?.as_str()).collect()
 }

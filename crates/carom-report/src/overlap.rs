@@ -97,7 +97,7 @@ pub fn overlap(case: &Value, fields: &FieldSet, nodes: &[(usize, f64)]) -> Optio
         );
         write_text(&mut out, along + 20.0, y + 10.0, "", &block.body);
     }
-    let unit = fields.array("displacement").map_or("", |u| &u.unit);
+    let unit = fields.unit("displacement");
     let label = format!(
         "{} nodes inside another body or an obstacle; deepest: node {deepest}, {} {unit}",
         nodes.len(),

@@ -12,9 +12,12 @@ use crate::bands::{Bands, positive_bands};
 use crate::chart::{ground, open_chart, time_axis, write_text};
 use crate::figure::{Figure, NARROW};
 use crate::labels::{number, scaled, with_unit};
+use crate::ordered::grouped;
 use crate::pen::{Pen, open_grid};
 use crate::redraw::filled;
 use crate::sheet::{Legend, arrowheads, color_bar};
+use crate::text::said_if;
+use crate::values::list;
 
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 74.0;
@@ -32,44 +35,40 @@ struct Side<'a> {
     rows: Vec<(&'a ContactRow<'static>, Place)>,
 }
 
+impl Side<'_> {
+    /// Arc lengths of its ends.
+    fn extent(&self) -> (f64, f64) {
+        range(self.rows.iter().flat_map(|(_, place)| &place.part))
+    }
+
+    /// The bands of its pressures, and whether some lie outside.
+    fn bands(&self) -> (Bands, [bool; 2]) {
+        positive_bands(self.rows.iter().map(|(row, _)| row.pressure))
+    }
+}
+
 /// The sides of all contacts of the plane that have had pressure.
-fn sides(run: &Run) -> Vec<Side<'_>> {
+fn sides<'a>(run: &'a Run) -> Vec<Side<'a>> {
     // Without field files there are neither positions nor units.
     if contact_axes(&run.manifest.case) != 2 || run.fields.is_empty() {
         return Vec::new();
     }
-    let mut names: Vec<&str> = Vec::new();
-    for row in &run.contact {
-        if !names.contains(&row.contact.as_ref()) {
-            names.push(row.contact.as_ref());
-        }
-    }
-    let side = |name| {
-        let rows: Vec<&ContactRow> = run.contact.iter().filter(|row| row.contact == name).collect();
+    let side = |(name, rows): (&'a str, Vec<&'a ContactRow<'static>>)| {
         let (places, _) = places(run, name, &rows);
-        let with_place = |row: &'_ ContactRow<'static>| {
-            places.get(&row.node).copied().filter(|place| place.is_secondary && row.pressure.is_finite())
+        let with_place = |row: &'a ContactRow<'static>| {
+            let place = *places.get(&row.node)?;
+            (place.is_secondary && row.pressure.is_finite()).then_some((row, place))
         };
-        let mine = run.contact.iter().filter(|row| row.contact == name);
-        Side { name, rows: mine.filter_map(|row| Some((row, with_place(row)?))).collect() }
+        Side { name, rows: rows.into_iter().filter_map(with_place).collect() }
     };
+    let by_contact = grouped(run.contact.iter().map(|row| (row.contact.as_ref(), row)));
     // A profile needs a side, not a corner or the end of a bar.
-    names
-        .into_iter()
-        .map(side)
-        .filter(|side| {
-            range(side.rows.iter().flat_map(|r| &r.1.part)).1
-                > range(side.rows.iter().flat_map(|r| &r.1.part)).0
-        })
-        .collect()
+    by_contact.into_iter().map(side).filter(|side| side.extent().1 > side.extent().0).collect()
 }
 
 fn units(run: &Run) -> (String, String) {
-    let first = run.fields.first().and_then(|entry| run.field(entry).ok());
-    let unit = |name: &str| {
-        first.as_ref().and_then(|set| set.array(name)).map_or_else(String::new, |array| array.unit.clone())
-    };
-    (unit("displacement"), unit("contact_pressure"))
+    let first = run.fields.first().and_then(|entry| run.field(entry).ok()).unwrap_or_default();
+    (first.unit("displacement").to_owned(), first.unit("contact_pressure").to_owned())
 }
 
 /// The time from the first to the last pressure with a margin, within the run.
@@ -94,15 +93,14 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         let _ =
             writeln!(table, "{},{},{:?},{:?},{:?}", side.name, row.node, place.at, row.time, row.pressure);
     }
-    let ((out, cuts, stride), (narrow, ..)) = (draw(run, &sides, WIDTH), draw(run, &sides, NARROW));
+    let [(out, cuts, stride), (narrow, ..)] = [WIDTH, NARROW].map(|width| draw(run, &sides, width));
     let thinned =
         if stride > 1 { format!(" {} recorded step is drawn.", every(stride)) } else { String::new() };
-    let contacts = run.manifest.case.get("contacts").and_then(Value::as_array).into_iter().flatten();
-    let unmatched = if contacts.into_iter().any(|contact| contact.pointer("/primary/side").is_some()) {
-        " Where the nodes of the two sides do not match, nodal pressures have errors of 10 % or more."
-    } else {
-        ""
-    };
+    let mut contacts = list(&run.manifest.case, "contacts").iter();
+    let unmatched = said_if(
+        contacts.any(|contact| contact.pointer("/primary/side").is_some()),
+        " Where the nodes of the two sides do not match, nodal pressures have errors of 10 % or more.",
+    );
     let classes = classes(&sides, &stress);
     let bars = cuts.into_iter().zip(sides.iter().map(|side| format!("“{}”", side.name)));
     let caption = format!(
@@ -136,9 +134,9 @@ fn draw(run: &Run, sides: &[Side], width: f64) -> (String, Vec<[bool; 2]>, usize
     let mut cuts = Vec::new();
     for (k, side) in sides.iter().enumerate() {
         let top = 26.0 + k as f64 * step;
-        let (bands, cut) = positive_bands(side.rows.iter().map(|(row, _)| row.pressure));
+        let (bands, cut) = side.bands();
         cuts.push(cut);
-        let y_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 6.0, true);
+        let y_axis = Axis::new(side.extent(), 6.0, true);
         let to_y = |s: f64| top + HEIGHT * (1.0 - y_axis.position(s));
         write_text(&mut out, LEFT, top - 8.0, "font-size=\"12\" font-weight=\"600\"", side.name);
         ground(&mut out, [LEFT, top, plot, HEIGHT]);
@@ -164,7 +162,7 @@ fn draw(run: &Run, sides: &[Side], width: f64) -> (String, Vec<[bool; 2]>, usize
 /// The range of pressure of one colour, which a map of nearly one pressure makes look large.
 fn classes(sides: &[Side], stress: &str) -> String {
     let [side] = sides else { return String::new() };
-    let bands = positive_bands(side.rows.iter().map(|(row, _)| row.pressure)).0;
+    let bands = side.bands().0;
     let step = (bands.high - bands.low) / bands.count as f64;
     // Steps are round, and have the unit of the colour bar.
     let exponent = Axis::new((bands.low, bands.high), 6.0, true).exponent;
@@ -247,10 +245,9 @@ pub(crate) fn profiles(run: &Run, frames: &[&FieldEntry]) -> Option<(String, Vec
     for side in &sides {
         let [width, height] = SMALL;
         let (wide, high) = (width - LEFT - 14.0, height - 66.0);
-        let x_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 6.0, true);
+        let x_axis = Axis::new(side.extent(), 6.0, true);
         // As on the map: a few peaks are cut off.
-        let most = positive_bands(side.rows.iter().map(|(row, _)| row.pressure)).0.high;
-        let y_axis = Axis::new((0.0, most), 2.0, false);
+        let y_axis = Axis::new((0.0, side.bands().0.high), 2.0, false);
         let mut out = open_chart("Contact pressure at the instant of the animation", width, height);
         let top = 24.0;
         for (value, _) in &y_axis.ticks {

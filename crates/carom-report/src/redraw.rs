@@ -202,15 +202,12 @@ pub(crate) fn of_chart(name: &str, chart: &Chart) -> Plot {
         ..Pane::default()
     };
     Plot {
-        group: String::new(),
         name: name.to_owned(),
-        caption: String::new(),
         x_label: chart.x_label.clone(),
-        log: [false, false],
         across: 1,
-        same: false,
         direct: true,
         panes: chart.panels.iter().map(pane).collect(),
+        ..Plot::default()
     }
 }
 

@@ -9,7 +9,6 @@ mod forces;
 mod key;
 mod planes;
 mod solid;
-mod values;
 mod words;
 
 use std::collections::HashMap;
@@ -25,9 +24,9 @@ use crate::figure::NARROW;
 use crate::obstacles;
 use crate::pen::{Pen, Point, open_grid};
 use crate::symbols::{arrow, direction, guides, motion, plus, probe_mark, rollers, wall};
+use crate::values::{flat, list, text, unit, vector};
 use drawing::{BAR, KEY, PRIMARY, ROOM, SECONDARY, Setup, Walk};
 pub(crate) use forces::typeset as formula_in_words;
-use values::{list, text, vector};
 pub(crate) use words::{in_words, model_in_words};
 
 /// The figure, from the initial fields, with the key beside the drawing; nothing without cells.
@@ -130,7 +129,7 @@ fn at_least(walk: Walk, length: f64) -> Walk {
 impl Setup<'_> {
     /// Coordinate axes at the edges of the picture.
     fn axes(&self, out: &mut String, [left, right, top, bottom]: [f64; 4]) {
-        let length = self.case().pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
+        let length = unit(self.case(), "length");
         let axis = |low: f64, high: f64, pixels: f64| Axis::new((low, high), (pixels / 80.0).max(2.0), true);
         let x =
             axis((left - self.origin[0]) / self.scale, (right - self.origin[0]) / self.scale, right - left);
@@ -273,11 +272,8 @@ impl Setup<'_> {
             let size = self.size(text(body, "name"));
             let length = (0.45 * size).clamp(24.0, 48.0);
             for (key, symbol, side) in [("gravity", "g", 1.0), ("velocity", "v_{0}", -1.0)] {
-                let v = vector(body.get(key));
-                let d = direction(
-                    [0.0; 2],
-                    [v.first().copied().unwrap_or(0.0), -v.get(1).copied().unwrap_or(0.0)],
-                );
+                let [right, up] = flat(body.get(key));
+                let d = direction([0.0; 2], [right, -up]);
                 if d == [0.0; 2] {
                     continue;
                 }
@@ -324,9 +320,7 @@ impl Setup<'_> {
 
     fn probes(&self, out: &mut String) {
         for probe in list(self.case(), "probes") {
-            let at = vector(probe.get("at"));
-            let p =
-                self.to(self.moved([at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0)]));
+            let p = self.to(self.moved(flat(probe.get("at"))));
             out.push_str(&probe_mark(p));
             let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
                         paint-order=\"stroke\" stroke-linejoin=\"round\"";

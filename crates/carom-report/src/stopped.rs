@@ -10,6 +10,7 @@ use crate::figure::Figure;
 use crate::labels::{capitalised, number};
 use crate::scientific::{powers, significant};
 use crate::text::{Label, Prose, typeset};
+use crate::values;
 
 const ITERATIONS: &str = "Newton's iterations of the last attempt, each before its correction. Residual: as \
     a fraction of the sum of the forces.";
@@ -31,7 +32,7 @@ pub(crate) fn section(run: &Run, picture: Option<Markup>) -> Markup {
             "The last accepted state is at t = " (number(stop.last)) "\u{a0}" (Label(unit)) "; the last attempt began at t = "
             (number(stop.time)) "\u{a0}" (Label(unit)) ". t and Δt are in " (Label(unit)) "; L is the length of the model."
         }
-        @if let Some(place) = &stop.place { (where_table(place, length_unit(run))) }
+        @if let Some(place) = &stop.place { (where_table(place, values::unit(&run.manifest.case, "length"))) }
         @if let Some(picture) = picture { (picture) }
         (advice(stop, unit))
         (iterations(&stop.iterations))
@@ -41,11 +42,6 @@ pub(crate) fn section(run: &Run, picture: Option<Markup>) -> Markup {
             " " (Label(unit)) " with the rejected displacements)."
         }
     }
-}
-
-/// The unit of length of the case.
-fn length_unit(run: &Run) -> &str {
-    run.manifest.case.pointer("/units/length").and_then(|unit| unit.as_str()).unwrap_or_default()
 }
 
 fn where_table(place: &StopPlace, unit: &str) -> Markup {

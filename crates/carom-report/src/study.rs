@@ -3,12 +3,13 @@
 
 use std::path::Path;
 
-use carom_record::study::{Row, Study, StudyManifest};
+use carom_record::study::{Arm, Row, Study, StudyManifest};
 use carom_record::{Status, metrics};
 
 use crate::collected::{Column, Measured, Origin, collect, common_time, named};
 use crate::curves::Keys;
 use crate::labels::{capitalised, file_name, listed, with_unit};
+use crate::ordered::grouped;
 use crate::plot::{Curve, Pane, Plot};
 use crate::publish::{ReportError, ReportSummary, publish, write};
 use crate::systems::Systems;
@@ -79,8 +80,8 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
     let (label, what) = named(&column.name);
     let groups = groups(study);
     let few = if study.manifest.goal.is_some() { FEW_MORE } else { FEW };
-    let keys = Keys::of(study.rows.iter().map(|row| row.name.as_str())).in_time(common_time(study));
-    let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
+    let keys = Keys::of(study.rows.iter().map(|row| row.name.as_str()), common_time(study));
+    let chosen = study.recommended();
     let figure = |group: usize| {
         let members = &groups[group];
         let mine = column.curves.iter().filter(|(arm, ..)| members.contains(arm));
@@ -152,13 +153,12 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         let mut plot = Plot {
             group: if groups.len() > few { capitalised(&what) } else { String::new() },
             name,
-            caption: String::new(),
             x_label: with_unit("time t", time),
-            log: [false, false],
             across,
             same: rough,
             direct: !rough,
             panes,
+            ..Plot::default()
         };
         let axes = match () {
             () if is_all_aside => String::new(),
@@ -184,18 +184,11 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
 /// full; those of the reference are by themselves.
 fn groups(study: &Study) -> Vec<Vec<usize>> {
     let arms = &study.manifest.arms;
-    let mut kinds: Vec<Vec<usize>> = Vec::new();
-    for i in 0..arms.len() {
-        let kind = |arm: usize| (&arms[arm].case_path, arms[arm].role.fine, arms[arm].role.level);
-        match kinds.iter_mut().find(|known| kind(known[0]) == kind(i)) {
-            Some(known) => known.push(i),
-            None => kinds.push(vec![i]),
-        }
-    }
-    let few = |same: Vec<usize>| {
+    let kind = |(i, arm): (usize, &Arm)| ((arm.case_path.clone(), arm.role.fine, arm.role.level), i);
+    let few = |(_, same): (_, Vec<usize>)| {
         same.chunks(laboratory::each(same.len())).map(<[usize]>::to_vec).collect::<Vec<_>>()
     };
-    kinds.into_iter().flat_map(few).collect()
+    grouped(arms.iter().enumerate().map(kind)).into_iter().flat_map(few).collect()
 }
 
 /// What is said of grey curves, for arms that failed or created energy.
@@ -222,7 +215,7 @@ fn numbers(members: &[usize]) -> String {
         [first, .., last] if every == 1 => format!(", arms {} to {}", first + 1, last + 1),
         _ => {
             let all: Vec<String> = members.iter().map(|arm| (arm + 1).to_string()).collect();
-            format!(", arms {}", listed(&all.iter().map(String::as_str).collect::<Vec<_>>()))
+            format!(", arms {}", listed(&all))
         }
     }
 }

@@ -7,11 +7,11 @@ use carom_formula::Formula;
 use serde_json::Value;
 
 use super::drawing::Setup;
-use super::values::{list, text, vector};
 use crate::labels::is_static;
 use crate::pen::Point;
 use crate::scientific::given;
 use crate::symbols::{along, arrow, direction, plus};
+use crate::values::{list, text, unit, vector};
 
 pub(super) const COLOR: &str = "#7a2f8f";
 /// Length of an arrow at a side, and its gap to the side.
@@ -215,17 +215,16 @@ impl Setup<'_> {
         if is_static(self.run) {
             return ", with the load parameter t".to_owned();
         }
-        let units = self.case().get("units").unwrap_or(&Value::Null);
-        format!(", with t in {}", text(units, "time"))
+        format!(", with t in {}", unit(self.case(), "time"))
     }
 
     /// The unit of the values of a load.
     fn load_unit(&self, kind: &str) -> String {
-        let unit = |key: &str| text(self.case().get("units").unwrap_or(&Value::Null), key);
+        let unit = |key: &str| unit(self.case(), key);
         match (kind, unit("length"), unit("time"), unit("mass")) {
             ("body-force", "m", "s", "kg") => "N/m^3".to_owned(),
             ("body-force", length, time, mass) => format!("{mass}/({length}^2 {time}^2)"),
-            _ => self.fields.array("stress").map_or_else(String::new, |array| array.unit.clone()),
+            _ => self.fields.unit("stress").to_owned(),
         }
     }
 
@@ -238,9 +237,8 @@ impl Setup<'_> {
         let fixed = (!fixed.is_empty()).then(|| fixed.join(" = ") + " = 0");
         let moved = list(support, "move").iter().filter_map(|m| {
             let [axis_number, formula] = m.as_array()?.as_slice() else { return None };
-            let units = self.case().get("units").unwrap_or(&Value::Null);
-            let words =
-                format!("{} = {} {}", axis(axis_number.as_f64()?), written(formula), text(units, "length"));
+            let length = unit(self.case(), "length");
+            let words = format!("{} = {} {length}", axis(axis_number.as_f64()?), written(formula));
             let is_formula = formula.as_str().is_some_and(depends_on_time);
             Some(if is_formula { words + &self.with_time() } else { words })
         });

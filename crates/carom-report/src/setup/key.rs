@@ -7,13 +7,13 @@ use serde_json::Value;
 
 use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, written};
-use super::values::{list, text as word, tuple, vector};
 use crate::bodies::fill_space;
 use crate::chart::write_text;
 use crate::labels::given_amount;
 use crate::scientific::given;
 use crate::symbols::{arrow, guides, motion, plus, probe_mark, rollers, wall};
 use crate::text;
+use crate::values::{is_in_space, list, text as word, tuple, unit, vector};
 
 /// The smallest size of letters in pixels.
 const SMALLEST: f64 = 11.0;
@@ -22,11 +22,8 @@ impl Setup<'_> {
     /// Draws the key and returns its height.
     pub(super) fn key(&self, out: &mut String, left: f64) -> f64 {
         let mut y = 8.0;
-        let unit = |key: &str| {
-            self.case().pointer(&format!("/units/{key}")).and_then(Value::as_str).unwrap_or_default()
-        };
-        let (length, time, mass) = (unit("length"), unit("time"), unit("mass"));
-        let stress = self.fields.array("stress").map_or("", |a| a.unit.as_str());
+        let [length, time, mass] = ["length", "time", "mass"].map(|of| unit(self.case(), of));
+        let stress = self.fields.unit("stress");
         let mut line = |swatch: &str, content: &str, bold: bool| {
             y += if bold { 7.0 } else { 0.0 } + 18.0;
             if !swatch.is_empty() {
@@ -133,7 +130,7 @@ impl Setup<'_> {
             let shape = ["circle", "cylinder", "polyline", "surface"]
                 .into_iter()
                 .find(|shape| contact.pointer(&format!("/primary/{shape}")).is_some());
-            let in_space = self.case().get("dimension").and_then(Value::as_u64) == Some(3);
+            let in_space = is_in_space(self.case());
             let shape = shape.map(|shape| if in_space && shape == "circle" { "sphere" } else { shape });
             let rigid = format!("rigid {}", shape.unwrap_or("plane"));
             let primary = side.unwrap_or(&rigid);

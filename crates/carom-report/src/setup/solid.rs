@@ -8,7 +8,6 @@ use carom_record::{FieldSet, Run};
 
 use super::drawing::{BODIES, KEY, ROOM, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, Load, load};
-use super::values::{list, text, vector};
 use crate::again::{again, once};
 use crate::axis::round_step;
 use crate::chart::{open, write_text};
@@ -19,6 +18,7 @@ use crate::space::{
     underlay, wires,
 };
 use crate::symbols::{arrow, direction, plus, probe_mark};
+use crate::values::{list, place, text, unit, vector};
 
 /// Length in pixels of an arrow parallel to the page, and about how many are drawn on a side.
 const LENGTH: f64 = 30.0;
@@ -93,7 +93,7 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
         bottom + 46.0,
         bar * scale
     );
-    let length = solid.setup.case().pointer("/units/length").and_then(|l| l.as_str()).unwrap_or_default();
+    let length = unit(solid.setup.case(), "length");
     write_text(&mut out, 118.0 + bar * scale, bottom + 53.0, "", format!("{bar} {length}").trim());
     out.push_str(&key);
     out.push_str("</svg>\n");
@@ -279,7 +279,7 @@ impl Solid<'_> {
 
     fn probes(&self, out: &mut String) {
         for probe in list(self.setup.case(), "probes") {
-            let Ok(at) = Place::try_from(vector(probe.get("at"))) else { continue };
+            let Some(at) = place::<3>(probe.get("at")) else { continue };
             let distance = |p: &Place| (0..3).map(|d| (p[d] - at[d]).powi(2)).sum::<f64>();
             let near = (self.setup.fields.points.iter().zip(&self.places))
                 .min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));

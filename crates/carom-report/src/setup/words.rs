@@ -5,13 +5,12 @@ use std::fmt::Write as _;
 use serde_json::Value;
 
 use super::key::{law_name, plane_in_words};
-use super::values::{list, text, tuple, vector};
 use crate::scientific::given;
+use crate::values::{list, text, tuple, unit, vector};
 
 /// What a case consists of, as labels: bodies with gravity and initial velocity, materials, probes.
 pub(crate) fn in_words(case: &Value) -> Vec<(&'static str, Vec<String>)> {
-    let unit = |key: &str| text(case.get("units").unwrap_or(&Value::Null), key);
-    let (length, time, mass) = (unit("length"), unit("time"), unit("mass"));
+    let [length, time, mass] = ["length", "time", "mass"].map(|of| unit(case, of));
     let stress = match (mass, length, time) {
         ("kg", "m", "s") => "Pa".to_owned(),
         ("g", "mm", "ms") => "MPa".to_owned(),
@@ -58,7 +57,7 @@ pub(crate) fn in_words(case: &Value) -> Vec<(&'static str, Vec<String>)> {
 
 /// Elements and idealisation, which the arms of a study may change.
 pub(crate) fn model_in_words(case: &Value) -> Vec<(&'static str, Vec<String>)> {
-    let length = text(case.get("units").unwrap_or(&Value::Null), "length");
+    let length = unit(case, "length");
     let element = |body: &Value| format!("{}: {}", text(body, "name"), text(body, "element"));
     let elements: Vec<String> = list(case, "bodies").iter().map(element).collect();
     let plane: Vec<String> = plane_in_words(case, length).into_iter().collect();

@@ -77,7 +77,7 @@ pub(crate) fn instants(
     if !(wide[1] > wide[0] && wide[3] > wide[2]) {
         return None;
     }
-    let unit = sets[0].1.array("stress")?.unit.clone();
+    let unit = sets[0].1.unit("stress");
     let seen = |k: usize, to: &dyn Fn(Point) -> Point, scale: f64| {
         let (_, places, mises) = &list[k];
         pieces(&skin, places, &|_, node| mises[node], &view, to, scale)
@@ -93,12 +93,12 @@ pub(crate) fn instants(
     let finish = |mut sheet: Sheet| {
         let triad = [36.0, sheet.pictures + 36.0];
         view.triad(&mut sheet.out, triad, 28.0);
-        sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit: &unit }, length)
+        sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit }, length)
     };
     let headings = list.iter().map(|(heading, ..)| heading.as_str());
     let pictures =
         Sheet::pair("Deformed bodies with von Mises stress", headings, wide, FOOT, picture).map(finish);
-    let caption = caption(&bands, cut, &unit, words, !rigid.is_empty());
+    let caption = caption(&bands, cut, unit, words, !rigid.is_empty());
     Some((pictures, caption, bands))
 }
 

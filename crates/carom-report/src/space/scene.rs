@@ -249,12 +249,11 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let (chosen, packed) = scene.fitted();
     let peak = |k: &usize| scene.frames[*k].mises.iter().copied().fold(0.0, f64::max);
     let start = chosen.iter().max_by(|a, b| peak(a).total_cmp(&peak(b)).then(b.cmp(a))).copied()?;
-    let unit = |array: &str| first.array(array).map_or(String::new(), |a| a.unit.clone());
-    let (stress, length) = (unit("stress"), unit("displacement"));
+    let [stress, length] = ["stress", "displacement"].map(|array| first.unit(array));
     let kinds = [
-        ("von Mises stress", "σ_{vM}", &stress),
-        ("pressure, as mean stress", "σ_{m} = −p", &stress),
-        ("displacement", "|u|", &length),
+        ("von Mises stress", "σ_{vM}", stress),
+        ("pressure, as mean stress", "σ_{m} = −p", stress),
+        ("displacement", "|u|", length),
     ];
     let quantities: Vec<Quantity> = scene
         .bands

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::skin::Place;
 use super::view::{cross, dot, minus};
+use crate::values::{list, place, text};
 
 /// Points on a line, and lines in each of both directions.
 const POINTS: usize = 96;
@@ -25,18 +26,11 @@ pub(crate) struct Wire {
 
 /// The obstacles of a run whose bodies fill a box.
 pub(crate) fn wires(run: &Run, [low, high]: [Place; 2]) -> Vec<Wire> {
-    let contacts = run.manifest.case.get("contacts").and_then(Value::as_array);
     let of = |contact: &Value| {
-        let name = contact.get("name").and_then(Value::as_str).unwrap_or_default();
-        one(contact, run.manifest.surfaces.get(name).map_or(&[], Vec::as_slice), [low, high])
+        let surface = run.manifest.surfaces.get(text(contact, "name"));
+        one(contact, surface.map_or(&[], Vec::as_slice), [low, high])
     };
-    contacts.into_iter().flatten().filter_map(of).collect()
-}
-
-fn vector(value: Option<&Value>) -> Option<Place> {
-    let list = value?.as_array()?;
-    let number = |i: usize| list.get(i)?.as_f64();
-    Some([number(0)?, number(1)?, number(2)?])
+    list(&run.manifest.case, "contacts").iter().filter_map(of).collect()
 }
 
 fn plus(a: Place, factor: f64, b: Place) -> Place {
@@ -64,7 +58,7 @@ fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Opti
     let share = |k: usize, n: usize| k as f64 / n as f64;
     let angle = |k: usize, n: usize| (std::f64::consts::TAU * share(k, n)).sin_cos();
     let (lines, origin): (Vec<Vec<Place>>, Place) = if let Some(plane) = primary.get("plane") {
-        let (point, normal) = (vector(plane.get("point"))?, unit(vector(plane.get("normal"))?));
+        let (point, normal) = (place(plane.get("point"))?, unit(place(plane.get("normal"))?));
         let foot = plus(middle, -dot(minus(middle, point), normal), normal);
         let line = |[along, beside]: [Place; 2], k: usize| {
             let start = plus(foot, reach * (2.0 * share(k, LINES) - 1.0), beside);
@@ -73,7 +67,7 @@ fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Opti
         let [a, b] = across(normal);
         ((0..=LINES).flat_map(|k| [line([a, b], k), line([b, a], k)]).collect(), point)
     } else if let Some(cylinder) = primary.get("cylinder") {
-        let (point, axis) = (vector(cylinder.get("point"))?, unit(vector(cylinder.get("axis"))?));
+        let (point, axis) = (place(cylinder.get("point"))?, unit(place(cylinder.get("axis"))?));
         let radius = cylinder.get("radius")?.as_f64()?;
         let foot = plus(point, dot(minus(middle, point), axis), axis);
         let [a, b] = across(axis);
@@ -94,7 +88,7 @@ fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Opti
         (surface.iter().map(pieces).collect(), [0.0; 3])
     } else {
         let sphere = primary.get("circle")?;
-        let (center, radius) = (vector(sphere.get("center"))?, sphere.get("radius")?.as_f64()?);
+        let (center, radius) = (place(sphere.get("center"))?, sphere.get("radius")?.as_f64()?);
         let at =
             |(sin, cos): (f64, f64), (up, out): (f64, f64)| plus(center, radius, [out * cos, out * sin, up]);
         let meridian = |k: usize| (0..=POINTS).map(|i| at(angle(k, 2 * LINES), angle(i, POINTS))).collect();
@@ -113,8 +107,7 @@ fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Opti
     let is_whole = !surface.is_empty() && (0..3).all(|i| extent(i) <= WHOLE * diagonal);
     let pieces = lines.iter().flat_map(|line: &Vec<Place>| line.windows(2)).map(|w| [w[0], w[1]]);
     let segments: Vec<[Place; 2]> = pieces.filter(|piece| is_whole || piece.iter().all(is_near)).collect();
-    let name = contact.get("name").and_then(Value::as_str).unwrap_or_default();
-    let center = ["x", "y", "z"].map(|axis| format!("{name}.center_{axis}"));
+    let center = ["x", "y", "z"].map(|axis| format!("{}.center_{axis}", text(contact, "name")));
     (!segments.is_empty()).then_some(Wire { segments, center, origin })
 }
 

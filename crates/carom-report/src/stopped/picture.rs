@@ -59,7 +59,7 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
     };
     let mut panes = vec![pane("accepted", "displacement")];
     panes.extend(fields.array("rejected").map(|_| pane("rejected", "rejected")));
-    let length = fields.array("displacement").map_or("", |u| u.unit.as_str());
+    let length = fields.unit("displacement");
     let figure = Figure::new("stopped", caption, svg).with_narrow(narrow);
     Some(meshes::with_files(figure, &fields, &panes, length, String::new()))
 }
@@ -170,7 +170,7 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet, width: f64
     );
     key(&mut out, place, moved);
     let length = round_step(frame[1] - frame[0], 6.0);
-    let unit = fields.array("displacement").map_or("", |u| &u.unit);
+    let unit = fields.unit("displacement");
     let (y, pixels) = (height - 14.0, length * scale);
     let _ = writeln!(
         out,
