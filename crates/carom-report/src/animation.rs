@@ -178,8 +178,7 @@ fn planes(run: &Run, flat: bool, time: f64) -> Vec<[Point; 2]> {
             return Some([p, n]);
         }
         let name = text(contact, "name");
-        let row = run.times().partition_point(|t| *t < time - 1e-12 * time.abs());
-        let place = run.column(&format!("{name}.center_x")).and_then(|column| column.get(row)).copied();
+        let place = obstacles::recorded(run, &format!("{name}.center_x"), time);
         Some([[place.unwrap_or(p[0]), 0.0], [n[0], 0.0]])
     };
     list(&run.manifest.case, "contacts").iter().filter_map(at).collect()

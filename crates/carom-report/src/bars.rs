@@ -3,10 +3,9 @@
 use carom_record::Run;
 
 use crate::chart::{Chart, Options, Panel, Series};
-use crate::figure::{Figure, NARROW};
+use crate::figure::Figure;
 use crate::labels::{instant_label, with_unit};
 use crate::palette::sequence;
-use crate::redraw::of_chart;
 
 /// At several instants.
 pub(crate) fn figure(
@@ -59,7 +58,5 @@ pub(crate) fn figure(
         "Displacement u_{{x}} and Cauchy stress σ_{{xx}} (nodal averages) along the bars at instants \
          {during}. Data: displacement and stress in {files}."
     );
-    let plot = of_chart("bodies", &chart);
-    let narrow = chart.draw(&Options { width: NARROW, ..Options::default() });
-    Figure::new("bodies", caption, chart.svg()).with_narrow(narrow).with(plot.csv(), plot.script())
+    chart.figure("bodies", caption, &Options::default())
 }

@@ -11,11 +11,12 @@ use carom_record::{Block, Cell, FieldSet};
 
 use crate::bands::{Bands, color_bands, parts, shape};
 use crate::obstacles::Walk;
-use crate::pen::{Pen, Point, open_grid};
+use crate::pen::{NOTHING, Pen, Point, around, open_grid};
 use crate::sheet::{Legend, Sheet};
 use crate::symbols::{mark, wall};
 
 /// One instant: deformed nodes, the quantity at them, and the cells.
+#[derive(Default)]
 pub(crate) struct Instant {
     pub(crate) time: String,
     pub(crate) points: Vec<Point>,
@@ -41,12 +42,13 @@ impl Instant {
 
     /// The cells of one block, without a quantity.
     pub(crate) fn of_block(fields: &FieldSet, block: &Block) -> Self {
-        Self {
-            time: String::new(),
-            points: places(fields),
-            values: Vec::new(),
-            cells: block.cells().map(|c| (block.degree, c.to_vec())).collect(),
-        }
+        Self::of_cells(places(fields), block, |_| true)
+    }
+
+    /// The cells of one block that are chosen by their nodes, at these places.
+    pub(crate) fn of_cells(points: Vec<Point>, block: &Block, chosen: impl Fn(&[usize]) -> bool) -> Self {
+        let cells = block.cells().filter(|c| chosen(c)).map(|c| (block.degree, c.to_vec())).collect();
+        Self { points, cells, ..Self::default() }
     }
 }
 
@@ -55,11 +57,18 @@ pub(crate) fn fill_space(fields: &FieldSet) -> bool {
     fields.blocks.iter().any(|block| matches!(block.cell, Cell::Tetrahedron | Cell::Hexahedron))
 }
 
-/// Current positions of the points of a field set: reference position + displacement.
-pub(crate) fn places(fields: &FieldSet) -> Vec<Point> {
-    let u = fields.array("displacement").filter(|a| a.components == 3);
-    let moved = |(i, x): (usize, &[f64; 3])| [0, 1].map(|d| x[d] + u.map_or(0.0, |u| u.values[3 * i + d]));
-    fields.points.iter().enumerate().map(moved).collect()
+/// Current positions of the points of a field set in D dimensions: reference position +
+/// displacement.
+pub(crate) fn places<const D: usize>(fields: &FieldSet) -> Vec<[f64; D]> {
+    moved(fields, "displacement")
+}
+
+/// The same with another displacement of the points.
+pub(crate) fn moved<const D: usize>(fields: &FieldSet, array: &str) -> Vec<[f64; D]> {
+    let u = fields.array(array).filter(|a| a.components == 3);
+    let at =
+        |(k, x): (usize, &[f64; 3])| std::array::from_fn(|d| x[d] + u.map_or(0.0, |u| u.values[3 * k + d]));
+    fields.points.iter().enumerate().map(at).collect()
 }
 
 /// Whether the cells of a block are triangles or quadrilaterals.
@@ -108,10 +117,7 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
         // A cell within one band is filled as a whole, inside its exact edges.
         let band = bands.of(corner[0].1);
         if corner.iter().all(|(_, f)| f.is_finite() && bands.of(*f) == band) {
-            let edge =
-                |e: usize| edge_nodes(*degree, &nodes, e).map(|k| to(instant.points[k])).collect::<Vec<_>>();
-            (0..3).for_each(|e| bezier(&mut paths[band], &edge(e), e == 0));
-            paths[band].close();
+            outline(&mut paths[band], *degree, &nodes, &|k| to(instant.points[k]));
             continue;
         }
         for j in 0..m {
@@ -186,6 +192,14 @@ pub(crate) fn bezier(pen: &mut Pen, nodes: &[Point], moved: bool) {
     pen.draw(&controls.iter().map(|w| mix(w)).collect::<Vec<_>>());
 }
 
+/// Adds the outline of a cell.
+pub(crate) fn outline(pen: &mut Pen, degree: usize, nodes: &[usize], to: &dyn Fn(usize) -> Point) {
+    for e in 0..corners(nodes) {
+        bezier(pen, &edge_nodes(degree, nodes, e).map(to).collect::<Vec<_>>(), e == 0);
+    }
+    pen.close();
+}
+
 /// Edges of all cells: interior edges, and the outline made of the edges that belong to one cell
 /// only.
 pub(crate) fn edges(instant: &Instant, to: &dyn Fn(Point) -> Point) -> [Pen; 2] {
@@ -213,13 +227,8 @@ pub(crate) fn edges(instant: &Instant, to: &dyn Fn(Point) -> Point) -> [Pen; 2] 
 
 /// Bounding box of the cells: left, right, bottom, top.
 pub(crate) fn frame<'a>(instants: impl IntoIterator<Item = &'a Instant>) -> [f64; 4] {
-    let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
-    for instant in instants {
-        for [x, y] in instant.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| instant.points[k])) {
-            frame = [frame[0].min(x), frame[1].max(x), frame[2].min(y), frame[3].max(y)];
-        }
-    }
-    frame
+    let places = |i: &'a Instant| i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| i.points[k]));
+    around(NOTHING, instants.into_iter().flat_map(places))
 }
 
 /// Colour bands for the values at some instants.

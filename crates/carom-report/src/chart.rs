@@ -7,7 +7,8 @@ use crate::labels::unit_of;
 use crate::text;
 use crate::trace::path;
 
-const WIDTH: f64 = 720.0;
+/// Usual width of a figure.
+pub(crate) const WIDTH: f64 = 720.0;
 const LEFT: f64 = 74.0;
 const RIGHT: f64 = 14.0;
 const FONT: f64 = 13.0;
@@ -70,12 +71,8 @@ pub(crate) fn open(title: &str, width: f64, height: f64) -> String {
     opened("picture", title, width, height)
 }
 
-/// The opening of a line chart, which a dark page shows in light colours on dark ground.
-pub(crate) fn open_chart(title: &str, width: f64, height: f64) -> String {
-    opened("chart", title, width, height)
-}
-
-fn opened(class: &str, title: &str, width: f64, height: f64) -> String {
+/// The same of a class: a dark page shows a `chart` in light colours on dark ground.
+pub(crate) fn opened(class: &str, title: &str, width: f64, height: f64) -> String {
     format!(
         "<svg class=\"{class}\" xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 \
          0 {width:.0} {height:.0}\" \
@@ -92,12 +89,7 @@ pub(crate) fn write_text(out: &mut String, x: f64, y: f64, extra: &str, label: &
 }
 
 impl Chart<'_> {
-    /// The figure.
-    pub(crate) fn svg(&self) -> String {
-        self.draw(&Options::default())
-    }
-
-    /// The figure with options.
+    /// The picture.
     pub(crate) fn draw(&self, options: &Options) -> String {
         const GAP: f64 = 16.0;
         const ROW: f64 = 15.0;
@@ -108,7 +100,7 @@ impl Chart<'_> {
         let rows: Vec<Vec<Vec<usize>>> = self.panels.iter().map(|p| legend_rows(p, plot)).collect();
         let tops = rows.iter().map(|r| GAP + r.len() as f64 * 18.0);
         let height = tops.zip(&self.panels).map(|(top, p)| top + p.height).sum::<f64>() + 48.0 + below;
-        let mut out = open_chart(self.title, width, height);
+        let mut out = opened("chart", self.title, width, height);
         let to_x = |x: f64| LEFT + plot * x_axis.position(x);
         let y_axes = self.y_axes();
         let mut y0 = 0.0;
@@ -348,20 +340,25 @@ fn entry_width(series: &Series) -> f64 {
 
 /// Entries of the legend by line; curves without a label, or with one for tables only, have none.
 fn legend_rows(panel: &Panel, width: f64) -> Vec<Vec<usize>> {
-    let mut rows: Vec<Vec<usize>> = Vec::new();
+    let listed = panel.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty() && !s.unlisted);
+    in_lines(listed.map(|(i, series)| (i, entry_width(series))), width)
+}
+
+/// Numbers of entries in lines of a width, from the width of each.
+pub(crate) fn in_lines(entries: impl Iterator<Item = (usize, f64)>, width: f64) -> Vec<Vec<usize>> {
+    let mut lines: Vec<Vec<usize>> = Vec::new();
     let mut used = f64::INFINITY;
-    for (i, series) in panel.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty() && !s.unlisted) {
-        let needed = entry_width(series);
+    for (i, needed) in entries {
         if used + needed > width {
-            rows.push(Vec::new());
+            lines.push(Vec::new());
             used = 0.0;
         }
         used += needed;
-        if let Some(row) = rows.last_mut() {
-            row.push(i);
+        if let Some(line) = lines.last_mut() {
+            line.push(i);
         }
     }
-    rows
+    lines
 }
 
 fn write_legend(out: &mut String, panel: &Panel, rows: &[Vec<usize>], top: f64) {

@@ -57,7 +57,7 @@ pub(crate) fn all(run: &Run) -> Shown {
 /// The initial configuration.
 fn setup(run: &Run) -> Option<Figure> {
     let fields = run.field(run.fields.first()?).ok()?;
-    let svg = setup::figure(run, &fields)?;
+    let pictures = setup::figure(run, &fields)?;
     let case = &run.manifest.case;
     let has = |key: &str| !list(case, key).is_empty();
     let view = if bodies::fill_space(&fields) {
@@ -70,7 +70,7 @@ fn setup(run: &Run) -> Option<Figure> {
             (false, true) => " Coloured outlines: loaded faces",
             (false, false) => "",
         };
-        let dashed = match (svg.contains("stroke-dasharray"), outlined.is_empty()) {
+        let dashed = match (pictures[0].contains("stroke-dasharray"), outlined.is_empty()) {
             (true, true) => " Dashed: what is hidden.",
             (true, false) => "; dashed where hidden.",
             (false, true) => "",
@@ -90,13 +90,9 @@ fn setup(run: &Run) -> Option<Figure> {
     let caption = format!(
         "Initial configuration: bodies with {parts}.{view} Data: first field file; case and sides in `manifest.json`."
     );
-    let pane = Pane {
-        title: "initial".to_owned(),
-        points: meshes::moved(&fields, "displacement"),
-        values: Vec::new(),
-    };
+    let pane = Pane { title: "initial".to_owned(), points: bodies::places(&fields), values: Vec::new() };
     let length = fields.unit("displacement");
-    let figure = Figure::new("setup", caption, svg).with_narrow(setup::narrow(run, &fields)?);
+    let figure = Figure::new("setup", caption, pictures);
     Some(meshes::with_files(figure, &fields, &[pane], length, String::new()))
 }
 

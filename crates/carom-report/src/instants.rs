@@ -70,17 +70,16 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
     }
     if bodies::fill_space(first) {
         let length = first.unit("displacement");
-        let ([svg, narrow], caption, bands) = space::instants(run, &sets, length, (during, files))?;
+        let (pictures, caption, bands) = space::instants(run, &sets, length, (during, files))?;
         let panes: Vec<Pane> = sets
             .iter()
             .filter_map(|(time, set)| {
                 let [values, _] = stresses(set)?;
-                let points = meshes::moved(set, "displacement");
-                Some(Pane { title: instant_label(run, *time), points, values })
+                Some(Pane { title: instant_label(run, *time), points: bodies::places(set), values })
             })
             .collect();
         let value = with_unit("σ_{vM}", first.unit("stress"));
-        let figure = Figure::new("bodies", caption, svg).with_narrow(narrow);
+        let figure = Figure::new("bodies", caption, pictures);
         return Some((meshes::with_files(figure, first, &panes, length, value), bands));
     }
     let (stress, length) = (first.array("stress")?.unit.as_str(), first.unit("displacement"));
@@ -107,7 +106,7 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
         .map(|walks| walks.iter().flat_map(|walk| obstacles::clipped(walk, wide)).collect())
         .collect();
     let legend = Legend { bands: &bands, cut, label: "σ_{yy}", unit: stress };
-    let [svg, narrow] = bodies::figure(&list, (&walks, &marks, wide), title, &legend, length);
+    let pictures = bodies::figure(&list, (&walks, &marks, wide), title, &legend, length);
     let arrow = arrowheads([(cut, String::new())]);
     let mark =
         said_if(marks.iter().any(|marks| !marks.is_empty()), " Triangle: a point of the plane that moves.");
@@ -119,7 +118,7 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
          the same scale; displacements are not magnified.{compression}{tension}{mark}{arrow} Data: stress and displacement in {files}."
     );
-    let figure = Figure::new("bodies", caption, svg).with_narrow(narrow);
+    let figure = Figure::new("bodies", caption, pictures);
     let figure = contours::with_files(figure, &times, &list, [unit, length, stress]);
     Some((figure, bands))
 }

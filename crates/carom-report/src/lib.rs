@@ -81,7 +81,6 @@ use std::path::Path;
 
 use carom_record::Run;
 
-pub use figure::Figure;
 pub use overlap::overlap;
 use publish::publish;
 pub use publish::{ReportError, ReportSummary};
@@ -93,10 +92,5 @@ pub fn report(directory: &Path) -> Result<ReportSummary, ReportError> {
     let run = Run::open(directory)?;
     let figures::Shown { figures, animation, notes } = figures::all(&run);
     let page = page::page(&run, &figures, animation.as_ref(), &notes);
-    let summary =
-        publish(directory, "report.html", &page, figures.iter().map(|f| (f.name, f.svg.as_str())), notes)?;
-    for (figure, (ending, text)) in figures.iter().flat_map(|f| f.files.iter().map(move |file| (f, file))) {
-        publish::write(directory.join("figures").join(format!("{}.{ending}", figure.name)), text)?;
-    }
-    Ok(summary)
+    publish(directory, "report.html", &page, &figures, notes)
 }

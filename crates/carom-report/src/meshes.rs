@@ -24,13 +24,6 @@ pub(crate) struct Pane {
     pub(crate) values: Vec<f64>,
 }
 
-/// Reference position + one displacement of the points.
-pub(crate) fn moved(fields: &FieldSet, array: &str) -> Vec<[f64; 3]> {
-    let u = fields.array(array).filter(|a| a.components == 3);
-    let at = |(k, x): (usize, &[f64; 3])| [0, 1, 2].map(|d| x[d] + u.map_or(0.0, |u| u.values[3 * k + d]));
-    fields.points.iter().enumerate().map(at).collect()
-}
-
 /// The nodes around every cell of a block of the plane, or of bars.
 fn around(block: &Block) -> Vec<Vec<usize>> {
     let outline = |cell: &[usize]| -> Vec<usize> {
@@ -86,13 +79,14 @@ pub(crate) fn with_files(
         ("@Z@", with_unit("z", length)),
         ("@VALUE@", value),
     ];
-    let script = filled(include_str!("meshes.py"), &labels).replace("@NAME@", figure.name);
+    let script = filled(include_str!("meshes.py"), &labels).replace("@NAME@", &figure.name);
     figure.with(table, script)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bodies::places;
 
     /// A curved cell has the nodes of its edges in their order around it.
     #[test]
@@ -108,9 +102,8 @@ mod tests {
         let block =
             Block { body: "a \"b\"".into(), cell: Cell::Triangle, degree: 2, connectivity: (0..6).collect() };
         let fields = FieldSet { points, blocks: vec![block], arrays: Vec::new() };
-        let pane =
-            Pane { title: "initial".into(), points: moved(&fields, "displacement"), values: Vec::new() };
-        let figure = Figure::new("setup", "", String::new());
+        let pane = Pane { title: "initial".into(), points: places(&fields), values: Vec::new() };
+        let figure = Figure::new("setup", "", [String::new(), String::new()]);
         let figure = with_files(figure, &fields, &[pane], "mm", String::new());
         let rows: Vec<&str> = figure.files[0].1.lines().skip(1).collect();
         let place = |x: &str| format!("\"initial\",\"a \"\"b\"\"\",0,{x},,");

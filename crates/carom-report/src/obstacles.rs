@@ -4,7 +4,7 @@ use carom_formula::Formula;
 use carom_record::Run;
 use serde_json::Value;
 
-use crate::pen::Point;
+use crate::pen::{NOTHING, Point, around};
 use crate::values::{list, place, text};
 
 /// Points with unit normals out of the rigid body.
@@ -77,6 +77,13 @@ fn one(contact: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Option<Obstacle> {
     Some(Obstacle { walk, is_plane: plane.is_some(), center, about, angle })
 }
 
+/// The value of a column at a recorded time.
+pub(crate) fn recorded(run: &Run, column: &str, time: f64) -> Option<f64> {
+    let times = run.times();
+    let row = times.partition_point(|t| *t < time - 1e-12 * time.abs()).min(times.len().saturating_sub(1));
+    run.column(column)?.get(row).copied()
+}
+
 fn straight(a: Point, b: Point, normal: Point) -> Walk {
     let at = |k: usize| k as f64 / STRAIGHT as f64;
     (0..=STRAIGHT).map(|k| ([0, 1].map(|i| a[i] + at(k) * (b[i] - a[i])), normal)).collect()
@@ -147,10 +154,7 @@ impl Obstacle {
 
     /// Position, and sine and cosine of the angle, at a recorded time.
     pub(crate) fn pose(&self, run: &Run, time: f64) -> [f64; 4] {
-        let times = run.times();
-        let row =
-            times.partition_point(|t| *t < time - 1e-12 * time.abs()).min(times.len().saturating_sub(1));
-        let place = |i: usize| run.column(&self.center[i]).and_then(|c| c.get(row).copied());
+        let place = |i: usize| recorded(run, &self.center[i], time);
         let (sin, cos) = self.angle.as_ref().map_or(0.0, |f| f.value(&[time])).to_radians().sin_cos();
         [place(0).unwrap_or(self.about[0]), place(1).unwrap_or(self.about[1]), sin, cos]
     }
@@ -173,18 +177,11 @@ impl Obstacle {
             return frame;
         }
         let size = (bodies[1] - bodies[0]).max(bodies[3] - bodies[2]);
-        let extent = |i: usize| {
-            let (low, high) = walk.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (p, _)| {
-                (low.min(p[i]), high.max(p[i]))
-            });
-            high - low
-        };
-        let size = if extent(0).max(extent(1)) <= WHOLE * size { f64::INFINITY } else { 1.5 * size };
+        let [left, right, bottom, top] = around(NOTHING, walk.iter().map(|(p, _)| *p));
+        let is_whole = (right - left).max(top - bottom) <= WHOLE * size;
+        let size = if is_whole { f64::INFINITY } else { 1.5 * size };
         let near = |p: &Point, i: usize| p[i].clamp(bodies[2 * i] - size, bodies[2 * i + 1] + size);
-        walk.iter().fold(frame, |f, (p, _)| {
-            let [x, y] = [near(p, 0), near(p, 1)];
-            [f[0].min(x), f[1].max(x), f[2].min(y), f[3].max(y)]
-        })
+        around(frame, walk.iter().map(|(p, _)| [near(p, 0), near(p, 1)]))
     }
 }
 

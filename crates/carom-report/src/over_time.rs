@@ -4,12 +4,11 @@ use carom_record::{Run, metrics};
 
 use crate::animation;
 use crate::chart::{Chart, Options, Panel, Series};
-use crate::figure::{Figure, NARROW};
+use crate::figure::Figure;
 use crate::labels::time_label;
 use crate::measured::{Points, add_points};
 use crate::noise::{has_contact, largest};
 use crate::palette::LINES;
-use crate::redraw::of_chart;
 use crate::text::said_if;
 
 /// Share of the recorded time from which shading says nothing.
@@ -72,18 +71,14 @@ pub(crate) fn by_size(all: Panel) -> Vec<Panel> {
     let most = all.series.iter().map(peak).fold(0.0, f64::max);
     let (large, small): (Vec<Series>, Vec<Series>) =
         all.series.into_iter().partition(|series| peak(series) >= SMALL * most);
-    let other = Panel { label: all.label.clone(), unit: all.unit.clone(), height: 110.0, series: small };
-    let first = Panel {
-        series: large,
-        ..Panel { label: all.label, unit: all.unit, height: all.height, series: Vec::new() }
-    };
-    [first, other].into_iter().filter(|panel| !panel.series.is_empty()).collect()
+    let both = [(all.height, large), (110.0, small)].into_iter().filter(|(_, series)| !series.is_empty());
+    both.map(|(height, series)| panel(&all.label, &all.unit, height, series)).collect()
 }
 
 /// A chart over time with its files.
 pub(crate) fn chart<'a>(
     run: &Run,
-    (name, title): (&'static str, &'a str),
+    (name, title): (&str, &'a str),
     caption: String,
     panels: Vec<Panel<'a>>,
 ) -> Option<Figure> {
@@ -92,10 +87,6 @@ pub(crate) fn chart<'a>(
     (!panels.is_empty()).then(|| {
         let tracks = if title == "Solver" { animation::tracks(run) } else { Vec::new() };
         let options = Options { tracks: &tracks, time: true, ..Options::default() };
-        let chart = Chart { title, x_label, shades: shades(run), panels };
-        let plot = of_chart(name, &chart);
-        let narrow = chart.draw(&Options { width: NARROW, ..options });
-        let figure = Figure::new(name, caption, chart.draw(&options)).with_narrow(narrow);
-        figure.with(plot.csv(), plot.script())
+        Chart { title, x_label, shades: shades(run), panels }.figure(name, caption, &options)
     })
 }

@@ -29,9 +29,8 @@ const HEADER: &str = "Data: `manifest.json` (version, input_hash, case, machine,
 /// The page.
 pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Animation>, notes: &[String]) -> String {
     let title = run.manifest.case.get("title").and_then(Value::as_str).unwrap_or("Carom run");
-    let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &f.endings(), &f.caption, &f.pictures());
     let named = |name: &'static str| figures.iter().enumerate().filter(move |(_, f)| f.name == name);
-    let place = named("stopped").next().map(&figure);
+    let place = named("stopped").next().map(figure);
     let others = figures.iter().enumerate().filter(|(_, f)| f.name != "setup" && f.name != "stopped");
     let body = html! {
         (status(run))

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::arc::{Place, places};
 use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
-use crate::chart::{ground, open_chart, time_axis, write_text};
+use crate::chart::{ground, opened, time_axis, write_text};
 use crate::figure::{Figure, NARROW};
 use crate::labels::{number, scaled, with_unit};
 use crate::ordered::grouped;
@@ -115,7 +115,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         ("@S@", with_unit("arc length s", &length)),
     ];
     let script = filled(include_str!("pressure.py"), &labels);
-    Some(Figure::new("pressure", caption, out).with_narrow(narrow).with(table, script))
+    Some(Figure::new("pressure", caption, [out, narrow]).with(table, script))
 }
 
 /// The maps as a picture of a width, whether the colours of each leave values out, and of how many
@@ -126,7 +126,7 @@ fn draw(run: &Run, sides: &[Side], width: f64) -> (String, Vec<[bool; 2]>, usize
     let x_axis = Axis::new((from, to), 7.0, true);
     let plot = width - LEFT - RIGHT;
     let step = HEIGHT + 46.0;
-    let mut out = open_chart("Contact pressure along the side", width, sides.len() as f64 * step + 34.0);
+    let mut out = opened("chart", "Contact pressure along the side", width, sides.len() as f64 * step + 34.0);
     let shown: Vec<f64> = run.times().iter().copied().filter(|t| (from..=to).contains(t)).collect();
     let stride = shown.len().div_ceil(INSTANTS).max(1);
     let kept: Vec<f64> = shown.into_iter().step_by(stride).collect();
@@ -248,7 +248,7 @@ pub(crate) fn profiles(run: &Run, frames: &[&FieldEntry]) -> Option<(String, Vec
         let x_axis = Axis::new(side.extent(), 6.0, true);
         // As on the map: a few peaks are cut off.
         let y_axis = Axis::new((0.0, side.bands().0.high), 2.0, false);
-        let mut out = open_chart("Contact pressure at the instant of the animation", width, height);
+        let mut out = opened("chart", "Contact pressure at the instant of the animation", width, height);
         let top = 24.0;
         for (value, _) in &y_axis.ticks {
             let y = top + high * (1.0 - y_axis.position(*value));

@@ -9,6 +9,7 @@ use crate::bands::Bands;
 use crate::chart::{open, write_text};
 use crate::figure::NARROW;
 use crate::pen::Point;
+use crate::symbols::scale_bar;
 use crate::text;
 
 /// Usual width of a sheet; one of half of it has half as many columns.
@@ -131,7 +132,7 @@ impl Sheet {
             self.out,
             "<text x=\"{left:.1}\" y=\"{:.1}\"><tspan font-weight=\"bold\">({letter})</tspan> {}</text>",
             top - 11.0,
-            crate::text::svg(time)
+            text::svg(time)
         );
     }
 
@@ -139,14 +140,7 @@ impl Sheet {
     pub(crate) fn finish(mut self, legend: &Legend, length: &str) -> String {
         let size = round_step(self.frame[1] - self.frame[0], 3.0);
         let y = self.height - 22.0;
-        let _ = writeln!(
-            self.out,
-            "<path d=\"M8 {:.1}v6m0 -3h{:.1}m0 -3v6\" fill=\"none\" stroke=\"#222\"/>",
-            y - 3.0,
-            size * self.scale
-        );
-        let text = format!("{size} {length}");
-        write_text(&mut self.out, 8.0 + size * self.scale + 8.0, y + 4.0, "", text.trim());
+        scale_bar(&mut self.out, [8.0, y - 3.0], size * self.scale, (size, length));
         // Not longer than what is compared with it needs.
         let bottom = (self.height - 50.0).min(LINE + TALLEST);
         color_bar(&mut self.out, legend, self.width - BAR + 18.0, (LINE, bottom));

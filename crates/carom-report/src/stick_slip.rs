@@ -8,7 +8,7 @@ use carom_record::{ContactRow, Run};
 
 use crate::arc::{self, places};
 use crate::axis::{Axis, range};
-use crate::chart::{ground, open_chart, time_axis, write_text};
+use crate::chart::{ground, opened, time_axis, write_text};
 use crate::figure::{Figure, NARROW};
 use crate::labels::with_unit;
 use crate::ordered::distinct;
@@ -67,7 +67,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     }
     let words = directions(run, &contacts);
     let [against, along] = words.unwrap_or(["slips backward", "slips forward"]);
-    let [out, narrow] = [WIDTH, NARROW].map(|width| picture(run, &contacts, [against, along], width));
+    let pictures = [WIDTH, NARROW].map(|width| picture(run, &contacts, [against, along], width));
     let is_length = !run.fields.is_empty();
     let counted =
         said_if(!is_length, " Nodes are numbered along the side, because no field file has their positions.");
@@ -87,7 +87,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         ("@ALONG@", along.to_owned()),
     ];
     let script = filled(include_str!("stick_slip.py"), &labels);
-    Some(Figure::new("stick-slip", caption, out).with_narrow(narrow).with(table(run, &contacts), script))
+    Some(Figure::new("stick-slip", caption, pictures).with(table(run, &contacts), script))
 }
 
 /// The maps as a picture of a width; the other argument is the two directions of slip in words.
@@ -96,7 +96,7 @@ fn picture(run: &Run, contacts: &[&str], [against, along]: [&str; 2], width: f64
     let x_axis = Axis::new((first, last), 8.0, true);
     let plot = width - LEFT - RIGHT;
     let height = contacts.len() as f64 * (HEIGHT + 44.0) + 52.0;
-    let mut out = open_chart("Stick and slip", width, height);
+    let mut out = opened("chart", "Stick and slip", width, height);
     for (i, (label, colour)) in ["sticks", against, along].iter().zip(COLOURS).enumerate() {
         let x = if width < WIDTH { 8.0 } else { LEFT } + [0.0, 80.0, 270.0][i];
         let _ = writeln!(out, "<rect x=\"{x:.1}\" y=\"6\" width=\"16\" height=\"11\" fill=\"{colour}\"/>");

@@ -8,10 +8,11 @@ use carom_record::{Status, metrics};
 
 use crate::collected::{Column, Measured, Origin, collect, common_time, named};
 use crate::curves::Keys;
+use crate::figure::Figure;
 use crate::labels::{capitalised, file_name, listed, with_unit};
 use crate::ordered::grouped;
 use crate::plot::{Curve, Pane, Plot};
-use crate::publish::{ReportError, ReportSummary, publish, write};
+use crate::publish::{ReportError, ReportSummary, publish};
 use crate::systems::Systems;
 use crate::{curves, laboratory, multiples, setup, study_page, theory, trend};
 
@@ -35,8 +36,8 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     let mut measured = Measured(manifest.overlays);
     let mut study = Study::open(directory, &mut |arm, run| {
         picture = picture.take().or_else(|| {
-            let fields = run.field(run.fields.first()?).ok()?;
-            Some([setup::figure(run, &fields)?, setup::narrow(run, &fields)?])
+            let pictures = setup::figure(run, &run.field(run.fields.first()?).ok()?)?;
+            Some(Figure::new("setup", "", pictures))
         });
         if systems.is_own(arm) {
             run.history.unit("time").clone_into(&mut time);
@@ -54,24 +55,11 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     plots.extend(trend::plots(&study));
     // Figures that are folded away come last, so that those shown have successive numbers.
     plots.sort_by_key(|plot| !plot.group.is_empty());
-    let page = study_page::page(&study, picture.as_ref(), &plots, &origins, &systems);
-    let drawn = plots.iter().map(|p| (p.name.clone(), p.svg()));
-    let all: Vec<(String, String)> =
-        picture.into_iter().map(|[svg, _]| ("setup".to_owned(), svg)).chain(drawn).collect();
-    let summary = publish(
-        directory,
-        "study.html",
-        &page,
-        all.iter().map(|(n, s)| (n.as_str(), s.as_str())),
-        Vec::new(),
-    )?;
-    // Beside each figure its table and the script that redraws it.
-    for plot in &plots {
-        let beside = |ending: &str| directory.join("figures").join(format!("{}.{ending}", plot.name));
-        write(beside("csv"), &plot.csv())?;
-        write(beside("py"), &plot.script())?;
-    }
-    Ok(summary)
+    let figures: Vec<(&str, Figure)> =
+        plots.iter().map(|plot| (plot.group.as_str(), plot.figure())).collect();
+    let page = study_page::page(&study, picture.as_ref(), &figures, &origins, &systems);
+    let all = picture.iter().chain(figures.iter().map(|(_, figure)| figure));
+    publish(directory, "study.html", &page, all, Vec::new())
 }
 
 /// A column of all arms, with up to eight curves in a figure, and enlarged where there is contact.

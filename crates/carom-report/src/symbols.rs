@@ -1,7 +1,8 @@
-//! Symbols of mechanics: arrows, walls with hatching, rollers.
+//! Symbols of mechanics: arrows, walls with hatching, rollers; scale bars.
 
 use std::fmt::Write as _;
 
+use crate::chart::write_text;
 use crate::pen::Point;
 
 pub(crate) fn plus(p: Point, s: f64, d: Point) -> Point {
@@ -144,4 +145,11 @@ pub(crate) fn probe_mark([x, y]: Point) -> String {
          stroke-width=\"1.6\" paint-order=\"stroke\"/>\n",
         y - 5.2
     )
+}
+
+/// A scale bar of a length from its left end to its right end, in pixels, at a height.
+pub(crate) fn scale_bar(out: &mut String, [x, y]: Point, pixels: f64, (length, unit): (f64, &str)) {
+    let d = format!("M{x} {y:.1}v6m0 -3h{pixels:.1}m0 -3v6");
+    let _ = writeln!(out, "<path d=\"{d}\" fill=\"none\" stroke=\"#222\"/>");
+    write_text(out, x + pixels + 8.0, y + 7.0, "", format!("{length} {unit}").trim());
 }

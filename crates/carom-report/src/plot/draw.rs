@@ -8,7 +8,7 @@ use super::layout::{LEFT, Layout, RIGHT, TICK};
 use super::scale::Scale;
 use super::{Band, Curve, Pane, Plot, curve, direct, legend};
 use crate::again::{again, once};
-use crate::chart::{open_chart, write_text};
+use crate::chart::{opened, write_text};
 use crate::figure::NARROW;
 use crate::labels::unit_of;
 use crate::{text, trace};
@@ -51,19 +51,19 @@ impl Place {
 const SMALL: &str = "-narrow";
 
 impl Plot {
-    /// The figure.
+    /// The broad picture.
     pub(crate) fn svg(&self) -> String {
         self.drawn(&Layout::new(self, WIDTH, self.direct), None)
     }
 
-    /// The figure for a narrow window, on a page with the other one; its legend is below.
+    /// The picture for a narrow window, on a page with the other one; its legend is below.
     pub(crate) fn narrow(&self) -> String {
         let broad = Layout::new(self, WIDTH, self.direct);
         self.drawn(&Layout::new(self, NARROW, false), Some(&broad))
     }
 
     fn drawn(&self, layout: &Layout, broad: Option<&Layout>) -> String {
-        let mut out = open_chart(&self.name, layout.width, layout.height());
+        let mut out = opened("chart", &self.name, layout.width, layout.height());
         let mut axis = None;
         let end = if broad.is_some() { SMALL } else { "" };
         for (i, pane) in self.panes.iter().enumerate() {

@@ -10,6 +10,7 @@ use super::forces::{COLOR, written};
 use crate::bodies::fill_space;
 use crate::chart::write_text;
 use crate::labels::given_amount;
+use crate::place::fill;
 use crate::scientific::given;
 use crate::symbols::{arrow, guides, motion, plus, probe_mark, rollers, wall};
 use crate::text;
@@ -41,12 +42,10 @@ impl Setup<'_> {
         };
         line("", "Bodies", true);
         for (k, body) in list(self.case(), "bodies").iter().enumerate() {
-            let block = self.fields.blocks.iter().find(|b| b.body == word(body, "name"));
+            let block = self.block(word(body, "name"));
             let nodes = block.map_or(0, |b| b.connectivity.iter().collect::<HashSet<_>>().len());
-            let swatch = format!(
-                "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#222\"/>",
-                Self::color(k)
-            );
+            let swatch =
+                format!("<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#222\"/>", fill(k));
             let cells = block.map_or(0, |b| b.cells().count());
             let (element, material) = (word(body, "element"), word(body, "material"));
             let of = if material == word(body, "name") { "material " } else { "" };

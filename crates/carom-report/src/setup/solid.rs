@@ -6,18 +6,20 @@ use std::fmt::Write as _;
 
 use carom_record::{FieldSet, Run};
 
-use super::drawing::{BODIES, KEY, ROOM, SUPPORT_LINES, SUPPORTS, Setup};
+use super::drawing::{BOLD, ITALIC, KEY, ROOM, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, Load, load};
 use crate::again::{again, once};
 use crate::axis::round_step;
+use crate::bodies::places;
 use crate::chart::{open, write_text};
 use crate::figure::NARROW;
-use crate::pen::Point;
+use crate::pen::{Point, around};
+use crate::place::BODIES;
 use crate::space::{
-    DRAWN, Facet, Paint, Place, View, box_of, corners, cross, draw, frame, minus, pieces, places, skin,
+    DRAWN, Facet, Paint, Place, View, box_of, corners, cross, draw, frame, length, minus, pieces, skin,
     underlay, wires,
 };
-use crate::symbols::{arrow, direction, plus, probe_mark};
+use crate::symbols::{arrow, direction, plus, probe_mark, scale_bar};
 use crate::values::{list, place, text, unit, vector};
 
 /// Length in pixels of an arrow parallel to the page, and about how many are drawn on a side.
@@ -39,14 +41,10 @@ struct Solid<'a> {
 /// The figure; nothing without extent.
 pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
     let (view, places, skin) = (View::axonometric(), places(fields), skin(fields));
-    let rigid: Vec<[Place; 2]> = wires(run, box_of(&skin, std::iter::once(&places)))
-        .iter()
-        .flat_map(|wire| wire.at_first().to_vec())
-        .collect();
-    let [mut x0, mut x1, mut y0, mut y1] = frame(&skin, &places, &view);
-    for [x, y, _] in rigid.iter().flatten().map(|place| view.of(*place)) {
-        (x0, x1, y0, y1) = (x0.min(x), x1.max(x), y0.min(y), y1.max(y));
-    }
+    let rigid: Vec<[Place; 2]> =
+        wires(run, box_of(&skin, &places)).iter().flat_map(|wire| wire.at_first().to_vec()).collect();
+    let lines = rigid.iter().flatten().map(|place| view.on_page(*place));
+    let [x0, x1, y0, y1] = around(frame(&skin, &places, &view), lines);
     if !(x1 > x0 && y1 > y0) {
         return None;
     }
@@ -55,7 +53,7 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
     let scale = scales[usize::from(narrow)];
     let [broad, size] = [scales[0], scale].map(|scale| [(x1 - x0) * scale, (y1 - y0) * scale]);
     let (left, top) = (margin, margin);
-    let points = places.iter().map(|p| view.of(*p)).map(|[x, y, _]| [x, y]).collect();
+    let points = places.iter().map(|p| view.on_page(*p)).collect();
     let origin = [left - x0 * scale, top + y1 * scale];
     let setup = Setup { run, fields, points, flat: false, scale, origin, inside: HashMap::new() };
     let beside = left + size[0] + margin + 20.0;
@@ -87,14 +85,8 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
     solid.probes(&mut out);
     view.triad(&mut out, [40.0, bottom + 32.0], 30.0);
     let bar = round_step(x1 - x0, 3.0);
-    let _ = writeln!(
-        out,
-        "<path d=\"M110 {:.1}v6m0 -3h{:.1}m0 -3v6\" fill=\"none\" stroke=\"#222\"/>",
-        bottom + 46.0,
-        bar * scale
-    );
     let length = unit(solid.setup.case(), "length");
-    write_text(&mut out, 118.0 + bar * scale, bottom + 53.0, "", format!("{bar} {length}").trim());
+    scale_bar(&mut out, [110.0, bottom + 46.0], bar * scale, (bar, length));
     out.push_str(&key);
     out.push_str("</svg>\n");
     Some(out)
@@ -102,8 +94,7 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
 
 impl Solid<'_> {
     fn to(&self, p: Place) -> Point {
-        let [x, y, _] = self.view.of(p);
-        self.setup.to([x, y])
+        self.setup.to(self.view.on_page(p))
     }
 
     /// Numbers of the facets of a side.
@@ -116,7 +107,7 @@ impl Solid<'_> {
     fn middle(&self, facet: &Facet) -> (Place, Place) {
         let [a, b, c] = [0, 1, 2].map(|k| self.places[facet.nodes[k]]);
         let n = cross(minus(b, a), minus(c, a));
-        let size = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let size = length(n);
         ([0, 1, 2].map(|d| (a[d] + b[d] + c[d]) / 3.0), n.map(|x| x / size))
     }
 
@@ -207,12 +198,12 @@ impl Solid<'_> {
 
     /// An arrow along a vector that ends (`presses`) or begins at a place.
     fn arrow(&self, out: &mut String, at: Place, vector: Place, presses: bool, color: &str) {
-        let size = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let [x, y, _] = self.view.of(vector.map(|x| x / size));
+        let size = length(vector);
+        let [x, y] = self.view.on_page(vector.map(|x| x / size));
         let along = [x * LENGTH, -y * LENGTH];
         // Arrows towards the eye would be dots.
-        let length = along[0].hypot(along[1]);
-        if length < 0.25 * LENGTH || length.is_nan() {
+        let shown = along[0].hypot(along[1]);
+        if shown < 0.25 * LENGTH || shown.is_nan() {
             return;
         }
         let p = self.to(at);
@@ -244,17 +235,15 @@ impl Solid<'_> {
         for load in list(self.setup.case(), "loads").iter().filter_map(load) {
             self.forces(out, &load);
         }
-        let halo = "font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
-                    paint-order=\"stroke\" stroke-linejoin=\"round\"";
         for body in list(self.setup.case(), "bodies") {
-            let Some(block) = self.setup.fields.blocks.iter().find(|b| b.body == text(body, "name")) else {
+            let Some(block) = self.setup.block(text(body, "name")) else {
                 continue;
             };
             let count = block.connectivity.len() as f64;
             let middle =
                 [0, 1, 2].map(|d| block.connectivity.iter().map(|&k| self.places[k][d]).sum::<f64>() / count);
             let [x, y] = self.to(middle);
-            write_text(out, x, y - 12.0, &format!("text-anchor=\"middle\" {halo}"), text(body, "name"));
+            write_text(out, x, y - 12.0, &format!("text-anchor=\"middle\" {ITALIC}"), text(body, "name"));
             let force = list(self.setup.case(), "loads")
                 .iter()
                 .filter_map(load)
@@ -270,9 +259,9 @@ impl Solid<'_> {
                     continue;
                 }
                 self.arrow(out, middle, v, false, color);
-                let [right, up, _] = self.view.of(v);
+                let [right, up] = self.view.on_page(v);
                 let end = plus([x, y], LENGTH + 12.0, direction([0.0; 2], [right, -up]));
-                write_text(out, end[0] + 6.0, end[1] + 4.0, halo, symbol);
+                write_text(out, end[0] + 6.0, end[1] + 4.0, ITALIC, symbol);
             }
         }
     }
@@ -298,9 +287,7 @@ impl Solid<'_> {
                     y - 5.2
                 );
             }
-            let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
-                        paint-order=\"stroke\" stroke-linejoin=\"round\"";
-            write_text(out, x + 8.0, y - 7.0, bold, text(probe, "name"));
+            write_text(out, x + 8.0, y - 7.0, BOLD, text(probe, "name"));
         }
     }
 }

@@ -11,14 +11,16 @@ use carom_record::{FieldEntry, Run};
 use maud::{PreEscaped, html};
 use serde_json::json;
 
+use super::figure::box_around;
 use super::skin::{Facet, Place, skin};
-use super::view::View;
+use super::view::{View, length};
 use super::wires::wires;
 use crate::animation::{
     Animation, EVENTS, PLAYER, controls, help, histories, histories_in_words, of_files, until,
 };
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::labels::is_static;
+use crate::noise::largest;
 use crate::quantity::{Quantity, bars, choice, stresses};
 use crate::sheet::{Legend, arrowheads};
 use crate::text::{Label, Prose};
@@ -97,42 +99,27 @@ struct Scene {
     bands: [(Bands, [bool; 2]); 3],
 }
 
-fn length(v: &Place) -> f64 {
-    v.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
 impl Scene {
     fn new(surface: Surface, places: Vec<Place>, frames: Vec<Frame>) -> Self {
         let moved = || frames.iter().flat_map(|f| &f.moved);
-        let largest = moved().flatten().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
+        let largest = largest(moved().flatten());
         let bands = [
             positive_bands_of(frames.iter().map(|f| f.mises.iter().copied())),
             color_bands(frames.iter().flat_map(|f| f.mean.iter().copied())),
-            positive_bands_of(frames.iter().map(|f| f.moved.iter().map(length))),
+            positive_bands_of(frames.iter().map(|f| f.moved.iter().map(|u| length(*u)))),
         ];
         Self { surface, places, frames, largest, bands }
     }
 
     /// Corners of the box of the reference positions.
     fn box_of(&self) -> [Place; 2] {
-        let fold = |start: f64, pick: fn(f64, f64) -> f64| {
-            [0, 1, 2].map(|d| self.places.iter().map(|p| p[d]).fold(start, pick))
-        };
-        [fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max)]
+        box_around(self.places.iter().copied())
     }
 
     /// Corners of the box of all positions.
     fn moved_box(&self) -> [Place; 2] {
-        let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        for frame in &self.frames {
-            for (place, moved) in self.places.iter().zip(&frame.moved) {
-                for d in 0..3 {
-                    corners[0][d] = corners[0][d].min(place[d] + moved[d]);
-                    corners[1][d] = corners[1][d].max(place[d] + moved[d]);
-                }
-            }
-        }
-        corners
+        let all = self.frames.iter().flat_map(|frame| self.places.iter().zip(&frame.moved));
+        box_around(all.map(|(place, moved)| [0, 1, 2].map(|d| place[d] + moved[d])))
     }
 
     /// Every `stride`-th frame and the last one.

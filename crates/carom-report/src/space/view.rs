@@ -47,11 +47,17 @@ impl View {
         self.axes.map(|axis| dot(axis, p))
     }
 
+    /// Coordinates to the right and up.
+    pub(crate) fn on_page(&self, p: Place) -> Point {
+        let [right, up, _] = self.of(p);
+        [right, up]
+    }
+
     /// Brightness of a triangle between 0 and 1 from its corners in view coordinates; none if it
     /// turns its back to the eye.
     pub(crate) fn brightness([a, b, c]: [Place; 3]) -> Option<f64> {
         let normal = cross(minus(b, a), minus(c, a));
-        let length = dot(normal, normal).sqrt();
+        let length = length(normal);
         (normal[2] > 1e-9 * length)
             .then(|| AMBIENT + (1.0 - AMBIENT) * (dot(normal, LIGHT) / length).clamp(0.0, 1.0))
     }
@@ -78,6 +84,10 @@ impl View {
 
 pub(crate) fn dot(a: Place, b: Place) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn length(v: Place) -> f64 {
+    dot(v, v).sqrt()
 }
 
 pub(crate) fn minus(a: Place, b: Place) -> Place {

@@ -5,7 +5,8 @@ use carom_record::Run;
 use serde_json::Value;
 
 use super::skin::Place;
-use super::view::{cross, dot, minus};
+use super::view::{cross, dot, length, minus};
+use crate::obstacles::recorded;
 use crate::values::{list, place, text};
 
 /// Points on a line, and lines in each of both directions.
@@ -38,7 +39,7 @@ fn plus(a: Place, factor: f64, b: Place) -> Place {
 }
 
 fn unit(v: Place) -> Place {
-    v.map(|x| x / dot(v, v).sqrt())
+    v.map(|x| x / length(v))
 }
 
 /// Two directions across a third one, along axes of coordinates where they can be.
@@ -52,7 +53,7 @@ fn across(n: Place) -> [Place; 2] {
 /// `surface`: the edges of a triangulated one.
 fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Option<Wire> {
     let primary = contact.get("primary")?;
-    let diagonal = dot(minus(high, low), minus(high, low)).sqrt();
+    let diagonal = length(minus(high, low));
     let middle = plus(low, 0.5, minus(high, low));
     let reach = (0.5 + MARGIN) * diagonal;
     let share = |k: usize, n: usize| k as f64 / n as f64;
@@ -81,8 +82,7 @@ fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Opti
         // In pieces, of which those that are near are drawn.
         let pieces = |&[a, b]: &[Place; 2]| -> Vec<Place> {
             let along = minus(b, a);
-            let count =
-                (20.0 * dot(along, along).sqrt() / diagonal).ceil().clamp(1.0, POINTS as f64) as usize;
+            let count = (20.0 * length(along) / diagonal).ceil().clamp(1.0, POINTS as f64) as usize;
             (0..=count).map(|k| plus(a, share(k, count), along)).collect()
         };
         (surface.iter().map(pieces).collect(), [0.0; 3])
@@ -119,13 +119,7 @@ impl Wire {
 
     /// How far it has moved at a recorded time.
     pub(crate) fn moved(&self, run: &Run, time: f64) -> Place {
-        let times = run.times();
-        let row =
-            times.partition_point(|t| *t < time - 1e-12 * time.abs()).min(times.len().saturating_sub(1));
-        [0, 1, 2].map(|i| {
-            let place = run.column(&self.center[i]).and_then(|column| column.get(row).copied());
-            place.map_or(0.0, |place| place - self.origin[i])
-        })
+        [0, 1, 2].map(|i| recorded(run, &self.center[i], time).map_or(0.0, |place| place - self.origin[i]))
     }
 
     /// Its lines at a recorded time.

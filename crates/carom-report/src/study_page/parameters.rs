@@ -2,10 +2,10 @@
 //! and the design.
 
 use carom_record::study::Study;
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 use crate::document::{codes, file};
-use crate::figure::pictures;
+use crate::figure::Figure;
 use crate::ordered::distinct;
 use crate::text::Label;
 use crate::{design, settings, setup};
@@ -14,15 +14,15 @@ use crate::{design, settings, setup};
 const FEW: usize = 4;
 
 /// The section of the page.
-pub(super) fn section(study: &Study, picture: Option<&[String; 2]>) -> Markup {
+pub(super) fn section(study: &Study, picture: Option<&Figure>) -> Markup {
     let (varied, shared) = (settings::varied(study), settings::shared(study));
     let title = study.manifest.arms.first().and_then(|arm| arm.case.get("title")?.as_str());
     let title = title.filter(|title| !title.is_empty());
     html! {
         h2 { "Setup" }
-        @if let Some([svg, narrow]) = picture {
+        @if let Some(picture) = picture {
             figure {
-                div.drawing { (PreEscaped(pictures(svg, narrow))) }
+                div.drawing { (picture.pictures()) }
                 figcaption {
                     "Initial configuration of the first arm"
                     @if let Some(title) = title { ": " (Label(title)) }
