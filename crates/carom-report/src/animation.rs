@@ -15,11 +15,11 @@ use serde_json::json;
 
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::bodies::{Instant, frame, triangles};
-use crate::chart::{Chart, Options, Panel, Series, Track};
+use crate::chart::{Chart, Options, Panel, Series};
 use crate::labels::{amount, is_static, is_stress, number, symbol, time_label};
 use crate::noise;
 use crate::obstacles;
-use crate::ordered::grouped;
+use crate::over_time::{panel, tracks};
 use crate::palette::LINES;
 use crate::pen::Point;
 use crate::pressure;
@@ -35,8 +35,6 @@ const BUDGET: usize = 3_200_000;
 const FRAMES: usize = 300;
 /// Play, pause, slider and cursors, for all animations.
 pub(crate) const PLAYER: &str = include_str!("player.js");
-/// Largest number of kinds of events drawn; the rarest come first.
-const KINDS: usize = 6;
 
 /// An animation; its scripts come after all figures of the page, whose time histories they use.
 #[derive(Clone, Debug)]
@@ -103,15 +101,6 @@ fn forces(run: &Run) -> HashMap<u64, Vec<[f64; 4]>> {
     found
 }
 
-/// Times of the events of each kind, the rarest kind first.
-pub(crate) fn tracks(run: &Run) -> Vec<Track> {
-    let kinds = grouped(run.log.iter().map(|event| (event.kind.clone(), event.time)));
-    let mut tracks: Vec<Track> = kinds.into_iter().map(|(label, times)| Track { label, times }).collect();
-    tracks.sort_by_key(|t| t.times.len());
-    tracks.truncate(KINDS);
-    tracks
-}
-
 /// Time histories beside the picture: contact force (its label is short, for a low panel), then the
 /// probes.
 pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
@@ -121,7 +110,7 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
         Some(Series { label, color: LINES[k % LINES.len()], x: run.times(), y, ..Series::default() })
     };
     // In the plane y, as in the figures; in space the component that grows largest.
-    let peak = |name: &str| h.column(name).map(|x| x.iter().fold(0.0_f64, |most, x| most.max(x.abs())));
+    let peak = |name: &str| h.column(name).map(noise::largest);
     let candidates = ["contact_force_x", "contact_force_y", "contact_force_z"];
     let present = || candidates.into_iter().enumerate().filter_map(|(i, name)| Some((i, peak(name)?)));
     let axis = match present().count() {
@@ -131,13 +120,9 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let force = candidates[axis];
     let mut panels: Vec<Panel> = Vec::new();
     let label = ["f_{x}", "f_{y}", "f_{z}"][axis];
+    let low = |label: &str, unit: &str, series| panel(label, unit, 96.0, vec![series]);
     if let Some(s) = series(force, String::new(), 0) {
-        panels.push(Panel {
-            label: format!("force {label}"),
-            unit: h.unit(force).into(),
-            height: 96.0,
-            series: vec![s],
-        });
+        panels.push(low(&format!("force {label}"), h.unit(force), s));
     }
     for column in &h.columns {
         let Some((probe, quantity)) = column.name.rsplit_once('.') else { continue };
@@ -146,16 +131,10 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
             continue;
         }
         let Some(s) = series(&column.name, format!("{} at {probe}", symbol(quantity)), k) else { continue };
-        match panels.iter().position(|p| p.label == symbol(quantity)) {
-            Some(i) => panels[i].series.push(s),
-            None if panels.len() < 5 => {
-                panels.push(Panel {
-                    label: symbol(quantity),
-                    unit: column.unit.clone(),
-                    height: 96.0,
-                    series: vec![s],
-                });
-            }
+        let count = panels.len();
+        match panels.iter_mut().find(|p| p.label == symbol(quantity)) {
+            Some(panel) => panel.series.push(s),
+            None if count < 5 => panels.push(low(&symbol(quantity), &column.unit, s)),
             None => {}
         }
     }
@@ -188,9 +167,12 @@ fn planes(run: &Run, flat: bool, time: f64) -> Vec<[Point; 2]> {
 fn chosen(run: &Run, numbers: usize) -> Vec<&FieldEntry> {
     // Two bytes are 8/3 characters in base 64.
     let most = (3 * BUDGET / (8 * numbers.max(1))).clamp(2, FRAMES);
-    let stride = run.fields.len().div_ceil(most).max(1);
-    let last = run.fields.len().saturating_sub(1);
-    run.fields.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, e)| e).collect()
+    thinned(run.fields.len(), run.fields.len().div_ceil(most)).map(|i| &run.fields[i]).collect()
+}
+
+/// Every `stride`-th of a number of frames, and the last one.
+pub(crate) fn thinned(count: usize, stride: usize) -> impl Iterator<Item = usize> {
+    (0..count).filter(move |i| i % stride.max(1) == 0 || i + 1 == count)
 }
 
 /// Two digits of a force, with a prefix only where it is far from one.
@@ -198,8 +180,15 @@ fn size(x: f64, unit: &str) -> String {
     if (0.01..1000.0).contains(&x) { format!("{} {unit}", significant(x, 2)) } else { amount(x, unit) }
 }
 
-/// A sentence of the captions.
-pub(crate) const EVENTS: &str = " Ticks below the histories: events in `log.jsonl`.";
+/// The end of the captions: what arrowheads of the colour bars, shades, the line and ticks mean.
+pub(crate) fn explained(run: &Run, quantities: &[Quantity], shaded: bool) -> Markup {
+    html! {
+        (Label(&arrowheads(quantities.iter().map(|q| (q.legend.cut, q.legend.label.to_owned())))))
+        @if shaded { " Shaded: contact." }
+        " Vertical line, here and in the figures below: the instant shown."
+        @if !run.log.is_empty() { (Prose(" Ticks below the histories: events in `log.jsonl`.")) }
+    }
+}
 
 /// How many of the field files are frames.
 pub(crate) fn of_files(frames: usize, files: usize) -> String {
@@ -208,12 +197,6 @@ pub(crate) fn of_files(frames: usize, files: usize) -> String {
     } else {
         format!("all {files} field files")
     }
-}
-
-/// What the shades and the line in the time histories mean.
-pub(crate) fn histories_in_words(shaded: bool) -> String {
-    let shades = if shaded { " Shaded: contact." } else { "" };
-    format!("{shades} Vertical line, here and in the figures below: the instant shown.")
 }
 
 /// The time of the last frame, as a part of a sentence, where the record goes on after it.
@@ -340,7 +323,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     });
     let every = of_files(entries.len(), run.fields.len());
     let last = frames.last().map_or_else(String::new, |(entry, _)| until(run, entry.time));
-    let of_histories = histories_in_words(!shades.is_empty());
+    let explained = explained(run, &quantities, !shades.is_empty());
     // Only `<` could end the script element.
     let data = data.to_string().replace('<', "\\u003c");
     let figure = html! {
@@ -365,9 +348,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                     (Prose(" Arrows: contact forces on the secondary nodes (`contact.csv`); the longest is "))
                     (Label(&size(largest, run.history.unit("contact_force_x")))) "."
                 }
-                (Label(&arrowheads(quantities.iter().map(|q| (q.legend.cut, q.legend.label.to_owned())))))
-                (of_histories)
-                @if !run.log.is_empty() { (Prose(EVENTS)) }
+                (explained)
             }
             (help(&html! {
                 "Keys, after a click on the animation: Space: play or pause; ← and → (or comma and full stop): previous and \

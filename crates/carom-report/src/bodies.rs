@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 
 use carom_record::{Block, Cell, FieldSet};
 
-use crate::bands::{Bands, color_bands, parts, shape};
+use crate::bands::{Bands, color_bands, divided, parts, shape, small_triangles};
 use crate::obstacles::Walk;
 use crate::pen::{NOTHING, Pen, Point, around, open_grid};
 use crate::sheet::{Legend, Sheet};
@@ -102,17 +102,11 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
     for (degree, nodes) in halves {
         let m = [1, 4, 5][degree.saturating_sub(1).min(2)];
         corner.clear();
-        // Row j of the subdivision starts at `row(j)`: m + 1 − j points.
-        let row = |j: usize| j * (m + 1) - j * j.saturating_sub(1) / 2;
-        for j in 0..=m {
-            for i in 0..=m - j {
-                let (b, c) = (i as f64 / m as f64, j as f64 / m as f64);
-                shape(*degree, [1.0 - b - c, b, c], &mut n);
-                let sum =
-                    |f: &dyn Fn(usize) -> f64| n.iter().zip(&nodes).map(|(n, &k)| n * f(k)).sum::<f64>();
-                let p = [0, 1].map(|d| sum(&|k| instant.points[k][d]));
-                corner.push((to(p), sum(&|k| instant.values[k])));
-            }
+        for place in divided(m) {
+            shape(*degree, place, &mut n);
+            let sum = |f: &dyn Fn(usize) -> f64| n.iter().zip(&nodes).map(|(n, &k)| n * f(k)).sum::<f64>();
+            let p = [0, 1].map(|d| sum(&|k| instant.points[k][d]));
+            corner.push((to(p), sum(&|k| instant.values[k])));
         }
         // A cell within one band is filled as a whole, inside its exact edges.
         let band = bands.of(corner[0].1);
@@ -120,18 +114,9 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
             outline(&mut paths[band], *degree, &nodes, &|k| to(instant.points[k]));
             continue;
         }
-        for j in 0..m {
-            for i in 0..m - j {
-                let (low, high) = (row(j) + i, row(j + 1) + i);
-                let mut triangle = |triangle: [usize; 3]| {
-                    for (band, polygon) in parts(&triangle.map(|k| corner[k]), bands) {
-                        paths[band].polygon(&polygon);
-                    }
-                };
-                triangle([low, low + 1, high]);
-                if i + 1 < m - j {
-                    triangle([low + 1, high + 1, high]);
-                }
+        for (triangle, _) in small_triangles(m) {
+            for (band, polygon) in parts(&triangle.map(|k| corner[k]), bands) {
+                paths[band].polygon(&polygon);
             }
         }
     }
@@ -257,8 +242,8 @@ pub(crate) fn figure(
         let thin = thickness(instant) * scale < THIN;
         let [inside, outline] = edges(instant, &to).map(|pen| pen.data().to_string());
         if thin {
-            let _ =
-                writeln!(out, "<path d=\"{outline}\" fill=\"none\" stroke=\"#777\" stroke-width=\"52\"/>");
+            let style = "fill=\"none\" stroke=\"#777\" stroke-width=\"52\"";
+            let _ = writeln!(out, "<path d=\"{outline}\" {style}/>");
         }
         fill(out, instant, legend.bands, &to, if thin { 35.0 } else { 10.0 });
         if thin {

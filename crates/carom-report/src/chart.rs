@@ -1,6 +1,6 @@
 //! Line charts against a shared horizontal axis, one panel above the other.
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
 use crate::axis::{Axis, range};
 use crate::labels::unit_of;
@@ -86,6 +86,12 @@ pub(crate) fn opened(class: &str, title: &str, width: f64, height: f64) -> Strin
 /// A text element; `extra` holds further attributes.
 pub(crate) fn write_text(out: &mut String, x: f64, y: f64, extra: &str, label: &str) {
     let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" {extra}>{}</text>", text::svg(label));
+}
+
+/// A text element turned upwards around its middle, as the label of a vertical axis.
+pub(crate) fn turned(out: &mut String, (x, y): (impl Display, f64), extra: &str, label: &str) {
+    let at = format!("text-anchor=\"middle\"{extra} transform=\"translate({x} {y:.1}) rotate(-90)\"");
+    write_text(out, 0.0, 0.0, &at, label);
 }
 
 impl Chart<'_> {
@@ -210,10 +216,7 @@ fn write_turned(out: &mut String, label: &str, (left, middle): (f64, f64), room:
     for (k, line) in lines.iter().enumerate() {
         let size = FONT.min(room / text::width(line).max(1e-9));
         let x = if lines.len() == 1 { 14.0 } else { [10.5, SECOND][k.min(1)] };
-        let turned = format!(
-            "text-anchor=\"middle\" font-size=\"{size:.1}\" transform=\"translate({x} {middle:.1}) rotate(-90)\""
-        );
-        write_text(out, 0.0, 0.0, &turned, line);
+        turned(out, (x, middle), &format!(" font-size=\"{size:.1}\""), line);
     }
 }
 

@@ -13,6 +13,7 @@ use crate::noise;
 use crate::ordered::distinct;
 use crate::plot::Curve;
 use crate::systems::Systems;
+use crate::trace::ends_and_extremes;
 
 /// Columns shown besides those of the probes: name, label, caption.
 const OTHERS: [(&str, &str, &str); 5] = [
@@ -161,20 +162,8 @@ fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     if times.len() <= 4 * SPANS {
         return (times.to_vec(), values.to_vec());
     }
-    let keep = (0..SPANS).flat_map(|k| {
-        let rows = k * times.len() / SPANS..(k + 1) * times.len() / SPANS;
-        let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
-        let mut keep = [
-            Some(rows.start),
-            rows.clone().min_by(by_value),
-            rows.clone().max_by(by_value),
-            Some(rows.end - 1),
-        ];
-        keep.sort_unstable();
-        keep.into_iter().flatten()
-    });
-    let mut keep: Vec<usize> = keep.collect();
-    keep.dedup();
+    let span = |k: usize| k * times.len() / SPANS..(k + 1) * times.len() / SPANS;
+    let keep: Vec<usize> = (0..SPANS).flat_map(|k| ends_and_extremes(span(k), |i| values[i])).collect();
     (keep.iter().map(|&i| times[i]).collect(), keep.iter().map(|&i| values[i]).collect())
 }
 

@@ -2,17 +2,29 @@
 
 use carom_record::{Run, metrics};
 
-use crate::animation;
-use crate::chart::{Chart, Options, Panel, Series};
+use crate::chart::{Chart, Options, Panel, Series, Track};
 use crate::figure::Figure;
 use crate::labels::time_label;
 use crate::measured::{Points, add_points};
 use crate::noise::{has_contact, largest};
+use crate::ordered::grouped;
 use crate::palette::LINES;
 use crate::text::said_if;
 
 /// Share of the recorded time from which shading says nothing.
 const THROUGHOUT: f64 = 0.97;
+
+/// Largest number of kinds of events drawn; the rarest come first.
+const KINDS: usize = 6;
+
+/// Times of the events of each kind, the rarest kind first.
+pub(crate) fn tracks(run: &Run) -> Vec<Track> {
+    let kinds = grouped(run.log.iter().map(|event| (event.kind.clone(), event.time)));
+    let mut tracks: Vec<Track> = kinds.into_iter().map(|(label, times)| Track { label, times }).collect();
+    tracks.sort_by_key(|t| t.times.len());
+    tracks.truncate(KINDS);
+    tracks
+}
 
 /// Contact intervals to shade; none where one lasts throughout.
 pub(crate) fn shades(run: &Run) -> Vec<(f64, f64)> {
@@ -85,7 +97,7 @@ pub(crate) fn chart<'a>(
     let panels: Vec<Panel> = panels.into_iter().filter(|p| !p.series.is_empty()).collect();
     let x_label = time_label(run);
     (!panels.is_empty()).then(|| {
-        let tracks = if title == "Solver" { animation::tracks(run) } else { Vec::new() };
+        let tracks = if title == "Solver" { tracks(run) } else { Vec::new() };
         let options = Options { tracks: &tracks, time: true, ..Options::default() };
         Chart { title, x_label, shades: shades(run), panels }.figure(name, caption, &options)
     })

@@ -24,6 +24,12 @@ pub(crate) fn open_grid() -> String {
     format!("<g transform=\"scale({})\">\n", 1.0 / GRID)
 }
 
+/// The data of a path through points in pixels, with a tenth of them; it is not closed.
+pub(crate) fn polyline(points: &[Point]) -> String {
+    let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.1} {y:.1}")).collect();
+    format!("M{}", points.join("L"))
+}
+
 /// Adds a path of a pen.
 pub(crate) fn path(out: &mut String, pen: &Pen, style: &str) {
     let _ = writeln!(out, "{}<path d=\"{}\" {style}/>\n</g>", open_grid(), pen.data());

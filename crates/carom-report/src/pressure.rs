@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::arc::{Place, places};
 use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
-use crate::chart::{ground, opened, time_axis, write_text};
+use crate::chart::{ground, opened, time_axis, turned, write_text};
 use crate::figure::{Figure, NARROW};
 use crate::labels::{number, scaled, with_unit};
 use crate::ordered::grouped;
@@ -143,9 +143,7 @@ fn draw(run: &Run, sides: &[Side], width: f64) -> (String, Vec<[bool; 2]>, usize
         map(&mut out, side, &kept, &bands, (&to_x, &to_y));
         frame(&mut out, (&x_axis, &y_axis), [LEFT, plot, top, HEIGHT]);
         let label = y_axis.label("arc length s", &length);
-        let middle = top + 0.5 * HEIGHT;
-        let turned = format!("text-anchor=\"middle\" transform=\"translate(17 {middle:.1}) rotate(-90)\"");
-        write_text(&mut out, 0.0, 0.0, &turned, &label);
+        turned(&mut out, (17, top + 0.5 * HEIGHT), "", &label);
         let legend = Legend { bands: &bands, cut, label: "p", unit: &stress };
         color_bar(&mut out, &legend, LEFT + plot + 20.0, (top - 4.0, top + HEIGHT - 8.0));
     }
@@ -206,15 +204,11 @@ fn map(
     bands: &Bands,
     (to_x, to_y): (&dyn Fn(f64) -> f64, &dyn Fn(f64) -> f64),
 ) {
-    let mut rows: Vec<(usize, usize, usize, [f64; 2])> = side
-        .rows
-        .iter()
-        .filter_map(|(row, place)| {
-            let at = kept.partition_point(|t| *t < row.time);
-            let is_kept = kept.get(at).is_some_and(|t| *t == row.time);
-            is_kept.then(|| (place.number, at, bands.of(row.pressure), place.part))
-        })
-        .collect();
+    let cell = |(row, place): &(&ContactRow, Place)| {
+        let at = kept.partition_point(|t| *t < row.time);
+        (kept.get(at) == Some(&row.time)).then(|| (place.number, at, bands.of(row.pressure), place.part))
+    };
+    let mut rows: Vec<(usize, usize, usize, [f64; 2])> = side.rows.iter().filter_map(cell).collect();
     rows.sort_by_key(|row| (row.0, row.1));
     let mut paths = vec![Pen::default(); bands.count];
     for run in rows.chunk_by(|a, b| a.0 == b.0 && a.1 + 1 == b.1 && a.2 == b.2) {
@@ -257,9 +251,7 @@ pub(crate) fn profiles(run: &Run, frames: &[&FieldEntry]) -> Option<(String, Vec
         }
         frame(&mut out, (&x_axis, &y_axis), [LEFT, wide, top, high]);
         write_text(&mut out, LEFT, 14.0, "font-size=\"12\"", &format!("contact pressure, “{}”", side.name));
-        let middle = top + 0.5 * high;
-        let turned = format!("text-anchor=\"middle\" transform=\"translate(17 {middle:.1}) rotate(-90)\"");
-        write_text(&mut out, 0.0, 0.0, &turned, &y_axis.label("p", &stress));
+        turned(&mut out, (17, top + 0.5 * high), "", &y_axis.label("p", &stress));
         let label = x_axis.label("arc length s", &length);
         write_text(&mut out, LEFT + 0.5 * wide, height - 8.0, "text-anchor=\"middle\"", &label);
         let _ = writeln!(
@@ -278,14 +270,11 @@ pub(crate) fn profiles(run: &Run, frames: &[&FieldEntry]) -> Option<(String, Vec
     }
     let short = |x: f64| -> f64 { format!("{x:.4e}").parse().unwrap_or(0.0) };
     let points = |side: &Side, step: u64| -> Vec<f64> {
-        let mut points: Vec<(usize, f64, f64)> = side
-            .rows
-            .iter()
-            .filter(|(row, _)| row.step == step)
-            .map(|(row, place)| (place.number, place.at, row.pressure))
-            .collect();
-        points.sort_by_key(|point| point.0);
-        points.into_iter().flat_map(|(number, s, p)| [number as f64, short(s), short(p)]).collect()
+        let mut points: Vec<_> = side.rows.iter().filter(|(row, _)| row.step == step).collect();
+        points.sort_by_key(|(_, place)| place.number);
+        let numbers =
+            |(row, place): &(&ContactRow, Place)| [place.number as f64, short(place.at), short(row.pressure)];
+        points.into_iter().flat_map(numbers).collect()
     };
     let frame =
         |entry: &&FieldEntry| json!(sides.iter().map(|side| points(side, entry.step)).collect::<Vec<_>>());

@@ -19,7 +19,7 @@ use serde_json::Value;
 
 use crate::axis::Axis;
 use crate::bodies::{self, Instant, bezier, corners, edges, fill_space, places};
-use crate::chart::{opened, write_text};
+use crate::chart::{opened, turned, write_text};
 use crate::figure::NARROW;
 use crate::obstacles;
 use crate::pen::{NOTHING, Pen, Point, around, open_grid};
@@ -136,8 +136,8 @@ impl Setup<'_> {
                 writeln!(out, "<path d=\"M{at:.1} {bottom:.1}v5\" stroke=\"#888\" stroke-width=\"0.8\"/>");
             write_text(out, at, bottom + 19.0, "text-anchor=\"middle\"", label);
         }
-        let power = |label: &str, axis: &Axis| axis.label(label, length);
-        write_text(out, 0.5 * (left + right), bottom + 38.0, "text-anchor=\"middle\"", &power("x", &x));
+        let label = x.label("x", length);
+        write_text(out, 0.5 * (left + right), bottom + 38.0, "text-anchor=\"middle\"", &label);
         if self.flat {
             return;
         }
@@ -148,12 +148,7 @@ impl Setup<'_> {
             let _ = writeln!(out, "<path d=\"M{left:.1} {at:.1}h-5\" stroke=\"#888\" stroke-width=\"0.8\"/>");
             write_text(out, left - 8.0, at + 4.3, "text-anchor=\"end\"", label);
         }
-        let middle = 0.5 * (top + bottom);
-        let turned = format!(
-            "text-anchor=\"middle\" transform=\"translate({:.1} {middle:.1}) rotate(-90)\"",
-            left - 42.0
-        );
-        write_text(out, 0.0, 0.0, &turned, &power("y", &y));
+        turned(out, (format!("{:.1}", left - 42.0), 0.5 * (top + bottom)), "", &y.label("y", length));
     }
 
     fn bodies(&mut self, out: &mut String) {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::chart::write_text;
-use crate::pen::Point;
+use crate::pen::{Point, polyline};
 
 pub(crate) fn plus(p: Point, s: f64, d: Point) -> Point {
     [p[0] + s * d[0], p[1] + s * d[1]]
@@ -22,19 +22,12 @@ pub(crate) fn arrow(out: &mut String, from: Point, to: Point, color: &str) {
     let side = [-d[1], d[0]];
     let neck = plus(to, -9.0, d);
     let [a, b] = [4.0, -4.0].map(|s| plus(neck, s, side));
+    let shaft = polyline(&[from, neck]);
     for (stroke, width) in [("#fff", 5.0), (color, 1.8)] {
-        let _ = writeln!(
-            out,
-            "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" stroke=\"{stroke}\" stroke-width=\"{width}\" \
-             fill=\"none\"/>",
-            from[0], from[1], neck[0], neck[1]
-        );
+        let _ =
+            writeln!(out, "<path d=\"{shaft}\" stroke=\"{stroke}\" stroke-width=\"{width}\" fill=\"none\"/>");
     }
-    let _ = writeln!(
-        out,
-        "<path d=\"M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}z\" fill=\"{color}\"/>",
-        to[0], to[1], a[0], a[1], b[0], b[1]
-    );
+    let _ = writeln!(out, "<path d=\"{}z\" fill=\"{color}\"/>", polyline(&[to, a, b]));
 }
 
 /// Equidistant points along a polyline, ends included, with the outward normal.
@@ -61,16 +54,10 @@ pub(crate) fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)
 /// outward unit normals.
 pub(crate) fn wall(out: &mut String, line: &[(Point, Point)], offset: f64) {
     let shifted: Vec<(Point, Point)> = line.iter().map(|&(p, n)| (plus(p, offset, n), n)).collect();
-    let mut d = String::new();
-    for (k, (p, _)) in shifted.iter().enumerate() {
-        let _ = write!(d, "{}{:.1} {:.1}", if k == 0 { 'M' } else { 'L' }, p[0], p[1]);
-    }
-    let mut hatch = String::new();
-    for (p, n) in along(&shifted, 7.0) {
-        // The outward normal turned by 45 degrees.
-        let q = plus(p, 7.0, [n[0] - n[1], n[1] + n[0]]);
-        let _ = write!(hatch, "M{:.1} {:.1}L{:.1} {:.1}", p[0], p[1], q[0], q[1]);
-    }
+    let d = polyline(&shifted.iter().map(|(p, _)| *p).collect::<Vec<_>>());
+    // The outward normal turned by 45 degrees.
+    let stroke = |(p, n): (Point, Point)| polyline(&[p, plus(p, 7.0, [n[0] - n[1], n[1] + n[0]])]);
+    let hatch: String = along(&shifted, 7.0).into_iter().map(stroke).collect();
     let _ = writeln!(
         out,
         "<path d=\"{hatch}\" stroke=\"#555\" stroke-width=\"0.8\" fill=\"none\"/>\n<path d=\"{d}\" \
@@ -83,11 +70,7 @@ pub(crate) fn wall(out: &mut String, line: &[(Point, Point)], offset: f64) {
 pub(crate) fn mark(out: &mut String, p: Point, n: Point) {
     let foot = plus(p, 13.0, n);
     let [a, b] = [6.0, -6.0].map(|s| plus(foot, s, [-n[1], n[0]]));
-    let _ = writeln!(
-        out,
-        "<path d=\"M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}z\" fill=\"#222\"/>",
-        p[0], p[1], a[0], a[1], b[0], b[1]
-    );
+    let _ = writeln!(out, "<path d=\"{}z\" fill=\"#222\"/>", polyline(&[p, a, b]));
 }
 
 /// Double-headed arrows across or along a side that is moved.
@@ -95,14 +78,10 @@ pub(crate) fn motion(out: &mut String, line: &[(Point, Point)], axis: Point) {
     for (p, _) in along(line, 30.0) {
         let [a, b] = [-9.0, 9.0].map(|s| plus(p, s, axis));
         let side = [-axis[1], axis[0]];
-        let mut d = format!("M{:.1} {:.1}L{:.1} {:.1}", a[0], a[1], b[0], b[1]);
+        let mut d = polyline(&[a, b]);
         for (end, sign) in [(a, 1.0), (b, -1.0)] {
             let [left, right] = [3.5, -3.5].map(|s| plus(plus(end, 5.0 * sign, axis), s, side));
-            let _ = write!(
-                d,
-                "M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}",
-                left[0], left[1], end[0], end[1], right[0], right[1]
-            );
+            d += &polyline(&[left, end, right]);
         }
         for (stroke, width) in [("#fff", 4.0), ("#44607c", 1.6)] {
             let _ =
@@ -129,12 +108,8 @@ pub(crate) fn rollers(out: &mut String, line: &[(Point, Point)]) {
 pub(crate) fn guides(out: &mut String, line: &[(Point, Point)], constrained: Point) {
     for (p, n) in along(line, 22.0) {
         let c = plus(p, 5.0, n);
-        let [a, b] = [-6.0, 6.0].map(|s| plus(c, s, constrained));
-        let _ = writeln!(
-            out,
-            "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" stroke=\"#222\" stroke-width=\"2\"/>",
-            a[0], a[1], b[0], b[1]
-        );
+        let bar = polyline(&[-6.0, 6.0].map(|s| plus(c, s, constrained)));
+        let _ = writeln!(out, "<path d=\"{bar}\" stroke=\"#222\" stroke-width=\"2\"/>");
     }
 }
 

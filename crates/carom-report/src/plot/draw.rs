@@ -8,7 +8,7 @@ use super::layout::{LEFT, Layout, RIGHT, TICK};
 use super::scale::Scale;
 use super::{Band, Curve, Pane, Plot, curve, direct, legend};
 use crate::again::{again, once};
-use crate::chart::{opened, write_text};
+use crate::chart::{opened, turned, write_text};
 use crate::figure::NARROW;
 use crate::labels::unit_of;
 use crate::{text, trace};
@@ -103,13 +103,12 @@ impl Plot {
             let rows: Vec<usize> = (0..x.len()).collect();
             place.shared(out, "band", |out| {
                 for part in rows.chunk_by(|a, b| shown[*a] == shown[*b]).filter(|part| shown[part[0]]) {
-                    let upper = part.iter().map(|i| (to_x(x[*i]), to_y(up[*i])));
-                    let lower = part.iter().map(|i| (to_x(x[*i]), to_y(low[*i])));
+                    let edges = [up, low].map(|y| part.iter().map(|i| (to_x(x[*i]), to_y(y[*i]))).collect());
                     let _ = writeln!(
                         out,
                         "<path d=\"{}\" fill=\"#ececec\" stroke=\"#ececec\" stroke-width=\"2.5\" \
                          stroke-linejoin=\"round\"/>",
-                        trace::area(upper, lower)
+                        trace::area(edges)
                     );
                 }
             });
@@ -205,13 +204,8 @@ impl Plot {
             let label = scales.y.axis.label(words, unit);
             // Smaller where it is longer than the pane is high.
             let size = (12.0_f64).min((high + 24.0) / text::width(&label).max(1e-9));
-            let place = format!(
-                "text-anchor=\"middle\" font-size=\"{size:.1}\" transform=\"translate({:.1} {:.1}) \
-                 rotate(-90)\"",
-                x0 - beside,
-                y0 + 0.5 * high
-            );
-            write_text(out, 0.0, 0.0, &place, &label);
+            let left = format!("{:.1}", x0 - beside);
+            turned(out, (left, y0 + 0.5 * high), &format!(" font-size=\"{size:.1}\""), &label);
         }
     }
 }

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, written};
+use super::words::{gravity_and_velocity, law_name, plane_in_words};
 use crate::bodies::fill_space;
 use crate::chart::write_text;
 use crate::labels::given_amount;
@@ -54,14 +55,8 @@ impl Setup<'_> {
                 &format!("{}: {of}{material}, {cells} {element} cells, {nodes} nodes", word(body, "name")),
                 false,
             );
-            for (key, symbol, unit) in [
-                ("gravity", "g", format!("{length}/{time}^2")),
-                ("velocity", "v_{0}", format!("{length}/{time}")),
-            ] {
-                let v = vector(body.get(key));
-                if v.iter().any(|x| *x != 0.0) {
-                    line("", &format!("{symbol} = {} {unit}", tuple(&v)), false);
-                }
+            for words in gravity_and_velocity(body, length, time) {
+                line("", &words, false);
             }
         }
         if let Some(plane) = plane_in_words(self.case(), length) {
@@ -160,25 +155,6 @@ impl Setup<'_> {
             );
         }
         y + 12.0
-    }
-}
-
-/// `plane strain, thickness 1 m`, in bars `cross-section 1 m²`; none in space.
-pub(super) fn plane_in_words(case: &Value, length: &str) -> Option<String> {
-    let thickness = given(case.get("thickness").and_then(Value::as_f64)?);
-    match case.get("dimension").and_then(Value::as_u64) {
-        Some(1) => Some(format!("bar, cross-section {thickness} {length}^2")),
-        Some(2) => Some(format!("plane {}, thickness {thickness} {length}", word(case, "plane"))),
-        _ => None,
-    }
-}
-
-/// The name of a material law.
-pub(super) fn law_name(law: &str) -> &str {
-    match law {
-        "neo-hookean" => "neo-Hookean",
-        "saint-venant-kirchhoff" => "Saint Venant–Kirchhoff",
-        law => law,
     }
 }
 

@@ -137,7 +137,7 @@ impl Solid<'_> {
             pieces(&self.skin, &self.places, &|facet, _| number[facet], &self.view, &to, self.setup.scale);
         let colors: Vec<&str> = BODIES.iter().chain(&SUPPORTS).copied().collect();
         let drawn = pieces.len() <= DRAWN;
-        draw(out, &pieces, (&Paint::Parts(&colors), colors.len()), place, drawn);
+        draw(out, &pieces, &Paint::Parts(&colors), place, drawn);
     }
 
     /// Outlines of supported and loaded sides; dashed where the side turns its back to the eye.

@@ -31,14 +31,14 @@ pub(crate) fn frame(skin: &[Facet], places: &[Place], view: &View) -> [f64; 4] {
 pub(crate) fn draw(
     out: &mut String,
     pieces: &[Piece],
-    colors: (&Paint, usize),
+    colors: &Paint,
     (corner, size): (Point, Point),
     drawn: bool,
 ) {
     if drawn {
-        paint(out, pieces, colors.0);
+        paint(out, pieces, colors);
     } else {
-        out.push_str(&image(pieces, colors.0, colors.1, corner, size));
+        out.push_str(&image(pieces, colors, corner, size));
     }
 }
 
@@ -81,7 +81,7 @@ pub(crate) fn instants(
         let (place, to) = (sheet.picture(k), sheet.map(k));
         underlay(&mut sheet.out, &lines[k], &view, &to);
         let pieces = seen(k, &to, sheet.scale);
-        draw(&mut sheet.out, &pieces, (&Paint::Bands(&bands), bands.count), place, count <= DRAWN);
+        draw(&mut sheet.out, &pieces, &Paint::Bands(&bands), place, count <= DRAWN);
     };
     let finish = |mut sheet: Sheet| {
         let triad = [36.0, sheet.pictures + 36.0];

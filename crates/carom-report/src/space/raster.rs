@@ -108,15 +108,14 @@ fn checksum(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, step)
 }
 
-/// The rectangle from `corner` with `size` as an SVG image of the pieces; `count` is the number of
-/// colours.
-pub(crate) fn image(pieces: &[Piece], paint: &Paint, count: usize, corner: Point, size: Point) -> String {
+/// The rectangle from `corner` with `size` as an SVG image of the pieces.
+pub(crate) fn image(pieces: &[Piece], paint: &Paint, corner: Point, size: Point) -> String {
     let fine = DENSITY * SAMPLES;
     let [across, down] = size.map(|s| (s * DENSITY as f64).ceil().max(1.0) as usize);
     let (width, height) = (across * SAMPLES, down * SAMPLES);
     let (depth, color) = (vec![f64::NEG_INFINITY; width * height], vec![[255; 3]; width * height]);
     let mut samples = Samples { width, height, depth, color };
-    let colors: Vec<[u8; 3]> = (0..count).map(|number| paint.rgb(number)).collect();
+    let colors: Vec<[u8; 3]> = (0..paint.count()).map(|number| paint.rgb(number)).collect();
     for piece in pieces {
         let scaled = |[x, y, z]: Place| [(x - corner[0]) * fine as f64, (y - corner[1]) * fine as f64, z];
         samples.fill(piece, piece.corners.map(scaled), &colors, paint, 0.5 * EDGE * fine as f64);

@@ -15,15 +15,13 @@ use super::figure::box_around;
 use super::skin::{Facet, Place, skin};
 use super::view::{View, length};
 use super::wires::wires;
-use crate::animation::{
-    Animation, EVENTS, PLAYER, controls, help, histories, histories_in_words, of_files, until,
-};
+use crate::animation::{Animation, PLAYER, controls, explained, help, histories, of_files, thinned, until};
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::labels::is_static;
 use crate::noise::largest;
 use crate::quantity::{Quantity, bars, choice, stresses};
-use crate::sheet::{Legend, arrowheads};
-use crate::text::{Label, Prose};
+use crate::sheet::Legend;
+use crate::text::Label;
 
 /// Largest number of bytes of the scene in the page, in base 64; frames are left out evenly to stay
 /// below.
@@ -122,12 +120,6 @@ impl Scene {
         box_around(all.map(|(place, moved)| [0, 1, 2].map(|d| place[d] + moved[d])))
     }
 
-    /// Every `stride`-th frame and the last one.
-    fn chosen(&self, stride: usize) -> Vec<usize> {
-        let last = self.frames.len() - 1;
-        (0..=last).filter(|k| k % stride == 0 || *k == last).collect()
-    }
-
     /// Triangles, edges, reference positions and the given frames, in base 64.
     fn packed(&self, frames: &[usize]) -> String {
         let mut bytes = Vec::new();
@@ -179,7 +171,7 @@ impl Scene {
     fn fitted(&self) -> (Vec<usize>, String) {
         let mut stride = 1;
         loop {
-            let frames = self.chosen(stride);
+            let frames: Vec<usize> = thinned(self.frames.len(), stride).collect();
             let packed = self.packed(&frames);
             if packed.len() <= BUDGET || frames.len() <= 2 {
                 return (frames, packed);
@@ -216,14 +208,10 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     if most < 2 {
         return None;
     }
-    let stride = run.fields.len().div_ceil(most).max(1);
-    let last = run.fields.len() - 1;
-    let read = run.fields.iter().enumerate().filter(|(k, _)| k % stride == 0 || *k == last);
-    let (mut entries, mut frames) = (Vec::new(), Vec::new());
-    for (_, entry) in read {
-        frames.push(frame(run, entry, &surface.nodes, first.points.len())?);
-        entries.push(entry);
-    }
+    let chosen = thinned(run.fields.len(), run.fields.len().div_ceil(most));
+    let entries: Vec<&FieldEntry> = chosen.map(|k| &run.fields[k]).collect();
+    let read = |entry: &&FieldEntry| frame(run, entry, &surface.nodes, first.points.len());
+    let frames: Vec<Frame> = entries.iter().map(read).collect::<Option<_>>()?;
     if frames.len() < 2 {
         return None;
     }
@@ -252,8 +240,8 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         })
         .collect();
     let entry = |k: &usize| {
-        json!({ "time": entries[*k].time, "step": entries[*k].step,
-                                    "file": run.field_file(entries[*k]) })
+        let entry = entries[*k];
+        json!({ "time": entry.time, "step": entry.step, "file": run.field_file(entry) })
     };
     let [low, high] = scene.box_of();
     let rigid = wires(run, scene.moved_box());
@@ -274,7 +262,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     });
     let every = of_files(chosen.len(), run.fields.len());
     let last = chosen.last().map_or_else(String::new, |&k| until(run, entries[k].time));
-    let of_histories = histories_in_words(!shades.is_empty());
+    let explained = explained(run, &quantities, !shades.is_empty());
     // Only `<` could end the script element.
     let data = data.to_string().replace('<', "\\u003c");
     let figure = html! {
@@ -306,9 +294,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                 ", without interpolation" (Label(&last)) ". Displacements are not magnified. " (Label("σ_{vM}"))
                 " and the mean stress " (Label("σ_{m}")) " = tr σ/3 = −p, minus the pressure (blue: compression, \
                  red: tension), are those of nodal averages of the Cauchy stress. The inside of a cut body is grey."
-                (Label(&arrowheads(quantities.iter().map(|q| (q.legend.cut, q.legend.label.to_owned())))))
-                (of_histories)
-                @if !run.log.is_empty() { (Prose(EVENTS)) }
+                (explained)
             }
             (help(&html! {
                 "Drag the bodies: turn; with the right button or Shift: move. Wheel, after a click: zoom. Touch: one \
