@@ -11,15 +11,16 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use carom_record::{Block, Cell, FieldEntry, FieldSet, Run};
 use maud::{Markup, PreEscaped, html};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::bodies::{Instant, frame, triangles};
 use crate::chart::{Chart, Options, Panel, Series};
-use crate::labels::{amount, is_static, is_stress, number, symbol, time_label};
+use crate::labels::{amount, is_static, number, symbol, time_label};
 use crate::noise;
 use crate::obstacles;
-use crate::over_time::{panel, tracks};
+use crate::ordered::grouped;
+use crate::over_time::{of_probes, panel, tracks};
 use crate::palette::LINES;
 use crate::pen::Point;
 use crate::pressure;
@@ -27,14 +28,14 @@ use crate::quantity::{Quantity, bars, choice, stresses};
 use crate::scientific::significant;
 use crate::sheet::{Legend, arrowheads};
 use crate::text::{Label, Prose};
-use crate::values::{self, list, names, text};
+use crate::values::{self, list, text};
 
 /// Largest number of bytes of positions and stresses in the page; field files are skipped evenly to
 /// stay below.
 const BUDGET: usize = 3_200_000;
 const FRAMES: usize = 300;
 /// Play, pause, slider and cursors, for all animations.
-pub(crate) const PLAYER: &str = include_str!("player.js");
+const PLAYER: &str = include_str!("player.js");
 
 /// An animation; its scripts come after all figures of the page, whose time histories they use.
 #[derive(Clone, Debug)]
@@ -104,11 +105,7 @@ fn forces(run: &Run) -> HashMap<u64, Vec<[f64; 4]>> {
 /// Time histories beside the picture: contact force (its label is short, for a low panel), then the
 /// probes.
 pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
-    let (h, case) = (&run.history, &run.manifest.case);
-    let series = |name: &str, label: String, k: usize| {
-        let y = h.column(name)?.to_vec();
-        Some(Series { label, color: LINES[k % LINES.len()], x: run.times(), y, ..Series::default() })
-    };
+    let h = &run.history;
     // In the plane y, as in the figures; in space the component that grows largest.
     let peak = |name: &str| h.column(name).map(noise::largest);
     let candidates = ["contact_force_x", "contact_force_y", "contact_force_z"];
@@ -120,23 +117,15 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let force = candidates[axis];
     let mut panels: Vec<Panel> = Vec::new();
     let label = ["f_{x}", "f_{y}", "f_{z}"][axis];
-    let low = |label: &str, unit: &str, series| panel(label, unit, 96.0, vec![series]);
-    if let Some(s) = series(force, String::new(), 0) {
-        panels.push(low(&format!("force {label}"), h.unit(force), s));
+    let low = |label: &str, unit: &str, series| panel(label, unit, 96.0, series);
+    if let Some(y) = h.column(force) {
+        let series = Series { color: LINES[0], x: run.times(), y: y.to_vec(), ..Series::default() };
+        panels.push(low(&format!("force {label}"), h.unit(force), vec![series]));
     }
-    for column in &h.columns {
-        let Some((probe, quantity)) = column.name.rsplit_once('.') else { continue };
-        let Some(k) = names(case, "probes").iter().position(|name| *name == probe) else { continue };
-        if is_stress(quantity) && noise::is_noise(run, &column.name) {
-            continue;
-        }
-        let Some(s) = series(&column.name, format!("{} at {probe}", symbol(quantity)), k) else { continue };
-        let count = panels.len();
-        match panels.iter_mut().find(|p| p.label == symbol(quantity)) {
-            Some(panel) => panel.series.push(s),
-            None if count < 5 => panels.push(low(&symbol(quantity), &column.unit, s)),
-            None => {}
-        }
+    let room = 5 - panels.len();
+    for (quantity, members) in grouped(of_probes(run)).into_iter().take(room) {
+        let unit = &members[0].0.unit;
+        panels.push(low(&symbol(quantity), unit, members.into_iter().map(|(_, series)| series).collect()));
     }
     // A force that is zero throughout needs no panel, unless there is no other for the cursor.
     if panels.len() > 1 && panels[0].label.starts_with("force") && noise::is_noise(run, force) {
@@ -150,7 +139,7 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
 /// Rigid planes: a point, which in 1D is that at a recorded time, and the normal out of the rigid
 /// body.
 fn planes(run: &Run, flat: bool, time: f64) -> Vec<[Point; 2]> {
-    let at = |contact: &serde_json::Value| {
+    let at = |contact: &Value| {
         let plane = contact.pointer("/primary/plane")?;
         let [p, n] = ["point", "normal"].map(|key| values::flat(plane.get(key)));
         if !flat {
@@ -187,6 +176,16 @@ pub(crate) fn explained(run: &Run, quantities: &[Quantity], shaded: bool) -> Mar
         @if shaded { " Shaded: contact." }
         " Vertical line, here and in the figures below: the instant shown."
         @if !run.log.is_empty() { (Prose(" Ticks below the histories: events in `log.jsonl`.")) }
+    }
+}
+
+/// The data of an animation, and the scripts that draw and play it.
+pub(crate) fn scripts(data: &Value, script: &str) -> Markup {
+    // Only `<` could end the script element.
+    let data = data.to_string().replace('<', "\\u003c");
+    html! {
+        script #animation-data type="application/json" { (PreEscaped(data)) }
+        script { (PreEscaped(PLAYER)) (PreEscaped(script)) }
     }
 }
 
@@ -324,8 +323,6 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let every = of_files(entries.len(), run.fields.len());
     let last = frames.last().map_or_else(String::new, |(entry, _)| until(run, entry.time));
     let explained = explained(run, &quantities, !shades.is_empty());
-    // Only `<` could end the script element.
-    let data = data.to_string().replace('<', "\\u003c");
     let figure = html! {
         figure.animation #animation hidden {
             div.stage {
@@ -356,11 +353,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
             }))
         }
     };
-    let scripts = html! {
-        script #animation-data type="application/json" { (PreEscaped(data)) }
-        script { (PreEscaped(PLAYER)) (PreEscaped(include_str!("animation.js"))) }
-    };
-    Some(Animation { figure, scripts })
+    Some(Animation { figure, scripts: scripts(&data, include_str!("animation.js")) })
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use crate::bands::{Bands, color_bands, divided, parts, shape, small_triangles};
 use crate::obstacles::Walk;
 use crate::pen::{NOTHING, Pen, Point, around, open_grid};
 use crate::sheet::{Legend, Sheet};
-use crate::symbols::{mark, wall};
+use crate::symbols::{distance, mark, wall};
 
 /// One instant: deformed nodes, the quantity at them, and the cells.
 #[derive(Default)]
@@ -148,7 +148,7 @@ fn thickness(instant: &Instant) -> f64 {
         }
     }
     for ([a, b], _) in found.iter().filter(|(_, count)| **count == 1) {
-        around += (at(*a)[0] - at(*b)[0]).hypot(at(*a)[1] - at(*b)[1]);
+        around += distance(at(*a), at(*b));
     }
     if around > 0.0 { 2.0 * area.abs() / around } else { f64::INFINITY }
 }

@@ -263,14 +263,9 @@ fn dashes(panel: &Panel) -> Vec<&'static str> {
         let close = |(x, y): (&f64, &f64)| (x - y).abs() <= CLOSE * (high - low);
         !a.dotted && !b.dotted && a.y.len() == b.y.len() && a.x == b.x && a.y.iter().zip(&b.y).all(close)
     };
-    let style = |(k, series): (usize, &Series)| match panel.series[..k]
-        .iter()
-        .filter(|earlier| covers(series, earlier))
-        .count()
-    {
-        0 => "",
-        1 => " stroke-dasharray=\"7 6\"",
-        _ => " stroke-dasharray=\"2 11\"",
+    let style = |(k, series): (usize, &Series)| {
+        let covered = panel.series[..k].iter().filter(|earlier| covers(series, earlier)).count();
+        ["", " stroke-dasharray=\"7 6\"", " stroke-dasharray=\"2 11\""][covered.min(2)]
     };
     panel.series.iter().enumerate().map(style).collect()
 }

@@ -51,20 +51,16 @@ impl Origin {
         let fallback = |kind: &str| ["fallback", "cycle", "no-stress"].contains(&kind);
         let fallbacks = run.log.iter().filter(|e| fallback(&e.kind)).count();
         let rejected = run.manifest.counters.get("rejected").copied().unwrap_or_default();
-        let (input, record) =
-            (run.manifest.input_hash.clone(), fingerprint(&run.directory).unwrap_or_default());
-        Self { arm, input, record, rejected, fallbacks }
+        let record = fingerprint(&run.directory).unwrap_or_default();
+        Self { arm, input: run.manifest.input_hash.clone(), record, rejected, fallbacks }
     }
 }
 
 /// The first arm whose record is bitwise that of an arm, if it is another one.
 pub(crate) fn twin(origins: &[Origin], arm: usize) -> Option<usize> {
     let own = origins.iter().find(|origin| origin.arm == arm && !origin.record.is_empty())?;
-    origins
-        .iter()
-        .find(|origin| origin.record == own.record)
-        .map(|first| first.arm)
-        .filter(|first| *first != arm)
+    let first = origins.iter().find(|origin| origin.record == own.record)?.arm;
+    (first != arm).then_some(first)
 }
 
 /// The measured data of a study and of the cases of its arms.

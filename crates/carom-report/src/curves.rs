@@ -72,10 +72,10 @@ pub(crate) fn with(curve: Curve, others: &[String]) -> Curve {
 
 /// What is said about curves that are drawn once: `Curves that differ by less than 0.3 % of the
 /// range are drawn once: “a”, “b” and “c”; …`; nothing where there are none.
-pub(crate) fn drawn_once(found: &[(String, Vec<String>)]) -> String {
-    let sets = found.iter().filter(|(_, others)| !others.is_empty());
+pub(crate) fn drawn_once<'a>(found: impl Iterator<Item = (&'a String, &'a Vec<String>)>) -> String {
+    let sets = found.filter(|(_, others)| !others.is_empty());
     let quoted = |name: &String| format!("“{name}”");
-    let together = |(first, others): &(String, Vec<String>)| {
+    let together = |(first, others): (&String, &Vec<String>)| {
         listed(&std::iter::once(first).chain(others).map(quoted).collect::<Vec<_>>())
     };
     let sets: Vec<String> = sets.map(together).collect();
@@ -179,7 +179,10 @@ mod tests {
             Curve { y: x.clone(), x, ..Curve::default() }
         };
         assert_eq!(merged(vec![line(3), line(7)]).len(), 1);
-        assert!(drawn_once(&found).contains("drawn once: “a” and “b”."));
+        assert!(
+            drawn_once(found.iter().map(|(name, others)| (name, others)))
+                .contains("drawn once: “a” and “b”.")
+        );
     }
 
     #[test]

@@ -34,10 +34,7 @@ const STATIC: &str =
 /// The figure.
 pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let (unit, points) = (run.history.unit("total"), Points::all(run));
-    let size = ["total", "kinetic"]
-        .map(|name| run.column(name).map_or(0.0, largest))
-        .into_iter()
-        .fold(0.0, f64::max);
+    let size = largest(["total", "kinetic"].into_iter().filter_map(|name| run.column(name)).flatten());
     let energies = curves(run, &points, &ENERGIES, 1e9 * SHARE * size);
     let works = without_small(curves(run, &points, &WORKS, 1e-3 * size));
     let words = match (works.is_empty(), is_static(run)) {

@@ -24,13 +24,6 @@ fn expected(text: &str) -> String {
     powers(&minus(&exact)).replace(" ± ", "\u{a0}±\u{a0}").replace(" %", "\u{a0}%")
 }
 
-/// The unit of what an expectation asks for: a dash for numbers, nothing where it is not known.
-fn unit_of_question(run: &Run, what: &str) -> Markup {
-    html! {
-        @if let Some(unit) = asked::unit(run, what) { @if unit.is_empty() { "–" } @else { (Label(&unit)) } }
-    }
-}
-
 /// Sources of more than one expectation that are too long to be repeated.
 fn repeated_sources(run: &Run) -> Vec<&String> {
     let sources = || run.manifest.expectations.iter().filter_map(|e| e.source.as_ref());
@@ -72,7 +65,12 @@ pub(crate) fn expectations(run: &Run) -> Markup {
                         td.n {
                             @if is_zero(run, e) { "≈ 0" } @else { (Label(&or_dash(e.got, |x| significant(x, DIGITS)))) }
                         }
-                        td.unit { (unit_of_question(run, &e.what)) }
+                        // A dash for numbers, nothing where it is not known.
+                        td.unit {
+                            @if let Some(unit) = asked::unit(run, &e.what) {
+                                @if unit.is_empty() { "–" } @else { (Label(&unit)) }
+                            }
+                        }
                         @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
                         td {
                             @if let Some(source) = &e.source {

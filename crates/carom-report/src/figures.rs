@@ -1,19 +1,17 @@
 //! The figures of a run, and the columns and files from which they are drawn.
 
-use carom_record::{Column, Run, contact_axes};
+use carom_record::{Run, contact_axes};
 
 use crate::animation::Animation;
-use crate::chart::Series;
 use crate::energy::{ENERGIES, WORKS};
 use crate::figure::Figure;
 use crate::instants::instants;
-use crate::labels::{capitalised, is_stress, listed, symbol, words};
+use crate::labels::{capitalised, listed, symbol, words};
 use crate::measured::{Points, add_points, differences, sources};
 use crate::meshes::Pane;
 use crate::ordered::grouped;
-use crate::over_time::{by_size, chart, curves, panel, shaded, shades};
-use crate::palette::LINES;
-use crate::values::{is_in_space, list, names};
+use crate::over_time::{by_size, chart, curves, of_probes, panel, shaded, shades};
+use crate::values::{is_in_space, list};
 use crate::{animation, bodies, energy, meshes, noise, pressure, setup, space, stick_slip, stopped, unshown};
 
 /// Everything that can be drawn from a record.
@@ -32,8 +30,7 @@ pub(crate) fn all(run: &Run) -> Shown {
         shown.notes.push("The history has no rows yet; there is nothing to draw.".to_string());
         return shown;
     }
-    let place = stopped::picture(run);
-    shown.figures.extend(place);
+    shown.figures.extend(stopped::picture(run));
     shown.figures.extend(setup(run));
     let place = shown.figures.len() + 1;
     if let Some((bodies, bands)) = instants(run, &mut shown.notes) {
@@ -42,15 +39,18 @@ pub(crate) fn all(run: &Run) -> Shown {
         let section = if is_solid { space::section } else { animation::section };
         shown.animation = section(run, &bands, shades(run), place);
     }
-    let map = stick_slip::figure(run);
-    let pressure = pressure::figure(run);
     let lists = [&FORCES[..], &IMPULSES, &ENERGIES, &WORKS];
-    let (measured, expected) = (unshown::measured(run, &lists), unshown::expected(run, &lists));
-    shown.figures.extend(
-        [probes(run), force(run), pressure, map, energy::figure(run), measured, expected, solver(run)]
-            .into_iter()
-            .flatten(),
-    );
+    let others = [
+        probes(run),
+        force(run),
+        pressure::figure(run),
+        stick_slip::figure(run),
+        energy::figure(run),
+        unshown::measured(run, &lists),
+        unshown::expected(run, &lists),
+        solver(run),
+    ];
+    shown.figures.extend(others.into_iter().flatten());
     shown
 }
 
@@ -97,17 +97,10 @@ fn setup(run: &Run) -> Option<Figure> {
 }
 
 /// Time histories of all probes, one panel per quantity.
-fn probes<'a>(run: &'a Run) -> Option<Figure> {
-    let (probes, points) = (names(&run.manifest.case, "probes"), Points::all(run));
-    let of_probe = |column: &'a Column| {
-        let (probe, quantity) = column.name.rsplit_once('.')?;
-        let number = probes.iter().position(|name| *name == probe)?;
-        // Stresses of a body that is not deformed.
-        let is_idle = is_stress(quantity) && noise::is_noise(run, &column.name);
-        (!is_idle).then_some((quantity, (number, column)))
-    };
-    let shown: Vec<(&str, (usize, &Column))> = run.history.columns.iter().filter_map(of_probe).collect();
-    let columns: Vec<&str> = shown.iter().map(|(_, (_, column))| column.name.as_str()).collect();
+fn probes(run: &Run) -> Option<Figure> {
+    let points = Points::all(run);
+    let shown = of_probes(run);
+    let columns: Vec<&str> = shown.iter().map(|(_, (column, _))| column.name.as_str()).collect();
     let quantities = grouped(shown);
     // No axis of the plane is horizontal or vertical in space.
     let solid = is_in_space(&run.manifest.case);
@@ -120,27 +113,30 @@ fn probes<'a>(run: &'a Run) -> Option<Figure> {
         quantities.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
     let caption = format!(
-        "Time histories at the probes: {}.{}{} Data: `history.csv`, {} `{}`.",
+        "Time histories at the probes: {}.{}{} Data: `history.csv`, {}.",
         listed(&list),
         shaded(run),
         sources(run, &points, &columns),
-        if columns.len() == 1 { "column" } else { "columns" },
-        columns.join("`, `")
+        coded(&columns)
     );
     let mut drawn = Vec::new();
-    for (quantity, members) in &quantities {
-        let (symbol, mut series) = (symbol(quantity), Vec::new());
-        for (number, column) in members {
-            let (label, color) = (format!("{symbol} at {}", probes[*number]), LINES[number % LINES.len()]);
-            let y = run.column(&column.name).unwrap_or_default().to_vec();
-            series.push(Series { label, color, x: run.times(), y, ..Series::default() });
+    for (quantity, members) in quantities {
+        let (symbol, unit) = (symbol(quantity), &members[0].0.unit);
+        let names: Vec<&str> = members.iter().map(|(column, _)| column.name.as_str()).collect();
+        let mut series = Vec::new();
+        for (column, curve) in members {
+            series.push(curve);
             add_points(&points, &column.name, &mut series);
         }
-        drawn.push(panel(&symbol, &members[0].1.unit, 190.0, series));
-        let names = members.iter().map(|(_, column)| column.name.as_str());
-        drawn.extend(names.filter_map(|name| differences(run, &points, name, &symbol)));
+        drawn.push(panel(&symbol, unit, 190.0, series));
+        drawn.extend(names.into_iter().filter_map(|name| differences(run, &points, name, &symbol)));
     }
     chart(run, ("probes", "Time histories at the probes"), caption, drawn)
+}
+
+/// ``columns `a`, `b` ``.
+fn coded(columns: &[&str]) -> String {
+    format!("{} `{}`", if columns.len() == 1 { "column" } else { "columns" }, columns.join("`, `"))
 }
 
 /// Columns of figures, with their labels.
@@ -152,11 +148,8 @@ const IMPULSES: [(&str, &str); 3] =
 fn force(run: &Run) -> Option<Figure> {
     let h = &run.history;
     let size = noise::force_size(run).max(f64::MIN_POSITIVE);
-    let impulse = ["contact_impulse_x", "contact_impulse_y", "contact_impulse_z"]
-        .iter()
-        .filter_map(|c| run.column(c))
-        .flatten();
-    let largest = impulse.fold(f64::MIN_POSITIVE, |m: f64, x| m.max(x.abs()));
+    let largest = noise::largest(IMPULSES.iter().filter_map(|(c, _)| run.column(c)).flatten());
+    let largest = largest.max(f64::MIN_POSITIVE);
     let points = Points::all(run);
     let (forces, impulses) = (curves(run, &points, &FORCES, size), curves(run, &points, &IMPULSES, largest));
     let panels = [
@@ -182,12 +175,9 @@ fn solver(run: &Run) -> Option<Figure> {
     // A scheme without a linear system counts the evaluations of its forces.
     let is_explicit =
         run.manifest.case.pointer("/time/scheme/kind").is_some_and(|kind| kind == "central-difference");
+    let iterations = if is_explicit { "iterations of the contact forces" } else { "Newton iterations" };
     let all = [
-        (
-            "newton",
-            "iterations",
-            if is_explicit { "iterations of the contact forces" } else { "Newton iterations" },
-        ),
+        ("newton", "iterations", iterations),
         ("active", "active nodes", "active contact nodes"),
         ("rejected", "rejected", "rejected attempts"),
     ];
@@ -206,11 +196,10 @@ fn solver(run: &Run) -> Option<Figure> {
     let [ticks, log] =
         if run.log.is_empty() { [""; 2] } else { [" Ticks: events by kind.", "; `log.jsonl`"] };
     let caption = format!(
-        "{} per step.{none}{}{ticks} Data: `history.csv`, {} `{}`{log}.",
+        "{} per step.{none}{}{ticks} Data: `history.csv`, {}{log}.",
         capitalised(&listed(&words)),
         shaded(run),
-        if names.len() == 1 { "column" } else { "columns" },
-        names.join("`, `")
+        coded(&names)
     );
     chart(run, ("solver", "Solver"), caption, panels)
 }

@@ -9,7 +9,7 @@ use carom_record::{Block, Cell, FieldSet};
 use crate::bodies::{corners, edge_nodes, fill_space};
 use crate::figure::Figure;
 use crate::labels::with_unit;
-use crate::redraw::filled;
+use crate::redraw::{filled, quoted};
 use crate::space::skin;
 
 /// Largest number of corners; a figure of more has no table.
@@ -57,19 +57,15 @@ pub(crate) fn with_files(
     if panes.len() * cells.iter().map(|(_, nodes)| nodes.len()).sum::<usize>() > MOST {
         return figure;
     }
-    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
     let mut table = String::from("pane,body,cell,x,y,z,value\n");
     for pane in panes {
         for (cell, (block, nodes)) in cells.iter().enumerate() {
             let (title, body) = (quoted(&pane.title), quoted(&fields.blocks[*block].body));
             for &node in nodes {
                 let [x, y, z] = pane.points[node];
-                let _ = write!(table, "{title},{body},{cell},{x:?},{y:?},");
-                let _ = if solid { write!(table, "{z:?},") } else { write!(table, ",") };
-                let _ = match pane.values.get(node) {
-                    Some(value) => writeln!(table, "{value:?}"),
-                    None => writeln!(table),
-                };
+                let z = if solid { format!("{z:?}") } else { String::new() };
+                let value = pane.values.get(node).map_or_else(String::new, |value| format!("{value:?}"));
+                let _ = writeln!(table, "{title},{body},{cell},{x:?},{y:?},{z},{value}");
             }
         }
     }

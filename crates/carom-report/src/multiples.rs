@@ -101,7 +101,7 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
     }
     let end = found.iter().filter_map(|(curve, _)| curve.x.last()).copied().fold(0.0, f64::max);
     let span = curves::contact(study, end);
-    let names: Vec<_> = found.iter().map(|(curve, others)| (curve.label.clone(), others.clone())).collect();
+    let drawn_once = curves::drawn_once(found.iter().map(|(curve, others)| (&curve.label, others)));
     let points = measured.points(&column.name, end, true);
     let pane = |(k, (curve, others)): (usize, (Curve, Vec<String>))| {
         let mark = if curve.chosen { "▸ " } else { "" };
@@ -135,7 +135,6 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
     let apart = if is_apart { " Methods that create energy do not affect the axes." } else { "" };
     let when = if span.is_some() { " during the first contact" } else { "" };
     let panes: Vec<Pane> = found.into_iter().enumerate().map(pane).collect();
-    let drawn_once = curves::drawn_once(&names);
     let mut plot = Plot {
         name: multiples_name(&column.name),
         x_label: with_unit("time t", time),

@@ -1,15 +1,16 @@
 //! Charts over the time of a run, with their tables and scripts.
 
-use carom_record::{Run, metrics};
+use carom_record::{Column, Run, metrics};
 
 use crate::chart::{Chart, Options, Panel, Series, Track};
 use crate::figure::Figure;
-use crate::labels::time_label;
+use crate::labels::{is_stress, symbol, time_label};
 use crate::measured::{Points, add_points};
-use crate::noise::{has_contact, largest};
+use crate::noise::{has_contact, is_noise, largest};
 use crate::ordered::grouped;
 use crate::palette::LINES;
 use crate::text::said_if;
+use crate::values::names;
 
 /// Share of the recorded time from which shading says nothing.
 const THROUGHOUT: f64 = 0.97;
@@ -68,6 +69,21 @@ pub(crate) fn curves<'a>(
     let mut found: Vec<Series> = found.collect();
     columns.iter().for_each(|(name, _)| add_points(points, name, &mut found));
     found
+}
+
+/// The columns of probes with their quantities and curves; without stresses of bodies that are not
+/// deformed.
+pub(crate) fn of_probes<'a>(run: &'a Run) -> Vec<(&'a str, (&'a Column, Series<'a>))> {
+    let probes = names(&run.manifest.case, "probes");
+    let curve = |column: &'a Column| {
+        let (probe, quantity) = column.name.rsplit_once('.')?;
+        let number = probes.iter().position(|name| *name == probe)?;
+        let is_idle = is_stress(quantity) && is_noise(run, &column.name);
+        let y = run.column(&column.name).filter(|_| !is_idle)?.to_vec();
+        let (label, color) = (format!("{} at {probe}", symbol(quantity)), LINES[number % LINES.len()]);
+        Some((quantity, (column, Series { label, color, x: run.times(), y, ..Series::default() })))
+    };
+    run.history.columns.iter().filter_map(curve).collect()
 }
 
 pub(crate) fn panel<'a>(label: &str, unit: &str, height: f64, series: Vec<Series<'a>>) -> Panel<'a> {

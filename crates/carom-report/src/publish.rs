@@ -46,10 +46,8 @@ impl ReportError {
 
 /// Writes a file and returns its path.
 pub(crate) fn write(path: PathBuf, text: &str) -> Result<PathBuf, ReportError> {
-    match fs::write(&path, text) {
-        Ok(()) => Ok(path),
-        Err(source) => Err(ReportError::Write { path, source }),
-    }
+    fs::write(&path, text).map_err(|source| ReportError::Write { path: path.clone(), source })?;
+    Ok(path)
 }
 
 /// Writes figures with their files and a page into a run or study directory.

@@ -111,7 +111,6 @@ impl Plot {
     /// `NAME, high`.
     pub(crate) fn csv(&self) -> String {
         let mut out = String::from("pane,curve,x,y\n");
-        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
         for pane in &self.panes {
             let mut rows = |label: &str, x: &[f64], y: &[f64]| {
                 for (x, y) in x.iter().zip(y) {
@@ -219,6 +218,11 @@ fn of_chart(name: &str, chart: &Chart) -> Plot {
         panes: chart.panels.iter().map(pane).collect(),
         ..Plot::default()
     }
+}
+
+/// Text as a cell of a table.
+pub(crate) fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "\"\""))
 }
 
 /// Dashes in the notation of matplotlib; `"-"` for none.

@@ -24,10 +24,11 @@ use crate::figure::NARROW;
 use crate::obstacles;
 use crate::pen::{NOTHING, Pen, Point, around, open_grid};
 use crate::place::fill;
-use crate::symbols::{arrow, direction, guides, motion, plus, probe_mark, rollers, wall};
-use crate::values::{flat, list, text, unit, vector};
-use drawing::{BAR, BOLD, ITALIC, KEY, PRIMARY, ROOM, SECONDARY, Setup, Walk};
+use crate::symbols::{arrow, direction, distance, guides, motion, plus, probe_mark, rollers, wall};
+use crate::values::{flat, list, text, texts, unit, vector};
+use drawing::{BAR, BOLD, ITALIC, PRIMARY, ROOM, SECONDARY, Setup, Walk};
 pub(crate) use forces::typeset as formula_in_words;
+use key::placed;
 pub(crate) use words::{in_words, model_in_words};
 
 /// The figure, from the initial fields, with the key beside the drawing, and in a narrow window
@@ -73,14 +74,10 @@ fn drawn(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
     let origin = [left - x0 * scale, if flat { top + 0.5 * BAR } else { top + y1 * scale }];
     let mut setup = Setup { run, fields, points, flat, scale, origin, inside: HashMap::new() };
     let mut key = String::new();
-    let lines = setup.key(&mut key, if narrow { 12.0 } else { right + margin + 36.0 });
+    let beside = right + margin + 36.0;
+    let lines = setup.key(&mut key, if narrow { 12.0 } else { beside });
     let bottom = (top + picture + margin).max(if flat || narrow { 0.0 } else { lines - 60.0 });
-    let [width, height] = if narrow {
-        key = format!("<g transform=\"translate(0 {:.1})\">\n{key}</g>\n", bottom + 44.0);
-        [NARROW, bottom + 44.0 + lines + 8.0]
-    } else {
-        [right + margin + 36.0 + KEY, (bottom + 44.0).max(lines + 8.0)]
-    };
+    let (key, [width, height]) = placed(key, lines, narrow, [beside, bottom + 44.0]);
     // In the plane there are no shades: a dark page shows it on dark ground.
     let mut out = opened("picture sketch", "Initial configuration", width, height);
     setup.axes(&mut out, [left - margin, right + margin, top - margin, bottom]);
@@ -110,7 +107,7 @@ const FLAT: f64 = 22.0;
 /// A side, or a straight line of a length in its middle if it is shorter.
 fn at_least(walk: Walk, length: f64) -> Walk {
     let (Some(&(a, n)), Some(&(b, _))) = (walk.first(), walk.last()) else { return walk };
-    if walk.windows(2).map(|w| (w[1].0[0] - w[0].0[0]).hypot(w[1].0[1] - w[0].0[1])).sum::<f64>() >= length {
+    if walk.windows(2).map(|w| distance(w[1].0, w[0].0)).sum::<f64>() >= length {
         return walk;
     }
     let (middle, along) = (plus(a, 0.5, [b[0] - a[0], b[1] - a[1]]), direction(a, b));
@@ -197,7 +194,7 @@ impl Setup<'_> {
         for support in list(self.case(), "supports") {
             let (fix, across) = (Self::directions(support), Self::is_held_across(support));
             let moved = Self::moved_axis(support);
-            for side in list(support, "on").iter().filter_map(Value::as_str) {
+            for side in texts(support, "on") {
                 for walk in self.walks(side) {
                     if let Some(axis) = moved.filter(|_| !self.flat) {
                         motion(out, &walk, axis);

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use carom_record::{ContactRow, Run};
+use serde_json::Value;
 
 use crate::arc::{self, places};
 use crate::axis::{Axis, range};
@@ -33,26 +34,21 @@ fn directions(run: &Run, contacts: &[&str]) -> Option<[&'static str; 2]> {
     let case = list(&run.manifest.case, "contacts");
     let is_round = |name: &&str| {
         let contact = case.iter().find(|contact| text(contact, "name") == *name);
-        contact
-            .and_then(|contact| contact.pointer("/primary/circle"))
-            .is_some_and(|circle| circle.get("inside").and_then(serde_json::Value::as_bool) != Some(true))
+        let circle = contact.and_then(|contact| contact.pointer("/primary/circle"));
+        circle.is_some_and(|circle| circle.get("inside").and_then(Value::as_bool) != Some(true))
     };
     if contacts.iter().all(is_round) {
         return Some(["slips counterclockwise", "slips clockwise"]);
     }
     let rows = || run.contact.iter().filter(|row| row.friction != "none");
-    let all = |d: usize, sign: f64| rows().all(|row| sign * row.normal[d] > 0.9);
-    if all(1, 1.0) {
-        Some(["slips towards −x", "slips towards +x"])
-    } else if all(1, -1.0) {
-        Some(["slips towards +x", "slips towards −x"])
-    } else if all(0, 1.0) {
-        Some(["slips towards +y", "slips towards −y"])
-    } else if all(0, -1.0) {
-        Some(["slips towards −y", "slips towards +y"])
-    } else {
-        None
-    }
+    let is_normal = |d: usize, sign: f64| rows().all(|row| sign * row.normal[d] > 0.9);
+    let words = [
+        (1, 1.0, ["slips towards −x", "slips towards +x"]),
+        (1, -1.0, ["slips towards +x", "slips towards −x"]),
+        (0, 1.0, ["slips towards +y", "slips towards −y"]),
+        (0, -1.0, ["slips towards −y", "slips towards +y"]),
+    ];
+    words.into_iter().find(|(d, sign, _)| is_normal(*d, *sign)).map(|(.., words)| words)
 }
 
 /// A map of each contact that has friction. A side in space has no arc length.

@@ -160,7 +160,7 @@ fn fraction(x: f64) -> String {
 }
 
 fn iterations(iterations: &[StopIteration]) -> Markup {
-    let or_none = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| significant(x, 3));
+    let or_none = |x: Option<f64>| or_dash(x, |x| significant(x, 3));
     let gaps = iterations.iter().any(|i| i.gap.is_some_and(|gap| gap != 0.0));
     let pairs = iterations.iter().any(|i| i.active > 0);
     let changes = iterations.iter().any(|i| i.changed);

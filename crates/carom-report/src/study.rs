@@ -14,6 +14,7 @@ use crate::ordered::grouped;
 use crate::plot::{Curve, Pane, Plot};
 use crate::publish::{ReportError, ReportSummary, publish};
 use crate::systems::Systems;
+use crate::text::said_if;
 use crate::{curves, laboratory, multiples, setup, study_page, theory, trend};
 
 /// Figures of one column that are shown; more of them are folded away, and with a goal, for which
@@ -83,8 +84,7 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
             ..Curve::default()
         });
         let found = curves::merged(curves.collect());
-        let names: Vec<_> =
-            found.iter().map(|(curve, others)| (curve.label.clone(), others.clone())).collect();
+        let drawn_once = curves::drawn_once(found.iter().map(|(curve, others)| (&curve.label, others)));
         let curves: Vec<Curve> =
             found.into_iter().map(|(curve, others)| curves::with(curve, &others)).collect();
         if curves.is_empty() {
@@ -104,11 +104,8 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         let (is_aside, is_all_aside) = (!aside.is_empty(), curves.iter().all(|curve| curve.apart));
         let rough = curves.iter().filter(|curve| curves::is_rough(curve)).count() > 1;
         let (panes, across, enlarged) = if rough {
-            (
-                multiples(curves, &y_label, contact),
-                3,
-                if contact.is_some() { " during the first contact" } else { "" },
-            )
+            let part = said_if(contact.is_some(), " during the first contact");
+            (multiples(curves, &y_label, contact), 3, part)
         } else {
             let whole = Pane {
                 name: "whole time".into(),
@@ -126,12 +123,7 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
             let whole = (!whole.curves.is_empty()).then_some(whole);
             (whole.into_iter().chain(part).collect::<Vec<_>>(), 1, "")
         };
-        let aside = aside.into_iter().map(|curve| Pane {
-            title: curve.label.clone(),
-            y_label: with_unit(&label, &column.unit),
-            curves: vec![Curve { unlisted: true, ..curve }],
-            ..Pane::default()
-        });
+        let aside = aside.into_iter().map(|curve| alone(curve, with_unit(&label, &column.unit)));
         let points = measured.points(&column.name, end, rough);
         let with_points = |mut pane: Pane| {
             pane.curves.extend(points.iter().cloned());
@@ -148,19 +140,18 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
             panes,
             ..Plot::default()
         };
-        let axes = match () {
-            () if is_all_aside => String::new(),
-            () => {
-                let tip = if plot.has_arrowheads() { "; an arrowhead is where one leaves them" } else { "" };
-                let own = if is_aside { "; rough ones have panes of their own" } else { "" };
-                format!(" They do not affect the axes of other arms{tip}{own}.")
-            }
+        let axes = if is_all_aside {
+            String::new()
+        } else {
+            let tip = said_if(plot.has_arrowheads(), "; an arrowhead is where one leaves them");
+            let own = said_if(is_aside, "; rough ones have panes of their own");
+            format!(" They do not affect the axes of other arms{tip}{own}.")
         };
         let apart = apart_words(study, members, &axes);
         plot.caption = format!(
             "{}{enlarged}{part}.{}{apart}{}",
             capitalised(&what),
-            curves::drawn_once(&names),
+            drawn_once,
             measured.words(&column.name)
         );
         Some(plot)
@@ -211,13 +202,16 @@ fn numbers(members: &[usize]) -> String {
 /// Panes at the same scale with a curve each, its label as the title.
 fn multiples(curves: Vec<Curve>, y_label: &str, span: Option<(f64, f64)>) -> Vec<Pane> {
     let pane = |(k, curve): (usize, Curve)| Pane {
-        title: curve.label.clone(),
-        y_label: if k % 3 == 0 { y_label.to_owned() } else { String::new() },
-        curves: vec![Curve { unlisted: true, ..curve }],
         span,
-        ..Pane::default()
+        ..alone(curve, if k % 3 == 0 { y_label.to_owned() } else { String::new() })
     };
     curves.into_iter().enumerate().map(pane).collect()
+}
+
+/// A pane with a curve, its label as the title.
+fn alone(curve: Curve, y_label: String) -> Pane {
+    let title = curve.label.clone();
+    Pane { title, y_label, curves: vec![Curve { unlisted: true, ..curve }], ..Pane::default() }
 }
 
 #[cfg(test)]

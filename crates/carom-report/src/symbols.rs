@@ -9,6 +9,10 @@ pub(crate) fn plus(p: Point, s: f64, d: Point) -> Point {
     [p[0] + s * d[0], p[1] + s * d[1]]
 }
 
+pub(crate) fn distance(a: Point, b: Point) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
 /// Unit vector from `a` to `b`; zero where they coincide.
 pub(crate) fn direction(a: Point, b: Point) -> Point {
     let d = [b[0] - a[0], b[1] - a[1]];
@@ -32,8 +36,7 @@ pub(crate) fn arrow(out: &mut String, from: Point, to: Point, color: &str) {
 
 /// Equidistant points along a polyline, ends included, with the outward normal.
 pub(crate) fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)> {
-    let lengths: Vec<f64> =
-        line.windows(2).map(|w| (w[1].0[0] - w[0].0[0]).hypot(w[1].0[1] - w[0].0[1])).collect();
+    let lengths: Vec<f64> = line.windows(2).map(|w| distance(w[1].0, w[0].0)).collect();
     let total: f64 = lengths.iter().sum();
     let count = (total / spacing).round().max(1.0);
     let mut places = Vec::new();

@@ -78,7 +78,7 @@ pub(crate) fn plot(study: &Study) -> Option<Plot> {
              range of the curves, at the longest time step (labelled) and at the shortest.{springs} For a node constrained by a \
              multiplier, ωΔt → ∞ and only ρ∞ matters.{}{}",
             same_scheme(study, &names),
-            curves::drawn_once(&grouped(distinct(once)))
+            curves::drawn_once(grouped(distinct(once)).iter().map(|(name, others)| (name, others)))
         ),
         x_label: "ωΔt".into(),
         log: [true, false],

@@ -10,7 +10,7 @@ use crate::labels::listed;
 use crate::measured::{Points, add_points, differences, sources};
 use crate::noise::largest;
 use crate::ordered::{distinct, grouped};
-use crate::over_time::{SMALL, chart};
+use crate::over_time::{self, SMALL, chart};
 use crate::palette::LINES;
 use crate::values::names;
 
@@ -42,13 +42,8 @@ pub(crate) fn measured(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
         panels.push(panel(run, &points, &[column], column));
         panels.extend(differences(run, &points, column, column));
     }
-    let all: Vec<&str> = columns.iter().map(String::as_str).collect();
-    let caption = format!(
-        "Measured data and the columns that they belong to.{} Data: `history.csv`, {}.",
-        sources(run, &points, &all),
-        in_words(&all)
-    );
-    chart(run, ("measured", "Measured data"), caption, panels)
+    let words = "Measured data and the columns that they belong to.";
+    figure(run, ("measured", "Measured data"), words, (&points, &columns, panels))
 }
 
 /// The columns that expectations evaluate and no other figure shows, with the expected values.
@@ -93,19 +88,26 @@ pub(crate) fn expected(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
         }
         panels.push(panel);
     }
-    let all: Vec<&str> = columns.iter().map(String::as_str).collect();
-    let caption = format!(
-        "Columns that expectations evaluate and no other figure shows.{} Data: `history.csv`, {}.",
-        sources(run, &points, &all),
-        in_words(&all)
-    );
-    chart(run, ("expected", "Columns of expectations"), caption, panels)
+    let words = "Columns that expectations evaluate and no other figure shows.";
+    figure(run, ("expected", "Columns of expectations"), words, (&points, &columns, panels))
 }
 
-/// `columns a and b`.
-fn in_words(columns: &[&str]) -> String {
+/// The figure of some columns in panels, with points.
+fn figure(
+    run: &Run,
+    names: (&str, &str),
+    words: &str,
+    (points, columns, panels): (&[Points], &[String], Vec<Panel>),
+) -> Option<Figure> {
+    let all: Vec<&str> = columns.iter().map(String::as_str).collect();
     let coded: Vec<String> = columns.iter().map(|column| format!("`{column}`")).collect();
-    format!("{} {}", if columns.len() == 1 { "column" } else { "columns" }, listed(&coded))
+    let caption = format!(
+        "{words}{} Data: `history.csv`, {} {}.",
+        sources(run, points, &all),
+        if columns.len() == 1 { "column" } else { "columns" },
+        listed(&coded)
+    );
+    chart(run, names, caption, panels)
 }
 
 /// A panel with columns of one unit and their points.
@@ -122,8 +124,7 @@ fn panel<'a>(run: &'a Run, points: &'a [Points], columns: &[&str], label: &str) 
     };
     let mut series: Vec<Series> = columns.iter().enumerate().filter_map(curve).collect();
     columns.iter().for_each(|column| add_points(points, column, &mut series));
-    let unit = columns.first().map_or("", |column| run.history.unit(column)).to_owned();
-    Panel { label: label.to_owned(), unit, height: 150.0, series }
+    over_time::panel(label, columns.first().map_or("", |column| run.history.unit(column)), 150.0, series)
 }
 
 /// The names of columns in what an expectation asks for.

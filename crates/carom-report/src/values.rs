@@ -12,6 +12,11 @@ pub(crate) fn text<'a>(value: &'a Value, key: &str) -> &'a str {
     value.get(key).and_then(Value::as_str).unwrap_or_default()
 }
 
+/// The texts of a list.
+pub(crate) fn texts<'a>(value: &'a Value, key: &str) -> impl Iterator<Item = &'a str> {
+    list(value, key).iter().filter_map(Value::as_str)
+}
+
 pub(crate) fn vector(value: Option<&Value>) -> Vec<f64> {
     value.and_then(Value::as_array).map_or(Vec::new(), |v| v.iter().filter_map(Value::as_f64).collect())
 }

@@ -115,12 +115,7 @@ impl Plot {
         }
         self.axes(out, i, frame, scales, layout);
         if let Some((value, _)) = &pane.floor {
-            let y = to_y(*value);
-            let _ = writeln!(
-                out,
-                "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#777\" stroke-width=\"0.8\" \
-                 stroke-dasharray=\"2 2\"/>"
-            );
+            dashed(out, &format!("M{x0:.1} {:.1}h{wide:.1}", to_y(*value)));
         }
         marks(out, pane, &to_x, frame);
         if pane.front.len() > 1 {
@@ -244,6 +239,12 @@ fn end(curve: &Curve, frame: &Frame, to_x: &dyn Fn(f64) -> f64, to_y: &dyn Fn(f6
     Some(End { x: x + share * (next.0 - x), y: edge, leaves: true })
 }
 
+/// A thin dashed line.
+fn dashed(out: &mut String, d: &str) {
+    let style = "stroke=\"#777\" stroke-width=\"0.8\" stroke-dasharray=\"2 2\"";
+    let _ = writeln!(out, "<path d=\"{d}\" {style}/>");
+}
+
 /// Vertical lines with their labels above the pane, where they cover nothing.
 fn marks(out: &mut String, pane: &Pane, to_x: &dyn Fn(f64) -> f64, frame: &Frame) {
     let (top, bottom) = (frame.top, frame.bottom());
@@ -253,11 +254,7 @@ fn marks(out: &mut String, pane: &Pane, to_x: &dyn Fn(f64) -> f64, frame: &Frame
     for (x, word) in &marks {
         // The line of a label is longer.
         let from = if word.is_empty() { top } else { top - 4.0 };
-        let _ = writeln!(
-            out,
-            "<path d=\"M{x:.1} {from:.1}V{bottom:.1}\" stroke=\"#777\" stroke-width=\"0.8\" \
-             stroke-dasharray=\"2 2\"/>"
-        );
+        dashed(out, &format!("M{x:.1} {from:.1}V{bottom:.1}"));
     }
     marks.retain(|(_, word)| !word.is_empty());
     for (k, (x, word)) in marks.iter().enumerate() {

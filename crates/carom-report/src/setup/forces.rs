@@ -10,8 +10,8 @@ use super::drawing::Setup;
 use crate::labels::is_static;
 use crate::pen::Point;
 use crate::scientific::given;
-use crate::symbols::{along, arrow, direction, plus};
-use crate::values::{list, text, unit, vector};
+use crate::symbols::{along, arrow, direction, distance, plus};
+use crate::values::{list, text, texts, unit, vector};
 
 pub(super) const COLOR: &str = "#7a2f8f";
 /// Length of an arrow at a side, and its gap to the side.
@@ -157,9 +157,7 @@ impl Setup<'_> {
                 }
                 continue;
             }
-            for walk in
-                list(load.spec, "on").iter().filter_map(Value::as_str).flat_map(|side| self.walks(side))
-            {
+            for walk in texts(load.spec, "on").flat_map(|side| self.walks(side)) {
                 let spots = if self.flat {
                     vec![(plus(walk[0].0, 0.5, [0.0, walk[1].0[1] - walk[0].0[1]]), walk[0].1)]
                 } else {
@@ -197,7 +195,7 @@ impl Setup<'_> {
             let load = load(value)?;
             let parts: Vec<String> = load.components.iter().map(|c| written(c)).collect();
             let amount = if parts.len() == 1 { parts[0].clone() } else { format!("({})", parts.join(", ")) };
-            let sides: Vec<&str> = list(load.spec, "on").iter().filter_map(Value::as_str).collect();
+            let sides: Vec<&str> = texts(load.spec, "on").collect();
             let place = if sides.is_empty() { text(load.spec, "body").to_owned() } else { sides.join(", ") };
             let unit = self.load_unit(load.kind);
             let is_formula = load.components.iter().any(|c| c.as_str().is_some_and(depends_on_time));
@@ -273,10 +271,6 @@ impl Setup<'_> {
         let moved = list(support, "move").iter().filter_map(|m| m.get(0).and_then(Value::as_f64));
         vector(support.get("fix")).into_iter().chain(moved).collect()
     }
-}
-
-fn distance(a: Point, b: Point) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// Direction of a vector on the page, where y points down.

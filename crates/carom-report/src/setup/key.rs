@@ -10,15 +10,26 @@ use super::forces::{COLOR, written};
 use super::words::{gravity_and_velocity, law_name, plane_in_words};
 use crate::bodies::fill_space;
 use crate::chart::write_text;
+use crate::figure::NARROW;
 use crate::labels::given_amount;
 use crate::place::fill;
 use crate::scientific::given;
 use crate::symbols::{arrow, guides, motion, plus, probe_mark, rollers, wall};
 use crate::text;
-use crate::values::{is_in_space, list, text as word, tuple, unit, vector};
+use crate::values::{is_in_space, list, text as word, texts, tuple, unit, vector};
 
 /// The smallest size of letters in pixels.
 const SMALLEST: f64 = 11.0;
+
+/// The key of a height in its place, beside the drawing or, in a narrow window, below it; and width
+/// and height of the figure.
+pub(super) fn placed(key: String, lines: f64, narrow: bool, [beside, below]: [f64; 2]) -> (String, [f64; 2]) {
+    if narrow {
+        let key = format!("<g transform=\"translate(0 {below:.1})\">\n{key}</g>\n");
+        return (key, [NARROW, below + lines + 8.0]);
+    }
+    (key, [beside + KEY, below.max(lines + 8.0)])
+}
 
 impl Setup<'_> {
     /// Draws the key and returns its height.
@@ -82,7 +93,7 @@ impl Setup<'_> {
                 line("", "Supports", true);
             }
             let fixed = Self::directions(support).len() + usize::from(Self::is_held_across(support));
-            let on: Vec<&str> = list(support, "on").iter().filter_map(Value::as_str).collect();
+            let on: Vec<&str> = texts(support, "on").collect();
             let mut swatch = String::new();
             let ends = [([0.0, -3.0], [0.0, 1.0]), ([20.0, -3.0], [0.0, 1.0])];
             if fill_space(self.fields) {

@@ -6,8 +6,9 @@ use std::fmt::Write as _;
 
 use carom_record::{FieldSet, Run};
 
-use super::drawing::{BOLD, ITALIC, KEY, ROOM, SUPPORT_LINES, SUPPORTS, Setup};
+use super::drawing::{BOLD, ITALIC, ROOM, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, Load, load};
+use super::key::placed;
 use crate::again::{again, once};
 use crate::axis::round_step;
 use crate::bodies::places;
@@ -20,7 +21,7 @@ use crate::space::{
     underlay, wires,
 };
 use crate::symbols::{arrow, direction, plus, probe_mark, scale_bar};
-use crate::values::{list, place, text, unit, vector};
+use crate::values::{list, place, text, texts, unit, vector};
 
 /// Length in pixels of an arrow parallel to the page, and about how many are drawn on a side.
 const LENGTH: f64 = 30.0;
@@ -60,12 +61,7 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
     let mut key = String::new();
     let lines = setup.key(&mut key, if narrow { 12.0 } else { beside });
     let bottom = top + size[1] + margin;
-    let [width, height] = if narrow {
-        key = format!("<g transform=\"translate(0 {:.1})\">\n{key}</g>\n", bottom + FOOT);
-        [NARROW, bottom + FOOT + lines + 8.0]
-    } else {
-        [beside + KEY, (bottom + FOOT).max(lines + 8.0)]
-    };
+    let (key, [width, height]) = placed(key, lines, narrow, [beside, bottom + FOOT]);
     let mut out = open("Initial configuration", width, height);
     let mut numbers: HashMap<Vec<usize>, Vec<usize>> = HashMap::new();
     for (k, facet) in skin.iter().enumerate() {
@@ -120,8 +116,7 @@ impl Solid<'_> {
         // A facet of two supports has the colour of the first.
         let mut supported: HashMap<usize, usize> = HashMap::new();
         for (k, support) in list(self.setup.case(), "supports").iter().enumerate() {
-            let sides = list(support, "on").iter().filter_map(|side| side.as_str());
-            for facet in sides.flat_map(|side| self.side(side)) {
+            for facet in texts(support, "on").flat_map(|side| self.side(side)) {
                 supported.entry(facet).or_insert(k % SUPPORTS.len());
             }
         }
@@ -184,10 +179,7 @@ impl Solid<'_> {
 
     /// The sides of supports or loads, with the colours of their outlines.
     fn outlined(&self, what: &str) -> Vec<(&'static str, Vec<usize>)> {
-        let sides = |item, color| {
-            let names = list(item, "on").iter().filter_map(|side| side.as_str());
-            names.map(move |side| (color, self.side(side)))
-        };
+        let sides = |item, color| texts(item, "on").map(move |side| (color, self.side(side)));
         let items = list(self.setup.case(), what).iter();
         if what == "supports" {
             let colors = SUPPORT_LINES.into_iter().cycle();
@@ -212,8 +204,7 @@ impl Solid<'_> {
     }
 
     fn forces(&self, out: &mut String, load: &Load) {
-        let sides = list(load.spec, "on").iter().filter_map(|side| side.as_str());
-        for side in sides.map(|side| self.side(side)) {
+        for side in texts(load.spec, "on").map(|side| self.side(side)) {
             let front: Vec<usize> = side.iter().copied().filter(|&k| self.seen(k)).collect();
             let facets = if front.is_empty() { side } else { front };
             for k in facets.iter().step_by(facets.len().div_ceil(ARROWS).max(1)) {

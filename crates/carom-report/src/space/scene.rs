@@ -15,7 +15,7 @@ use super::figure::box_around;
 use super::skin::{Facet, Place, skin};
 use super::view::{View, length};
 use super::wires::wires;
-use crate::animation::{Animation, PLAYER, controls, explained, help, histories, of_files, thinned, until};
+use crate::animation::{Animation, controls, explained, help, histories, of_files, scripts, thinned, until};
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::labels::is_static;
 use crate::noise::largest;
@@ -263,8 +263,6 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let every = of_files(chosen.len(), run.fields.len());
     let last = chosen.last().map_or_else(String::new, |&k| until(run, entries[k].time));
     let explained = explained(run, &quantities, !shades.is_empty());
-    // Only `<` could end the script element.
-    let data = data.to_string().replace('<', "\\u003c");
     let figure = html! {
         figure.animation #animation hidden {
             div.stage {
@@ -303,11 +301,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
             }))
         }
     };
-    let scripts = html! {
-        script #animation-data type="application/json" { (PreEscaped(data)) }
-        script { (PreEscaped(PLAYER)) (PreEscaped(include_str!("scene.js"))) }
-    };
-    Some(Animation { figure, scripts })
+    Some(Animation { figure, scripts: scripts(&data, include_str!("scene.js")) })
 }
 
 #[cfg(test)]

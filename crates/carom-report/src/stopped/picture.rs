@@ -16,7 +16,7 @@ use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::{self, NOTHING, Pen, Point, path};
 use crate::place::{fill, mesh};
-use crate::symbols::{scale_bar, wall};
+use crate::symbols::{distance, scale_bar, wall};
 
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 440.0;
@@ -117,12 +117,7 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet, width: f64
         let style = "stroke-width=\"90\" stroke-linecap=\"round\"";
         path(&mut out, &pen, &format!("fill=\"none\" stroke=\"{FACET}\" {style}"));
     }
-    let visible = |new: &[Point]| {
-        drawn.iter().any(|&k| {
-            let [a, b] = [to(points[k]), to(new[k])];
-            (a[0] - b[0]).hypot(a[1] - b[1]) > 1.0
-        })
-    };
+    let visible = |new: &[Point]| drawn.iter().any(|&k| distance(to(points[k]), to(new[k])) > 1.0);
     let is_moved = rejected.as_deref().is_some_and(visible);
     if let Some(new) = rejected.as_ref().filter(|_| is_moved) {
         for block in &fields.blocks {
@@ -183,7 +178,7 @@ fn filled(around: [f64; 4], points: &[Point], (margin, width): (f64, f64)) -> ([
 
 /// Length of the facet or of the longest edge at the place.
 fn size(place: &StopPlace, fields: &FieldSet, points: &[Point], node: usize) -> f64 {
-    let distance = |a: usize, b: usize| (points[a][0] - points[b][0]).hypot(points[a][1] - points[b][1]);
+    let distance = |a: usize, b: usize| distance(points[a], points[b]);
     let longest = |cell: &[usize]| {
         (0..corners(cell)).map(|e| distance(cell[e], cell[(e + 1) % corners(cell)])).fold(0.0, f64::max)
     };

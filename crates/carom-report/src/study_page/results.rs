@@ -1,6 +1,5 @@
 //! Expectations and metrics on the page of a study.
 
-use carom_record::metrics;
 use carom_record::study::{Row, Study};
 use maud::{Markup, html};
 
@@ -9,6 +8,7 @@ use crate::collected::time_unit;
 use crate::digits::five;
 use crate::document::{codes, file, joined, minus, or_dash};
 use crate::ordered::{distinct, grouped};
+use crate::results::by_title;
 use crate::round_off::Scales;
 use crate::systems::Systems;
 use crate::text::Label;
@@ -120,16 +120,13 @@ fn met_by_arm(study: &Study) -> Option<Markup> {
 pub(super) fn metrics(study: &Study, systems: &Systems) -> Markup {
     let mut shown = study.metrics();
     shown.retain(|m| study.rows.iter().any(|r| r.value(&m.name).is_some()));
-    let groups = metrics::TITLES.map(|title| {
-        (title, shown.iter().copied().filter(|m| metrics::group(&m.name) == title).collect::<Vec<_>>())
-    });
     let scales = Scales::of(study);
     html! {
         h2 { "Metrics" }
-        @for (title, members) in groups.iter().filter(|(_, members)| !members.is_empty()) {
+        @for (title, members) in by_title(&shown) {
             details {
                 summary { (title) " " span.small { "(" (joined(members.iter().map(|m| &m.name), ", ")) ")" } }
-                (by_arm::tables(study, members, COLUMNS, |arm, metric| {
+                (by_arm::tables(study, &members, COLUMNS, |arm, metric| {
                     html! { (or_dash(study.rows[arm].value(&metric.name), |v| scales.shown(metric, v, five))) }
                 }))
                 table {
