@@ -1,6 +1,6 @@
 //! Displacement and stress along the bars of a run in one dimension.
 
-use carom_record::Run;
+use carom_record::{FieldSet, Run};
 
 use crate::chart::{Chart, Options, Panel, Series};
 use crate::figure::Figure;
@@ -8,27 +8,22 @@ use crate::labels::{instant_label, with_unit};
 use crate::palette::sequence;
 
 /// At several instants.
-pub(crate) fn figure(
-    run: &Run,
-    sets: &[(f64, carom_record::FieldSet)],
-    (during, files): (&str, &str),
-) -> Figure {
+pub(crate) fn figure(run: &Run, sets: &[(f64, FieldSet)], (during, files): (&str, &str)) -> Figure {
     // Positions and values of a component along the bars, with a gap after each bar.
-    let along =
-        |set: &carom_record::FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
-            let values = set.array(array).filter(|a| component < a.components)?;
-            let (mut x, mut y) = (Vec::new(), Vec::new());
-            for block in &set.blocks {
-                let mut nodes = block.connectivity.clone();
-                nodes.sort_by(|&a, &b| set.points[a][0].total_cmp(&set.points[b][0]));
-                nodes.dedup();
-                x.extend(nodes.iter().map(|&k| set.points[k][0]));
-                y.extend(nodes.iter().map(|&k| values.values[values.components * k + component]));
-                x.push(set.points[*nodes.last()?][0]);
-                y.push(f64::NAN);
-            }
-            Some((x, y))
-        };
+    let along = |set: &FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
+        let values = set.array(array).filter(|a| component < a.components)?;
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        for block in &set.blocks {
+            let mut nodes = block.connectivity.clone();
+            nodes.sort_by(|&a, &b| set.points[a][0].total_cmp(&set.points[b][0]));
+            nodes.dedup();
+            x.extend(nodes.iter().map(|&k| set.points[k][0]));
+            y.extend(nodes.iter().map(|&k| values.values[values.components * k + component]));
+            x.push(set.points[*nodes.last()?][0]);
+            y.push(f64::NAN);
+        }
+        Some((x, y))
+    };
     let lines = |array: &str, component| -> Vec<_> {
         let line = |(t, set): &(f64, _)| along(set, array, component).map(|(x, y)| (*t, x, y));
         sets.iter().filter_map(line).collect()

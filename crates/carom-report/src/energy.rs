@@ -50,10 +50,9 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let without =
         |label: &str| !(is_drawn(label) || works.is_empty() && WORKS.iter().any(|(_, work)| *work == label));
     let omitted: Vec<&str> = known().map(|(_, label)| *label).filter(|label| without(label)).collect();
-    let omitted = if omitted.is_empty() {
-        String::new()
-    } else {
-        format!(" Omitted, as zero or below 10^{{-6}} of the largest in the pane: {}.", listed(&omitted))
+    let omitted = match listed(&omitted).as_str() {
+        "" => String::new(),
+        all => format!(" Omitted, as zero or below 10^{{-6}} of the largest in the pane: {all}."),
     };
     let names: Vec<&str> = ENERGIES.iter().chain(&WORKS).map(|(name, _)| *name).collect();
     let caption = format!(

@@ -30,7 +30,7 @@ pub(crate) fn all(run: &Run) -> Shown {
         shown.notes.push("The history has no rows yet; there is nothing to draw.".to_string());
         return shown;
     }
-    shown.figures.extend(stopped::picture(run));
+    shown.figures.extend(stopped::figure(run));
     shown.figures.extend(setup(run));
     let place = shown.figures.len() + 1;
     if let Some((bodies, bands)) = instants(run, &mut shown.notes) {

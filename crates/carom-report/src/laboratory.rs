@@ -4,6 +4,7 @@
 use carom_record::Status;
 use carom_record::study::compared::{established, is_trajectory};
 use carom_record::study::design::Goal;
+use carom_record::study::ranking::standing;
 use carom_record::study::{Row, Study};
 
 use crate::ordered::grouped;
@@ -194,12 +195,8 @@ const LEAST_DRIFT: f64 = 1e-6;
 fn roughness_dissipation(study: &Study) -> Option<Plot> {
     // One method that conserves energy up to round-off would compress all others.
     let lost = |arm: usize| Some(study.rows[arm].value("energy_drift")?.max(LEAST_DRIFT));
-    let right = study
-        .reference
-        .as_ref()
-        .and_then(|r| r.metric("force_variation").established())
-        .map(|v| v.0)
-        .filter(|v| *v > 0.0);
+    let right = standing(study.reference.as_ref(), "force_variation").established();
+    let right = right.map(|v| v.0).filter(|v| *v > 0.0);
     let variation = |arm: usize| {
         let value = study.rows[arm].value("force_variation")?;
         // Without an established reference the scale is twice the peak mean force: one rise and one

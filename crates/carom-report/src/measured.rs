@@ -15,6 +15,9 @@ use crate::palette::LINES;
 /// Height of a panel of differences in pixels.
 const LOW: f64 = 84.0;
 
+/// Colours of measured data, in turn.
+const DATA: [&str; 3] = [LINES[2], LINES[4], LINES[3]];
+
 /// Points of a column within the time of the run.
 pub(crate) struct Points {
     pub(crate) label: String,
@@ -71,11 +74,7 @@ pub(crate) fn add_points<'a>(all: &'a [Points], column: &str, panel: &mut Vec<Se
             // Several curves of a panel can have expected values; one entry of the legend is
             // enough.
             label: points.label.clone(),
-            color: if points.measured.is_none() {
-                LINES[1]
-            } else {
-                [LINES[2], LINES[4], LINES[3]][number % 3]
-            },
+            color: if points.measured.is_none() { LINES[1] } else { DATA[number % 3] },
             x: &points.x,
             y: points.y.clone(),
             dotted: true,
@@ -93,7 +92,7 @@ pub(crate) fn differences<'a>(run: &Run, all: &'a [Points], column: &str, symbol
         let at = |(x, y): (&f64, &f64)| between(run.times(), computed, *x) - y;
         series.push(Series {
             label: format!("computed {symbol} − “{name}”"),
-            color: [LINES[2], LINES[4], LINES[3]][series.len() % 3],
+            color: DATA[series.len() % 3],
             x: &points.x,
             y: points.x.iter().zip(&points.y).map(at).collect(),
             dotted: true,

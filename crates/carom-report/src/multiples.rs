@@ -74,11 +74,6 @@ fn extremes(y: &[f64], piece: usize) -> Vec<usize> {
     found
 }
 
-/// Name of the figure with small multiples of a column.
-fn multiples_name(column: &str) -> String {
-    format!("each-{}", file_name(if column == FORCE { "contact-force" } else { column }))
-}
-
 /// A column of every method at its finest level, one pane each; during the first contact, if this
 /// is a small part of the time. Methods with the same curve share a pane.
 fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) -> Option<Plot> {
@@ -135,8 +130,9 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
     let apart = if is_apart { " Methods that create energy do not affect the axes." } else { "" };
     let when = if span.is_some() { " during the first contact" } else { "" };
     let panes: Vec<Pane> = found.into_iter().enumerate().map(pane).collect();
+    let name = if column.name == FORCE { "contact-force" } else { &column.name };
     let mut plot = Plot {
-        name: multiples_name(&column.name),
+        name: format!("each-{}", file_name(name)),
         x_label: with_unit("time t", time),
         across: 3,
         same: true,

@@ -5,6 +5,7 @@ use carom_record::Run;
 use serde_json::Value;
 
 use crate::pen::{NOTHING, Point, around};
+use crate::symbols::{direction, plus};
 use crate::values::{list, place, text};
 
 /// Points with unit normals out of the rigid body.
@@ -44,20 +45,13 @@ fn one(contact: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Option<Obstacle> {
     let far = 4.0 * (x1 - x0).hypot(y1 - y0);
     let plane = primary.get("plane");
     let (walk, first) = if let Some(plane) = plane {
-        let (p, n) = (place(plane.get("point"))?, place::<2>(plane.get("normal"))?);
-        let n = n.map(|x| x / n[0].hypot(n[1]));
+        let p = place(plane.get("point"))?;
+        let n = direction([0.0; 2], place(plane.get("normal"))?);
+        let along = [n[1], -n[0]];
         // Around the point nearest to the bodies.
         let middle = [0.5 * (x0 + x1), 0.5 * (y0 + y1)];
-        let along = (middle[0] - p[0]) * n[1] - (middle[1] - p[1]) * n[0];
-        let foot = [p[0] + along * n[1], p[1] - along * n[0]];
-        (
-            straight(
-                [foot[0] - far * n[1], foot[1] + far * n[0]],
-                [foot[0] + far * n[1], foot[1] - far * n[0]],
-                n,
-            ),
-            p,
-        )
+        let foot = plus(p, (middle[0] - p[0]) * n[1] - (middle[1] - p[1]) * n[0], along);
+        (straight(plus(foot, -far, along), plus(foot, far, along), n), p)
     } else if let Some(circle) = primary.get("circle") {
         let (c, r) = (place(circle.get("center"))?, circle.get("radius")?.as_f64()?);
         let side = if circle.get("inside").and_then(Value::as_bool) == Some(true) { -1.0 } else { 1.0 };
@@ -102,25 +96,19 @@ fn arc(c: Point, r: f64, [from, to]: [f64; 2], side: f64, count: usize) -> Walk 
 fn polyline(points: &[Point], radius: f64, far: f64) -> Walk {
     let count = points.len() - 1;
     let closed = count > 2 && points[0] == points[count];
-    let tangents: Vec<Point> = points
-        .windows(2)
-        .map(|p| {
-            let d = [p[1][0] - p[0][0], p[1][1] - p[0][1]];
-            d.map(|x| x / d[0].hypot(d[1]))
-        })
-        .collect();
+    let tangents: Vec<Point> = points.windows(2).map(|p| direction(p[0], p[1])).collect();
     let turn = |a: Point, b: Point| (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]);
     let mut walk = Walk::new();
     for (k, t) in tangents.iter().enumerate() {
-        let (normal, moved) = ([t[1], -t[0]], |p: Point, s: f64| [p[0] + s * t[0], p[1] + s * t[1]]);
+        let normal = [t[1], -t[0]];
         let before = (closed || k > 0).then(|| turn(tangents[(k + count - 1) % count], *t));
         let after = (closed || k + 1 < count).then(|| turn(*t, tangents[(k + 1) % count]));
         let cut = |angle: Option<f64>| angle.map_or(-far, |angle| radius * (0.5 * angle).tan().abs());
-        let end = moved(points[k + 1], -cut(after));
-        walk.extend(straight(moved(points[k], cut(before)), end, normal));
+        let end = plus(points[k + 1], -cut(after), *t);
+        walk.extend(straight(plus(points[k], cut(before), *t), end, normal));
         if let Some(angle) = after.filter(|_| radius > 0.0) {
             let side = angle.signum();
-            let center = [end[0] - side * radius * normal[0], end[1] - side * radius * normal[1]];
+            let center = plus(end, -side * radius, normal);
             let from = (side * normal[1]).atan2(side * normal[0]);
             walk.extend(arc(center, radius, [from, from + angle], side, ARC));
         }

@@ -6,20 +6,15 @@ use carom_record::{Advice, Run, Stop, StopIteration, StopNode, StopPlace};
 use maud::{Markup, html};
 
 use crate::document::{file, joined, or_dash};
-use crate::figure::Figure;
 use crate::labels::{capitalised, number};
 use crate::scientific::{powers, significant};
 use crate::text::{Label, Prose, typeset};
 use crate::values;
+pub(crate) use picture::figure;
 
 const ITERATIONS: &str = "Newton's iterations of the last attempt, each before its correction. Residual: as \
     a fraction of the sum of the forces.";
 const DAMPING: &str = " Damping: the fraction of the correction that was applied.";
-
-/// The picture of the place.
-pub(crate) fn picture(run: &Run) -> Option<Figure> {
-    picture::figure(run, run.stop.as_ref()?)
-}
 
 /// The section, with its figure.
 pub(crate) fn section(run: &Run, picture: Option<Markup>) -> Markup {

@@ -5,6 +5,7 @@ use carom_record::study::{Arm, Study, step};
 use crate::curves;
 use crate::ordered::{distinct, grouped};
 use crate::plot::{Curve, Pane, Plot};
+use crate::text::said_if;
 
 /// Spectral radius, damping and period error of every scheme, from `theory.csv`; frequencies of the
 /// model, from `frequencies.csv`.
@@ -32,11 +33,8 @@ pub(crate) fn plot(study: &Study) -> Option<Plot> {
     // The curves have no values below these.
     let least = table.iter().filter_map(|row| row[1].parse::<f64>().ok()).fold(f64::INFINITY, f64::min);
     marks.retain(|(at, _)| *at >= least);
-    let springs = if marks.iter().any(|m| m.1.starts_with("ω_{c}")) {
-        " ω_{c}: the stiffest penalty spring on its node alone, with the other side at rest."
-    } else {
-        ""
-    };
+    let springs = " ω_{c}: the stiffest penalty spring on its node alone, with the other side at rest.";
+    let springs = said_if(marks.iter().any(|m| m.1.starts_with("ω_{c}")), springs);
     let names = distinct(table.iter().map(|row| &row[0]));
     let methods = study.manifest.methods();
     let curve = |column: usize| {

@@ -77,12 +77,8 @@ impl Setup<'_> {
     /// Current position of a reference point, moved like the nearest node.
     pub(super) fn moved(&self, [x, y]: Point) -> Point {
         let distance = |p: &[f64; 3]| (p[0] - x).hypot(p[1] - y);
-        let near = self
-            .fields
-            .points
-            .iter()
-            .zip(&self.points)
-            .min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
+        let moved = self.fields.points.iter().zip(&self.points);
+        let near = moved.min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
         near.map_or([x, y], |(from, to)| [x + to[0] - from[0], y + to[1] - from[1]])
     }
 

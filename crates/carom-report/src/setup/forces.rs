@@ -158,28 +158,22 @@ impl Setup<'_> {
                 continue;
             }
             for walk in texts(load.spec, "on").flat_map(|side| self.walks(side)) {
-                let spots = if self.flat {
-                    vec![(plus(walk[0].0, 0.5, [0.0, walk[1].0[1] - walk[0].0[1]]), walk[0].1)]
-                } else {
+                let mut spots = along(&walk, SPACING);
+                if self.flat {
+                    spots = vec![(plus(walk[0].0, 0.5, [0.0, walk[1].0[1] - walk[0].0[1]]), walk[0].1)];
+                } else if let [(a, _), (b, _)] = spots[..]
+                    && distance(a, b) < 0.5 * SPACING
+                {
                     // One arrow at a short side: heads of several would cover each other.
-                    let spots = along(&walk, SPACING);
-                    let is_short = spots.len() == 2 && distance(spots[0].0, spots[1].0) < 0.5 * SPACING;
-                    if is_short {
-                        vec![along(&walk, 0.5 * distance(spots[0].0, spots[1].0))[1]]
-                    } else {
-                        spots
-                    }
-                };
+                    spots = vec![along(&walk, 0.5 * distance(a, b))[1]];
+                }
                 for (spot, n) in spots {
                     let values = self.values(&load, spot);
                     let towards = match (load.kind, values.first()) {
-                        ("pressure", Some(p)) if *p != 0.0 => n.map(|c| -c * p.signum()),
-                        ("pressure", _) => continue,
-                        _ => match heading(&values) {
-                            Some(d) => d,
-                            None => continue,
-                        },
+                        ("pressure", Some(p)) => (*p != 0.0).then(|| n.map(|c| -c * p.signum())),
+                        _ => heading(&values),
                     };
+                    let Some(towards) = towards else { continue };
                     // A compressive load ends at the side, a tensile load begins there.
                     let presses = towards[0] * n[0] + towards[1] * n[1] < 0.0;
                     let [from, to] = if presses { [-GAP - LENGTH, -GAP] } else { [GAP, GAP + LENGTH] };

@@ -29,9 +29,10 @@ const FACET: &str = LINES[1];
 const CELL: &str = LINES[5];
 const REJECTED: &str = LINES[4];
 
-/// The figure; none in dimension 1 and without fields or a place.
-pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
-    let fields = carom_record::Stop::fields(&run.directory, &run.manifest).ok()??;
+/// The figure of a run that stopped; none in dimension 1 and without fields or a place.
+pub(crate) fn figure(run: &Run) -> Option<Figure> {
+    let stop = run.stop.as_ref()?;
+    let fields = Stop::fields(&run.directory, &run.manifest).ok()??;
     let place = stop.place.as_ref()?;
     if fields.blocks.iter().any(|block| !is_plane(block)) {
         return None;
