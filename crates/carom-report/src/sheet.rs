@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use crate::again::{again, once};
+use crate::again::{Rectangle, again, once};
 use crate::axis::{Axis, round_step};
 use crate::bands::Bands;
 use crate::chart::{open, write_text};
@@ -90,8 +90,7 @@ impl Sheet {
                 let (name, content) = (format!("picture-{k}"), broad.out.split_off(before));
                 once(&mut broad.out, &name, "picture", &content);
                 let [from, to] = [&broad, &narrow].map(|sheet| sheet.picture(k));
-                let rectangle = |([left, top], [width, height]): (Point, Point)| [left, top, width, height];
-                again(&mut narrow.out, &name, rectangle(from), rectangle(to));
+                again(&mut narrow.out, &name, from, to);
             } else {
                 draw(&mut narrow, k);
             }
@@ -109,16 +108,16 @@ impl Sheet {
         (self.width - BAR - 8.0) / self.columns as f64
     }
 
-    /// Upper left corner of picture `k`, and its size.
-    pub(crate) fn picture(&self, k: usize) -> (Point, Point) {
+    /// The rectangle of picture `k`.
+    pub(crate) fn picture(&self, k: usize) -> Rectangle {
         let size = [self.frame[1] - self.frame[0], self.frame[3] - self.frame[2]].map(|s| s * self.scale);
         let [left, top] = self.corner(k);
-        ([left + 0.5 * (self.cell_width() - GAP - size[0]), top], size)
+        [left + 0.5 * (self.cell_width() - GAP - size[0]), top, size[0], size[1]]
     }
 
     /// The map from units of length to pixels in picture `k`.
     pub(crate) fn map(&self, k: usize) -> impl Fn(Point) -> Point + use<> {
-        let ([left, top], _) = self.picture(k);
+        let [left, top, ..] = self.picture(k);
         let (frame, scale) = (self.frame, self.scale);
         move |p| [left + (p[0] - frame[0]) * scale, top + (frame[3] - p[1]) * scale]
     }
@@ -126,7 +125,7 @@ impl Sheet {
     /// Letter and time of picture `k`.
     fn heading(&mut self, k: usize, time: &str) {
         let [room, top] = self.corner(k);
-        let left = self.picture(k).0[0].min(room + 0.5 * self.cell_width() - 50.0);
+        let left = self.picture(k)[0].min(room + 0.5 * self.cell_width() - 50.0);
         let letter = char::from(b'a' + (k % 25) as u8);
         let _ = writeln!(
             self.out,

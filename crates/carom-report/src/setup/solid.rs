@@ -9,7 +9,7 @@ use carom_record::{FieldSet, Run};
 use super::drawing::{BOLD, ITALIC, ROOM, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, Load, load};
 use super::key::placed;
-use crate::again::{again, once};
+use crate::again::{Rectangle, again, once};
 use crate::axis::round_step;
 use crate::bodies::places;
 use crate::chart::{open, write_text};
@@ -54,6 +54,7 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
     let scale = scales[usize::from(narrow)];
     let [broad, size] = [scales[0], scale].map(|scale| [(x1 - x0) * scale, (y1 - y0) * scale]);
     let (left, top) = (margin, margin);
+    let place = [left, top, size[0], size[1]];
     let points = places.iter().map(|p| view.on_page(*p)).collect();
     let origin = [left - x0 * scale, top + y1 * scale];
     let setup = Setup { run, fields, points, flat: false, scale, origin, inside: HashMap::new() };
@@ -70,10 +71,10 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
     let solid = Solid { setup, view, places, skin, numbers };
     underlay(&mut out, &rigid, &view, &|p| solid.setup.to(p));
     if narrow {
-        again(&mut out, "setup-bodies", [left, top, broad[0], broad[1]], [left, top, size[0], size[1]]);
+        again(&mut out, "setup-bodies", [left, top, broad[0], broad[1]], place);
     } else {
         let mut bodies = String::new();
-        solid.bodies(&mut bodies, ([left, top], size));
+        solid.bodies(&mut bodies, place);
         once(&mut out, "setup-bodies", "picture", &bodies);
     }
     solid.sides(&mut out);
@@ -112,7 +113,7 @@ impl Solid<'_> {
     }
 
     /// Bodies, with supported sides in a colour of their own.
-    fn bodies(&self, out: &mut String, place: (Point, Point)) {
+    fn bodies(&self, out: &mut String, place: Rectangle) {
         // A facet of two supports has the colour of the first.
         let mut supported: HashMap<usize, usize> = HashMap::new();
         for (k, support) in list(self.setup.case(), "supports").iter().enumerate() {

@@ -7,6 +7,7 @@ use super::raster::image;
 use super::skin::{Facet, Place, skin};
 use super::view::View;
 use super::wires::wires;
+use crate::again::Rectangle;
 use crate::bands::{Bands, positive_bands};
 use crate::bodies::places;
 use crate::labels::instant_label;
@@ -28,17 +29,11 @@ pub(crate) fn frame(skin: &[Facet], places: &[Place], view: &View) -> [f64; 4] {
 }
 
 /// Draws pieces one by one or, if there are too many, as an image.
-pub(crate) fn draw(
-    out: &mut String,
-    pieces: &[Piece],
-    colors: &Paint,
-    (corner, size): (Point, Point),
-    drawn: bool,
-) {
+pub(crate) fn draw(out: &mut String, pieces: &[Piece], colors: &Paint, place: Rectangle, drawn: bool) {
     if drawn {
         paint(out, pieces, colors);
     } else {
-        out.push_str(&image(pieces, colors, corner, size));
+        out.push_str(&image(pieces, colors, place));
     }
 }
 
