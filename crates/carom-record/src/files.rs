@@ -22,6 +22,14 @@ pub(crate) fn replace(
     sync_directory(path.parent().unwrap_or(Path::new(".")))
 }
 
+/// Reads a file; `missing` is the error where there is none.
+pub(crate) fn read_or(path: &Path, missing: RecordError) -> Result<Vec<u8>, RecordError> {
+    fs::read(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => missing,
+        _ => RecordError::io("read", path)(error),
+    })
+}
+
 /// Replaces `path` without flushing it to the disk. A killed process leaves the old or the new
 /// file; until [`sync`] is called, a power failure may leave an empty one.
 pub(crate) fn write_unsynced(path: &Path, parts: &[&[u8]]) -> Result<(), RecordError> {

@@ -20,6 +20,7 @@ mod export;
 mod expression;
 mod files;
 mod intact;
+mod json;
 mod manifest;
 pub mod metrics;
 pub mod order;

@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RecordError, Warning, files, stream};
+use crate::{RecordError, Warning, files, json, stream};
 
 /// Status of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -245,21 +245,8 @@ impl Manifest {
     /// Reads `manifest.json` of a run directory.
     pub fn read(directory: &Path) -> Result<Self, RecordError> {
         let path = directory.join("manifest.json");
-        let text = std::fs::read(&path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => {
-                RecordError::NotARun { path: directory.to_path_buf() }
-            }
-            _ => RecordError::io("read", &path)(error),
-        })?;
-        serde_json::from_slice(&text).map_err(|error| {
-            let line = Some(error.line() as u64);
-            RecordError::corrupt(
-                &path,
-                line,
-                error.to_string(),
-                "run the case again, or use the version of Carom that wrote it",
-            )
-        })
+        let text = files::read_or(&path, RecordError::NotARun { path: directory.to_path_buf() })?;
+        json::value(&path, &text, "run the case again, or use the version of Carom that wrote it")
     }
 
     /// Reads a file of the run directory; it must be the one that the manifest describes, if it
@@ -286,10 +273,7 @@ impl Manifest {
     /// Replaces `manifest.json` of a run directory.
     pub(crate) fn write(&self, directory: &Path) -> Result<(), RecordError> {
         let path = directory.join("manifest.json");
-        let mut text =
-            serde_json::to_vec_pretty(self).map_err(|error| RecordError::io("write", &path)(error.into()))?;
-        text.push(b'\n');
-        files::write_atomically(&path, &[&text])
+        files::write_atomically(&path, &[&json::text(&path, self)?, b"\n"])
     }
 }
 

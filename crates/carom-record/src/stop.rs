@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{FieldSet, Manifest, RecordError, files};
+use crate::{FieldSet, Manifest, RecordError, files, json};
 
 /// Names of the two files.
 pub(crate) const FILES: [&str; 2] = ["stopped.json", "stopped.vtu"];
@@ -136,8 +136,7 @@ impl Stop {
         manifest: &mut Manifest,
     ) -> Result<(), RecordError> {
         let path = directory.join(FILES[0]);
-        let mut text =
-            serde_json::to_vec_pretty(self).map_err(|e| RecordError::io("write", &path)(e.into()))?;
+        let mut text = json::text(&path, self)?;
         text.push(b'\n');
         let fields = fields.to_vtu(self.last)?;
         for (name, bytes) in FILES.into_iter().zip([text, fields]) {
@@ -153,9 +152,7 @@ impl Stop {
     /// The file is missing or has changed.
     pub fn read(directory: &Path, manifest: &Manifest) -> Result<Option<Self>, RecordError> {
         let Some(bytes) = bytes(directory, FILES[0], manifest)? else { return Ok(None) };
-        let path = directory.join(FILES[0]);
-        let read = serde_json::from_slice(&bytes);
-        read.map(Some).map_err(|e| RecordError::corrupt(&path, Some(e.line() as u64), e.to_string(), HINT))
+        json::value(&directory.join(FILES[0]), &bytes, HINT).map(Some)
     }
 
     /// Reads `stopped.vtu`.

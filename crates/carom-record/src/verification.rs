@@ -11,7 +11,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Expectation, Machine, RecordError, files};
+use crate::{Expectation, Machine, RecordError, files, json};
 
 /// A verification.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -132,14 +132,7 @@ impl Verification {
     pub fn read(directory: &Path) -> Result<Self, RecordError> {
         let path = directory.join("verify.json");
         let text = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
-        serde_json::from_slice(&text).map_err(|error| {
-            RecordError::corrupt(
-                &path,
-                Some(error.line() as u64),
-                error.to_string(),
-                "run carom verify again",
-            )
-        })
+        json::value(&path, &text, "run carom verify again")
     }
 
     /// Writes `verify.json` and `verify.csv`.
@@ -148,8 +141,7 @@ impl Verification {
     /// Input/output or system error.
     pub fn write(&self, directory: &Path) -> Result<(), RecordError> {
         let path = directory.join("verify.json");
-        let text = serde_json::to_vec_pretty(self).map_err(|e| RecordError::io("write", &path)(e.into()))?;
-        files::write_atomically(&path, &[&text, b"\n"])?;
+        files::write_atomically(&path, &[&json::text(&path, self)?, b"\n"])?;
         let path = directory.join("verify.csv");
         files::write_atomically(&path, &[&self.csv().map_err(RecordError::io("write", &path))?])
     }

@@ -11,14 +11,16 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use carom_record::{Block, Cell, FieldEntry, FieldSet, Run};
 use maud::{Markup, PreEscaped, html};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::bodies::{Instant, frame, triangles};
-use crate::chart::{Chart, Options, Panel, Series, Track};
-use crate::labels::{amount, is_static, is_stress, number, symbol, time_label};
+use crate::chart::{Chart, Options, Panel, Series};
+use crate::labels::{amount, is_static, number, symbol, time_label};
 use crate::noise;
 use crate::obstacles;
+use crate::ordered::grouped;
+use crate::over_time::{of_probes, panel, tracks};
 use crate::palette::LINES;
 use crate::pen::Point;
 use crate::pressure;
@@ -26,15 +28,14 @@ use crate::quantity::{Quantity, bars, choice, stresses};
 use crate::scientific::significant;
 use crate::sheet::{Legend, arrowheads};
 use crate::text::{Label, Prose};
+use crate::values::{self, list, text};
 
 /// Largest number of bytes of positions and stresses in the page; field files are skipped evenly to
 /// stay below.
 const BUDGET: usize = 3_200_000;
 const FRAMES: usize = 300;
 /// Play, pause, slider and cursors, for all animations.
-pub(crate) const PLAYER: &str = include_str!("player.js");
-/// Largest number of kinds of events drawn; the rarest come first.
-const KINDS: usize = 6;
+const PLAYER: &str = include_str!("player.js");
 
 /// An animation; its scripts come after all figures of the page, whose time histories they use.
 #[derive(Clone, Debug)]
@@ -101,37 +102,12 @@ fn forces(run: &Run) -> HashMap<u64, Vec<[f64; 4]>> {
     found
 }
 
-/// Times of the events of each kind, the rarest kind first.
-pub(crate) fn tracks(run: &Run) -> Vec<Track> {
-    let mut tracks: Vec<Track> = Vec::new();
-    for event in &run.log {
-        match tracks.iter_mut().find(|t| t.label == event.kind) {
-            Some(track) => track.times.push(event.time),
-            None => tracks.push(Track { label: event.kind.clone(), times: vec![event.time] }),
-        }
-    }
-    tracks.sort_by_key(|t| t.times.len());
-    tracks.truncate(KINDS);
-    tracks
-}
-
 /// Time histories beside the picture: contact force (its label is short, for a low panel), then the
 /// probes.
 pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let h = &run.history;
-    let series = |name: &str, label: String, k: usize| {
-        let y = h.column(name)?.to_vec();
-        Some(Series {
-            label,
-            color: LINES[k % LINES.len()],
-            x: run.times(),
-            y,
-            dotted: false,
-            unlisted: false,
-        })
-    };
     // In the plane y, as in the figures; in space the component that grows largest.
-    let peak = |name: &str| h.column(name).map(|x| x.iter().fold(0.0_f64, |most, x| most.max(x.abs())));
+    let peak = |name: &str| h.column(name).map(noise::largest);
     let candidates = ["contact_force_x", "contact_force_y", "contact_force_z"];
     let present = || candidates.into_iter().enumerate().filter_map(|(i, name)| Some((i, peak(name)?)));
     let axis = match present().count() {
@@ -141,35 +117,15 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let force = candidates[axis];
     let mut panels: Vec<Panel> = Vec::new();
     let label = ["f_{x}", "f_{y}", "f_{z}"][axis];
-    if let Some(s) = series(force, String::new(), 0) {
-        panels.push(Panel {
-            label: format!("force {label}"),
-            unit: h.unit(force).into(),
-            height: 96.0,
-            series: vec![s],
-        });
+    let low = |label: &str, unit: &str, series| panel(label, unit, 96.0, series);
+    if let Some(y) = h.column(force) {
+        let series = Series { color: LINES[0], x: run.times(), y: y.to_vec(), ..Series::default() };
+        panels.push(low(&format!("force {label}"), h.unit(force), vec![series]));
     }
-    for column in &h.columns {
-        let Some((probe, quantity)) = column.name.rsplit_once('.') else { continue };
-        let probes = run.manifest.case.get("probes").and_then(|p| p.as_array());
-        let known = |p: &serde_json::Value| p.get("name").and_then(|n| n.as_str()) == Some(probe);
-        let Some(k) = probes.and_then(|list| list.iter().position(known)) else { continue };
-        if is_stress(quantity) && noise::is_noise(run, &column.name) {
-            continue;
-        }
-        let Some(s) = series(&column.name, format!("{} at {probe}", symbol(quantity)), k) else { continue };
-        match panels.iter().position(|p| p.label == symbol(quantity)) {
-            Some(i) => panels[i].series.push(s),
-            None if panels.len() < 5 => {
-                panels.push(Panel {
-                    label: symbol(quantity),
-                    unit: column.unit.clone(),
-                    height: 96.0,
-                    series: vec![s],
-                });
-            }
-            None => {}
-        }
+    let room = 5 - panels.len();
+    for (quantity, members) in grouped(of_probes(run)).into_iter().take(room) {
+        let unit = &members[0].0.unit;
+        panels.push(low(&symbol(quantity), unit, members.into_iter().map(|(_, series)| series).collect()));
     }
     // A force that is zero throughout needs no panel, unless there is no other for the cursor.
     if panels.len() > 1 && panels[0].label.starts_with("force") && noise::is_noise(run, force) {
@@ -183,34 +139,29 @@ pub(crate) fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
 /// Rigid planes: a point, which in 1D is that at a recorded time, and the normal out of the rigid
 /// body.
 fn planes(run: &Run, flat: bool, time: f64) -> Vec<[Point; 2]> {
-    let contacts = run.manifest.case.get("contacts").and_then(|c| c.as_array()).into_iter().flatten();
-    let vector = |v: &serde_json::Value, key: &str| {
-        let list = v.get(key).and_then(|v| v.as_array()).cloned().unwrap_or_default();
-        [0, 1].map(|i| list.get(i).and_then(serde_json::Value::as_f64).unwrap_or(0.0))
-    };
-    let plane = |c: &serde_json::Value| {
-        c.pointer("/primary/plane").map(|p| [vector(p, "point"), vector(p, "normal")])
-    };
-    let at = |c: &serde_json::Value| {
-        let [p, n] = plane(c)?;
+    let at = |contact: &Value| {
+        let plane = contact.pointer("/primary/plane")?;
+        let [p, n] = ["point", "normal"].map(|key| values::flat(plane.get(key)));
         if !flat {
             return Some([p, n]);
         }
-        let name = c.get("name").and_then(serde_json::Value::as_str).unwrap_or_default();
-        let row = run.times().partition_point(|t| *t < time - 1e-12 * time.abs());
-        let place = run.column(&format!("{name}.center_x")).and_then(|column| column.get(row)).copied();
+        let name = text(contact, "name");
+        let place = obstacles::recorded(run, &format!("{name}.center_x"), time);
         Some([[place.unwrap_or(p[0]), 0.0], [n[0], 0.0]])
     };
-    contacts.filter_map(at).collect()
+    list(&run.manifest.case, "contacts").iter().filter_map(at).collect()
 }
 
 /// Field files that are used as frames, of which each has so many numbers.
 fn chosen(run: &Run, numbers: usize) -> Vec<&FieldEntry> {
     // Two bytes are 8/3 characters in base 64.
     let most = (3 * BUDGET / (8 * numbers.max(1))).clamp(2, FRAMES);
-    let stride = run.fields.len().div_ceil(most).max(1);
-    let last = run.fields.len().saturating_sub(1);
-    run.fields.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, e)| e).collect()
+    thinned(run.fields.len(), run.fields.len().div_ceil(most)).map(|i| &run.fields[i]).collect()
+}
+
+/// Every `stride`-th of a number of frames, and the last one.
+pub(crate) fn thinned(count: usize, stride: usize) -> impl Iterator<Item = usize> {
+    (0..count).filter(move |i| i % stride.max(1) == 0 || i + 1 == count)
 }
 
 /// Two digits of a force, with a prefix only where it is far from one.
@@ -218,8 +169,25 @@ fn size(x: f64, unit: &str) -> String {
     if (0.01..1000.0).contains(&x) { format!("{} {unit}", significant(x, 2)) } else { amount(x, unit) }
 }
 
-/// A sentence of the captions.
-pub(crate) const EVENTS: &str = " Ticks below the histories: events in `log.jsonl`.";
+/// The end of the captions: what arrowheads of the colour bars, shades, the line and ticks mean.
+pub(crate) fn explained(run: &Run, quantities: &[Quantity], shaded: bool) -> Markup {
+    html! {
+        (Label(&arrowheads(quantities.iter().map(|q| (q.legend.cut, q.legend.label.to_owned())))))
+        @if shaded { " Shaded: contact." }
+        " Vertical line, here and in the figures below: the instant shown."
+        @if !run.log.is_empty() { (Prose(" Ticks below the histories: events in `log.jsonl`.")) }
+    }
+}
+
+/// The data of an animation, and the scripts that draw and play it.
+pub(crate) fn scripts(data: &Value, script: &str) -> Markup {
+    // Only `<` could end the script element.
+    let data = data.to_string().replace('<', "\\u003c");
+    html! {
+        script #animation-data type="application/json" { (PreEscaped(data)) }
+        script { (PreEscaped(PLAYER)) (PreEscaped(script)) }
+    }
+}
 
 /// How many of the field files are frames.
 pub(crate) fn of_files(frames: usize, files: usize) -> String {
@@ -228,12 +196,6 @@ pub(crate) fn of_files(frames: usize, files: usize) -> String {
     } else {
         format!("all {files} field files")
     }
-}
-
-/// What the shades and the line in the time histories mean.
-pub(crate) fn histories_in_words(shaded: bool) -> String {
-    let shades = if shaded { " Shaded: contact." } else { "" };
-    format!("{shades} Vertical line, here and in the figures below: the instant shown.")
 }
 
 /// The time of the last frame, as a part of a sentence, where the record goes on after it.
@@ -314,7 +276,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let own = color_bands(values.iter().copied()).0;
     let bands = if flat { &own } else { bands };
     let cut = [range.0 < bands.low, range.1 > bands.high];
-    let unit = first.array("stress").map_or("", |a| a.unit.as_str());
+    let unit = first.unit("stress");
     let label = if flat { "σ_{xx}" } else { "σ_{yy}" };
     let along = Quantity {
         name: if flat { "axial stress" } else { "vertical stress" },
@@ -360,9 +322,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     });
     let every = of_files(entries.len(), run.fields.len());
     let last = frames.last().map_or_else(String::new, |(entry, _)| until(run, entry.time));
-    let of_histories = histories_in_words(!shades.is_empty());
-    // Only `<` could end the script element.
-    let data = data.to_string().replace('<', "\\u003c");
+    let explained = explained(run, &quantities, !shades.is_empty());
     let figure = html! {
         figure.animation #animation hidden {
             div.stage {
@@ -385,9 +345,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                     (Prose(" Arrows: contact forces on the secondary nodes (`contact.csv`); the longest is "))
                     (Label(&size(largest, run.history.unit("contact_force_x")))) "."
                 }
-                (Label(&arrowheads(quantities.iter().map(|q| (q.legend.cut, q.legend.label.to_owned())))))
-                (of_histories)
-                @if !run.log.is_empty() { (Prose(EVENTS)) }
+                (explained)
             }
             (help(&html! {
                 "Keys, after a click on the animation: Space: play or pause; ← and → (or comma and full stop): previous and \
@@ -395,11 +353,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
             }))
         }
     };
-    let scripts = html! {
-        script #animation-data type="application/json" { (PreEscaped(data)) }
-        script { (PreEscaped(PLAYER)) (PreEscaped(include_str!("animation.js"))) }
-    };
-    Some(Animation { figure, scripts })
+    Some(Animation { figure, scripts: scripts(&data, include_str!("animation.js")) })
 }
 
 #[cfg(test)]

@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use carom_record::{ContactRow, Run};
 
+use crate::values::{list, text};
+
 /// Where a node of a contact lies.
 #[derive(Clone, Copy)]
 pub(crate) struct Place {
@@ -20,9 +22,9 @@ pub(crate) struct Place {
 /// whether they are lengths: without field files, which have the positions, nodes are counted. A
 /// closed side is cut where no node is in contact for longest.
 pub(crate) fn places(run: &Run, name: &str, rows: &[&ContactRow]) -> (BTreeMap<u64, Place>, bool) {
-    let contacts = run.manifest.case.get("contacts").and_then(|value| value.as_array());
-    let of_name = |item: &&serde_json::Value| item.get("name").and_then(|v| v.as_str()) == Some(name);
-    let side = contacts.into_iter().flatten().find(of_name).and_then(|item| item.get("secondary")?.as_str());
+    let mut contacts = list(&run.manifest.case, "contacts").iter();
+    let contact = contacts.find(|contact| text(contact, "name") == name);
+    let side = contact.and_then(|contact| contact.get("secondary")?.as_str());
     let chains = side.and_then(|side| run.manifest.sides.get(side)).map_or(&[][..], Vec::as_slice);
     let first = run.fields.first().and_then(|entry| run.field(entry).ok());
     let rubbing: BTreeSet<u64> = rows.iter().map(|row| row.node).collect();

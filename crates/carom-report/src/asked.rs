@@ -1,13 +1,12 @@
 //! The unit of what an expectation asks for, from those of its quantities.
 
+use carom_record::metrics::Metric;
 use carom_record::question::{Form, Quantity, Question};
 use carom_record::{Expression, Run, Sign, metrics};
 
 /// The unit of an expression; none where a number in it may have one. A number is no unit, `""`.
 pub(crate) fn unit(run: &Run, what: &str) -> Option<String> {
-    let overlays = metrics::overlays(run);
-    let measured = overlays.iter().flat_map(|overlay| metrics::of_measured(&run.history, overlay));
-    let all: Vec<_> = metrics::all(&run.history).into_iter().chain(measured).collect();
+    let all = metrics_of(run);
     let of_metric = |name: &str| all.iter().find(|m| m.name == name).map(|m| m.unit.clone());
     let of_column = |name: &str| run.column(name).map(|_| run.history.unit(name).to_owned());
     // A difference from a formula of t.
@@ -20,6 +19,13 @@ pub(crate) fn unit(run: &Run, what: &str) -> Option<String> {
         Quantity::Reduced(_, series) => combined(&series.columns, &|asked| of_column(&asked.column)),
     };
     of_metric(what).or_else(|| combined(&Question::parse(what).ok()?, &of_quantity))
+}
+
+/// The metrics of a run, those of its measured data included.
+pub(crate) fn metrics_of(run: &Run) -> Vec<Metric> {
+    let mut all = metrics::all(&run.history);
+    all.extend(metrics::overlays(run).iter().flat_map(|data| metrics::of_measured(&run.history, data)));
+    all
 }
 
 /// The unit of an expression in quantities of these units.

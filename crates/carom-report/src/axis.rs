@@ -44,6 +44,12 @@ fn digits_within(x: f64, span: f64) -> String {
     text.into_iter().find(is_exact).map_or_else(|| number(x), |text| text.replace('-', "−"))
 }
 
+/// A number with a minus sign, not a hyphen, and no negative zero.
+fn signed(x: f64, decimals: usize) -> String {
+    let text = format!("{:.decimals$}", x.abs());
+    if x < 0.0 { format!("−{text}") } else { text }
+}
+
 impl Axis {
     /// An axis that ends at the data (`tight`) or at round numbers around them.
     pub(crate) fn new(range: (f64, f64), count: f64, tight: bool) -> Self {
@@ -82,10 +88,8 @@ impl Axis {
         let last = (high / step + 1e-9).floor() as i64;
         let ticks = (first..=last.min(first + 50)).map(|i| {
             let value = i as f64 * step;
-            // A minus sign, not a hyphen, and no negative zero.
             let shown = if offset == 0.0 { value } else { (i as f64 - (offset / step).round()) * step };
-            let text = format!("{:.decimals$}", shown.abs() / scale);
-            (value, if shown < 0.0 { format!("−{text}") } else { text })
+            (value, signed(shown / scale, decimals))
         });
         Self { low, high, ticks: ticks.collect(), exponent, offset }
     }
@@ -100,8 +104,7 @@ impl Axis {
             return self;
         }
         for (value, label) in &mut self.ticks {
-            let text = format!("{:.*}", decimals as usize, value.abs() / scale);
-            *label = if *value < 0.0 { format!("−{text}") } else { text };
+            *label = signed(*value / scale, decimals as usize);
         }
         self.exponent = exponent;
         self

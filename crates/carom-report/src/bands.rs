@@ -27,6 +27,27 @@ pub(crate) fn shape(degree: usize, [a, b, c]: [f64; 3], out: &mut Vec<f64>) {
     }
 }
 
+/// Row by row, the points that divide each side of a triangle into `m` parts, as barycentric
+/// coordinates of its corners.
+pub(crate) fn divided(m: usize) -> impl Iterator<Item = [f64; 3]> {
+    let share = move |i: usize| i as f64 / m as f64;
+    let point = move |j: usize, i: usize| [1.0 - share(i) - share(j), share(i), share(j)];
+    (0..=m).flat_map(move |j| (0..=m - j).map(move |i| point(j, i)))
+}
+
+/// The small triangles between these points, and which of their sides lie on a side of the large
+/// one.
+pub(crate) fn small_triangles(m: usize) -> impl Iterator<Item = ([usize; 3], [bool; 3])> {
+    // Row j starts at `row(j)`: m + 1 − j points.
+    let row = move |j: usize| j * (m + 1) - j * j.saturating_sub(1) / 2;
+    (0..m).flat_map(move |j| (0..m - j).map(move |i| (j, i))).flat_map(move |(j, i)| {
+        let (low, high) = (row(j) + i, row(j + 1) + i);
+        let upright = ([low, low + 1, high], [j == 0, i + j + 1 == m, i == 0]);
+        let turned = (i + 1 < m - j).then_some(([low + 1, high + 1, high], [false; 3]));
+        std::iter::once(upright).chain(turned)
+    })
+}
+
 /// The part of a polygon where sign·(value − level) ≥ 0.
 fn clip(polygon: &[(Point, f64)], level: f64, sign: f64) -> Vec<(Point, f64)> {
     let mut out = Vec::with_capacity(polygon.len() + 1);

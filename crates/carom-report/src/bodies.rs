@@ -9,13 +9,14 @@ use std::fmt::Write as _;
 
 use carom_record::{Block, Cell, FieldSet};
 
-use crate::bands::{Bands, color_bands, parts, shape};
+use crate::bands::{Bands, color_bands, divided, parts, shape, small_triangles};
 use crate::obstacles::Walk;
-use crate::pen::{Pen, Point, open_grid};
+use crate::pen::{NOTHING, Pen, Point, around, open_grid};
 use crate::sheet::{Legend, Sheet};
-use crate::symbols::{mark, wall};
+use crate::symbols::{distance, mark, wall};
 
 /// One instant: deformed nodes, the quantity at them, and the cells.
+#[derive(Default)]
 pub(crate) struct Instant {
     pub(crate) time: String,
     pub(crate) points: Vec<Point>,
@@ -41,12 +42,13 @@ impl Instant {
 
     /// The cells of one block, without a quantity.
     pub(crate) fn of_block(fields: &FieldSet, block: &Block) -> Self {
-        Self {
-            time: String::new(),
-            points: places(fields),
-            values: Vec::new(),
-            cells: block.cells().map(|c| (block.degree, c.to_vec())).collect(),
-        }
+        Self::of_cells(places(fields), block, |_| true)
+    }
+
+    /// The cells of one block that are chosen by their nodes, at these places.
+    pub(crate) fn of_cells(points: Vec<Point>, block: &Block, chosen: impl Fn(&[usize]) -> bool) -> Self {
+        let cells = block.cells().filter(|c| chosen(c)).map(|c| (block.degree, c.to_vec())).collect();
+        Self { points, cells, ..Self::default() }
     }
 }
 
@@ -55,11 +57,18 @@ pub(crate) fn fill_space(fields: &FieldSet) -> bool {
     fields.blocks.iter().any(|block| matches!(block.cell, Cell::Tetrahedron | Cell::Hexahedron))
 }
 
-/// Current positions of the points of a field set: reference position + displacement.
-pub(crate) fn places(fields: &FieldSet) -> Vec<Point> {
-    let u = fields.array("displacement").filter(|a| a.components == 3);
-    let moved = |(i, x): (usize, &[f64; 3])| [0, 1].map(|d| x[d] + u.map_or(0.0, |u| u.values[3 * i + d]));
-    fields.points.iter().enumerate().map(moved).collect()
+/// Current positions of the points of a field set in D dimensions: reference position +
+/// displacement.
+pub(crate) fn places<const D: usize>(fields: &FieldSet) -> Vec<[f64; D]> {
+    moved(fields, "displacement")
+}
+
+/// The same with another displacement of the points.
+pub(crate) fn moved<const D: usize>(fields: &FieldSet, array: &str) -> Vec<[f64; D]> {
+    let u = fields.array(array).filter(|a| a.components == 3);
+    let at =
+        |(k, x): (usize, &[f64; 3])| std::array::from_fn(|d| x[d] + u.map_or(0.0, |u| u.values[3 * k + d]));
+    fields.points.iter().enumerate().map(at).collect()
 }
 
 /// Whether the cells of a block are triangles or quadrilaterals.
@@ -93,39 +102,21 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
     for (degree, nodes) in halves {
         let m = [1, 4, 5][degree.saturating_sub(1).min(2)];
         corner.clear();
-        // Row j of the subdivision starts at `row(j)`: m + 1 − j points.
-        let row = |j: usize| j * (m + 1) - j * j.saturating_sub(1) / 2;
-        for j in 0..=m {
-            for i in 0..=m - j {
-                let (b, c) = (i as f64 / m as f64, j as f64 / m as f64);
-                shape(*degree, [1.0 - b - c, b, c], &mut n);
-                let sum =
-                    |f: &dyn Fn(usize) -> f64| n.iter().zip(&nodes).map(|(n, &k)| n * f(k)).sum::<f64>();
-                let p = [0, 1].map(|d| sum(&|k| instant.points[k][d]));
-                corner.push((to(p), sum(&|k| instant.values[k])));
-            }
+        for place in divided(m) {
+            shape(*degree, place, &mut n);
+            let sum = |f: &dyn Fn(usize) -> f64| n.iter().zip(&nodes).map(|(n, &k)| n * f(k)).sum::<f64>();
+            let p = [0, 1].map(|d| sum(&|k| instant.points[k][d]));
+            corner.push((to(p), sum(&|k| instant.values[k])));
         }
         // A cell within one band is filled as a whole, inside its exact edges.
         let band = bands.of(corner[0].1);
         if corner.iter().all(|(_, f)| f.is_finite() && bands.of(*f) == band) {
-            let edge =
-                |e: usize| edge_nodes(*degree, &nodes, e).map(|k| to(instant.points[k])).collect::<Vec<_>>();
-            (0..3).for_each(|e| bezier(&mut paths[band], &edge(e), e == 0));
-            paths[band].close();
+            outline(&mut paths[band], *degree, &nodes, &|k| to(instant.points[k]));
             continue;
         }
-        for j in 0..m {
-            for i in 0..m - j {
-                let (low, high) = (row(j) + i, row(j + 1) + i);
-                let mut triangle = |triangle: [usize; 3]| {
-                    for (band, polygon) in parts(&triangle.map(|k| corner[k]), bands) {
-                        paths[band].polygon(&polygon);
-                    }
-                };
-                triangle([low, low + 1, high]);
-                if i + 1 < m - j {
-                    triangle([low + 1, high + 1, high]);
-                }
+        for (triangle, _) in small_triangles(m) {
+            for (band, polygon) in parts(&triangle.map(|k| corner[k]), bands) {
+                paths[band].polygon(&polygon);
             }
         }
     }
@@ -157,7 +148,7 @@ fn thickness(instant: &Instant) -> f64 {
         }
     }
     for ([a, b], _) in found.iter().filter(|(_, count)| **count == 1) {
-        around += (at(*a)[0] - at(*b)[0]).hypot(at(*a)[1] - at(*b)[1]);
+        around += distance(at(*a), at(*b));
     }
     if around > 0.0 { 2.0 * area.abs() / around } else { f64::INFINITY }
 }
@@ -184,6 +175,14 @@ pub(crate) fn bezier(pen: &mut Pen, nodes: &[Point], moved: bool) {
         pen.go(nodes[0]);
     }
     pen.draw(&controls.iter().map(|w| mix(w)).collect::<Vec<_>>());
+}
+
+/// Adds the outline of a cell.
+pub(crate) fn outline(pen: &mut Pen, degree: usize, nodes: &[usize], to: &dyn Fn(usize) -> Point) {
+    for e in 0..corners(nodes) {
+        bezier(pen, &edge_nodes(degree, nodes, e).map(to).collect::<Vec<_>>(), e == 0);
+    }
+    pen.close();
 }
 
 /// Edges of all cells: interior edges, and the outline made of the edges that belong to one cell
@@ -213,13 +212,8 @@ pub(crate) fn edges(instant: &Instant, to: &dyn Fn(Point) -> Point) -> [Pen; 2] 
 
 /// Bounding box of the cells: left, right, bottom, top.
 pub(crate) fn frame<'a>(instants: impl IntoIterator<Item = &'a Instant>) -> [f64; 4] {
-    let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
-    for instant in instants {
-        for [x, y] in instant.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| instant.points[k])) {
-            frame = [frame[0].min(x), frame[1].max(x), frame[2].min(y), frame[3].max(y)];
-        }
-    }
-    frame
+    let places = |i: &'a Instant| i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| i.points[k]));
+    around(NOTHING, instants.into_iter().flat_map(places))
 }
 
 /// Colour bands for the values at some instants.
@@ -248,8 +242,8 @@ pub(crate) fn figure(
         let thin = thickness(instant) * scale < THIN;
         let [inside, outline] = edges(instant, &to).map(|pen| pen.data().to_string());
         if thin {
-            let _ =
-                writeln!(out, "<path d=\"{outline}\" fill=\"none\" stroke=\"#777\" stroke-width=\"52\"/>");
+            let style = "fill=\"none\" stroke=\"#777\" stroke-width=\"52\"";
+            let _ = writeln!(out, "<path d=\"{outline}\" {style}/>");
         }
         fill(out, instant, legend.bands, &to, if thin { 35.0 } else { 10.0 });
         if thin {

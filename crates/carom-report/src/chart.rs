@@ -1,18 +1,20 @@
 //! Line charts against a shared horizontal axis, one panel above the other.
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
 use crate::axis::{Axis, range};
 use crate::labels::unit_of;
 use crate::text;
 use crate::trace::path;
 
-const WIDTH: f64 = 720.0;
+/// Usual width of a figure.
+pub(crate) const WIDTH: f64 = 720.0;
 const LEFT: f64 = 74.0;
 const RIGHT: f64 = 14.0;
 const FONT: f64 = 13.0;
 
 /// A curve.
+#[derive(Default)]
 pub(crate) struct Series<'a> {
     pub(crate) label: String,
     pub(crate) color: &'static str,
@@ -69,12 +71,8 @@ pub(crate) fn open(title: &str, width: f64, height: f64) -> String {
     opened("picture", title, width, height)
 }
 
-/// The opening of a line chart, which a dark page shows in light colours on dark ground.
-pub(crate) fn open_chart(title: &str, width: f64, height: f64) -> String {
-    opened("chart", title, width, height)
-}
-
-fn opened(class: &str, title: &str, width: f64, height: f64) -> String {
+/// The same of a class: a dark page shows a `chart` in light colours on dark ground.
+pub(crate) fn opened(class: &str, title: &str, width: f64, height: f64) -> String {
     format!(
         "<svg class=\"{class}\" xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 \
          0 {width:.0} {height:.0}\" \
@@ -90,13 +88,14 @@ pub(crate) fn write_text(out: &mut String, x: f64, y: f64, extra: &str, label: &
     let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" {extra}>{}</text>", text::svg(label));
 }
 
-impl Chart<'_> {
-    /// The figure.
-    pub(crate) fn svg(&self) -> String {
-        self.draw(&Options::default())
-    }
+/// A text element turned upwards around its middle, as the label of a vertical axis.
+pub(crate) fn turned(out: &mut String, (x, y): (impl Display, f64), extra: &str, label: &str) {
+    let at = format!("text-anchor=\"middle\"{extra} transform=\"translate({x} {y:.1}) rotate(-90)\"");
+    write_text(out, 0.0, 0.0, &at, label);
+}
 
-    /// The figure with options.
+impl Chart<'_> {
+    /// The picture.
     pub(crate) fn draw(&self, options: &Options) -> String {
         const GAP: f64 = 16.0;
         const ROW: f64 = 15.0;
@@ -107,7 +106,7 @@ impl Chart<'_> {
         let rows: Vec<Vec<Vec<usize>>> = self.panels.iter().map(|p| legend_rows(p, plot)).collect();
         let tops = rows.iter().map(|r| GAP + r.len() as f64 * 18.0);
         let height = tops.zip(&self.panels).map(|(top, p)| top + p.height).sum::<f64>() + 48.0 + below;
-        let mut out = open_chart(self.title, width, height);
+        let mut out = opened("chart", self.title, width, height);
         let to_x = |x: f64| LEFT + plot * x_axis.position(x);
         let y_axes = self.y_axes();
         let mut y0 = 0.0;
@@ -217,10 +216,7 @@ fn write_turned(out: &mut String, label: &str, (left, middle): (f64, f64), room:
     for (k, line) in lines.iter().enumerate() {
         let size = FONT.min(room / text::width(line).max(1e-9));
         let x = if lines.len() == 1 { 14.0 } else { [10.5, SECOND][k.min(1)] };
-        let turned = format!(
-            "text-anchor=\"middle\" font-size=\"{size:.1}\" transform=\"translate({x} {middle:.1}) rotate(-90)\""
-        );
-        write_text(out, 0.0, 0.0, &turned, line);
+        turned(out, (x, middle), &format!(" font-size=\"{size:.1}\""), line);
     }
 }
 
@@ -267,14 +263,9 @@ fn dashes(panel: &Panel) -> Vec<&'static str> {
         let close = |(x, y): (&f64, &f64)| (x - y).abs() <= CLOSE * (high - low);
         !a.dotted && !b.dotted && a.y.len() == b.y.len() && a.x == b.x && a.y.iter().zip(&b.y).all(close)
     };
-    let style = |(k, series): (usize, &Series)| match panel.series[..k]
-        .iter()
-        .filter(|earlier| covers(series, earlier))
-        .count()
-    {
-        0 => "",
-        1 => " stroke-dasharray=\"7 6\"",
-        _ => " stroke-dasharray=\"2 11\"",
+    let style = |(k, series): (usize, &Series)| {
+        let covered = panel.series[..k].iter().filter(|earlier| covers(series, earlier)).count();
+        ["", " stroke-dasharray=\"7 6\"", " stroke-dasharray=\"2 11\""][covered.min(2)]
     };
     panel.series.iter().enumerate().map(style).collect()
 }
@@ -347,20 +338,25 @@ fn entry_width(series: &Series) -> f64 {
 
 /// Entries of the legend by line; curves without a label, or with one for tables only, have none.
 fn legend_rows(panel: &Panel, width: f64) -> Vec<Vec<usize>> {
-    let mut rows: Vec<Vec<usize>> = Vec::new();
+    let listed = panel.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty() && !s.unlisted);
+    in_lines(listed.map(|(i, series)| (i, entry_width(series))), width)
+}
+
+/// Numbers of entries in lines of a width, from the width of each.
+pub(crate) fn in_lines(entries: impl Iterator<Item = (usize, f64)>, width: f64) -> Vec<Vec<usize>> {
+    let mut lines: Vec<Vec<usize>> = Vec::new();
     let mut used = f64::INFINITY;
-    for (i, series) in panel.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty() && !s.unlisted) {
-        let needed = entry_width(series);
+    for (i, needed) in entries {
         if used + needed > width {
-            rows.push(Vec::new());
+            lines.push(Vec::new());
             used = 0.0;
         }
         used += needed;
-        if let Some(row) = rows.last_mut() {
-            row.push(i);
+        if let Some(line) = lines.last_mut() {
+            line.push(i);
         }
     }
-    rows
+    lines
 }
 
 fn write_legend(out: &mut String, panel: &Panel, rows: &[Vec<usize>], top: f64) {

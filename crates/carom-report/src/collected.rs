@@ -10,8 +10,10 @@ use carom_record::study::reference::FORCE;
 use crate::digits::five;
 use crate::labels::{is_stress, symbol, words};
 use crate::noise;
+use crate::ordered::distinct;
 use crate::plot::Curve;
 use crate::systems::Systems;
+use crate::trace::ends_and_extremes;
 
 /// Columns shown besides those of the probes: name, label, caption.
 const OTHERS: [(&str, &str, &str); 5] = [
@@ -49,20 +51,16 @@ impl Origin {
         let fallback = |kind: &str| ["fallback", "cycle", "no-stress"].contains(&kind);
         let fallbacks = run.log.iter().filter(|e| fallback(&e.kind)).count();
         let rejected = run.manifest.counters.get("rejected").copied().unwrap_or_default();
-        let (input, record) =
-            (run.manifest.input_hash.clone(), fingerprint(&run.directory).unwrap_or_default());
-        Self { arm, input, record, rejected, fallbacks }
+        let record = fingerprint(&run.directory).unwrap_or_default();
+        Self { arm, input: run.manifest.input_hash.clone(), record, rejected, fallbacks }
     }
 }
 
 /// The first arm whose record is bitwise that of an arm, if it is another one.
 pub(crate) fn twin(origins: &[Origin], arm: usize) -> Option<usize> {
     let own = origins.iter().find(|origin| origin.arm == arm && !origin.record.is_empty())?;
-    origins
-        .iter()
-        .find(|origin| origin.record == own.record)
-        .map(|first| first.arm)
-        .filter(|first| *first != arm)
+    let first = origins.iter().find(|origin| origin.record == own.record)?.arm;
+    (first != arm).then_some(first)
 }
 
 /// The measured data of a study and of the cases of its arms.
@@ -146,13 +144,8 @@ pub(crate) fn collect(
         let stress = name.rsplit_once('.').is_some_and(|(_, quantity)| is_stress(quantity));
         !(stress && noise::is_noise(run, name))
     });
-    let mut names: Vec<&str> = probes.chain(others).collect();
-    for overlay in &measured.0 {
-        if !names.contains(&overlay.column.as_str()) {
-            names.push(&overlay.column);
-        }
-    }
-    for name in names {
+    let of_data = measured.0.iter().map(|overlay| overlay.column.as_str());
+    for name in distinct(probes.chain(others).chain(of_data)) {
         let Some(values) = run.column(name) else { continue };
         put(name, values, run.history.unit(name));
     }
@@ -165,20 +158,8 @@ fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     if times.len() <= 4 * SPANS {
         return (times.to_vec(), values.to_vec());
     }
-    let keep = (0..SPANS).flat_map(|k| {
-        let rows = k * times.len() / SPANS..(k + 1) * times.len() / SPANS;
-        let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
-        let mut keep = [
-            Some(rows.start),
-            rows.clone().min_by(by_value),
-            rows.clone().max_by(by_value),
-            Some(rows.end - 1),
-        ];
-        keep.sort_unstable();
-        keep.into_iter().flatten()
-    });
-    let mut keep: Vec<usize> = keep.collect();
-    keep.dedup();
+    let span = |k: usize| k * times.len() / SPANS..(k + 1) * times.len() / SPANS;
+    let keep: Vec<usize> = (0..SPANS).flat_map(|k| ends_and_extremes(span(k), |i| values[i])).collect();
     (keep.iter().map(|&i| times[i]).collect(), keep.iter().map(|&i| values[i]).collect())
 }
 

@@ -4,6 +4,7 @@
 use carom_record::study::Study;
 
 use crate::axis::range;
+use crate::labels::listed;
 use crate::plot::Curve;
 use crate::text::width;
 
@@ -71,15 +72,13 @@ pub(crate) fn with(curve: Curve, others: &[String]) -> Curve {
 
 /// What is said about curves that are drawn once: `Curves that differ by less than 0.3 % of the
 /// range are drawn once: “a”, “b” and “c”; …`; nothing where there are none.
-pub(crate) fn drawn_once(found: &[(String, Vec<String>)]) -> String {
-    let sets = found.iter().filter(|(_, others)| !others.is_empty());
+pub(crate) fn drawn_once<'a>(found: impl Iterator<Item = (&'a String, &'a Vec<String>)>) -> String {
+    let sets = found.filter(|(_, others)| !others.is_empty());
     let quoted = |name: &String| format!("“{name}”");
-    let together = |(first, others): &(String, Vec<String>)| {
-        let (last, rest) = others.split_last()?;
-        let front: Vec<String> = std::iter::once(first).chain(rest).map(quoted).collect();
-        Some(format!("{} and {}", front.join(", "), quoted(last)))
+    let together = |(first, others): (&String, &Vec<String>)| {
+        listed(&std::iter::once(first).chain(others).map(quoted).collect::<Vec<_>>())
     };
-    let sets: Vec<String> = sets.filter_map(together).collect();
+    let sets: Vec<String> = sets.map(together).collect();
     if sets.is_empty() {
         return String::new();
     }
@@ -106,17 +105,13 @@ fn setting(part: &str) -> Option<(&str, &str)> {
 }
 
 impl<'a> Keys<'a> {
-    pub(crate) fn of(names: impl Iterator<Item = &'a str>) -> Self {
+    /// Of arms with these names and a unit of time.
+    pub(crate) fn of(names: impl Iterator<Item = &'a str>, time: &'a str) -> Self {
         let mut keys: Vec<&str> =
             names.flat_map(|name| name.split(", ")).filter_map(setting).map(|s| s.0).collect();
         keys.sort_unstable();
         keys.dedup();
-        Self { all: keys, time: "" }
-    }
-
-    /// The same with a unit of time.
-    pub(crate) fn in_time(self, time: &'a str) -> Self {
-        Self { time, ..self }
+        Self { all: keys, time }
     }
 
     /// The last part of a key, with as many parts before it as distinguish it from the other keys.
@@ -184,14 +179,17 @@ mod tests {
             Curve { y: x.clone(), x, ..Curve::default() }
         };
         assert_eq!(merged(vec![line(3), line(7)]).len(), 1);
-        assert!(drawn_once(&found).contains("drawn once: “a” and “b”."));
+        assert!(
+            drawn_once(found.iter().map(|(name, others)| (name, others)))
+                .contains("drawn once: “a” and “b”.")
+        );
     }
 
     #[test]
     fn labels_have_no_tables() {
-        let label = |name| Keys::of([name].into_iter()).label(name);
+        let label = |name| Keys::of([name].into_iter(), "").label(name);
         assert_eq!(label("time.scheme=hu, time.step=0.001875"), "hu, Δt = 0.001875");
-        let timed = Keys::of(["time.step=0.1"].into_iter()).in_time("s");
+        let timed = Keys::of(["time.step=0.1"].into_iter(), "s");
         assert_eq!(timed.label("time.step=0.1"), "Δt = 0.1 s");
         assert_eq!(label("Bathe, ρ∞ = 0.5"), "Bathe, ρ∞ = 0.5");
         assert_eq!(label("contact.a.mu=0.2"), "μ = 0.2");
@@ -200,7 +198,7 @@ mod tests {
     #[test]
     fn labels_of_different_keys_differ() {
         let names = ["body.a.young=1", "body.b.young=1, time.step=1e-3", "material.a.young=1", "young=1"];
-        let keys = Keys::of(names.into_iter());
+        let keys = Keys::of(names.into_iter(), "");
         let labels: Vec<String> = names.iter().map(|name| keys.label(name)).collect();
         let wanted = ["body.a.young = 1", "b.young = 1, Δt = 1e-3", "material.a.young = 1", "young = 1"];
         assert_eq!(labels, wanted);

@@ -1,5 +1,7 @@
 //! Numbers on the page of a study: five digits, or three where a file has them in full precision.
 
+use crate::scientific::without_zeros;
+
 /// A number with five digits, with an exponent when far from one.
 pub(crate) fn five(x: f64) -> String {
     let text = if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
@@ -8,17 +10,9 @@ pub(crate) fn five(x: f64) -> String {
         format!("{x}")
     } else {
         let decimals = (4 - x.abs().log10().floor() as i32).clamp(0, 8) as usize;
-        without_zeros(format!("{x:.decimals$}"))
+        without_zeros(&format!("{x:.decimals$}")).to_owned()
     };
     text.replace('-', "−")
-}
-
-/// Without zeros at the end of a fraction; those of 19500 stay.
-fn without_zeros(number: String) -> String {
-    if !number.contains('.') {
-        return number;
-    }
-    number.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// A count, with all its digits; a mean of counts with three.

@@ -2,6 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
+use crate::figure::Figure;
 use crate::stacked::with_headings;
 use crate::text::Prose;
 
@@ -22,14 +23,15 @@ pub(crate) fn document(title: &str, style: &str, body: &Markup) -> String {
     with_headings(&page.into_string())
 }
 
-/// A numbered figure with its caption and links to its files.
-pub(crate) fn figure(number: usize, name: &str, endings: &[&str], caption: &str, svg: &str) -> Markup {
-    let links = endings.iter().map(|ending| file(&format!("figures/{name}.{ending}")));
+/// A figure, of which `i` come before, with its caption and links to its files.
+pub(crate) fn figure((i, figure): (usize, &Figure)) -> Markup {
+    let endings = std::iter::once(&"svg").chain(figure.files.iter().map(|(ending, _)| ending));
+    let links = endings.map(|ending| file(&format!("figures/{}.{ending}", figure.name)));
     html! {
         figure {
-            div.drawing { (PreEscaped(svg)) }
+            div.drawing { (figure.pictures()) }
             figcaption {
-                b { "Figure " (number) "." } " " (Prose(caption)) " "
+                b { "Figure " (i + 1) "." } " " (Prose(&figure.caption)) " "
                 span.small { "(" (joined(links, ", ")) ")" }
             }
         }

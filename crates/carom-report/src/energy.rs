@@ -34,10 +34,7 @@ const STATIC: &str =
 /// The figure.
 pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let (unit, points) = (run.history.unit("total"), Points::all(run));
-    let size = ["total", "kinetic"]
-        .map(|name| run.column(name).map_or(0.0, largest))
-        .into_iter()
-        .fold(0.0, f64::max);
+    let size = largest(["total", "kinetic"].into_iter().filter_map(|name| run.column(name)).flatten());
     let energies = curves(run, &points, &ENERGIES, 1e9 * SHARE * size);
     let works = without_small(curves(run, &points, &WORKS, 1e-3 * size));
     let words = match (works.is_empty(), is_static(run)) {
@@ -53,13 +50,11 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     let without =
         |label: &str| !(is_drawn(label) || works.is_empty() && WORKS.iter().any(|(_, work)| *work == label));
     let omitted: Vec<&str> = known().map(|(_, label)| *label).filter(|label| without(label)).collect();
-    let omitted = if omitted.is_empty() {
-        String::new()
-    } else {
-        format!(" Omitted, as zero or below 10^{{-6}} of the largest in the pane: {}.", listed(&omitted))
+    let omitted = match listed(&omitted).as_str() {
+        "" => String::new(),
+        all => format!(" Omitted, as zero or below 10^{{-6}} of the largest in the pane: {all}."),
     };
     let names: Vec<&str> = ENERGIES.iter().chain(&WORKS).map(|(name, _)| *name).collect();
-    let shown: Vec<&str> = shown.iter().map(String::as_str).collect();
     let caption = format!(
         "Energy balance.{words}{}{omitted}{} Data: `history.csv`, columns {}.",
         shaded(run),

@@ -6,10 +6,12 @@ use maud::{Markup, html};
 use crate::asked;
 use crate::document::{minus, or_dash};
 use crate::noise::largest;
+use crate::ordered::distinct;
 use crate::results::is_round_off;
 use crate::scientific::{powers, significant};
 use crate::text::Label;
 use crate::unshown::columns_in;
+use crate::values;
 
 /// Significant digits of a result beside its tolerance.
 const DIGITS: usize = 6;
@@ -22,24 +24,11 @@ fn expected(text: &str) -> String {
     powers(&minus(&exact)).replace(" ± ", "\u{a0}±\u{a0}").replace(" %", "\u{a0}%")
 }
 
-/// The unit of what an expectation asks for: a dash for numbers, nothing where it is not known.
-fn unit_of_question(run: &Run, what: &str) -> Markup {
-    html! {
-        @if let Some(unit) = asked::unit(run, what) { @if unit.is_empty() { "–" } @else { (Label(&unit)) } }
-    }
-}
-
 /// Sources of more than one expectation that are too long to be repeated.
 fn repeated_sources(run: &Run) -> Vec<&String> {
-    let mut found: Vec<&String> = Vec::new();
-    let sources: Vec<&String> = run.manifest.expectations.iter().filter_map(|e| e.source.as_ref()).collect();
-    for source in &sources {
-        let is_repeated = sources.iter().filter(|other| other == &source).count() > 1;
-        if source.chars().count() > 40 && is_repeated && !found.contains(source) {
-            found.push(source);
-        }
-    }
-    found
+    let sources = || run.manifest.expectations.iter().filter_map(|e| e.source.as_ref());
+    let is_repeated = |source: &&String| sources().filter(|other| other == source).count() > 1;
+    distinct(sources().filter(|source| source.chars().count() > 40).filter(is_repeated))
 }
 
 /// Whether a result is round-off of its columns or, as a length, of the model, and its tolerance is
@@ -48,11 +37,11 @@ fn is_zero(run: &Run, e: &Expectation) -> bool {
     let (Some(got), Some(unit)) = (e.got, asked::unit(run, &e.what).filter(|unit| !unit.is_empty())) else {
         return false;
     };
-    let length = run.manifest.case.pointer("/units/length").and_then(|unit| unit.as_str());
+    let length = values::unit(&run.manifest.case, "length");
     let columns = columns_in(run, &e.what).into_iter().filter(|column| run.history.unit(column) == unit);
     let most = columns.filter_map(|column| run.column(&column).map(largest)).fold(0.0, f64::max);
     let is_tiny = got != 0.0 && got.abs() < ROUND_OFF * most;
-    (is_tiny || length == Some(&unit) && is_round_off(run, got))
+    (is_tiny || length == unit && is_round_off(run, got))
         && e.tolerance.is_none_or(|tolerance| tolerance > got.abs())
 }
 
@@ -76,7 +65,12 @@ pub(crate) fn expectations(run: &Run) -> Markup {
                         td.n {
                             @if is_zero(run, e) { "≈ 0" } @else { (Label(&or_dash(e.got, |x| significant(x, DIGITS)))) }
                         }
-                        td.unit { (unit_of_question(run, &e.what)) }
+                        // A dash for numbers, nothing where it is not known.
+                        td.unit {
+                            @if let Some(unit) = asked::unit(run, &e.what) {
+                                @if unit.is_empty() { "–" } @else { (Label(&unit)) }
+                            }
+                        }
                         @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
                         td {
                             @if let Some(source) = &e.source {

@@ -3,15 +3,15 @@
 use carom_record::{Run, contact_axes};
 
 use crate::animation::Animation;
-use crate::chart::{Panel, Series};
 use crate::energy::{ENERGIES, WORKS};
 use crate::figure::Figure;
 use crate::instants::instants;
-use crate::labels::{capitalised, is_stress, listed, symbol, words};
+use crate::labels::{capitalised, listed, symbol, words};
 use crate::measured::{Points, add_points, differences, sources};
 use crate::meshes::Pane;
-use crate::over_time::{by_size, chart, curves, names, panel, shaded, shades};
-use crate::palette::LINES;
+use crate::ordered::grouped;
+use crate::over_time::{by_size, chart, curves, of_probes, panel, shaded, shades};
+use crate::values::{is_in_space, list};
 use crate::{animation, bodies, energy, meshes, noise, pressure, setup, space, stick_slip, stopped, unshown};
 
 /// Everything that can be drawn from a record.
@@ -30,8 +30,7 @@ pub(crate) fn all(run: &Run) -> Shown {
         shown.notes.push("The history has no rows yet; there is nothing to draw.".to_string());
         return shown;
     }
-    let place = stopped::picture(run);
-    shown.figures.extend(place);
+    shown.figures.extend(stopped::figure(run));
     shown.figures.extend(setup(run));
     let place = shown.figures.len() + 1;
     if let Some((bodies, bands)) = instants(run, &mut shown.notes) {
@@ -40,38 +39,38 @@ pub(crate) fn all(run: &Run) -> Shown {
         let section = if is_solid { space::section } else { animation::section };
         shown.animation = section(run, &bands, shades(run), place);
     }
-    let map = stick_slip::figure(run);
-    let pressure = pressure::figure(run);
     let lists = [&FORCES[..], &IMPULSES, &ENERGIES, &WORKS];
-    let (measured, expected) = (unshown::measured(run, &lists), unshown::expected(run, &lists));
-    shown.figures.extend(
-        [probes(run), force(run), pressure, map, energy::figure(run), measured, expected, solver(run)]
-            .into_iter()
-            .flatten(),
-    );
+    let others = [
+        probes(run),
+        force(run),
+        pressure::figure(run),
+        stick_slip::figure(run),
+        energy::figure(run),
+        unshown::measured(run, &lists),
+        unshown::expected(run, &lists),
+        solver(run),
+    ];
+    shown.figures.extend(others.into_iter().flatten());
     shown
 }
 
 /// The initial configuration.
 fn setup(run: &Run) -> Option<Figure> {
     let fields = run.field(run.fields.first()?).ok()?;
-    let svg = setup::figure(run, &fields)?;
+    let pictures = setup::figure(run, &fields)?;
+    let case = &run.manifest.case;
+    let has = |key: &str| !list(case, key).is_empty();
     let view = if bodies::fill_space(&fields) {
-        let contacts = run.manifest.case.get("contacts").and_then(|v| v.as_array());
         let is_rigid = |contact: &serde_json::Value| contact.pointer("/primary/side").is_none();
-        let rigid = contacts.is_some_and(|contacts| contacts.iter().any(is_rigid));
+        let rigid = list(case, "contacts").iter().any(is_rigid);
         let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
-        let has = |key: &str| {
-            let items = run.manifest.case.get(key).and_then(|v| v.as_array());
-            items.is_some_and(|items| !items.is_empty())
-        };
         let outlined = match (has("supports"), has("loads")) {
             (true, true) => " Coloured outlines: supported and loaded faces",
             (true, false) => " Coloured outlines: supported faces",
             (false, true) => " Coloured outlines: loaded faces",
             (false, false) => "",
         };
-        let dashed = match (svg.contains("stroke-dasharray"), outlined.is_empty()) {
+        let dashed = match (pictures[0].contains("stroke-dasharray"), outlined.is_empty()) {
             (true, true) => " Dashed: what is hidden.",
             (true, false) => "; dashed where hidden.",
             (false, true) => "",
@@ -81,10 +80,7 @@ fn setup(run: &Run) -> Option<Figure> {
     } else {
         String::new()
     };
-    let there = |(key, words): &(&'static str, &'static str)| {
-        let items = run.manifest.case.get(*key).and_then(|v| v.as_array());
-        items.is_some_and(|items| !items.is_empty()).then_some(*words)
-    };
+    let there = |(key, words): &(&'static str, &'static str)| has(key).then_some(*words);
     // The sides of contacts are not coloured in space.
     let contacts = if bodies::fill_space(&fields) { "" } else { "contacts" };
     let parts =
@@ -94,74 +90,53 @@ fn setup(run: &Run) -> Option<Figure> {
     let caption = format!(
         "Initial configuration: bodies with {parts}.{view} Data: first field file; case and sides in `manifest.json`."
     );
-    let pane = Pane {
-        title: "initial".to_owned(),
-        points: meshes::moved(&fields, "displacement"),
-        values: Vec::new(),
-    };
-    let length = fields.array("displacement").map_or("", |a| a.unit.as_str());
-    let figure = Figure::new("setup", caption, svg).with_narrow(setup::narrow(run, &fields)?);
+    let pane = Pane { title: "initial".to_owned(), points: bodies::places(&fields), values: Vec::new() };
+    let length = fields.unit("displacement");
+    let figure = Figure::new("setup", caption, pictures);
     Some(meshes::with_files(figure, &fields, &[pane], length, String::new()))
 }
 
 /// Time histories of all probes, one panel per quantity.
 fn probes(run: &Run) -> Option<Figure> {
-    let (probes, points) = (names(run, "probes"), Points::all(run));
-    let mut panels: Vec<(String, Panel)> = Vec::new();
-    let mut columns: Vec<&str> = Vec::new();
-    for column in &run.history.columns {
-        let Some((probe, quantity)) = column.name.rsplit_once('.').filter(|(p, _)| probes.contains(p)) else {
-            continue;
-        };
-        let Some(values) = run.column(&column.name) else { continue };
-        // Stresses of a body that is not deformed.
-        if is_stress(quantity) && noise::is_noise(run, &column.name) {
-            continue;
-        }
-        columns.push(&column.name);
-        let at = panels.iter().position(|(q, _)| q == quantity).unwrap_or_else(|| {
-            panels.push((quantity.to_string(), panel(&symbol(quantity), &column.unit, 190.0, Vec::new())));
-            panels.len() - 1
-        });
-        let color = LINES[probes.iter().position(|p| *p == probe).unwrap_or(0) % LINES.len()];
-        let label = format!("{} at {probe}", symbol(quantity));
-        let series = &mut panels[at].1.series;
-        series.push(Series {
-            label,
-            color,
-            x: run.times(),
-            y: values.to_vec(),
-            dotted: false,
-            unlisted: false,
-        });
-        add_points(&points, &column.name, series);
-    }
+    let points = Points::all(run);
+    let shown = of_probes(run);
+    let columns: Vec<&str> = shown.iter().map(|(_, (column, _))| column.name.as_str()).collect();
+    let quantities = grouped(shown);
     // No axis of the plane is horizontal or vertical in space.
-    let solid = run.manifest.case.get("dimension").and_then(serde_json::Value::as_u64) == Some(3);
+    let solid = is_in_space(&run.manifest.case);
     let words = |q: &str| {
         let words = words(q);
         let plain = words.strip_prefix("horizontal ").or(words.strip_prefix("vertical ")).filter(|_| solid);
         plain.map_or(words.clone(), str::to_owned)
     };
-    let mut list: Vec<String> = panels.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
+    let mut list: Vec<String> =
+        quantities.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
-    let list: Vec<&str> = list.iter().map(String::as_str).collect();
     let caption = format!(
-        "Time histories at the probes: {}.{}{} Data: `history.csv`, {} `{}`.",
+        "Time histories at the probes: {}.{}{} Data: `history.csv`, {}.",
         listed(&list),
         shaded(run),
         sources(run, &points, &columns),
-        if columns.len() == 1 { "column" } else { "columns" },
-        columns.join("`, `")
+        coded(&columns)
     );
     let mut drawn = Vec::new();
-    for (quantity, panel) in panels {
-        drawn.push(panel);
-        let of = |column: &&&str| column.rsplit_once('.').is_some_and(|(_, q)| q == quantity);
-        let one = |column: &&str| differences(run, &points, column, &symbol(&quantity));
-        drawn.extend(columns.iter().filter(of).filter_map(one));
+    for (quantity, members) in quantities {
+        let (symbol, unit) = (symbol(quantity), &members[0].0.unit);
+        let names: Vec<&str> = members.iter().map(|(column, _)| column.name.as_str()).collect();
+        let mut series = Vec::new();
+        for (column, curve) in members {
+            series.push(curve);
+            add_points(&points, &column.name, &mut series);
+        }
+        drawn.push(panel(&symbol, unit, 190.0, series));
+        drawn.extend(names.into_iter().filter_map(|name| differences(run, &points, name, &symbol)));
     }
     chart(run, ("probes", "Time histories at the probes"), caption, drawn)
+}
+
+/// ``columns `a`, `b` ``.
+fn coded(columns: &[&str]) -> String {
+    format!("{} `{}`", if columns.len() == 1 { "column" } else { "columns" }, columns.join("`, `"))
 }
 
 /// Columns of figures, with their labels.
@@ -173,11 +148,8 @@ const IMPULSES: [(&str, &str); 3] =
 fn force(run: &Run) -> Option<Figure> {
     let h = &run.history;
     let size = noise::force_size(run).max(f64::MIN_POSITIVE);
-    let impulse = ["contact_impulse_x", "contact_impulse_y", "contact_impulse_z"]
-        .iter()
-        .filter_map(|c| run.column(c))
-        .flatten();
-    let largest = impulse.fold(f64::MIN_POSITIVE, |m: f64, x| m.max(x.abs()));
+    let largest = noise::largest(IMPULSES.iter().filter_map(|(c, _)| run.column(c)).flatten());
+    let largest = largest.max(f64::MIN_POSITIVE);
     let points = Points::all(run);
     let (forces, impulses) = (curves(run, &points, &FORCES, size), curves(run, &points, &IMPULSES, largest));
     let panels = [
@@ -203,12 +175,9 @@ fn solver(run: &Run) -> Option<Figure> {
     // A scheme without a linear system counts the evaluations of its forces.
     let is_explicit =
         run.manifest.case.pointer("/time/scheme/kind").is_some_and(|kind| kind == "central-difference");
+    let iterations = if is_explicit { "iterations of the contact forces" } else { "Newton iterations" };
     let all = [
-        (
-            "newton",
-            "iterations",
-            if is_explicit { "iterations of the contact forces" } else { "Newton iterations" },
-        ),
+        ("newton", "iterations", iterations),
         ("active", "active nodes", "active contact nodes"),
         ("rejected", "rejected", "rejected attempts"),
     ];
@@ -227,11 +196,10 @@ fn solver(run: &Run) -> Option<Figure> {
     let [ticks, log] =
         if run.log.is_empty() { [""; 2] } else { [" Ticks: events by kind.", "; `log.jsonl`"] };
     let caption = format!(
-        "{} per step.{none}{}{ticks} Data: `history.csv`, {} `{}`{log}.",
+        "{} per step.{none}{}{ticks} Data: `history.csv`, {}{log}.",
         capitalised(&listed(&words)),
         shaded(run),
-        if names.len() == 1 { "column" } else { "columns" },
-        names.join("`, `")
+        coded(&names)
     );
     chart(run, ("solver", "Solver"), caption, panels)
 }

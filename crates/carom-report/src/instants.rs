@@ -10,6 +10,7 @@ use crate::meshes::Pane;
 use crate::obstacles;
 use crate::quantity::stresses;
 use crate::sheet::{Legend, arrowheads};
+use crate::text::said_if;
 use crate::{animation, bars, contours, meshes, space};
 
 /// The field files nearest to five equidistant instants of the first contact; of the run if there
@@ -68,22 +69,20 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
         return Some((bars::figure(run, &sets, (during, files)), bodies::colors(&strips).0));
     }
     if bodies::fill_space(first) {
-        let length = first.array("displacement").map_or("", |a| a.unit.as_str());
-        let ([svg, narrow], caption, bands) = space::instants(run, &sets, length, (during, files))?;
+        let length = first.unit("displacement");
+        let (pictures, caption, bands) = space::instants(run, &sets, length, (during, files))?;
         let panes: Vec<Pane> = sets
             .iter()
             .filter_map(|(time, set)| {
                 let [values, _] = stresses(set)?;
-                let points = meshes::moved(set, "displacement");
-                Some(Pane { title: instant_label(run, *time), points, values })
+                Some(Pane { title: instant_label(run, *time), points: bodies::places(set), values })
             })
             .collect();
-        let value = with_unit("σ_{vM}", first.array("stress").map_or("", |a| a.unit.as_str()));
-        let figure = Figure::new("bodies", caption, svg).with_narrow(narrow);
+        let value = with_unit("σ_{vM}", first.unit("stress"));
+        let figure = Figure::new("bodies", caption, pictures);
         return Some((meshes::with_files(figure, first, &panes, length, value), bands));
     }
-    let stress = first.array("stress")?.unit.clone();
-    let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
+    let (stress, length) = (first.array("stress")?.unit.as_str(), first.unit("displacement"));
     let instant = |(time, set): &_| Instant::new(set, "stress", 1, instant_label(run, *time));
     let list: Vec<Instant> = sets.iter().filter_map(instant).collect();
     let (bands, cut) = bodies::colors(&list);
@@ -106,25 +105,20 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
         .iter()
         .map(|walks| walks.iter().flat_map(|walk| obstacles::clipped(walk, wide)).collect())
         .collect();
-    let legend = Legend { bands: &bands, cut, label: "σ_{yy}", unit: &stress };
-    let [svg, narrow] = bodies::figure(&list, (&walks, &marks, wide), title, &legend, &length);
+    let legend = Legend { bands: &bands, cut, label: "σ_{yy}", unit: stress };
+    let pictures = bodies::figure(&list, (&walks, &marks, wide), title, &legend, length);
     let arrow = arrowheads([(cut, String::new())]);
-    let mark = if marks.iter().any(|marks| !marks.is_empty()) {
-        " Triangle: a point of the plane that moves."
-    } else {
-        ""
-    };
+    let mark =
+        said_if(marks.iter().any(|marks| !marks.is_empty()), " Triangle: a point of the plane that moves.");
     // Without either sign the outer half of the band around zero ends the bar.
     let step = (bands.high - bands.low) / bands.count as f64;
-    let [compression, tension] = [
-        if bands.low < -0.75 * step { " Blue: compression." } else { "" },
-        if bands.high > 0.75 * step { " Red: tension." } else { "" },
-    ];
+    let compression = said_if(bands.low < -0.75 * step, " Blue: compression.");
+    let tension = said_if(bands.high > 0.75 * step, " Red: tension.");
     let caption = format!(
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
          the same scale; displacements are not magnified.{compression}{tension}{mark}{arrow} Data: stress and displacement in {files}."
     );
-    let figure = Figure::new("bodies", caption, svg).with_narrow(narrow);
-    let figure = contours::with_files(figure, &times, &list, [unit, &length, &stress]);
+    let figure = Figure::new("bodies", caption, pictures);
+    let figure = contours::with_files(figure, &times, &list, [unit, length, stress]);
     Some((figure, bands))
 }

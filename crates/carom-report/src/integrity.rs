@@ -7,6 +7,7 @@ use maud::{Markup, html};
 
 use crate::collected::Origin;
 use crate::digits::three;
+use crate::document::or_dash;
 use crate::labels::with_unit;
 use crate::round_off::Scales;
 use crate::text::{Label, Prose};
@@ -20,43 +21,42 @@ fn short(hash: &str) -> &str {
     hash.get(..12).unwrap_or(hash)
 }
 
-/// What is not as it should be in an arm.
-fn exception(study: &Study, origin: &Origin) -> String {
-    let finished = study.rows[origin.arm].status == Some(Status::Finished);
+fn has_finished(study: &Study, origin: &Origin) -> bool {
+    study.rows[origin.arm].status == Some(Status::Finished)
+}
+
+/// What is not as it should be in an arm; nothing where all is.
+fn exception(study: &Study, origin: &Origin) -> Option<String> {
     let number = |count: u64, one: &str, more: &str| match count {
         0 => None,
         1 => Some(format!("1 {one}")),
         _ => Some(format!("{count} {more}")),
     };
     let words = [
-        (!finished).then(|| "not finished".to_owned()),
+        (!has_finished(study, origin)).then(|| "not finished".to_owned()),
         number(origin.rejected, "rejected step", "rejected steps"),
         number(origin.fallbacks as u64, "cycle or fallback", "cycles and fallbacks"),
     ];
     let words: Vec<String> = words.into_iter().flatten().collect();
-    format!("{}: {}", study.rows[origin.arm].name, words.join(", "))
+    (!words.is_empty()).then(|| format!("{}: {}", study.rows[origin.arm].name, words.join(", ")))
 }
 
 /// The section of the page.
 pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
     let metrics = study.metrics();
     let unit = metrics.iter().find(|m| m.name == "penetration").map_or("", |m| &m.unit);
-    let is_exception = |origin: &&Origin| {
-        study.rows[origin.arm].status != Some(Status::Finished) || origin.rejected > 0 || origin.fallbacks > 0
-    };
-    let exceptions: Vec<&Origin> = origins.iter().filter(is_exception).collect();
+    let exceptions: Vec<String> = origins.iter().filter_map(|origin| exception(study, origin)).collect();
     let is_short = origins.len() <= 4;
     let scales = Scales::of(study);
     let depth = |row: &Row| {
         let metric = row.metrics.iter().find(|m| m.name == "penetration");
-        let value = metric.and_then(|m| Some(scales.shown(m, m.value?, three)));
-        value.unwrap_or_else(|| "–".to_owned())
+        metric.map_or_else(|| "–".to_owned(), |m| or_dash(m.value, |value| scales.shown(m, value, three)))
     };
     let penetration = with_unit("Max. penetration", unit);
     html! {
         h2 { "Integrity" }
         @if !is_short && !exceptions.is_empty() {
-            p { (exceptions.iter().map(|origin| exception(study, origin)).collect::<Vec<_>>().join("; ")) "." }
+            p { (exceptions.join("; ")) "." }
         }
         details open[is_short] {
         summary { "How each arm ended, and hashes of its input and its record" }
@@ -71,7 +71,7 @@ pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
                 @let row = &study.rows[origin.arm];
                 tr {
                     td { (row.name) }
-                    td { @if row.status == Some(Status::Finished) { "finished" } @else { "not finished" } }
+                    td { @if has_finished(study, origin) { "finished" } @else { "not finished" } }
                     td.n { (origin.rejected) } td.n { (origin.fallbacks) }
                     td.n { (depth(row)) }
                     td { code { (short(&origin.input)) } } td { code { (short(&origin.record)) } }

@@ -1,9 +1,11 @@
 //! Labels of columns and numbers in figures and tables.
 
+use std::borrow::Borrow;
+
 use carom_formula::instant;
 use carom_record::Run;
 
-use crate::scientific::{given, significant};
+use crate::scientific::{given, significant, without_zeros};
 
 /// Symbol of a probe quantity: `σ_{yy}`.
 pub(crate) fn symbol(quantity: &str) -> String {
@@ -27,14 +29,15 @@ pub(crate) fn is_stress(quantity: &str) -> bool {
 
 /// Description of a probe quantity.
 pub(crate) fn words(quantity: &str) -> String {
-    let axis = |c: &str| if c == "x" { "horizontal" } else { "vertical" }.to_string();
+    let along = |what: &str| match quantity.chars().last() {
+        Some('x') => format!("horizontal {what}"),
+        Some('y') => format!("vertical {what}"),
+        _ => what.to_owned(),
+    };
     match quantity {
-        "ux" | "uy" => axis(&quantity[1..]) + " displacement",
-        "uz" => "displacement".into(),
-        "vx" | "vy" => axis(&quantity[1..]) + " velocity",
-        "vz" => "velocity".into(),
-        "ax" | "ay" => axis(&quantity[1..]) + " acceleration",
-        "az" => "acceleration".into(),
+        "ux" | "uy" | "uz" => along("displacement"),
+        "vx" | "vy" | "vz" => along("velocity"),
+        "ax" | "ay" | "az" => along("acceleration"),
         "von_mises" => "von Mises stress".into(),
         "det_f" => "volume ratio".into(),
         _ if quantity.starts_with("sigma_") => "Cauchy stress".into(),
@@ -80,20 +83,24 @@ pub(crate) fn scaled(unit: &str, exponent: i32) -> String {
 /// A number with its unit, whose prefix is chosen so that the number is from 1 to 1000 where there
 /// is such a prefix: 525 µN.
 pub(crate) fn amount(x: f64, unit: &str) -> String {
-    let exponent = if x == 0.0 || !x.is_finite() { 0 } else { 3 * (x.abs().log10() / 3.0).floor() as i32 };
-    match prefixed(unit, exponent) {
-        Some(unit) => format!("{} {unit}", significant(x / 10f64.powi(exponent), 3)),
-        None => format!("{} {unit}", significant(x, 3)).trim_end().to_owned(),
-    }
+    in_thousands(x, unit, |x| significant(x, 3))
 }
 
 /// A value that was given, with a prefix where it is far from one.
 pub(crate) fn given_amount(x: f64, unit: &str) -> String {
-    let is_near = x == 0.0 || !x.is_finite() || (1e-3..1e6).contains(&x.abs());
-    let exponent = if is_near { 0 } else { 3 * (x.abs().log10() / 3.0).floor() as i32 };
+    if (1e-3..1e6).contains(&x.abs()) {
+        format!("{} {unit}", given(x)).trim_end().to_owned()
+    } else {
+        in_thousands(x, unit, given)
+    }
+}
+
+/// A number in a format, divided by a power of a thousand for which its unit has a prefix.
+fn in_thousands(x: f64, unit: &str, format: impl Fn(f64) -> String) -> String {
+    let exponent = if x == 0.0 || !x.is_finite() { 0 } else { 3 * (x.abs().log10() / 3.0).floor() as i32 };
     match prefixed(unit, exponent) {
-        Some(unit) => format!("{} {unit}", given(x / 10f64.powi(exponent))),
-        None => format!("{} {unit}", given(x)).trim_end().to_owned(),
+        Some(unit) => format!("{} {unit}", format(x / 10f64.powi(exponent))),
+        None => format!("{} {unit}", format(x)).trim_end().to_owned(),
     }
 }
 
@@ -121,11 +128,11 @@ pub(crate) fn capitalised(text: &str) -> String {
 }
 
 /// `a`, `a and b`, `a, b and c`.
-pub(crate) fn listed(items: &[&str]) -> String {
+pub(crate) fn listed(items: &[impl Borrow<str>]) -> String {
     match items {
         [] => String::new(),
-        [one] => (*one).to_owned(),
-        [front @ .., last] => format!("{} and {last}", front.join(", ")),
+        [one] => one.borrow().to_owned(),
+        [front @ .., last] => format!("{} and {}", front.join(", "), last.borrow()),
     }
 }
 
@@ -142,9 +149,7 @@ pub(crate) fn number(x: f64) -> String {
         return format!("{x:.5e}").replace('-', "−");
     }
     let decimals = if x == 0.0 { 0 } else { (5 - x.abs().log10().floor() as i32).clamp(0, 9) as usize };
-    let text = format!("{x:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    text.replace('-', "−")
+    without_zeros(&format!("{x:.decimals$}")).replace('-', "−")
 }
 
 #[cfg(test)]

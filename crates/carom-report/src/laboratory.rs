@@ -2,18 +2,21 @@
 //! roughness against dissipation.
 
 use carom_record::Status;
-use carom_record::study::Study;
 use carom_record::study::compared::{established, is_trajectory};
 use carom_record::study::design::Goal;
+use carom_record::study::ranking::standing;
+use carom_record::study::{Row, Study};
 
+use crate::ordered::grouped;
 use crate::plot::{COLORS, Curve, Pane, Plot};
+use crate::text::said_if;
 
 /// The figures of a study with a goal; none for a study without.
 pub(crate) fn plots(study: &Study) -> Vec<Plot> {
     if study.manifest.goal.is_none() {
         return Vec::new();
     }
-    [error_cost(study), roughness_dissipation(study)].into_iter().flatten().map(with_apart).collect()
+    [error_cost(study), roughness_dissipation(study)].into_iter().flatten().collect()
 }
 
 /// The style of an arm in all figures: that of its method, where there are methods.
@@ -37,20 +40,12 @@ pub(crate) fn each(arms: usize) -> usize {
 
 /// Methods with their finished arms, the coarsest first, without the arms of the reference.
 pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
-    let mut found: Vec<(&str, Vec<usize>)> = Vec::new();
-    for (i, row) in study.rows.iter().enumerate() {
+    let finished = |(i, row): (usize, &Row)| {
         let arm = &study.manifest.arms[i];
         let reference = arm.role.fine || study.manifest.reference.as_ref() == Some(&arm.name);
-        if reference || row.status != Some(Status::Finished) {
-            continue;
-        }
-        let name = arm.method();
-        match found.iter_mut().find(|(n, _)| *n == name) {
-            Some((_, arms)) => arms.push(i),
-            None => found.push((name, vec![i])),
-        }
-    }
-    found
+        (!reference && row.status == Some(Status::Finished)).then_some((arm.method(), i))
+    };
+    grouped(study.rows.iter().enumerate().filter_map(finished))
 }
 
 /// Up to this number of methods all have broad lines; of more, only those that matter.
@@ -68,7 +63,7 @@ fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Pane {
         .filter_map(shown)
         .collect();
     let front = front(&points);
-    let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
+    let chosen = study.recommended();
     let few = methods.len() <= BROAD;
     let mut curves = Vec::new();
     for (name, arms) in methods {
@@ -116,56 +111,41 @@ fn front(points: &[(usize, (f64, f64))]) -> Vec<(usize, (f64, f64))> {
     sorted
 }
 
-/// What is said of the grey curves and the arrowheads that a figure has.
-fn apart(plot: &Plot) -> String {
-    let outside = if plot.has_arrowheads() {
-        ", and an arrowhead at the edge stands for one that lies outside"
-    } else {
-        ""
+/// The figure of some panes, whose caption begins with what is compared, and ends with what is said
+/// of it and of grey curves; none without panes.
+fn figure((name, x_label): (&str, &str), panes: Vec<Pane>, (compared, said): (&str, String)) -> Option<Plot> {
+    let any = |is: fn(&Curve) -> bool| panes.iter().flat_map(|pane| &pane.curves).any(is);
+    let marks = [
+        said_if(panes.iter().any(|pane| pane.front.len() > 1), " Broad line: Pareto front."),
+        said_if(any(|curve| curve.ring.is_some()), " Ring: recommended arm."),
+        said_if(any(|curve| curve.quiet), " Thin: methods that are neither on the front nor recommended."),
+    ];
+    let (marks, is_grey) = (marks.concat(), any(|curve| curve.apart));
+    let mut plot = Plot {
+        name: name.into(),
+        caption: format!("{compared}: one point per arm, one curve per method.{marks} {said}"),
+        x_label: x_label.into(),
+        log: [true, true],
+        across: 1,
+        direct: true,
+        panes,
+        ..Plot::default()
     };
-    if plot.panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.apart) {
-        format!(
-            " Grey: arms that created more energy than the default guard allows; they do not affect the \
-             axes{outside}."
-        )
-    } else {
-        String::new()
+    if is_grey {
+        let outside = ", and an arrowhead at the edge stands for one that lies outside";
+        let outside = said_if(plot.has_arrowheads(), outside);
+        plot.caption += " Grey: arms that created more energy than the default guard allows; they do not affect \
+             the axes";
+        plot.caption += outside;
+        plot.caption += ".";
     }
-}
-
-/// A figure with what is said of its grey curves.
-fn with_apart(plot: Plot) -> Plot {
-    let caption = format!("{}{}", plot.caption, apart(&plot));
-    Plot { caption, ..plot }
-}
-
-/// What the broad line is, where one is drawn.
-fn broad(panes: &[Pane]) -> &'static str {
-    if panes.iter().any(|pane| pane.front.len() > 1) { " Broad line: Pareto front." } else { "" }
-}
-
-/// What is said of the recommended arm where there is one.
-fn ring(panes: &[Pane]) -> &'static str {
-    let has_ring = panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.ring.is_some());
-    if has_ring { " Ring: recommended arm." } else { "" }
+    (!plot.panes.is_empty()).then_some(plot)
 }
 
 /// What is said of arms with a zero where one has no point in a logarithmic pane for it.
 fn omitted(points: impl IntoIterator<Item = Option<(f64, f64)>>) -> &'static str {
-    if points.into_iter().flatten().any(|(x, y)| x == 0.0 || y == 0.0) {
-        " Arms with a zero are omitted (logarithmic axes)."
-    } else {
-        ""
-    }
-}
-
-/// What thin curves of these panes are.
-fn quiet(panes: &[Pane]) -> &'static str {
-    if panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.quiet) {
-        " Thin: methods that are neither on the front nor recommended."
-    } else {
-        ""
-    }
+    let is_omitted = points.into_iter().flatten().any(|(x, y)| x == 0.0 || y == 0.0);
+    said_if(is_omitted, " Arms with a zero are omitted (logarithmic axes).")
 }
 
 /// Error of an arm in the ranking.
@@ -189,12 +169,8 @@ fn error_cost(study: &Study) -> Option<Plot> {
             columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
         let uncertainty = (squares.sum::<f64>() / columns.len().max(1) as f64).sqrt();
         let floor = (uncertainty > 0.0).then(|| (uncertainty, "uncertainty of the errors".to_owned()));
-        panes.push(Pane {
-            floor,
-            title: "displacements".into(),
-            y_label: "deviation / range".into(),
-            ..pane
-        });
+        let (title, y_label) = ("displacements".into(), "deviation / range".into());
+        panes.push(Pane { title, y_label, floor, ..pane });
     }
     if let Ok(measure) = &ranking.measure
         && !matches!(ranking.goal, Goal::Trajectory | Goal::Cost)
@@ -209,23 +185,8 @@ fn error_cost(study: &Study) -> Option<Plot> {
     }
     panes.retain(|p| !p.curves.is_empty());
     let omitted = omitted(points);
-    (!panes.is_empty()).then(|| Plot {
-        group: String::new(),
-        name: "error-cost".into(),
-        caption: format!(
-            "Error against cost: one point per arm, one curve per method.{}{}{} \
-             Cost: processor time of the time steps without output.{omitted}",
-            broad(&panes),
-            ring(&panes),
-            quiet(&panes)
-        ),
-        x_label: "processor time (s)".into(),
-        log: [true, true],
-        across: 1,
-        same: false,
-        direct: true,
-        panes,
-    })
+    let said = format!("Cost: processor time of the time steps without output.{omitted}");
+    figure(("error-cost", "processor time (s)"), panes, ("Error against cost", said))
 }
 
 /// Smaller drifts of the energy are drawn as this one.
@@ -234,12 +195,8 @@ const LEAST_DRIFT: f64 = 1e-6;
 fn roughness_dissipation(study: &Study) -> Option<Plot> {
     // One method that conserves energy up to round-off would compress all others.
     let lost = |arm: usize| Some(study.rows[arm].value("energy_drift")?.max(LEAST_DRIFT));
-    let right = study
-        .reference
-        .as_ref()
-        .and_then(|r| r.metric("force_variation").established())
-        .map(|v| v.0)
-        .filter(|v| *v > 0.0);
+    let right = standing(study.reference.as_ref(), "force_variation").established();
+    let right = right.map(|v| v.0).filter(|v| *v > 0.0);
     let variation = |arm: usize| {
         let value = study.rows[arm].value("force_variation")?;
         // Without an established reference the scale is twice the peak mean force: one rise and one
@@ -268,31 +225,19 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
     };
     let count = panes.len();
     panes.retain(known);
-    let left_out = if panes.len() < count {
-        " A measure that fewer than half of the methods have is not drawn."
-    } else {
-        ""
-    };
+    let left_out =
+        said_if(panes.len() < count, " A measure that fewer than half of the methods have is not drawn.");
     let conserving = study.rows.iter().any(|row| row.value("energy_drift").is_some_and(|d| d < LEAST_DRIFT));
-    let least = if conserving { " A drift below 10^{−6} is drawn there." } else { "" };
-    (!panes.is_empty()).then(|| Plot {
-        group: String::new(),
-        name: "roughness-dissipation".into(),
-        caption: format!(
-            "Roughness of the contact force against energy drift: one point per arm, one curve per method.\
-             {}{}{} Numerical damping reduces roughness at the cost of energy; \
-             methods at the lower left are smooth without loss of energy. TV: total variation during the first contact.{omitted}{least}{left_out}",
-            broad(&panes),
-            ring(&panes),
-            quiet(&panes)
-        ),
-        x_label: "energy drift / largest energy".into(),
-        log: [true, true],
-        across: 1,
-        same: false,
-        direct: true,
+    let least = said_if(conserving, " A drift below 10^{−6} is drawn there.");
+    let said = format!(
+        "Numerical damping reduces roughness at the cost of energy; methods at the lower left are smooth \
+         without loss of energy. TV: total variation during the first contact.{omitted}{least}{left_out}"
+    );
+    figure(
+        ("roughness-dissipation", "energy drift / largest energy"),
         panes,
-    })
+        ("Roughness of the contact force against energy drift", said),
+    )
 }
 
 #[cfg(test)]

@@ -38,6 +38,7 @@ mod meshes;
 mod multiples;
 mod noise;
 mod obstacles;
+mod ordered;
 mod over_time;
 mod overlap;
 mod page;
@@ -72,6 +73,7 @@ mod timing;
 mod trace;
 mod trend;
 mod unshown;
+mod values;
 mod verdict;
 mod verify_page;
 
@@ -79,7 +81,6 @@ use std::path::Path;
 
 use carom_record::Run;
 
-pub use figure::Figure;
 pub use overlap::overlap;
 use publish::publish;
 pub use publish::{ReportError, ReportSummary};
@@ -91,10 +92,5 @@ pub fn report(directory: &Path) -> Result<ReportSummary, ReportError> {
     let run = Run::open(directory)?;
     let figures::Shown { figures, animation, notes } = figures::all(&run);
     let page = page::page(&run, &figures, animation.as_ref(), &notes);
-    let summary =
-        publish(directory, "report.html", &page, figures.iter().map(|f| (f.name, f.svg.as_str())), notes)?;
-    for (figure, (ending, text)) in figures.iter().flat_map(|f| f.files.iter().map(move |file| (f, file))) {
-        publish::write(directory.join("figures").join(format!("{}.{ending}", figure.name)), text)?;
-    }
-    Ok(summary)
+    publish(directory, "report.html", &page, &figures, notes)
 }

@@ -4,15 +4,19 @@
 use std::fmt::Write as _;
 
 use carom_record::question::{Form, Quantity, Question};
-use carom_record::{Expression, Run, metrics};
+use carom_record::{Expectation, Expression, Run, metrics};
 
 use crate::axis::range;
 use crate::chart::{Panel, Series};
 use crate::collected::measured_label;
+use crate::ordered::grouped;
 use crate::palette::LINES;
 
 /// Height of a panel of differences in pixels.
 const LOW: f64 = 84.0;
+
+/// Colours of measured data, in turn.
+const DATA: [&str; 3] = [LINES[2], LINES[4], LINES[3]];
 
 /// Points of a column within the time of the run.
 pub(crate) struct Points {
@@ -39,36 +43,26 @@ impl Points {
 
 /// The values that expectations state for a column at an instant.
 fn expected(run: &Run) -> Vec<Points> {
-    let mut found: Vec<Points> = Vec::new();
     let (first, last) = range(run.times());
-    for e in run.manifest.expectations.iter().filter(|e| e.tolerance.is_some()) {
-        let (Some(value), Ok(Expression::Quantity(Quantity::Reduced(form, series)))) =
-            (e.value, Question::parse(&e.what))
-        else {
-            continue;
+    let point = |e: &Expectation| {
+        let Ok(Expression::Quantity(Quantity::Reduced(form, series))) = Question::parse(&e.what) else {
+            return None;
         };
-        let Expression::Quantity(asked) = &series.columns else { continue };
+        let Expression::Quantity(asked) = &series.columns else { return None };
         let time = match form {
             Form::First => first,
             Form::Last => last,
             Form::At(time) => time,
-            _ => continue,
+            _ => return None,
         };
-        match found.iter_mut().find(|points| points.column == asked.column) {
-            Some(points) => {
-                points.x.push(time);
-                points.y.push(value);
-            }
-            None => found.push(Points {
-                label: "expected".to_owned(),
-                column: asked.column.clone(),
-                x: vec![time],
-                y: vec![value],
-                measured: None,
-            }),
-        }
-    }
-    found
+        Some((asked.column.clone(), (time, e.value?)))
+    };
+    let stated = run.manifest.expectations.iter().filter(|e| e.tolerance.is_some());
+    let points = |(column, points): (String, Vec<(f64, f64)>)| {
+        let (x, y) = points.into_iter().unzip();
+        Points { label: "expected".to_owned(), column, x, y, measured: None }
+    };
+    grouped(stated.filter_map(point)).into_iter().map(points).collect()
 }
 
 /// Adds the points of a column to its panel.
@@ -80,11 +74,7 @@ pub(crate) fn add_points<'a>(all: &'a [Points], column: &str, panel: &mut Vec<Se
             // Several curves of a panel can have expected values; one entry of the legend is
             // enough.
             label: points.label.clone(),
-            color: if points.measured.is_none() {
-                LINES[1]
-            } else {
-                [LINES[2], LINES[4], LINES[3]][number % 3]
-            },
+            color: if points.measured.is_none() { LINES[1] } else { DATA[number % 3] },
             x: &points.x,
             y: points.y.clone(),
             dotted: true,
@@ -102,11 +92,11 @@ pub(crate) fn differences<'a>(run: &Run, all: &'a [Points], column: &str, symbol
         let at = |(x, y): (&f64, &f64)| between(run.times(), computed, *x) - y;
         series.push(Series {
             label: format!("computed {symbol} − “{name}”"),
-            color: [LINES[2], LINES[4], LINES[3]][series.len() % 3],
+            color: DATA[series.len() % 3],
             x: &points.x,
             y: points.x.iter().zip(&points.y).map(at).collect(),
             dotted: true,
-            unlisted: false,
+            ..Series::default()
         });
     }
     let unit = run.history.unit(column).to_owned();

@@ -9,7 +9,7 @@ use carom_record::{Block, Cell, FieldSet};
 use crate::bodies::{corners, edge_nodes, fill_space};
 use crate::figure::Figure;
 use crate::labels::with_unit;
-use crate::redraw::filled;
+use crate::redraw::{filled, quoted};
 use crate::space::skin;
 
 /// Largest number of corners; a figure of more has no table.
@@ -22,13 +22,6 @@ pub(crate) struct Pane {
     pub(crate) points: Vec<[f64; 3]>,
     /// A quantity at the points; empty if there is none.
     pub(crate) values: Vec<f64>,
-}
-
-/// Reference position + one displacement of the points.
-pub(crate) fn moved(fields: &FieldSet, array: &str) -> Vec<[f64; 3]> {
-    let u = fields.array(array).filter(|a| a.components == 3);
-    let at = |(k, x): (usize, &[f64; 3])| [0, 1, 2].map(|d| x[d] + u.map_or(0.0, |u| u.values[3 * k + d]));
-    fields.points.iter().enumerate().map(at).collect()
 }
 
 /// The nodes around every cell of a block of the plane, or of bars.
@@ -64,19 +57,15 @@ pub(crate) fn with_files(
     if panes.len() * cells.iter().map(|(_, nodes)| nodes.len()).sum::<usize>() > MOST {
         return figure;
     }
-    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
     let mut table = String::from("pane,body,cell,x,y,z,value\n");
     for pane in panes {
         for (cell, (block, nodes)) in cells.iter().enumerate() {
             let (title, body) = (quoted(&pane.title), quoted(&fields.blocks[*block].body));
             for &node in nodes {
                 let [x, y, z] = pane.points[node];
-                let _ = write!(table, "{title},{body},{cell},{x:?},{y:?},");
-                let _ = if solid { write!(table, "{z:?},") } else { write!(table, ",") };
-                let _ = match pane.values.get(node) {
-                    Some(value) => writeln!(table, "{value:?}"),
-                    None => writeln!(table),
-                };
+                let z = if solid { format!("{z:?}") } else { String::new() };
+                let value = pane.values.get(node).map_or_else(String::new, |value| format!("{value:?}"));
+                let _ = writeln!(table, "{title},{body},{cell},{x:?},{y:?},{z},{value}");
             }
         }
     }
@@ -86,13 +75,14 @@ pub(crate) fn with_files(
         ("@Z@", with_unit("z", length)),
         ("@VALUE@", value),
     ];
-    let script = filled(include_str!("meshes.py"), &labels).replace("@NAME@", figure.name);
+    let script = filled(include_str!("meshes.py"), &labels).replace("@NAME@", &figure.name);
     figure.with(table, script)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bodies::places;
 
     /// A curved cell has the nodes of its edges in their order around it.
     #[test]
@@ -108,9 +98,8 @@ mod tests {
         let block =
             Block { body: "a \"b\"".into(), cell: Cell::Triangle, degree: 2, connectivity: (0..6).collect() };
         let fields = FieldSet { points, blocks: vec![block], arrays: Vec::new() };
-        let pane =
-            Pane { title: "initial".into(), points: moved(&fields, "displacement"), values: Vec::new() };
-        let figure = Figure::new("setup", "", String::new());
+        let pane = Pane { title: "initial".into(), points: places(&fields), values: Vec::new() };
+        let figure = Figure::new("setup", "", [String::new(), String::new()]);
         let figure = with_files(figure, &fields, &[pane], "mm", String::new());
         let rows: Vec<&str> = figure.files[0].1.lines().skip(1).collect();
         let place = |x: &str| format!("\"initial\",\"a \"\"b\"\"\",0,{x},,");

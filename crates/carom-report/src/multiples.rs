@@ -74,18 +74,13 @@ fn extremes(y: &[f64], piece: usize) -> Vec<usize> {
     found
 }
 
-/// Name of the figure with small multiples of a column.
-fn multiples_name(column: &str) -> String {
-    format!("each-{}", file_name(if column == FORCE { "contact-force" } else { column }))
-}
-
 /// A column of every method at its finest level, one pane each; during the first contact, if this
 /// is a small part of the time. Methods with the same curve share a pane.
 fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) -> Option<Plot> {
     let reference = study.reference.as_ref().and_then(|r| reference_of(r, &column.name));
     let (line, band) = reference.map_or((None, None), |(line, band)| (Some(line), band));
     let (label, what) = named(&column.name);
-    let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
+    let chosen = study.recommended();
     let curve = |(name, arms): (&str, Vec<usize>)| {
         let finest = arms.last()?;
         let (_, x, y) = column.curves.iter().find(|(arm, ..)| arm == finest)?;
@@ -101,7 +96,7 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
     }
     let end = found.iter().filter_map(|(curve, _)| curve.x.last()).copied().fold(0.0, f64::max);
     let span = curves::contact(study, end);
-    let names: Vec<_> = found.iter().map(|(curve, others)| (curve.label.clone(), others.clone())).collect();
+    let drawn_once = curves::drawn_once(found.iter().map(|(curve, others)| (&curve.label, others)));
     let points = measured.points(&column.name, end, true);
     let pane = |(k, (curve, others)): (usize, (Curve, Vec<String>))| {
         let mark = if curve.chosen { "▸ " } else { "" };
@@ -135,17 +130,14 @@ fn multiples(study: &Study, column: &Column, measured: &Measured, time: &str) ->
     let apart = if is_apart { " Methods that create energy do not affect the axes." } else { "" };
     let when = if span.is_some() { " during the first contact" } else { "" };
     let panes: Vec<Pane> = found.into_iter().enumerate().map(pane).collect();
-    let drawn_once = curves::drawn_once(&names);
+    let name = if column.name == FORCE { "contact-force" } else { &column.name };
     let mut plot = Plot {
-        group: String::new(),
-        name: multiples_name(&column.name),
-        caption: String::new(),
+        name: format!("each-{}", file_name(name)),
         x_label: with_unit("time t", time),
-        log: [false, false],
         across: 3,
         same: true,
-        direct: false,
         panes,
+        ..Plot::default()
     };
     let shown = plot.panes.first().map_or_else(Vec::new, |pane| plot.shown_band(pane));
     let part = match () {

@@ -4,6 +4,7 @@
 use carom_record::{Run, metrics};
 
 use crate::labels::is_stress;
+use crate::values::list;
 
 /// A value below this share of the size of its quantity is round-off.
 const SHARE: f64 = 1e-10;
@@ -28,9 +29,8 @@ pub(crate) fn is_noise(run: &Run, name: &str) -> bool {
     let most = largest(values);
     let size = match name.rsplit_once('.') {
         Some((_, quantity)) if is_stress(quantity) => {
-            let materials = run.manifest.case.get("materials").and_then(|m| m.as_array());
-            let moduli = materials.into_iter().flatten().filter_map(|m| m.get("mu")?.as_f64());
-            moduli.fold(0.0, f64::max)
+            let materials = list(&run.manifest.case, "materials").iter();
+            materials.filter_map(|m| m.get("mu")?.as_f64()).fold(0.0, f64::max)
         }
         None if name.starts_with("contact_force") => force_size(run),
         _ => 0.0,

@@ -4,7 +4,9 @@ use carom_formula::Formula;
 use carom_record::Run;
 use serde_json::Value;
 
-use crate::pen::Point;
+use crate::pen::{NOTHING, Point, around};
+use crate::symbols::{direction, plus};
+use crate::values::{list, place, text};
 
 /// Points with unit normals out of the rigid body.
 pub(crate) type Walk = Vec<(Point, Point)>;
@@ -35,13 +37,7 @@ pub(crate) fn all(run: &Run, frame: [f64; 4]) -> Vec<Obstacle> {
 
 /// The obstacles of a case, likewise.
 pub(crate) fn of_case(case: &Value, frame: [f64; 4]) -> Vec<Obstacle> {
-    let contacts = case.get("contacts").and_then(Value::as_array);
-    contacts.into_iter().flatten().filter_map(|contact| one(contact, frame)).collect()
-}
-
-fn point(value: Option<&Value>) -> Option<Point> {
-    let list = value?.as_array()?;
-    Some([list.first()?.as_f64()?, list.get(1)?.as_f64()?])
+    list(case, "contacts").iter().filter_map(|contact| one(contact, frame)).collect()
 }
 
 fn one(contact: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Option<Obstacle> {
@@ -49,39 +45,37 @@ fn one(contact: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Option<Obstacle> {
     let far = 4.0 * (x1 - x0).hypot(y1 - y0);
     let plane = primary.get("plane");
     let (walk, first) = if let Some(plane) = plane {
-        let (p, n) = (point(plane.get("point"))?, point(plane.get("normal"))?);
-        let n = n.map(|x| x / n[0].hypot(n[1]));
+        let p = place(plane.get("point"))?;
+        let n = direction([0.0; 2], place(plane.get("normal"))?);
+        let along = [n[1], -n[0]];
         // Around the point nearest to the bodies.
         let middle = [0.5 * (x0 + x1), 0.5 * (y0 + y1)];
-        let along = (middle[0] - p[0]) * n[1] - (middle[1] - p[1]) * n[0];
-        let foot = [p[0] + along * n[1], p[1] - along * n[0]];
-        (
-            straight(
-                [foot[0] - far * n[1], foot[1] + far * n[0]],
-                [foot[0] + far * n[1], foot[1] - far * n[0]],
-                n,
-            ),
-            p,
-        )
+        let foot = plus(p, (middle[0] - p[0]) * n[1] - (middle[1] - p[1]) * n[0], along);
+        (straight(plus(foot, -far, along), plus(foot, far, along), n), p)
     } else if let Some(circle) = primary.get("circle") {
-        let (c, r) = (point(circle.get("center"))?, circle.get("radius")?.as_f64()?);
+        let (c, r) = (place(circle.get("center"))?, circle.get("radius")?.as_f64()?);
         let side = if circle.get("inside").and_then(Value::as_bool) == Some(true) { -1.0 } else { 1.0 };
         (arc(c, r, [0.0, side * std::f64::consts::TAU], side, ROUND), c)
     } else {
         let line = primary.get("polyline")?;
-        let points: Vec<Point> =
-            line.get("points")?.as_array()?.iter().filter_map(|p| point(Some(p))).collect();
+        let points: Vec<Point> = list(line, "points").iter().filter_map(|p| place(Some(p))).collect();
         (polyline(&points, line.get("radius").and_then(Value::as_f64).unwrap_or(0.0), far), *points.first()?)
     };
-    let name = contact.get("name").and_then(Value::as_str).unwrap_or_default();
     let rotate = contact.pointer("/motion/prescribed/rotate").filter(|v| !v.is_null());
     let angle = rotate.and_then(|rotate| match rotate.get(0)? {
         Value::String(text) => Formula::parse(text, &["t"]).ok(),
         number => Some(Formula::constant(number.as_f64()?)),
     });
-    let about = rotate.and_then(|rotate| point(rotate.get(1))).unwrap_or(first);
-    let center = ["x", "y"].map(|axis| format!("{name}.center_{axis}"));
+    let about = rotate.and_then(|rotate| place(rotate.get(1))).unwrap_or(first);
+    let center = ["x", "y"].map(|axis| format!("{}.center_{axis}", text(contact, "name")));
     Some(Obstacle { walk, is_plane: plane.is_some(), center, about, angle })
+}
+
+/// The value of a column at a recorded time.
+pub(crate) fn recorded(run: &Run, column: &str, time: f64) -> Option<f64> {
+    let times = run.times();
+    let row = times.partition_point(|t| *t < time - 1e-12 * time.abs()).min(times.len().saturating_sub(1));
+    run.column(column)?.get(row).copied()
 }
 
 fn straight(a: Point, b: Point, normal: Point) -> Walk {
@@ -102,25 +96,19 @@ fn arc(c: Point, r: f64, [from, to]: [f64; 2], side: f64, count: usize) -> Walk 
 fn polyline(points: &[Point], radius: f64, far: f64) -> Walk {
     let count = points.len() - 1;
     let closed = count > 2 && points[0] == points[count];
-    let tangents: Vec<Point> = points
-        .windows(2)
-        .map(|p| {
-            let d = [p[1][0] - p[0][0], p[1][1] - p[0][1]];
-            d.map(|x| x / d[0].hypot(d[1]))
-        })
-        .collect();
+    let tangents: Vec<Point> = points.windows(2).map(|p| direction(p[0], p[1])).collect();
     let turn = |a: Point, b: Point| (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]);
     let mut walk = Walk::new();
     for (k, t) in tangents.iter().enumerate() {
-        let (normal, moved) = ([t[1], -t[0]], |p: Point, s: f64| [p[0] + s * t[0], p[1] + s * t[1]]);
+        let normal = [t[1], -t[0]];
         let before = (closed || k > 0).then(|| turn(tangents[(k + count - 1) % count], *t));
         let after = (closed || k + 1 < count).then(|| turn(*t, tangents[(k + 1) % count]));
         let cut = |angle: Option<f64>| angle.map_or(-far, |angle| radius * (0.5 * angle).tan().abs());
-        let end = moved(points[k + 1], -cut(after));
-        walk.extend(straight(moved(points[k], cut(before)), end, normal));
+        let end = plus(points[k + 1], -cut(after), *t);
+        walk.extend(straight(plus(points[k], cut(before), *t), end, normal));
         if let Some(angle) = after.filter(|_| radius > 0.0) {
             let side = angle.signum();
-            let center = [end[0] - side * radius * normal[0], end[1] - side * radius * normal[1]];
+            let center = plus(end, -side * radius, normal);
             let from = (side * normal[1]).atan2(side * normal[0]);
             walk.extend(arc(center, radius, [from, from + angle], side, ARC));
         }
@@ -154,10 +142,7 @@ impl Obstacle {
 
     /// Position, and sine and cosine of the angle, at a recorded time.
     pub(crate) fn pose(&self, run: &Run, time: f64) -> [f64; 4] {
-        let times = run.times();
-        let row =
-            times.partition_point(|t| *t < time - 1e-12 * time.abs()).min(times.len().saturating_sub(1));
-        let place = |i: usize| run.column(&self.center[i]).and_then(|c| c.get(row).copied());
+        let place = |i: usize| recorded(run, &self.center[i], time);
         let (sin, cos) = self.angle.as_ref().map_or(0.0, |f| f.value(&[time])).to_radians().sin_cos();
         [place(0).unwrap_or(self.about[0]), place(1).unwrap_or(self.about[1]), sin, cos]
     }
@@ -180,18 +165,11 @@ impl Obstacle {
             return frame;
         }
         let size = (bodies[1] - bodies[0]).max(bodies[3] - bodies[2]);
-        let extent = |i: usize| {
-            let (low, high) = walk.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (p, _)| {
-                (low.min(p[i]), high.max(p[i]))
-            });
-            high - low
-        };
-        let size = if extent(0).max(extent(1)) <= WHOLE * size { f64::INFINITY } else { 1.5 * size };
+        let [left, right, bottom, top] = around(NOTHING, walk.iter().map(|(p, _)| *p));
+        let is_whole = (right - left).max(top - bottom) <= WHOLE * size;
+        let size = if is_whole { f64::INFINITY } else { 1.5 * size };
         let near = |p: &Point, i: usize| p[i].clamp(bodies[2 * i] - size, bodies[2 * i + 1] + size);
-        walk.iter().fold(frame, |f, (p, _)| {
-            let [x, y] = [near(p, 0), near(p, 1)];
-            [f[0].min(x), f[1].max(x), f[2].min(y), f[3].max(y)]
-        })
+        around(frame, walk.iter().map(|(p, _)| [near(p, 0), near(p, 1)]))
     }
 }
 

@@ -13,13 +13,12 @@ use crate::chart::{open, write_text};
 use crate::labels::number;
 use crate::obstacles;
 use crate::palette::LINES;
-use crate::pen::Point;
-use crate::place::mesh;
-use crate::symbols::wall;
+use crate::pen::{NOTHING, Point, around};
+use crate::place::{fill, mesh};
+use crate::symbols::{scale_bar, wall};
 
 const WIDTH: f64 = 640.0;
 const TOP: f64 = 30.0;
-const FILLS: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
 /// Radius of the circle of the deepest node, where there is room for it, and of a node that
 /// touches.
 const LARGE: f64 = 12.0;
@@ -33,23 +32,17 @@ pub fn overlap(case: &Value, fields: &FieldSet, nodes: &[(usize, f64)]) -> Optio
     if fields.blocks.iter().any(|block| !is_plane(block)) {
         return None;
     }
-    let extent = |points: &mut dyn Iterator<Item = Point>| {
-        points.fold([f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY], |e, p| {
-            [e[0].min(p[0]), e[1].max(p[0]), e[2].min(p[1]), e[3].max(p[1])]
-        })
-    };
     let size = |e: [f64; 4]| (e[1] - e[0]).max(e[3] - e[2]);
-    let around = extent(&mut nodes.iter().map(|(node, _)| points[*node]));
-    let bodies = extent(&mut points.iter().copied());
-    let (x, y) = ([around[0], around[1]], [around[2], around[3]]);
-    let room = (0.25 * size(around)).max((8.0 * depth).min(size(bodies)));
+    let near = around(NOTHING, nodes.iter().map(|(node, _)| points[*node]));
+    let bodies = around(NOTHING, points.iter().copied());
+    let room = (0.25 * size(near)).max((8.0 * depth).min(size(bodies)));
     // No further than the bodies reach.
     let margin = 0.04 * size(bodies);
     let frame = [
-        (x[0] - room).max(bodies[0] - margin),
-        (x[1] + room).min(bodies[1] + margin),
-        (y[0] - room).max(bodies[2] - margin),
-        (y[1] + room).min(bodies[3] + margin),
+        (near[0] - room).max(bodies[0] - margin),
+        (near[1] + room).min(bodies[1] + margin),
+        (near[2] - room).max(bodies[2] - margin),
+        (near[3] + room).min(bodies[3] + margin),
     ];
     let scale = (WIDTH / (frame[1] - frame[0])).min(600.0 / (frame[3] - frame[2]));
     let height = (frame[3] - frame[2]) * scale;
@@ -62,8 +55,8 @@ pub fn overlap(case: &Value, fields: &FieldSet, nodes: &[(usize, f64)]) -> Optio
          <g clip-path=\"url(#overlap-frame)\">"
     );
     for (k, block) in fields.blocks.iter().enumerate() {
-        let instant = Instant { points: points.clone(), ..Instant::of_block(fields, block) };
-        mesh(&mut out, &instant, FILLS[k % FILLS.len()], &to);
+        let instant = Instant::of_block(fields, block);
+        mesh(&mut out, &instant, fill(k), &to);
     }
     for obstacle in obstacles::of_case(case, bodies) {
         for walk in obstacles::clipped(obstacle.at_first(), frame) {
@@ -90,14 +83,14 @@ pub fn overlap(case: &Value, fields: &FieldSet, nodes: &[(usize, f64)]) -> Optio
     let mut along = WIDTH - 8.0;
     for (k, block) in fields.blocks.iter().enumerate().rev() {
         along -= 7.6 * block.body.chars().count() as f64 + 34.0;
-        let (fill, y) = (FILLS[k % FILLS.len()], TOP + height + 10.0);
+        let (fill, y) = (fill(k), TOP + height + 10.0);
         let _ = writeln!(
             out,
             "<rect x=\"{along:.1}\" y=\"{y:.1}\" width=\"14\" height=\"12\" fill=\"{fill}\" stroke=\"#888\"/>"
         );
         write_text(&mut out, along + 20.0, y + 10.0, "", &block.body);
     }
-    let unit = fields.array("displacement").map_or("", |u| &u.unit);
+    let unit = fields.unit("displacement");
     let label = format!(
         "{} nodes inside another body or an obstacle; deepest: node {deepest}, {} {unit}",
         nodes.len(),
@@ -105,13 +98,7 @@ pub fn overlap(case: &Value, fields: &FieldSet, nodes: &[(usize, f64)]) -> Optio
     );
     write_text(&mut out, 4.0, 19.0, "", label.trim());
     let length = round_step(frame[1] - frame[0], 6.0);
-    let (pixels, y) = (length * scale, TOP + height + 20.0);
-    let _ = writeln!(
-        out,
-        "<path d=\"M8 {:.1}v6m0 -3h{pixels:.1}m0 -3v6\" fill=\"none\" stroke=\"#222\"/>",
-        y - 7.0
-    );
-    write_text(&mut out, 8.0 + pixels + 8.0, y, "", format!("{length} {unit}").trim());
+    scale_bar(&mut out, [8.0, TOP + height + 13.0], length * scale, (length, unit));
     out.push_str("</svg>\n");
     Some(out)
 }

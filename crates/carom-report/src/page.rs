@@ -17,6 +17,7 @@ use crate::setup::{in_words, model_in_words};
 use crate::stopped;
 use crate::text::{Label, Prose, typeset};
 use crate::timing::{three, timing};
+use crate::values::{names, unit};
 
 /// Number of log events listed; all of them are counted.
 const EVENTS: usize = 50;
@@ -28,9 +29,8 @@ const HEADER: &str = "Data: `manifest.json` (version, input_hash, case, machine,
 /// The page.
 pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Animation>, notes: &[String]) -> String {
     let title = run.manifest.case.get("title").and_then(Value::as_str).unwrap_or("Carom run");
-    let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &f.endings(), &f.caption, &f.pictures());
     let named = |name: &'static str| figures.iter().enumerate().filter(move |(_, f)| f.name == name);
-    let place = named("stopped").next().map(&figure);
+    let place = named("stopped").next().map(figure);
     let others = figures.iter().enumerate().filter(|(_, f)| f.name != "setup" && f.name != "stopped");
     let body = html! {
         (status(run))
@@ -88,8 +88,7 @@ fn header(run: &Run) -> Markup {
     let (m, machine) = (&run.manifest, &run.manifest.machine);
     let (rows, last) = (run.times().len(), run.times().last().copied().unwrap_or(0.0));
     let wall: f64 = m.timings.get("total").copied().unwrap_or_else(|| m.timings.values().sum());
-    let bodies = m.case.get("bodies").and_then(Value::as_array).into_iter().flatten();
-    let bodies: Vec<&str> = bodies.filter_map(|b| b.get("name")?.as_str()).collect();
+    let bodies = names(&m.case, "bodies");
     html! {
         table {
             @if let Some(name) = run.directory.file_name() { (row("Run", name.to_string_lossy())) }
@@ -220,7 +219,7 @@ fn units_in_messages(run: &Run) -> String {
     let messages = || run.log.iter().filter(|e| e.kind != "warning").map(|e| &*e.message);
     let has_numbers =
         messages().any(|text| text.contains(" = ") || text.contains(|c: char| c.is_ascii_digit()));
-    let length = run.manifest.case.pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
+    let length = unit(&run.manifest.case, "length");
     if !has_numbers || length.is_empty() {
         return String::new();
     }

@@ -3,8 +3,18 @@
 //!
 //! Such data belong in a group opened by [`open_grid`], where stroke widths are in grid units.
 
+use std::fmt::Write as _;
+
 /// A point in pixels or in the units of length of the case.
 pub(crate) type Point = [f64; 2];
+
+/// A frame around no point: left, right, bottom, top.
+pub(crate) const NOTHING: [f64; 4] = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
+
+/// The frame around another one and these points.
+pub(crate) fn around(frame: [f64; 4], points: impl IntoIterator<Item = Point>) -> [f64; 4] {
+    points.into_iter().fold(frame, |f, [x, y]| [f[0].min(x), f[1].max(x), f[2].min(y), f[3].max(y)])
+}
 
 /// Grid lines per pixel.
 pub(crate) const GRID: f64 = 20.0;
@@ -12,6 +22,17 @@ pub(crate) const GRID: f64 = 20.0;
 /// Opens a group in the coordinates of a pen; close it with `</g>`.
 pub(crate) fn open_grid() -> String {
     format!("<g transform=\"scale({})\">\n", 1.0 / GRID)
+}
+
+/// The data of a path through points in pixels, with a tenth of them; it is not closed.
+pub(crate) fn polyline(points: &[Point]) -> String {
+    let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.1} {y:.1}")).collect();
+    format!("M{}", points.join("L"))
+}
+
+/// Adds a path of a pen.
+pub(crate) fn path(out: &mut String, pen: &Pen, style: &str) {
+    let _ = writeln!(out, "{}<path d=\"{}\" {style}/>\n</g>", open_grid(), pen.data());
 }
 
 /// Path data under construction.

@@ -1,26 +1,17 @@
 //! The mesh around a place, for pictures of it.
 
-use std::fmt::Write as _;
-
-use crate::bodies::{Instant, bezier, corners, edge_nodes};
-use crate::pen::{Pen, Point, open_grid};
+use crate::bodies::{Instant, outline};
+use crate::pen::{Pen, Point, path};
 
 /// Cells with their nodes.
 pub(crate) fn mesh(out: &mut String, instant: &Instant, fill: &str, to: &dyn Fn(Point) -> Point) {
     let mut cells = Pen::default();
     for (degree, nodes) in &instant.cells {
-        for e in 0..corners(nodes) {
-            let edge: Vec<Point> = edge_nodes(*degree, nodes, e).map(|n| to(instant.points[n])).collect();
-            bezier(&mut cells, &edge, e == 0);
-        }
-        cells.close();
+        outline(&mut cells, *degree, nodes, &|n| to(instant.points[n]));
     }
     // Bodies may overlap at the place: both must show.
-    path(
-        out,
-        &cells,
-        &format!("fill=\"{fill}\" fill-opacity=\"0.8\" stroke=\"#98a2ad\" stroke-width=\"16\""),
-    );
+    let style = format!("fill=\"{fill}\" fill-opacity=\"0.8\" stroke=\"#98a2ad\" stroke-width=\"16\"");
+    path(out, &cells, &style);
     let mut marks = Pen::default();
     for (_, nodes) in &instant.cells {
         for &k in nodes {
@@ -32,7 +23,10 @@ pub(crate) fn mesh(out: &mut String, instant: &Instant, fill: &str, to: &dyn Fn(
     path(out, &marks, "fill=\"none\" stroke=\"#667\" stroke-width=\"48\"");
 }
 
-/// A path of a pen.
-pub(crate) fn path(out: &mut String, pen: &Pen, style: &str) {
-    let _ = writeln!(out, "{}<path d=\"{}\" {style}/>\n</g>", open_grid(), pen.data());
+/// Fill colours of bodies, used in turn.
+pub(crate) const BODIES: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
+
+/// The fill colour of a body with a number.
+pub(crate) fn fill(body: usize) -> &'static str {
+    BODIES[body % BODIES.len()]
 }

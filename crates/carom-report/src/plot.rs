@@ -47,7 +47,7 @@ pub(crate) struct Pane {
 }
 
 /// A figure.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Plot {
     pub(crate) name: String,
     pub(crate) caption: String,
@@ -158,20 +158,17 @@ pub(crate) mod tests {
             ..Curve::default()
         };
         Plot {
-            group: String::new(),
             name: "error-cost".into(),
-            caption: String::new(),
             x_label: "time t_{c} (s)".into(),
             log: [true, true],
             across: 2,
-            same: false,
-            direct: false,
             panes: vec![Pane {
                 title: "one".into(),
                 y_label: "E".into(),
                 curves: vec![curve],
                 ..Pane::default()
             }],
+            ..Plot::default()
         }
     }
 

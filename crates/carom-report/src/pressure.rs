@@ -9,12 +9,15 @@ use serde_json::{Value, json};
 use crate::arc::{Place, places};
 use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
-use crate::chart::{ground, open_chart, time_axis, write_text};
+use crate::chart::{ground, opened, time_axis, turned, write_text};
 use crate::figure::{Figure, NARROW};
 use crate::labels::{number, scaled, with_unit};
+use crate::ordered::grouped;
 use crate::pen::{Pen, open_grid};
 use crate::redraw::filled;
 use crate::sheet::{Legend, arrowheads, color_bar};
+use crate::text::said_if;
+use crate::values::list;
 
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 74.0;
@@ -32,44 +35,40 @@ struct Side<'a> {
     rows: Vec<(&'a ContactRow<'static>, Place)>,
 }
 
+impl Side<'_> {
+    /// Arc lengths of its ends.
+    fn extent(&self) -> (f64, f64) {
+        range(self.rows.iter().flat_map(|(_, place)| &place.part))
+    }
+
+    /// The bands of its pressures, and whether some lie outside.
+    fn bands(&self) -> (Bands, [bool; 2]) {
+        positive_bands(self.rows.iter().map(|(row, _)| row.pressure))
+    }
+}
+
 /// The sides of all contacts of the plane that have had pressure.
-fn sides(run: &Run) -> Vec<Side<'_>> {
+fn sides<'a>(run: &'a Run) -> Vec<Side<'a>> {
     // Without field files there are neither positions nor units.
     if contact_axes(&run.manifest.case) != 2 || run.fields.is_empty() {
         return Vec::new();
     }
-    let mut names: Vec<&str> = Vec::new();
-    for row in &run.contact {
-        if !names.contains(&row.contact.as_ref()) {
-            names.push(row.contact.as_ref());
-        }
-    }
-    let side = |name| {
-        let rows: Vec<&ContactRow> = run.contact.iter().filter(|row| row.contact == name).collect();
+    let side = |(name, rows): (&'a str, Vec<&'a ContactRow<'static>>)| {
         let (places, _) = places(run, name, &rows);
-        let with_place = |row: &'_ ContactRow<'static>| {
-            places.get(&row.node).copied().filter(|place| place.is_secondary && row.pressure.is_finite())
+        let with_place = |row: &'a ContactRow<'static>| {
+            let place = *places.get(&row.node)?;
+            (place.is_secondary && row.pressure.is_finite()).then_some((row, place))
         };
-        let mine = run.contact.iter().filter(|row| row.contact == name);
-        Side { name, rows: mine.filter_map(|row| Some((row, with_place(row)?))).collect() }
+        Side { name, rows: rows.into_iter().filter_map(with_place).collect() }
     };
+    let by_contact = grouped(run.contact.iter().map(|row| (row.contact.as_ref(), row)));
     // A profile needs a side, not a corner or the end of a bar.
-    names
-        .into_iter()
-        .map(side)
-        .filter(|side| {
-            range(side.rows.iter().flat_map(|r| &r.1.part)).1
-                > range(side.rows.iter().flat_map(|r| &r.1.part)).0
-        })
-        .collect()
+    by_contact.into_iter().map(side).filter(|side| side.extent().1 > side.extent().0).collect()
 }
 
 fn units(run: &Run) -> (String, String) {
-    let first = run.fields.first().and_then(|entry| run.field(entry).ok());
-    let unit = |name: &str| {
-        first.as_ref().and_then(|set| set.array(name)).map_or_else(String::new, |array| array.unit.clone())
-    };
-    (unit("displacement"), unit("contact_pressure"))
+    let first = run.fields.first().and_then(|entry| run.field(entry).ok()).unwrap_or_default();
+    (first.unit("displacement").to_owned(), first.unit("contact_pressure").to_owned())
 }
 
 /// The time from the first to the last pressure with a margin, within the run.
@@ -94,15 +93,14 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         let _ =
             writeln!(table, "{},{},{:?},{:?},{:?}", side.name, row.node, place.at, row.time, row.pressure);
     }
-    let ((out, cuts, stride), (narrow, ..)) = (draw(run, &sides, WIDTH), draw(run, &sides, NARROW));
+    let [(out, cuts, stride), (narrow, ..)] = [WIDTH, NARROW].map(|width| draw(run, &sides, width));
     let thinned =
         if stride > 1 { format!(" {} recorded step is drawn.", every(stride)) } else { String::new() };
-    let contacts = run.manifest.case.get("contacts").and_then(Value::as_array).into_iter().flatten();
-    let unmatched = if contacts.into_iter().any(|contact| contact.pointer("/primary/side").is_some()) {
-        " Where the nodes of the two sides do not match, nodal pressures have errors of 10 % or more."
-    } else {
-        ""
-    };
+    let mut contacts = list(&run.manifest.case, "contacts").iter();
+    let unmatched = said_if(
+        contacts.any(|contact| contact.pointer("/primary/side").is_some()),
+        " Where the nodes of the two sides do not match, nodal pressures have errors of 10 % or more.",
+    );
     let classes = classes(&sides, &stress);
     let bars = cuts.into_iter().zip(sides.iter().map(|side| format!("“{}”", side.name)));
     let caption = format!(
@@ -117,7 +115,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         ("@S@", with_unit("arc length s", &length)),
     ];
     let script = filled(include_str!("pressure.py"), &labels);
-    Some(Figure::new("pressure", caption, out).with_narrow(narrow).with(table, script))
+    Some(Figure::new("pressure", caption, [out, narrow]).with(table, script))
 }
 
 /// The maps as a picture of a width, whether the colours of each leave values out, and of how many
@@ -128,7 +126,7 @@ fn draw(run: &Run, sides: &[Side], width: f64) -> (String, Vec<[bool; 2]>, usize
     let x_axis = Axis::new((from, to), 7.0, true);
     let plot = width - LEFT - RIGHT;
     let step = HEIGHT + 46.0;
-    let mut out = open_chart("Contact pressure along the side", width, sides.len() as f64 * step + 34.0);
+    let mut out = opened("chart", "Contact pressure along the side", width, sides.len() as f64 * step + 34.0);
     let shown: Vec<f64> = run.times().iter().copied().filter(|t| (from..=to).contains(t)).collect();
     let stride = shown.len().div_ceil(INSTANTS).max(1);
     let kept: Vec<f64> = shown.into_iter().step_by(stride).collect();
@@ -136,18 +134,16 @@ fn draw(run: &Run, sides: &[Side], width: f64) -> (String, Vec<[bool; 2]>, usize
     let mut cuts = Vec::new();
     for (k, side) in sides.iter().enumerate() {
         let top = 26.0 + k as f64 * step;
-        let (bands, cut) = positive_bands(side.rows.iter().map(|(row, _)| row.pressure));
+        let (bands, cut) = side.bands();
         cuts.push(cut);
-        let y_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 6.0, true);
+        let y_axis = Axis::new(side.extent(), 6.0, true);
         let to_y = |s: f64| top + HEIGHT * (1.0 - y_axis.position(s));
         write_text(&mut out, LEFT, top - 8.0, "font-size=\"12\" font-weight=\"600\"", side.name);
         ground(&mut out, [LEFT, top, plot, HEIGHT]);
         map(&mut out, side, &kept, &bands, (&to_x, &to_y));
         frame(&mut out, (&x_axis, &y_axis), [LEFT, plot, top, HEIGHT]);
         let label = y_axis.label("arc length s", &length);
-        let middle = top + 0.5 * HEIGHT;
-        let turned = format!("text-anchor=\"middle\" transform=\"translate(17 {middle:.1}) rotate(-90)\"");
-        write_text(&mut out, 0.0, 0.0, &turned, &label);
+        turned(&mut out, (17, top + 0.5 * HEIGHT), "", &label);
         let legend = Legend { bands: &bands, cut, label: "p", unit: &stress };
         color_bar(&mut out, &legend, LEFT + plot + 20.0, (top - 4.0, top + HEIGHT - 8.0));
     }
@@ -164,7 +160,7 @@ fn draw(run: &Run, sides: &[Side], width: f64) -> (String, Vec<[bool; 2]>, usize
 /// The range of pressure of one colour, which a map of nearly one pressure makes look large.
 fn classes(sides: &[Side], stress: &str) -> String {
     let [side] = sides else { return String::new() };
-    let bands = positive_bands(side.rows.iter().map(|(row, _)| row.pressure)).0;
+    let bands = side.bands().0;
     let step = (bands.high - bands.low) / bands.count as f64;
     // Steps are round, and have the unit of the colour bar.
     let exponent = Axis::new((bands.low, bands.high), 6.0, true).exponent;
@@ -208,15 +204,11 @@ fn map(
     bands: &Bands,
     (to_x, to_y): (&dyn Fn(f64) -> f64, &dyn Fn(f64) -> f64),
 ) {
-    let mut rows: Vec<(usize, usize, usize, [f64; 2])> = side
-        .rows
-        .iter()
-        .filter_map(|(row, place)| {
-            let at = kept.partition_point(|t| *t < row.time);
-            let is_kept = kept.get(at).is_some_and(|t| *t == row.time);
-            is_kept.then(|| (place.number, at, bands.of(row.pressure), place.part))
-        })
-        .collect();
+    let cell = |(row, place): &(&ContactRow, Place)| {
+        let at = kept.partition_point(|t| *t < row.time);
+        (kept.get(at) == Some(&row.time)).then(|| (place.number, at, bands.of(row.pressure), place.part))
+    };
+    let mut rows: Vec<(usize, usize, usize, [f64; 2])> = side.rows.iter().filter_map(cell).collect();
     rows.sort_by_key(|row| (row.0, row.1));
     let mut paths = vec![Pen::default(); bands.count];
     for run in rows.chunk_by(|a, b| a.0 == b.0 && a.1 + 1 == b.1 && a.2 == b.2) {
@@ -247,11 +239,10 @@ pub(crate) fn profiles(run: &Run, frames: &[&FieldEntry]) -> Option<(String, Vec
     for side in &sides {
         let [width, height] = SMALL;
         let (wide, high) = (width - LEFT - 14.0, height - 66.0);
-        let x_axis = Axis::new(range(side.rows.iter().flat_map(|(_, place)| &place.part)), 6.0, true);
+        let x_axis = Axis::new(side.extent(), 6.0, true);
         // As on the map: a few peaks are cut off.
-        let most = positive_bands(side.rows.iter().map(|(row, _)| row.pressure)).0.high;
-        let y_axis = Axis::new((0.0, most), 2.0, false);
-        let mut out = open_chart("Contact pressure at the instant of the animation", width, height);
+        let y_axis = Axis::new((0.0, side.bands().0.high), 2.0, false);
+        let mut out = opened("chart", "Contact pressure at the instant of the animation", width, height);
         let top = 24.0;
         for (value, _) in &y_axis.ticks {
             let y = top + high * (1.0 - y_axis.position(*value));
@@ -260,9 +251,7 @@ pub(crate) fn profiles(run: &Run, frames: &[&FieldEntry]) -> Option<(String, Vec
         }
         frame(&mut out, (&x_axis, &y_axis), [LEFT, wide, top, high]);
         write_text(&mut out, LEFT, 14.0, "font-size=\"12\"", &format!("contact pressure, “{}”", side.name));
-        let middle = top + 0.5 * high;
-        let turned = format!("text-anchor=\"middle\" transform=\"translate(17 {middle:.1}) rotate(-90)\"");
-        write_text(&mut out, 0.0, 0.0, &turned, &y_axis.label("p", &stress));
+        turned(&mut out, (17, top + 0.5 * high), "", &y_axis.label("p", &stress));
         let label = x_axis.label("arc length s", &length);
         write_text(&mut out, LEFT + 0.5 * wide, height - 8.0, "text-anchor=\"middle\"", &label);
         let _ = writeln!(
@@ -281,14 +270,11 @@ pub(crate) fn profiles(run: &Run, frames: &[&FieldEntry]) -> Option<(String, Vec
     }
     let short = |x: f64| -> f64 { format!("{x:.4e}").parse().unwrap_or(0.0) };
     let points = |side: &Side, step: u64| -> Vec<f64> {
-        let mut points: Vec<(usize, f64, f64)> = side
-            .rows
-            .iter()
-            .filter(|(row, _)| row.step == step)
-            .map(|(row, place)| (place.number, place.at, row.pressure))
-            .collect();
-        points.sort_by_key(|point| point.0);
-        points.into_iter().flat_map(|(number, s, p)| [number as f64, short(s), short(p)]).collect()
+        let mut points: Vec<_> = side.rows.iter().filter(|(row, _)| row.step == step).collect();
+        points.sort_by_key(|(_, place)| place.number);
+        let numbers =
+            |(row, place): &(&ContactRow, Place)| [place.number as f64, short(place.at), short(row.pressure)];
+        points.into_iter().flat_map(numbers).collect()
     };
     let frame =
         |entry: &&FieldEntry| json!(sides.iter().map(|side| points(side, entry.step)).collect::<Vec<_>>());

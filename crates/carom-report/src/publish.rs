@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use carom_record::RecordError;
 
+use crate::figure::Figure;
+
 /// The files of a report.
 #[derive(Clone, Debug)]
 pub struct ReportSummary {
@@ -44,23 +46,27 @@ impl ReportError {
 
 /// Writes a file and returns its path.
 pub(crate) fn write(path: PathBuf, text: &str) -> Result<PathBuf, ReportError> {
-    match fs::write(&path, text) {
-        Ok(()) => Ok(path),
-        Err(source) => Err(ReportError::Write { path, source }),
-    }
+    fs::write(&path, text).map_err(|source| ReportError::Write { path: path.clone(), source })?;
+    Ok(path)
 }
 
-/// Writes figures (name, SVG) and a page into a run or study directory.
+/// Writes figures with their files and a page into a run or study directory.
 pub(crate) fn publish<'a>(
     directory: &Path,
     name: &str,
     page: &str,
-    figures: impl Iterator<Item = (&'a str, &'a str)>,
+    figures: impl IntoIterator<Item = &'a Figure>,
     notes: Vec<String>,
 ) -> Result<ReportSummary, ReportError> {
     let folder = directory.join("figures");
     fs::create_dir_all(&folder).map_err(|source| ReportError::Write { path: folder.clone(), source })?;
-    let written = figures.map(|(name, svg)| write(folder.join(format!("{name}.svg")), svg));
-    let written = written.collect::<Result<Vec<_>, _>>()?;
+    let mut written = Vec::new();
+    for figure in figures {
+        let beside = |ending: &str| folder.join(format!("{}.{ending}", figure.name));
+        written.push(write(beside("svg"), &figure.svg)?);
+        for (ending, text) in &figure.files {
+            write(beside(ending), text)?;
+        }
+    }
     Ok(ReportSummary { page: write(directory.join(name), page)?, figures: written, notes })
 }

@@ -79,10 +79,8 @@ impl Ranked<'_> {
             _ => format!("{head} ± {}", three(relative)),
         };
         self.column(&head, |arm| {
-            self.study.rows[arm]
-                .value(metric)
-                .filter(|_| relative.is_finite())
-                .map(|v| three_digits(error(v, right)))
+            let value = self.study.rows[arm].value(metric).filter(|_| relative.is_finite())?;
+            Some(three_digits(error(value, right)))
         })
     }
 
@@ -108,15 +106,14 @@ impl Ranked<'_> {
             let mark = if (share - 1.0).abs() <= OFF_BUDGET { "" } else { " !" };
             format!("{}{mark}", three_digits(share))
         };
-        let parts = |arm: usize| &self.study.manifest.arms[arm].role;
+        let m = &self.study.manifest;
+        let parts = |arm: usize| &m.arms[arm].role;
         let measured = |arm: usize| {
             let level = parts(arm).level;
-            if design.kind == Kind::MatchedStep
-                && !self.study.manifest.by_cost(&self.study.manifest.arms[arm])
-            {
+            if design.kind == Kind::MatchedStep && !m.by_cost(&m.arms[arm]) {
                 return None;
             }
-            let mut arms = self.study.manifest.arms.iter();
+            let mut arms = m.arms.iter();
             let anchor =
                 arms.position(|a| a.role.level == level && a.role.method.as_ref() == Some(&design.cost_of))?;
             Some(share(self.study.rows[arm].value("cpu_time")? / self.study.rows[anchor].value("cpu_time")?))
@@ -131,10 +128,8 @@ impl Ranked<'_> {
     fn stresses(&self) -> Vec<Column> {
         let metrics = self.study.metrics();
         let peaks = metrics.iter().filter_map(|m| m.name.strip_suffix(":peak_mean")).filter(|c| is_stress(c));
-        peaks
-            .take(STRESSES)
-            .map(|c| self.error(&format!("Error of {c} peak"), &format!("{c}:peak_mean")))
-            .collect()
+        let error = |c: &str| self.error(&format!("Error of {c} peak"), &format!("{c}:peak_mean"));
+        peaks.take(STRESSES).map(error).collect()
     }
 }
 
@@ -142,21 +137,15 @@ impl Ranked<'_> {
 pub(crate) fn tables(study: &Study, ranking: &Ranking, origins: &[Origin]) -> (Markup, Vec<String>) {
     let arms = ranking.levels.iter().flatten().map(|r| r.arm).collect();
     let ranked = Ranked { study, arms, scales: Scales::of(study) };
-    let errors: Vec<String> = ranking
-        .levels
-        .iter()
-        .flatten()
-        .map(|r| match r.uncertainty {
-            0.0 => three_digits(r.error),
-            range => format!("{} ± {}", three_digits(r.error), three_digits(range)),
+    let error_of = |arm: usize| {
+        let ranked = ranking.levels.iter().flatten().find(|r| r.arm == arm)?;
+        Some(match ranked.uncertainty {
+            0.0 => three_digits(ranked.error),
+            range => format!("{} ± {}", three_digits(ranked.error), three_digits(range)),
         })
-        .collect();
-    let place = |arm: usize| ranked.arms.iter().position(|a| *a == arm);
-    let matched = study
-        .manifest
-        .design
-        .as_ref()
-        .filter(|_| study.manifest.arms.iter().any(|a| study.manifest.by_cost(a)));
+    };
+    let m = &study.manifest;
+    let matched = m.design.as_ref().filter(|_| m.arms.iter().any(|arm| m.by_cost(arm)));
     let error = if study.manifest.ensemble.is_some() { "Error, median of the ensemble" } else { "Error" };
     let mut first = vec![
         ranked.column(&with_unit("Δt", time_unit(study)), |arm| {
@@ -164,7 +153,7 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking, origins: &[Origin]) -> (M
             // A step that was found has as many digits as are of use.
             step(arm, "time.step").map(if study.manifest.by_cost(arm) { three } else { five })
         }),
-        ranked.column(error, |arm| place(arm).map(|i| errors[i].clone())),
+        ranked.column(error, error_of),
         ranked.delay(),
         ranked.count("Steps", "steps"),
         ranked.count("Newton iterations", "newton_iterations"),
@@ -198,7 +187,7 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking, origins: &[Origin]) -> (M
         let first = twin(origins, arm).filter(|first| ranked.arms.contains(first))?;
         Some(study.manifest.arms[first].method())
     };
-    let table = |title: &str, columns: &[Column]| table(title, ranking, study, columns, &same);
+    let table = |title: &str, columns: &[Column]| table(title, ranking, &ranked, columns, &same);
     let tables = html! {
         (table("Error and cost", &first))
         (table("Energy and roughness of the contact force", &second))
@@ -238,7 +227,7 @@ fn said(column: &Column, name: impl Fn(usize) -> String) -> String {
 fn table<'a>(
     title: &str,
     ranking: &Ranking,
-    study: &Study,
+    Ranked { study, arms, .. }: &Ranked,
     columns: &[Column],
     same: &impl Fn(usize) -> Option<&'a str>,
 ) -> Markup {
@@ -252,7 +241,6 @@ fn table<'a>(
         SPARSE * c.cells.iter().filter(|cell| cell.is_some()).count() < c.cells.len() || common(c).is_some()
     };
     let (told, shown): (Vec<&Column>, Vec<&Column>) = known.into_iter().partition(is_said);
-    let arms: Vec<usize> = ranking.levels.iter().flatten().map(|r| r.arm).collect();
     let name = |row: usize| study.rows[arms[row]].name.clone();
     let steps = study.manifest.design.as_ref().map_or(&[][..], |design| &design.steps);
     let level_words = |level: usize| match steps.get(level) {

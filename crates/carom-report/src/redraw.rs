@@ -3,7 +3,8 @@
 
 use std::fmt::Write as _;
 
-use crate::chart::{Chart, Panel, Series};
+use crate::chart::{Chart, Options, Panel, Series, WIDTH};
+use crate::figure::{Figure, NARROW};
 use crate::labels::with_unit;
 use crate::palette::LINES;
 use crate::plot::{APART, Band, Curve, Pane, Plot, style};
@@ -90,12 +91,26 @@ if handles:
 figure.savefig(here / "@NAME@-redrawn.pdf")
 "##;
 
+impl Chart<'_> {
+    /// The figure of that name, broad and narrow, with its table and script.
+    pub(crate) fn figure(&self, name: &str, caption: String, options: &Options) -> Figure {
+        let pictures = [WIDTH, NARROW].map(|width| self.draw(&Options { width, ..*options }));
+        let plot = of_chart(name, self);
+        Figure::new(name, caption, pictures).with(plot.csv(), plot.script())
+    }
+}
+
 impl Plot {
+    /// The figure, broad and narrow, with its table and script.
+    pub(crate) fn figure(&self) -> Figure {
+        let pictures = [self.svg(), self.narrow()];
+        Figure::new(&self.name, &self.caption, pictures).with(self.csv(), self.script())
+    }
+
     /// The table with columns `pane,curve,x,y`; the edges of a band are the curves `NAME, low` and
     /// `NAME, high`.
     pub(crate) fn csv(&self) -> String {
         let mut out = String::from("pane,curve,x,y\n");
-        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
         for pane in &self.panes {
             let mut rows = |label: &str, x: &[f64], y: &[f64]| {
                 for (x, y) in x.iter().zip(y) {
@@ -133,6 +148,8 @@ impl Plot {
         let listed: Vec<&str> = curves().filter(|c| !c.unlisted).map(|c| c.label.as_str()).collect();
         let truth = |yes: bool| if yes { "True" } else { "False" }.to_owned();
         let scale = |axis: usize| if self.log[axis] { "log" } else { "linear" }.to_owned();
+        let high = ["2.2", "3.0", "1.9"][self.across.clamp(1, 3) - 1];
+        let high = if self.panes.len() == 1 { "4.0" } else { high };
         let dashes: Vec<String> = (0..8).map(|i| dashes(style(i).1)).collect();
         [
             ("NAME", self.name.clone()),
@@ -157,15 +174,7 @@ impl Plot {
             ("POINTS", set(&|c| c.points)),
             ("DIRECT", truth(self.direct || curves().any(|c| c.points))),
             ("ACROSS", self.across.max(1).to_string()),
-            (
-                "HIGH",
-                if self.panes.len() == 1 {
-                    "4.0"
-                } else {
-                    ["2.2", "3.0", "1.9"][self.across.clamp(1, 3) - 1]
-                }
-                .to_owned(),
-            ),
+            ("HIGH", high.to_owned()),
             ("SAME", truth(self.same)),
             ("X_SCALE", scale(0)),
             ("Y_SCALE", scale(1)),
@@ -177,7 +186,7 @@ impl Plot {
 }
 
 /// A chart over time as a plot, for its table and script.
-pub(crate) fn of_chart(name: &str, chart: &Chart) -> Plot {
+fn of_chart(name: &str, chart: &Chart) -> Plot {
     // Tables have names without the signs of subscripts.
     let bare = |label: &str| label.replace("_{", "_").replace('}', "");
     let curve = |(k, series): (usize, &Series)| {
@@ -202,16 +211,18 @@ pub(crate) fn of_chart(name: &str, chart: &Chart) -> Plot {
         ..Pane::default()
     };
     Plot {
-        group: String::new(),
         name: name.to_owned(),
-        caption: String::new(),
         x_label: chart.x_label.clone(),
-        log: [false, false],
         across: 1,
-        same: false,
         direct: true,
         panes: chart.panels.iter().map(pane).collect(),
+        ..Plot::default()
     }
+}
+
+/// Text as a cell of a table.
+pub(crate) fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "\"\""))
 }
 
 /// Dashes in the notation of matplotlib; `"-"` for none.
@@ -264,7 +275,7 @@ mod tests {
     /// The second panel of a chart has no legend, but its curves have names, and their own colours.
     #[test]
     fn curves_of_every_panel_have_names() {
-        use crate::chart::{Chart, Panel, Series};
+        use crate::chart::{Chart, Options, Panel, Series};
         let series = |unlisted| Series {
             label: "t = 1 s".into(),
             color: "#00224e",
@@ -285,7 +296,7 @@ mod tests {
         assert!(plot.csv().contains("\"v_x\",\"t = 1 s\",1.0,1.0"));
         let script = plot.script();
         assert!(script.contains(r##"own = {"t = 1 s": "#00224e"}"##) && script.contains("unlisted = set()"));
-        assert_eq!(chart.svg().matches("t = 1 s").count(), 1);
+        assert_eq!(chart.draw(&Options::default()).matches("t = 1 s").count(), 1);
     }
 
     /// Units are any text.

@@ -4,8 +4,9 @@ use carom_record::Run;
 use carom_record::metrics::{self, Metric};
 use maud::{Markup, html};
 
+use crate::asked::metrics_of;
 use crate::labels::{instant_label, is_static, number};
-use crate::noise::has_contact;
+use crate::noise::{has_contact, largest};
 use crate::scientific::significant;
 use crate::text::{Label, Prose};
 
@@ -19,19 +20,15 @@ const ROUND_OFF: f64 = 1e-12;
 
 /// The section of the page.
 pub(crate) fn results(run: &Run) -> Markup {
-    let overlays = metrics::overlays(run);
-    let measured = overlays.iter().flat_map(|overlay| metrics::of_measured(&run.history, overlay));
-    let all = metrics::all(&run.history).into_iter().chain(measured);
-    let known: Vec<Metric> =
-        all.filter(|metric| metric.value.is_some() && is_meaningful(run, metric)).collect();
-    let groups = metrics::TITLES
-        .map(|title| (title, known.iter().filter(|m| metrics::group(&m.name) == title).collect::<Vec<_>>()));
+    let mut known = metrics_of(run);
+    known.retain(|metric| metric.value.is_some() && is_meaningful(run, metric));
+    let groups = by_title(&known.iter().collect::<Vec<_>>());
     let is_noise = |metric: &Metric| metric.value.is_some_and(|x| is_round_off(run, x));
     html! {
         h2 { "Key results" }
         table.results {
             thead { tr { th { "Metric" } th.n { "Value" } th { "Unit" } th { "Definition" } } }
-            @for (title, members) in groups.iter().filter(|(_, members)| !members.is_empty()) {
+            @for (title, members) in groups {
                 tr.group { th colspan="4" { (title) } }
                 @for metric in members {
                     tr {
@@ -51,6 +48,13 @@ pub(crate) fn results(run: &Run) -> Markup {
     }
 }
 
+/// The titles of groups with their metrics, where there are any.
+pub(crate) fn by_title<'a>(all: &[&'a Metric]) -> Vec<(&'static str, Vec<&'a Metric>)> {
+    let of = |title| all.iter().copied().filter(|m| metrics::group(&m.name) == title).collect::<Vec<_>>();
+    let groups = metrics::TITLES.into_iter().map(|title| (title, of(title)));
+    groups.filter(|(_, members)| !members.is_empty()).collect()
+}
+
 fn value(metric: &Metric) -> String {
     let x = metric.value.unwrap_or(f64::NAN);
     // Times of rows have few digits.
@@ -66,8 +70,7 @@ pub(crate) fn is_round_off(run: &Run, x: f64) -> bool {
 /// The size of positions and of shares of energy, compared with which values are round-off.
 fn size(run: &Run) -> f64 {
     let centers = run.history.columns.iter().filter(|column| column.name.contains(".center_"));
-    let values = centers.filter_map(|column| run.column(&column.name)).flatten();
-    let most = values.filter(|x| x.is_finite()).fold(0.0, |most: f64, x| most.max(x.abs()));
+    let most = largest(centers.filter_map(|column| run.column(&column.name)).flatten());
     if most > 0.0 { most } else { 1.0 }
 }
 

@@ -17,30 +17,26 @@ pub(crate) fn significant(x: f64, digits: usize) -> String {
     let rounded = format!("{x:.last$e}");
     let Some((mantissa, order)) = rounded.split_once('e') else { return rounded };
     let order: i32 = order.parse().unwrap_or(0);
-    let text = if (-3..6).contains(&order) {
-        let decimals = (last as i32 - order).max(0) as usize;
-        format!("{x:.decimals$}")
-    } else {
-        power(mantissa, order)
-    };
+    let decimals = (last as i32 - order).max(0) as usize;
+    let is_near = (-3..6).contains(&order);
+    let text = if is_near { format!("{x:.decimals$}") } else { format!("{mantissa}×10^{{{order}}}") };
     text.replace('-', "−")
 }
 
 /// The same without zeros at the end of its decimals, for values that were given.
 pub(crate) fn given(x: f64) -> String {
     let text = significant(x, 4);
-    let (number, power) = text.split_once('×').map_or((text.as_str(), ""), |(number, power)| (number, power));
-    let number =
-        if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number };
-    match (number, power) {
+    let (number, power) = text.split_once('×').unwrap_or((&text, ""));
+    match (without_zeros(number), power) {
         (number, "") => number.to_owned(),
         ("1", power) => power.to_owned(),
         (number, power) => format!("{number}×{power}"),
     }
 }
 
-fn power(mantissa: &str, order: i32) -> String {
-    format!("{mantissa}×10^{{{order}}}")
+/// Without zeros at the end of a fraction; those of 19500 stay.
+pub(crate) fn without_zeros(number: &str) -> &str {
+    if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
 }
 
 /// Text with its numbers like `1.2e-5` as labels: `1.2×10^{−5}`, and `10^{−5}` for `1e-5`.

@@ -9,7 +9,6 @@ mod forces;
 mod key;
 mod planes;
 mod solid;
-mod values;
 mod words;
 
 use std::collections::HashMap;
@@ -19,25 +18,23 @@ use carom_record::{Cell, FieldSet, Run};
 use serde_json::Value;
 
 use crate::axis::Axis;
-use crate::bodies::{Instant, bezier, corners, edges, fill_space, places};
-use crate::chart::{open, write_text};
+use crate::bodies::{self, Instant, bezier, corners, edges, fill_space, places};
+use crate::chart::{opened, turned, write_text};
 use crate::figure::NARROW;
 use crate::obstacles;
-use crate::pen::{Pen, Point, open_grid};
-use crate::symbols::{arrow, direction, guides, motion, plus, probe_mark, rollers, wall};
-use drawing::{BAR, KEY, PRIMARY, ROOM, SECONDARY, Setup, Walk};
+use crate::pen::{NOTHING, Pen, Point, around, open_grid};
+use crate::place::fill;
+use crate::symbols::{arrow, direction, distance, guides, motion, plus, probe_mark, rollers, wall};
+use crate::values::{flat, list, text, texts, unit, vector};
+use drawing::{BAR, BOLD, ITALIC, PRIMARY, ROOM, SECONDARY, Setup, Walk};
 pub(crate) use forces::typeset as formula_in_words;
-use values::{list, text, vector};
+use key::placed;
 pub(crate) use words::{in_words, model_in_words};
 
-/// The figure, from the initial fields, with the key beside the drawing; nothing without cells.
-pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
-    drawn(run, fields, false)
-}
-
-/// The figure for a narrow window: the key is below.
-pub(crate) fn narrow(run: &Run, fields: &FieldSet) -> Option<String> {
-    drawn(run, fields, true)
+/// The figure, from the initial fields, with the key beside the drawing, and in a narrow window
+/// below it; nothing without cells.
+pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<[String; 2]> {
+    Some([drawn(run, fields, false)?, drawn(run, fields, true)?])
 }
 
 fn drawn(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
@@ -47,10 +44,7 @@ fn drawn(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
     let room = if narrow { NARROW - 155.0 } else { ROOM };
     let flat = fields.blocks.iter().all(|b| b.cell == Cell::Curve);
     let points = places(fields);
-    let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
-    for p in fields.blocks.iter().flat_map(|b| &b.connectivity).map(|&k| points[k]) {
-        frame = [frame[0].min(p[0]), frame[1].max(p[0]), frame[2].min(p[1]), frame[3].max(p[1])];
-    }
+    let mut frame = around(NOTHING, fields.blocks.iter().flat_map(|b| &b.connectivity).map(|&k| points[k]));
     // In 1D the picture includes the walls.
     for point in list(&run.manifest.case, "contacts").iter().filter_map(|c| c.pointer("/primary/plane/point"))
     {
@@ -58,9 +52,7 @@ fn drawn(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
         (frame[0], frame[1]) = (frame[0].min(x), frame[1].max(x));
     }
     let planes = if flat { Vec::new() } else { planes::rigid(&run.manifest.case, frame) };
-    for p in planes.iter().flat_map(|plane| plane.ends) {
-        frame = [frame[0].min(p[0]), frame[1].max(p[0]), frame[2].min(p[1]), frame[3].max(p[1])];
-    }
+    frame = around(frame, planes.iter().flat_map(|plane| plane.ends));
     let obstacles = if flat { Vec::new() } else { obstacles::all(run, frame) };
     let obstacles: Vec<_> =
         obstacles.iter().filter(|o| !o.is_plane).map(|obstacle| (obstacle, obstacle.at(run, 0.0))).collect();
@@ -82,17 +74,12 @@ fn drawn(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
     let origin = [left - x0 * scale, if flat { top + 0.5 * BAR } else { top + y1 * scale }];
     let mut setup = Setup { run, fields, points, flat, scale, origin, inside: HashMap::new() };
     let mut key = String::new();
-    let lines = setup.key(&mut key, if narrow { 12.0 } else { right + margin + 36.0 });
+    let beside = right + margin + 36.0;
+    let lines = setup.key(&mut key, if narrow { 12.0 } else { beside });
     let bottom = (top + picture + margin).max(if flat || narrow { 0.0 } else { lines - 60.0 });
-    let [width, height] = if narrow {
-        key = format!("<g transform=\"translate(0 {:.1})\">\n{key}</g>\n", bottom + 44.0);
-        [NARROW, bottom + 44.0 + lines + 8.0]
-    } else {
-        [right + margin + 36.0 + KEY, (bottom + 44.0).max(lines + 8.0)]
-    };
+    let (key, [width, height]) = placed(key, lines, narrow, [beside, bottom + 44.0]);
     // In the plane there are no shades: a dark page shows it on dark ground.
-    let out = open("Initial configuration", width, height);
-    let mut out = out.replacen("class=\"picture\"", "class=\"picture sketch\"", 1);
+    let mut out = opened("picture sketch", "Initial configuration", width, height);
     setup.axes(&mut out, [left - margin, right + margin, top - margin, bottom]);
     setup.bodies(&mut out);
     setup.planes(&mut out, &planes, 0.6 * margin);
@@ -120,7 +107,7 @@ const FLAT: f64 = 22.0;
 /// A side, or a straight line of a length in its middle if it is shorter.
 fn at_least(walk: Walk, length: f64) -> Walk {
     let (Some(&(a, n)), Some(&(b, _))) = (walk.first(), walk.last()) else { return walk };
-    if walk.windows(2).map(|w| (w[1].0[0] - w[0].0[0]).hypot(w[1].0[1] - w[0].0[1])).sum::<f64>() >= length {
+    if walk.windows(2).map(|w| distance(w[1].0, w[0].0)).sum::<f64>() >= length {
         return walk;
     }
     let (middle, along) = (plus(a, 0.5, [b[0] - a[0], b[1] - a[1]]), direction(a, b));
@@ -130,7 +117,7 @@ fn at_least(walk: Walk, length: f64) -> Walk {
 impl Setup<'_> {
     /// Coordinate axes at the edges of the picture.
     fn axes(&self, out: &mut String, [left, right, top, bottom]: [f64; 4]) {
-        let length = self.case().pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
+        let length = unit(self.case(), "length");
         let axis = |low: f64, high: f64, pixels: f64| Axis::new((low, high), (pixels / 80.0).max(2.0), true);
         let x =
             axis((left - self.origin[0]) / self.scale, (right - self.origin[0]) / self.scale, right - left);
@@ -146,8 +133,8 @@ impl Setup<'_> {
                 writeln!(out, "<path d=\"M{at:.1} {bottom:.1}v5\" stroke=\"#888\" stroke-width=\"0.8\"/>");
             write_text(out, at, bottom + 19.0, "text-anchor=\"middle\"", label);
         }
-        let power = |label: &str, axis: &Axis| axis.label(label, length);
-        write_text(out, 0.5 * (left + right), bottom + 38.0, "text-anchor=\"middle\"", &power("x", &x));
+        let label = x.label("x", length);
+        write_text(out, 0.5 * (left + right), bottom + 38.0, "text-anchor=\"middle\"", &label);
         if self.flat {
             return;
         }
@@ -158,17 +145,12 @@ impl Setup<'_> {
             let _ = writeln!(out, "<path d=\"M{left:.1} {at:.1}h-5\" stroke=\"#888\" stroke-width=\"0.8\"/>");
             write_text(out, left - 8.0, at + 4.3, "text-anchor=\"end\"", label);
         }
-        let middle = 0.5 * (top + bottom);
-        let turned = format!(
-            "text-anchor=\"middle\" transform=\"translate({:.1} {middle:.1}) rotate(-90)\"",
-            left - 42.0
-        );
-        write_text(out, 0.0, 0.0, &turned, &power("y", &y));
+        turned(out, (format!("{:.1}", left - 42.0), 0.5 * (top + bottom)), "", &y.label("y", length));
     }
 
     fn bodies(&mut self, out: &mut String) {
         for (k, block) in self.fields.blocks.iter().enumerate() {
-            let fill = Self::color(k);
+            let fill = fill(k);
             if block.cell == Cell::Curve {
                 for cell in block.cells() {
                     let (a, b) = (self.node(cell[0]), self.node(cell[1]));
@@ -194,12 +176,7 @@ impl Setup<'_> {
             let [inside, outline] = edges(&instant, &|p| self.to(p));
             let mut cells = Pen::default();
             for (degree, nodes) in &instant.cells {
-                for e in 0..corners(nodes) {
-                    let edge: Vec<Point> =
-                        crate::bodies::edge_nodes(*degree, nodes, e).map(|n| self.node(n)).collect();
-                    bezier(&mut cells, &edge, e == 0);
-                }
-                cells.close();
+                bodies::outline(&mut cells, *degree, nodes, &|n| self.node(n));
             }
             let (cells, inside, outline) = (cells.data(), inside.data(), outline.data());
             let _ = writeln!(
@@ -217,7 +194,7 @@ impl Setup<'_> {
         for support in list(self.case(), "supports") {
             let (fix, across) = (Self::directions(support), Self::is_held_across(support));
             let moved = Self::moved_axis(support);
-            for side in list(support, "on").iter().filter_map(Value::as_str) {
+            for side in texts(support, "on") {
                 for walk in self.walks(side) {
                     if let Some(axis) = moved.filter(|_| !self.flat) {
                         motion(out, &walk, axis);
@@ -267,17 +244,13 @@ impl Setup<'_> {
             } else {
                 [center[0], center[1] - self.rise(text(body, "name"), center[1])]
             };
-            let halo = "text-anchor=\"middle\" font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" \
-                        stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
-            write_text(out, x, y, halo, text(body, "name"));
+            let halo = format!("text-anchor=\"middle\" {ITALIC}");
+            write_text(out, x, y, &halo, text(body, "name"));
             let size = self.size(text(body, "name"));
             let length = (0.45 * size).clamp(24.0, 48.0);
             for (key, symbol, side) in [("gravity", "g", 1.0), ("velocity", "v_{0}", -1.0)] {
-                let v = vector(body.get(key));
-                let d = direction(
-                    [0.0; 2],
-                    [v.first().copied().unwrap_or(0.0), -v.get(1).copied().unwrap_or(0.0)],
-                );
+                let [right, up] = flat(body.get(key));
+                let d = direction([0.0; 2], [right, -up]);
                 if d == [0.0; 2] {
                     continue;
                 }
@@ -304,35 +277,25 @@ impl Setup<'_> {
     /// How far the name of a body is above its middle: less where its letters would cross the upper
     /// edge, unless the body is too flat for them.
     fn rise(&self, body: &str, middle: f64) -> f64 {
-        let block = self.fields.blocks.iter().find(|b| b.body == body);
-        let nodes = block.into_iter().flat_map(|b| &b.connectivity).map(|&k| self.node(k));
+        let nodes = self.block(body).into_iter().flat_map(|b| &b.connectivity).map(|&k| self.node(k));
         let half = nodes.fold(0.0, |half: f64, p| half.max(middle - p[1]));
         if half < FLAT { RISE.max(half + 6.0) } else { RISE.min(half - LETTERS) }
     }
 
     /// The smaller side of the box around a body, in pixels.
     fn size(&self, body: &str) -> f64 {
-        let block = self.fields.blocks.iter().find(|b| b.body == body);
-        let nodes = || block.into_iter().flat_map(|b| &b.connectivity).map(|&k| self.node(k));
-        let extent = |i: usize| {
-            let (low, high) = nodes()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[i]), high.max(p[i])));
-            high - low
-        };
-        if self.flat { 100.0 } else { extent(0).min(extent(1)) }
+        let nodes = self.block(body).into_iter().flat_map(|b| &b.connectivity).map(|&k| self.node(k));
+        let [left, right, top, bottom] = around(NOTHING, nodes);
+        if self.flat { 100.0 } else { (right - left).min(bottom - top) }
     }
 
     fn probes(&self, out: &mut String) {
         for probe in list(self.case(), "probes") {
-            let at = vector(probe.get("at"));
-            let p =
-                self.to(self.moved([at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0)]));
+            let p = self.to(self.moved(flat(probe.get("at"))));
             out.push_str(&probe_mark(p));
-            let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
-                        paint-order=\"stroke\" stroke-linejoin=\"round\"";
             let [x, y] =
                 if self.flat { [p[0] - 4.0, p[1] - 0.5 * BAR - 7.0] } else { [p[0] + 8.0, p[1] - 7.0] };
-            write_text(out, x, y, bold, text(probe, "name"));
+            write_text(out, x, y, BOLD, text(probe, "name"));
         }
     }
 }

@@ -3,12 +3,13 @@
 
 use std::fmt::Write as _;
 
-use crate::again::{again, once};
+use crate::again::{Rectangle, again, once};
 use crate::axis::{Axis, round_step};
 use crate::bands::Bands;
 use crate::chart::{open, write_text};
 use crate::figure::NARROW;
 use crate::pen::Point;
+use crate::symbols::scale_bar;
 use crate::text;
 
 /// Usual width of a sheet; one of half of it has half as many columns.
@@ -89,8 +90,7 @@ impl Sheet {
                 let (name, content) = (format!("picture-{k}"), broad.out.split_off(before));
                 once(&mut broad.out, &name, "picture", &content);
                 let [from, to] = [&broad, &narrow].map(|sheet| sheet.picture(k));
-                let rectangle = |([left, top], [width, height]): (Point, Point)| [left, top, width, height];
-                again(&mut narrow.out, &name, rectangle(from), rectangle(to));
+                again(&mut narrow.out, &name, from, to);
             } else {
                 draw(&mut narrow, k);
             }
@@ -108,16 +108,16 @@ impl Sheet {
         (self.width - BAR - 8.0) / self.columns as f64
     }
 
-    /// Upper left corner of picture `k`, and its size.
-    pub(crate) fn picture(&self, k: usize) -> (Point, Point) {
+    /// The rectangle of picture `k`.
+    pub(crate) fn picture(&self, k: usize) -> Rectangle {
         let size = [self.frame[1] - self.frame[0], self.frame[3] - self.frame[2]].map(|s| s * self.scale);
         let [left, top] = self.corner(k);
-        ([left + 0.5 * (self.cell_width() - GAP - size[0]), top], size)
+        [left + 0.5 * (self.cell_width() - GAP - size[0]), top, size[0], size[1]]
     }
 
     /// The map from units of length to pixels in picture `k`.
     pub(crate) fn map(&self, k: usize) -> impl Fn(Point) -> Point + use<> {
-        let ([left, top], _) = self.picture(k);
+        let [left, top, ..] = self.picture(k);
         let (frame, scale) = (self.frame, self.scale);
         move |p| [left + (p[0] - frame[0]) * scale, top + (frame[3] - p[1]) * scale]
     }
@@ -125,13 +125,13 @@ impl Sheet {
     /// Letter and time of picture `k`.
     fn heading(&mut self, k: usize, time: &str) {
         let [room, top] = self.corner(k);
-        let left = self.picture(k).0[0].min(room + 0.5 * self.cell_width() - 50.0);
+        let left = self.picture(k)[0].min(room + 0.5 * self.cell_width() - 50.0);
         let letter = char::from(b'a' + (k % 25) as u8);
         let _ = writeln!(
             self.out,
             "<text x=\"{left:.1}\" y=\"{:.1}\"><tspan font-weight=\"bold\">({letter})</tspan> {}</text>",
             top - 11.0,
-            crate::text::svg(time)
+            text::svg(time)
         );
     }
 
@@ -139,14 +139,7 @@ impl Sheet {
     pub(crate) fn finish(mut self, legend: &Legend, length: &str) -> String {
         let size = round_step(self.frame[1] - self.frame[0], 3.0);
         let y = self.height - 22.0;
-        let _ = writeln!(
-            self.out,
-            "<path d=\"M8 {:.1}v6m0 -3h{:.1}m0 -3v6\" fill=\"none\" stroke=\"#222\"/>",
-            y - 3.0,
-            size * self.scale
-        );
-        let text = format!("{size} {length}");
-        write_text(&mut self.out, 8.0 + size * self.scale + 8.0, y + 4.0, "", text.trim());
+        scale_bar(&mut self.out, [8.0, y - 3.0], size * self.scale, (size, length));
         // Not longer than what is compared with it needs.
         let bottom = (self.height - 50.0).min(LINE + TALLEST);
         color_bar(&mut self.out, legend, self.width - BAR + 18.0, (LINE, bottom));

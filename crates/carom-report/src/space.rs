@@ -12,6 +12,6 @@ mod wires;
 pub(crate) use figure::{DRAWN, box_of, draw, frame, instants, underlay};
 pub(crate) use painter::{Paint, pieces};
 pub(crate) use scene::section;
-pub(crate) use skin::{Facet, Place, corners, places, skin};
-pub(crate) use view::{View, cross, minus};
+pub(crate) use skin::{Facet, Place, corners, skin};
+pub(crate) use view::{View, cross, length, minus};
 pub(crate) use wires::wires;

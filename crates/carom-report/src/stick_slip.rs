@@ -5,14 +5,18 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use carom_record::{ContactRow, Run};
+use serde_json::Value;
 
 use crate::arc::{self, places};
 use crate::axis::{Axis, range};
-use crate::chart::{ground, open_chart, time_axis, write_text};
+use crate::chart::{ground, opened, time_axis, write_text};
 use crate::figure::{Figure, NARROW};
 use crate::labels::with_unit;
+use crate::ordered::distinct;
 use crate::palette::LINES;
 use crate::redraw::filled;
+use crate::text::said_if;
+use crate::values::{is_in_space, list, text};
 
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 74.0;
@@ -27,64 +31,48 @@ const COLOURS: [&str; 3] = [LINES[6], LINES[2], LINES[3]];
 /// The two directions of slip in words: along an axis if the normals of all contacts have one
 /// direction, around a rigid circle, or else by a definition in the caption.
 fn directions(run: &Run, contacts: &[&str]) -> Option<[&'static str; 2]> {
-    let case = run.manifest.case.get("contacts")?.as_array()?;
+    let case = list(&run.manifest.case, "contacts");
     let is_round = |name: &&str| {
-        let contact = case.iter().find(|c| c.get("name").and_then(|n| n.as_str()) == Some(name));
-        contact
-            .and_then(|contact| contact.pointer("/primary/circle"))
-            .is_some_and(|circle| circle.get("inside").and_then(serde_json::Value::as_bool) != Some(true))
+        let contact = case.iter().find(|contact| text(contact, "name") == *name);
+        let circle = contact.and_then(|contact| contact.pointer("/primary/circle"));
+        circle.is_some_and(|circle| circle.get("inside").and_then(Value::as_bool) != Some(true))
     };
     if contacts.iter().all(is_round) {
         return Some(["slips counterclockwise", "slips clockwise"]);
     }
     let rows = || run.contact.iter().filter(|row| row.friction != "none");
-    let all = |d: usize, sign: f64| rows().all(|row| sign * row.normal[d] > 0.9);
-    if all(1, 1.0) {
-        Some(["slips towards −x", "slips towards +x"])
-    } else if all(1, -1.0) {
-        Some(["slips towards +x", "slips towards −x"])
-    } else if all(0, 1.0) {
-        Some(["slips towards +y", "slips towards −y"])
-    } else if all(0, -1.0) {
-        Some(["slips towards −y", "slips towards +y"])
-    } else {
-        None
-    }
+    let is_normal = |d: usize, sign: f64| rows().all(|row| sign * row.normal[d] > 0.9);
+    let words = [
+        (1, 1.0, ["slips towards −x", "slips towards +x"]),
+        (1, -1.0, ["slips towards +x", "slips towards −x"]),
+        (0, 1.0, ["slips towards +y", "slips towards −y"]),
+        (0, -1.0, ["slips towards −y", "slips towards +y"]),
+    ];
+    words.into_iter().find(|(d, sign, _)| is_normal(*d, *sign)).map(|(.., words)| words)
 }
 
 /// A map of each contact that has friction. A side in space has no arc length.
 pub(crate) fn figure(run: &Run) -> Option<Figure> {
-    if run.manifest.case.get("dimension").and_then(serde_json::Value::as_u64) == Some(3) {
+    if is_in_space(&run.manifest.case) {
         return None;
     }
-    let mut contacts: Vec<&str> = Vec::new();
-    for row in run.contact.iter().filter(|row| row.friction != "none") {
-        if !contacts.contains(&row.contact.as_ref()) {
-            contacts.push(row.contact.as_ref());
-        }
-    }
+    let rubbing = run.contact.iter().filter(|row| row.friction != "none");
+    let contacts = distinct(rubbing.map(|row| row.contact.as_ref()));
     if contacts.is_empty() {
         return None;
     }
     let words = directions(run, &contacts);
     let [against, along] = words.unwrap_or(["slips backward", "slips forward"]);
-    let [out, narrow] = [WIDTH, NARROW].map(|width| picture(run, &contacts, [against, along], width));
+    let pictures = [WIDTH, NARROW].map(|width| picture(run, &contacts, [against, along], width));
     let is_length = !run.fields.is_empty();
-    let counted = if is_length {
-        ""
-    } else {
-        " Nodes are numbered along the side, because no field file has their positions."
-    };
-    let direction = if words.is_some() {
-        " Slip: motion of the secondary side relative to the primary."
-    } else {
-        " Slip: motion of the secondary side relative to the primary; forward: along the outward normal of the primary \
-         side turned by a quarter clockwise."
-    };
+    let counted =
+        said_if(!is_length, " Nodes are numbered along the side, because no field file has their positions.");
+    let forward = "; forward: along the outward normal of the primary side turned by a quarter clockwise";
+    let forward = said_if(words.is_none(), forward);
     let caption = format!(
         "Nodes in contact over time, along the secondary side in the reference configuration: where they \
-         stick and slip, at the recorded steps; one band per node, grey where it is not in contact.{counted}{direction} \
-         Data: `contact.csv`, columns `friction` and `traction`."
+         stick and slip, at the recorded steps; one band per node, grey where it is not in contact.{counted} Slip: \
+         motion of the secondary side relative to the primary{forward}. Data: `contact.csv`, columns `friction` and `traction`."
     );
     let unit = length(run);
     let (words, unit) = arc::label(is_length, &unit);
@@ -95,7 +83,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         ("@ALONG@", along.to_owned()),
     ];
     let script = filled(include_str!("stick_slip.py"), &labels);
-    Some(Figure::new("stick-slip", caption, out).with_narrow(narrow).with(table(run, &contacts), script))
+    Some(Figure::new("stick-slip", caption, pictures).with(table(run, &contacts), script))
 }
 
 /// The maps as a picture of a width; the other argument is the two directions of slip in words.
@@ -104,7 +92,7 @@ fn picture(run: &Run, contacts: &[&str], [against, along]: [&str; 2], width: f64
     let x_axis = Axis::new((first, last), 8.0, true);
     let plot = width - LEFT - RIGHT;
     let height = contacts.len() as f64 * (HEIGHT + 44.0) + 52.0;
-    let mut out = open_chart("Stick and slip", width, height);
+    let mut out = opened("chart", "Stick and slip", width, height);
     for (i, (label, colour)) in ["sticks", against, along].iter().zip(COLOURS).enumerate() {
         let x = if width < WIDTH { 8.0 } else { LEFT } + [0.0, 80.0, 270.0][i];
         let _ = writeln!(out, "<rect x=\"{x:.1}\" y=\"6\" width=\"16\" height=\"11\" fill=\"{colour}\"/>");
@@ -211,8 +199,8 @@ fn draw(
 
 /// The unit of length.
 fn length(run: &Run) -> String {
-    let first = run.fields.first().and_then(|entry| run.field(entry).ok());
-    first.and_then(|set| set.array("displacement").map(|array| array.unit.clone())).unwrap_or_default()
+    let first = run.fields.first().and_then(|entry| run.field(entry).ok()).unwrap_or_default();
+    first.unit("displacement").to_owned()
 }
 
 /// Recorded instants, from which a state lasts until the next one.

@@ -6,19 +6,15 @@ use carom_record::{Advice, Run, Stop, StopIteration, StopNode, StopPlace};
 use maud::{Markup, html};
 
 use crate::document::{file, joined, or_dash};
-use crate::figure::Figure;
 use crate::labels::{capitalised, number};
 use crate::scientific::{powers, significant};
 use crate::text::{Label, Prose, typeset};
+use crate::values;
+pub(crate) use picture::figure;
 
 const ITERATIONS: &str = "Newton's iterations of the last attempt, each before its correction. Residual: as \
     a fraction of the sum of the forces.";
 const DAMPING: &str = " Damping: the fraction of the correction that was applied.";
-
-/// The picture of the place.
-pub(crate) fn picture(run: &Run) -> Option<Figure> {
-    picture::figure(run, run.stop.as_ref()?)
-}
 
 /// The section, with its figure.
 pub(crate) fn section(run: &Run, picture: Option<Markup>) -> Markup {
@@ -31,7 +27,7 @@ pub(crate) fn section(run: &Run, picture: Option<Markup>) -> Markup {
             "The last accepted state is at t = " (number(stop.last)) "\u{a0}" (Label(unit)) "; the last attempt began at t = "
             (number(stop.time)) "\u{a0}" (Label(unit)) ". t and Δt are in " (Label(unit)) "; L is the length of the model."
         }
-        @if let Some(place) = &stop.place { (where_table(place, length_unit(run))) }
+        @if let Some(place) = &stop.place { (where_table(place, values::unit(&run.manifest.case, "length"))) }
         @if let Some(picture) = picture { (picture) }
         (advice(stop, unit))
         (iterations(&stop.iterations))
@@ -41,11 +37,6 @@ pub(crate) fn section(run: &Run, picture: Option<Markup>) -> Markup {
             " " (Label(unit)) " with the rejected displacements)."
         }
     }
-}
-
-/// The unit of length of the case.
-fn length_unit(run: &Run) -> &str {
-    run.manifest.case.pointer("/units/length").and_then(|unit| unit.as_str()).unwrap_or_default()
 }
 
 fn where_table(place: &StopPlace, unit: &str) -> Markup {
@@ -164,7 +155,7 @@ fn fraction(x: f64) -> String {
 }
 
 fn iterations(iterations: &[StopIteration]) -> Markup {
-    let or_none = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| significant(x, 3));
+    let or_none = |x: Option<f64>| or_dash(x, |x| significant(x, 3));
     let gaps = iterations.iter().any(|i| i.gap.is_some_and(|gap| gap != 0.0));
     let pairs = iterations.iter().any(|i| i.active > 0);
     let changes = iterations.iter().any(|i| i.changed);

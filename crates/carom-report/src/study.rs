@@ -3,15 +3,18 @@
 
 use std::path::Path;
 
-use carom_record::study::{Row, Study, StudyManifest};
+use carom_record::study::{Arm, Row, Study, StudyManifest};
 use carom_record::{Status, metrics};
 
 use crate::collected::{Column, Measured, Origin, collect, common_time, named};
 use crate::curves::Keys;
+use crate::figure::Figure;
 use crate::labels::{capitalised, file_name, listed, with_unit};
+use crate::ordered::grouped;
 use crate::plot::{Curve, Pane, Plot};
-use crate::publish::{ReportError, ReportSummary, publish, write};
+use crate::publish::{ReportError, ReportSummary, publish};
 use crate::systems::Systems;
+use crate::text::said_if;
 use crate::{curves, laboratory, multiples, setup, study_page, theory, trend};
 
 /// Figures of one column that are shown; more of them are folded away, and with a goal, for which
@@ -34,8 +37,8 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     let mut measured = Measured(manifest.overlays);
     let mut study = Study::open(directory, &mut |arm, run| {
         picture = picture.take().or_else(|| {
-            let fields = run.field(run.fields.first()?).ok()?;
-            Some([setup::figure(run, &fields)?, setup::narrow(run, &fields)?])
+            let pictures = setup::figure(run, &run.field(run.fields.first()?).ok()?)?;
+            Some(Figure::new("setup", "", pictures))
         });
         if systems.is_own(arm) {
             run.history.unit("time").clone_into(&mut time);
@@ -53,24 +56,11 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     plots.extend(trend::plots(&study));
     // Figures that are folded away come last, so that those shown have successive numbers.
     plots.sort_by_key(|plot| !plot.group.is_empty());
-    let page = study_page::page(&study, picture.as_ref(), &plots, &origins, &systems);
-    let drawn = plots.iter().map(|p| (p.name.clone(), p.svg()));
-    let all: Vec<(String, String)> =
-        picture.into_iter().map(|[svg, _]| ("setup".to_owned(), svg)).chain(drawn).collect();
-    let summary = publish(
-        directory,
-        "study.html",
-        &page,
-        all.iter().map(|(n, s)| (n.as_str(), s.as_str())),
-        Vec::new(),
-    )?;
-    // Beside each figure its table and the script that redraws it.
-    for plot in &plots {
-        let beside = |ending: &str| directory.join("figures").join(format!("{}.{ending}", plot.name));
-        write(beside("csv"), &plot.csv())?;
-        write(beside("py"), &plot.script())?;
-    }
-    Ok(summary)
+    let figures: Vec<(&str, Figure)> =
+        plots.iter().map(|plot| (plot.group.as_str(), plot.figure())).collect();
+    let page = study_page::page(&study, picture.as_ref(), &figures, &origins, &systems);
+    let all = picture.iter().chain(figures.iter().map(|(_, figure)| figure));
+    publish(directory, "study.html", &page, all, Vec::new())
 }
 
 /// A column of all arms, with up to eight curves in a figure, and enlarged where there is contact.
@@ -79,8 +69,8 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
     let (label, what) = named(&column.name);
     let groups = groups(study);
     let few = if study.manifest.goal.is_some() { FEW_MORE } else { FEW };
-    let keys = Keys::of(study.rows.iter().map(|row| row.name.as_str())).in_time(common_time(study));
-    let chosen = study.ranking.as_ref().and_then(|ranking| Some(ranking.verdict.as_ref().ok()?.arm));
+    let keys = Keys::of(study.rows.iter().map(|row| row.name.as_str()), common_time(study));
+    let chosen = study.recommended();
     let figure = |group: usize| {
         let members = &groups[group];
         let mine = column.curves.iter().filter(|(arm, ..)| members.contains(arm));
@@ -94,8 +84,7 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
             ..Curve::default()
         });
         let found = curves::merged(curves.collect());
-        let names: Vec<_> =
-            found.iter().map(|(curve, others)| (curve.label.clone(), others.clone())).collect();
+        let drawn_once = curves::drawn_once(found.iter().map(|(curve, others)| (&curve.label, others)));
         let curves: Vec<Curve> =
             found.into_iter().map(|(curve, others)| curves::with(curve, &others)).collect();
         if curves.is_empty() {
@@ -115,11 +104,8 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         let (is_aside, is_all_aside) = (!aside.is_empty(), curves.iter().all(|curve| curve.apart));
         let rough = curves.iter().filter(|curve| curves::is_rough(curve)).count() > 1;
         let (panes, across, enlarged) = if rough {
-            (
-                multiples(curves, &y_label, contact),
-                3,
-                if contact.is_some() { " during the first contact" } else { "" },
-            )
+            let part = said_if(contact.is_some(), " during the first contact");
+            (multiples(curves, &y_label, contact), 3, part)
         } else {
             let whole = Pane {
                 name: "whole time".into(),
@@ -137,12 +123,7 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
             let whole = (!whole.curves.is_empty()).then_some(whole);
             (whole.into_iter().chain(part).collect::<Vec<_>>(), 1, "")
         };
-        let aside = aside.into_iter().map(|curve| Pane {
-            title: curve.label.clone(),
-            y_label: with_unit(&label, &column.unit),
-            curves: vec![Curve { unlisted: true, ..curve }],
-            ..Pane::default()
-        });
+        let aside = aside.into_iter().map(|curve| alone(curve, with_unit(&label, &column.unit)));
         let points = measured.points(&column.name, end, rough);
         let with_points = |mut pane: Pane| {
             pane.curves.extend(points.iter().cloned());
@@ -152,27 +133,25 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
         let mut plot = Plot {
             group: if groups.len() > few { capitalised(&what) } else { String::new() },
             name,
-            caption: String::new(),
             x_label: with_unit("time t", time),
-            log: [false, false],
             across,
             same: rough,
             direct: !rough,
             panes,
+            ..Plot::default()
         };
-        let axes = match () {
-            () if is_all_aside => String::new(),
-            () => {
-                let tip = if plot.has_arrowheads() { "; an arrowhead is where one leaves them" } else { "" };
-                let own = if is_aside { "; rough ones have panes of their own" } else { "" };
-                format!(" They do not affect the axes of other arms{tip}{own}.")
-            }
+        let axes = if is_all_aside {
+            String::new()
+        } else {
+            let tip = said_if(plot.has_arrowheads(), "; an arrowhead is where one leaves them");
+            let own = said_if(is_aside, "; rough ones have panes of their own");
+            format!(" They do not affect the axes of other arms{tip}{own}.")
         };
         let apart = apart_words(study, members, &axes);
         plot.caption = format!(
             "{}{enlarged}{part}.{}{apart}{}",
             capitalised(&what),
-            curves::drawn_once(&names),
+            drawn_once,
             measured.words(&column.name)
         );
         Some(plot)
@@ -184,18 +163,11 @@ fn overlays(column: &Column, study: &Study, measured: &Measured, time: &str) -> 
 /// full; those of the reference are by themselves.
 fn groups(study: &Study) -> Vec<Vec<usize>> {
     let arms = &study.manifest.arms;
-    let mut kinds: Vec<Vec<usize>> = Vec::new();
-    for i in 0..arms.len() {
-        let kind = |arm: usize| (&arms[arm].case_path, arms[arm].role.fine, arms[arm].role.level);
-        match kinds.iter_mut().find(|known| kind(known[0]) == kind(i)) {
-            Some(known) => known.push(i),
-            None => kinds.push(vec![i]),
-        }
-    }
-    let few = |same: Vec<usize>| {
+    let kind = |(i, arm): (usize, &Arm)| ((arm.case_path.clone(), arm.role.fine, arm.role.level), i);
+    let few = |(_, same): (_, Vec<usize>)| {
         same.chunks(laboratory::each(same.len())).map(<[usize]>::to_vec).collect::<Vec<_>>()
     };
-    kinds.into_iter().flat_map(few).collect()
+    grouped(arms.iter().enumerate().map(kind)).into_iter().flat_map(few).collect()
 }
 
 /// What is said of grey curves, for arms that failed or created energy.
@@ -222,7 +194,7 @@ fn numbers(members: &[usize]) -> String {
         [first, .., last] if every == 1 => format!(", arms {} to {}", first + 1, last + 1),
         _ => {
             let all: Vec<String> = members.iter().map(|arm| (arm + 1).to_string()).collect();
-            format!(", arms {}", listed(&all.iter().map(String::as_str).collect::<Vec<_>>()))
+            format!(", arms {}", listed(&all))
         }
     }
 }
@@ -230,13 +202,16 @@ fn numbers(members: &[usize]) -> String {
 /// Panes at the same scale with a curve each, its label as the title.
 fn multiples(curves: Vec<Curve>, y_label: &str, span: Option<(f64, f64)>) -> Vec<Pane> {
     let pane = |(k, curve): (usize, Curve)| Pane {
-        title: curve.label.clone(),
-        y_label: if k % 3 == 0 { y_label.to_owned() } else { String::new() },
-        curves: vec![Curve { unlisted: true, ..curve }],
         span,
-        ..Pane::default()
+        ..alone(curve, if k % 3 == 0 { y_label.to_owned() } else { String::new() })
     };
     curves.into_iter().enumerate().map(pane).collect()
+}
+
+/// A pane with a curve, its label as the title.
+fn alone(curve: Curve, y_label: String) -> Pane {
+    let title = curve.label.clone();
+    Pane { title, y_label, curves: vec![Curve { unlisted: true, ..curve }], ..Pane::default() }
 }
 
 #[cfg(test)]

@@ -12,8 +12,7 @@ use maud::{Markup, html};
 
 use crate::collected::Origin;
 use crate::document::{document, figure};
-use crate::figure::pictures;
-use crate::plot::Plot;
+use crate::figure::Figure;
 use crate::systems::Systems;
 use crate::text::{Label, Prose};
 use crate::{claims, convergence, ensemble, integrity, phases, study_warnings, trend, verdict};
@@ -21,8 +20,8 @@ use crate::{claims, convergence, ensemble, integrity, phases, study_warnings, tr
 /// The page.
 pub(crate) fn page(
     study: &Study,
-    picture: Option<&[String; 2]>,
-    plots: &[Plot],
+    picture: Option<&Figure>,
+    drawn: &[(&str, Figure)],
     origins: &[Origin],
     systems: &Systems,
 ) -> String {
@@ -59,7 +58,7 @@ pub(crate) fn page(
         (study_warnings::section(study, origins))
         h2 { "Figures" }
         @if let Some(words) = systems.words() { p { (Prose(&words)) } }
-        (figures(plots))
+        (figures(drawn))
         (results::metrics(study, systems))
         (trend::section(study))
         (convergence::section(study))
@@ -70,23 +69,20 @@ pub(crate) fn page(
     document(&study.manifest.title, "", &body)
 }
 
-/// The figures; those of many arms are folded away.
-fn figures(plots: &[Plot]) -> Markup {
-    let numbered: Vec<(usize, &Plot)> = plots.iter().enumerate().collect();
-    let one = |(i, plot): &(usize, &Plot)| {
-        let drawn = pictures(&plot.svg(), &plot.narrow());
-        figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &drawn)
-    };
+/// The figures, each with the title of those that it is folded away with.
+fn figures(drawn: &[(&str, Figure)]) -> Markup {
+    let mut numbers = 0..;
     html! {
-        @for together in numbered.chunk_by(|a, b| !a.1.group.is_empty() && a.1.group == b.1.group) {
+        @for together in drawn.chunk_by(|(a, _), (b, _)| !a.is_empty() && a == b) {
+            @let figures = html! {
+                @for ((_, one), i) in together.iter().zip(numbers.by_ref()) { (figure((i, one))) }
+            };
             @if together.len() > 1 {
                 details {
-                    summary { (Label(&together[0].1.group)) " of all arms (" (together.len()) " figures)" }
-                    @for plot in together { (one(plot)) }
+                    summary { (Label(together[0].0)) " of all arms (" (together.len()) " figures)" }
+                    (figures)
                 }
-            } @else {
-                @for plot in together { (one(plot)) }
-            }
+            } @else { (figures) }
         }
     }
 }

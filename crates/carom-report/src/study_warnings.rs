@@ -6,31 +6,20 @@ use maud::{Markup, html};
 
 use crate::collected::Origin;
 use crate::labels::listed;
+use crate::ordered::grouped;
 use crate::text::{Label, typeset};
 
 /// Largest number of arms that are named; of more, the numbers are given.
 const FEW: usize = 4;
 
-/// A warning with what several arms found, each with its arms.
-struct Found<'a> {
-    warning: &'a Warning,
-    what: Vec<(&'a str, Vec<usize>)>,
-}
-
-/// The warnings of all arms; those that differ in their numbers only are one.
-fn found(study: &Study) -> Vec<Found<'_>> {
-    let mut found: Vec<Found> = Vec::new();
-    for (warning, arms) in study.warnings() {
-        let same = |other: &&mut Found| {
-            let other = other.warning;
-            (&other.id, &other.place, &other.why) == (&warning.id, &warning.place, &warning.why)
-        };
-        match found.iter_mut().find(same) {
-            Some(known) => known.what.push((&warning.what, arms)),
-            None => found.push(Found { warning, what: vec![(&warning.what, arms)] }),
-        }
-    }
-    found
+/// The warnings of all arms, each with its arms; those that differ in their numbers only are
+/// together.
+fn found<'a>(study: &'a Study) -> Vec<Vec<(&'a Warning, Vec<usize>)>> {
+    let one = |(warning, arms): (&'a Warning, Vec<usize>)| {
+        let Warning { id, place, why, .. } = warning;
+        ((id, place, why), (warning, arms))
+    };
+    grouped(study.warnings().into_iter().map(one)).into_iter().map(|(_, same)| same).collect()
 }
 
 /// What several arms found, each with its arms; said once where only one number differs:
@@ -72,20 +61,14 @@ fn names(study: &Study, arms: &[usize]) -> String {
 
 /// Arms with the same record, and whether their inputs are the same too.
 fn identical(study: &Study, origins: &[Origin]) -> Vec<(String, bool)> {
-    let mut sets: Vec<Vec<&Origin>> = Vec::new();
-    for origin in origins.iter().filter(|origin| !origin.record.is_empty()) {
-        match sets.iter_mut().find(|set| set[0].record == origin.record) {
-            Some(set) => set.push(origin),
-            None => sets.push(vec![origin]),
-        }
-    }
-    let words = |set: Vec<&Origin>| {
-        let names: Vec<&str> = set.iter().map(|origin| study.rows[origin.arm].name.as_str()).collect();
-        let quoted: Vec<String> = names.iter().map(|name| format!("“{name}”")).collect();
-        let quoted: Vec<&str> = quoted.iter().map(String::as_str).collect();
+    let recorded = origins.iter().filter(|origin| !origin.record.is_empty());
+    let sets = grouped(recorded.map(|origin| (&origin.record, origin)));
+    let words = |(_, set): (_, Vec<&Origin>)| {
+        let quoted: Vec<String> =
+            set.iter().map(|origin| format!("“{}”", study.rows[origin.arm].name)).collect();
         (listed(&quoted), set.iter().all(|origin| origin.input == set[0].input))
     };
-    sets.into_iter().filter(|set| set.len() > 1).map(words).collect()
+    sets.into_iter().filter(|(_, set)| set.len() > 1).map(words).collect()
 }
 
 /// The section of the page; nothing where there are none.
@@ -110,20 +93,21 @@ pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
         @if !found.is_empty() {
             table.stack {
                 thead { tr { th { "Warning" } th { "What was found, and why it matters" } th { "Try" } th { "Arms" } } }
-                @for Found { warning, what } in &found {
+                @for same in &found {
+                    @let warning = same[0].0;
                     tr {
                         td { code { (warning.id) } }
                         td {
                             // The last column names the runs.
                             @if warning.place != "the run" { (typeset(&warning.place)) ": " }
                             // Names stay as they are.
-                            @let set: Vec<_> = what.iter().map(|(words, arms)| (typeset(words), arms.clone())).collect();
+                            @let set: Vec<_> = same.iter().map(|(one, arms)| (typeset(&one.what), arms.clone())).collect();
                             (Label(&together(&set, |arms| names(study, arms)))) "; "
                             (typeset(&warning.why)) "."
                         }
                         td { (typeset(&warning.advice)) }
                         td {
-                            @let arms: Vec<usize> = what.iter().flat_map(|(_, arms)| arms.clone()).collect();
+                            @let arms: Vec<usize> = same.iter().flat_map(|(_, arms)| arms.clone()).collect();
                             (names(study, &arms))
                         }
                     }

@@ -1,11 +1,16 @@
-//! Symbols of mechanics: arrows, walls with hatching, rollers.
+//! Symbols of mechanics: arrows, walls with hatching, rollers; scale bars.
 
 use std::fmt::Write as _;
 
-use crate::pen::Point;
+use crate::chart::write_text;
+use crate::pen::{Point, polyline};
 
 pub(crate) fn plus(p: Point, s: f64, d: Point) -> Point {
     [p[0] + s * d[0], p[1] + s * d[1]]
+}
+
+pub(crate) fn distance(a: Point, b: Point) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// Unit vector from `a` to `b`; zero where they coincide.
@@ -21,25 +26,17 @@ pub(crate) fn arrow(out: &mut String, from: Point, to: Point, color: &str) {
     let side = [-d[1], d[0]];
     let neck = plus(to, -9.0, d);
     let [a, b] = [4.0, -4.0].map(|s| plus(neck, s, side));
+    let shaft = polyline(&[from, neck]);
     for (stroke, width) in [("#fff", 5.0), (color, 1.8)] {
-        let _ = writeln!(
-            out,
-            "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" stroke=\"{stroke}\" stroke-width=\"{width}\" \
-             fill=\"none\"/>",
-            from[0], from[1], neck[0], neck[1]
-        );
+        let _ =
+            writeln!(out, "<path d=\"{shaft}\" stroke=\"{stroke}\" stroke-width=\"{width}\" fill=\"none\"/>");
     }
-    let _ = writeln!(
-        out,
-        "<path d=\"M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}z\" fill=\"{color}\"/>",
-        to[0], to[1], a[0], a[1], b[0], b[1]
-    );
+    let _ = writeln!(out, "<path d=\"{}z\" fill=\"{color}\"/>", polyline(&[to, a, b]));
 }
 
 /// Equidistant points along a polyline, ends included, with the outward normal.
 pub(crate) fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)> {
-    let lengths: Vec<f64> =
-        line.windows(2).map(|w| (w[1].0[0] - w[0].0[0]).hypot(w[1].0[1] - w[0].0[1])).collect();
+    let lengths: Vec<f64> = line.windows(2).map(|w| distance(w[1].0, w[0].0)).collect();
     let total: f64 = lengths.iter().sum();
     let count = (total / spacing).round().max(1.0);
     let mut places = Vec::new();
@@ -60,16 +57,10 @@ pub(crate) fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)
 /// outward unit normals.
 pub(crate) fn wall(out: &mut String, line: &[(Point, Point)], offset: f64) {
     let shifted: Vec<(Point, Point)> = line.iter().map(|&(p, n)| (plus(p, offset, n), n)).collect();
-    let mut d = String::new();
-    for (k, (p, _)) in shifted.iter().enumerate() {
-        let _ = write!(d, "{}{:.1} {:.1}", if k == 0 { 'M' } else { 'L' }, p[0], p[1]);
-    }
-    let mut hatch = String::new();
-    for (p, n) in along(&shifted, 7.0) {
-        // The outward normal turned by 45 degrees.
-        let q = plus(p, 7.0, [n[0] - n[1], n[1] + n[0]]);
-        let _ = write!(hatch, "M{:.1} {:.1}L{:.1} {:.1}", p[0], p[1], q[0], q[1]);
-    }
+    let d = polyline(&shifted.iter().map(|(p, _)| *p).collect::<Vec<_>>());
+    // The outward normal turned by 45 degrees.
+    let stroke = |(p, n): (Point, Point)| polyline(&[p, plus(p, 7.0, [n[0] - n[1], n[1] + n[0]])]);
+    let hatch: String = along(&shifted, 7.0).into_iter().map(stroke).collect();
     let _ = writeln!(
         out,
         "<path d=\"{hatch}\" stroke=\"#555\" stroke-width=\"0.8\" fill=\"none\"/>\n<path d=\"{d}\" \
@@ -82,11 +73,7 @@ pub(crate) fn wall(out: &mut String, line: &[(Point, Point)], offset: f64) {
 pub(crate) fn mark(out: &mut String, p: Point, n: Point) {
     let foot = plus(p, 13.0, n);
     let [a, b] = [6.0, -6.0].map(|s| plus(foot, s, [-n[1], n[0]]));
-    let _ = writeln!(
-        out,
-        "<path d=\"M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}z\" fill=\"#222\"/>",
-        p[0], p[1], a[0], a[1], b[0], b[1]
-    );
+    let _ = writeln!(out, "<path d=\"{}z\" fill=\"#222\"/>", polyline(&[p, a, b]));
 }
 
 /// Double-headed arrows across or along a side that is moved.
@@ -94,14 +81,10 @@ pub(crate) fn motion(out: &mut String, line: &[(Point, Point)], axis: Point) {
     for (p, _) in along(line, 30.0) {
         let [a, b] = [-9.0, 9.0].map(|s| plus(p, s, axis));
         let side = [-axis[1], axis[0]];
-        let mut d = format!("M{:.1} {:.1}L{:.1} {:.1}", a[0], a[1], b[0], b[1]);
+        let mut d = polyline(&[a, b]);
         for (end, sign) in [(a, 1.0), (b, -1.0)] {
             let [left, right] = [3.5, -3.5].map(|s| plus(plus(end, 5.0 * sign, axis), s, side));
-            let _ = write!(
-                d,
-                "M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}",
-                left[0], left[1], end[0], end[1], right[0], right[1]
-            );
+            d += &polyline(&[left, end, right]);
         }
         for (stroke, width) in [("#fff", 4.0), ("#44607c", 1.6)] {
             let _ =
@@ -128,12 +111,8 @@ pub(crate) fn rollers(out: &mut String, line: &[(Point, Point)]) {
 pub(crate) fn guides(out: &mut String, line: &[(Point, Point)], constrained: Point) {
     for (p, n) in along(line, 22.0) {
         let c = plus(p, 5.0, n);
-        let [a, b] = [-6.0, 6.0].map(|s| plus(c, s, constrained));
-        let _ = writeln!(
-            out,
-            "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" stroke=\"#222\" stroke-width=\"2\"/>",
-            a[0], a[1], b[0], b[1]
-        );
+        let bar = polyline(&[-6.0, 6.0].map(|s| plus(c, s, constrained)));
+        let _ = writeln!(out, "<path d=\"{bar}\" stroke=\"#222\" stroke-width=\"2\"/>");
     }
 }
 
@@ -144,4 +123,11 @@ pub(crate) fn probe_mark([x, y]: Point) -> String {
          stroke-width=\"1.6\" paint-order=\"stroke\"/>\n",
         y - 5.2
     )
+}
+
+/// A scale bar of a length from its left end to its right end, in pixels, at a height.
+pub(crate) fn scale_bar(out: &mut String, [x, y]: Point, pixels: f64, (length, unit): (f64, &str)) {
+    let d = format!("M{x} {y:.1}v6m0 -3h{pixels:.1}m0 -3v6");
+    let _ = writeln!(out, "<path d=\"{d}\" fill=\"none\" stroke=\"#222\"/>");
+    write_text(out, x + pixels + 8.0, y + 7.0, "", format!("{length} {unit}").trim());
 }

@@ -7,12 +7,11 @@ use carom_record::Run;
 use carom_record::conversion;
 use carom_record::study::{Arm, Study, StudyManifest};
 
+use crate::values::unit;
+
 /// Labels of length, time and mass of an arm.
 fn system(arm: &Arm) -> [&str; 3] {
-    ["length", "time", "mass"].map(|of| {
-        let units = arm.case.get("units");
-        units.and_then(|units| units.get(of)?.as_str()).unwrap_or_default()
-    })
+    ["length", "time", "mass"].map(|of| unit(&arm.case, of))
 }
 
 /// What the arms are converted to.

@@ -11,6 +11,11 @@ pub(crate) fn escape(text: &str) -> String {
     text.render().into_string()
 }
 
+/// Words that are said on a condition only.
+pub(crate) fn said_if(condition: bool, words: &'static str) -> &'static str {
+    if condition { words } else { "" }
+}
+
 /// Vertical position of a piece of a label.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Level {

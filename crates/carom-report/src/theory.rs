@@ -3,7 +3,9 @@
 use carom_record::study::{Arm, Study, step};
 
 use crate::curves;
+use crate::ordered::{distinct, grouped};
 use crate::plot::{Curve, Pane, Plot};
+use crate::text::said_if;
 
 /// Spectral radius, damping and period error of every scheme, from `theory.csv`; frequencies of the
 /// model, from `frequencies.csv`.
@@ -31,17 +33,9 @@ pub(crate) fn plot(study: &Study) -> Option<Plot> {
     // The curves have no values below these.
     let least = table.iter().filter_map(|row| row[1].parse::<f64>().ok()).fold(f64::INFINITY, f64::min);
     marks.retain(|(at, _)| *at >= least);
-    let springs = if marks.iter().any(|m| m.1.starts_with("ω_{c}")) {
-        " ω_{c}: the stiffest penalty spring on its node alone, with the other side at rest."
-    } else {
-        ""
-    };
-    let mut names: Vec<&str> = Vec::new();
-    for row in &table {
-        if !names.contains(&&row[0]) {
-            names.push(&row[0]);
-        }
-    }
+    let springs = " ω_{c}: the stiffest penalty spring on its node alone, with the other side at rest.";
+    let springs = said_if(marks.iter().any(|m| m.1.starts_with("ω_{c}")), springs);
+    let names = distinct(table.iter().map(|row| &row[0]));
     let methods = study.manifest.methods();
     let curve = |column: usize| {
         let (names, table, methods) = (&names, &table, &methods);
@@ -54,19 +48,11 @@ pub(crate) fn plot(study: &Study) -> Option<Plot> {
             Curve { label: (*name).to_owned(), style, x, y, ..Curve::default() }
         })
     };
-    let mut once: Vec<(String, Vec<String>)> = Vec::new();
-    let mut together = |name: &str, others: &[String]| {
-        let at = once.iter().position(|(first, _)| first == name).unwrap_or_else(|| {
-            once.push((name.to_owned(), Vec::new()));
-            once.len() - 1
-        });
-        let known = &mut once[at].1;
-        known.extend(others.iter().filter(|other| !known.contains(other)).cloned().collect::<Vec<_>>());
-    };
+    let mut once: Vec<(String, String)> = Vec::new();
     let mut pane = |title: &str, y_label: &str, column: usize, limits: (f64, f64)| {
         let found = curves::merged(curve(column).filter(|c| !c.x.is_empty()).collect());
-        for (curve, others) in found.iter().filter(|(_, others)| !others.is_empty()) {
-            together(&curve.label, others);
+        for (curve, others) in &found {
+            once.extend(others.iter().map(|other| (curve.label.clone(), other.clone())));
         }
         Pane {
             title: title.into(),
@@ -83,7 +69,6 @@ pub(crate) fn plot(study: &Study) -> Option<Plot> {
         pane("relative period error", "(T − T_{0})/T_{0}", 4, (-0.1, 1.0)),
     ];
     Some(Plot {
-        group: String::new(),
         name: "theory".into(),
         caption: format!(
             "Properties of the schemes for an undamped oscillator of angular frequency ω. Vertical lines: the \
@@ -91,36 +76,33 @@ pub(crate) fn plot(study: &Study) -> Option<Plot> {
              range of the curves, at the longest time step (labelled) and at the shortest.{springs} For a node constrained by a \
              multiplier, ωΔt → ∞ and only ρ∞ matters.{}{}",
             same_scheme(study, &names),
-            curves::drawn_once(&once)
+            curves::drawn_once(grouped(distinct(once)).iter().map(|(name, others)| (name, others)))
         ),
         x_label: "ωΔt".into(),
         log: [true, false],
         across: 1,
-        same: false,
         direct: true,
         panes,
+        ..Plot::default()
     })
 }
 
 /// Which methods have no curve of their own, since they have the scheme of another one.
 fn same_scheme(study: &Study, names: &[&str]) -> String {
     let arms = || study.manifest.arms.iter().filter(|arm| !arm.role.fine);
-    let mut found: Vec<(&str, &str)> = Vec::new();
-    for arm in arms().filter(|arm| !names.contains(&arm.method())) {
-        let scheme = arm.case.pointer("/time/scheme");
+    let alike = |arm: &Arm| {
+        let scheme = arm.case.pointer("/time/scheme")?;
         let is_same = |other: &&Arm| {
-            names.contains(&other.method())
-                && scheme.is_some()
-                && other.case.pointer("/time/scheme") == scheme
+            names.contains(&other.method()) && other.case.pointer("/time/scheme") == Some(scheme)
         };
-        let Some(other) = arms().find(is_same) else { continue };
-        if !found.iter().any(|(known, _)| *known == arm.method()) {
-            found.push((arm.method(), other.method()));
-        }
-    }
+        arms().find(is_same).map(Arm::method)
+    };
+    let others = arms().filter(|arm| !names.contains(&arm.method()));
+    let found = grouped(others.filter_map(|arm| Some((arm.method(), alike(arm)?))));
     if found.is_empty() {
         return String::new();
     }
-    let words: Vec<String> = found.iter().map(|(one, other)| format!("“{one}” that of “{other}”")).collect();
+    let words: Vec<String> =
+        found.iter().map(|(one, others)| format!("“{one}” that of “{}”", others[0])).collect();
     format!(" Methods with the scheme of another one have its curve: {}.", words.join("; "))
 }

@@ -8,6 +8,8 @@
 //! Coordinates are written in tenths of a pixel relative to the previous point as written, so that
 //! rounding errors do not accumulate.
 
+use std::ops::Range;
+
 use crate::pen::Point;
 
 /// Width of a column in pixels.
@@ -28,16 +30,12 @@ pub(crate) fn path(points: impl Iterator<Item = (f64, f64)>) -> String {
 }
 
 /// Path data of the area between two edges in pixels, both from left to right.
-pub(crate) fn area(
-    upper: impl Iterator<Item = (f64, f64)>,
-    lower: impl Iterator<Item = (f64, f64)>,
-) -> String {
-    let edge = |points: &mut dyn Iterator<Item = (f64, f64)>| {
-        thinned(&points.filter(|p| p.0.is_finite() && p.1.is_finite()).collect::<Vec<_>>())
-    };
-    let (mut upper, mut lower) = (upper, lower);
-    let mut around = edge(&mut upper);
-    around.extend(edge(&mut lower).into_iter().rev());
+pub(crate) fn area(edges: [Vec<(f64, f64)>; 2]) -> String {
+    let [mut around, lower] = edges.map(|mut points| {
+        points.retain(|p| p.0.is_finite() && p.1.is_finite());
+        thinned(&points)
+    });
+    around.extend(lower.into_iter().rev());
     let mut out = String::new();
     write(&mut out, &mut [0; 2], &around);
     if !out.is_empty() {
@@ -48,13 +46,7 @@ pub(crate) fn area(
 
 fn thinned(points: &[(f64, f64)]) -> Vec<Point> {
     let points = columns(points);
-    let by_height = |a: &usize, b: &usize| points[*a][1].total_cmp(&points[*b][1]);
-    let all = 0..points.len();
-    let ends = all.clone().take(1).chain(all.clone().last());
-    let mut fixed: Vec<usize> =
-        ends.chain(all.clone().min_by(by_height)).chain(all.clone().max_by(by_height)).collect();
-    fixed.sort_unstable();
-    fixed.dedup();
+    let fixed = ends_and_extremes(0..points.len(), |i| points[i][1]);
     let mut keep = vec![false; points.len()];
     fixed.iter().for_each(|&i| keep[i] = true);
     let mut open: Vec<(usize, usize)> = fixed.windows(2).map(|pair| (pair[0], pair[1])).collect();
@@ -66,7 +58,7 @@ fn thinned(points: &[(f64, f64)]) -> Vec<Point> {
             open.extend([(a, i), (i, b)]);
         }
     }
-    all.filter(|&i| keep[i]).map(|i| points[i]).collect()
+    (0..points.len()).filter(|&i| keep[i]).map(|i| points[i]).collect()
 }
 
 /// First, lowest, highest and last point of each column.
@@ -74,19 +66,21 @@ fn columns(points: &[(f64, f64)]) -> Vec<Point> {
     let same = |a: &(f64, f64), b: &(f64, f64)| (a.0 / COLUMN).floor() == (b.0 / COLUMN).floor();
     let mut out = Vec::new();
     for column in points.chunk_by(same) {
-        let by_height = |a: &usize, b: &usize| column[*a].1.total_cmp(&column[*b].1);
-        let all = 0..column.len();
-        let mut keep =
-            [Some(0), all.clone().min_by(by_height), all.max_by(by_height), column.len().checked_sub(1)];
-        keep.sort_unstable();
-        let mut last = None;
-        for i in keep.into_iter().flatten() {
-            if last.replace(i) != Some(i) {
-                out.push([column[i].0, column[i].1]);
-            }
-        }
+        let kept = ends_and_extremes(0..column.len(), |i| column[i].1);
+        out.extend(kept.into_iter().map(|i| [column[i].0, column[i].1]));
     }
     out
+}
+
+/// First, lowest, highest and last of some rows with values, in order, each once.
+pub(crate) fn ends_and_extremes(rows: Range<usize>, value: impl Fn(usize) -> f64) -> Vec<usize> {
+    let by_value = |a: &usize, b: &usize| value(*a).total_cmp(&value(*b));
+    let extremes = [rows.clone().min_by(by_value), rows.clone().max_by(by_value)];
+    let ends = [rows.clone().next(), rows.last()];
+    let mut found: Vec<usize> = ends.into_iter().chain(extremes).flatten().collect();
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// Distance of a point from the segment between two others.
@@ -209,11 +203,11 @@ mod tests {
     fn short_numbers_without_drift() {
         assert_eq!(path([(0.0, 1.0), (1.0, 2.0), (2.0, 0.5)].into_iter()), "m0 1 1 1 1-1.5");
         assert_eq!(
-            area([(0.0, 1.0), (9.0, 1.2)].into_iter(), [(0.0, 3.0), (9.0, 3.0)].into_iter()),
+            area([vec![(0.0, 1.0), (9.0, 1.2)], vec![(0.0, 3.0), (9.0, 3.0)]]),
             "m0 1 9 .2 0 1.8-9 0z"
         );
         assert_eq!(path([(f64::NAN, 1.0)].into_iter()), "");
-        assert_eq!(area([].into_iter(), [].into_iter()), "");
+        assert_eq!(area([Vec::new(), Vec::new()]), "");
         // Rounding errors of a thousand segments do not accumulate.
         let zigzag = (0..1000).map(|i| (f64::from(i) * 0.633, f64::from(i % 2) * 5.0));
         let end = *read(&path(zigzag)).concat().last().unwrap();

@@ -13,7 +13,7 @@ use crate::fit::Fit;
 use crate::labels::{file_name, with_unit};
 use crate::plot::{Band, Curve, Pane, Plot};
 use crate::settings::own_settings;
-use crate::text::Label;
+use crate::text::{Label, said_if};
 
 /// Fewest values of a key.
 const LEAST: usize = 3;
@@ -230,28 +230,24 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
     };
     let few = |curve: &Curve| curve.marked && curve.x.len() < FITTED;
     let short = fitted && panes.iter().flat_map(|pane| &pane.curves).any(few);
-    let short = if short { NOT_FITTED } else { "" };
+    let short = said_if(short, NOT_FITTED);
     let unsound = |arm: &usize| study.rows[*arm].is_unsound();
-    let left_out = if groups.iter().flat_map(|group| &group.arms).any(unsound) {
-        " Arms that failed or created energy are left out."
-    } else {
-        ""
-    };
+    let left_out = said_if(
+        groups.iter().flat_map(|group| &group.arms).any(unsound),
+        " Arms that failed or created energy are left out.",
+    );
     let mut plot = Plot {
-        group: String::new(),
         name: format!("trend-{}", file_name(key)),
-        caption: String::new(),
         x_label: axis(study, key),
         log: [wide, false],
         across: 3,
-        same: false,
-        direct: false,
         panes,
+        ..Plot::default()
     };
     if plot.panes.is_empty() {
         return None;
     }
-    let grey = if single && fitted { interval(&plot) } else { "" };
+    let grey = if single && fitted { interval(&plot) } else { String::new() };
     let scale = match (wide, fitted) {
         (false, _) => "",
         (true, false) => " on a logarithmic axis",
@@ -262,18 +258,17 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
 }
 
 /// What is said of the intervals, of which no part higher than the pane is drawn.
-fn interval(plot: &Plot) -> &'static str {
+fn interval(plot: &Plot) -> String {
     let all = plot.panes.iter().all(|pane| plot.shown_band(pane).iter().all(|shown| *shown));
-    if all {
-        " Grey: 95 % confidence interval of the line."
-    } else {
-        " Grey: 95 % confidence interval of the line, where it does not exceed the axis."
-    }
+    format!(
+        " Grey: 95 % confidence interval of the line{}.",
+        said_if(!all, ", where it does not exceed the axis")
+    )
 }
 
 /// The labels of groups, without the settings that all of them have.
 fn labels(study: &Study, groups: &[Refinement]) -> Vec<String> {
-    let keys = Keys::of(groups.iter().map(|group| group.common.as_str())).in_time(common_time(study));
+    let keys = Keys::of(groups.iter().map(|group| group.common.as_str()), common_time(study));
     let is_shared = |part: &&str| {
         groups.len() > 1 && groups.iter().all(|group| group.common.split(", ").any(|other| other == *part))
     };

@@ -9,8 +9,10 @@ use crate::figure::Figure;
 use crate::labels::listed;
 use crate::measured::{Points, add_points, differences, sources};
 use crate::noise::largest;
-use crate::over_time::{SMALL, chart, names};
+use crate::ordered::{distinct, grouped};
+use crate::over_time::{self, SMALL, chart};
 use crate::palette::LINES;
+use crate::values::names;
 
 /// A column below this size shows only round-off.
 const ROUND_OFF: f64 = 1e-12;
@@ -19,7 +21,7 @@ const MOST: usize = 8;
 
 /// Whether another figure shows a column; `lists` are the columns of the figures of all runs.
 fn is_shown(run: &Run, lists: &[&[(&str, &str)]], column: &str) -> bool {
-    let is_probed = |probe: &str| names(run, "probes").contains(&probe);
+    let is_probed = |probe: &str| names(&run.manifest.case, "probes").contains(&probe);
     column.rsplit_once('.').is_some_and(|(probe, _)| is_probed(probe))
         || lists.iter().any(|list| list.iter().any(|(name, _)| *name == column))
         || ["time", "step", "active", "newton", "rejected"].contains(&column)
@@ -40,41 +42,28 @@ pub(crate) fn measured(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
         panels.push(panel(run, &points, &[column], column));
         panels.extend(differences(run, &points, column, column));
     }
-    let all: Vec<&str> = columns.iter().map(String::as_str).collect();
-    let caption = format!(
-        "Measured data and the columns that they belong to.{} Data: `history.csv`, {}.",
-        sources(run, &points, &all),
-        in_words(&all)
-    );
-    chart(run, ("measured", "Measured data"), caption, panels)
+    let words = "Measured data and the columns that they belong to.";
+    figure(run, ("measured", "Measured data"), words, (&points, &columns, panels))
 }
 
 /// The columns that expectations evaluate and no other figure shows, with the expected values.
 pub(crate) fn expected(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
     let points = Points::all(run);
     let measured = carom_record::metrics::overlays(run);
-    let mut groups: Vec<(String, Vec<String>)> = Vec::new();
     let asked = run.manifest.expectations.iter().flat_map(|e| columns_in(run, &e.what));
     let worth = |column: &String| {
         !is_shown(run, lists, column)
             && measured.iter().all(|overlay| overlay.column != *column)
             && run.column(column).is_some_and(|values| largest(values) > ROUND_OFF)
     };
-    let mut columns: Vec<String> = Vec::new();
-    for column in asked.filter(worth) {
-        if !columns.contains(&column) && columns.len() < MOST {
-            columns.push(column);
-        }
-    }
+    let mut columns = distinct(asked.filter(worth));
+    columns.truncate(MOST);
     // The components of a vector have one panel, those that would be flat in it a second one.
-    for column in &columns {
+    let stem = |column: &'_ str| {
         let stem = column.strip_suffix(['x', 'y', 'z']).filter(|stem| stem.ends_with('_'));
-        let stem = stem.map_or(column.as_str(), |stem| stem.trim_end_matches('_'));
-        match groups.iter_mut().find(|(name, _)| name == stem) {
-            Some((_, members)) => members.push(column.clone()),
-            None => groups.push((stem.to_owned(), vec![column.clone()])),
-        }
-    }
+        stem.map_or(column, |stem| stem.trim_end_matches('_')).to_owned()
+    };
+    let groups = grouped(columns.iter().map(|column| (stem(column), column.as_str())));
     let formulas: Vec<(String, String, Vec<f64>)> =
         run.manifest.expectations.iter().filter_map(|e| formula(run, &e.what)).collect();
     let mut panels = Vec::new();
@@ -82,7 +71,7 @@ pub(crate) fn expected(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
     let by_size = groups.iter().flat_map(|(name, members)| {
         let most = members.iter().map(|column| peak(column)).fold(0.0, f64::max);
         let (large, small): (Vec<&str>, Vec<&str>) =
-            members.iter().map(String::as_str).partition(|column| peak(column) >= SMALL * most);
+            members.iter().partition(|column| peak(column) >= SMALL * most);
         [large, small].map(|members| (name, members))
     });
     for (name, members) in by_size.filter(|(_, members)| !members.is_empty()) {
@@ -94,26 +83,31 @@ pub(crate) fn expected(run: &Run, lists: &[&[(&str, &str)]]) -> Option<Figure> {
                 color: LINES[2],
                 x: run.times(),
                 y: y.clone(),
-                dotted: false,
-                unlisted: false,
+                ..Series::default()
             });
         }
         panels.push(panel);
     }
-    let all: Vec<&str> = columns.iter().map(String::as_str).collect();
-    let caption = format!(
-        "Columns that expectations evaluate and no other figure shows.{} Data: `history.csv`, {}.",
-        sources(run, &points, &all),
-        in_words(&all)
-    );
-    chart(run, ("expected", "Columns of expectations"), caption, panels)
+    let words = "Columns that expectations evaluate and no other figure shows.";
+    figure(run, ("expected", "Columns of expectations"), words, (&points, &columns, panels))
 }
 
-/// `columns a and b`.
-fn in_words(columns: &[&str]) -> String {
+/// The figure of some columns in panels, with points.
+fn figure(
+    run: &Run,
+    names: (&str, &str),
+    words: &str,
+    (points, columns, panels): (&[Points], &[String], Vec<Panel>),
+) -> Option<Figure> {
+    let all: Vec<&str> = columns.iter().map(String::as_str).collect();
     let coded: Vec<String> = columns.iter().map(|column| format!("`{column}`")).collect();
-    let coded: Vec<&str> = coded.iter().map(String::as_str).collect();
-    format!("{} {}", if columns.len() == 1 { "column" } else { "columns" }, listed(&coded))
+    let caption = format!(
+        "{words}{} Data: `history.csv`, {} {}.",
+        sources(run, points, &all),
+        if columns.len() == 1 { "column" } else { "columns" },
+        listed(&coded)
+    );
+    chart(run, names, caption, panels)
 }
 
 /// A panel with columns of one unit and their points.
@@ -125,14 +119,12 @@ fn panel<'a>(run: &'a Run, points: &'a [Points], columns: &[&str], label: &str) 
             color: LINES[if k == 0 { 0 } else { k + 2 } % LINES.len()],
             x: run.times(),
             y: run.column(column)?.to_vec(),
-            dotted: false,
-            unlisted: false,
+            ..Series::default()
         })
     };
     let mut series: Vec<Series> = columns.iter().enumerate().filter_map(curve).collect();
     columns.iter().for_each(|column| add_points(points, column, &mut series));
-    let unit = columns.first().map_or("", |column| run.history.unit(column)).to_owned();
-    Panel { label: label.to_owned(), unit, height: 150.0, series }
+    over_time::panel(label, columns.first().map_or("", |column| run.history.unit(column)), 150.0, series)
 }
 
 /// The names of columns in what an expectation asks for.

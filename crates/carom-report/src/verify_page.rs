@@ -50,8 +50,11 @@ fn page(v: &Verification, directory: &Path) -> String {
         p.small { (WORDS) }
         @for name in v.families() {
             // What is missed is open; all the rest is a click away.
-            details id=(name) open[missed(v, name) > 0] {
-                summary { b { (name) } ": " (values(v, name)) ", " (missed(v, name)) " missed" }
+            @let (values, missed) = counts(v, name);
+            details id=(name) open[missed > 0] {
+                summary {
+                    b { (name) } ": " (values) @if values == 1 { " value" } @else { " values" } ", " (missed) " missed"
+                }
                 div.scroll {
                     table {
                         thead {
@@ -107,29 +110,20 @@ const WORDS: &str = "Error: result − expected value; for a bound, the amount b
     case file states none beside the value; its comments may. Every value is computed from the run directory \
     that its row links to. The hash after a title is the BLAKE3 hash of the files and options of its runs.";
 
-/// Number of values of a family, in words.
-fn values(v: &Verification, name: &str) -> String {
-    match v.rows().filter(|(set_up, _)| set_up.family == name).count() {
-        1 => "1 value".to_owned(),
-        count => format!("{count} values"),
-    }
-}
-
-/// Number of missed values of a family.
-fn missed(v: &Verification, name: &str) -> usize {
-    let rows = v.rows().filter(|(set_up, _)| set_up.family == name);
-    rows.filter(|(_, row)| !row.verdict.pass).count()
+/// Numbers of values of a family, and of those that are missed.
+fn counts(v: &Verification, name: &str) -> (usize, usize) {
+    let rows = || v.rows().filter(|(set_up, _)| set_up.family == name);
+    (rows().count(), rows().filter(|(_, row)| !row.verdict.pass).count())
 }
 
 /// The row of a family in the table of families.
 fn family(v: &Verification, name: &str) -> Markup {
     let mine: Vec<&SetUp> = v.set_ups.iter().filter(|s| s.family == name).collect();
-    let rows: Vec<&Row> = mine.iter().flat_map(|s| &s.rows).collect();
-    let missed = rows.iter().filter(|r| !r.verdict.pass).count();
+    let (values, missed) = counts(v, name);
     html! {
         tr {
             td { a href={ "#" (name) } { (name) } }
-            td.n { (mine.len()) } td.n { (mine.iter().filter(|s| s.contact).count()) } td.n { (rows.len()) }
+            td.n { (mine.len()) } td.n { (mine.iter().filter(|s| s.contact).count()) } td.n { (values) }
             td.n.(if missed == 0 { "pass" } else { "miss" }) { (missed) }
             td.n { (three(mine.iter().map(|s| s.wall).sum())) }
         }

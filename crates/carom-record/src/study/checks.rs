@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RecordError, files};
+use crate::{RecordError, files, json};
 
 /// Files that contain results only; the others contain wall times.
 const TABLES: [&str; 2] = ["history.csv", "contact.csv"];
@@ -55,15 +55,9 @@ impl Checks {
         match fs::read(&path) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(RecordError::io("read", &path)(error)),
-            Ok(text) => serde_json::from_slice(&text).map(Some).map_err(|error| {
-                let line = Some(error.line() as u64);
-                RecordError::corrupt(
-                    &path,
-                    line,
-                    error.to_string(),
-                    "delete it; the page then shows no check of restarts",
-                )
-            }),
+            Ok(text) => {
+                json::value(&path, &text, "delete it; the page then shows no check of restarts").map(Some)
+            }
         }
     }
 
@@ -73,7 +67,6 @@ impl Checks {
     /// Input/output or system error.
     pub fn write(&self, study: &Path) -> Result<(), RecordError> {
         let path = study.join("checks.json");
-        let text = serde_json::to_vec_pretty(self).map_err(|e| RecordError::io("write", &path)(e.into()))?;
-        files::write_atomically(&path, &[&text])
+        files::write_atomically(&path, &[&json::text(&path, self)?])
     }
 }

@@ -11,7 +11,7 @@ use super::design::{Design, Goal, Kind};
 use super::ensemble::Ensemble;
 use super::roles::as_in_arm;
 use crate::metrics::Overlay;
-use crate::{Expect, Machine, Manifest, RecordError, Run, Source, Status, files};
+use crate::{Expect, Machine, Manifest, RecordError, Run, Source, Status, files, json};
 
 /// The files a study was made from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -85,16 +85,8 @@ impl StudyManifest {
     /// Input/output or system error, no study, or a damaged file.
     pub fn read(directory: &Path) -> Result<Self, RecordError> {
         let path = directory.join("study.json");
-        let text = std::fs::read(&path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => {
-                RecordError::NotAStudy { path: directory.to_path_buf() }
-            }
-            _ => RecordError::io("read", &path)(error),
-        })?;
-        serde_json::from_slice(&text).map_err(|error| {
-            let line = Some(error.line() as u64);
-            RecordError::corrupt(&path, line, error.to_string(), "run the study again")
-        })
+        let text = files::read_or(&path, RecordError::NotAStudy { path: directory.to_path_buf() })?;
+        json::value(&path, &text, "run the study again")
     }
 
     /// Writes or replaces `study.json`.
@@ -103,10 +95,7 @@ impl StudyManifest {
     /// Input/output or system error.
     pub fn write(&self, directory: &Path) -> Result<(), RecordError> {
         let path = directory.join("study.json");
-        let mut text =
-            serde_json::to_vec_pretty(self).map_err(|e| RecordError::io("write", &path)(e.into()))?;
-        text.push(b'\n');
-        files::write_atomically(&path, &[&text])
+        files::write_atomically(&path, &[&json::text(&path, self)?, b"\n"])
     }
 
     /// The arms, and after them the members of their ensembles.

@@ -90,6 +90,11 @@ impl Study {
         Warning::shared(given.flat_map(|(arm, row)| row.warnings.iter().map(move |w| (arm, w))))
     }
 
+    /// The number of the recommended arm, if there is one.
+    pub fn recommended(&self) -> Option<usize> {
+        Some(self.ranking.as_ref()?.verdict.as_ref().ok()?.arm)
+    }
+
     /// Reads a study arm by arm, with only one record in memory at a time. `visit` is called for
     /// every arm that has a record. An arm whose record is damaged is a row with the reason.
     ///

@@ -98,6 +98,11 @@ impl FieldSet {
     pub fn array(&self, name: &str) -> Option<&PointArray> {
         self.arrays.iter().find(|a| a.name == name)
     }
+
+    /// Unit of a quantity; empty when it has none or does not exist.
+    pub fn unit(&self, name: &str) -> &str {
+        self.array(name).map_or("", |array| &array.unit)
+    }
 }
 
 #[cfg(test)]

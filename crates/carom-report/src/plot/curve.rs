@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::frame::Frame;
 use crate::chart::dots;
 use crate::palette::LINES;
+use crate::pen::{Point, polyline};
 use crate::trace;
 
 /// A curve.
@@ -124,25 +125,23 @@ pub(super) const OUTSIDE: &str = "class=\"outside\"";
 
 /// An arrowhead at the edge of a pane, for what lies outside it in a direction.
 pub(super) fn arrowhead(out: &mut String, color: &str, (x, y): (f64, f64), (dx, dy): (f64, f64)) {
-    let at = |along: f64, aside: f64| {
-        format!("{:.1} {:.1}", x + along * dx - aside * dy, y + along * dy + aside * dx)
-    };
-    let d = [at(0.0, 0.0), at(-7.0, 4.0), at(-7.0, -4.0)].join("L");
-    let _ = writeln!(out, "<path d=\"M{d}z\" fill=\"{color}\" {OUTSIDE}/>");
+    let at = |[along, aside]: Point| [x + along * dx - aside * dy, y + along * dy + aside * dx];
+    let d = polyline(&[[0.0, 0.0], [-7.0, 4.0], [-7.0, -4.0]].map(at));
+    let _ = writeln!(out, "<path d=\"{d}z\" fill=\"{color}\" {OUTSIDE}/>");
 }
 
 /// Markers: circle, square, triangle, diamond, inverted triangle.
 pub(super) fn mark(out: &mut String, marker: usize, color: &str, x: f64, y: f64) {
-    let at = |dx: f64, dy: f64| format!("{:.1} {:.1}", x + dx, y + dy);
-    let d = match marker {
+    let corners: &[Point] = match marker {
         0 => {
             let _ = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.6\" fill=\"{color}\"/>");
             return;
         }
-        1 => [at(-3.3, -3.3), at(3.3, -3.3), at(3.3, 3.3), at(-3.3, 3.3)].join("L"),
-        2 => [at(0.0, -4.4), at(4.2, 3.2), at(-4.2, 3.2)].join("L"),
-        3 => [at(0.0, -4.8), at(4.8, 0.0), at(0.0, 4.8), at(-4.8, 0.0)].join("L"),
-        _ => [at(0.0, 4.4), at(4.2, -3.2), at(-4.2, -3.2)].join("L"),
+        1 => &[[-3.3, -3.3], [3.3, -3.3], [3.3, 3.3], [-3.3, 3.3]],
+        2 => &[[0.0, -4.4], [4.2, 3.2], [-4.2, 3.2]],
+        3 => &[[0.0, -4.8], [4.8, 0.0], [0.0, 4.8], [-4.8, 0.0]],
+        _ => &[[0.0, 4.4], [4.2, -3.2], [-4.2, -3.2]],
     };
-    let _ = writeln!(out, "<path d=\"M{d}z\" fill=\"{color}\"/>");
+    let d = polyline(&corners.iter().map(|[dx, dy]| [x + dx, y + dy]).collect::<Vec<_>>());
+    let _ = writeln!(out, "<path d=\"{d}z\" fill=\"{color}\"/>");
 }

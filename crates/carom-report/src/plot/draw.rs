@@ -8,7 +8,7 @@ use super::layout::{LEFT, Layout, RIGHT, TICK};
 use super::scale::Scale;
 use super::{Band, Curve, Pane, Plot, curve, direct, legend};
 use crate::again::{again, once};
-use crate::chart::{open_chart, write_text};
+use crate::chart::{opened, turned, write_text};
 use crate::figure::NARROW;
 use crate::labels::unit_of;
 use crate::{text, trace};
@@ -51,19 +51,19 @@ impl Place {
 const SMALL: &str = "-narrow";
 
 impl Plot {
-    /// The figure.
+    /// The broad picture.
     pub(crate) fn svg(&self) -> String {
         self.drawn(&Layout::new(self, WIDTH, self.direct), None)
     }
 
-    /// The figure for a narrow window, on a page with the other one; its legend is below.
+    /// The picture for a narrow window, on a page with the other one; its legend is below.
     pub(crate) fn narrow(&self) -> String {
         let broad = Layout::new(self, WIDTH, self.direct);
         self.drawn(&Layout::new(self, NARROW, false), Some(&broad))
     }
 
     fn drawn(&self, layout: &Layout, broad: Option<&Layout>) -> String {
-        let mut out = open_chart(&self.name, layout.width, layout.height());
+        let mut out = opened("chart", &self.name, layout.width, layout.height());
         let mut axis = None;
         let end = if broad.is_some() { SMALL } else { "" };
         for (i, pane) in self.panes.iter().enumerate() {
@@ -103,25 +103,19 @@ impl Plot {
             let rows: Vec<usize> = (0..x.len()).collect();
             place.shared(out, "band", |out| {
                 for part in rows.chunk_by(|a, b| shown[*a] == shown[*b]).filter(|part| shown[part[0]]) {
-                    let upper = part.iter().map(|i| (to_x(x[*i]), to_y(up[*i])));
-                    let lower = part.iter().map(|i| (to_x(x[*i]), to_y(low[*i])));
+                    let edges = [up, low].map(|y| part.iter().map(|i| (to_x(x[*i]), to_y(y[*i]))).collect());
                     let _ = writeln!(
                         out,
                         "<path d=\"{}\" fill=\"#ececec\" stroke=\"#ececec\" stroke-width=\"2.5\" \
                          stroke-linejoin=\"round\"/>",
-                        trace::area(upper, lower)
+                        trace::area(edges)
                     );
                 }
             });
         }
         self.axes(out, i, frame, scales, layout);
         if let Some((value, _)) = &pane.floor {
-            let y = to_y(*value);
-            let _ = writeln!(
-                out,
-                "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#777\" stroke-width=\"0.8\" \
-                 stroke-dasharray=\"2 2\"/>"
-            );
+            dashed(out, &format!("M{x0:.1} {:.1}h{wide:.1}", to_y(*value)));
         }
         marks(out, pane, &to_x, frame);
         if pane.front.len() > 1 {
@@ -205,13 +199,8 @@ impl Plot {
             let label = scales.y.axis.label(words, unit);
             // Smaller where it is longer than the pane is high.
             let size = (12.0_f64).min((high + 24.0) / text::width(&label).max(1e-9));
-            let place = format!(
-                "text-anchor=\"middle\" font-size=\"{size:.1}\" transform=\"translate({:.1} {:.1}) \
-                 rotate(-90)\"",
-                x0 - beside,
-                y0 + 0.5 * high
-            );
-            write_text(out, 0.0, 0.0, &place, &label);
+            let left = format!("{:.1}", x0 - beside);
+            turned(out, (left, y0 + 0.5 * high), &format!(" font-size=\"{size:.1}\""), &label);
         }
     }
 }
@@ -250,6 +239,12 @@ fn end(curve: &Curve, frame: &Frame, to_x: &dyn Fn(f64) -> f64, to_y: &dyn Fn(f6
     Some(End { x: x + share * (next.0 - x), y: edge, leaves: true })
 }
 
+/// A thin dashed line.
+fn dashed(out: &mut String, d: &str) {
+    let style = "stroke=\"#777\" stroke-width=\"0.8\" stroke-dasharray=\"2 2\"";
+    let _ = writeln!(out, "<path d=\"{d}\" {style}/>");
+}
+
 /// Vertical lines with their labels above the pane, where they cover nothing.
 fn marks(out: &mut String, pane: &Pane, to_x: &dyn Fn(f64) -> f64, frame: &Frame) {
     let (top, bottom) = (frame.top, frame.bottom());
@@ -259,11 +254,7 @@ fn marks(out: &mut String, pane: &Pane, to_x: &dyn Fn(f64) -> f64, frame: &Frame
     for (x, word) in &marks {
         // The line of a label is longer.
         let from = if word.is_empty() { top } else { top - 4.0 };
-        let _ = writeln!(
-            out,
-            "<path d=\"M{x:.1} {from:.1}V{bottom:.1}\" stroke=\"#777\" stroke-width=\"0.8\" \
-             stroke-dasharray=\"2 2\"/>"
-        );
+        dashed(out, &format!("M{x:.1} {from:.1}V{bottom:.1}"));
     }
     marks.retain(|(_, word)| !word.is_empty());
     for (k, (x, word)) in marks.iter().enumerate() {

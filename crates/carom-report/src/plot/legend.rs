@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::curve::{Curve, is_dashed, mark};
 use super::direct::words;
-use crate::chart::{dots, write_text};
+use crate::chart::{dots, in_lines, write_text};
 use crate::text;
 
 /// Height of a line.
@@ -26,20 +26,7 @@ fn entry(curve: &Curve, direct: bool) -> f64 {
 
 /// The entries of every line.
 pub(super) fn lines(legend: &[&Curve], width: f64, direct: bool) -> Vec<Vec<usize>> {
-    let mut lines: Vec<Vec<usize>> = Vec::new();
-    let mut used = f64::INFINITY;
-    for (i, curve) in legend.iter().enumerate() {
-        let needed = entry(curve, direct);
-        if used + needed > width {
-            lines.push(Vec::new());
-            used = 0.0;
-        }
-        used += needed;
-        if let Some(line) = lines.last_mut() {
-            line.push(i);
-        }
-    }
-    lines
+    in_lines(legend.iter().map(|curve| entry(curve, direct)).enumerate(), width)
 }
 
 /// Draws the lines from the place of the first one, in a figure of a width.

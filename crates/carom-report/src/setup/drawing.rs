@@ -1,13 +1,12 @@
 //! Positions of nodes, sides and bodies in the drawing of a case.
 
 use std::collections::HashMap;
-use std::fmt::Write as _;
 
 use carom_record::{Block, FieldSet, Run};
 use serde_json::Value;
 
 use crate::palette::LINES;
-use crate::pen::{Pen, Point, open_grid};
+use crate::pen::{Pen, Point, path};
 use crate::symbols::{direction, plus};
 
 /// Colours of the two sides of a contact.
@@ -18,9 +17,11 @@ pub(super) const ROOM: f64 = 470.0;
 pub(super) const KEY: f64 = 320.0;
 /// Height of a bar in pixels.
 pub(super) const BAR: f64 = 26.0;
-/// Fill colours of bodies, used in turn.
-pub(super) const BODIES: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
-
+/// Letters of names of probes and of bodies, which stand out from what they cover.
+pub(super) const BOLD: &str = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
+    paint-order=\"stroke\" stroke-linejoin=\"round\"";
+pub(super) const ITALIC: &str = "font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
+    paint-order=\"stroke\" stroke-linejoin=\"round\"";
 /// Fill colours of supported sides in space, one for each support in turn.
 pub(super) const SUPPORTS: [&str; 3] = ["#9db4ca", "#a3c4ab", "#c3aecf"];
 /// Colours of their outlines.
@@ -55,13 +56,14 @@ impl Setup<'_> {
         self.points.get(k).map_or([f64::NAN; 2], |p| self.to(*p))
     }
 
-    pub(super) fn color(k: usize) -> &'static str {
-        BODIES[k % BODIES.len()]
+    /// The cells of a body.
+    pub(super) fn block(&self, body: &str) -> Option<&Block> {
+        self.fields.blocks.iter().find(|block| block.body == body)
     }
 
     /// Mean position of the nodes of a body, or the node nearest to it where it lies outside.
     pub(super) fn center(&self, body: &str) -> Option<Point> {
-        let block: &Block = self.fields.blocks.iter().find(|b| b.body == body)?;
+        let block = self.block(body)?;
         let mut sum = [0.0; 2];
         block.connectivity.iter().for_each(|&k| sum = plus(sum, 1.0, self.node(k)));
         let mean = sum.map(|s| s / block.connectivity.len() as f64);
@@ -75,19 +77,15 @@ impl Setup<'_> {
     /// Current position of a reference point, moved like the nearest node.
     pub(super) fn moved(&self, [x, y]: Point) -> Point {
         let distance = |p: &[f64; 3]| (p[0] - x).hypot(p[1] - y);
-        let near = self
-            .fields
-            .points
-            .iter()
-            .zip(&self.points)
-            .min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
+        let moved = self.fields.points.iter().zip(&self.points);
+        let near = moved.min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
         near.map_or([x, y], |(from, to)| [x + to[0] - from[0], y + to[1] - from[1]])
     }
 
     /// Degree of the cells along a side.
     pub(super) fn degree(&self, side: &str) -> usize {
         let body = side.split_once('.').map_or(side, |s| s.0);
-        self.fields.blocks.iter().find(|b| b.body == body).map_or(1, |b| b.degree)
+        self.block(body).map_or(1, |b| b.degree)
     }
 
     /// The connected parts of a side.
@@ -122,12 +120,7 @@ impl Setup<'_> {
     }
 
     pub(super) fn stroke(out: &mut String, pen: &Pen, color: &str) {
-        let d = pen.data();
-        let _ = writeln!(
-            out,
-            "{}<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"64\" \
-             stroke-linecap=\"round\"/>\n</g>",
-            open_grid()
-        );
+        let style = "stroke-width=\"64\" stroke-linecap=\"round\"";
+        path(out, pen, &format!("fill=\"none\" stroke=\"{color}\" {style}"));
     }
 }

@@ -7,11 +7,11 @@ use carom_formula::Formula;
 use serde_json::Value;
 
 use super::drawing::Setup;
-use super::values::{list, text, vector};
 use crate::labels::is_static;
 use crate::pen::Point;
 use crate::scientific::given;
-use crate::symbols::{along, arrow, direction, plus};
+use crate::symbols::{along, arrow, direction, distance, plus};
+use crate::values::{list, text, texts, unit, vector};
 
 pub(super) const COLOR: &str = "#7a2f8f";
 /// Length of an arrow at a side, and its gap to the side.
@@ -157,31 +157,23 @@ impl Setup<'_> {
                 }
                 continue;
             }
-            for walk in
-                list(load.spec, "on").iter().filter_map(Value::as_str).flat_map(|side| self.walks(side))
-            {
-                let spots = if self.flat {
-                    vec![(plus(walk[0].0, 0.5, [0.0, walk[1].0[1] - walk[0].0[1]]), walk[0].1)]
-                } else {
+            for walk in texts(load.spec, "on").flat_map(|side| self.walks(side)) {
+                let mut spots = along(&walk, SPACING);
+                if self.flat {
+                    spots = vec![(plus(walk[0].0, 0.5, [0.0, walk[1].0[1] - walk[0].0[1]]), walk[0].1)];
+                } else if let [(a, _), (b, _)] = spots[..]
+                    && distance(a, b) < 0.5 * SPACING
+                {
                     // One arrow at a short side: heads of several would cover each other.
-                    let spots = along(&walk, SPACING);
-                    let is_short = spots.len() == 2 && distance(spots[0].0, spots[1].0) < 0.5 * SPACING;
-                    if is_short {
-                        vec![along(&walk, 0.5 * distance(spots[0].0, spots[1].0))[1]]
-                    } else {
-                        spots
-                    }
-                };
+                    spots = vec![along(&walk, 0.5 * distance(a, b))[1]];
+                }
                 for (spot, n) in spots {
                     let values = self.values(&load, spot);
                     let towards = match (load.kind, values.first()) {
-                        ("pressure", Some(p)) if *p != 0.0 => n.map(|c| -c * p.signum()),
-                        ("pressure", _) => continue,
-                        _ => match heading(&values) {
-                            Some(d) => d,
-                            None => continue,
-                        },
+                        ("pressure", Some(p)) => (*p != 0.0).then(|| n.map(|c| -c * p.signum())),
+                        _ => heading(&values),
                     };
+                    let Some(towards) = towards else { continue };
                     // A compressive load ends at the side, a tensile load begins there.
                     let presses = towards[0] * n[0] + towards[1] * n[1] < 0.0;
                     let [from, to] = if presses { [-GAP - LENGTH, -GAP] } else { [GAP, GAP + LENGTH] };
@@ -197,7 +189,7 @@ impl Setup<'_> {
             let load = load(value)?;
             let parts: Vec<String> = load.components.iter().map(|c| written(c)).collect();
             let amount = if parts.len() == 1 { parts[0].clone() } else { format!("({})", parts.join(", ")) };
-            let sides: Vec<&str> = list(load.spec, "on").iter().filter_map(Value::as_str).collect();
+            let sides: Vec<&str> = texts(load.spec, "on").collect();
             let place = if sides.is_empty() { text(load.spec, "body").to_owned() } else { sides.join(", ") };
             let unit = self.load_unit(load.kind);
             let is_formula = load.components.iter().any(|c| c.as_str().is_some_and(depends_on_time));
@@ -215,17 +207,16 @@ impl Setup<'_> {
         if is_static(self.run) {
             return ", with the load parameter t".to_owned();
         }
-        let units = self.case().get("units").unwrap_or(&Value::Null);
-        format!(", with t in {}", text(units, "time"))
+        format!(", with t in {}", unit(self.case(), "time"))
     }
 
     /// The unit of the values of a load.
     fn load_unit(&self, kind: &str) -> String {
-        let unit = |key: &str| text(self.case().get("units").unwrap_or(&Value::Null), key);
+        let unit = |key: &str| unit(self.case(), key);
         match (kind, unit("length"), unit("time"), unit("mass")) {
             ("body-force", "m", "s", "kg") => "N/m^3".to_owned(),
             ("body-force", length, time, mass) => format!("{mass}/({length}^2 {time}^2)"),
-            _ => self.fields.array("stress").map_or_else(String::new, |array| array.unit.clone()),
+            _ => self.fields.unit("stress").to_owned(),
         }
     }
 
@@ -238,9 +229,8 @@ impl Setup<'_> {
         let fixed = (!fixed.is_empty()).then(|| fixed.join(" = ") + " = 0");
         let moved = list(support, "move").iter().filter_map(|m| {
             let [axis_number, formula] = m.as_array()?.as_slice() else { return None };
-            let units = self.case().get("units").unwrap_or(&Value::Null);
-            let words =
-                format!("{} = {} {}", axis(axis_number.as_f64()?), written(formula), text(units, "length"));
+            let length = unit(self.case(), "length");
+            let words = format!("{} = {} {length}", axis(axis_number.as_f64()?), written(formula));
             let is_formula = formula.as_str().is_some_and(depends_on_time);
             Some(if is_formula { words + &self.with_time() } else { words })
         });
@@ -275,10 +265,6 @@ impl Setup<'_> {
         let moved = list(support, "move").iter().filter_map(|m| m.get(0).and_then(Value::as_f64));
         vector(support.get("fix")).into_iter().chain(moved).collect()
     }
-}
-
-fn distance(a: Point, b: Point) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// Direction of a vector on the page, where y points down.

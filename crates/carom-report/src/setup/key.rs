@@ -7,26 +7,55 @@ use serde_json::Value;
 
 use super::drawing::{KEY, PRIMARY, SECONDARY, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, written};
-use super::values::{list, text as word, tuple, vector};
+use super::words::{gravity_and_velocity, law_name, plane_in_words};
 use crate::bodies::fill_space;
 use crate::chart::write_text;
+use crate::figure::NARROW;
 use crate::labels::given_amount;
+use crate::place::fill;
 use crate::scientific::given;
 use crate::symbols::{arrow, guides, motion, plus, probe_mark, rollers, wall};
 use crate::text;
+use crate::values::{is_in_space, list, text as word, texts, tuple, unit, vector};
 
 /// The smallest size of letters in pixels.
 const SMALLEST: f64 = 11.0;
 
+/// The key of a height in its place, beside the drawing or, in a narrow window, below it; and width
+/// and height of the figure.
+pub(super) fn placed(key: String, lines: f64, narrow: bool, [beside, below]: [f64; 2]) -> (String, [f64; 2]) {
+    if narrow {
+        let key = format!("<g transform=\"translate(0 {below:.1})\">\n{key}</g>\n");
+        return (key, [NARROW, below + lines + 8.0]);
+    }
+    (key, [beside + KEY, below.max(lines + 8.0)])
+}
+
+/// A symbol, which may be empty, and what is said of it.
+type Line = (String, String);
+
+fn without_symbol(words: String) -> Line {
+    (String::new(), words)
+}
+
 impl Setup<'_> {
     /// Draws the key and returns its height.
     pub(super) fn key(&self, out: &mut String, left: f64) -> f64 {
-        let mut y = 8.0;
-        let unit = |key: &str| {
-            self.case().pointer(&format!("/units/{key}")).and_then(Value::as_str).unwrap_or_default()
+        let case = self.case();
+        let of = |key: &str, lines: &dyn Fn((usize, &Value)) -> Vec<Line>| -> Vec<Line> {
+            list(case, key).iter().enumerate().flat_map(lines).collect()
         };
-        let (length, time, mass) = (unit("length"), unit("time"), unit("mass"));
-        let stress = self.fields.array("stress").map_or("", |a| a.unit.as_str());
+        let plane = plane_in_words(case, unit(case, "length"));
+        let sections = [
+            ("Bodies", of("bodies", &|body| self.body(body))),
+            ("Model", plane.into_iter().map(without_symbol).collect()),
+            ("Materials", of("materials", &|(_, material)| self.material(material))),
+            ("Supports", of("supports", &|support| vec![self.support(support)])),
+            ("Loads", self.forces_in_words().into_iter().map(load).collect()),
+            ("Contact", of("contacts", &|(_, contact)| self.contact(contact))),
+            ("Probes", of("probes", &|(_, probe)| vec![self.probe(probe)])),
+        ];
+        let mut y = 8.0;
         let mut line = |swatch: &str, content: &str, bold: bool| {
             y += if bold { 7.0 } else { 0.0 } + 18.0;
             if !swatch.is_empty() {
@@ -42,148 +71,106 @@ impl Setup<'_> {
                 write_text(out, x, y, &format!("font-size=\"{size:.1}\" {extra}"), part);
             }
         };
-        line("", "Bodies", true);
-        for (k, body) in list(self.case(), "bodies").iter().enumerate() {
-            let block = self.fields.blocks.iter().find(|b| b.body == word(body, "name"));
-            let nodes = block.map_or(0, |b| b.connectivity.iter().collect::<HashSet<_>>().len());
-            let swatch = format!(
-                "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#222\"/>",
-                Self::color(k)
-            );
-            let cells = block.map_or(0, |b| b.cells().count());
-            let (element, material) = (word(body, "element"), word(body, "material"));
-            let of = if material == word(body, "name") { "material " } else { "" };
-            line(
-                &swatch,
-                &format!("{}: {of}{material}, {cells} {element} cells, {nodes} nodes", word(body, "name")),
-                false,
-            );
-            for (key, symbol, unit) in [
-                ("gravity", "g", format!("{length}/{time}^2")),
-                ("velocity", "v_{0}", format!("{length}/{time}")),
-            ] {
-                let v = vector(body.get(key));
-                if v.iter().any(|x| *x != 0.0) {
-                    line("", &format!("{symbol} = {} {unit}", tuple(&v)), false);
-                }
-            }
-        }
-        if let Some(plane) = plane_in_words(self.case(), length) {
-            line("", "Model", true);
-            line("", &plane, false);
-        }
-        line("", "Materials", true);
-        for m in list(self.case(), "materials") {
-            let real = |key| m.get(key).and_then(Value::as_f64);
-            line("", &format!("{}: {}", word(m, "name"), law_name(word(m, "law"))), false);
-            let density = real("density").map_or(String::new(), given);
-            line("", &format!("ρ = {density} {mass}/{length}^3"), false);
-            let (Some(lambda), Some(shear)) = (real("lambda"), real("mu")) else { continue };
-            // The manifest has Lamé's constants; μ is the coefficient of friction here.
-            let poisson = lambda / (2.0 * (lambda + shear));
-            let young = 2.0 * shear * (1.0 + poisson);
-            line("", &format!("E = {}, ν = {}", given_amount(young, stress), given(poisson)), false);
-            let [lambda, shear] = [lambda, shear].map(|x| given_amount(x, stress));
-            line("", &format!("λ = {lambda}, G = {shear}"), false);
-        }
-        for (k, support) in list(self.case(), "supports").iter().enumerate() {
-            if k == 0 {
-                line("", "Supports", true);
-            }
-            let fixed = Self::directions(support).len() + usize::from(Self::is_held_across(support));
-            let on: Vec<&str> = list(support, "on").iter().filter_map(Value::as_str).collect();
-            let mut swatch = String::new();
-            let ends = [([0.0, -3.0], [0.0, 1.0]), ([20.0, -3.0], [0.0, 1.0])];
-            if fill_space(self.fields) {
-                let _ = write!(
-                    swatch,
-                    "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"{}\"/>",
-                    SUPPORTS[k % SUPPORTS.len()],
-                    SUPPORT_LINES[k % SUPPORT_LINES.len()]
-                );
-            } else if let Some(axis) = Self::moved_axis(support).filter(|_| !self.flat) {
-                motion(&mut swatch, &[([10.0, 0.0], axis), ([10.0, 0.0], axis)], axis);
-            } else if fixed > 1 || self.flat {
-                wall(&mut swatch, &ends, 0.0);
-            } else {
-                let is_guided =
-                    on.iter().flat_map(|side| self.walks(side)).any(|w| Self::is_guided(support, &w));
-                if is_guided {
-                    guides(&mut swatch, &ends, [1.0, 0.0]);
-                } else {
-                    rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));
-                }
-            }
-            line(&swatch, &format!("{}: {}", on.join(", "), self.support_in_words(support)), false);
-        }
-        for (k, load) in self.forces_in_words().iter().enumerate() {
-            if k == 0 {
-                line("", "Loads", true);
-            }
-            let mut swatch = String::new();
-            arrow(&mut swatch, [0.0, 0.0], [20.0, 0.0], COLOR);
-            line(&swatch, load, false);
-        }
-        for (k, contact) in list(self.case(), "contacts").iter().enumerate() {
-            if k == 0 {
-                line("", "Contact", true);
-            }
-            let bar = |color: &str| format!("<path d=\"M0 0h20\" stroke=\"{color}\" stroke-width=\"3.2\"/>");
-            let side = contact.pointer("/primary/side").and_then(Value::as_str);
-            let shape = ["circle", "cylinder", "polyline", "surface"]
-                .into_iter()
-                .find(|shape| contact.pointer(&format!("/primary/{shape}")).is_some());
-            let in_space = self.case().get("dimension").and_then(Value::as_u64) == Some(3);
-            let shape = shape.map(|shape| if in_space && shape == "circle" { "sphere" } else { shape });
-            let rigid = format!("rigid {}", shape.unwrap_or("plane"));
-            let primary = side.unwrap_or(&rigid);
-            let secondary = word(contact, "secondary");
-            // The sides are not coloured in the drawing of bodies in space.
-            if fill_space(self.fields) {
-                line("", &format!("secondary: {secondary}, primary: {primary}"), false);
-            } else {
-                line(&bar(SECONDARY), &format!("{secondary} (secondary)"), false);
-                line(&bar(PRIMARY), &format!("{primary} (primary)"), false);
-            }
-            if let Some(motion) = motion_in_words(contact, length, &self.with_time()) {
-                line("", &motion, false);
-            }
-            if let Some(friction) = friction_in_words(contact, length, time) {
-                line("", &friction, false);
-            }
-        }
-        for (k, probe) in list(self.case(), "probes").iter().enumerate() {
-            if k == 0 {
-                line("", "Probes", true);
-            }
-            let at = vector(probe.get("at"));
-            line(
-                &probe_mark([10.0, 0.0]),
-                &format!("{}: {} at {} {length}", word(probe, "name"), word(probe, "body"), tuple(&at)),
-                false,
-            );
+        for (title, lines) in sections.iter().filter(|(_, lines)| !lines.is_empty()) {
+            line("", title, true);
+            lines.iter().for_each(|(swatch, content)| line(swatch, content, false));
         }
         y + 12.0
     }
-}
 
-/// `plane strain, thickness 1 m`, in bars `cross-section 1 m²`; none in space.
-pub(super) fn plane_in_words(case: &Value, length: &str) -> Option<String> {
-    let thickness = given(case.get("thickness").and_then(Value::as_f64)?);
-    match case.get("dimension").and_then(Value::as_u64) {
-        Some(1) => Some(format!("bar, cross-section {thickness} {length}^2")),
-        Some(2) => Some(format!("plane {}, thickness {thickness} {length}", word(case, "plane"))),
-        _ => None,
+    fn body(&self, (k, body): (usize, &Value)) -> Vec<Line> {
+        let (name, element, material) = (word(body, "name"), word(body, "element"), word(body, "material"));
+        let block = self.block(name);
+        let nodes = block.map_or(0, |b| b.connectivity.iter().collect::<HashSet<_>>().len());
+        let cells = block.map_or(0, |b| b.cells().count());
+        let of = if material == name { "material " } else { "" };
+        let words = format!("{name}: {of}{material}, {cells} {element} cells, {nodes} nodes");
+        let moved = gravity_and_velocity(body, unit(self.case(), "length"), unit(self.case(), "time"));
+        std::iter::once((filled(fill(k), "#222"), words))
+            .chain(moved.into_iter().map(without_symbol))
+            .collect()
+    }
+
+    fn material(&self, m: &Value) -> Vec<Line> {
+        let (length, mass, stress) =
+            (unit(self.case(), "length"), unit(self.case(), "mass"), self.fields.unit("stress"));
+        let real = |key| m.get(key).and_then(Value::as_f64);
+        let density = real("density").map_or(String::new(), given);
+        let mut lines = vec![
+            format!("{}: {}", word(m, "name"), law_name(word(m, "law"))),
+            format!("ρ = {density} {mass}/{length}^3"),
+        ];
+        if let (Some(lambda), Some(shear)) = (real("lambda"), real("mu")) {
+            // The manifest has Lamé's constants; μ is the coefficient of friction here.
+            let poisson = lambda / (2.0 * (lambda + shear));
+            let young = 2.0 * shear * (1.0 + poisson);
+            lines.push(format!("E = {}, ν = {}", given_amount(young, stress), given(poisson)));
+            let [lambda, shear] = [lambda, shear].map(|x| given_amount(x, stress));
+            lines.push(format!("λ = {lambda}, G = {shear}"));
+        }
+        lines.into_iter().map(without_symbol).collect()
+    }
+
+    fn support(&self, (k, support): (usize, &Value)) -> Line {
+        let fixed = Self::directions(support).len() + usize::from(Self::is_held_across(support));
+        let on: Vec<&str> = texts(support, "on").collect();
+        let mut swatch = String::new();
+        let ends = [([0.0, -3.0], [0.0, 1.0]), ([20.0, -3.0], [0.0, 1.0])];
+        let is_guided = || on.iter().flat_map(|side| self.walks(side)).any(|w| Self::is_guided(support, &w));
+        if fill_space(self.fields) {
+            swatch = filled(SUPPORTS[k % SUPPORTS.len()], SUPPORT_LINES[k % SUPPORT_LINES.len()]);
+        } else if let Some(axis) = Self::moved_axis(support).filter(|_| !self.flat) {
+            motion(&mut swatch, &[([10.0, 0.0], axis), ([10.0, 0.0], axis)], axis);
+        } else if fixed > 1 || self.flat {
+            wall(&mut swatch, &ends, 0.0);
+        } else if is_guided() {
+            guides(&mut swatch, &ends, [1.0, 0.0]);
+        } else {
+            rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));
+        }
+        (swatch, format!("{}: {}", on.join(", "), self.support_in_words(support)))
+    }
+
+    fn contact(&self, contact: &Value) -> Vec<Line> {
+        let bar = |color: &str| format!("<path d=\"M0 0h20\" stroke=\"{color}\" stroke-width=\"3.2\"/>");
+        let side = contact.pointer("/primary/side").and_then(Value::as_str);
+        let mut shapes = ["circle", "cylinder", "polyline", "surface"].into_iter();
+        let shape = shapes.find(|shape| contact.pointer(&format!("/primary/{shape}")).is_some());
+        let in_space = is_in_space(self.case());
+        let shape = shape.map(|shape| if in_space && shape == "circle" { "sphere" } else { shape });
+        let rigid = format!("rigid {}", shape.unwrap_or("plane"));
+        let (secondary, primary) = (word(contact, "secondary"), side.unwrap_or(&rigid));
+        // The sides are not coloured in the drawing of bodies in space.
+        let mut lines = if fill_space(self.fields) {
+            vec![without_symbol(format!("secondary: {secondary}, primary: {primary}"))]
+        } else {
+            vec![
+                (bar(SECONDARY), format!("{secondary} (secondary)")),
+                (bar(PRIMARY), format!("{primary} (primary)")),
+            ]
+        };
+        let (length, time) = (unit(self.case(), "length"), unit(self.case(), "time"));
+        let motion = motion_in_words(contact, length, &self.with_time());
+        lines.extend(motion.into_iter().chain(friction_in_words(contact, length, time)).map(without_symbol));
+        lines
+    }
+
+    fn probe(&self, probe: &Value) -> Line {
+        let (at, length) = (tuple(&vector(probe.get("at"))), unit(self.case(), "length"));
+        let words = format!("{}: {} at {at} {length}", word(probe, "name"), word(probe, "body"));
+        (probe_mark([10.0, 0.0]), words)
     }
 }
 
-/// The name of a material law.
-pub(super) fn law_name(law: &str) -> &str {
-    match law {
-        "neo-hookean" => "neo-Hookean",
-        "saint-venant-kirchhoff" => "Saint Venant–Kirchhoff",
-        law => law,
-    }
+fn load(words: String) -> Line {
+    let mut swatch = String::new();
+    arrow(&mut swatch, [0.0, 0.0], [20.0, 0.0], COLOR);
+    (swatch, words)
+}
+
+/// The symbol of what has a colour.
+fn filled(fill: &str, line: &str) -> String {
+    format!("<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{fill}\" stroke=\"{line}\"/>")
 }
 
 /// How a rigid primary moves.

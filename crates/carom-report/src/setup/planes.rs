@@ -3,10 +3,10 @@
 use serde_json::Value;
 
 use super::drawing::{BAR, PRIMARY, Setup};
-use super::values::{list, vector};
 use crate::obstacles::Walk;
 use crate::pen::{Pen, Point};
 use crate::symbols::{direction, plus, wall};
+use crate::values::{list, place, vector};
 
 /// The drawn part of a rigid plane in 2D.
 pub(super) struct RigidPlane {
@@ -20,10 +20,9 @@ pub(super) struct RigidPlane {
 pub(super) fn rigid(case: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Vec<RigidPlane> {
     let planes = list(case, "contacts").iter().filter_map(|c| c.pointer("/primary/plane"));
     let one = |plane: &Value| {
-        let ([px, py], [nx, ny]) =
-            (vector(plane.get("point")).try_into().ok()?, vector(plane.get("normal")).try_into().ok()?);
-        let normal = direction([0.0; 2], [nx, ny]);
-        let [nx, ny]: Point = normal;
+        let [px, py]: Point = place(plane.get("point"))?;
+        let normal = direction([0.0; 2], place(plane.get("normal"))?);
+        let [nx, ny] = normal;
         let ends = if ny.abs() >= nx.abs() {
             [x0, x1].map(|x| [x, py - (x - px) * nx / ny])
         } else {

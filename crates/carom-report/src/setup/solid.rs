@@ -6,19 +6,22 @@ use std::fmt::Write as _;
 
 use carom_record::{FieldSet, Run};
 
-use super::drawing::{BODIES, KEY, ROOM, SUPPORT_LINES, SUPPORTS, Setup};
+use super::drawing::{BOLD, ITALIC, ROOM, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, Load, load};
-use super::values::{list, text, vector};
-use crate::again::{again, once};
+use super::key::placed;
+use crate::again::{Rectangle, again, once};
 use crate::axis::round_step;
+use crate::bodies::places;
 use crate::chart::{open, write_text};
 use crate::figure::NARROW;
-use crate::pen::Point;
+use crate::pen::{Point, around};
+use crate::place::BODIES;
 use crate::space::{
-    DRAWN, Facet, Paint, Place, View, box_of, corners, cross, draw, frame, minus, pieces, places, skin,
+    DRAWN, Facet, Paint, Place, View, box_of, corners, cross, draw, frame, length, minus, pieces, skin,
     underlay, wires,
 };
-use crate::symbols::{arrow, direction, plus, probe_mark};
+use crate::symbols::{arrow, direction, plus, probe_mark, scale_bar};
+use crate::values::{list, place, text, texts, unit, vector};
 
 /// Length in pixels of an arrow parallel to the page, and about how many are drawn on a side.
 const LENGTH: f64 = 30.0;
@@ -39,14 +42,10 @@ struct Solid<'a> {
 /// The figure; nothing without extent.
 pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
     let (view, places, skin) = (View::axonometric(), places(fields), skin(fields));
-    let rigid: Vec<[Place; 2]> = wires(run, box_of(&skin, std::iter::once(&places)))
-        .iter()
-        .flat_map(|wire| wire.at_first().to_vec())
-        .collect();
-    let [mut x0, mut x1, mut y0, mut y1] = frame(&skin, &places, &view);
-    for [x, y, _] in rigid.iter().flatten().map(|place| view.of(*place)) {
-        (x0, x1, y0, y1) = (x0.min(x), x1.max(x), y0.min(y), y1.max(y));
-    }
+    let rigid: Vec<[Place; 2]> =
+        wires(run, box_of(&skin, &places)).iter().flat_map(|wire| wire.at_first().to_vec()).collect();
+    let lines = rigid.iter().flatten().map(|place| view.on_page(*place));
+    let [x0, x1, y0, y1] = around(frame(&skin, &places, &view), lines);
     if !(x1 > x0 && y1 > y0) {
         return None;
     }
@@ -55,19 +54,15 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
     let scale = scales[usize::from(narrow)];
     let [broad, size] = [scales[0], scale].map(|scale| [(x1 - x0) * scale, (y1 - y0) * scale]);
     let (left, top) = (margin, margin);
-    let points = places.iter().map(|p| view.of(*p)).map(|[x, y, _]| [x, y]).collect();
+    let place = [left, top, size[0], size[1]];
+    let points = places.iter().map(|p| view.on_page(*p)).collect();
     let origin = [left - x0 * scale, top + y1 * scale];
     let setup = Setup { run, fields, points, flat: false, scale, origin, inside: HashMap::new() };
     let beside = left + size[0] + margin + 20.0;
     let mut key = String::new();
     let lines = setup.key(&mut key, if narrow { 12.0 } else { beside });
     let bottom = top + size[1] + margin;
-    let [width, height] = if narrow {
-        key = format!("<g transform=\"translate(0 {:.1})\">\n{key}</g>\n", bottom + FOOT);
-        [NARROW, bottom + FOOT + lines + 8.0]
-    } else {
-        [beside + KEY, (bottom + FOOT).max(lines + 8.0)]
-    };
+    let (key, [width, height]) = placed(key, lines, narrow, [beside, bottom + FOOT]);
     let mut out = open("Initial configuration", width, height);
     let mut numbers: HashMap<Vec<usize>, Vec<usize>> = HashMap::new();
     for (k, facet) in skin.iter().enumerate() {
@@ -76,10 +71,10 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
     let solid = Solid { setup, view, places, skin, numbers };
     underlay(&mut out, &rigid, &view, &|p| solid.setup.to(p));
     if narrow {
-        again(&mut out, "setup-bodies", [left, top, broad[0], broad[1]], [left, top, size[0], size[1]]);
+        again(&mut out, "setup-bodies", [left, top, broad[0], broad[1]], place);
     } else {
         let mut bodies = String::new();
-        solid.bodies(&mut bodies, ([left, top], size));
+        solid.bodies(&mut bodies, place);
         once(&mut out, "setup-bodies", "picture", &bodies);
     }
     solid.sides(&mut out);
@@ -87,14 +82,8 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
     solid.probes(&mut out);
     view.triad(&mut out, [40.0, bottom + 32.0], 30.0);
     let bar = round_step(x1 - x0, 3.0);
-    let _ = writeln!(
-        out,
-        "<path d=\"M110 {:.1}v6m0 -3h{:.1}m0 -3v6\" fill=\"none\" stroke=\"#222\"/>",
-        bottom + 46.0,
-        bar * scale
-    );
-    let length = solid.setup.case().pointer("/units/length").and_then(|l| l.as_str()).unwrap_or_default();
-    write_text(&mut out, 118.0 + bar * scale, bottom + 53.0, "", format!("{bar} {length}").trim());
+    let length = unit(solid.setup.case(), "length");
+    scale_bar(&mut out, [110.0, bottom + 46.0], bar * scale, (bar, length));
     out.push_str(&key);
     out.push_str("</svg>\n");
     Some(out)
@@ -102,8 +91,7 @@ pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<Strin
 
 impl Solid<'_> {
     fn to(&self, p: Place) -> Point {
-        let [x, y, _] = self.view.of(p);
-        self.setup.to([x, y])
+        self.setup.to(self.view.on_page(p))
     }
 
     /// Numbers of the facets of a side.
@@ -116,7 +104,7 @@ impl Solid<'_> {
     fn middle(&self, facet: &Facet) -> (Place, Place) {
         let [a, b, c] = [0, 1, 2].map(|k| self.places[facet.nodes[k]]);
         let n = cross(minus(b, a), minus(c, a));
-        let size = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let size = length(n);
         ([0, 1, 2].map(|d| (a[d] + b[d] + c[d]) / 3.0), n.map(|x| x / size))
     }
 
@@ -125,12 +113,11 @@ impl Solid<'_> {
     }
 
     /// Bodies, with supported sides in a colour of their own.
-    fn bodies(&self, out: &mut String, place: (Point, Point)) {
+    fn bodies(&self, out: &mut String, place: Rectangle) {
         // A facet of two supports has the colour of the first.
         let mut supported: HashMap<usize, usize> = HashMap::new();
         for (k, support) in list(self.setup.case(), "supports").iter().enumerate() {
-            let sides = list(support, "on").iter().filter_map(|side| side.as_str());
-            for facet in sides.flat_map(|side| self.side(side)) {
+            for facet in texts(support, "on").flat_map(|side| self.side(side)) {
                 supported.entry(facet).or_insert(k % SUPPORTS.len());
             }
         }
@@ -146,7 +133,7 @@ impl Solid<'_> {
             pieces(&self.skin, &self.places, &|facet, _| number[facet], &self.view, &to, self.setup.scale);
         let colors: Vec<&str> = BODIES.iter().chain(&SUPPORTS).copied().collect();
         let drawn = pieces.len() <= DRAWN;
-        draw(out, &pieces, (&Paint::Parts(&colors), colors.len()), place, drawn);
+        draw(out, &pieces, &Paint::Parts(&colors), place, drawn);
     }
 
     /// Outlines of supported and loaded sides; dashed where the side turns its back to the eye.
@@ -193,10 +180,7 @@ impl Solid<'_> {
 
     /// The sides of supports or loads, with the colours of their outlines.
     fn outlined(&self, what: &str) -> Vec<(&'static str, Vec<usize>)> {
-        let sides = |item, color| {
-            let names = list(item, "on").iter().filter_map(|side| side.as_str());
-            names.map(move |side| (color, self.side(side)))
-        };
+        let sides = |item, color| texts(item, "on").map(move |side| (color, self.side(side)));
         let items = list(self.setup.case(), what).iter();
         if what == "supports" {
             let colors = SUPPORT_LINES.into_iter().cycle();
@@ -207,12 +191,12 @@ impl Solid<'_> {
 
     /// An arrow along a vector that ends (`presses`) or begins at a place.
     fn arrow(&self, out: &mut String, at: Place, vector: Place, presses: bool, color: &str) {
-        let size = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let [x, y, _] = self.view.of(vector.map(|x| x / size));
+        let size = length(vector);
+        let [x, y] = self.view.on_page(vector.map(|x| x / size));
         let along = [x * LENGTH, -y * LENGTH];
         // Arrows towards the eye would be dots.
-        let length = along[0].hypot(along[1]);
-        if length < 0.25 * LENGTH || length.is_nan() {
+        let shown = along[0].hypot(along[1]);
+        if shown < 0.25 * LENGTH || shown.is_nan() {
             return;
         }
         let p = self.to(at);
@@ -221,8 +205,7 @@ impl Solid<'_> {
     }
 
     fn forces(&self, out: &mut String, load: &Load) {
-        let sides = list(load.spec, "on").iter().filter_map(|side| side.as_str());
-        for side in sides.map(|side| self.side(side)) {
+        for side in texts(load.spec, "on").map(|side| self.side(side)) {
             let front: Vec<usize> = side.iter().copied().filter(|&k| self.seen(k)).collect();
             let facets = if front.is_empty() { side } else { front };
             for k in facets.iter().step_by(facets.len().div_ceil(ARROWS).max(1)) {
@@ -244,17 +227,15 @@ impl Solid<'_> {
         for load in list(self.setup.case(), "loads").iter().filter_map(load) {
             self.forces(out, &load);
         }
-        let halo = "font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
-                    paint-order=\"stroke\" stroke-linejoin=\"round\"";
         for body in list(self.setup.case(), "bodies") {
-            let Some(block) = self.setup.fields.blocks.iter().find(|b| b.body == text(body, "name")) else {
+            let Some(block) = self.setup.block(text(body, "name")) else {
                 continue;
             };
             let count = block.connectivity.len() as f64;
             let middle =
                 [0, 1, 2].map(|d| block.connectivity.iter().map(|&k| self.places[k][d]).sum::<f64>() / count);
             let [x, y] = self.to(middle);
-            write_text(out, x, y - 12.0, &format!("text-anchor=\"middle\" {halo}"), text(body, "name"));
+            write_text(out, x, y - 12.0, &format!("text-anchor=\"middle\" {ITALIC}"), text(body, "name"));
             let force = list(self.setup.case(), "loads")
                 .iter()
                 .filter_map(load)
@@ -270,16 +251,16 @@ impl Solid<'_> {
                     continue;
                 }
                 self.arrow(out, middle, v, false, color);
-                let [right, up, _] = self.view.of(v);
+                let [right, up] = self.view.on_page(v);
                 let end = plus([x, y], LENGTH + 12.0, direction([0.0; 2], [right, -up]));
-                write_text(out, end[0] + 6.0, end[1] + 4.0, halo, symbol);
+                write_text(out, end[0] + 6.0, end[1] + 4.0, ITALIC, symbol);
             }
         }
     }
 
     fn probes(&self, out: &mut String) {
         for probe in list(self.setup.case(), "probes") {
-            let Ok(at) = Place::try_from(vector(probe.get("at"))) else { continue };
+            let Some(at) = place::<3>(probe.get("at")) else { continue };
             let distance = |p: &Place| (0..3).map(|d| (p[d] - at[d]).powi(2)).sum::<f64>();
             let near = (self.setup.fields.points.iter().zip(&self.places))
                 .min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
@@ -298,9 +279,7 @@ impl Solid<'_> {
                     y - 5.2
                 );
             }
-            let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
-                        paint-order=\"stroke\" stroke-linejoin=\"round\"";
-            write_text(out, x + 8.0, y - 7.0, bold, text(probe, "name"));
+            write_text(out, x + 8.0, y - 7.0, BOLD, text(probe, "name"));
         }
     }
 }

@@ -4,39 +4,27 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use super::key::{law_name, plane_in_words};
-use super::values::{list, text, tuple, vector};
 use crate::scientific::given;
+use crate::values::{list, text, tuple, unit, vector};
 
 /// What a case consists of, as labels: bodies with gravity and initial velocity, materials, probes.
 pub(crate) fn in_words(case: &Value) -> Vec<(&'static str, Vec<String>)> {
-    let unit = |key: &str| text(case.get("units").unwrap_or(&Value::Null), key);
-    let (length, time, mass) = (unit("length"), unit("time"), unit("mass"));
+    let [length, time, mass] = ["length", "time", "mass"].map(|of| unit(case, of));
     let stress = match (mass, length, time) {
         ("kg", "m", "s") => "Pa".to_owned(),
         ("g", "mm", "ms") => "MPa".to_owned(),
         _ => format!("{mass}/({length} {time}^2)"),
     };
     let body = |body: &Value| {
-        let mut words = format!("{}: {}", text(body, "name"), text(body, "material"));
-        for (key, symbol, unit) in [
-            ("gravity", "g", format!("{length}/{time}^2")),
-            ("velocity", "v_{0}", format!("{length}/{time}")),
-        ] {
-            let v = vector(body.get(key));
-            if v.iter().any(|x| *x != 0.0) {
-                let _ = write!(words, ", {symbol} = {} {unit}", tuple(&v));
-            }
-        }
-        words
+        let name = format!("{}: {}", text(body, "name"), text(body, "material"));
+        [vec![name], gravity_and_velocity(body, length, time)].concat().join(", ")
     };
     let material = |m: &Value| {
         let mut words = format!("{}: {}", text(m, "name"), law_name(text(m, "law")));
-        for (key, symbol, unit) in [
-            ("density", "ρ", format!("{mass}/{length}^3")),
-            ("lambda", "λ", stress.clone()),
-            ("mu", "G", stress.clone()),
-        ] {
+        let density = format!("{mass}/{length}^3");
+        for (key, symbol, unit) in
+            [("density", "ρ", &density), ("lambda", "λ", &stress), ("mu", "G", &stress)]
+        {
             if let Some(x) = m.get(key).and_then(Value::as_f64) {
                 let _ = write!(words, ", {symbol} = {} {unit}", given(x));
             }
@@ -56,9 +44,39 @@ pub(crate) fn in_words(case: &Value) -> Vec<(&'static str, Vec<String>)> {
     rows.into_iter().filter(|(_, lines)| !lines.is_empty()).collect()
 }
 
+/// Gravity and initial velocity of a body, if it has them.
+pub(super) fn gravity_and_velocity(body: &Value, length: &str, time: &str) -> Vec<String> {
+    let kinds =
+        [("gravity", "g", format!("{length}/{time}^2")), ("velocity", "v_{0}", format!("{length}/{time}"))];
+    let words = |(key, symbol, unit): (&str, &str, String)| {
+        let v = vector(body.get(key));
+        v.iter().any(|x| *x != 0.0).then(|| format!("{symbol} = {} {unit}", tuple(&v)))
+    };
+    kinds.into_iter().filter_map(words).collect()
+}
+
+/// `plane strain, thickness 1 m`, in bars `cross-section 1 m²`; none in space.
+pub(super) fn plane_in_words(case: &Value, length: &str) -> Option<String> {
+    let thickness = given(case.get("thickness").and_then(Value::as_f64)?);
+    match case.get("dimension").and_then(Value::as_u64) {
+        Some(1) => Some(format!("bar, cross-section {thickness} {length}^2")),
+        Some(2) => Some(format!("plane {}, thickness {thickness} {length}", text(case, "plane"))),
+        _ => None,
+    }
+}
+
+/// The name of a material law.
+pub(super) fn law_name(law: &str) -> &str {
+    match law {
+        "neo-hookean" => "neo-Hookean",
+        "saint-venant-kirchhoff" => "Saint Venant–Kirchhoff",
+        law => law,
+    }
+}
+
 /// Elements and idealisation, which the arms of a study may change.
 pub(crate) fn model_in_words(case: &Value) -> Vec<(&'static str, Vec<String>)> {
-    let length = text(case.get("units").unwrap_or(&Value::Null), "length");
+    let length = unit(case, "length");
     let element = |body: &Value| format!("{}: {}", text(body, "name"), text(body, "element"));
     let elements: Vec<String> = list(case, "bodies").iter().map(element).collect();
     let plane: Vec<String> = plane_in_words(case, length).into_iter().collect();

@@ -1,17 +1,17 @@
 //! Deformed solids at several instants, coloured by the stress of von Mises.
 
-use std::fmt::Write as _;
-
 use carom_record::{FieldSet, Run};
 
 use super::painter::{Paint, Piece, paint, pieces};
 use super::raster::image;
-use super::skin::{Facet, Place, places, skin};
+use super::skin::{Facet, Place, skin};
 use super::view::View;
 use super::wires::wires;
+use crate::again::Rectangle;
 use crate::bands::{Bands, positive_bands};
+use crate::bodies::places;
 use crate::labels::instant_label;
-use crate::pen::{GRID, Pen, Point, open_grid};
+use crate::pen::{GRID, NOTHING, Pen, Point, around, path};
 use crate::quantity::stresses;
 use crate::sheet::{Legend, Sheet};
 
@@ -25,25 +25,15 @@ const THIN: f64 = 0.7;
 
 /// Bounding box of facets on the page in units of length: left, right, bottom, top.
 pub(crate) fn frame(skin: &[Facet], places: &[Place], view: &View) -> [f64; 4] {
-    let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
-    for [x, y, _] in skin.iter().flat_map(|f| &f.nodes).map(|&k| view.of(places[k])) {
-        frame = [frame[0].min(x), frame[1].max(x), frame[2].min(y), frame[3].max(y)];
-    }
-    frame
+    around(NOTHING, skin.iter().flat_map(|f| &f.nodes).map(|&k| view.on_page(places[k])))
 }
 
 /// Draws pieces one by one or, if there are too many, as an image.
-pub(crate) fn draw(
-    out: &mut String,
-    pieces: &[Piece],
-    colors: (&Paint, usize),
-    (corner, size): (Point, Point),
-    drawn: bool,
-) {
+pub(crate) fn draw(out: &mut String, pieces: &[Piece], colors: &Paint, place: Rectangle, drawn: bool) {
     if drawn {
-        paint(out, pieces, colors.0);
+        paint(out, pieces, colors);
     } else {
-        out.push_str(&image(pieces, colors.0, colors.1, corner, size));
+        out.push_str(&image(pieces, colors, place));
     }
 }
 
@@ -68,16 +58,14 @@ pub(crate) fn instants(
     let (bands, cut) = positive_bands(values);
     let frames = list.iter().map(|(_, places, _)| frame(&skin, places, &view));
     let mut wide = frames.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].max(b[3])])?;
-    let rigid = wires(run, box_of(&skin, list.iter().map(|(_, places, _)| places)));
+    let rigid = wires(run, box_around(list.iter().flat_map(|(_, places, _)| box_of(&skin, places))));
     let lines: Vec<Vec<[Place; 2]>> =
         sets.iter().map(|(time, _)| rigid.iter().flat_map(|wire| wire.at(run, *time)).collect()).collect();
-    for [x, y, _] in lines.iter().flatten().flatten().map(|place| view.of(*place)) {
-        wide = [wide[0].min(x), wide[1].max(x), wide[2].min(y), wide[3].max(y)];
-    }
+    wide = around(wide, lines.iter().flatten().flatten().map(|place| view.on_page(*place)));
     if !(wide[1] > wide[0] && wide[3] > wide[2]) {
         return None;
     }
-    let unit = sets[0].1.array("stress")?.unit.clone();
+    let unit = sets[0].1.unit("stress");
     let seen = |k: usize, to: &dyn Fn(Point) -> Point, scale: f64| {
         let (_, places, mises) = &list[k];
         pieces(&skin, places, &|_, node| mises[node], &view, to, scale)
@@ -88,32 +76,31 @@ pub(crate) fn instants(
         let (place, to) = (sheet.picture(k), sheet.map(k));
         underlay(&mut sheet.out, &lines[k], &view, &to);
         let pieces = seen(k, &to, sheet.scale);
-        draw(&mut sheet.out, &pieces, (&Paint::Bands(&bands), bands.count), place, count <= DRAWN);
+        draw(&mut sheet.out, &pieces, &Paint::Bands(&bands), place, count <= DRAWN);
     };
     let finish = |mut sheet: Sheet| {
         let triad = [36.0, sheet.pictures + 36.0];
         view.triad(&mut sheet.out, triad, 28.0);
-        sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit: &unit }, length)
+        sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit }, length)
     };
     let headings = list.iter().map(|(heading, ..)| heading.as_str());
     let pictures =
         Sheet::pair("Deformed bodies with von Mises stress", headings, wide, FOOT, picture).map(finish);
-    let caption = caption(&bands, cut, &unit, words, !rigid.is_empty());
+    let caption = caption(&bands, cut, unit, words, !rigid.is_empty());
     Some((pictures, caption, bands))
 }
 
 /// Corners of the box of all places of a skin.
-pub(crate) fn box_of<'a>(skin: &[Facet], all: impl Iterator<Item = &'a Vec<Place>>) -> [Place; 2] {
-    let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for places in all {
-        for place in skin.iter().flat_map(|facet| &facet.nodes).map(|&node| places[node]) {
-            for d in 0..3 {
-                corners[0][d] = corners[0][d].min(place[d]);
-                corners[1][d] = corners[1][d].max(place[d]);
-            }
-        }
-    }
-    corners
+pub(crate) fn box_of(skin: &[Facet], places: &[Place]) -> [Place; 2] {
+    box_around(skin.iter().flat_map(|facet| &facet.nodes).map(|&node| places[node]))
+}
+
+/// Corners of the box of these places.
+pub(super) fn box_around(places: impl Iterator<Item = Place>) -> [Place; 2] {
+    let nothing = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    places.fold(nothing, |[low, high], place| {
+        [[0, 1, 2].map(|d| low[d].min(place[d])), [0, 1, 2].map(|d| high[d].max(place[d]))]
+    })
 }
 
 /// Draws the lines of rigid obstacles, over which bodies are drawn.
@@ -123,30 +110,22 @@ pub(crate) fn underlay(out: &mut String, lines: &[[Place; 2]], view: &View, to: 
     }
     let mut pen = Pen::default();
     let mut last = None;
-    for [a, b] in lines.iter().map(|piece| piece.map(|place| view.of(place)).map(|[x, y, _]| to([x, y]))) {
+    for [a, b] in lines.iter().map(|piece| piece.map(|place| to(view.on_page(place)))) {
         if last != Some(a) {
             pen.go(a);
         }
         pen.draw(&[b]);
         last = Some(b);
     }
-    out.push_str(&open_grid());
-    let _ = writeln!(
-        out,
-        "<path d=\"{}\" fill=\"none\" stroke=\"{RIGID}\" stroke-width=\"{}\"/>\n</g>",
-        pen.data(),
-        THIN * GRID
-    );
+    let style = format!("fill=\"none\" stroke=\"{RIGID}\" stroke-width=\"{}\"", THIN * GRID);
+    path(out, &pen, &style);
 }
 
 fn caption(bands: &Bands, cut: [bool; 2], unit: &str, (during, files): (&str, &str), rigid: bool) -> String {
     let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
+    let high = format!("{} {unit}", bands.high);
     let arrow = if cut[1] {
-        format!(
-            " Arrowhead at the colour bar: at most 0.5 % of the values are above {}{}{unit}.",
-            bands.high,
-            if unit.is_empty() { "" } else { " " }
-        )
+        format!(" Arrowhead at the colour bar: at most 0.5 % of the values are above {}.", high.trim_end())
     } else {
         String::new()
     };

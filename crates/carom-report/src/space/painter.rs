@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::skin::{Facet, Place};
 use super::view::View;
-use crate::bands::{Bands, parts, shape};
+use crate::bands::{Bands, divided, parts, shape, small_triangles};
 use crate::palette::rgb;
 use crate::pen::{GRID, Pen, Point, open_grid};
 
@@ -27,6 +27,14 @@ pub(crate) enum Paint<'a> {
 }
 
 impl Paint<'_> {
+    /// Number of colours.
+    pub(crate) fn count(&self) -> usize {
+        match self {
+            Self::Bands(bands) => bands.count,
+            Self::Parts(colors) => colors.len(),
+        }
+    }
+
     /// Number of the colour of a value.
     pub(crate) fn of(&self, value: f64) -> usize {
         match self {
@@ -89,31 +97,21 @@ pub(crate) fn pieces(
         let seen: Vec<Place> = facet.nodes.iter().map(|&k| view.of(places[k])).collect();
         let of_node: Vec<f64> = facet.nodes.iter().map(|&k| value(facet, k)).collect();
         corner.clear();
-        let row = |j: usize| j * (m + 1) - j * j.saturating_sub(1) / 2;
-        for (j, i) in (0..=m).flat_map(|j| (0..=m - j).map(move |i| (j, i))) {
-            let (b, c) = (i as f64 / m as f64, j as f64 / m as f64);
-            shape(facet.degree, [1.0 - b - c, b, c], &mut n);
+        for place in divided(m) {
+            shape(facet.degree, place, &mut n);
             let sum = |f: &dyn Fn(usize) -> f64| n.iter().enumerate().map(|(k, n)| n * f(k)).sum::<f64>();
             corner.push(([0, 1, 2].map(|d| sum(&|k| seen[k][d])), sum(&|k| of_node[k])));
         }
-        let mut piece = |numbers: [usize; 3], edges| {
-            let Some(brightness) = View::brightness(numbers.map(|k| corner[k].0)) else { return };
+        for (numbers, sides) in small_triangles(m) {
+            let Some(brightness) = View::brightness(numbers.map(|k| corner[k].0)) else { continue };
             let place = |k: usize| {
                 let [x, y, z] = corner[k].0;
                 let [x, y] = to([x, y]);
                 [x, y, z * scale]
             };
             let values = numbers.map(|k| corner[k].1);
+            let edges = [0, 1, 2].map(|side| facet.sides[side] && sides[side]);
             pieces.push(Piece { corners: numbers.map(place), values, brightness, edges });
-        };
-        for (j, i) in (0..m).flat_map(|j| (0..m - j).map(move |i| (j, i))) {
-            let (low, high) = (row(j) + i, row(j + 1) + i);
-            let [first, second, third] = facet.sides;
-            let edges = [first && j == 0, second && i + j + 1 == m, third && i == 0];
-            piece([low, low + 1, high], edges);
-            if i + 1 < m - j {
-                piece([low + 1, high + 1, high], [false; 3]);
-            }
         }
     }
     pieces

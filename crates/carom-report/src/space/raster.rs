@@ -6,8 +6,9 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::painter::{EDGE, LINE, Paint, Piece};
 use super::skin::Place;
+use crate::again::Rectangle;
 use crate::palette::rgb;
-use crate::pen::Point;
+use crate::pen::{NOTHING, Point, around};
 
 /// Pixels of the image per pixel of the page, and samples along each side of one of them.
 const DENSITY: usize = 2;
@@ -40,9 +41,9 @@ impl Samples {
             (b[0] - a[0]).hypot(b[1] - a[1])
         };
         let lengths = [0, 1, 2].map(length);
+        let box_of = around(NOTHING, flat);
         let span = |d: usize, end: usize| {
-            let low = flat.iter().map(|p| p[d]).fold(f64::INFINITY, f64::min);
-            let high = flat.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max);
+            let [low, high] = [box_of[2 * d], box_of[2 * d + 1]];
             (low - 0.5).ceil().max(0.0) as usize
                 ..((high - 0.5).floor().max(-1.0) + 1.0).min(end as f64) as usize
         };
@@ -108,17 +109,16 @@ fn checksum(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, step)
 }
 
-/// The rectangle from `corner` with `size` as an SVG image of the pieces; `count` is the number of
-/// colours.
-pub(crate) fn image(pieces: &[Piece], paint: &Paint, count: usize, corner: Point, size: Point) -> String {
+/// A rectangle of the page as an SVG image of the pieces.
+pub(crate) fn image(pieces: &[Piece], paint: &Paint, [left, top, wide, high]: Rectangle) -> String {
     let fine = DENSITY * SAMPLES;
-    let [across, down] = size.map(|s| (s * DENSITY as f64).ceil().max(1.0) as usize);
+    let [across, down] = [wide, high].map(|s| (s * DENSITY as f64).ceil().max(1.0) as usize);
     let (width, height) = (across * SAMPLES, down * SAMPLES);
     let (depth, color) = (vec![f64::NEG_INFINITY; width * height], vec![[255; 3]; width * height]);
     let mut samples = Samples { width, height, depth, color };
-    let colors: Vec<[u8; 3]> = (0..count).map(|number| paint.rgb(number)).collect();
+    let colors: Vec<[u8; 3]> = (0..paint.count()).map(|number| paint.rgb(number)).collect();
     for piece in pieces {
-        let scaled = |[x, y, z]: Place| [(x - corner[0]) * fine as f64, (y - corner[1]) * fine as f64, z];
+        let scaled = |[x, y, z]: Place| [(x - left) * fine as f64, (y - top) * fine as f64, z];
         samples.fill(piece, piece.corners.map(scaled), &colors, paint, 0.5 * EDGE * fine as f64);
     }
     let mut pixels = Vec::with_capacity(3 * across * down);
@@ -132,10 +132,8 @@ pub(crate) fn image(pieces: &[Piece], paint: &Paint, count: usize, corner: Point
         }
     }
     format!(
-        "<image x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" \
+        "<image x=\"{left:.2}\" y=\"{top:.2}\" width=\"{:.2}\" height=\"{:.2}\" \
          href=\"data:image/png;base64,{}\"/>\n",
-        corner[0],
-        corner[1],
         across as f64 / DENSITY as f64,
         down as f64 / DENSITY as f64,
         STANDARD.encode(png(across, down, &pixels))

@@ -11,17 +11,17 @@ use carom_record::{FieldEntry, Run};
 use maud::{PreEscaped, html};
 use serde_json::json;
 
+use super::figure::box_around;
 use super::skin::{Facet, Place, skin};
-use super::view::View;
+use super::view::{View, length};
 use super::wires::wires;
-use crate::animation::{
-    Animation, EVENTS, PLAYER, controls, help, histories, histories_in_words, of_files, until,
-};
+use crate::animation::{Animation, controls, explained, help, histories, of_files, scripts, thinned, until};
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::labels::is_static;
+use crate::noise::largest;
 use crate::quantity::{Quantity, bars, choice, stresses};
-use crate::sheet::{Legend, arrowheads};
-use crate::text::{Label, Prose};
+use crate::sheet::Legend;
+use crate::text::Label;
 
 /// Largest number of bytes of the scene in the page, in base 64; frames are left out evenly to stay
 /// below.
@@ -97,48 +97,27 @@ struct Scene {
     bands: [(Bands, [bool; 2]); 3],
 }
 
-fn length(v: &Place) -> f64 {
-    v.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
 impl Scene {
     fn new(surface: Surface, places: Vec<Place>, frames: Vec<Frame>) -> Self {
         let moved = || frames.iter().flat_map(|f| &f.moved);
-        let largest = moved().flatten().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
+        let largest = largest(moved().flatten());
         let bands = [
             positive_bands_of(frames.iter().map(|f| f.mises.iter().copied())),
             color_bands(frames.iter().flat_map(|f| f.mean.iter().copied())),
-            positive_bands_of(frames.iter().map(|f| f.moved.iter().map(length))),
+            positive_bands_of(frames.iter().map(|f| f.moved.iter().map(|u| length(*u)))),
         ];
         Self { surface, places, frames, largest, bands }
     }
 
     /// Corners of the box of the reference positions.
     fn box_of(&self) -> [Place; 2] {
-        let fold = |start: f64, pick: fn(f64, f64) -> f64| {
-            [0, 1, 2].map(|d| self.places.iter().map(|p| p[d]).fold(start, pick))
-        };
-        [fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max)]
+        box_around(self.places.iter().copied())
     }
 
     /// Corners of the box of all positions.
     fn moved_box(&self) -> [Place; 2] {
-        let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        for frame in &self.frames {
-            for (place, moved) in self.places.iter().zip(&frame.moved) {
-                for d in 0..3 {
-                    corners[0][d] = corners[0][d].min(place[d] + moved[d]);
-                    corners[1][d] = corners[1][d].max(place[d] + moved[d]);
-                }
-            }
-        }
-        corners
-    }
-
-    /// Every `stride`-th frame and the last one.
-    fn chosen(&self, stride: usize) -> Vec<usize> {
-        let last = self.frames.len() - 1;
-        (0..=last).filter(|k| k % stride == 0 || *k == last).collect()
+        let all = self.frames.iter().flat_map(|frame| self.places.iter().zip(&frame.moved));
+        box_around(all.map(|(place, moved)| [0, 1, 2].map(|d| place[d] + moved[d])))
     }
 
     /// Triangles, edges, reference positions and the given frames, in base 64.
@@ -192,7 +171,7 @@ impl Scene {
     fn fitted(&self) -> (Vec<usize>, String) {
         let mut stride = 1;
         loop {
-            let frames = self.chosen(stride);
+            let frames: Vec<usize> = thinned(self.frames.len(), stride).collect();
             let packed = self.packed(&frames);
             if packed.len() <= BUDGET || frames.len() <= 2 {
                 return (frames, packed);
@@ -229,14 +208,10 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     if most < 2 {
         return None;
     }
-    let stride = run.fields.len().div_ceil(most).max(1);
-    let last = run.fields.len() - 1;
-    let read = run.fields.iter().enumerate().filter(|(k, _)| k % stride == 0 || *k == last);
-    let (mut entries, mut frames) = (Vec::new(), Vec::new());
-    for (_, entry) in read {
-        frames.push(frame(run, entry, &surface.nodes, first.points.len())?);
-        entries.push(entry);
-    }
+    let chosen = thinned(run.fields.len(), run.fields.len().div_ceil(most));
+    let entries: Vec<&FieldEntry> = chosen.map(|k| &run.fields[k]).collect();
+    let read = |entry: &&FieldEntry| frame(run, entry, &surface.nodes, first.points.len());
+    let frames: Vec<Frame> = entries.iter().map(read).collect::<Option<_>>()?;
     if frames.len() < 2 {
         return None;
     }
@@ -249,12 +224,11 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let (chosen, packed) = scene.fitted();
     let peak = |k: &usize| scene.frames[*k].mises.iter().copied().fold(0.0, f64::max);
     let start = chosen.iter().max_by(|a, b| peak(a).total_cmp(&peak(b)).then(b.cmp(a))).copied()?;
-    let unit = |array: &str| first.array(array).map_or(String::new(), |a| a.unit.clone());
-    let (stress, length) = (unit("stress"), unit("displacement"));
+    let [stress, length] = ["stress", "displacement"].map(|array| first.unit(array));
     let kinds = [
-        ("von Mises stress", "σ_{vM}", &stress),
-        ("pressure, as mean stress", "σ_{m} = −p", &stress),
-        ("displacement", "|u|", &length),
+        ("von Mises stress", "σ_{vM}", stress),
+        ("pressure, as mean stress", "σ_{m} = −p", stress),
+        ("displacement", "|u|", length),
     ];
     let quantities: Vec<Quantity> = scene
         .bands
@@ -266,8 +240,8 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         })
         .collect();
     let entry = |k: &usize| {
-        json!({ "time": entries[*k].time, "step": entries[*k].step,
-                                    "file": run.field_file(entries[*k]) })
+        let entry = entries[*k];
+        json!({ "time": entry.time, "step": entry.step, "file": run.field_file(entry) })
     };
     let [low, high] = scene.box_of();
     let rigid = wires(run, scene.moved_box());
@@ -288,9 +262,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     });
     let every = of_files(chosen.len(), run.fields.len());
     let last = chosen.last().map_or_else(String::new, |&k| until(run, entries[k].time));
-    let of_histories = histories_in_words(!shades.is_empty());
-    // Only `<` could end the script element.
-    let data = data.to_string().replace('<', "\\u003c");
+    let explained = explained(run, &quantities, !shades.is_empty());
     let figure = html! {
         figure.animation #animation hidden {
             div.stage {
@@ -320,9 +292,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                 ", without interpolation" (Label(&last)) ". Displacements are not magnified. " (Label("σ_{vM}"))
                 " and the mean stress " (Label("σ_{m}")) " = tr σ/3 = −p, minus the pressure (blue: compression, \
                  red: tension), are those of nodal averages of the Cauchy stress. The inside of a cut body is grey."
-                (Label(&arrowheads(quantities.iter().map(|q| (q.legend.cut, q.legend.label.to_owned())))))
-                (of_histories)
-                @if !run.log.is_empty() { (Prose(EVENTS)) }
+                (explained)
             }
             (help(&html! {
                 "Drag the bodies: turn; with the right button or Shift: move. Wheel, after a click: zoom. Touch: one \
@@ -331,11 +301,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
             }))
         }
     };
-    let scripts = html! {
-        script #animation-data type="application/json" { (PreEscaped(data)) }
-        script { (PreEscaped(PLAYER)) (PreEscaped(include_str!("scene.js"))) }
-    };
-    Some(Animation { figure, scripts })
+    Some(Animation { figure, scripts: scripts(&data, include_str!("scene.js")) })
 }
 
 #[cfg(test)]

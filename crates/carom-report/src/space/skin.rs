@@ -5,6 +5,8 @@ use std::collections::HashMap;
 
 use carom_record::{Block, Cell, FieldSet};
 
+use crate::bodies;
+
 /// A point or vector in space.
 pub(crate) type Place = [f64; 3];
 
@@ -65,8 +67,7 @@ const HALVES: [([usize; 6], [bool; 3]); 2] =
 /// Corners of a face with these nodes, in ascending order: a face has three, or four if it has four
 /// or nine nodes.
 pub(crate) fn corners(nodes: &[usize]) -> Vec<usize> {
-    let count = if matches!(nodes.len(), 4 | 9) { 4 } else { 3 };
-    let mut corners: Vec<usize> = nodes.iter().copied().take(count).collect();
+    let mut corners = nodes[..bodies::corners(nodes)].to_vec();
     corners.sort_unstable();
     corners
 }
@@ -111,13 +112,6 @@ fn of_block(number: usize, block: &Block) -> Vec<Facet> {
         }
     }
     facets
-}
-
-/// Current positions: reference position + displacement.
-pub(crate) fn places(fields: &FieldSet) -> Vec<Place> {
-    let u = fields.array("displacement").filter(|a| a.components == 3);
-    let moved = |(i, x): (usize, &Place)| [0, 1, 2].map(|d| x[d] + u.map_or(0.0, |u| u.values[3 * i + d]));
-    fields.points.iter().enumerate().map(moved).collect()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::skin::Place;
 use crate::chart::write_text;
-use crate::pen::Point;
+use crate::pen::{Point, polyline};
 use crate::symbols::{direction, plus};
 
 /// A direction of view; z points up on the page.
@@ -47,11 +47,17 @@ impl View {
         self.axes.map(|axis| dot(axis, p))
     }
 
+    /// Coordinates to the right and up.
+    pub(crate) fn on_page(&self, p: Place) -> Point {
+        let [right, up, _] = self.of(p);
+        [right, up]
+    }
+
     /// Brightness of a triangle between 0 and 1 from its corners in view coordinates; none if it
     /// turns its back to the eye.
     pub(crate) fn brightness([a, b, c]: [Place; 3]) -> Option<f64> {
         let normal = cross(minus(b, a), minus(c, a));
-        let length = dot(normal, normal).sqrt();
+        let length = length(normal);
         (normal[2] > 1e-9 * length)
             .then(|| AMBIENT + (1.0 - AMBIENT) * (dot(normal, LIGHT) / length).clamp(0.0, 1.0))
     }
@@ -64,11 +70,10 @@ impl View {
             let along = direction(from, to);
             let neck = plus(to, -6.0, along);
             let [a, b] = [2.6, -2.6].map(|s| plus(neck, s, [-along[1], along[0]]));
+            let (shaft, head) = (polyline(&[from, neck]), polyline(&[to, a, b]));
             let _ = writeln!(
                 out,
-                "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" stroke=\"#222\" stroke-width=\"1.2\"/>\
-                 <path d=\"M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}z\" fill=\"#222\"/>",
-                from[0], from[1], neck[0], neck[1], to[0], to[1], a[0], a[1], b[0], b[1]
+                "<path d=\"{shaft}\" stroke=\"#222\" stroke-width=\"1.2\"/><path d=\"{head}z\" fill=\"#222\"/>"
             );
             let at = plus(to, 8.0, along);
             write_text(out, at[0], at[1] + 4.0, "text-anchor=\"middle\" font-style=\"italic\"", name);
@@ -78,6 +83,10 @@ impl View {
 
 pub(crate) fn dot(a: Place, b: Place) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn length(v: Place) -> f64 {
+    dot(v, v).sqrt()
 }
 
 pub(crate) fn minus(a: Place, b: Place) -> Place {

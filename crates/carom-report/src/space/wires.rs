@@ -5,7 +5,9 @@ use carom_record::Run;
 use serde_json::Value;
 
 use super::skin::Place;
-use super::view::{cross, dot, minus};
+use super::view::{cross, dot, length, minus};
+use crate::obstacles::recorded;
+use crate::values::{list, place, text};
 
 /// Points on a line, and lines in each of both directions.
 const POINTS: usize = 96;
@@ -25,18 +27,11 @@ pub(crate) struct Wire {
 
 /// The obstacles of a run whose bodies fill a box.
 pub(crate) fn wires(run: &Run, [low, high]: [Place; 2]) -> Vec<Wire> {
-    let contacts = run.manifest.case.get("contacts").and_then(Value::as_array);
     let of = |contact: &Value| {
-        let name = contact.get("name").and_then(Value::as_str).unwrap_or_default();
-        one(contact, run.manifest.surfaces.get(name).map_or(&[], Vec::as_slice), [low, high])
+        let surface = run.manifest.surfaces.get(text(contact, "name"));
+        one(contact, surface.map_or(&[], Vec::as_slice), [low, high])
     };
-    contacts.into_iter().flatten().filter_map(of).collect()
-}
-
-fn vector(value: Option<&Value>) -> Option<Place> {
-    let list = value?.as_array()?;
-    let number = |i: usize| list.get(i)?.as_f64();
-    Some([number(0)?, number(1)?, number(2)?])
+    list(&run.manifest.case, "contacts").iter().filter_map(of).collect()
 }
 
 fn plus(a: Place, factor: f64, b: Place) -> Place {
@@ -44,7 +39,7 @@ fn plus(a: Place, factor: f64, b: Place) -> Place {
 }
 
 fn unit(v: Place) -> Place {
-    v.map(|x| x / dot(v, v).sqrt())
+    v.map(|x| x / length(v))
 }
 
 /// Two directions across a third one, along axes of coordinates where they can be.
@@ -58,13 +53,13 @@ fn across(n: Place) -> [Place; 2] {
 /// `surface`: the edges of a triangulated one.
 fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Option<Wire> {
     let primary = contact.get("primary")?;
-    let diagonal = dot(minus(high, low), minus(high, low)).sqrt();
+    let diagonal = length(minus(high, low));
     let middle = plus(low, 0.5, minus(high, low));
     let reach = (0.5 + MARGIN) * diagonal;
     let share = |k: usize, n: usize| k as f64 / n as f64;
     let angle = |k: usize, n: usize| (std::f64::consts::TAU * share(k, n)).sin_cos();
     let (lines, origin): (Vec<Vec<Place>>, Place) = if let Some(plane) = primary.get("plane") {
-        let (point, normal) = (vector(plane.get("point"))?, unit(vector(plane.get("normal"))?));
+        let (point, normal) = (place(plane.get("point"))?, unit(place(plane.get("normal"))?));
         let foot = plus(middle, -dot(minus(middle, point), normal), normal);
         let line = |[along, beside]: [Place; 2], k: usize| {
             let start = plus(foot, reach * (2.0 * share(k, LINES) - 1.0), beside);
@@ -73,7 +68,7 @@ fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Opti
         let [a, b] = across(normal);
         ((0..=LINES).flat_map(|k| [line([a, b], k), line([b, a], k)]).collect(), point)
     } else if let Some(cylinder) = primary.get("cylinder") {
-        let (point, axis) = (vector(cylinder.get("point"))?, unit(vector(cylinder.get("axis"))?));
+        let (point, axis) = (place(cylinder.get("point"))?, unit(place(cylinder.get("axis"))?));
         let radius = cylinder.get("radius")?.as_f64()?;
         let foot = plus(point, dot(minus(middle, point), axis), axis);
         let [a, b] = across(axis);
@@ -87,14 +82,13 @@ fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Opti
         // In pieces, of which those that are near are drawn.
         let pieces = |&[a, b]: &[Place; 2]| -> Vec<Place> {
             let along = minus(b, a);
-            let count =
-                (20.0 * dot(along, along).sqrt() / diagonal).ceil().clamp(1.0, POINTS as f64) as usize;
+            let count = (20.0 * length(along) / diagonal).ceil().clamp(1.0, POINTS as f64) as usize;
             (0..=count).map(|k| plus(a, share(k, count), along)).collect()
         };
         (surface.iter().map(pieces).collect(), [0.0; 3])
     } else {
         let sphere = primary.get("circle")?;
-        let (center, radius) = (vector(sphere.get("center"))?, sphere.get("radius")?.as_f64()?);
+        let (center, radius) = (place(sphere.get("center"))?, sphere.get("radius")?.as_f64()?);
         let at =
             |(sin, cos): (f64, f64), (up, out): (f64, f64)| plus(center, radius, [out * cos, out * sin, up]);
         let meridian = |k: usize| (0..=POINTS).map(|i| at(angle(k, 2 * LINES), angle(i, POINTS))).collect();
@@ -113,8 +107,7 @@ fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Opti
     let is_whole = !surface.is_empty() && (0..3).all(|i| extent(i) <= WHOLE * diagonal);
     let pieces = lines.iter().flat_map(|line: &Vec<Place>| line.windows(2)).map(|w| [w[0], w[1]]);
     let segments: Vec<[Place; 2]> = pieces.filter(|piece| is_whole || piece.iter().all(is_near)).collect();
-    let name = contact.get("name").and_then(Value::as_str).unwrap_or_default();
-    let center = ["x", "y", "z"].map(|axis| format!("{name}.center_{axis}"));
+    let center = ["x", "y", "z"].map(|axis| format!("{}.center_{axis}", text(contact, "name")));
     (!segments.is_empty()).then_some(Wire { segments, center, origin })
 }
 
@@ -126,13 +119,7 @@ impl Wire {
 
     /// How far it has moved at a recorded time.
     pub(crate) fn moved(&self, run: &Run, time: f64) -> Place {
-        let times = run.times();
-        let row =
-            times.partition_point(|t| *t < time - 1e-12 * time.abs()).min(times.len().saturating_sub(1));
-        [0, 1, 2].map(|i| {
-            let place = run.column(&self.center[i]).and_then(|column| column.get(row).copied());
-            place.map_or(0.0, |place| place - self.origin[i])
-        })
+        [0, 1, 2].map(|i| recorded(run, &self.center[i], time).map_or(0.0, |place| place - self.origin[i]))
     }
 
     /// Its lines at a recorded time.

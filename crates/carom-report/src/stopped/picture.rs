@@ -7,16 +7,16 @@ use std::fmt::Write as _;
 use carom_record::{FieldSet, Run, Stop, StopPlace};
 
 use crate::axis::{range, round_step};
-use crate::bodies::{Instant, bezier, corners, edge_nodes, edges, is_plane, places};
+use crate::bodies::{Instant, bezier, corners, edges, is_plane, moved, outline, places};
 use crate::chart::{open, write_text};
 use crate::figure::{Figure, NARROW};
 use crate::labels::{instant_label, listed};
 use crate::meshes::{self, Pane};
 use crate::obstacles;
 use crate::palette::LINES;
-use crate::pen::{Pen, Point};
-use crate::place::{mesh, path};
-use crate::symbols::wall;
+use crate::pen::{self, NOTHING, Pen, Point, path};
+use crate::place::{fill, mesh};
+use crate::symbols::{distance, scale_bar, wall};
 
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 440.0;
@@ -28,18 +28,18 @@ const NODE: &str = LINES[2];
 const FACET: &str = LINES[1];
 const CELL: &str = LINES[5];
 const REJECTED: &str = LINES[4];
-const FILLS: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
 
-/// The figure; none in dimension 1 and without fields or a place.
-pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
-    let fields = carom_record::Stop::fields(&run.directory, &run.manifest).ok()??;
+/// The figure of a run that stopped; none in dimension 1 and without fields or a place.
+pub(crate) fn figure(run: &Run) -> Option<Figure> {
+    let stop = run.stop.as_ref()?;
+    let fields = Stop::fields(&run.directory, &run.manifest).ok()??;
     let place = stop.place.as_ref()?;
     if fields.blocks.iter().any(|block| !is_plane(block)) {
         return None;
     }
-    let (svg, moved) = draw(run, stop, place, &fields, WIDTH)?;
+    let (svg, is_moved) = draw(run, stop, place, &fields, WIDTH)?;
     let (narrow, _) = draw(run, stop, place, &fields, NARROW)?;
-    let rejected = if moved { " Dashed: the positions that were rejected." } else { "" };
+    let rejected = if is_moved { " Dashed: the positions that were rejected." } else { "" };
     let there = [
         (true, "the node"),
         (!place.facet_nodes.is_empty(), "the facet"),
@@ -54,20 +54,20 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
     );
     let pane = |title: &str, array: &str| Pane {
         title: title.to_owned(),
-        points: meshes::moved(&fields, array),
+        points: moved(&fields, array),
         values: Vec::new(),
     };
     let mut panes = vec![pane("accepted", "displacement")];
     panes.extend(fields.array("rejected").map(|_| pane("rejected", "rejected")));
-    let length = fields.array("displacement").map_or("", |u| u.unit.as_str());
-    let figure = Figure::new("stopped", caption, svg).with_narrow(narrow);
+    let length = fields.unit("displacement");
+    let figure = Figure::new("stopped", caption, [svg, narrow]);
     Some(meshes::with_files(figure, &fields, &panes, length, String::new()))
 }
 
 /// The picture, and whether the rejected positions differ visibly.
 fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet, width: f64) -> Option<(String, bool)> {
-    let points = places(fields);
-    let rejected = rejected(fields);
+    let points: Vec<Point> = places(fields);
+    let rejected = fields.array("rejected").map(|_| moved(fields, "rejected"));
     let node = place.node.as_ref()?.number;
     let at = *points.get(node)?;
     let size = size(place, fields, &points, node);
@@ -81,13 +81,8 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet, width: f64
     let height = KEY + (frame[3] - frame[2]) * scale;
     let to = |p: Point| [(p[0] - frame[0]) * scale, KEY + (frame[3] - p[1]) * scale];
     let near = |points: &[Point], nodes: &[usize]| {
-        let inside = |i: usize| {
-            let [low, high] = nodes.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &k| {
-                [low.min(points[k][i]), high.max(points[k][i])]
-            });
-            low <= frame[2 * i + 1] && high >= frame[2 * i]
-        };
-        inside(0) && inside(1)
+        let [left, right, bottom, top] = pen::around(NOTHING, nodes.iter().map(|&k| points[k]));
+        left <= frame[1] && right >= frame[0] && bottom <= frame[3] && top >= frame[2]
     };
     let mut out = open("Where the simulation stopped", width, height);
     let _ = writeln!(
@@ -98,34 +93,20 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet, width: f64
     );
     let mut drawn = HashSet::new();
     for (k, block) in fields.blocks.iter().enumerate() {
-        let shown = |points: &[Point]| Instant {
-            time: String::new(),
-            points: points.to_vec(),
-            values: Vec::new(),
-            cells: block.cells().filter(|c| near(points, c)).map(|c| (block.degree, c.to_vec())).collect(),
-        };
-        let instant = shown(&points);
+        let instant = Instant::of_cells(points.clone(), block, |cell| near(&points, cell));
         drawn.extend(instant.cells.iter().flat_map(|(_, nodes)| nodes.iter().copied()));
-        mesh(&mut out, &instant, FILLS[k % FILLS.len()], &to);
+        mesh(&mut out, &instant, fill(k), &to);
     }
     if let Some(cell) = Some(&place.cell_nodes).filter(|nodes| !nodes.is_empty()) {
-        let degree =
-            fields.blocks.iter().find(|b| Some(&b.body) == place.body.as_ref()).map_or(1, |b| b.degree);
+        let block = fields.blocks.iter().find(|b| Some(&b.body) == place.body.as_ref());
+        let degree = block.map_or(1, |b| b.degree);
         let mut pen = Pen::default();
-        for e in 0..corners(cell) {
-            let edge: Vec<Point> = edge_nodes(degree, cell, e).map(|k| to(points[k])).collect();
-            bezier(&mut pen, &edge, e == 0);
-        }
-        pen.close();
-        path(
-            &mut out,
-            &pen,
-            &format!("fill=\"{CELL}\" fill-opacity=\"0.45\" stroke=\"{CELL}\" stroke-width=\"40\""),
-        );
+        outline(&mut pen, degree, cell, &|k| to(points[k]));
+        let style = format!("fill=\"{CELL}\" fill-opacity=\"0.45\" stroke=\"{CELL}\" stroke-width=\"40\"");
+        path(&mut out, &pen, &style);
     }
-    let frame_of = [frame[0], frame[1], frame[2], frame[3]];
-    for obstacle in obstacles::all(run, frame_of) {
-        for walk in obstacles::clipped(&obstacle.at(run, stop.last), frame_of) {
+    for obstacle in obstacles::all(run, frame) {
+        for walk in obstacles::clipped(&obstacle.at(run, stop.last), frame) {
             wall(&mut out, &walk.iter().map(|&(p, n)| (to(p), [-n[0], n[1]])).collect::<Vec<_>>(), 0.0);
         }
     }
@@ -134,23 +115,14 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet, width: f64
     if facet.len() > 1 {
         let mut pen = Pen::default();
         bezier(&mut pen, &facet, true);
-        path(
-            &mut out,
-            &pen,
-            &format!("fill=\"none\" stroke=\"{FACET}\" stroke-width=\"90\" stroke-linecap=\"round\""),
-        );
+        let style = "stroke-width=\"90\" stroke-linecap=\"round\"";
+        path(&mut out, &pen, &format!("fill=\"none\" stroke=\"{FACET}\" {style}"));
     }
-    let visible = |new: &[Point]| {
-        drawn.iter().any(|&k| {
-            let [a, b] = [to(points[k]), to(new[k])];
-            (a[0] - b[0]).hypot(a[1] - b[1]) > 1.0
-        })
-    };
-    let moved = rejected.as_deref().is_some_and(visible);
-    if let Some(new) = rejected.as_ref().filter(|_| moved) {
+    let visible = |new: &[Point]| drawn.iter().any(|&k| distance(to(points[k]), to(new[k])) > 1.0);
+    let is_moved = rejected.as_deref().is_some_and(visible);
+    if let Some(new) = rejected.as_ref().filter(|_| is_moved) {
         for block in &fields.blocks {
-            let cells = block.cells().filter(|c| near(new, c)).map(|c| (block.degree, c.to_vec())).collect();
-            let instant = Instant { time: String::new(), points: new.clone(), values: Vec::new(), cells };
+            let instant = Instant::of_cells(new.clone(), block, |cell| near(new, cell));
             let [_, outline] = edges(&instant, &to);
             let style = "stroke-width=\"26\" stroke-dasharray=\"110 70\" fill=\"none\"";
             path(&mut out, &outline, &format!("stroke=\"{REJECTED}\" {style}"));
@@ -168,21 +140,18 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet, width: f64
         width - 1.0,
         height - KEY - 0.5
     );
-    key(&mut out, place, moved);
+    key(&mut out, place, is_moved);
     let length = round_step(frame[1] - frame[0], 6.0);
-    let unit = fields.array("displacement").map_or("", |u| &u.unit);
     let (y, pixels) = (height - 14.0, length * scale);
     let _ = writeln!(
         out,
-        "<rect x=\"8\" y=\"{:.1}\" width=\"{:.1}\" height=\"22\" fill=\"#fff\" fill-opacity=\"0.8\"/>\n\
-         <path d=\"M14 {:.1}v6m0 -3h{pixels:.1}m0 -3v6\" fill=\"none\" stroke=\"#222\"/>",
+        "<rect x=\"8\" y=\"{:.1}\" width=\"{:.1}\" height=\"22\" fill=\"#fff\" fill-opacity=\"0.8\"/>",
         y - 13.0,
-        pixels + 90.0,
-        y - 5.0
+        pixels + 90.0
     );
-    write_text(&mut out, 14.0 + pixels + 8.0, y + 2.0, "", format!("{length} {unit}").trim());
+    scale_bar(&mut out, [14.0, y - 5.0], pixels, (length, fields.unit("displacement")));
     out.push_str("</svg>\n");
-    Some((out, moved))
+    Some((out, is_moved))
 }
 
 /// The points of the bodies of a place.
@@ -197,11 +166,10 @@ fn of_place(place: &StopPlace, fields: &FieldSet, points: &[Point]) -> Vec<Point
 /// the picture: its whole width, and at most its height.
 fn filled(around: [f64; 4], points: &[Point], (margin, width): (f64, f64)) -> ([f64; 4], f64) {
     let mut frame = around;
-    for i in 0..2 {
-        let low = points.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min) - margin;
-        let high = points.iter().map(|p| p[i]).fold(f64::NEG_INFINITY, f64::max) + margin;
-        frame[2 * i] = around[2 * i].max(low);
-        frame[2 * i + 1] = around[2 * i + 1].min(high);
+    let all = pen::around(NOTHING, points.iter().copied());
+    for low in [0, 2] {
+        frame[low] = around[low].max(all[low] - margin);
+        frame[low + 1] = around[low + 1].min(all[low + 1] + margin);
     }
     let (across, height) = (frame[1] - frame[0], frame[3] - frame[2]);
     let scale = (width / across).min((HEIGHT - KEY) / height);
@@ -209,16 +177,9 @@ fn filled(around: [f64; 4], points: &[Point], (margin, width): (f64, f64)) -> ([
     ([frame[0] - beside, frame[1] + beside, frame[2], frame[3]], scale)
 }
 
-/// Rejected positions.
-fn rejected(fields: &FieldSet) -> Option<Vec<Point>> {
-    let moved = fields.array("rejected").filter(|a| a.components == 3)?;
-    let point = |(i, x): (usize, &[f64; 3])| [0, 1].map(|d| x[d] + moved.values[3 * i + d]);
-    Some(fields.points.iter().enumerate().map(point).collect())
-}
-
 /// Length of the facet or of the longest edge at the place.
 fn size(place: &StopPlace, fields: &FieldSet, points: &[Point], node: usize) -> f64 {
-    let distance = |a: usize, b: usize| (points[a][0] - points[b][0]).hypot(points[a][1] - points[b][1]);
+    let distance = |a: usize, b: usize| distance(points[a], points[b]);
     let longest = |cell: &[usize]| {
         (0..corners(cell)).map(|e| distance(cell[e], cell[(e + 1) % corners(cell)])).fold(0.0, f64::max)
     };

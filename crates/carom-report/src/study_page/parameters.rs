@@ -2,10 +2,11 @@
 //! and the design.
 
 use carom_record::study::Study;
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 use crate::document::{codes, file};
-use crate::figure::pictures;
+use crate::figure::Figure;
+use crate::ordered::distinct;
 use crate::text::Label;
 use crate::{design, settings, setup};
 
@@ -13,15 +14,15 @@ use crate::{design, settings, setup};
 const FEW: usize = 4;
 
 /// The section of the page.
-pub(super) fn section(study: &Study, picture: Option<&[String; 2]>) -> Markup {
+pub(super) fn section(study: &Study, picture: Option<&Figure>) -> Markup {
     let (varied, shared) = (settings::varied(study), settings::shared(study));
     let title = study.manifest.arms.first().and_then(|arm| arm.case.get("title")?.as_str());
     let title = title.filter(|title| !title.is_empty());
     html! {
         h2 { "Setup" }
-        @if let Some([svg, narrow]) = picture {
+        @if let Some(picture) = picture {
             figure {
-                div.drawing { (PreEscaped(pictures(svg, narrow))) }
+                div.drawing { (picture.pictures()) }
                 figcaption {
                     "Initial configuration of the first arm"
                     @if let Some(title) = title { ": " (Label(title)) }
@@ -56,7 +57,7 @@ pub(super) fn has_matrix(study: &Study) -> bool {
 /// Whether a number that is shown has fewer digits than in its file.
 fn is_rounded(study: &Study, varied: &[(&str, Vec<Option<&str>>)]) -> bool {
     // Longer lists of values are only counted.
-    let shown = |values: &&Vec<Option<&str>>| has_matrix(study) || distinct(values).len() <= FEW;
+    let shown = |values: &&Vec<Option<&str>>| has_matrix(study) || values_of(values).len() <= FEW;
     let values = varied.iter().map(|(_, values)| values).filter(shown).flatten().flatten();
     values.into_iter().any(|value| settings::brief(value) != **value)
 }
@@ -95,7 +96,7 @@ fn parameters(study: &Study, varied: &[(&str, Vec<Option<&str>>)]) -> Markup {
             @for (key, values) in varied {
                 @let unset = arms().filter(|(i, _)| values[*i].is_none());
                 @let others: Vec<_> = unset.map(|(_, arm)| settings::of_case(arm, key)).collect();
-                @let distinct = distinct(values);
+                @let distinct = values_of(values);
                 li {
                     code { (key) } ": "
                     @if distinct.len() > FEW { (distinct.len()) " values" } @else { (codes(&distinct, ", ")) }
@@ -108,12 +109,7 @@ fn parameters(study: &Study, varied: &[(&str, Vec<Option<&str>>)]) -> Markup {
 
 /// What a parameter is in arms that do not set it; a value that the page cannot show is unknown.
 fn elsewhere(others: &[Option<String>]) -> Markup {
-    let mut distinct: Vec<&str> = Vec::new();
-    for other in others.iter().map(|other| other.as_deref().unwrap_or("none")) {
-        if !distinct.contains(&other) {
-            distinct.push(other);
-        }
-    }
+    let distinct = distinct(others.iter().map(|other| other.as_deref().unwrap_or("none")));
     html! {
         @match &distinct[..] {
             [] => "; set in every arm",
@@ -140,14 +136,8 @@ fn in_words(study: &Study) -> Markup {
 }
 
 /// The values that are set, each once.
-fn distinct(values: &[Option<&str>]) -> Vec<String> {
-    let mut found: Vec<String> = Vec::new();
-    for value in values.iter().flatten().map(|value| settings::brief(value)) {
-        if !found.contains(&value) {
-            found.push(value);
-        }
-    }
-    found
+fn values_of(values: &[Option<&str>]) -> Vec<String> {
+    distinct(values.iter().flatten().map(|value| settings::brief(value)))
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! Expectations and metrics on the page of a study.
 
-use carom_record::metrics::{self, Metric};
 use carom_record::study::{Row, Study};
 use maud::{Markup, html};
 
@@ -8,6 +7,8 @@ use crate::by_arm;
 use crate::collected::time_unit;
 use crate::digits::five;
 use crate::document::{codes, file, joined, minus, or_dash};
+use crate::ordered::{distinct, grouped};
+use crate::results::by_title;
 use crate::round_off::Scales;
 use crate::systems::Systems;
 use crate::text::Label;
@@ -87,12 +88,8 @@ const COLUMNS: usize = 8;
 /// Expectations by arm, one row per arm and one column per quantity, result above expected value;
 /// nothing for fewer than three arms.
 fn met_by_arm(study: &Study) -> Option<Markup> {
-    let mut quantities: Vec<&str> = Vec::new();
-    for e in study.rows.iter().flat_map(|row| &row.expectations) {
-        if !quantities.contains(&e.what.as_str()) {
-            quantities.push(&e.what);
-        }
-    }
+    let all = study.rows.iter().flat_map(|row| &row.expectations);
+    let quantities = distinct(all.map(|e| e.what.as_str()));
     let arms: Vec<_> = study.rows.iter().filter(|row| !row.expectations.is_empty()).collect();
     if arms.len() < 3 || quantities.is_empty() || quantities.len() > COLUMNS {
         return None;
@@ -123,20 +120,18 @@ fn met_by_arm(study: &Study) -> Option<Markup> {
 pub(super) fn metrics(study: &Study, systems: &Systems) -> Markup {
     let mut shown = study.metrics();
     shown.retain(|m| study.rows.iter().any(|r| r.value(&m.name).is_some()));
-    let groups = metrics::TITLES.map(|title| {
-        (title, shown.iter().copied().filter(|m| metrics::group(&m.name) == title).collect::<Vec<_>>())
-    });
     let scales = Scales::of(study);
     html! {
         h2 { "Metrics" }
-        @for (title, members) in groups.iter().filter(|(_, members)| !members.is_empty()) {
+        @for (title, members) in by_title(&shown) {
             details {
                 summary { (title) " " span.small { "(" (joined(members.iter().map(|m| &m.name), ", ")) ")" } }
-                (by_arm::tables(study, members, COLUMNS, |arm, metric| {
+                (by_arm::tables(study, &members, COLUMNS, |arm, metric| {
                     html! { (or_dash(study.rows[arm].value(&metric.name), |v| scales.shown(metric, v, five))) }
                 }))
                 table {
-                    @for (names, definition) in definitions(members) {
+                    // Metrics of columns have the same for every probe.
+                    @for (definition, names) in grouped(members.iter().map(|m| (m.definition, &m.name))) {
                         tr { td { (codes(&names, ", ")) } td { (definition) } }
                     }
                 }
@@ -150,16 +145,4 @@ pub(super) fn metrics(study: &Study, systems: &Systems) -> Markup {
              " (file("study_tidy.csv")) "."
         }
     }
-}
-
-/// Definitions, each with all its metrics: those of columns have the same for every probe.
-fn definitions<'a>(metrics: &[&'a Metric]) -> Vec<(Vec<&'a str>, &'static str)> {
-    let mut found: Vec<(Vec<&str>, &str)> = Vec::new();
-    for metric in metrics {
-        match found.iter_mut().find(|(_, definition)| *definition == metric.definition) {
-            Some((names, _)) => names.push(&metric.name),
-            None => found.push((vec![&metric.name], metric.definition)),
-        }
-    }
-    found
 }
