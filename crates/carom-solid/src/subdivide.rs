@@ -19,12 +19,13 @@ use std::collections::HashMap;
 use carom_algebra::Vector;
 
 use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::line_shape;
 use crate::shape::{
-    Hex8, Hex27, Line2, Line3, Line4, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10,
+    Hex8, Hex27, Line2, Line3, Line4, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10, lattice,
+    line_shape,
 };
 use nodes::{Nodes, Place};
 use tensor::tensor;
+pub(crate) use tetrahedra::freudenthal;
 use tetrahedra::tetrahedra;
 
 impl Mesh {
@@ -85,7 +86,7 @@ fn lines<const N: usize, S: Shape<1, N>>(mesh: &Mesh, parts: usize) -> Mesh {
 
 fn triangles<const N: usize, S: Shape<2, N>>(mesh: &Mesh, parts: usize) -> Mesh {
     let (degree, count) = (S::DEGREE, S::DEGREE * parts);
-    let steps = S::NODES.map(|xi| [0, 1].map(|i| (xi[i] * degree as f64).round() as usize));
+    let steps = lattice::<2, N, S>();
     // Upright triangles row by row, each followed by the inverted one on its right.
     let children: Vec<([usize; 2], bool)> = (0..parts)
         .flat_map(|q| (0..parts - q).flat_map(move |p| [([p, q], true), ([p, q], false)]))

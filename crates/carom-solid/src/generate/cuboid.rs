@@ -7,11 +7,10 @@
 use std::collections::BTreeMap;
 
 use super::{MeshError, check, interval_nodes, lerp};
+use crate::element_shape::of_shape;
 use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::{Hex8, Hex27, Shape, Tet4, Tet10, Tet20};
-
-/// Paths from the lowest to the highest corner: orders of the directions, even and odd in turn.
-const PATHS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [1, 2, 0], [2, 1, 0], [2, 0, 1], [0, 2, 1]];
+use crate::shape::lattice;
+use crate::subdivide::freudenthal;
 
 /// Sides: axis, and whether at its upper end.
 const SIDES: [(&str, usize, bool); 6] = [
@@ -80,35 +79,17 @@ pub fn cuboid_nodes(element: Element, cells: [usize; 3]) -> usize {
 
 /// The cells that fill one box, by their nodes in its lattice.
 fn pieces(element: Element) -> Result<Vec<Vec<[usize; 3]>>, MeshError> {
-    let simplex = match element {
-        Element::Hex8 => return Ok(vec![lattice::<8, Hex8>(-1.0)]),
-        Element::Hex27 => return Ok(vec![lattice::<27, Hex27>(-1.0)]),
-        Element::Tet4 => lattice::<4, Tet4>(0.0),
-        Element::Tet10 => lattice::<10, Tet10>(0.0),
-        Element::Tet20 => lattice::<20, Tet20>(0.0),
-        _ => return Err(MeshError::Dimension { element, dimension: 3 }),
-    };
-    let tetrahedron = |(path, order): (usize, &[usize; 3])| {
-        let mut corners = [[0; 3]; 4];
-        for (step, axis) in order.iter().enumerate() {
-            corners[step + 1..].iter_mut().for_each(|corner| corner[*axis] += 1);
-        }
-        if path % 2 == 1 {
-            // Odd orders have negative volume.
-            corners.swap(1, 2);
-        }
+    let other = MeshError::Dimension { element, dimension: 3 };
+    let cell = of_shape!(3, element, lattice(), return Err(other));
+    if matches!(element, Element::Hex8 | Element::Hex27) {
+        return Ok(vec![cell]);
+    }
+    let tetrahedron = |corners: [[usize; 3]; 4]| {
         let node = |at: &[usize; 3]| {
             let weights = [element.degree() - at.iter().sum::<usize>(), at[0], at[1], at[2]];
             [0, 1, 2].map(|i| (0..4).map(|c| weights[c] * corners[c][i]).sum())
         };
-        simplex.iter().map(node).collect()
+        cell.iter().map(node).collect()
     };
-    Ok(PATHS.iter().enumerate().map(tetrahedron).collect())
-}
-
-/// The nodes of a shape in the lattice of its degree; its reference cell begins at `low` and ends
-/// at 1.
-pub(super) fn lattice<const N: usize, S: Shape<3, N>>(low: f64) -> Vec<[usize; 3]> {
-    let scale = S::DEGREE as f64 / (1.0 - low);
-    S::NODES.iter().map(|xi| [0, 1, 2].map(|i| (scale * (xi[i] - low)).round() as usize)).collect()
+    Ok(freudenthal([0; 3]).map(tetrahedron).collect())
 }

@@ -7,6 +7,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use super::MeshError;
+use super::ball::counts;
 use super::frame::Frame;
 use super::lattice::{Flat, HEXAHEDRON, Key, Lattice, divisions, on};
 use crate::mesh::{Element, Mesh};
@@ -142,11 +143,6 @@ pub fn tube_hexahedra([inner, outer]: [f64; 2], height: f64, size: f64, symmetry
 
 fn cut(whole: f64, symmetry: [bool; 3]) -> f64 {
     whole / 2.0_f64.powi(symmetry.iter().filter(|cut| **cut).count() as i32)
-}
-
-/// Cells on half an edge of the square, and between the square and the circle.
-fn counts(radius: f64, size: f64) -> (i64, i64) {
-    super::ball::counts(radius, size)
 }
 
 /// Cells on a quarter of the outer circle, and between the circles.

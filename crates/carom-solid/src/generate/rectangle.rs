@@ -5,12 +5,10 @@
 
 use std::collections::BTreeMap;
 
-use carom_algebra::Vector;
-
 use super::elevate::{Side, Skeleton, elevate};
 use super::{MeshError, check, lerp};
 use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::{Quad4, Quad9, Shape};
+use crate::shape::{Quad4, Quad9, lattice};
 
 /// Rectangle from `min` to `max`, `cells` along x and y; sides `bottom`, `right`, `top`, `left`,
 /// each traversed counter-clockwise.
@@ -24,15 +22,9 @@ pub fn rectangle(
     cells: [usize; 2],
 ) -> Result<Mesh, MeshError> {
     check(element, &min, &max, &cells)?;
-    let of_lattice =
-        |xi: &Vector<2>, k: usize| [0, 1].map(|i| (0.5 * (xi[i] + 1.0) * k as f64).round() as usize);
     match element {
-        Element::Q4 => {
-            return Ok(quadrilaterals(element, min, max, cells, &Quad4::NODES.map(|xi| of_lattice(&xi, 1))));
-        }
-        Element::Q9 => {
-            return Ok(quadrilaterals(element, min, max, cells, &Quad9::NODES.map(|xi| of_lattice(&xi, 2))));
-        }
+        Element::Q4 => return Ok(quadrilaterals(element, min, max, cells, &lattice::<2, 4, Quad4>())),
+        Element::Q9 => return Ok(quadrilaterals(element, min, max, cells, &lattice::<2, 9, Quad9>())),
         _ => {}
     }
     let [nx, ny] = cells;

@@ -9,8 +9,8 @@ use super::checks::orient;
 use super::error::{Fault, MshError};
 use super::file::MshFile;
 use super::group::Group;
-use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::{Quad4, Quad9, Tri3, Tri6, Tri10};
+use crate::element_shape::of_shape;
+use crate::mesh::{Facet, Mesh};
 
 impl MshFile {
     /// The mesh of a physical surface. Its sides are the physical curves with edges on its
@@ -22,19 +22,11 @@ impl MshFile {
     /// cells, nodes off the plane.
     pub fn body(&self, surface: &str) -> Result<Mesh, MshError> {
         let mut group = Group::<2>::of(self, surface)?;
-        match group.element {
-            Element::T3 => orient::<2, 3, Tri3>(&mut group)?,
-            Element::T6 => orient::<2, 6, Tri6>(&mut group)?,
-            Element::T10 => orient::<2, 10, Tri10>(&mut group)?,
-            Element::Q4 => orient::<2, 4, Quad4>(&mut group)?,
-            Element::Q9 => orient::<2, 9, Quad9>(&mut group)?,
-            _ => return Err(MshError::whole(Fault::NoCells { what: "surface", name: surface.to_owned() })),
-        }
+        let none = MshError::whole(Fault::NoCells { what: "surface", name: surface.to_owned() });
+        of_shape!(2, group.element, orient(&mut group), Err(none))?;
         let boundary = boundary(&group)?;
         let sides = group.sides(&boundary)?;
-        let (element, nodes, cells) =
-            (group.element, std::mem::take(&mut group.positions), std::mem::take(&mut group.cells));
-        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: group.finish() })
+        Ok(group.into_mesh(sides))
     }
 }
 

@@ -1,9 +1,11 @@
 //! The cells of a named group as a separate mesh: one element, only the nodes in use, in the order
 //! of the file.
 
+use std::collections::BTreeMap;
+
 use super::error::{Fault, MshError};
 use super::file::{MshFile, Row};
-use crate::mesh::Element;
+use crate::mesh::{Element, Facet, Mesh};
 
 /// Cells of a group before they are checked. Node numbers are local to the group.
 pub(super) struct Group<'a, const D: usize> {
@@ -131,13 +133,14 @@ impl<'a, const D: usize> Group<'a, D> {
         self.file.nodes[self.used[node]].0
     }
 
-    /// Returns the repairs, including what was dropped.
-    pub(super) fn finish(mut self) -> Vec<String> {
+    /// The mesh with these sides, and the repairs, including what was dropped.
+    pub(super) fn into_mesh(mut self, sides: BTreeMap<String, Vec<Facet>>) -> Mesh {
         let elsewhere: usize = self.file.unused();
         if elsewhere > 0 {
             self.repairs.push(format!("nodes of the file that belong to no cell were dropped: {elsewhere}"));
         }
-        self.repairs
+        let Self { element, positions, cells, repairs, .. } = self;
+        Mesh { element, nodes: positions.into(), cells, sides, repairs }
     }
 }
 

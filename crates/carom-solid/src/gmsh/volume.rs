@@ -10,8 +10,8 @@ use super::error::{Fault, MshError};
 use super::file::{Block, MshFile};
 use super::group::Group;
 use super::order;
-use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::{Hex8, Hex27, Tet4, Tet10, Tet20};
+use crate::element_shape::of_shape;
+use crate::mesh::{Facet, Mesh};
 
 impl MshFile {
     /// The mesh of a physical volume. Its sides are the physical surfaces with facets on its
@@ -25,21 +25,14 @@ impl MshFile {
         let mut group = Group::<3>::of(self, name)?;
         let element = group.element;
         group.cells.chunks_exact_mut(element.nodes()).for_each(|cell| order::read(element, cell));
-        match element {
-            Element::Tet4 => orient::<3, 4, Tet4>(&mut group)?,
-            Element::Tet10 => orient::<3, 10, Tet10>(&mut group)?,
-            Element::Tet20 => orient::<3, 20, Tet20>(&mut group)?,
-            Element::Hex8 => orient::<3, 8, Hex8>(&mut group)?,
-            Element::Hex27 => orient::<3, 27, Hex27>(&mut group)?,
-            _ => return Err(MshError::whole(Fault::NoCells { what: "volume", name: name.to_owned() })),
-        }
+        let none = MshError::whole(Fault::NoCells { what: "volume", name: name.to_owned() });
+        of_shape!(3, group.element, orient(&mut group), Err(none))?;
         let boundary = boundary(&group)?;
         if !self.slits {
             unpinched(&group, &boundary)?;
         }
         let sides = group.surfaces(&boundary)?;
-        let (nodes, cells) = (std::mem::take(&mut group.positions), std::mem::take(&mut group.cells));
-        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: group.finish() })
+        Ok(group.into_mesh(sides))
     }
 }
 

@@ -3,7 +3,7 @@
 use carom_algebra::{Four, Mat, Vector};
 
 use super::kinematics::{NotPositive, excess_det};
-use crate::points::{LANES, Moduli, four, get, lanes, set};
+use crate::points::{LANES, four, get, lanes, set};
 
 /// A matrix at each of four points: `[i][j][point]`.
 pub type InLanes<const D: usize> = [[[f64; LANES]; D]; D];
@@ -44,7 +44,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
         for l in 0..count {
             let point = self.at(&get(h, l))?;
             energies[l] = self.energy(&point);
-            set(&mut stresses, l, &self.stress(&point), 1.0);
+            set(&mut stresses, l, &self.stress(&point));
         }
         Ok((energies, stresses))
     }
@@ -77,7 +77,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
         let mut changes = [[[0.0; LANES]; D]; D];
         for l in 0..count {
             let point = self.at(&get(h, l))?;
-            set(&mut changes, l, &self.change(&point, &get(dh, l)), 1.0);
+            set(&mut changes, l, &self.change(&point, &get(dh, l)));
         }
         Ok(changes)
     }
@@ -110,17 +110,4 @@ pub(super) fn in_lanes<const D: usize>(
 ) -> Result<AtPoints<D>, NotPositive> {
     let (energy, stress) = at(&four(h))?;
     Ok((energy.0, lanes(&stress)))
-}
-
-/// ∂P/∂F of the law at a point.
-#[inline(always)]
-pub(crate) fn moduli_of<const D: usize, L: Material<D>>(law: &L, point: &L::Point) -> Moduli<D> {
-    let unit = Mat::<D>::identity().0.map(Vector);
-    let mut moduli = [[Mat::ZERO; D]; D];
-    for j in 0..D {
-        for l in 0..D {
-            moduli[j][l] = law.tangent(point, &unit[j], &unit[l]);
-        }
-    }
-    moduli
 }

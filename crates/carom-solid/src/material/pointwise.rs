@@ -6,9 +6,9 @@
 
 use carom_algebra::{Mat, Vector, wide};
 
-use super::{Material, NotPositive, moduli_of};
+use super::{Material, NotPositive};
 use crate::discrete_gradient::{between, change_between};
-use crate::points::{LANES, Lanes, Mats, get, set, set_moduli};
+use crate::points::{LANES, Lanes, Mats, get, set};
 
 /// ∂P/∂F at each of the points: `[J][L][i][j][point]` is ∂P_iJ/∂F_jL.
 pub(crate) type ModuliMats<const D: usize> = [[Mats<D>; D]; D];
@@ -97,11 +97,16 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
             #[inline(always)]
             || {
                 let mut energies = [0.0; LANES];
+                let unit = Mat::<D>::identity().0.map(Vector);
                 for l in 0..count {
                     let point = self.at(&get(h, l))?;
                     energies[l] = self.energy(&point);
-                    set(stress, l, &self.stress(&point), 1.0);
-                    set_moduli(moduli, l, &moduli_of(self, &point), 1.0);
+                    set(stress, l, &self.stress(&point));
+                    for (row, a) in moduli.iter_mut().zip(&unit) {
+                        for (block, b) in row.iter_mut().zip(&unit) {
+                            set(block, l, &self.tangent(&point, a, b));
+                        }
+                    }
                 }
                 Ok(energies)
             },
@@ -120,7 +125,7 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         for l in 0..count {
             let (energy, of_point) = between(self, h.map(|h| get(h, l)).each_ref())?;
             energies[l] = energy;
-            set(stress, l, &of_point, 1.0);
+            set(stress, l, &of_point);
         }
         Ok(energies)
     }
@@ -134,7 +139,7 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         let mut changes = none();
         for l in 0..count {
             let ends = h.map(|h| get(h, l));
-            set(&mut changes, l, &change_between(self, ends.each_ref(), &get(dh, l))?, 1.0);
+            set(&mut changes, l, &change_between(self, ends.each_ref(), &get(dh, l))?);
         }
         Ok(changes)
     }

@@ -73,7 +73,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let blocks = self.places.chunks(LANES).map(|places| {
             let mut packed = Packed { maps: [[[0.0; LANES]; D]; D], weights: [0.0; LANES] };
             for (l, place) in places.iter().enumerate() {
-                set(&mut packed.maps, l, &place.inverse, 1.0);
+                set(&mut packed.maps, l, &place.inverse);
                 packed.weights[l] = place.volume * weight;
             }
             packed

@@ -7,7 +7,7 @@ use carom_algebra::Vector;
 
 use super::nodes::{Nodes, Place};
 use crate::mesh::{Facet, Mesh};
-use crate::shape::Shape;
+use crate::shape::{self, Shape};
 
 /// Whole coordinates from 0, of a point of the lattice or of a part.
 type At<const R: usize> = [usize; R];
@@ -25,8 +25,7 @@ fn number<const R: usize>(at: At<R>, size: usize) -> usize {
 pub(super) fn tensor<const R: usize, const N: usize, S: Shape<R, N>>(mesh: &Mesh, parts: usize) -> Mesh {
     let (degree, count) = (S::DEGREE, S::DEGREE * parts);
     let corners = 1 << R;
-    // Nodes in the lattice of the degree: from −1, 0, 1 to 0, …, degree.
-    let steps = S::NODES.map(|xi| xi.0.map(|x| (f64::midpoint(x, 1.0) * degree as f64).round() as usize));
+    let steps = shape::lattice::<R, N, S>();
     let values: Vec<[f64; N]> = lattice::<R>(count + 1)
         .map(|at| S::values(&Vector(at.map(|i| 2.0 * i as f64 / count as f64 - 1.0))))
         .collect();
