@@ -14,13 +14,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use carom_solid::FacetShape;
 
+use super::facets::Facets;
 use super::facing::{Next, PAST, REACH};
 use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
 use super::opposed::is_left;
 use super::passed::{Passed, Paths};
-use super::surface::{Search, Surface};
+use super::surface::{Search, Surface, path};
 use super::swept::SweptTest;
+use super::trajectory::crossing;
+use super::way::Met;
 use super::{Kinematics, watch_every_node, zero};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
@@ -393,20 +396,34 @@ impl Kinematics for NodeToFacet {
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         let Tools { search, swept, .. } = &mut *tools;
+        let [start, end] = [before, now].map(|y| self.places(y));
+        // Within one piece, a path may begin and end on either side of its own boundary.
+        let is_itself = self.folds.as_ref().is_some_and(|(folds, _)| !folds.has_pieces());
+        let is_point = self.primary.shape() == FacetShape::Point;
+        if is_itself || is_point || !self.primary.is_whole() || search.is_apart(0.0, start, end) {
+            return None;
+        }
+        let bounds = |node: usize, facet: usize| {
+            self.folds.as_ref().is_none_or(|(folds, _)| folds.is_of_another_piece(node, facet))
+        };
         let paths = Paths {
-            surface: &self.primary,
+            boundary: &self.primary,
             nodes: &self.secondary,
             allowed: &|place| self.slack(place),
-            enters: &|_, _| true,
-            bounds: &|_, _| true,
+            enters: &|node, facet| !self.excludes(node, facet),
+            bounds: &bounds,
             bounce,
         };
-        let Some((folds, side)) = &self.folds else { return paths.deepest(search, swept, [before, now]) };
-        // Within one piece, a path may begin and end on either side of its own boundary.
-        let bounds = |node: usize, facet: usize| folds.is_of_another_piece(node, facet);
-        let enters = |node: usize, facet: usize| folds.admits(*side, node, facet);
-        let among = Paths { enters: &enters, bounds: &bounds, ..paths };
-        folds.has_pieces().then(|| among.deepest(search, swept, [before, now])).flatten()
+        let motion = paths.motion([before, now])?;
+        if !search.update(&self.primary, &self.secondary, 0.0, start, end) {
+            return None;
+        }
+        let of_node = |node: usize| path([start, end].map(|y| y.coordinates(node)));
+        paths.deepest(motion, [before, now], search.tree(), of_node, |facet, ends, _, node| {
+            let [from, to] = ends.map(|y| self.places(y));
+            let met = crossing(swept, self.primary.facet(facet), from, to, node)?;
+            Some(Met { theta: met.theta, facet, xi: [met.xi, 0.0] })
+        })
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
@@ -463,14 +480,9 @@ impl Kinematics for NodeToFacet {
             }
         }
         let gap = self.gap_of(pair, y);
-        if gap.a <= 0.0 || !gap.a.is_finite() {
-            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a: gap.a });
-        }
-        let nodes = std::iter::once(&node).chain(facet.nodes);
-        rows.push(
-            gap.distance + self.slack(pair.node),
-            nodes.zip(gap.gradient(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)),
-        );
+        ContactError::unless_regular(node, pair, gap.a)?;
+        let slopes = gap.gradient(facet.nodes.len());
+        rows.push_both(gap.distance + self.slack(pair.node), [&[node], facet.nodes], slopes);
         Ok(())
     }
 
@@ -486,11 +498,8 @@ impl Kinematics for NodeToFacet {
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let (node, facet) = (self.secondary[pair.node], self.primary.facet(pair.facet));
         let gap = self.gap_of(pair, self.places(y));
-        if gap.a <= 0.0 || !gap.a.is_finite() {
-            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a: gap.a });
-        }
-        let nodes = std::iter::once(&node).chain(facet.nodes);
-        rows.push(0.0, nodes.zip(gap.slip(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)));
+        ContactError::unless_regular(node, pair, gap.a)?;
+        rows.push_both(0.0, [&[node], facet.nodes], gap.slip(facet.nodes.len()));
         Ok(())
     }
 

@@ -29,7 +29,7 @@ use crate::kinematics::apart::Apart;
 use crate::kinematics::opposed::is_left;
 use crate::kinematics::recent::Recent;
 use crate::kinematics::tangents::tangents;
-use crate::kinematics::{Kinematics, OneWay, Passed, Side, SweptPatch};
+use crate::kinematics::{Facets, Kinematics, OneWay, Passed, Side, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::rows::Rows;
 
@@ -85,7 +85,7 @@ enum Next {
 impl NodeToPatch {
     /// Secondary nodes and primary boundary in global node numbers.
     pub fn new(secondary: Vec<usize>, primary: Boundary) -> Self {
-        let hull = primary.hull();
+        let hull = Hull::facet(primary.shape());
         let apart = Apart::new(primary.nodes().iter().chain(&secondary).copied(), 3, hull.weight());
         let recent = Recent::new(apart.nodes().to_vec(), 3, hull.weight(), secondary.len());
         let swept = SweptPatch::new(primary.shape());
@@ -245,7 +245,7 @@ impl OneWay for NodeToPatch {
     }
 
     fn nodes_of(&self, facet: usize) -> &[usize] {
-        self.primary.facet_nodes(facet)
+        self.primary.nodes_of(facet)
     }
 
     fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> [f64; 3] {
@@ -279,7 +279,7 @@ impl Kinematics for NodeToPatch {
     }
 
     fn facet_nodes(&self, pair: &Pair) -> &[usize] {
-        self.primary.facet_nodes(pair.facet)
+        self.primary.nodes_of(pair.facet)
     }
 
     fn is_on_facet(&self, pair: &Pair) -> bool {
@@ -493,13 +493,9 @@ impl Kinematics for NodeToPatch {
         }
         let patch = self.primary.patch(pair.facet);
         let gap = PatchGap::new(patch, y, place(y, node), xi);
-        let a = gap.regularity();
-        if a <= 0.0 || !a.is_finite() {
-            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a });
-        }
-        let nodes = std::iter::once(&node).chain(patch.nodes);
+        ContactError::unless_regular(node, pair, gap.regularity())?;
         let slopes = gap.gradient(patch.nodes.len());
-        rows.push(gap.distance + self.slack(pair.node), nodes.zip(slopes).map(|(&n, slope)| (n, slope.0)));
+        rows.push_both(gap.distance + self.slack(pair.node), [&[node], patch.nodes], slopes);
         Ok(())
     }
 
@@ -511,14 +507,9 @@ impl Kinematics for NodeToPatch {
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let (node, patch) = (self.secondary[pair.node], self.primary.patch(pair.facet));
         let gap = PatchGap::new(patch, y, place(y, node), [pair.xi, pair.eta]);
-        let a = gap.regularity();
-        if a <= 0.0 || !a.is_finite() {
-            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a });
-        }
+        ContactError::unless_regular(node, pair, gap.regularity())?;
         for along in tangents(gap.normal(), pair.tangential.tangents) {
-            let nodes = std::iter::once(&node).chain(patch.nodes);
-            let slopes = gap.slip(along, patch.nodes.len());
-            rows.push(0.0, nodes.zip(slopes).map(|(&n, slope)| (n, slope.0)));
+            rows.push_both(0.0, [&[node], patch.nodes], gap.slip(along, patch.nodes.len()));
         }
         Ok(())
     }
