@@ -34,10 +34,18 @@ pub trait Constitutive: Send + Sync {
 
 impl<L: Material<1> + Material<2> + Thickness + Clone> Constitutive for L {
     fn body(&self, mesh: Mesh, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
-        match mesh.element.dimension() {
-            1 => bar(mesh, Box::new(self.clone()), density, thickness),
+        let element = mesh.element;
+        match element.dimension() {
+            1 => {
+                let other = SolidError::Dimension { element, dimension: 1 };
+                of_shape!(1, element, solid(mesh, Box::new(self.clone()), density, thickness), Err(other))
+            }
             2 => plane(mesh, Box::new(self.clone()), density, thickness),
-            _ => space(mesh, Box::new(self.clone()), density),
+            // Solids in space have no thickness.
+            _ => {
+                let other = SolidError::Dimension { element, dimension: 3 };
+                of_shape!(3, element, solid(mesh, Box::new(self.clone()), density, 1.0), Err(other))
+            }
         }
     }
 
@@ -110,12 +118,6 @@ pub fn mean_dilatation_body(
     }
 }
 
-fn bar(mesh: Mesh, law: Box<dyn Pointwise<1>>, density: f64, area: f64) -> Result<Box<dyn Body>, SolidError> {
-    let element = mesh.element;
-    let other = SolidError::Dimension { element, dimension: 1 };
-    of_shape!(1, element, solid(mesh, law, density, area), Err(other))
-}
-
 fn plane(
     mesh: Mesh,
     law: Box<dyn Pointwise<2>>,
@@ -125,13 +127,6 @@ fn plane(
     let element = mesh.element;
     let other = SolidError::Dimension { element, dimension: 2 };
     of_shape!(2, element, solid(mesh, law, density, thickness), Err(other))
-}
-
-/// Solids in space have no thickness.
-fn space(mesh: Mesh, law: Box<dyn Pointwise<3>>, density: f64) -> Result<Box<dyn Body>, SolidError> {
-    let element = mesh.element;
-    let other = SolidError::Dimension { element, dimension: 3 };
-    of_shape!(3, element, solid(mesh, law, density, 1.0), Err(other))
 }
 
 fn solid<const D: usize, const N: usize, S: Shape<D, N>>(

@@ -117,7 +117,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let cells = mesh.cell_count();
         let mut mirrored = Mat::ZERO;
         mirrored.0[0][0] = -2.0;
-        let may_invert = law.cauchy_at(&mirrored).is_ok();
+        let may_invert = law.state_at(&mirrored).is_ok();
         let mut solid = Self {
             mesh,
             law,

@@ -6,10 +6,10 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use super::MeshError;
 use super::ball::counts;
 use super::frame::Frame;
 use super::lattice::{Flat, HEXAHEDRON, Key, Lattice, divisions, on};
+use super::{MeshError, positive};
 use crate::mesh::{Element, Mesh};
 
 /// Cylinder of tetrahedra with edges of about `size` around it, from the centre of its bottom along
@@ -184,12 +184,5 @@ fn on_circle(at: i64, quarter: i64) -> [f64; 2] {
         1 => [-sin, cos],
         2 => [-cos, -sin],
         _ => [sin, -cos],
-    }
-}
-
-fn positive(lengths: &[(&'static str, f64)]) -> Result<(), MeshError> {
-    match lengths.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
-        Some(&(what, value)) => Err(MeshError::Size { what, value }),
-        None => Ok(()),
     }
 }

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use super::lattice::{HEXAHEDRON, Key, Lattice, PRISM};
-use super::{MeshError, lerp};
+use super::{MeshError, lerp, positive};
 use crate::element_shape::of_shape;
 use crate::mesh::{Element, Mesh};
 use crate::shape::lattice;
@@ -25,9 +25,7 @@ use crate::shape::lattice;
 pub fn extrusion(plane: &Mesh, height: f64, layers: usize) -> Result<Mesh, MeshError> {
     let element = extruded(plane.element)
         .ok_or(MeshError::Dimension { element: plane.element, dimension: plane.dimension() })?;
-    if !(height.is_finite() && height > 0.0) {
-        return Err(MeshError::Size { what: "height", value: height });
-    }
+    positive(&[("height", height)])?;
     if layers == 0 {
         return Err(MeshError::Cells { cells: vec![layers] });
     }

@@ -1,10 +1,10 @@
 //! The cells of a named group as a separate mesh: one element, only the nodes in use, in the order
 //! of the file.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::error::{Fault, MshError};
-use super::file::{MshFile, Row};
+use super::file::{Block, MshFile, Row};
 use crate::mesh::{Element, Facet, Mesh};
 
 /// Cells of a group before they are checked. Node numbers are local to the group.
@@ -131,6 +131,30 @@ impl<'a, const D: usize> Group<'a, D> {
     /// The row of a node in the file.
     pub(super) fn node(&self, node: usize) -> Row {
         self.file.nodes[self.used[node]].0
+    }
+
+    /// Facets of the boundary that belong to each named group of a dimension less, each once in the
+    /// order of the file, as `find` knows them by that name and their nodes.
+    pub(super) fn sides<'f>(
+        &self,
+        find: impl Fn(&str, &[usize]) -> Result<Option<&'f Facet>, Fault>,
+    ) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
+        let own: HashMap<usize, usize> = self.used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
+        let mut sides = BTreeMap::new();
+        for name in self.file.names(D - 1) {
+            let (mut facets, mut seen) = (Vec::new(), HashSet::new());
+            for (row, nodes) in self.file.blocks(D - 1, name).flat_map(Block::cells) {
+                // A cell that leaves the body is not a facet of it.
+                let nodes: Option<Vec<usize>> = nodes.iter().map(|n| own.get(n).copied()).collect();
+                let Some(nodes) = nodes else { continue };
+                let found = find(name, &nodes).map_err(|fault| self.file.at(row, fault))?;
+                facets.extend(found.filter(|facet| seen.insert(&facet.nodes)).cloned());
+            }
+            if !facets.is_empty() {
+                sides.insert(name.to_owned(), facets);
+            }
+        }
+        Ok(sides)
     }
 
     /// The mesh with these sides, and the repairs, including what was dropped.

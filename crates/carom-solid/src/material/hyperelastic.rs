@@ -36,10 +36,20 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// The block Kᵢⱼ = Σ ∂Pᵢᴶ/∂Fⱼᴸ aᴶ bᴸ, bilinear in the reference gradients a and b.
     fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D>;
 
+    /// Ψ and P at four points at once, of a law whose formulas are written for any number; none of
+    /// others.
+    #[inline(always)]
+    fn at_four(&self, _: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+        Ok(None)
+    }
+
     /// Ψ and P at the first `count` of four points, in lanes; H = 0 in the
     /// other lanes, whose results do not count.
     #[inline(always)]
     fn at_points(&self, h: &InLanes<D>, count: usize) -> Result<AtPoints<D>, NotPositive> {
+        if let Some((energy, stress)) = self.at_four(&four(h))? {
+            return Ok((energy.0, lanes(&stress)));
+        }
         let (mut energies, mut stresses) = ([0.0; LANES], [[[0.0; LANES]; D]; D]);
         for l in 0..count {
             let point = self.at(&get(h, l))?;
@@ -100,14 +110,4 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     fn volume_ratio(&self, h: &Mat<D>) -> f64 {
         1.0 + excess_det(h)
     }
-}
-
-/// [`Material::at_points`] of a formula for any number.
-#[inline(always)]
-pub(super) fn in_lanes<const D: usize>(
-    h: &InLanes<D>,
-    at: impl Fn(&Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive>,
-) -> Result<AtPoints<D>, NotPositive> {
-    let (energy, stress) = at(&four(h))?;
-    Ok((energy.0, lanes(&stress)))
 }

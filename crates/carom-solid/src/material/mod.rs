@@ -26,6 +26,6 @@ pub use law::Law;
 pub use linear_elastic::LinearElastic;
 pub use neo_hookean::NeoHookean;
 pub use plane_stress::{PlaneStress, Thickness};
-pub(crate) use pointwise::{ModuliMats, Pointwise, Stress};
+pub(crate) use pointwise::{ModuliMats, Pointwise};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub(crate) use volumetric::Mean;

@@ -10,9 +10,8 @@
 //! Measures are laws themselves, with q as their energy, so that the kernels of forces, tangents
 //! and discrete gradients serve them too.
 
-use carom_algebra::{Mat, Real, Vector};
+use carom_algebra::{Four, Mat, Real, Vector};
 
-use super::hyperelastic::{AtPoints, InLanes, in_lanes};
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
 use super::{Law, Material, NotPositive, Pointwise};
 
@@ -124,15 +123,9 @@ impl<const D: usize> Material<D> for Swelling {
     }
 
     #[inline(always)]
-    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
-        in_lanes(
-            h,
-            #[inline(always)]
-            |h| {
-                let point = OfSwelling::at(h)?;
-                Ok((point.excess, point.cofactor))
-            },
-        )
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+        let point = OfSwelling::at(h)?;
+        Ok(Some((point.excess, point.cofactor)))
     }
 
     /// J (ã⊗b̃ − b̃⊗ã), ã = F⁻ᵀa.
@@ -194,15 +187,9 @@ impl<const D: usize> Material<D> for TraceOfStrain {
     }
 
     #[inline(always)]
-    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
-        in_lanes(
-            h,
-            #[inline(always)]
-            |h| {
-                let point = OfStrain::at(h)?;
-                Ok((point.trace(), (Mat::identity() + point.h)))
-            },
-        )
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+        let point = OfStrain::at(h)?;
+        Ok(Some((point.trace(), (Mat::identity() + point.h))))
     }
 
     #[inline(always)]

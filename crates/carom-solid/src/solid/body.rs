@@ -4,9 +4,9 @@ use carom_algebra::{Mat, Vector, wide};
 
 use super::rotation::{angle, strain};
 use super::{Place, Solid};
-use crate::body::{Body, Inverted, PointState, one_by_one};
+use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
-use crate::material::{NotPositive, Pointwise, Stress};
+use crate::material::{NotPositive, Pointwise};
 use crate::mesh::Mesh;
 use crate::points::{LANES, get};
 use crate::reference::{self, gradient};
@@ -35,7 +35,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         if Self::HAS_CONSTANT_STRAIN {
             return self.constant_forces(first, y, forces, energies);
         }
-        one_by_one(self, first, y, forces, energies)
+        self.one_by_one(first, y, forces, energies)
     }
 
     fn add_cells(&self, first: usize, locals: &[f64], sum: &mut [f64]) {
@@ -241,6 +241,20 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
 }
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
+    /// [`Body::cell_forces`] by [`Body::cell_force`].
+    pub(super) fn one_by_one(
+        &self,
+        first: usize,
+        y: &[f64],
+        forces: &mut [f64],
+        energies: &mut [f64],
+    ) -> Result<(), Inverted> {
+        for (k, (force, energy)) in forces.chunks_exact_mut(N * D).zip(energies).enumerate() {
+            *energy = self.cell_force(first + k, y, force)?;
+        }
+        Ok(())
+    }
+
     /// [`Body::point`] of another law.
     pub(super) fn point_of(
         &self,
@@ -253,27 +267,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let inverse_transposed = gradient(&x, &S::gradients(&vector(xi))).inverse().transposed();
         let g = S::gradients(&vector(xi)).map(|g| inverse_transposed.apply(&g));
         let h = gradient(&self.displacements(cell, y), &g);
-        let Stress { within, lateral } =
-            law.cauchy_at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-        let across = law.lateral_excess_at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-        let strain = (h + h.transposed() + h.transposed() * h) * 0.5;
-        Ok(PointState {
-            det_f: law.volume_ratio_at(&h),
-            cauchy: in_space(&within, lateral),
-            strain: in_space(&strain, across + 0.5 * across * across),
-        })
+        law.state_at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })
     }
-}
-
-/// The components within the dimensions of a body, and the normal one in the others.
-fn in_space<const D: usize>(within: &Mat<D>, lateral: f64) -> [[f64; 3]; 3] {
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| match (i < D && j < D, i == j) {
-            (true, _) => within.0[i][j],
-            (false, true) => lateral,
-            (false, false) => 0.0,
-        })
-    })
 }
 
 /// Reference coordinates from a slice of `D` numbers.

@@ -5,7 +5,7 @@
 
 use carom_algebra::Vector;
 
-use super::nodes::{Nodes, Place};
+use super::nodes::Nodes;
 use crate::mesh::{Facet, Mesh};
 use crate::shape::{self, Shape};
 
@@ -36,20 +36,10 @@ pub(super) fn tensor<const R: usize, const N: usize, S: Shape<R, N>>(mesh: &Mesh
     let mut cells = Vec::with_capacity(mesh.cells.len() * parts.pow(R as u32));
     let mut numbers = Vec::with_capacity(values.len());
     for cell in 0..mesh.cell_count() {
-        let own = &mesh.cell(cell)[..corners];
         numbers.clear();
         for (at, values) in lattice::<R>(count + 1).zip(&values) {
-            let inside = at.iter().all(|i| (1..count).contains(i));
-            let place = if inside {
-                Place::Inside(cell, std::array::from_fn(|axis| at.get(axis).copied().unwrap_or_default()))
-            } else {
-                let mut among: Vec<_> =
-                    own.iter().enumerate().map(|(c, &node)| (node, weight(at, c))).collect();
-                among.retain(|(_, weight)| *weight > 0);
-                among.sort_unstable();
-                Place::Among(among)
-            };
-            numbers.push(nodes.at(place, cell, values));
+            let weights: Vec<usize> = (0..corners).map(|corner| weight(at, corner)).collect();
+            numbers.push(nodes.at(&weights, cell, values));
         }
         for part in lattice::<R>(parts) {
             cells.extend(steps.iter().map(|step| {

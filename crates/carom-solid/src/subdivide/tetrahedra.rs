@@ -8,7 +8,7 @@
 
 use carom_algebra::Vector;
 
-use super::nodes::{Nodes, Place};
+use super::nodes::Nodes;
 use crate::mesh::{Facet, Mesh};
 use crate::shape::{Shape, lattice};
 
@@ -31,16 +31,12 @@ pub(super) fn tetrahedra<const N: usize, S: Shape<3, N>>(mesh: &Mesh, parts: usi
     let mut nodes = Nodes::new(mesh);
     let mut cells = Vec::with_capacity(mesh.cells.len() * parts.pow(3));
     for cell in 0..mesh.cell_count() {
-        let corners: [usize; 4] = std::array::from_fn(|a| mesh.cell(cell)[a]);
         for child in of(cell) {
             cells.extend(steps.iter().map(|step| {
                 let at: Weights =
                     std::array::from_fn(|c| (0..4).map(|q| step[q] * child[q][c]).sum::<usize>());
                 let xi = Vector([1, 2, 3].map(|c| at[c] as f64 / count as f64));
-                let mut among: Vec<_> =
-                    corners.into_iter().zip(at).filter(|(_, weight)| *weight > 0).collect();
-                among.sort_unstable();
-                nodes.at(Place::Among(among), cell, &S::values(&xi))
+                nodes.at(&at, cell, &S::values(&xi))
             }));
         }
     }
