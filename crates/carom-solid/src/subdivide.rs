@@ -21,7 +21,6 @@ use carom_algebra::Vector;
 use crate::mesh::{Element, Facet, Mesh};
 use crate::shape::{
     Hex8, Hex27, Line2, Line3, Line4, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10, lattice,
-    line_shape,
 };
 use nodes::Nodes;
 use tensor::tensor;
@@ -36,9 +35,9 @@ impl Mesh {
             return self.clone();
         }
         match self.element {
-            Element::L2 => lines::<2, Line2>(self, parts),
-            Element::L3 => lines::<3, Line3>(self, parts),
-            Element::L4 => lines::<4, Line4>(self, parts),
+            Element::L2 => tensor::<1, 2, Line2>(self, parts),
+            Element::L3 => tensor::<1, 3, Line3>(self, parts),
+            Element::L4 => tensor::<1, 4, Line4>(self, parts),
             Element::T3 => triangles::<3, Tri3>(self, parts),
             Element::T6 => triangles::<6, Tri6>(self, parts),
             Element::T10 => triangles::<10, Tri10>(self, parts),
@@ -51,31 +50,6 @@ impl Mesh {
             Element::Hex27 => tensor::<3, 27, Hex27>(self, parts),
         }
     }
-}
-
-fn lines<const N: usize, S: Shape<1, N>>(mesh: &Mesh, parts: usize) -> Mesh {
-    let (degree, count) = (S::DEGREE, S::DEGREE * parts);
-    let mut nodes = Nodes::new(mesh);
-    let mut cells = Vec::with_capacity(mesh.cells.len() * parts);
-    for cell in 0..mesh.cell_count() {
-        let lattice: Vec<usize> = (0..=count)
-            .map(|i| {
-                let xi = 2.0 * i as f64 / count as f64 - 1.0;
-                nodes.at(&[count - i, i], cell, &line_shape(N, xi).values)
-            })
-            .collect();
-        for part in lattice.windows(degree + 1).step_by(degree) {
-            cells.extend([part[0], part[degree]]);
-            cells.extend(&part[1..degree]);
-        }
-    }
-    // A facet of a line is one of its ends.
-    let end = |facet: &Facet| {
-        let last = facet.nodes[0] != mesh.cell(facet.cell)[0];
-        let child = facet.cell * parts + if last { parts - 1 } else { 0 };
-        vec![Facet { cell: child, nodes: vec![cells[child * N + usize::from(last)]] }]
-    };
-    nodes.into_mesh(cells.clone(), end)
 }
 
 fn triangles<const N: usize, S: Shape<2, N>>(mesh: &Mesh, parts: usize) -> Mesh {

@@ -10,6 +10,7 @@ mod facets;
 mod facing;
 mod folds;
 mod gap;
+mod hand_over;
 mod node_to_facet;
 mod node_to_obstacle;
 mod obstacle;

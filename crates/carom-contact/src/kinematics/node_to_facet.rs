@@ -15,9 +15,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use carom_solid::FacetShape;
 
 use super::facets::Facets;
-use super::facing::{Next, PAST, REACH};
+use super::facing::{PAST, REACH};
 use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
+use super::hand_over::{Held, Next, Sliding};
 use super::opposed::is_left;
 use super::passed::{Passed, Paths};
 use super::surface::{Search, Surface, path};
@@ -242,87 +243,28 @@ impl Kinematics for NodeToFacet {
             return false;
         }
         let (before, now) = (self.places(before), self.places(now));
-        let Pairing { pairs, margin, left, fresh } = pairing;
-        let mut changed = false;
-        let starts = std::mem::replace(fresh, false);
-        // Facets of nodes in concave corners.
-        let twice: Vec<(usize, usize)> = pairs
-            .windows(2)
-            .filter(|two| two[0].node == two[1].node)
-            .flat_map(|two| [two[0], two[1]].map(|pair| (pair.node, pair.facet)))
-            .collect();
-        let mut in_corners = Vec::new();
         // A frozen contact point belongs to the positions at the start of the step.
         let placed = if self.is_frozen() { before } else { now };
-        pairs.retain_mut(|pair| {
+        let next = |pair: &Pair, came_from: Option<usize>| {
             let node = self.secondary[pair.node];
-            // Moves on to neighbours until the closest point lies on the facet, at most as many
-            // times as there are facets.
-            for _ in 0..=self.primary.facets() {
-                let came_from = left.get(&pair.node).copied();
-                let next = if self.ends_at(node, pair.facet, pair.xi) {
-                    Next::Leave
-                } else {
-                    self.primary.next_facet(pair, placed.at(node), came_from, placed)
-                };
-                let next = match next {
-                    Next::HandOver(facet, _) if !self.may_press(node, facet, placed) => {
-                        let leaves = self.primary.faces_nothing(pair.facet, pair.xi, placed);
-                        if leaves { Next::Leave } else { Next::Stay }
-                    }
-                    next => next,
-                };
-                match next {
-                    Next::Stay => return true,
-                    Next::HandOver(facet, _) | Next::Concave(facet, _)
-                        if twice.contains(&(pair.node, facet)) =>
-                    {
-                        // In the joint the node has both pairs. Beyond the reach of this facet that
-                        // of the other one is responsible: an extrapolated facet is not the
-                        // surface.
-                        if pair.xi.abs() <= REACH || pair.active && !starts {
-                            return true;
-                        }
-                        if pair.active {
-                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
-                            changed = true;
-                        }
-                        left.remove(&pair.node);
-                        return false;
-                    }
-                    Next::Concave(facet, xi) => {
-                        changed |= pair.active;
-                        in_corners.push(Pair::open(pair.node, facet, xi));
-                        return true;
-                    }
-                    Next::HandOver(facet, xi) => {
-                        if pair.active {
-                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
-                        }
-                        // At a concave joint an inactive pair may be in front of one facet and
-                        // behind the other.
-                        changed |=
-                            pair.active || self.gap(node, facet, xi, now) + self.slack(pair.node) < 0.0;
-                        left.insert(pair.node, pair.facet);
-                        (pair.facet, pair.xi) = (facet, xi);
-                    }
-                    Next::Leave if pair.active && !starts => return true,
-                    Next::Leave => {
-                        if pair.active {
-                            events.push(PairEvent::SlidOff { node, facet: pair.facet });
-                            changed = true;
-                        }
-                        left.remove(&pair.node);
-                        return false;
-                    }
-                }
+            if self.ends_at(node, pair.facet, pair.xi) {
+                return Next::Leave;
             }
-            true
-        });
-        if !in_corners.is_empty() {
-            pairs.append(&mut in_corners);
-            in_order(pairs);
-        }
+            match self.primary.next_facet(pair, placed.at(node), came_from, placed) {
+                Next::HandOver(facet, _) if !self.may_press(node, facet, placed) => {
+                    let leaves = self.primary.faces_nothing(pair.facet, pair.xi, placed);
+                    if leaves { Next::Leave } else { Next::Stay }
+                }
+                next => next,
+            }
+        };
+        let enters = |place: usize, facet: usize, [xi, _]: [f64; 2]| {
+            self.gap(self.secondary[place], facet, xi, now) + self.slack(place) < 0.0
+        };
+        let (held, is_near) = (Held::several(&pairing.pairs), |pair: &Pair| pair.xi.abs() <= REACH);
+        let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
+        let mut changed = sliding.search(pairing, held, is_near, enters, events);
+        let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         if tools.search.update(&self.primary, &self.secondary, *margin, before, now) {
             if let Some((folds, _)) = &self.folds {
@@ -431,33 +373,20 @@ impl Kinematics for NodeToFacet {
             return false;
         }
         let now = self.places(now);
-        let Pairing { pairs, left, .. } = pairing;
-        let mut changed = false;
-        let nodes: Vec<usize> = pairs.iter().map(|pair| pair.node).collect();
-        let in_corner = |p: usize| p > 0 && nodes[p - 1] == nodes[p] || nodes.get(p + 1) == Some(&nodes[p]);
-        for (_, pair) in pairs.iter_mut().enumerate().filter(|(p, pair)| pair.active && !in_corner(*p)) {
-            let came_from = left.get(&pair.node).copied();
-            if pair.xi.abs() <= if came_from.is_some() { HAND_BACK } else { HAND_OVER } {
-                continue;
-            }
-            let (from, mut previous) = (pair.facet, None);
-            for _ in 0..self.primary.facets() {
-                let node = self.secondary[pair.node];
-                let next = self.primary.next_facet(pair, now.at(node), previous, now);
-                let Next::HandOver(facet, xi) = next else { break };
-                if self.excludes(node, facet) || !self.may_press(node, facet, now) {
-                    break;
+        let next = |pair: &Pair, previous: Option<usize>| {
+            let node = self.secondary[pair.node];
+            match self.primary.next_facet(pair, now.at(node), previous, now) {
+                Next::HandOver(facet, _)
+                    if self.excludes(node, facet) || !self.may_press(node, facet, now) =>
+                {
+                    Next::Stay
                 }
-                previous = Some(pair.facet);
-                (pair.facet, pair.xi) = (facet, xi);
+                next => next,
             }
-            if pair.facet != from {
-                left.extend(previous.map(|facet| (pair.node, facet)));
-                events.push(PairEvent::HandOver { node: self.secondary[pair.node], from, to: pair.facet });
-                changed = true;
-            }
-        }
-        changed
+        };
+        let is_near = |pair: &Pair, came: bool| pair.xi.abs() <= if came { HAND_BACK } else { HAND_OVER };
+        let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
+        sliding.update(pairing, is_near, events)
     }
 
     fn start_step(&self, pair: &mut Pair, y: &[f64]) {

@@ -150,11 +150,16 @@ impl NodeToObstacle {
     /// Adds the row of a node with its gradient, that of the node which carries the obstacle, and
     /// the moment about that.
     fn push(&self, gap: f64, node: usize, [own, back]: [Point; 2], moment: f64, rows: &mut Rows) {
-        let carrier = self.carrier.as_ref();
-        let turn = carrier.and_then(|carrier| carrier.turn);
-        let of_carrier = carrier.map(|carrier| (carrier.node, back));
-        let of_turn = turn.map(|(angle, _, length)| (angle, [moment / length, 0.0, 0.0]));
-        rows.push(gap, std::iter::once((node, own)).chain(of_carrier).chain(of_turn));
+        let Some(Carrier { node: carrier, turn, .. }) = &self.carrier else {
+            return rows.push(gap, [(node, own)]);
+        };
+        match turn {
+            None => rows.push(gap, [(node, own), (*carrier, back)]),
+            Some((angle, _, length)) => {
+                let along = [moment / length, 0.0, 0.0];
+                rows.push(gap, [(node, own), (*carrier, back), (*angle, along)]);
+            }
+        }
     }
 
     /// Fills the blocks of a node and of the one that carries the obstacle with `entry(i, k)`, with

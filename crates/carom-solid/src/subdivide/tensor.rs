@@ -1,7 +1,7 @@
-//! A quadrilateral as `parts`² quadrilaterals, a hexahedron as `parts`³ hexahedra: the lattice of
-//! its reference square or cube. A point of the lattice is known to all cells that contain it by
-//! its multilinear weights at the corners, Π (i or count − i): on an edge or a face those of its
-//! corners alone are not zero.
+//! A line as `parts` lines, a quadrilateral as `parts`² quadrilaterals, a hexahedron as `parts`³
+//! hexahedra: the lattice of its reference interval, square or cube. A point of the lattice is
+//! known to all cells that contain it by its multilinear weights at the corners, Π (i or
+//! count − i): on an edge or a face those of its corners alone are not zero.
 
 use carom_algebra::Vector;
 
@@ -53,7 +53,7 @@ pub(super) fn tensor<const R: usize, const N: usize, S: Shape<R, N>>(mesh: &Mesh
         let its = |local: &&&[usize]| local.iter().all(|&a| facet.nodes.contains(&whole[a]));
         let local = mesh.element.facets().iter().find(its).copied().unwrap_or_default();
         // The corner at which the facet begins and the next ones along its two directions.
-        let [first, next, last] = [0, 1, (1 << (R - 1)) - 1].map(|k| steps[local[k]]);
+        let [first, next, last] = [0, 1.min(R - 1), (1 << (R - 1)) - 1].map(|k| steps[local[k]]);
         let along = lattice::<2>(parts).take(parts.pow(R as u32 - 1));
         let part = |[m, n]: At<2>| {
             let at: At<R> = std::array::from_fn(|axis| {
