@@ -5,7 +5,7 @@
 //! c > 0. Visited sets are stored. When one recurs, changes wait until Newton has converged; when
 //! one recurs again, only the worst pair changes at a time.
 
-use std::collections::HashSet;
+use crate::visited::Visited;
 
 /// A release needs λ above this fraction of the largest multiplier: ties stay active.
 const RELEASE: f64 = 1e-10;
@@ -23,19 +23,10 @@ pub struct Contender {
     pub stiffness: f64,
 }
 
-/// How often the set may change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Caution {
-    EveryIteration,
-    AfterConvergence,
-    OneAtATime,
-}
-
 /// History of the sets visited in one step.
 #[derive(Clone, Debug)]
 pub struct ActiveSet {
-    visited: HashSet<Vec<usize>>,
-    caution: Caution,
+    visited: Visited<Vec<usize>>,
     gap_tolerance: f64,
 }
 
@@ -51,19 +42,18 @@ impl ActiveSet {
     /// `gap_tolerance`: penetration that still counts as contact. `within`: changes are allowed
     /// before Newton has converged.
     pub fn new(gap_tolerance: f64, within: bool) -> Self {
-        let caution = if within { Caution::EveryIteration } else { Caution::AfterConvergence };
-        Self { visited: HashSet::new(), caution, gap_tolerance }
+        Self { visited: Visited::new(within), gap_tolerance }
     }
 
     /// Whether cycling has restricted changes to one pair at a time.
     pub fn is_cautious(&self) -> bool {
-        self.caution == Caution::OneAtATime
+        self.visited.is_cautious()
     }
 
     /// Indices of the pairs to change, given the state of an iteration. Empty if the set is correct
     /// or must not change yet.
     pub fn changes(&mut self, pairs: &[Contender], converged: bool) -> Result<Vec<usize>, Cycle> {
-        if self.caution > Caution::EveryIteration && !converged {
+        if self.visited.waits(converged) {
             return Ok(Vec::new());
         }
         let strongest = pairs.iter().map(|p| p.lambda.abs()).fold(0.0, f64::max);
@@ -84,22 +74,11 @@ impl ActiveSet {
         let after = |wrong: &[usize]| -> Vec<usize> {
             (0..pairs.len()).filter(|k| pairs[*k].active != wrong.contains(k)).collect()
         };
-        self.visited.insert(after(&[]));
-        if self.visited.contains(&after(&wrong)) {
-            match self.caution {
-                Caution::EveryIteration => {
-                    self.caution = Caution::AfterConvergence;
-                    self.visited.clear();
-                    return self.changes(pairs, converged);
-                }
-                Caution::AfterConvergence => {
-                    self.caution = Caution::OneAtATime;
-                    self.visited.clear();
-                }
-                Caution::OneAtATime => {}
-            }
+        self.visited.visit(after(&[]), &after(&wrong), converged);
+        if self.visited.waits(converged) {
+            return Ok(Vec::new());
         }
-        if self.caution == Caution::OneAtATime {
+        if self.visited.is_cautious() {
             wrong.sort_by(|&a, &b| violation(&pairs[b]).total_cmp(&violation(&pairs[a])));
             let untried = wrong.iter().copied().find(|&k| !self.visited.contains(&after(&[k])));
             return untried.map(|k| vec![k]).ok_or(Cycle { pairs: wrong });
@@ -109,7 +88,7 @@ impl ActiveSet {
 
     /// Clears the visited sets: the pairs themselves have changed.
     pub fn restart(&mut self) {
-        self.visited.clear();
+        self.visited.restart();
     }
 }
 

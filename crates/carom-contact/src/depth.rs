@@ -5,25 +5,15 @@
 //! if it is concave.
 
 use carom_algebra::Vector;
+use carom_solid::FacetShape;
 
-use crate::kinematics::Surface;
+use crate::kinematics::{Depth, Facets, Surface};
 use crate::places::Places;
-
-/// A point relative to a boundary.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Depth {
-    /// Distance to the boundary, positive outside.
-    pub distance: f64,
-    /// Nearest facet, and its point.
-    pub facet: usize,
-    /// ξ of that point, one coordinate in the plane.
-    pub xi: [f64; 2],
-}
 
 impl Surface {
     /// ξ of a facet's point nearest to a point, and its distance.
-    pub(crate) fn nearest(&self, facet: usize, point: [f64; 2], y: Places) -> (f64, f64) {
-        let (side, point) = (self.facet(facet), Vector(point));
+    pub(crate) fn nearest(&self, facet: usize, point: Vector<2>, y: Places) -> (f64, f64) {
+        let side = self.facet(facet);
         let distance = |xi: f64| (point - side.at(y, xi).position).norm();
         let ends = [-1.0, 1.0].map(|xi| (xi, distance(xi)));
         let inner = side.closest_point(y, point, 1.0).map(|xi| (xi, distance(xi)));
@@ -31,9 +21,44 @@ impl Surface {
         inner.filter(|inner| inner.1 < first.1).unwrap_or(first)
     }
 
-    /// Where a point lies whose nearest facet is known. Reads the positions of that facet and of
-    /// its neighbours alone.
-    pub(crate) fn depth(&self, facet: usize, point: [f64; 2], y: Places) -> Depth {
+    fn is_outside(&self, facet: usize, xi: f64, point: Vector<2>, y: Places) -> bool {
+        let at = self.facet(facet).at(y, xi);
+        (point - at.position).dot(&at.normal) >= 0.0
+    }
+
+    /// The same where the nearest point is an end of the facet: in front of either facet at a
+    /// convex joint, of both at a concave one, which is nearest to a remote point by round-off
+    /// only.
+    fn is_outside_joint(&self, facet: usize, xi: f64, point: Vector<2>, y: Places) -> bool {
+        let Some(neighbour) = self.neighbour(facet, xi > 0.0) else {
+            return self.is_outside(facet, xi, point, y);
+        };
+        let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
+        let (_, sine) = self.kink(first, second, y);
+        let [before, after] = [(first, 1.0), (second, -1.0)].map(|(f, xi)| self.is_outside(f, xi, point, y));
+        if sine > 0.0 { before || after } else { before && after }
+    }
+}
+
+impl Facets<2> for Surface {
+    fn shape(&self) -> FacetShape {
+        self.shape
+    }
+
+    fn nodes(&self) -> &[usize] {
+        &self.nodes
+    }
+
+    fn beside(&self, facet: usize) -> impl Iterator<Item = usize> {
+        [false, true].into_iter().filter_map(move |forward| self.neighbour(facet, forward))
+    }
+
+    fn distance(&self, facet: usize, point: Vector<2>, y: &[f64]) -> f64 {
+        self.nearest(facet, point, Places::new(y, 2)).1
+    }
+
+    fn depth(&self, facet: usize, point: Vector<2>, y: &[f64]) -> Depth {
+        let y = Places::new(y, 2);
         let (xi, distance) = self.nearest(facet, point, y);
         let joint = xi.abs() >= 1.0;
         let outside =
@@ -42,21 +67,8 @@ impl Surface {
         Depth { distance, facet, xi: [xi, 0.0] }
     }
 
-    fn is_outside(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {
-        let at = self.facet(facet).at(y, xi);
-        (Vector(point) - at.position).dot(&at.normal) >= 0.0
-    }
-
-    /// The same where the nearest point is an end of the facet: in front of either facet at a
-    /// convex joint, of both at a concave one, which is nearest to a remote point by round-off
-    /// only.
-    fn is_outside_joint(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {
-        let Some(neighbour) = self.neighbour(facet, xi > 0.0) else {
-            return self.is_outside(facet, xi, point, y);
-        };
-        let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
-        let (_, sine) = self.kink(first, second, y);
-        let [before, after] = [(first, 1.0), (second, -1.0)].map(|(f, xi)| self.is_outside(f, xi, point, y));
-        if sine > 0.0 { before || after } else { before && after }
+    fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> Vector<3> {
+        let [x, y] = self.facet(facet).at(Places::new(y, self.shape.dimension()), xi[0]).normal.0;
+        Vector([x, y, 0.0])
     }
 }

@@ -17,11 +17,10 @@
 //! direction sticks. A recurring set first makes changes wait for convergence, then allows one at a
 //! time, as in `active_set.rs`.
 
-use std::collections::HashSet;
-
 use serde::{Deserialize, Serialize};
 
 use crate::active_set::Cycle;
+use crate::visited::Visited;
 
 /// Excess of a traction over the cone, relative to the largest cone, that still sticks.
 const EDGE: f64 = 1e-10;
@@ -182,19 +181,10 @@ pub struct FrictionPair {
     pub cone: f64,
 }
 
-/// How often states may change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Caution {
-    EveryIteration,
-    AfterConvergence,
-    OneAtATime,
-}
-
 /// History of the states visited in one step.
 #[derive(Clone, Debug)]
 pub struct StickSlip {
-    visited: HashSet<Vec<Option<[i8; 2]>>>,
-    caution: Caution,
+    visited: Visited<Vec<Option<[i8; 2]>>>,
     slip_tolerance: f64,
 }
 
@@ -202,8 +192,7 @@ impl StickSlip {
     /// `slip_tolerance`: slip in the wrong direction that does not count. `within`: changes are
     /// allowed before Newton has converged.
     pub fn new(slip_tolerance: f64, within: bool) -> Self {
-        let caution = if within { Caution::EveryIteration } else { Caution::AfterConvergence };
-        Self { visited: HashSet::new(), caution, slip_tolerance }
+        Self { visited: Visited::new(within), slip_tolerance }
     }
 
     /// Pairs to change, with their new states; none for an open pair, or one that has no traction
@@ -216,7 +205,7 @@ impl StickSlip {
         pairs: &[Option<FrictionPair>],
         converged: bool,
     ) -> Result<Vec<(usize, FrictionState)>, Cycle> {
-        if self.caution > Caution::EveryIteration && !converged {
+        if self.visited.waits(converged) {
             return Ok(Vec::new());
         }
         let widest = pairs.iter().flatten().map(|pair| pair.cone).fold(0.0, f64::max);
@@ -242,22 +231,11 @@ impl StickSlip {
             wrong.iter().for_each(|&(p, friction_state, _)| states[p] = Some(friction_state.rounded()));
             states
         };
-        self.visited.insert(after(&[]));
-        if self.visited.contains(&after(&wrong)) {
-            match self.caution {
-                Caution::EveryIteration => {
-                    self.caution = Caution::AfterConvergence;
-                    self.visited.clear();
-                    return self.changes(pairs, converged);
-                }
-                Caution::AfterConvergence => {
-                    self.caution = Caution::OneAtATime;
-                    self.visited.clear();
-                }
-                Caution::OneAtATime => {}
-            }
+        self.visited.visit(after(&[]), &after(&wrong), converged);
+        if self.visited.waits(converged) {
+            return Ok(Vec::new());
         }
-        if self.caution == Caution::OneAtATime {
+        if self.visited.is_cautious() {
             // Sticks that leave the cone before slips in the wrong direction, the worst first.
             wrong.sort_by(|a, b| {
                 (a.1 == FrictionState::Stick).cmp(&(b.1 == FrictionState::Stick)).then(b.2.total_cmp(&a.2))
@@ -273,7 +251,7 @@ impl StickSlip {
 
     /// Clears the visited states: the pairs themselves have changed.
     pub fn restart(&mut self) {
-        self.visited.clear();
+        self.visited.restart();
     }
 }
 

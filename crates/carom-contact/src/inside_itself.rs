@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 
 use carom_algebra::Vector;
 
+use crate::kinematics::Facets;
 use crate::places::Places;
 use crate::skin::{CHORDS, Skin};
 
@@ -30,7 +31,7 @@ impl Skin {
                 }
                 let nearest = (0..surface.all())
                     .filter(|&other| !self.facet_nodes(other).contains(&node))
-                    .map(|other| (other, surface.nearest(other, at.at(node).0, at).1))
+                    .map(|other| (other, surface.nearest(other, at.at(node), at).1))
                     .min_by(|a, b| a.1.total_cmp(&b.1));
                 if let Some((other, distance)) = nearest
                     && deepest.is_none_or(|(.., most)| distance > most)

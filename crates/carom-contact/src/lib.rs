@@ -13,9 +13,9 @@ mod places;
 mod rows;
 mod skin;
 mod solid_angle;
+mod visited;
 
 pub use active_set::{ActiveSet, Contender, Cycle};
-pub use depth::Depth;
 pub use discrete_gradient::DiscreteGradient;
 pub use friction::{Along, FrictionPair, FrictionState, Law, Radius, StickSlip, Tangential, inner, length};
 pub use interface::{
@@ -23,9 +23,9 @@ pub use interface::{
     Unilateral,
 };
 pub use kinematics::{
-    BothSides, Boundary, Carrier, ClosedSurface, ContactPoint, Crossings, Detection, EdgeHit, EdgeToEdge,
+    BothSides, Boundary, Carrier, ClosedSurface, ContactPoint, Crossings, Depth, Detection, EdgeToEdge,
     Faceted, Kinematics, NodeToFacet, NodeToObstacle, NodeToPatch, Obstacle, OneWay, Passed, Polyline,
-    PolylineError, Side, Surface, Swept, SweptEdges, SweptPatch, SweptTest, WithEdges,
+    PolylineError, Side, SpaceHit, Surface, Swept, SweptEdges, SweptPatch, SweptTest, WithEdges,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

@@ -203,3 +203,13 @@ pub enum ContactError {
         xi: f64,
     },
 }
+
+impl ContactError {
+    /// An error for a node, given by its global number, and a pair without a unique closest point.
+    pub(crate) fn unless_regular(node: usize, pair: &Pair, a: f64) -> Result<(), Self> {
+        if a > 0.0 && a.is_finite() {
+            return Ok(());
+        }
+        Err(Self::Focal { node, facet: pair.facet, xi: pair.xi, a })
+    }
+}

@@ -4,6 +4,8 @@
 //! A gap g(y) is a frame-indifferent scalar; g < 0 is penetration. The force of a traction λ ≤ 0 is
 //! λ ∇g, which implies balance of force and moment.
 
+use carom_algebra::Vector;
+
 /// Constraint rows, all of one dimension.
 #[derive(Clone, Debug)]
 pub struct Rows {
@@ -85,6 +87,17 @@ impl Rows {
             self.gradients.extend_from_slice(&gradient[..self.dimension]);
         }
         self.starts.push(self.nodes.len());
+    }
+
+    /// Adds a row over the nodes of both sides from their ∂g/∂y in turn.
+    pub(crate) fn push_both<const P: usize>(
+        &mut self,
+        gap: f64,
+        [own, other]: [&[usize]; 2],
+        slopes: impl Iterator<Item = Vector<P>>,
+    ) {
+        let nodes = own.iter().chain(other);
+        self.push(gap, nodes.zip(slopes).map(|(&node, slope)| (node, slope.0)));
     }
 
     /// Adds the row of a remote pair: it depends on nothing.

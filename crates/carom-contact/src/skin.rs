@@ -6,8 +6,7 @@
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull, Tree};
 
-use crate::depth::Depth;
-use crate::kinematics::{Folds, Side, Surface, Turns, amplification};
+use crate::kinematics::{Depth, Facets, Folds, Side, Surface, Turns, amplification};
 use crate::places::Places;
 
 /// The boundary of a body at given positions.
@@ -23,7 +22,7 @@ pub struct Skin {
 impl Skin {
     /// All facets of a body's boundary, in the plane.
     pub fn new(surface: Surface) -> Self {
-        let hull = Hull::line(surface.shape().nodes(), 1.0);
+        let hull = Hull::facet(surface.shape());
         Self { surface, hull, tree: Tree::default(), folds: None }
     }
 
@@ -42,7 +41,7 @@ impl Skin {
 
     /// Global numbers of the nodes of a facet.
     pub fn facet_nodes(&self, facet: usize) -> &[usize] {
-        self.surface.facet(facet).nodes
+        self.surface.nodes_of(facet)
     }
 
     /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵅ|.
@@ -52,40 +51,31 @@ impl Skin {
 
     /// Moves the boundary to positions `y`, flat over all nodes.
     pub fn update(&mut self, y: &[f64]) {
-        let (surface, hull, y) = (&self.surface, &self.hull, Places::new(y, 2));
+        let (surface, hull) = (&self.surface, &self.hull);
         if let Some((folds, turns)) = &mut self.folds {
-            turns.update(folds, surface, y);
+            turns.update(folds, surface, Places::new(y, 2));
         }
-        let bounds = |facet: usize| {
-            let nodes = surface.facet(facet).nodes;
-            hull.bounds(|a| y.coordinates(nodes[a]))
-        };
-        if self.tree.is_empty() {
-            self.tree = Tree::new(surface.all(), bounds);
-        } else {
-            self.tree.update(bounds);
-        }
+        self.tree.place(surface.all(), |facet| surface.bounds(hull, facet, y));
     }
 
     /// Where a point lies at the positions of the last update, searched from a facet near it if one
     /// is known; `None` without a boundary.
     pub fn depth(&self, point: [f64; 2], from: Option<usize>, y: &[f64]) -> Option<Depth> {
-        let y = Places::new(y, 2);
-        let (facet, _) =
-            self.tree.nearest(&point, from, |facet| Some(self.surface.nearest(facet, point, y).1))?;
-        Some(self.surface.depth(facet, point, y))
+        let (surface, at) = (&self.surface, Vector(point));
+        let (facet, _) = self.tree.nearest(&point, from, |facet| Some(surface.distance(facet, at, y)))?;
+        Some(surface.depth(facet, at, y))
     }
 
     /// Where a node of the boundary lies relative to those parts of it that it may meet and that
     /// lie on one side of it in the order of the boundary, if one is nearer than `reach`.
     pub fn depth_of(&self, node: usize, side: Side, reach: f64, y: &[f64]) -> Option<Depth> {
         let (folds, turns) = self.folds.as_ref()?;
-        let y = Places::new(y, 2);
-        let point = y.at(node);
+        let places = Places::new(y, 2);
+        let point = places.at(node);
         let meets = |facet: usize| folds.admits(side, node, facet) && folds.face(turns, node, facet);
         let mut nearest: Option<(usize, f64)> = None;
         for facet in self.tree.meeting(&Bounds::of(&point.0).grown(reach)).filter(|&facet| meets(facet)) {
-            let (xi, distance) = self.surface.nearest(facet, point.0, y);
+            let (xi, distance) = self.surface.nearest(facet, point, places);
             // An end next to what the node cannot meet, such as its own facet, is no place to
             // enter.
             let beyond = || self.surface.neighbour(facet, xi > 0.0);
@@ -98,7 +88,7 @@ impl Skin {
                 nearest = Some((facet, distance));
             }
         }
-        nearest.map(|(facet, _)| self.surface.depth(facet, point.0, y))
+        nearest.map(|(facet, _)| self.surface.depth(facet, point, y))
     }
 
     /// Distance between a point and the boundary at ξ of a facet, which may lie elsewhere.
@@ -109,10 +99,10 @@ impl Skin {
     /// Whether two facets that do not meet at a joint cross each other at the positions of the last
     /// update; curved ones as chains of chords. Pairs that are `known` do not count.
     pub fn crosses_itself(&self, y: &[f64], known: impl Fn(usize, usize) -> bool) -> bool {
-        let y = Places::new(y, 2);
+        let places = Places::new(y, 2);
         let chords = if self.surface.shape().nodes() == 2 { 1 } else { CHORDS };
         let at = |facet: usize, k: usize| {
-            self.surface.facet(facet).at(y, 2.0 * k as f64 / chords as f64 - 1.0).position
+            self.surface.facet(facet).at(places, 2.0 * k as f64 / chords as f64 - 1.0).position
         };
         let crossing = |a: usize, b: usize| {
             (0..chords).any(|i| {
@@ -121,8 +111,8 @@ impl Skin {
             })
         };
         (0..self.surface.all()).any(|a| {
-            let bounds = self.bounds(a, y);
-            self.apart_from(a, &bounds).any(|b| b > a && !known(a, b) && crossing(a, b))
+            let bounds = self.surface.bounds(&self.hull, a, y);
+            self.surface.apart_from(a, &bounds, &self.tree).any(|b| b > a && !known(a, b) && crossing(a, b))
         })
     }
 
@@ -130,36 +120,9 @@ impl Skin {
     /// two facets that do not meet at a joint can cross; 0 where two are near at the positions of
     /// the last update.
     pub fn clearance_to_itself(&self, y: &[f64]) -> f64 {
-        let y = Places::new(y, 2);
-        let mut least = f64::INFINITY;
-        for a in 0..self.surface.all() {
-            let bounds = self.bounds(a, y);
-            let around = NEAR * bounds.size();
-            if self.apart_from(a, &bounds.grown(around)).next().is_some() {
-                return 0.0;
-            }
-            least = least.min(around);
-        }
-        // Either box grows.
-        least / (2.0 * self.hull.weight())
-    }
-
-    /// Box around a facet.
-    fn bounds(&self, facet: usize, y: Places) -> Bounds {
-        let nodes = self.surface.facet(facet).nodes;
-        self.hull.bounds(|k| y.coordinates(nodes[k]))
-    }
-
-    /// The facets that do not meet this one at a joint and whose boxes meet another box.
-    fn apart_from(&self, facet: usize, bounds: &Bounds) -> impl Iterator<Item = usize> {
-        let nodes = self.surface.facet(facet).nodes;
-        let joined = |b: usize| self.surface.facet(b).nodes.iter().any(|node| nodes.contains(node));
-        self.tree.meeting(bounds).filter(move |&b| !joined(b))
+        self.surface.clearance(&self.hull, &self.tree, y)
     }
 }
-
-/// Distance up to which a facet is near another one, over its size.
-const NEAR: f64 = 0.25;
 
 /// Chords of a curved facet.
 pub(crate) const CHORDS: usize = 4;

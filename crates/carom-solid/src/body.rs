@@ -44,9 +44,7 @@ pub trait Body: Send + Sync {
         y: &[f64],
         forces: &mut [f64],
         energies: &mut [f64],
-    ) -> Result<(), Inverted> {
-        one_by_one(self, first, y, forces, energies)
-    }
+    ) -> Result<(), Inverted>;
 
     /// Adds the nodal vectors of consecutive cells from `first` on, `N·D` numbers each, to `sum`,
     /// one over all nodes.
@@ -123,12 +121,7 @@ pub trait Body: Send + Sync {
     ///
     /// # Errors
     /// J of the first that is not certified.
-    fn cell_margins(&self, first: usize, y: &[f64], margins: &mut [f64]) -> Result<(), Inverted> {
-        for (k, margin) in margins.iter_mut().enumerate() {
-            *margin = self.cell_margin(first + k, y)?;
-        }
-        Ok(())
-    }
+    fn cell_margins(&self, first: usize, y: &[f64], margins: &mut [f64]) -> Result<(), Inverted>;
 
     /// A lower bound of the first θ at which J > 0 is not certified everywhere in a cell, while its
     /// nodes move on straight lines from `before`, θ = 0, to `now`, θ = 1; none if it is certified,
@@ -158,19 +151,4 @@ pub trait Body: Send + Sync {
 
     /// Density ρ₀.
     fn density(&self) -> f64;
-}
-
-/// [`Body::cell_forces`] by [`Body::cell_force`].
-pub(crate) fn one_by_one<B: Body + ?Sized>(
-    body: &B,
-    first: usize,
-    y: &[f64],
-    forces: &mut [f64],
-    energies: &mut [f64],
-) -> Result<(), Inverted> {
-    let dofs = body.mesh().element.dofs();
-    for (k, (force, energy)) in forces.chunks_exact_mut(dofs).zip(energies).enumerate() {
-        *energy = body.cell_force(first + k, y, force)?;
-    }
-    Ok(())
 }

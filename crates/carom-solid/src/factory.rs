@@ -1,15 +1,13 @@
 //! Builds a body, whose shape is a compile-time type, from a mesh and a law known at run time.
 
 use crate::body::Body;
+use crate::element_shape::of_shape;
 use crate::material::{
     Law, LinearElastic, Material, NeoHookean, PlaneStress, Pointwise, SaintVenantKirchhoff, Thickness,
-    Volumetric,
 };
 use crate::mesh::{Element, Mesh};
-use crate::shape::{
-    Hex8, Hex27, Line2, Line3, Line4, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10,
-};
-use crate::solid::{MeanDilatation, Solid, SolidError};
+use crate::shape::{Hex8, Quad4, Shape};
+use crate::solid::{Solid, SolidError};
 
 /// A law that bodies of every shape can be made of: each [`Material`] that is known in every
 /// dimension, your own included.
@@ -36,10 +34,18 @@ pub trait Constitutive: Send + Sync {
 
 impl<L: Material<1> + Material<2> + Thickness + Clone> Constitutive for L {
     fn body(&self, mesh: Mesh, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
-        match mesh.element.dimension() {
-            1 => bar(mesh, Box::new(self.clone()), density, thickness),
+        let element = mesh.element;
+        match element.dimension() {
+            1 => {
+                let other = SolidError::Dimension { element, dimension: 1 };
+                of_shape!(1, element, solid(mesh, Box::new(self.clone()), density, thickness), Err(other))
+            }
             2 => plane(mesh, Box::new(self.clone()), density, thickness),
-            _ => space(mesh, Box::new(self.clone()), density),
+            // Solids in space have no thickness.
+            _ => {
+                let other = SolidError::Dimension { element, dimension: 3 };
+                of_shape!(3, element, solid(mesh, Box::new(self.clone()), density, 1.0), Err(other))
+            }
         }
     }
 
@@ -94,7 +100,7 @@ pub fn plane_stress_body(
 }
 
 /// Body whose volumetric energy depends on one measure of the change of volume of each cell
-/// ([`MeanDilatation`]): quadrilaterals and hexahedra of degree 1, in plane strain or in space.
+/// (`solid/mean.rs`): quadrilaterals and hexahedra of degree 1, in plane strain or in space.
 ///
 /// # Errors
 /// As [`Constitutive::body`]; for another element, of which F is constant in a cell or the pressure
@@ -105,34 +111,10 @@ pub fn mean_dilatation_body(
     density: f64,
     thickness: f64,
 ) -> Result<Box<dyn Body>, SolidError> {
-    match law {
-        Law::NeoHookean { lambda, mu } => averaged(mesh, NeoHookean { lambda, mu }, density, thickness),
-        Law::SaintVenantKirchhoff { lambda, mu } => {
-            averaged(mesh, SaintVenantKirchhoff { lambda, mu }, density, thickness)
-        }
-        Law::LinearElastic { lambda, mu } => averaged(mesh, LinearElastic { lambda, mu }, density, thickness),
-    }
-}
-
-fn averaged<L: Volumetric<2> + Volumetric<3>>(
-    mesh: Mesh,
-    law: L,
-    density: f64,
-    thickness: f64,
-) -> Result<Box<dyn Body>, SolidError> {
     match mesh.element {
-        Element::Q4 => Ok(Box::new(MeanDilatation::<2, 4, Quad4, L>::new(mesh, law, density, thickness)?)),
-        Element::Hex8 => Ok(Box::new(MeanDilatation::<3, 8, Hex8, L>::new(mesh, law, density, 1.0)?)),
+        Element::Q4 => Ok(Box::new(Solid::<2, 4, Quad4>::averaged(mesh, law, density, thickness)?)),
+        Element::Hex8 => Ok(Box::new(Solid::<3, 8, Hex8>::averaged(mesh, law, density, 1.0)?)),
         element => Err(SolidError::NoMeanDilatation { element }),
-    }
-}
-
-fn bar(mesh: Mesh, law: Box<dyn Pointwise<1>>, density: f64, area: f64) -> Result<Box<dyn Body>, SolidError> {
-    match mesh.element {
-        Element::L2 => solid::<1, 2, Line2>(mesh, law, density, area),
-        Element::L3 => solid::<1, 3, Line3>(mesh, law, density, area),
-        Element::L4 => solid::<1, 4, Line4>(mesh, law, density, area),
-        element => Err(SolidError::Dimension { element, dimension: 1 }),
     }
 }
 
@@ -142,26 +124,9 @@ fn plane(
     density: f64,
     thickness: f64,
 ) -> Result<Box<dyn Body>, SolidError> {
-    match mesh.element {
-        Element::T3 => solid::<2, 3, Tri3>(mesh, law, density, thickness),
-        Element::T6 => solid::<2, 6, Tri6>(mesh, law, density, thickness),
-        Element::T10 => solid::<2, 10, Tri10>(mesh, law, density, thickness),
-        Element::Q4 => solid::<2, 4, Quad4>(mesh, law, density, thickness),
-        Element::Q9 => solid::<2, 9, Quad9>(mesh, law, density, thickness),
-        element => Err(SolidError::Dimension { element, dimension: 2 }),
-    }
-}
-
-/// Solids in space have no thickness.
-fn space(mesh: Mesh, law: Box<dyn Pointwise<3>>, density: f64) -> Result<Box<dyn Body>, SolidError> {
-    match mesh.element {
-        Element::Tet4 => solid::<3, 4, Tet4>(mesh, law, density, 1.0),
-        Element::Tet10 => solid::<3, 10, Tet10>(mesh, law, density, 1.0),
-        Element::Tet20 => solid::<3, 20, Tet20>(mesh, law, density, 1.0),
-        Element::Hex8 => solid::<3, 8, Hex8>(mesh, law, density, 1.0),
-        Element::Hex27 => solid::<3, 27, Hex27>(mesh, law, density, 1.0),
-        element => Err(SolidError::Dimension { element, dimension: 3 }),
-    }
+    let element = mesh.element;
+    let other = SolidError::Dimension { element, dimension: 2 };
+    of_shape!(2, element, solid(mesh, law, density, thickness), Err(other))
 }
 
 fn solid<const D: usize, const N: usize, S: Shape<D, N>>(

@@ -17,9 +17,6 @@ pub(crate) type Mats<const D: usize> = [[Lanes; D]; D];
 /// The blocks Kᵐⁿ, m ≤ n, of a tangent as `[n][m]`, before the sum over lanes.
 pub(crate) type Blocks<const D: usize, const N: usize> = [[Mats<D>; N]; N];
 
-/// ∂P/∂F at one point as blocks: `[J][L].0[i][j]` is ∂P_iJ/∂F_jL.
-pub(crate) type Moduli<const D: usize> = [[Mat<D>; D]; D];
-
 /// The maps (∂X/∂ξ)⁻¹ and weights of four consecutive cells with one point each.
 pub(crate) struct Packed<const D: usize> {
     pub(crate) maps: Mats<D>,
@@ -102,27 +99,12 @@ impl<const D: usize, const N: usize> Points<D, N> {
     }
 }
 
-/// Stores the moduli of one point times its weight.
+/// Stores the matrix of one point.
 #[inline(always)]
-pub(crate) fn set_moduli<const D: usize>(
-    moduli: &mut [[Mats<D>; D]; D],
-    point: usize,
-    of: &Moduli<D>,
-    weight: f64,
-) {
-    for j in 0..D {
-        for l in 0..D {
-            set(&mut moduli[j][l], point, &of[j][l], weight);
-        }
-    }
-}
-
-/// Stores the matrix of one point times its weight.
-#[inline(always)]
-pub(crate) fn set<const D: usize>(mats: &mut Mats<D>, point: usize, of: &Mat<D>, weight: f64) {
+pub(crate) fn set<const D: usize>(mats: &mut Mats<D>, point: usize, of: &Mat<D>) {
     for i in 0..D {
         for j in 0..D {
-            mats[i][j][point] = of.0[i][j] * weight;
+            mats[i][j][point] = of.0[i][j];
         }
     }
 }

@@ -8,9 +8,10 @@
 
 use carom_algebra::Vector;
 
-use crate::mesh::{Element, Mesh};
+use crate::element_shape::of_shape;
+use crate::mesh::Mesh;
 use crate::reference::gradient;
-use crate::shape::{Hex8, Hex27, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10};
+use crate::shape::Shape;
 
 impl Mesh {
     /// The smallest scaled Jacobian of its cells; none for bars.
@@ -22,19 +23,10 @@ impl Mesh {
     /// # Ok::<(), carom_solid::generate::MeshError>(())
     /// ```
     pub fn scaled_jacobian(&self) -> Option<f64> {
-        match self.element {
-            Element::L2 | Element::L3 | Element::L4 => None,
-            Element::T3 => Some(smallest::<2, 3, Tri3>(self)),
-            Element::T6 => Some(smallest::<2, 6, Tri6>(self)),
-            Element::T10 => Some(smallest::<2, 10, Tri10>(self)),
-            Element::Tet4 => Some(smallest::<3, 4, Tet4>(self)),
-            Element::Tet10 => Some(smallest::<3, 10, Tet10>(self)),
-            Element::Tet20 => Some(smallest::<3, 20, Tet20>(self)),
-            Element::Q4 => Some(smallest::<2, 4, Quad4>(self)),
-            Element::Q9 => Some(smallest::<2, 9, Quad9>(self)),
-            Element::Hex8 => Some(smallest::<3, 8, Hex8>(self)),
-            Element::Hex27 => Some(smallest::<3, 27, Hex27>(self)),
-        }
+        Some(match self.element.dimension() {
+            2 => of_shape!(2, self.element, smallest(self), return None),
+            _ => of_shape!(3, self.element, smallest(self), return None),
+        })
     }
 }
 

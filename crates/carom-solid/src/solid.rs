@@ -20,7 +20,7 @@ use std::sync::OnceLock;
 
 use carom_algebra::{Mat, Vector};
 
-use crate::material::Pointwise;
+use crate::material::{Mean, Pointwise};
 use crate::mesh::{Element, Facet, Mesh};
 use crate::points::{LANES, Packed, Points};
 use crate::quadrature::Rule;
@@ -69,6 +69,8 @@ struct Place<const D: usize> {
 pub struct Solid<const D: usize, const N: usize, S> {
     mesh: Mesh,
     law: Box<dyn Pointwise<D>>,
+    /// Mean dilatation: the law is then that without its volumetric part.
+    mean: Option<Mean<D>>,
     density: f64,
     thickness: f64,
     /// Quadrature points for forces of each cell.
@@ -115,10 +117,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let cells = mesh.cell_count();
         let mut mirrored = Mat::ZERO;
         mirrored.0[0][0] = -2.0;
-        let may_invert = law.cauchy_at(&mirrored).is_ok();
+        let may_invert = law.state_at(&mirrored).is_ok();
         let mut solid = Self {
             mesh,
             law,
+            mean: None,
             density,
             thickness,
             places: Vec::with_capacity(cells),
@@ -258,5 +261,3 @@ mod mean;
 mod rotation;
 #[cfg(test)]
 mod rules;
-
-pub use mean::MeanDilatation;

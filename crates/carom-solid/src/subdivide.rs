@@ -19,12 +19,12 @@ use std::collections::HashMap;
 use carom_algebra::Vector;
 
 use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::line_shape;
 use crate::shape::{
-    Hex8, Hex27, Line2, Line3, Line4, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10,
+    Hex8, Hex27, Line2, Line3, Line4, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10, lattice,
 };
-use nodes::{Nodes, Place};
+use nodes::Nodes;
 use tensor::tensor;
+pub(crate) use tetrahedra::freudenthal;
 use tetrahedra::tetrahedra;
 
 impl Mesh {
@@ -35,9 +35,9 @@ impl Mesh {
             return self.clone();
         }
         match self.element {
-            Element::L2 => lines::<2, Line2>(self, parts),
-            Element::L3 => lines::<3, Line3>(self, parts),
-            Element::L4 => lines::<4, Line4>(self, parts),
+            Element::L2 => tensor::<1, 2, Line2>(self, parts),
+            Element::L3 => tensor::<1, 3, Line3>(self, parts),
+            Element::L4 => tensor::<1, 4, Line4>(self, parts),
             Element::T3 => triangles::<3, Tri3>(self, parts),
             Element::T6 => triangles::<6, Tri6>(self, parts),
             Element::T10 => triangles::<10, Tri10>(self, parts),
@@ -52,40 +52,9 @@ impl Mesh {
     }
 }
 
-fn lines<const N: usize, S: Shape<1, N>>(mesh: &Mesh, parts: usize) -> Mesh {
-    let (degree, count) = (S::DEGREE, S::DEGREE * parts);
-    let mut nodes = Nodes::new(mesh);
-    let mut cells = Vec::with_capacity(mesh.cells.len() * parts);
-    for cell in 0..mesh.cell_count() {
-        let ends = [mesh.cell(cell)[0], mesh.cell(cell)[1]];
-        let lattice: Vec<usize> = (0..=count)
-            .map(|i| {
-                let place = match i {
-                    0 => Place::Corner(ends[0]),
-                    i if i == count => Place::Corner(ends[1]),
-                    i => Place::Inside(cell, [i, 0, 0]),
-                };
-                let xi = 2.0 * i as f64 / count as f64 - 1.0;
-                nodes.at(place, cell, &line_shape(N, xi).values)
-            })
-            .collect();
-        for part in lattice.windows(degree + 1).step_by(degree) {
-            cells.extend([part[0], part[degree]]);
-            cells.extend(&part[1..degree]);
-        }
-    }
-    // A facet of a line is one of its ends.
-    let end = |facet: &Facet| {
-        let last = facet.nodes[0] != mesh.cell(facet.cell)[0];
-        let child = facet.cell * parts + if last { parts - 1 } else { 0 };
-        vec![Facet { cell: child, nodes: vec![cells[child * N + usize::from(last)]] }]
-    };
-    nodes.into_mesh(cells.clone(), end)
-}
-
 fn triangles<const N: usize, S: Shape<2, N>>(mesh: &Mesh, parts: usize) -> Mesh {
     let (degree, count) = (S::DEGREE, S::DEGREE * parts);
-    let steps = S::NODES.map(|xi| [0, 1].map(|i| (xi[i] * degree as f64).round() as usize));
+    let steps = lattice::<2, N, S>();
     // Upright triangles row by row, each followed by the inverted one on its right.
     let children: Vec<([usize; 2], bool)> = (0..parts)
         .flat_map(|q| (0..parts - q).flat_map(move |p| [([p, q], true), ([p, q], false)]))
@@ -96,13 +65,11 @@ fn triangles<const N: usize, S: Shape<2, N>>(mesh: &Mesh, parts: usize) -> Mesh 
     let mut cells = Vec::with_capacity(mesh.cells.len() * parts * parts);
     let mut lattice: HashMap<[usize; 2], usize> = HashMap::new();
     for cell in 0..mesh.cell_count() {
-        let corners = [0, 1, 2].map(|a| mesh.cell(cell)[a]);
         lattice.clear();
         for j in 0..=count {
             for i in 0..=count - j {
                 let xi = Vector([i as f64 / count as f64, j as f64 / count as f64]);
-                let place = place(corners, [i, j], count, cell);
-                lattice.insert([i, j], nodes.at(place, cell, &S::values(&xi)));
+                lattice.insert([i, j], nodes.at(&[count - i - j, i, j], cell, &S::values(&xi)));
             }
         }
         for &([p, q], upright) in &children {
@@ -125,21 +92,4 @@ fn triangles<const N: usize, S: Shape<2, N>>(mesh: &Mesh, parts: usize) -> Mesh 
         (0..parts).map(part).collect()
     };
     nodes.into_mesh(cells.clone(), divided)
-}
-
-/// What identifies the node (i, j) of a triangle's lattice.
-fn place(corners: [usize; 3], [i, j]: [usize; 2], count: usize, cell: usize) -> Place {
-    let l = [count - i - j, i, j];
-    if let Some(a) = l.iter().position(|&x| x == count) {
-        return Place::Corner(corners[a]);
-    }
-    match l.iter().position(|&x| x == 0) {
-        // On the edge opposite to corner a.
-        Some(a) => {
-            let [b, c] = [(a + 1) % 3, (a + 2) % 3];
-            let (first, second) = if corners[b] < corners[c] { (b, c) } else { (c, b) };
-            Place::Edge([corners[first], corners[second]], l[second])
-        }
-        None => Place::Inside(cell, [i, j, 0]),
-    }
 }

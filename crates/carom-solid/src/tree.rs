@@ -40,6 +40,15 @@ impl Tree {
         tree
     }
 
+    /// Moves the boxes of a tree of `count` boxes, or makes one of an empty tree.
+    pub fn place(&mut self, count: usize, bounds: impl Fn(usize) -> Bounds) {
+        if self.is_empty() {
+            *self = Self::new(count, bounds);
+        } else {
+            self.update(bounds);
+        }
+    }
+
     /// Number of boxes.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -26,10 +26,6 @@ impl Augmented {
 }
 
 impl Interface for Augmented {
-    fn is_constraint(&self) -> bool {
-        true
-    }
-
     fn direction(&self) -> Direction {
         self.direction
     }

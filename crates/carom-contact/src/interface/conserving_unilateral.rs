@@ -14,10 +14,6 @@ use super::{Answer, Direction, Interface, Point, Unilateral};
 pub struct ConservingUnilateral;
 
 impl Interface for ConservingUnilateral {
-    fn is_constraint(&self) -> bool {
-        true
-    }
-
     fn direction(&self) -> Direction {
         Direction::DiscreteGradient
     }

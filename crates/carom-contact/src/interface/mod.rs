@@ -70,7 +70,9 @@ pub enum Direction {
 /// A contact law with its enforcement.
 pub trait Interface: Send + Sync {
     /// Whether its pairs are constraints: an active set decides which of them are active.
-    fn is_constraint(&self) -> bool;
+    fn is_constraint(&self) -> bool {
+        true
+    }
 
     /// Direction of its force.
     fn direction(&self) -> Direction {
@@ -81,8 +83,7 @@ pub trait Interface: Send + Sync {
     fn respond(&self, at: &Point) -> Answer;
 
     /// Spring stiffness of a secondary node; none for a constraint.
-    fn stiffness(&self, node: usize) -> Option<f64> {
-        let _ = node;
+    fn stiffness(&self, _node: usize) -> Option<f64> {
         None
     }
 }

@@ -28,7 +28,6 @@ impl Interface for Penalty {
         Answer {
             active: true,
             lambda: k * at.gap,
-            open: 0.0,
             compliance: k.recip(),
             energy: 0.5 * k * at.gap * at.gap,
             ..Answer::default()

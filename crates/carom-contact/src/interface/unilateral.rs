@@ -8,10 +8,6 @@ use super::{Answer, Interface, Point};
 pub struct Unilateral;
 
 impl Interface for Unilateral {
-    fn is_constraint(&self) -> bool {
-        true
-    }
-
     fn respond(&self, at: &Point) -> Answer {
         if at.active {
             Answer { active: true, lambda: at.lambda, open: at.gap, ..Answer::default() }

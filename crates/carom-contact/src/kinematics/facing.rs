@@ -11,6 +11,7 @@
 
 use carom_algebra::Vector;
 
+use super::hand_over::Next;
 use super::surface::Surface;
 use crate::pair::Pair;
 use crate::places::Places;
@@ -62,12 +63,12 @@ impl Surface {
             return if self.faces_nothing(pair.facet, pair.xi, y) { Next::Leave } else { Next::Stay };
         };
         if came_from == Some(neighbour) {
-            return Next::Concave(neighbour, if forward { -1.0 } else { 1.0 });
+            return Next::Concave(neighbour, [if forward { -1.0 } else { 1.0 }, 0.0]);
         }
         if let Some(xi) = self.facet(neighbour).closest_point(y, from, REACH) {
             let inside = if forward { xi >= -1.0 } else { xi <= 1.0 };
             if inside {
-                return Next::HandOver(neighbour, xi);
+                return Next::HandOver(neighbour, [xi, 0.0]);
             }
         }
         // Past both ends: in the vertex cone of a convex joint.
@@ -109,14 +110,4 @@ pub(super) struct Closest {
     pub(super) gap: f64,
     /// Distance from the facet, with the distance past its end.
     distance: f64,
-}
-
-/// Where a pair past the end of its facet belongs.
-pub(super) enum Next {
-    Stay,
-    /// On the neighbour, at ξ.
-    HandOver(usize, f64),
-    /// On the neighbour too, at ξ.
-    Concave(usize, f64),
-    Leave,
 }

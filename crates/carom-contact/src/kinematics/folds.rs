@@ -26,6 +26,7 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
+use super::facets::Facets;
 use super::surface::Surface;
 use crate::places::Places;
 

@@ -6,9 +6,11 @@
 mod apart;
 mod both_sides;
 mod candidate;
+mod facets;
 mod facing;
 mod folds;
 mod gap;
+mod hand_over;
 mod node_to_facet;
 mod node_to_obstacle;
 mod obstacle;
@@ -25,6 +27,8 @@ mod trajectory;
 mod way;
 
 pub use both_sides::BothSides;
+pub use facets::Depth;
+pub(crate) use facets::Facets;
 pub use folds::Side;
 pub(crate) use folds::{Folds, Turns};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
@@ -35,7 +39,7 @@ pub use passed::Passed;
 pub(crate) use space::cross;
 pub use space::{Boundary, ClosedSurface, EdgeToEdge, NodeToPatch, WithEdges};
 pub use surface::Surface;
-pub use swept::{Crossings, EdgeHit, PatchHit, Swept, SweptEdges, SweptPatch, SweptTest};
+pub use swept::{Crossings, SpaceHit, Swept, SweptEdges, SweptPatch, SweptTest};
 pub(crate) use way::amplification;
 
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
@@ -55,8 +59,7 @@ pub trait Kinematics: Send + Sync {
 
     /// Depth that a secondary node, given by index, may have without contact: its gap is larger by
     /// that.
-    fn allowed(&self, node: usize) -> f64 {
-        let _ = node;
+    fn allowed(&self, _node: usize) -> f64 {
         0.0
     }
 
@@ -106,8 +109,7 @@ pub trait Kinematics: Send + Sync {
     /// The node, or edge, that was deepest inside the primary's body between `before` and `now`,
     /// and outside it at both: its motion is that of a step without contact. `bounce`: allowed
     /// depth, over the length of a facet, of a node that leaves on the side on which it entered.
-    fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
-        let _ = (before, now, bounce);
+    fn passed(&self, _before: &[f64], _now: &[f64], _bounce: f64) -> Option<Passed> {
         None
     }
 
@@ -119,16 +121,13 @@ pub trait Kinematics: Send + Sync {
     /// Hands over active pairs that have slid well past the end of their facet during the
     /// iteration: a facet's extrapolation is not the surface. Unlike [`search`](Self::search), it
     /// allows a pair to return. Returns whether there was one.
-    fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
-        let _ = (now, pairing, events);
+    fn update_facets(&self, _now: &[f64], _pairing: &mut Pairing, _events: &mut Vec<PairEvent>) -> bool {
         false
     }
 
     /// Prepares a pair for a step from positions `y`: moves its contact point to the closest point,
     /// where [`measure`](Self::measure) does not.
-    fn start_step(&self, pair: &mut Pair, y: &[f64]) {
-        let _ = (pair, y);
-    }
+    fn start_step(&self, _pair: &mut Pair, _y: &[f64]) {}
 
     /// Adds the row of a pair at positions `y` to `rows`. Sets `pair.xi` to the closest point,
     /// unless contact points are frozen.

@@ -14,13 +14,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use carom_solid::FacetShape;
 
-use super::facing::{Next, PAST, REACH};
+use super::facets::Facets;
+use super::facing::{PAST, REACH};
 use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
+use super::hand_over::{Held, Next, Sliding};
 use super::opposed::is_left;
 use super::passed::{Passed, Paths};
-use super::surface::{Search, Surface};
+use super::surface::{Search, Surface, path};
 use super::swept::SweptTest;
+use super::trajectory::crossing;
+use super::way::Met;
 use super::{Kinematics, watch_every_node, zero};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
@@ -239,87 +243,28 @@ impl Kinematics for NodeToFacet {
             return false;
         }
         let (before, now) = (self.places(before), self.places(now));
-        let Pairing { pairs, margin, left, fresh } = pairing;
-        let mut changed = false;
-        let starts = std::mem::replace(fresh, false);
-        // Facets of nodes in concave corners.
-        let twice: Vec<(usize, usize)> = pairs
-            .windows(2)
-            .filter(|two| two[0].node == two[1].node)
-            .flat_map(|two| [two[0], two[1]].map(|pair| (pair.node, pair.facet)))
-            .collect();
-        let mut in_corners = Vec::new();
         // A frozen contact point belongs to the positions at the start of the step.
         let placed = if self.is_frozen() { before } else { now };
-        pairs.retain_mut(|pair| {
+        let next = |pair: &Pair, came_from: Option<usize>| {
             let node = self.secondary[pair.node];
-            // Moves on to neighbours until the closest point lies on the facet, at most as many
-            // times as there are facets.
-            for _ in 0..=self.primary.facets() {
-                let came_from = left.get(&pair.node).copied();
-                let next = if self.ends_at(node, pair.facet, pair.xi) {
-                    Next::Leave
-                } else {
-                    self.primary.next_facet(pair, placed.at(node), came_from, placed)
-                };
-                let next = match next {
-                    Next::HandOver(facet, _) if !self.may_press(node, facet, placed) => {
-                        let leaves = self.primary.faces_nothing(pair.facet, pair.xi, placed);
-                        if leaves { Next::Leave } else { Next::Stay }
-                    }
-                    next => next,
-                };
-                match next {
-                    Next::Stay => return true,
-                    Next::HandOver(facet, _) | Next::Concave(facet, _)
-                        if twice.contains(&(pair.node, facet)) =>
-                    {
-                        // In the joint the node has both pairs. Beyond the reach of this facet that
-                        // of the other one is responsible: an extrapolated facet is not the
-                        // surface.
-                        if pair.xi.abs() <= REACH || pair.active && !starts {
-                            return true;
-                        }
-                        if pair.active {
-                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
-                            changed = true;
-                        }
-                        left.remove(&pair.node);
-                        return false;
-                    }
-                    Next::Concave(facet, xi) => {
-                        changed |= pair.active;
-                        in_corners.push(Pair::open(pair.node, facet, xi));
-                        return true;
-                    }
-                    Next::HandOver(facet, xi) => {
-                        if pair.active {
-                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
-                        }
-                        // At a concave joint an inactive pair may be in front of one facet and
-                        // behind the other.
-                        changed |=
-                            pair.active || self.gap(node, facet, xi, now) + self.slack(pair.node) < 0.0;
-                        left.insert(pair.node, pair.facet);
-                        (pair.facet, pair.xi) = (facet, xi);
-                    }
-                    Next::Leave if pair.active && !starts => return true,
-                    Next::Leave => {
-                        if pair.active {
-                            events.push(PairEvent::SlidOff { node, facet: pair.facet });
-                            changed = true;
-                        }
-                        left.remove(&pair.node);
-                        return false;
-                    }
-                }
+            if self.ends_at(node, pair.facet, pair.xi) {
+                return Next::Leave;
             }
-            true
-        });
-        if !in_corners.is_empty() {
-            pairs.append(&mut in_corners);
-            in_order(pairs);
-        }
+            match self.primary.next_facet(pair, placed.at(node), came_from, placed) {
+                Next::HandOver(facet, _) if !self.may_press(node, facet, placed) => {
+                    let leaves = self.primary.faces_nothing(pair.facet, pair.xi, placed);
+                    if leaves { Next::Leave } else { Next::Stay }
+                }
+                next => next,
+            }
+        };
+        let enters = |place: usize, facet: usize, [xi, _]: [f64; 2]| {
+            self.gap(self.secondary[place], facet, xi, now) + self.slack(place) < 0.0
+        };
+        let (held, is_near) = (Held::several(&pairing.pairs), |pair: &Pair| pair.xi.abs() <= REACH);
+        let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
+        let mut changed = sliding.search(pairing, held, is_near, enters, events);
+        let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         if tools.search.update(&self.primary, &self.secondary, *margin, before, now) {
             if let Some((folds, _)) = &self.folds {
@@ -393,20 +338,34 @@ impl Kinematics for NodeToFacet {
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         let Tools { search, swept, .. } = &mut *tools;
+        let [start, end] = [before, now].map(|y| self.places(y));
+        // Within one piece, a path may begin and end on either side of its own boundary.
+        let is_itself = self.folds.as_ref().is_some_and(|(folds, _)| !folds.has_pieces());
+        let is_point = self.primary.shape() == FacetShape::Point;
+        if is_itself || is_point || !self.primary.is_whole() || search.is_apart(0.0, start, end) {
+            return None;
+        }
+        let bounds = |node: usize, facet: usize| {
+            self.folds.as_ref().is_none_or(|(folds, _)| folds.is_of_another_piece(node, facet))
+        };
         let paths = Paths {
-            surface: &self.primary,
+            boundary: &self.primary,
             nodes: &self.secondary,
             allowed: &|place| self.slack(place),
-            enters: &|_, _| true,
-            bounds: &|_, _| true,
+            enters: &|node, facet| !self.excludes(node, facet),
+            bounds: &bounds,
             bounce,
         };
-        let Some((folds, side)) = &self.folds else { return paths.deepest(search, swept, [before, now]) };
-        // Within one piece, a path may begin and end on either side of its own boundary.
-        let bounds = |node: usize, facet: usize| folds.is_of_another_piece(node, facet);
-        let enters = |node: usize, facet: usize| folds.admits(*side, node, facet);
-        let among = Paths { enters: &enters, bounds: &bounds, ..paths };
-        folds.has_pieces().then(|| among.deepest(search, swept, [before, now])).flatten()
+        let motion = paths.motion([before, now])?;
+        if !search.update(&self.primary, &self.secondary, 0.0, start, end) {
+            return None;
+        }
+        let of_node = |node: usize| path([start, end].map(|y| y.coordinates(node)));
+        paths.deepest(motion, [before, now], search.tree(), of_node, |facet, ends, _, node| {
+            let [from, to] = ends.map(|y| self.places(y));
+            let met = crossing(swept, self.primary.facet(facet), from, to, node)?;
+            Some(Met { theta: met.theta, facet, xi: [met.xi, 0.0] })
+        })
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
@@ -414,33 +373,20 @@ impl Kinematics for NodeToFacet {
             return false;
         }
         let now = self.places(now);
-        let Pairing { pairs, left, .. } = pairing;
-        let mut changed = false;
-        let nodes: Vec<usize> = pairs.iter().map(|pair| pair.node).collect();
-        let in_corner = |p: usize| p > 0 && nodes[p - 1] == nodes[p] || nodes.get(p + 1) == Some(&nodes[p]);
-        for (_, pair) in pairs.iter_mut().enumerate().filter(|(p, pair)| pair.active && !in_corner(*p)) {
-            let came_from = left.get(&pair.node).copied();
-            if pair.xi.abs() <= if came_from.is_some() { HAND_BACK } else { HAND_OVER } {
-                continue;
-            }
-            let (from, mut previous) = (pair.facet, None);
-            for _ in 0..self.primary.facets() {
-                let node = self.secondary[pair.node];
-                let next = self.primary.next_facet(pair, now.at(node), previous, now);
-                let Next::HandOver(facet, xi) = next else { break };
-                if self.excludes(node, facet) || !self.may_press(node, facet, now) {
-                    break;
+        let next = |pair: &Pair, previous: Option<usize>| {
+            let node = self.secondary[pair.node];
+            match self.primary.next_facet(pair, now.at(node), previous, now) {
+                Next::HandOver(facet, _)
+                    if self.excludes(node, facet) || !self.may_press(node, facet, now) =>
+                {
+                    Next::Stay
                 }
-                previous = Some(pair.facet);
-                (pair.facet, pair.xi) = (facet, xi);
+                next => next,
             }
-            if pair.facet != from {
-                left.extend(previous.map(|facet| (pair.node, facet)));
-                events.push(PairEvent::HandOver { node: self.secondary[pair.node], from, to: pair.facet });
-                changed = true;
-            }
-        }
-        changed
+        };
+        let is_near = |pair: &Pair, came: bool| pair.xi.abs() <= if came { HAND_BACK } else { HAND_OVER };
+        let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
+        sliding.update(pairing, is_near, events)
     }
 
     fn start_step(&self, pair: &mut Pair, y: &[f64]) {
@@ -463,14 +409,9 @@ impl Kinematics for NodeToFacet {
             }
         }
         let gap = self.gap_of(pair, y);
-        if gap.a <= 0.0 || !gap.a.is_finite() {
-            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a: gap.a });
-        }
-        let nodes = std::iter::once(&node).chain(facet.nodes);
-        rows.push(
-            gap.distance + self.slack(pair.node),
-            nodes.zip(gap.gradient(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)),
-        );
+        ContactError::unless_regular(node, pair, gap.a)?;
+        let slopes = gap.gradient(facet.nodes.len());
+        rows.push_both(gap.distance + self.slack(pair.node), [&[node], facet.nodes], slopes);
         Ok(())
     }
 
@@ -486,11 +427,8 @@ impl Kinematics for NodeToFacet {
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let (node, facet) = (self.secondary[pair.node], self.primary.facet(pair.facet));
         let gap = self.gap_of(pair, self.places(y));
-        if gap.a <= 0.0 || !gap.a.is_finite() {
-            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a: gap.a });
-        }
-        let nodes = std::iter::once(&node).chain(facet.nodes);
-        rows.push(0.0, nodes.zip(gap.slip(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)));
+        ContactError::unless_regular(node, pair, gap.a)?;
+        rows.push_both(0.0, [&[node], facet.nodes], gap.slip(facet.nodes.len()));
         Ok(())
     }
 

@@ -25,7 +25,7 @@
 
 use carom_algebra::Vector;
 
-use super::obstacle::{AtCorner, Near, Obstacle, Point};
+use super::obstacle::{AtCorner, Near, Obstacle, Point, dot};
 use super::passed::Passed;
 use super::tangents::tangents;
 use super::way::{SHARE, share};
@@ -145,6 +145,33 @@ impl NodeToObstacle {
         }
         let tan = half.tan();
         [tan / half, (1.0 + tan * tan) / half - tan / (half * half)]
+    }
+
+    /// Adds the row of a node with its gradient, that of the node which carries the obstacle, and
+    /// the moment about that.
+    fn push(&self, gap: f64, node: usize, [own, back]: [Point; 2], moment: f64, rows: &mut Rows) {
+        let Some(Carrier { node: carrier, turn, .. }) = &self.carrier else {
+            return rows.push(gap, [(node, own)]);
+        };
+        match turn {
+            None => rows.push(gap, [(node, own), (*carrier, back)]),
+            Some((angle, _, length)) => {
+                let along = [moment / length, 0.0, 0.0];
+                rows.push(gap, [(node, own), (*carrier, back), (*angle, along)]);
+            }
+        }
+    }
+
+    /// Fills the blocks of a node and of the one that carries the obstacle with `entry(i, k)`, with
+    /// the other sign between the two.
+    fn fill(&self, matrix: &mut [f64], entry: impl Fn(usize, usize) -> f64) {
+        let (d, size) = (self.dimension, self.stencil() * self.dimension);
+        let blocks = self.stencil().min(2);
+        for (p, q) in (0..blocks).flat_map(|p| (0..blocks).map(move |q| (p, q))) {
+            for (i, k) in (0..d).flat_map(|i| (0..d).map(move |k| (i, k))) {
+                matrix[(p * d + i) * size + q * d + k] = sign(p) * sign(q) * entry(i, k);
+            }
+        }
     }
 
     fn near(&self, piece: usize, at: Point, node: usize) -> Result<Near, ContactError> {
@@ -269,16 +296,8 @@ impl Kinematics for NodeToObstacle {
         let mut near = self.near(pair.facet, at, node)?;
         near.gap += self.kept(pair.node);
         let n = rotated(near.normal, turn);
-        match &self.carrier {
-            None => rows.push(near.gap, [(node, n)]),
-            Some(Carrier { node: carrier, turn: None, .. }) => {
-                rows.push(near.gap, [(node, n), (*carrier, n.map(|n| -n))]);
-            }
-            Some(Carrier { node: carrier, turn: Some((angle, _, length)), .. }) => {
-                let moment = -dot(near.normal, turned(arm)) / length;
-                rows.push(near.gap, [(node, n), (*carrier, n.map(|n| -n)), (*angle, [moment, 0.0, 0.0])]);
-            }
-        }
+        let moment = -dot(near.normal, turned(arm));
+        self.push(near.gap, node, [n, n.map(|n| -n)], moment, rows);
         Ok(())
     }
 
@@ -289,15 +308,10 @@ impl Kinematics for NodeToObstacle {
         let Local { at, arm, turn } = self.local(self.secondary[pair.node], y);
         let Some(Near { normal, bend, straight, .. }) = self.shape.near(pair.facet, at) else { return };
         let n = rotated(normal, turn);
-        let blocks = size.min(2 * d) / d;
-        let sign = |block: usize| if block == 0 { 1.0 } else { -1.0 };
-        for (p, q) in (0..blocks).flat_map(|p| (0..blocks).map(move |q| (p, q))) {
-            for (i, k) in (0..d).flat_map(|i| (0..d).map(move |k| (i, k))) {
-                let same = if i == k { 1.0 } else { 0.0 };
-                let flat = n[i] * n[k] + straight[i] * straight[k];
-                curvature[(p * d + i) * size + q * d + k] = sign(p) * sign(q) * bend * (same - flat);
-            }
-        }
+        self.fill(curvature, |i, k| {
+            let same = if i == k { 1.0 } else { 0.0 };
+            bend * (same - (n[i] * n[k] + straight[i] * straight[k]))
+        });
         let Some((_, _, length)) = self.carrier.as_ref().and_then(|carrier| carrier.turn) else { return };
         let (arm_turned, normal_turned) = (turned(arm), turned(normal));
         let along = dot(normal, arm_turned);
@@ -317,17 +331,8 @@ impl Kinematics for NodeToObstacle {
         let Local { at, arm, turn } = self.local(node, y);
         let normal = self.near(pair.facet, at, node)?.normal;
         for along in self.tangents(pair, rotated(normal, turn)).into_iter().take(self.dimension - 1) {
-            let back = along.map(|x| -x);
-            match &self.carrier {
-                None => rows.push(0.0, [(node, along)]),
-                Some(Carrier { node: carrier, turn: None, .. }) => {
-                    rows.push(0.0, [(node, along), (*carrier, back)]);
-                }
-                Some(Carrier { node: carrier, turn: Some((angle, _, length)), .. }) => {
-                    let moment = -self.chord(moved)[0] * dot(normal, arm) / length;
-                    rows.push(0.0, [(node, along), (*carrier, back), (*angle, [moment, 0.0, 0.0])]);
-                }
-            }
+            let moment = -self.chord(moved)[0] * dot(normal, arm);
+            self.push(0.0, node, [along, along.map(|x| -x)], moment, rows);
         }
         Ok(())
     }
@@ -349,13 +354,7 @@ impl Kinematics for NodeToObstacle {
         let n = rotated(normal, turn);
         let along = self.tangents(pair, n)[tangent];
         let bent = near.bent(along);
-        let sign = |block: usize| if block == 0 { 1.0 } else { -1.0 };
-        let blocks = size.min(2 * d) / d;
-        for (p, q) in (0..blocks).flat_map(|p| (0..blocks).map(move |q| (p, q))) {
-            for (i, k) in (0..d).flat_map(|i| (0..d).map(move |k| (i, k))) {
-                matrix[(p * d + i) * size + q * d + k] = -sign(p) * sign(q) * n[i] * bent[k];
-            }
-        }
+        self.fill(matrix, |i, k| -n[i] * bent[k]);
         let Some((_, _, length)) = self.carrier.as_ref().and_then(|carrier| carrier.turn) else { return };
         let [factor, slope] = self.chord(moved);
         let [across, beside] = [normal, turned(normal)].map(|direction| dot(direction, arm));
@@ -382,8 +381,9 @@ fn turned(v: Point) -> Point {
     [-v[1], v[0], 0.0]
 }
 
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+/// The sign of a block: of a node, or of the one that carries the obstacle.
+fn sign(block: usize) -> f64 {
+    if block == 0 { 1.0 } else { -1.0 }
 }
 
 #[cfg(test)]

@@ -1,18 +1,15 @@
-//! Nodes that enter a body and leave it again within one step; through rigid obstacles in
-//! `obstacle/path.rs`.
+//! Nodes that enter a body and leave it again within one step, in the plane and in space; through
+//! rigid obstacles in `obstacle/path.rs`.
 //!
 //! At the end of such a step nothing penetrates, and no facet is faced where the node entered: it
 //! has moved past the end of the side. Its straight path relative to the body shows it (`way.rs`).
 //! A node that only cuts off a corner does so by less the shorter the step is.
 
 use carom_algebra::Vector;
-use carom_solid::FacetShape;
+use carom_solid::{Bounds, Tree};
 
-use super::surface::{Search, Surface};
-use super::swept::SweptTest;
-use super::trajectory::crossing;
+use super::facets::Facets;
 use super::way::{Allowed, Between, Met, SHARE, Seen, Way, amplification, through};
-use crate::places::Places;
 
 /// A node, or an edge, that was inside a body between the start and the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,9 +25,9 @@ pub struct Passed {
 }
 
 /// Nodes that may pass through a body.
-pub(super) struct Paths<'a> {
+pub(super) struct Paths<'a, B> {
     /// The whole boundary of the body.
-    pub surface: &'a Surface,
+    pub boundary: &'a B,
     pub nodes: &'a [usize],
     /// Depth that each node may have in any case.
     pub allowed: &'a dyn Fn(usize) -> f64,
@@ -41,69 +38,82 @@ pub(super) struct Paths<'a> {
     pub bounce: f64,
 }
 
-impl Paths<'_> {
-    /// The node that was deepest beyond its limit, if any.
-    pub(super) fn deepest(
-        &self,
-        search: &mut Search,
-        swept: &mut SweptTest,
-        [before, now]: [&[f64]; 2],
-    ) -> Option<Passed> {
-        let Self { surface, nodes, enters, bounds, .. } = *self;
+/// How far the nodes of a body move, and its shortest facet.
+pub(super) struct Motion {
+    of_body: f64,
+    shortest: f64,
+}
+
+impl<B> Paths<'_, B> {
+    /// The motion of a step; none if it is too short: entry, depth and exit need a path of twice
+    /// the depth.
+    pub(super) fn motion<const D: usize>(&self, ends: [&[f64]; 2]) -> Option<Motion>
+    where
+        B: Facets<D>,
+    {
+        let Self { boundary, nodes, .. } = *self;
         let first = *nodes.first()?;
-        if surface.shape() == FacetShape::Point || !surface.is_whole() {
-            return None;
-        }
-        let [start, end] = [before, now].map(|y| Places::new(y, 2));
-        if search.is_apart(0.0, start, end) {
-            return None;
-        }
-        let path = |node: usize| end.at(node) - start.at(node);
-        // Squares, relative to one node, so that bodies that fly together do not count as moving.
-        let moved = |node: &usize| square(path(*node) - path(first));
-        let (mut of_body, mut shortest) = (0.0_f64, f64::INFINITY);
-        for facet in 0..surface.all() {
-            let nodes = surface.facet(facet).nodes;
-            of_body = nodes.iter().map(moved).fold(of_body, f64::max);
-            shortest = shortest.min(square(start.at(nodes[1]) - start.at(nodes[0])));
-        }
-        let of_nodes = nodes.iter().map(moved).fold(0.0, f64::max);
-        let of_body = of_body.sqrt();
-        // Entry, depth and exit need a path of twice the depth.
-        if of_body + of_nodes.sqrt() <= 2.0 * SHARE * shortest.sqrt()
-            || !search.update(surface, nodes, 0.0, start, end)
-        {
-            return None;
-        }
-        let mut between = None;
+        let most = |nodes: &[usize]| nodes.iter().map(|&n| relative::<D>(ends, n, first)).fold(0.0, f64::max);
+        let (of_body, of_nodes) = (most(boundary.nodes()).sqrt(), most(nodes).sqrt());
+        let lengths = (0..boundary.all()).map(|facet| boundary.length(facet, ends[0]));
+        let shortest = lengths.fold(f64::INFINITY, f64::min);
+        (of_body + of_nodes > 2.0 * SHARE * shortest).then_some(Motion { of_body, shortest })
+    }
+
+    /// The node that was deepest beyond its limit, if any, from the boxes of the facets' paths, the
+    /// box of a node's, and the crossing of both up to some θ.
+    pub(super) fn deepest<const D: usize>(
+        &self,
+        Motion { of_body, shortest }: Motion,
+        [before, now]: [&[f64]; 2],
+        tree: &Tree,
+        path: impl Fn(usize) -> Bounds,
+        mut crossing: impl FnMut(usize, [&[f64]; 2], f64, usize) -> Option<Met>,
+    ) -> Option<Passed>
+    where
+        B: Facets<D>,
+    {
+        let Self { boundary, nodes, bounds, .. } = *self;
+        let (mut between, mut near) = (None, Vec::new());
         let mut worst: Option<Passed> = None;
         for (place, &node) in nodes.iter().enumerate() {
-            search.find(node, start, end);
-            search.retain(|facet| bounds(node, facet));
-            let near = search.found();
-            let relative = |&other: &usize| (path(node) - path(other)).norm();
-            let far = near.iter().any(|&f| {
-                let most = surface.facet(f).nodes.iter().map(relative).fold(0.0, f64::max);
-                most > 2.0 * SHARE * surface.length(f, start)
+            tree.find_into(&path(node), &mut near);
+            near.retain(|&facet| bounds(node, facet));
+            let far = near.iter().any(|&facet| {
+                let moved = |&other: &usize| relative::<D>([before, now], node, other).sqrt();
+                let most = boundary.nodes_of(facet).iter().map(moved).fold(0.0, f64::max);
+                most > 2.0 * SHARE * boundary.length(facet, before)
             });
             if !far {
                 continue;
             }
-            let mut earliest = |from: Places, to: Places, through: &dyn Fn(usize) -> bool| {
+            let moved = relative::<D>([before, now], node, nodes[0]).sqrt();
+            let fastest = amplification(boundary.shape()) * (of_body + moved);
+            let slack = (self.allowed)(place);
+            // What enters later, or leaves earlier, is not inside for long enough.
+            let until = 1.0 - (SHARE * shortest + slack) / fastest;
+            if until <= 0.0 {
+                continue;
+            }
+            let mut earliest = |ends: [&[f64]; 2], through: &dyn Fn(usize) -> bool| {
                 let met = near.iter().filter(|&&facet| through(facet));
-                let crossings =
-                    met.filter_map(|&f| Some((f, crossing(swept, surface.facet(f), from, to, node)?)));
-                let (facet, met) = crossings.min_by(|a, b| a.1.theta.total_cmp(&b.1.theta))?;
-                Some(Met { theta: met.theta, facet, xi: [met.xi, 0.0] })
+                let crossings = met.filter_map(|&facet| crossing(facet, ends, until, node));
+                crossings.min_by(|a, b| a.theta.total_cmp(&b.theta))
             };
             // The last exit is the first entry of the reversed motion.
-            let entry = earliest(start, end, &|facet| enters(node, facet));
-            let exit = earliest(end, start, &|_| true).map(|back| Met { theta: 1.0 - back.theta, ..back });
-            let between = between.get_or_insert_with(|| Between::new([before, now]));
-            let from = entry.or(exit).map(|met| met.facet);
-            let allowed = Allowed::default();
-            let mut way = OnWay { paths: self, search, between, start, place, node, allowed, from };
-            let fastest = amplification(surface.shape()) * (of_body + moved(&node).sqrt());
+            let exit = earliest([now, before], &|_| true).map(|back| Met { theta: 1.0 - back.theta, ..back });
+            let entry = earliest([before, now], &|facet| (self.enters)(node, facet));
+            let mut way = OnWay {
+                boundary,
+                bounds,
+                tree,
+                between: between.get_or_insert_with(|| Between::new([before, now])),
+                before,
+                node,
+                slack,
+                allowed: Allowed::default(),
+                from: entry.or(exit).map(|met| met.facet),
+            };
             let Some(found) = through(&mut way, [entry, exit], self.bounce, fastest) else { continue };
             let (depth, limit) = (found.depth, found.limit);
             if worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
@@ -114,62 +124,62 @@ impl Paths<'_> {
     }
 }
 
-fn square(v: Vector<2>) -> f64 {
-    v.dot(&v)
+/// Square of the motion of a node relative to another one, so that bodies that fly together do not
+/// count as moving.
+fn relative<const D: usize>([before, now]: [&[f64]; 2], node: usize, other: usize) -> f64 {
+    let [before, now] = [before, now].map(|y| y.as_chunks::<D>().0);
+    let path = |node: usize| Vector(now[node]) - Vector(before[node]);
+    let apart = path(node) - path(other);
+    apart.dot(&apart)
 }
 
 /// A node between entry and exit.
-struct OnWay<'a, 'b> {
-    paths: &'a Paths<'a>,
-    search: &'a Search,
-    between: &'a mut Between<'b, 2>,
-    start: Places<'a>,
-    place: usize,
+struct OnWay<'a, 'b, const D: usize, B> {
+    boundary: &'a B,
+    bounds: &'a dyn Fn(usize, usize) -> bool,
+    tree: &'a Tree,
+    between: &'a mut Between<'b, D>,
+    before: &'a [f64],
     node: usize,
+    slack: f64,
     allowed: Allowed,
     /// A facet near the node.
     from: Option<usize>,
 }
 
-impl Way for OnWay<'_, '_> {
+impl<const D: usize, B: Facets<D>> Way for OnWay<'_, '_, D, B> {
     fn seen(&mut self, theta: f64) -> Option<Seen> {
-        let (surface, node) = (self.paths.surface, self.node);
-        let point = self.between.at(theta, node).0;
+        let boundary = self.boundary;
+        let point = self.between.at(theta, self.node);
         let distance = |facet: usize| {
-            (self.paths.bounds)(node, facet).then(|| {
-                let y = self.between.with(theta, surface.facet(facet).nodes);
-                surface.nearest(facet, point, Places::new(y, 2)).1
-            })
+            (self.bounds)(self.node, facet)
+                .then(|| boundary.distance(facet, point, self.between.with(theta, boundary.nodes_of(facet))))
         };
-        let (facet, _) = self.search.nearest(point, self.from, distance)?;
-        let near = [false, true].into_iter().filter_map(|forward| surface.neighbour(facet, forward));
-        for facet in near.chain([facet]) {
-            self.between.with(theta, surface.facet(facet).nodes);
+        let (facet, _) = self.tree.nearest(&point.0, self.from, distance)?;
+        for beside in boundary.beside(facet) {
+            self.between.with(theta, boundary.nodes_of(beside));
         }
-        let found = surface.depth(facet, point, Places::new(self.between.flat(), 2));
+        let found = boundary.depth(facet, point, self.between.with(theta, boundary.nodes_of(facet)));
         self.from = Some(found.facet);
         Some(self.on(theta, found.facet, found.xi, -found.distance))
     }
 
     fn on(&self, theta: f64, facet: usize, xi: [f64; 2], depth: f64) -> Seen {
-        let surface = self.paths.surface;
-        let speed = self.between.speed(self.node, surface.shape(), surface.facet(facet).nodes, xi);
-        let of_facet =
-            (self.paths.allowed)(self.place) + self.allowed.share * surface.length(facet, self.start);
+        let boundary = self.boundary;
+        let speed = self.between.speed(self.node, boundary.shape(), boundary.nodes_of(facet), xi);
+        let of_facet = self.slack + self.allowed.share * boundary.length(facet, self.before);
         let limit = of_facet.max(self.allowed.at_end);
         Seen { theta, facet, xi, depth, speed, limit }
     }
 
     fn normal(&mut self, at: &Seen) -> Vector<3> {
-        let facet = self.paths.surface.facet(at.facet);
-        let y = self.between.with(at.theta, facet.nodes);
-        let normal = facet.at(Places::new(y, 2), at.xi[0]).normal;
-        Vector([normal[0], normal[1], 0.0])
+        let boundary = self.boundary;
+        boundary.normal(at.facet, at.xi, self.between.with(at.theta, boundary.nodes_of(at.facet)))
     }
 
     fn between(&self, from: &Seen, to: &Seen) -> f64 {
-        let surface = self.paths.surface;
-        self.between.most(self.node, surface.shape(), surface.facet(from.facet).nodes, from, to)
+        let boundary = self.boundary;
+        self.between.most(self.node, boundary.shape(), boundary.nodes_of(from.facet), from, to)
     }
 
     fn allow(&mut self, allowed: Allowed) {
@@ -179,7 +189,10 @@ impl Way for OnWay<'_, '_> {
 
 #[cfg(test)]
 mod tests {
+    use carom_solid::FacetShape;
+
     use super::*;
+    use crate::kinematics::Surface;
     use crate::kinematics::{Detection, Kinematics, NodeToFacet};
 
     /// A plate −1 ≤ x ≤ 1, −0.1 ≤ y ≤ 0 of two facets along its length, of which those at the top

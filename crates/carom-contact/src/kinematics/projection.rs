@@ -107,7 +107,9 @@ impl Facet<'_> {
         for k in 1..=SAMPLES {
             let slope = slope_at(at(k));
             if last <= 0.0 && slope > 0.0 {
-                let xi = self.bisected(y, from, at(k - 1), at(k));
+                let (low, high) = (at(k - 1), at(k));
+                let slope = |xi: f64| self.distance_slope(y, from, xi);
+                let xi = bisected(low, high, 0.5 * (low + high), slope);
                 let distance = self.seen_from(from, y, xi).position.norm();
                 if best.is_none_or(|(d, _)| distance < d) {
                     best = Some((distance, xi));
@@ -117,26 +119,27 @@ impl Facet<'_> {
         }
         best.map(|(_, xi)| xi)
     }
+}
 
-    /// Root of the slope in [low, high], where it changes from − to +: Newton guarded by bisection.
-    fn bisected(&self, y: Places, from: Vector<2>, mut low: f64, mut high: f64) -> f64 {
-        let mut xi = 0.5 * (low + high);
-        for _ in 0..60 {
-            let (slope, a) = self.distance_slope(y, from, xi);
-            if slope <= 0.0 {
-                low = xi;
-            } else {
-                high = xi;
-            }
-            let newton = xi - slope / a;
-            let next = if a > 0.0 && newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if (next - xi).abs() <= 1e-15 {
-                return next;
-            }
-            xi = next;
+/// Root of a slope in [low, high], where it changes from − to +: Newton from a start, guarded by
+/// bisection; `slope` also returns its derivative.
+pub(super) fn bisected(mut low: f64, mut high: f64, start: f64, slope: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let mut xi = start;
+    for _ in 0..60 {
+        let (value, a) = slope(xi);
+        if value <= 0.0 {
+            low = xi;
+        } else {
+            high = xi;
         }
-        xi
+        let newton = xi - value / a;
+        let next = if a > 0.0 && newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        if (next - xi).abs() <= 1e-15 {
+            return next;
+        }
+        xi = next;
     }
+    xi
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use carom_solid::{Bounds, FacetShape, Hull, Tree};
 
 use super::apart::Apart;
+use super::facets::Facets;
 use super::projection::Facet;
 use crate::places::Places;
 
@@ -16,8 +17,8 @@ const CORNER_COSINE: f64 = 0.87;
 /// follow them, so that a node near the end of the side is told from one that is behind it.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    shape: FacetShape,
-    nodes: Vec<usize>,
+    pub(crate) shape: FacetShape,
+    pub(crate) nodes: Vec<usize>,
     orientations: Vec<f64>,
     neighbours: Vec<[Option<usize>; 2]>,
     /// Number of facets of the side; those of the rest come after them.
@@ -67,19 +68,9 @@ impl Surface {
         }
     }
 
-    /// Shape of every facet.
-    pub fn shape(&self) -> FacetShape {
-        self.shape
-    }
-
     /// Number of facets of the side.
     pub fn facets(&self) -> usize {
         self.side
-    }
-
-    /// Number of facets with those of the rest of the boundary.
-    pub(crate) fn all(&self) -> usize {
-        self.neighbours.len()
     }
 
     /// Whether a facet belongs to a side with which this one forms one surface.
@@ -99,12 +90,7 @@ impl Surface {
 
     /// A facet.
     pub(crate) fn facet(&self, facet: usize) -> Facet<'_> {
-        let n = self.shape.nodes();
-        Facet {
-            shape: self.shape,
-            nodes: &self.nodes[facet * n..(facet + 1) * n],
-            orientation: self.orientations[facet],
-        }
+        Facet { shape: self.shape, nodes: self.nodes_of(facet), orientation: self.orientations[facet] }
     }
 
     /// The facet that follows (or precedes) it in the direction of traversal.
@@ -173,7 +159,7 @@ impl Surface {
 #[derive(Debug)]
 pub(crate) struct Search {
     hull: Hull,
-    tree: Option<Tree>,
+    tree: Tree,
     found: Vec<usize>,
     apart: Apart,
 }
@@ -184,7 +170,7 @@ impl Search {
         let hull = Hull::line(surface.shape.nodes(), 1.0);
         let both = surface.nodes.iter().chain(nodes).copied();
         let apart = Apart::new(both, surface.shape.dimension(), hull.weight());
-        Self { hull, tree: None, found: Vec::new(), apart }
+        Self { hull, tree: Tree::default(), found: Vec::new(), apart }
     }
 
     /// Whether [`Self::update`] would find no node near, known without it.
@@ -212,10 +198,7 @@ impl Search {
             let bounds = old.union(&new);
             bounds.grown(margin * bounds.size())
         };
-        match &mut self.tree {
-            Some(tree) => _ = tree.update(swept),
-            None => self.tree = Some(Tree::new(surface.all(), swept)),
-        }
+        self.tree.place(surface.all(), swept);
         let (mut all, mut longest) = (Bounds::EMPTY, 0.0_f64);
         for &node in nodes {
             let (from, to) = (before.coordinates(node), now.coordinates(node));
@@ -224,30 +207,19 @@ impl Search {
             longest = from.iter().zip(to).fold(longest, |most, (from, to)| most.max((to - from).abs()));
         }
         let all = all.grown(PATH_MARGIN * longest);
-        let facets = self.tree.as_ref().map_or(Bounds::EMPTY, Tree::bounds);
+        let facets = self.tree.bounds();
         self.apart.searched([&facets, &all], [margin, PATH_MARGIN], now.flat());
         facets.meets(&all)
     }
 
     /// Finds the facets whose path is near a node's path, ascending.
     pub(crate) fn find(&mut self, node: usize, before: Places, now: Places) {
-        let mut path = Bounds::EMPTY;
-        path.add(before.coordinates(node));
-        path.add(now.coordinates(node));
-        if let Some(tree) = &self.tree {
-            tree.find_into(&path.grown(PATH_MARGIN * path.size()), &mut self.found);
-        }
+        self.tree.find_into(&path([before, now].map(|y| y.coordinates(node))), &mut self.found);
     }
 
-    /// The facet nearest to a point of a path at some instant of the motion, and its distance,
-    /// which `distance` gives at that instant; `None` excludes a facet.
-    pub(crate) fn nearest(
-        &self,
-        point: [f64; 2],
-        from: Option<usize>,
-        distance: impl FnMut(usize) -> Option<f64>,
-    ) -> Option<(usize, f64)> {
-        self.tree.as_ref()?.nearest(&point, from, distance)
+    /// The hierarchy of the boxes.
+    pub(crate) fn tree(&self) -> &Tree {
+        &self.tree
     }
 
     /// Forgets found facets that are not possible.
@@ -263,6 +235,12 @@ impl Search {
 
 /// Margin around a node's path in the search for facets, relative to the path's size.
 const PATH_MARGIN: f64 = 0.1;
+
+/// The box of a node's path in the search for facets.
+pub(crate) fn path(ends: [&[f64]; 2]) -> Bounds {
+    let path: Bounds = ends.iter().collect();
+    path.grown(PATH_MARGIN * path.size())
+}
 
 #[cfg(test)]
 mod tests {

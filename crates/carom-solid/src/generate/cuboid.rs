@@ -6,12 +6,11 @@
 
 use std::collections::BTreeMap;
 
-use super::{MeshError, check, interval_nodes, lerp};
+use super::{MeshError, check, lerp};
+use crate::element_shape::of_shape;
 use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::{Hex8, Hex27, Shape, Tet4, Tet10, Tet20};
-
-/// Paths from the lowest to the highest corner: orders of the directions, even and odd in turn.
-const PATHS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [1, 2, 0], [2, 1, 0], [2, 0, 1], [0, 2, 1]];
+use crate::shape::lattice;
+use crate::subdivide::freudenthal;
 
 /// Sides: axis, and whether at its upper end.
 const SIDES: [(&str, usize, bool); 6] = [
@@ -32,83 +31,75 @@ const SIDES: [(&str, usize, bool); 6] = [
 /// ```
 /// use carom_solid::{Element, generate};
 /// let block = generate::cuboid(Element::Tet10, [0.0; 3], [3.0, 2.0, 1.0], [3, 2, 1])?;
-/// assert_eq!((block.cell_count(), block.nodes.len()), (36, generate::cuboid_nodes(Element::Tet10, [3, 2, 1])));
+/// assert_eq!((block.cell_count(), block.nodes.len()), (36, 7 * 5 * 3));
 /// # Ok::<(), carom_solid::generate::MeshError>(())
 /// ```
 pub fn cuboid(element: Element, min: [f64; 3], max: [f64; 3], cells: [usize; 3]) -> Result<Mesh, MeshError> {
     check(element, &min, &max, &cells)?;
+    Ok(filled(element, [min, max], cells, &pieces(element)?, &SIDES))
+}
+
+/// Box in any dimension of boxes that these cells fill, by their nodes in the lattice of one of
+/// them; its sides are each at an end of an axis.
+pub(super) fn filled<const D: usize>(
+    element: Element,
+    [min, max]: [[f64; D]; 2],
+    cells: [usize; D],
+    pieces: &[Vec<[usize; D]>],
+    named: &[(&str, usize, bool)],
+) -> Mesh {
     let k = element.degree();
     let counts = cells.map(|n| k * n + 1);
-    let number = |at: [usize; 3]| (at[2] * counts[1] + at[1]) * counts[0] + at[0];
-    let mut nodes = Vec::with_capacity(counts.iter().product());
-    for z in 0..counts[2] {
-        for y in 0..counts[1] {
-            for x in 0..counts[0] {
-                let at = [x, y, z];
-                nodes.push([0, 1, 2].map(|i| lerp(min[i], max[i], at[i] as f64 / (counts[i] - 1) as f64)));
-            }
-        }
-    }
-    let pieces = pieces(element)?;
+    let number = |at: [usize; D]| (0..D).rev().fold(0, |sum, i| sum * counts[i] + at[i]);
+    // Of all points of a lattice, the first axis fastest.
+    let place = |counts: [usize; D], mut code: usize| {
+        counts.map(|count| {
+            let at = code % count;
+            code /= count;
+            at
+        })
+    };
+    let node = |code: usize| -> [f64; D] {
+        let at = place(counts, code);
+        std::array::from_fn(|i| lerp(min[i], max[i], at[i] as f64 / (counts[i] - 1) as f64))
+    };
+    let nodes: Vec<[f64; D]> = (0..counts.iter().product()).map(node).collect();
     let mut numbers = Vec::new();
     let mut sides: BTreeMap<String, Vec<Facet>> =
-        SIDES.iter().map(|(name, ..)| ((*name).to_owned(), Vec::new())).collect();
-    for place in 0..cells.iter().product() {
-        let lowest = [place % cells[0], place / cells[0] % cells[1], place / (cells[0] * cells[1])];
-        for piece in &pieces {
-            let at = |a: usize| [0, 1, 2].map(|i| k * lowest[i] + piece[a][i]);
+        named.iter().map(|(name, ..)| ((*name).to_owned(), Vec::new())).collect();
+    for code in 0..cells.iter().product() {
+        let lowest = place(cells, code);
+        for piece in pieces {
+            let at = |a: usize| -> [usize; D] { std::array::from_fn(|i| k * lowest[i] + piece[a][i]) };
             let cell = numbers.len() / piece.len();
             numbers.extend((0..piece.len()).map(|a| number(at(a))));
             for facet in element.facets() {
-                for (name, axis, upper) in SIDES {
-                    let end = if upper { k * cells[axis] } else { 0 };
-                    if facet.iter().all(|&a| at(a)[axis] == end) {
+                for (name, axis, upper) in named {
+                    let end = if *upper { k * cells[*axis] } else { 0 };
+                    if facet.iter().all(|&a| at(a)[*axis] == end) {
                         let nodes = facet.iter().map(|&a| number(at(a))).collect();
-                        sides.entry(name.to_owned()).or_default().push(Facet { cell, nodes });
+                        sides.entry((*name).to_owned()).or_default().push(Facet { cell, nodes });
                     }
                 }
             }
         }
     }
-    Ok(Mesh { element, nodes: nodes.into(), cells: numbers, sides, repairs: Vec::new() })
-}
-
-/// Number of nodes of a box; saturates.
-pub fn cuboid_nodes(element: Element, cells: [usize; 3]) -> usize {
-    cells.iter().fold(1, |count, n| count.saturating_mul(interval_nodes(element, *n)))
+    Mesh { element, nodes: nodes.into(), cells: numbers, sides, repairs: Vec::new() }
 }
 
 /// The cells that fill one box, by their nodes in its lattice.
 fn pieces(element: Element) -> Result<Vec<Vec<[usize; 3]>>, MeshError> {
-    let simplex = match element {
-        Element::Hex8 => return Ok(vec![lattice::<8, Hex8>(-1.0)]),
-        Element::Hex27 => return Ok(vec![lattice::<27, Hex27>(-1.0)]),
-        Element::Tet4 => lattice::<4, Tet4>(0.0),
-        Element::Tet10 => lattice::<10, Tet10>(0.0),
-        Element::Tet20 => lattice::<20, Tet20>(0.0),
-        _ => return Err(MeshError::Dimension { element, dimension: 3 }),
-    };
-    let tetrahedron = |(path, order): (usize, &[usize; 3])| {
-        let mut corners = [[0; 3]; 4];
-        for (step, axis) in order.iter().enumerate() {
-            corners[step + 1..].iter_mut().for_each(|corner| corner[*axis] += 1);
-        }
-        if path % 2 == 1 {
-            // Odd orders have negative volume.
-            corners.swap(1, 2);
-        }
+    let other = MeshError::Dimension { element, dimension: 3 };
+    let cell = of_shape!(3, element, lattice(), return Err(other));
+    if matches!(element, Element::Hex8 | Element::Hex27) {
+        return Ok(vec![cell]);
+    }
+    let tetrahedron = |corners: [[usize; 3]; 4]| {
         let node = |at: &[usize; 3]| {
             let weights = [element.degree() - at.iter().sum::<usize>(), at[0], at[1], at[2]];
             [0, 1, 2].map(|i| (0..4).map(|c| weights[c] * corners[c][i]).sum())
         };
-        simplex.iter().map(node).collect()
+        cell.iter().map(node).collect()
     };
-    Ok(PATHS.iter().enumerate().map(tetrahedron).collect())
-}
-
-/// The nodes of a shape in the lattice of its degree; its reference cell begins at `low` and ends
-/// at 1.
-pub(super) fn lattice<const N: usize, S: Shape<3, N>>(low: f64) -> Vec<[usize; 3]> {
-    let scale = S::DEGREE as f64 / (1.0 - low);
-    S::NODES.iter().map(|xi| [0, 1, 2].map(|i| (scale * (xi[i] - low)).round() as usize)).collect()
+    Ok(freudenthal([0; 3]).map(tetrahedron).collect())
 }

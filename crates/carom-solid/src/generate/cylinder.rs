@@ -6,9 +6,10 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use super::MeshError;
+use super::ball::counts;
 use super::frame::Frame;
 use super::lattice::{Flat, HEXAHEDRON, Key, Lattice, divisions, on};
+use super::{MeshError, positive};
 use crate::mesh::{Element, Mesh};
 
 /// Cylinder of tetrahedra with edges of about `size` around it, from the centre of its bottom along
@@ -144,11 +145,6 @@ fn cut(whole: f64, symmetry: [bool; 3]) -> f64 {
     whole / 2.0_f64.powi(symmetry.iter().filter(|cut| **cut).count() as i32)
 }
 
-/// Cells on half an edge of the square, and between the square and the circle.
-fn counts(radius: f64, size: f64) -> (i64, i64) {
-    super::ball::counts(radius, size)
-}
-
 /// Cells on a quarter of the outer circle, and between the circles.
 fn tube_counts(inner: f64, outer: f64, size: f64) -> (i64, i64) {
     (divisions(FRAC_PI_2 * outer, size), divisions(outer - inner, size))
@@ -188,12 +184,5 @@ fn on_circle(at: i64, quarter: i64) -> [f64; 2] {
         1 => [-sin, cos],
         2 => [-cos, -sin],
         _ => [sin, -cos],
-    }
-}
-
-fn positive(lengths: &[(&'static str, f64)]) -> Result<(), MeshError> {
-    match lengths.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
-        Some(&(what, value)) => Err(MeshError::Size { what, value }),
-        None => Ok(()),
     }
 }

@@ -38,18 +38,6 @@ pub fn half_disc(element: Element, radius: f64, center: [f64; 2], size: f64) -> 
     Ok(elevate(Rings { n, sixths: 3 }.skeleton(radius, center), element))
 }
 
-/// Number of nodes of a disc, 1 + 3m(m + 1) with m = degree · rings; saturates.
-pub fn disc_nodes(element: Element, radius: f64, size: f64) -> usize {
-    let m = rings(radius, size).saturating_mul(element.degree());
-    m.saturating_mul(m.saturating_add(1)).saturating_mul(3).saturating_add(1)
-}
-
-/// Number of nodes of a half-disc, 1 + m + 3m(m + 1)/2 with m = degree · rings; saturates.
-pub fn half_disc_nodes(element: Element, radius: f64, size: f64) -> usize {
-    let m = rings(radius, size).saturating_mul(element.degree());
-    (disc_nodes(element, radius, size) / 2).saturating_add(m).saturating_add(1)
-}
-
 fn rings(radius: f64, size: f64) -> usize {
     (radius / size).round().max(1.0) as usize
 }

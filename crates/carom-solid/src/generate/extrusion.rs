@@ -4,9 +4,10 @@
 use std::collections::HashMap;
 
 use super::lattice::{HEXAHEDRON, Key, Lattice, PRISM};
-use super::{MeshError, lerp};
+use super::{MeshError, lerp, positive};
+use crate::element_shape::of_shape;
 use crate::mesh::{Element, Mesh};
-use crate::shape::{Quad4, Quad9, Shape, Tri3, Tri6, Tri10};
+use crate::shape::lattice;
 
 /// A mesh of the plane from z = 0 to the height, in layers of cells; its sides, and `bottom` and
 /// `top`, or if it has these, `base` and `lid`.
@@ -24,9 +25,7 @@ use crate::shape::{Quad4, Quad9, Shape, Tri3, Tri6, Tri10};
 pub fn extrusion(plane: &Mesh, height: f64, layers: usize) -> Result<Mesh, MeshError> {
     let element = extruded(plane.element)
         .ok_or(MeshError::Dimension { element: plane.element, dimension: plane.dimension() })?;
-    if !(height.is_finite() && height > 0.0) {
-        return Err(MeshError::Size { what: "height", value: height });
-    }
+    positive(&[("height", height)])?;
     if layers == 0 {
         return Err(MeshError::Cells { cells: vec![layers] });
     }
@@ -38,14 +37,8 @@ pub fn extrusion(plane: &Mesh, height: f64, layers: usize) -> Result<Mesh, MeshE
     };
     let mut mesh = Lattice::new(element, place)?;
     // The node of a plane cell at a point of its lattice.
-    let places: Vec<[usize; 2]> = match plane.element {
-        Element::T3 => plane_lattice::<3, Tri3>(0.0),
-        Element::T6 => plane_lattice::<6, Tri6>(0.0),
-        Element::T10 => plane_lattice::<10, Tri10>(0.0),
-        Element::Q4 => plane_lattice::<4, Quad4>(-1.0),
-        Element::Q9 => plane_lattice::<9, Quad9>(-1.0),
-        element => return Err(MeshError::Dimension { element, dimension: 2 }),
-    };
+    let other = MeshError::Dimension { element: plane.element, dimension: 2 };
+    let places = of_shape!(2, plane.element, lattice(), return Err(other));
     let local: HashMap<[usize; 2], usize> = places.into_iter().enumerate().map(|(a, at)| (at, a)).collect();
     let solid = if plane.element.facets().len() == 3 { &PRISM } else { &HEXAHEDRON };
     for cell in 0..plane.cell_count() {
@@ -94,11 +87,4 @@ pub fn plane_of(element: Element) -> Option<Element> {
     [Element::T3, Element::T6, Element::T10, Element::Q4, Element::Q9]
         .into_iter()
         .find(|plane| extruded(*plane) == Some(element))
-}
-
-/// The nodes of a shape in the lattice of its degree; its reference cell begins at `low` and ends
-/// at 1.
-fn plane_lattice<const N: usize, S: Shape<2, N>>(low: f64) -> Vec<[usize; 2]> {
-    let scale = S::DEGREE as f64 / (1.0 - low);
-    S::NODES.iter().map(|xi| [0, 1].map(|i| (scale * (xi[i] - low)).round() as usize)).collect()
 }

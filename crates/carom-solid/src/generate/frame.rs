@@ -3,6 +3,7 @@
 use carom_algebra::Vector;
 
 use super::MeshError;
+use crate::triangles::cross;
 
 /// An origin and an orthonormal, right-handed basis.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,11 +62,4 @@ impl Frame {
         let coordinate = self.coordinates.map_or(direction, |coordinates| coordinates[direction]);
         format!("plane_{}", ["x", "y", "z"][coordinate])
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        a[j] * b[k] - a[k] * b[j]
-    })
 }

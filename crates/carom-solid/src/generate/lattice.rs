@@ -14,9 +14,9 @@ use std::collections::{BTreeMap, HashMap};
 use carom_algebra::Mat;
 
 use super::MeshError;
-use super::cuboid::lattice;
+use crate::element_shape::of_shape;
 use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::{Hex8, Hex27, Tet4, Tet10, Tet20};
+use crate::shape::lattice;
 
 /// What identifies a point of the lattice.
 pub(super) type Key = [i64; 4];
@@ -71,14 +71,8 @@ impl<P: Fn(Key) -> [f64; 3]> Lattice<P> {
     /// # Errors
     /// If the element does not fill space.
     pub(super) fn new(element: Element, place: P) -> Result<Self, MeshError> {
-        let local = match element {
-            Element::Tet4 => lattice::<4, Tet4>(0.0),
-            Element::Tet10 => lattice::<10, Tet10>(0.0),
-            Element::Tet20 => lattice::<20, Tet20>(0.0),
-            Element::Hex8 => lattice::<8, Hex8>(-1.0),
-            Element::Hex27 => lattice::<27, Hex27>(-1.0),
-            _ => return Err(MeshError::Dimension { element, dimension: 3 }),
-        };
+        let other = MeshError::Dimension { element, dimension: 3 };
+        let local = of_shape!(3, element, lattice(), return Err(other));
         let (numbers, keys, nodes, cells) = Default::default();
         Ok(Self { element, local, place, numbers, keys, nodes, cells })
     }

@@ -1,7 +1,6 @@
 //! Built-in meshes: interval, rectangle, disc, half-disc, ring and polygon; box, ball, cylinder,
-//! tube and extrusion. The cells of a shape
-//! are the same for every order; `elevate` adds the nodes between corners. `*_nodes` count without
-//! building, to check first whether a mesh fits into memory.
+//! tube and extrusion. The cells of a shape are the same for every order; `elevate` adds the nodes
+//! between corners.
 
 mod ball;
 mod cuboid;
@@ -19,13 +18,13 @@ mod ring;
 use std::collections::BTreeMap;
 
 pub use ball::{ball, ball_hexahedra};
-pub use cuboid::{cuboid, cuboid_nodes};
+pub use cuboid::cuboid;
 pub use cylinder::{cylinder, cylinder_hexahedra, tube, tube_hexahedra};
-pub use disc::{disc, disc_nodes, half_disc, half_disc_nodes};
+pub use disc::{disc, half_disc};
 pub use extrusion::{extruded, extrusion, plane_of};
 pub use frame::Frame;
 pub use polygon::{Refinement, outline, polygon};
-pub use rectangle::{rectangle, rectangle_nodes};
+pub use rectangle::rectangle;
 pub use ring::ring;
 
 use crate::mesh::{Element, Facet, Mesh};
@@ -78,7 +77,7 @@ pub enum MeshError {
 /// ```
 /// use carom_solid::{Element, generate};
 /// let bar = generate::interval(Element::L4, 0.0, 10.0, 20)?;
-/// assert_eq!(bar.nodes.len(), generate::interval_nodes(Element::L4, 20));
+/// assert_eq!(bar.nodes.len(), 3 * 20 + 1);
 /// # Ok::<(), carom_solid::generate::MeshError>(())
 /// ```
 pub fn interval(element: Element, min: f64, max: f64, cells: usize) -> Result<Mesh, MeshError> {
@@ -97,11 +96,6 @@ pub fn interval(element: Element, min: f64, max: f64, cells: usize) -> Result<Me
     let end = |cell, node| vec![Facet { cell, nodes: vec![node] }];
     let sides = BTreeMap::from([("left".into(), end(0, 0)), ("right".into(), end(cells - 1, cells))]);
     Ok(Mesh { element, nodes: nodes.into(), cells: numbers, sides, repairs: Vec::new() })
-}
-
-/// Number of nodes of an interval; saturates.
-pub fn interval_nodes(element: Element, cells: usize) -> usize {
-    cells.saturating_mul(element.degree()).saturating_add(1)
 }
 
 /// a + t(b − a), exact at both ends.
@@ -128,5 +122,13 @@ fn triangles(element: Element) -> Result<(), MeshError> {
         Element::T3 | Element::T6 | Element::T10 => Ok(()),
         Element::Q4 | Element::Q9 => Err(MeshError::Triangles { element }),
         _ => Err(MeshError::Dimension { element, dimension: 2 }),
+    }
+}
+
+/// Checks that lengths are finite and > 0.
+fn positive(lengths: &[(&'static str, f64)]) -> Result<(), MeshError> {
+    match lengths.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
+        Some(&(what, value)) => Err(MeshError::Size { what, value }),
+        None => Ok(()),
     }
 }

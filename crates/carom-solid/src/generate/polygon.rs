@@ -7,7 +7,7 @@
 
 use super::delaunay::{Outline, fill};
 use super::elevate::elevate;
-use super::{MeshError, lerp, triangles};
+use super::{MeshError, lerp, positive, triangles};
 use crate::mesh::{Element, Mesh};
 
 /// Growth of edges away from a refined point.
@@ -46,12 +46,9 @@ pub fn polygon(
 ) -> Result<Mesh, MeshError> {
     triangles(element)?;
     outline(points)?;
-    let positive = |what, value: f64| {
-        if value.is_finite() && value > 0.0 { Ok(()) } else { Err(MeshError::Size { what, value }) }
-    };
-    positive("size", size)?;
+    positive(&[("size", size)])?;
     for place in refine {
-        positive("refine.size", place.size)?;
+        positive(&[("refine.size", place.size)])?;
         let Refinement { near, radius, .. } = *place;
         if !(radius.is_finite() && radius >= 0.0 && near.iter().all(|c| c.is_finite())) {
             return Err(MeshError::Place { near, radius });

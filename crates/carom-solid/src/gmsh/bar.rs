@@ -7,8 +7,8 @@ use super::checks::orient;
 use super::error::{Fault, MshError};
 use super::file::MshFile;
 use super::group::Group;
-use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::{Line2, Line3, Line4};
+use crate::element_shape::of_shape;
+use crate::mesh::{Facet, Mesh};
 
 impl MshFile {
     /// The mesh of a physical curve with y = z = 0. Its sides are the physical points at its ends.
@@ -17,12 +17,8 @@ impl MshFile {
     /// As [`body`](Self::body), and if a node joins more than two cells.
     pub fn bar(&self, curve: &str) -> Result<Mesh, MshError> {
         let mut group = Group::<1>::of(self, curve)?;
-        match group.element {
-            Element::L2 => orient::<1, 2, Line2>(&mut group)?,
-            Element::L3 => orient::<1, 3, Line3>(&mut group)?,
-            Element::L4 => orient::<1, 4, Line4>(&mut group)?,
-            _ => return Err(MshError::whole(Fault::NoCells { what: "curve", name: curve.to_owned() })),
-        }
+        let none = MshError::whole(Fault::NoCells { what: "curve", name: curve.to_owned() });
+        of_shape!(1, group.element, orient(&mut group), Err(none))?;
         let mut cells_at = vec![Vec::new(); group.used.len()];
         for (cell, nodes) in group.cells.chunks_exact(group.element.nodes()).enumerate() {
             for &n in nodes {
@@ -49,8 +45,6 @@ impl MshFile {
             }
         }
         sides.retain(|_, facets| !facets.is_empty());
-        let (element, nodes, cells) =
-            (group.element, std::mem::take(&mut group.positions), std::mem::take(&mut group.cells));
-        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: group.finish() })
+        Ok(group.into_mesh(sides))
     }
 }

@@ -9,8 +9,8 @@ use super::checks::orient;
 use super::error::{Fault, MshError};
 use super::file::MshFile;
 use super::group::Group;
-use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::{Quad4, Quad9, Tri3, Tri6, Tri10};
+use crate::element_shape::of_shape;
+use crate::mesh::{Facet, Mesh};
 
 impl MshFile {
     /// The mesh of a physical surface. Its sides are the physical curves with edges on its
@@ -22,19 +22,11 @@ impl MshFile {
     /// cells, nodes off the plane.
     pub fn body(&self, surface: &str) -> Result<Mesh, MshError> {
         let mut group = Group::<2>::of(self, surface)?;
-        match group.element {
-            Element::T3 => orient::<2, 3, Tri3>(&mut group)?,
-            Element::T6 => orient::<2, 6, Tri6>(&mut group)?,
-            Element::T10 => orient::<2, 10, Tri10>(&mut group)?,
-            Element::Q4 => orient::<2, 4, Quad4>(&mut group)?,
-            Element::Q9 => orient::<2, 9, Quad9>(&mut group)?,
-            _ => return Err(MshError::whole(Fault::NoCells { what: "surface", name: surface.to_owned() })),
-        }
+        let none = MshError::whole(Fault::NoCells { what: "surface", name: surface.to_owned() });
+        of_shape!(2, group.element, orient(&mut group), Err(none))?;
         let boundary = boundary(&group)?;
-        let sides = group.sides(&boundary)?;
-        let (element, nodes, cells) =
-            (group.element, std::mem::take(&mut group.positions), std::mem::take(&mut group.cells));
-        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: group.finish() })
+        let sides = curves(&group, &boundary)?;
+        Ok(group.into_mesh(sides))
     }
 }
 
@@ -77,49 +69,28 @@ fn boundary(group: &Group<2>) -> Result<HashMap<(usize, usize), Facet>, MshError
     Ok(alone)
 }
 
-impl Group<'_, 2> {
-    /// Named curves on the boundary.
-    fn sides(
-        &self,
-        boundary: &HashMap<(usize, usize), Facet>,
-    ) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
-        let own: HashMap<usize, usize> = self.used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
-        let mut sides = BTreeMap::new();
-        for name in self.file.names(1) {
-            let mut facets = Vec::new();
-            for block in self.file.blocks(1, name) {
-                for (row, line) in block.cells() {
-                    // A curve that leaves the body is not an edge of it.
-                    let Some(line) = line.iter().map(|n| own.get(n).copied()).collect::<Option<Vec<_>>>()
-                    else {
-                        continue;
-                    };
-                    let facet =
-                        boundary.get(&(line[0], line[1])).or_else(|| boundary.get(&(line[1], line[0])));
-                    let Some(facet) = facet else { continue };
-                    if facet.nodes != line && facet.nodes != reversed(&line) {
-                        let [start, end] = [line[0], line[1]].map(|n| self.node(n).tag);
-                        let (a, b) =
-                            (format!("curve \"{name}\""), format!("cell {}", self.rows[facet.cell].tag));
-                        return Err(self.file.at(row, Fault::EdgeNodes { a, b, start, end }));
-                    }
-                    facets.push(facet.clone());
-                }
-            }
-            if !facets.is_empty() {
-                sides.insert(name.to_owned(), walked(facets));
-            }
+/// Named curves on the boundary.
+fn curves(
+    group: &Group<2>,
+    boundary: &HashMap<(usize, usize), Facet>,
+) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
+    let sides = group.sides(|name, line| {
+        let found = boundary.get(&(line[0], line[1])).or_else(|| boundary.get(&(line[1], line[0])));
+        let Some(facet) = found else { return Ok(None) };
+        if facet.nodes != line && facet.nodes != reversed(line) {
+            let [start, end] = [line[0], line[1]].map(|n| group.node(n).tag);
+            let (a, b) = (format!("curve \"{name}\""), format!("cell {}", group.rows[facet.cell].tag));
+            return Err(Fault::EdgeNodes { a, b, start, end });
         }
-        Ok(sides)
-    }
+        Ok(Some(facet))
+    })?;
+    Ok(sides.into_iter().map(|(name, facets)| (name, walked(&facets))).collect())
 }
 
-/// Each facet once, in chains from end to start; chains and closed loops keep the file's order.
-fn walked(facets: Vec<Facet>) -> Vec<Facet> {
+/// Facets in chains from end to start; chains and closed loops keep the file's order.
+fn walked(facets: &[Facet]) -> Vec<Facet> {
     let mut next: HashMap<usize, Vec<usize>> = HashMap::new();
     let mut ends = std::collections::HashSet::new();
-    let mut seen = std::collections::HashSet::new();
-    let facets: Vec<Facet> = facets.into_iter().filter(|f| seen.insert((f.nodes[0], f.nodes[1]))).collect();
     for (i, facet) in facets.iter().enumerate().rev() {
         next.entry(facet.nodes[0]).or_default().push(i);
         ends.insert(facet.nodes[1]);

@@ -1,9 +1,11 @@
 //! The cells of a named group as a separate mesh: one element, only the nodes in use, in the order
 //! of the file.
 
+use std::collections::{BTreeMap, HashMap, HashSet};
+
 use super::error::{Fault, MshError};
-use super::file::{MshFile, Row};
-use crate::mesh::Element;
+use super::file::{Block, MshFile, Row};
+use crate::mesh::{Element, Facet, Mesh};
 
 /// Cells of a group before they are checked. Node numbers are local to the group.
 pub(super) struct Group<'a, const D: usize> {
@@ -131,13 +133,38 @@ impl<'a, const D: usize> Group<'a, D> {
         self.file.nodes[self.used[node]].0
     }
 
-    /// Returns the repairs, including what was dropped.
-    pub(super) fn finish(mut self) -> Vec<String> {
+    /// Facets of the boundary that belong to each named group of a dimension less, each once in the
+    /// order of the file, as `find` knows them by that name and their nodes.
+    pub(super) fn sides<'f>(
+        &self,
+        find: impl Fn(&str, &[usize]) -> Result<Option<&'f Facet>, Fault>,
+    ) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
+        let own: HashMap<usize, usize> = self.used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
+        let mut sides = BTreeMap::new();
+        for name in self.file.names(D - 1) {
+            let (mut facets, mut seen) = (Vec::new(), HashSet::new());
+            for (row, nodes) in self.file.blocks(D - 1, name).flat_map(Block::cells) {
+                // A cell that leaves the body is not a facet of it.
+                let nodes: Option<Vec<usize>> = nodes.iter().map(|n| own.get(n).copied()).collect();
+                let Some(nodes) = nodes else { continue };
+                let found = find(name, &nodes).map_err(|fault| self.file.at(row, fault))?;
+                facets.extend(found.filter(|facet| seen.insert(&facet.nodes)).cloned());
+            }
+            if !facets.is_empty() {
+                sides.insert(name.to_owned(), facets);
+            }
+        }
+        Ok(sides)
+    }
+
+    /// The mesh with these sides, and the repairs, including what was dropped.
+    pub(super) fn into_mesh(mut self, sides: BTreeMap<String, Vec<Facet>>) -> Mesh {
         let elsewhere: usize = self.file.unused();
         if elsewhere > 0 {
             self.repairs.push(format!("nodes of the file that belong to no cell were dropped: {elsewhere}"));
         }
-        self.repairs
+        let Self { element, positions, cells, repairs, .. } = self;
+        Mesh { element, nodes: positions.into(), cells, sides, repairs }
     }
 }
 

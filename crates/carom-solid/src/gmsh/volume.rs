@@ -7,11 +7,11 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::checks::orient;
 use super::error::{Fault, MshError};
-use super::file::{Block, MshFile};
+use super::file::MshFile;
 use super::group::Group;
 use super::order;
-use crate::mesh::{Element, Facet, Mesh};
-use crate::shape::{Hex8, Hex27, Tet4, Tet10, Tet20};
+use crate::element_shape::of_shape;
+use crate::mesh::{Facet, Mesh};
 
 impl MshFile {
     /// The mesh of a physical volume. Its sides are the physical surfaces with facets on its
@@ -25,21 +25,14 @@ impl MshFile {
         let mut group = Group::<3>::of(self, name)?;
         let element = group.element;
         group.cells.chunks_exact_mut(element.nodes()).for_each(|cell| order::read(element, cell));
-        match element {
-            Element::Tet4 => orient::<3, 4, Tet4>(&mut group)?,
-            Element::Tet10 => orient::<3, 10, Tet10>(&mut group)?,
-            Element::Tet20 => orient::<3, 20, Tet20>(&mut group)?,
-            Element::Hex8 => orient::<3, 8, Hex8>(&mut group)?,
-            Element::Hex27 => orient::<3, 27, Hex27>(&mut group)?,
-            _ => return Err(MshError::whole(Fault::NoCells { what: "volume", name: name.to_owned() })),
-        }
+        let none = MshError::whole(Fault::NoCells { what: "volume", name: name.to_owned() });
+        of_shape!(3, group.element, orient(&mut group), Err(none))?;
         let boundary = boundary(&group)?;
         if !self.slits {
             unpinched(&group, &boundary)?;
         }
-        let sides = group.surfaces(&boundary)?;
-        let (nodes, cells) = (std::mem::take(&mut group.positions), std::mem::take(&mut group.cells));
-        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: group.finish() })
+        let sides = surfaces(&group, &boundary)?;
+        Ok(group.into_mesh(sides))
     }
 }
 
@@ -122,43 +115,23 @@ fn unpinched(group: &Group<3>, boundary: &BTreeMap<Corners, Facet>) -> Result<()
     }
 }
 
-impl Group<'_, 3> {
-    /// Named surfaces on the boundary.
-    fn surfaces(
-        &self,
-        boundary: &BTreeMap<Corners, Facet>,
-    ) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
-        let own: HashMap<usize, usize> = self.used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
-        let ends = self.element.facet_shape().corners();
-        let mut sides = BTreeMap::new();
-        for name in self.file.names(2) {
-            let mut facets: Vec<Facet> = Vec::new();
-            let mut seen = std::collections::HashSet::new();
-            for (row, nodes) in self.file.blocks(2, name).flat_map(Block::cells) {
-                // A surface that leaves the body is not a facet of it.
-                let Some(nodes) = nodes.iter().map(|n| own.get(n).copied()).collect::<Option<Vec<_>>>()
-                else {
-                    continue;
-                };
-                if nodes.len() < ends {
-                    continue;
-                }
-                let key = key(&nodes, ends);
-                let Some(facet) = boundary.get(&key) else { continue };
-                if !same(&facet.nodes, &nodes) {
-                    let corners = key.iter().map(|&n| self.node(n).tag).collect();
-                    let a = format!("surface \"{name}\"");
-                    let b = format!("cell {}", self.rows[facet.cell].tag);
-                    return Err(self.file.at(row, Fault::FacetNodes { a, b, corners }));
-                }
-                if seen.insert(key) {
-                    facets.push(facet.clone());
-                }
-            }
-            if !facets.is_empty() {
-                sides.insert(name.to_owned(), facets);
-            }
+/// Named surfaces on the boundary.
+fn surfaces(
+    group: &Group<3>,
+    boundary: &BTreeMap<Corners, Facet>,
+) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
+    let ends = group.element.facet_shape().corners();
+    group.sides(|name, nodes| {
+        if nodes.len() < ends {
+            return Ok(None);
         }
-        Ok(sides)
-    }
+        let key = key(nodes, ends);
+        let Some(facet) = boundary.get(&key) else { return Ok(None) };
+        if !same(&facet.nodes, nodes) {
+            let corners = key.iter().map(|&n| group.node(n).tag).collect();
+            let (a, b) = (format!("surface \"{name}\""), format!("cell {}", group.rows[facet.cell].tag));
+            return Err(Fault::FacetNodes { a, b, corners });
+        }
+        Ok(Some(facet))
+    })
 }

@@ -3,7 +3,7 @@
 use carom_algebra::{Four, Mat, Vector};
 
 use super::kinematics::{NotPositive, excess_det};
-use crate::points::{LANES, Moduli, four, get, lanes, set};
+use crate::points::{LANES, four, get, lanes, set};
 
 /// A matrix at each of four points: `[i][j][point]`.
 pub type InLanes<const D: usize> = [[[f64; LANES]; D]; D];
@@ -36,15 +36,25 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// The block Kᵢⱼ = Σ ∂Pᵢᴶ/∂Fⱼᴸ aᴶ bᴸ, bilinear in the reference gradients a and b.
     fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D>;
 
+    /// Ψ and P at four points at once, of a law whose formulas are written for any number; none of
+    /// others.
+    #[inline(always)]
+    fn at_four(&self, _: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+        Ok(None)
+    }
+
     /// Ψ and P at the first `count` of four points, in lanes; H = 0 in the
     /// other lanes, whose results do not count.
     #[inline(always)]
     fn at_points(&self, h: &InLanes<D>, count: usize) -> Result<AtPoints<D>, NotPositive> {
+        if let Some((energy, stress)) = self.at_four(&four(h))? {
+            return Ok((energy.0, lanes(&stress)));
+        }
         let (mut energies, mut stresses) = ([0.0; LANES], [[[0.0; LANES]; D]; D]);
         for l in 0..count {
             let point = self.at(&get(h, l))?;
             energies[l] = self.energy(&point);
-            set(&mut stresses, l, &self.stress(&point), 1.0);
+            set(&mut stresses, l, &self.stress(&point));
         }
         Ok((energies, stresses))
     }
@@ -77,7 +87,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
         let mut changes = [[[0.0; LANES]; D]; D];
         for l in 0..count {
             let point = self.at(&get(h, l))?;
-            set(&mut changes, l, &self.change(&point, &get(dh, l)), 1.0);
+            set(&mut changes, l, &self.change(&point, &get(dh, l)));
         }
         Ok(changes)
     }
@@ -100,27 +110,4 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     fn volume_ratio(&self, h: &Mat<D>) -> f64 {
         1.0 + excess_det(h)
     }
-}
-
-/// [`Material::at_points`] of a formula for any number.
-#[inline(always)]
-pub(super) fn in_lanes<const D: usize>(
-    h: &InLanes<D>,
-    at: impl Fn(&Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive>,
-) -> Result<AtPoints<D>, NotPositive> {
-    let (energy, stress) = at(&four(h))?;
-    Ok((energy.0, lanes(&stress)))
-}
-
-/// ∂P/∂F of the law at a point.
-#[inline(always)]
-pub(crate) fn moduli_of<const D: usize, L: Material<D>>(law: &L, point: &L::Point) -> Moduli<D> {
-    let unit = Mat::<D>::identity().0.map(Vector);
-    let mut moduli = [[Mat::ZERO; D]; D];
-    for j in 0..D {
-        for l in 0..D {
-            moduli[j][l] = law.tangent(point, &unit[j], &unit[l]);
-        }
-    }
-    moduli
 }

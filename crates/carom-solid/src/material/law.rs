@@ -1,5 +1,7 @@
 //! The available laws, chosen at run time.
 
+use super::{LinearElastic, NeoHookean, Pointwise, SaintVenantKirchhoff};
+
 /// A law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
@@ -7,4 +9,15 @@ pub enum Law {
     NeoHookean { lambda: f64, mu: f64 },
     SaintVenantKirchhoff { lambda: f64, mu: f64 },
     LinearElastic { lambda: f64, mu: f64 },
+}
+
+impl Law {
+    /// The law at the points of a body of one dimension.
+    pub(crate) fn pointwise<const D: usize>(self) -> Box<dyn Pointwise<D>> {
+        match self {
+            Self::NeoHookean { lambda, mu } => Box::new(NeoHookean { lambda, mu }),
+            Self::SaintVenantKirchhoff { lambda, mu } => Box::new(SaintVenantKirchhoff { lambda, mu }),
+            Self::LinearElastic { lambda, mu } => Box::new(LinearElastic { lambda, mu }),
+        }
+    }
 }

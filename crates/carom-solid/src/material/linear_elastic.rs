@@ -8,7 +8,7 @@
 use carom_algebra::{Four, Mat, Real, Vector};
 
 use super::NotPositive;
-use super::hyperelastic::{AtPoints, InLanes, Material, in_lanes};
+use super::hyperelastic::Material;
 
 /// Linear elasticity with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,16 +56,10 @@ impl<const D: usize> Material<D> for LinearElastic {
     }
 
     #[inline(always)]
-    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
-        in_lanes(
-            h,
-            #[inline(always)]
-            |h| {
-                let strain = strain_of(h);
-                let stress = self.stress_of(&strain);
-                Ok(((Four::of(0.5) * stress.double_dot(&strain)), stress))
-            },
-        )
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+        let strain = strain_of(h);
+        let stress = self.stress_of(&strain);
+        Ok(Some(((Four::of(0.5) * stress.double_dot(&strain)), stress)))
     }
 
     #[inline(always)]

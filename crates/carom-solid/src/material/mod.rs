@@ -19,7 +19,6 @@ mod pointwise;
 mod saint_venant_kirchhoff;
 mod volumetric;
 
-pub(crate) use hyperelastic::moduli_of;
 pub use hyperelastic::{AtPoints, InLanes, Material};
 pub use kinematics::NotPositive;
 pub use kinematics::{excess_cofactor, excess_det};
@@ -27,6 +26,6 @@ pub use law::Law;
 pub use linear_elastic::LinearElastic;
 pub use neo_hookean::NeoHookean;
 pub use plane_stress::{PlaneStress, Thickness};
-pub(crate) use pointwise::{ModuliMats, Pointwise, Stress};
+pub(crate) use pointwise::{ModuliMats, Pointwise};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
-pub use volumetric::Volumetric;
+pub(crate) use volumetric::Mean;

@@ -7,10 +7,10 @@
 //! F)/J, tr E − ln J = (tr H − d) + H:H/2 + (d − ln(1 + d)), and tr H − d contains only terms of
 //! second and third order.
 
-use carom_algebra::{Mat, Real, Vector};
+use carom_algebra::{Four, Mat, Real, Vector};
 
 use super::NotPositive;
-use super::hyperelastic::{AtPoints, InLanes, Material, in_lanes};
+use super::hyperelastic::{InLanes, Material};
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
 use crate::points::{four, lanes};
 
@@ -98,15 +98,9 @@ impl<const D: usize> Material<D> for NeoHookean {
     }
 
     #[inline(always)]
-    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
-        in_lanes(
-            h,
-            #[inline(always)]
-            |h| {
-                let point = Self::kinematics(h)?;
-                Ok((self.energy_of(&point), self.stress_of(&point)))
-            },
-        )
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+        let point = Self::kinematics(h)?;
+        Ok(Some((self.energy_of(&point), self.stress_of(&point))))
     }
 
     #[inline(always)]

@@ -6,20 +6,13 @@
 
 use carom_algebra::{Mat, Vector, wide};
 
-use super::{Material, NotPositive, moduli_of};
+use super::{Material, NotPositive};
+use crate::body::PointState;
 use crate::discrete_gradient::{between, change_between};
-use crate::points::{LANES, Lanes, Mats, get, set, set_moduli};
+use crate::points::{LANES, Lanes, Mats, get, set};
 
 /// ∂P/∂F at each of the points: `[J][L][i][j][point]` is ∂P_iJ/∂F_jL.
 pub(crate) type ModuliMats<const D: usize> = [[Mats<D>; D]; D];
-
-/// Cauchy stress at a point.
-pub(crate) struct Stress<const D: usize> {
-    /// Within the dimensions of the body.
-    pub(crate) within: Mat<D>,
-    /// The normal stress in the others.
-    pub(crate) lateral: f64,
-}
 
 /// A [`Material`] at the first `count` of four points; H = 0 in the other lanes, whose results do
 /// not count.
@@ -53,11 +46,8 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
         count: usize,
     ) -> Result<Mats<D>, NotPositive>;
 
-    /// [`Material::cauchy`] and [`Material::lateral`].
-    fn cauchy_at(&self, h: &Mat<D>) -> Result<Stress<D>, NotPositive>;
-
-    /// [`Material::lateral_excess`].
-    fn lateral_excess_at(&self, h: &Mat<D>) -> Result<f64, NotPositive>;
+    /// Kinematics and stress.
+    fn state_at(&self, h: &Mat<D>) -> Result<PointState, NotPositive>;
 
     /// [`Material::volume_ratio`].
     fn volume_ratio_at(&self, h: &Mat<D>) -> f64;
@@ -97,11 +87,16 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
             #[inline(always)]
             || {
                 let mut energies = [0.0; LANES];
+                let unit = Mat::<D>::identity().0.map(Vector);
                 for l in 0..count {
                     let point = self.at(&get(h, l))?;
                     energies[l] = self.energy(&point);
-                    set(stress, l, &self.stress(&point), 1.0);
-                    set_moduli(moduli, l, &moduli_of(self, &point), 1.0);
+                    set(stress, l, &self.stress(&point));
+                    for (row, a) in moduli.iter_mut().zip(&unit) {
+                        for (block, b) in row.iter_mut().zip(&unit) {
+                            set(block, l, &self.tangent(&point, a, b));
+                        }
+                    }
                 }
                 Ok(energies)
             },
@@ -120,7 +115,7 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         for l in 0..count {
             let (energy, of_point) = between(self, h.map(|h| get(h, l)).each_ref())?;
             energies[l] = energy;
-            set(stress, l, &of_point, 1.0);
+            set(stress, l, &of_point);
         }
         Ok(energies)
     }
@@ -134,18 +129,19 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         let mut changes = none();
         for l in 0..count {
             let ends = h.map(|h| get(h, l));
-            set(&mut changes, l, &change_between(self, ends.each_ref(), &get(dh, l))?, 1.0);
+            set(&mut changes, l, &change_between(self, ends.each_ref(), &get(dh, l))?);
         }
         Ok(changes)
     }
 
-    fn cauchy_at(&self, h: &Mat<D>) -> Result<Stress<D>, NotPositive> {
-        let point = self.at(h)?;
-        Ok(Stress { within: self.cauchy(&point), lateral: self.lateral(&point) })
-    }
-
-    fn lateral_excess_at(&self, h: &Mat<D>) -> Result<f64, NotPositive> {
-        self.lateral_excess(h)
+    fn state_at(&self, h: &Mat<D>) -> Result<PointState, NotPositive> {
+        let (point, across) = (self.at(h)?, self.lateral_excess(h)?);
+        let strain = (*h + h.transposed() + h.transposed() * *h) * 0.5;
+        Ok(PointState {
+            det_f: self.volume_ratio(h),
+            cauchy: in_space(&self.cauchy(&point), self.lateral(&point)),
+            strain: in_space(&strain, across + 0.5 * across * across),
+        })
     }
 
     fn volume_ratio_at(&self, h: &Mat<D>) -> f64 {
@@ -164,4 +160,15 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         }
         Ok(sum)
     }
+}
+
+/// The components within the dimensions of a body, and the normal one in the others.
+fn in_space<const D: usize>(within: &Mat<D>, lateral: f64) -> [[f64; 3]; 3] {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| match (i < D && j < D, i == j) {
+            (true, _) => within.0[i][j],
+            (false, true) => lateral,
+            (false, false) => 0.0,
+        })
+    })
 }

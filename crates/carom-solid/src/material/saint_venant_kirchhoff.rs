@@ -8,7 +8,7 @@
 use carom_algebra::{Four, Mat, Real, Vector};
 
 use super::NotPositive;
-use super::hyperelastic::{AtPoints, InLanes, Material, in_lanes};
+use super::hyperelastic::Material;
 use super::kinematics::valid_excess;
 
 /// St. Venant–Kirchhoff law with Lamé's constants.
@@ -60,15 +60,9 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
     }
 
     #[inline(always)]
-    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
-        in_lanes(
-            h,
-            #[inline(always)]
-            |h| {
-                let point = self.kinematics(h)?;
-                Ok(((Four::of(0.5) * point.second.double_dot(&point.e)), (point.f * point.second)))
-            },
-        )
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+        let point = self.kinematics(h)?;
+        Ok(Some(((Four::of(0.5) * point.second.double_dot(&point.e)), (point.f * point.second))))
     }
 
     #[inline(always)]

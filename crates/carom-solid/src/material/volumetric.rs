@@ -10,38 +10,87 @@
 //! Measures are laws themselves, with q as their energy, so that the kernels of forces, tangents
 //! and discrete gradients serve them too.
 
-use carom_algebra::{Mat, Real, Vector};
+use carom_algebra::{Four, Mat, Real, Vector};
 
-use super::hyperelastic::{AtPoints, InLanes, in_lanes};
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
-use super::{LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
+use super::{Law, Material, NotPositive, Pointwise};
 
-/// A law whose volumetric part can be averaged over a cell.
-pub trait Volumetric<const D: usize>: Material<D> + Sized {
+/// What mean dilatation needs of a law.
+pub(crate) struct Mean<const D: usize> {
+    /// Ψ.
+    pub(crate) law: Box<dyn Pointwise<D>>,
     /// q as a law.
-    type Measure: Material<D>;
+    pub(crate) measure: Box<dyn Pointwise<D>>,
+    pub(crate) volumetric: Volumetric,
+}
 
-    /// Ψ₀: the same law with Λ = 0.
-    #[must_use]
-    fn without_volumetric(&self) -> Self;
+impl Law {
+    /// Ψ₀, the same law with Λ = 0, and what mean dilatation adds.
+    pub(crate) fn averaged<const D: usize>(self) -> (Self, Mean<D>) {
+        let (rest, measure, volumetric): (_, Box<dyn Pointwise<D>>, _) = match self {
+            Self::NeoHookean { lambda, mu } => {
+                (Self::NeoHookean { lambda: 0.0, mu }, Box::new(Swelling), Volumetric::Logarithmic(lambda))
+            }
+            Self::SaintVenantKirchhoff { lambda, mu } => {
+                let rest = Self::SaintVenantKirchhoff { lambda: 0.0, mu };
+                (rest, Box::new(TraceOfStrain), Volumetric::Quadratic(lambda))
+            }
+            Self::LinearElastic { lambda, mu } => {
+                let rest = Self::LinearElastic { lambda: 0.0, mu };
+                (rest, Box::new(SmallSwelling), Volumetric::Quadratic(lambda))
+            }
+        };
+        (rest, Mean { law: self.pointwise(), measure, volumetric })
+    }
+}
 
-    /// q.
-    fn measure(&self) -> Self::Measure;
+/// W, with its Λ.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Volumetric {
+    /// Λ/2 (ln (1 + m))².
+    Logarithmic(f64),
+    /// Λ/2 m².
+    Quadratic(f64),
+}
 
+impl Volumetric {
     /// W, W′ and W″ at m.
-    fn volumetric(&self, m: f64) -> [f64; 3];
+    pub(crate) fn at(self, m: f64) -> [f64; 3] {
+        match self {
+            Self::Logarithmic(lambda) => {
+                let (logarithm, ratio) = (ln_1p(m)[0], 1.0 + m);
+                let [energy, pressure] = [0.5 * logarithm * logarithm, logarithm / ratio];
+                [energy, pressure, (1.0 - logarithm) / (ratio * ratio)].map(|part| lambda * part)
+            }
+            Self::Quadratic(lambda) => [0.5 * lambda * m * m, lambda * m, lambda],
+        }
+    }
 
     /// ΔW/Δm between two values of m, and its derivative with respect to the second; without
     /// cancellation.
-    fn volumetric_between(&self, m: [f64; 2]) -> [f64; 2];
+    ///
+    /// With x = (m₁ − m₀)/(1 + m₀) and q(x) = ln(1 + x)/x the logarithmic one is
+    /// Λ (ln(1 + m₀) + ln(1 + m₁)) q(x)/(2 (1 + m₀)).
+    pub(crate) fn between(self, [start, end]: [f64; 2]) -> [f64; 2] {
+        match self {
+            Self::Logarithmic(lambda) => {
+                let ratio = 1.0 + start;
+                let [quotient, slope] = logarithmic_quotient((end - start) / ratio);
+                let sum = ln_1p(start)[0] + ln_1p(end)[0];
+                let by_end = quotient / (1.0 + end) + sum * slope / ratio;
+                [sum * quotient, by_end].map(|part| 0.5 * lambda * part / ratio)
+            }
+            Self::Quadratic(lambda) => [0.5 * lambda * (start + end), 0.5 * lambda],
+        }
+    }
 }
 
 /// q = J − 1.
 #[derive(Clone, Copy, Debug)]
-pub struct Swelling;
+pub(super) struct Swelling;
 
 /// cof F and J − 1.
-pub struct OfSwelling<const D: usize, T = f64> {
+pub(super) struct OfSwelling<const D: usize, T = f64> {
     cofactor: Mat<D, T>,
     excess: T,
 }
@@ -74,15 +123,9 @@ impl<const D: usize> Material<D> for Swelling {
     }
 
     #[inline(always)]
-    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
-        in_lanes(
-            h,
-            #[inline(always)]
-            |h| {
-                let point = OfSwelling::at(h)?;
-                Ok((point.excess, point.cofactor))
-            },
-        )
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+        let point = OfSwelling::at(h)?;
+        Ok(Some((point.excess, point.cofactor)))
     }
 
     /// J (ã⊗b̃ − b̃⊗ã), ã = F⁻ᵀa.
@@ -103,10 +146,10 @@ impl<const D: usize> Material<D> for Swelling {
 
 /// q = tr E, E = (H + Hᵀ + HᵀH)/2; it is defined for J ≤ 0, which is an error as in the law.
 #[derive(Clone, Copy, Debug)]
-pub struct TraceOfStrain;
+pub(super) struct TraceOfStrain;
 
 /// H and J.
-pub struct OfStrain<const D: usize, T = f64> {
+pub(super) struct OfStrain<const D: usize, T = f64> {
     h: Mat<D, T>,
     det_f: T,
 }
@@ -144,15 +187,9 @@ impl<const D: usize> Material<D> for TraceOfStrain {
     }
 
     #[inline(always)]
-    fn at_points(&self, h: &InLanes<D>, _: usize) -> Result<AtPoints<D>, NotPositive> {
-        in_lanes(
-            h,
-            #[inline(always)]
-            |h| {
-                let point = OfStrain::at(h)?;
-                Ok((point.trace(), (Mat::identity() + point.h)))
-            },
-        )
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+        let point = OfStrain::at(h)?;
+        Ok(Some((point.trace(), (Mat::identity() + point.h))))
     }
 
     #[inline(always)]
@@ -172,7 +209,7 @@ impl<const D: usize> Material<D> for TraceOfStrain {
 
 /// q = tr ε = tr H.
 #[derive(Clone, Copy, Debug)]
-pub struct SmallSwelling;
+pub(super) struct SmallSwelling;
 
 impl<const D: usize> Material<D> for SmallSwelling {
     const ENERGY_DEGREE: usize = 1;
@@ -208,34 +245,6 @@ impl<const D: usize> Material<D> for SmallSwelling {
     }
 }
 
-impl<const D: usize> Volumetric<D> for NeoHookean {
-    type Measure = Swelling;
-
-    fn without_volumetric(&self) -> Self {
-        Self { lambda: 0.0, mu: self.mu }
-    }
-
-    fn measure(&self) -> Swelling {
-        Swelling
-    }
-
-    fn volumetric(&self, m: f64) -> [f64; 3] {
-        let (logarithm, ratio) = (ln_1p(m)[0], 1.0 + m);
-        let [energy, pressure] = [0.5 * logarithm * logarithm, logarithm / ratio];
-        [energy, pressure, (1.0 - logarithm) / (ratio * ratio)].map(|part| self.lambda * part)
-    }
-
-    /// With x = (m₁ − m₀)/(1 + m₀) and q(x) = ln(1 + x)/x: Λ (ln(1 + m₀) + ln(1 + m₁)) q(x)/(2
-    /// (1 + m₀)).
-    fn volumetric_between(&self, [start, end]: [f64; 2]) -> [f64; 2] {
-        let ratio = 1.0 + start;
-        let [quotient, slope] = logarithmic_quotient((end - start) / ratio);
-        let sum = ln_1p(start)[0] + ln_1p(end)[0];
-        let by_end = quotient / (1.0 + end) + sum * slope / ratio;
-        [sum * quotient, by_end].map(|part| 0.5 * self.lambda * part / ratio)
-    }
-}
-
 /// ln(1 + x)/x and its derivative.
 fn logarithmic_quotient(x: f64) -> [f64; 2] {
     // The terms omitted are below x⁸: round-off.
@@ -250,45 +259,4 @@ fn logarithmic_quotient(x: f64) -> [f64; 2] {
     }
     let value = x.ln_1p() / x;
     [value, (1.0 / (1.0 + x) - value) / x]
-}
-
-/// W, W′ and W″ of Λ/2 m², and the quotient of its differences.
-macro_rules! quadratic {
-    () => {
-        fn volumetric(&self, m: f64) -> [f64; 3] {
-            [0.5 * self.lambda * m * m, self.lambda * m, self.lambda]
-        }
-
-        fn volumetric_between(&self, [start, end]: [f64; 2]) -> [f64; 2] {
-            [0.5 * self.lambda * (start + end), 0.5 * self.lambda]
-        }
-    };
-}
-
-impl<const D: usize> Volumetric<D> for SaintVenantKirchhoff {
-    type Measure = TraceOfStrain;
-
-    fn without_volumetric(&self) -> Self {
-        Self { lambda: 0.0, mu: self.mu }
-    }
-
-    fn measure(&self) -> TraceOfStrain {
-        TraceOfStrain
-    }
-
-    quadratic!();
-}
-
-impl<const D: usize> Volumetric<D> for LinearElastic {
-    type Measure = SmallSwelling;
-
-    fn without_volumetric(&self) -> Self {
-        Self { lambda: 0.0, mu: self.mu }
-    }
-
-    fn measure(&self) -> SmallSwelling {
-        SmallSwelling
-    }
-
-    quadratic!();
 }

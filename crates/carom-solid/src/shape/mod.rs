@@ -52,3 +52,10 @@ pub trait Shape<const R: usize, const N: usize>: Send + Sync + 'static {
     /// ∂φᵃ/∂ξ.
     fn gradients(xi: &Vector<R>) -> [Vector<R>; N];
 }
+
+/// The nodes of a shape in the lattice that divides every edge by the degree.
+pub(crate) fn lattice<const R: usize, const N: usize, S: Shape<R, N>>() -> Vec<[usize; R]> {
+    let low = S::NODES[0][0];
+    let scale = S::DEGREE as f64 / (1.0 - low);
+    S::NODES.iter().map(|xi| xi.0.map(|x| (scale * (x - low)).round() as usize)).collect()
+}

@@ -4,9 +4,9 @@ use carom_algebra::{Mat, Vector, wide};
 
 use super::rotation::{angle, strain};
 use super::{Place, Solid};
-use crate::body::{Body, Inverted, PointState, one_by_one};
+use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
-use crate::material::{NotPositive, Pointwise, Stress};
+use crate::material::{NotPositive, Pointwise};
 use crate::mesh::Mesh;
 use crate::points::{LANES, get};
 use crate::reference::{self, gradient};
@@ -19,7 +19,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     }
 
     fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
-        self.force_of(&*self.law, cell, y, force)
+        match &self.mean {
+            None => self.force_of(&*self.law, cell, y, force),
+            Some(mean) => self.mean_force(mean, cell, y, force),
+        }
     }
 
     fn cell_forces(
@@ -32,7 +35,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         if Self::HAS_CONSTANT_STRAIN {
             return self.constant_forces(first, y, forces, energies);
         }
-        one_by_one(self, first, y, forces, energies)
+        self.one_by_one(first, y, forces, energies)
     }
 
     fn add_cells(&self, first: usize, locals: &[f64], sum: &mut [f64]) {
@@ -55,7 +58,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         force: &mut [f64],
         tangent: &mut [f64],
     ) -> Result<f64, Inverted> {
-        self.tangent_of(&*self.law, cell, y, force, tangent)
+        let energy = self.tangent_of(&*self.law, cell, y, force, tangent)?;
+        let Some(mean) = &self.mean else { return Ok(energy) };
+        Ok(energy + self.add_mean_tangent(mean, cell, y, force, tangent)?)
     }
 
     fn cell_between(
@@ -65,7 +70,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         now: &[f64],
         force: &mut [f64],
     ) -> Result<f64, Inverted> {
-        self.between_of(&*self.law, cell, [before, now], force)
+        let energy = self.between_of(&*self.law, cell, [before, now], force)?;
+        let Some(mean) = &self.mean else { return Ok(energy) };
+        Ok(energy + self.add_mean_between(mean, cell, [before, now], force)?)
     }
 
     fn cell_product(
@@ -76,7 +83,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         change: &[f64],
         product: &mut [f64],
     ) -> Result<(), Inverted> {
-        self.product_of(&*self.law, cell, before, [y, change], product)
+        self.product_of(&*self.law, cell, before, [y, change], product)?;
+        let Some(mean) = &self.mean else { return Ok(()) };
+        self.add_mean_product(mean, cell, before, [y, change], product)
     }
 
     fn cell_mass(&self, cell: usize, mass: &mut [f64]) {
@@ -124,7 +133,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     }
 
     fn stress_divergence(&self, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
-        divergence_of(&*self.law, h, second, out)
+        let law = self.mean.as_ref().map_or(&self.law, |mean| &mean.law);
+        let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
+        out.copy_from_slice(&law.divergence(&h, second).map_err(|NotPositive(det_f)| det_f)?.0);
+        Ok(())
     }
 
     fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
@@ -187,7 +199,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     }
 
     fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted> {
-        self.point_of(&*self.law, cell, xi, y)
+        let mut state = self.point_of(&*self.law, cell, xi, y)?;
+        if let Some(mean) = &self.mean {
+            self.add_mean_stress(mean, cell, xi, y, &mut state)?;
+        }
+        Ok(state)
     }
 
     fn shape(&self, xi: &[f64], values: &mut [f64]) {
@@ -225,6 +241,20 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
 }
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
+    /// [`Body::cell_forces`] by [`Body::cell_force`].
+    pub(super) fn one_by_one(
+        &self,
+        first: usize,
+        y: &[f64],
+        forces: &mut [f64],
+        energies: &mut [f64],
+    ) -> Result<(), Inverted> {
+        for (k, (force, energy)) in forces.chunks_exact_mut(N * D).zip(energies).enumerate() {
+            *energy = self.cell_force(first + k, y, force)?;
+        }
+        Ok(())
+    }
+
     /// [`Body::point`] of another law.
     pub(super) fn point_of(
         &self,
@@ -237,39 +267,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let inverse_transposed = gradient(&x, &S::gradients(&vector(xi))).inverse().transposed();
         let g = S::gradients(&vector(xi)).map(|g| inverse_transposed.apply(&g));
         let h = gradient(&self.displacements(cell, y), &g);
-        let Stress { within, lateral } =
-            law.cauchy_at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-        let across = law.lateral_excess_at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-        let strain = (h + h.transposed() + h.transposed() * h) * 0.5;
-        Ok(PointState {
-            det_f: law.volume_ratio_at(&h),
-            cauchy: in_space(&within, lateral),
-            strain: in_space(&strain, across + 0.5 * across * across),
-        })
+        law.state_at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })
     }
-}
-
-/// The components within the dimensions of a body, and the normal one in the others.
-fn in_space<const D: usize>(within: &Mat<D>, lateral: f64) -> [[f64; 3]; 3] {
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| match (i < D && j < D, i == j) {
-            (true, _) => within.0[i][j],
-            (false, true) => lateral,
-            (false, false) => 0.0,
-        })
-    })
-}
-
-/// [`Body::stress_divergence`] of a law.
-pub(super) fn divergence_of<const D: usize>(
-    law: &dyn Pointwise<D>,
-    h: &[f64],
-    second: &[f64],
-    out: &mut [f64],
-) -> Result<(), f64> {
-    let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
-    out.copy_from_slice(&law.divergence(&h, second).map_err(|NotPositive(det_f)| det_f)?.0);
-    Ok(())
 }
 
 /// Reference coordinates from a slice of `D` numbers.

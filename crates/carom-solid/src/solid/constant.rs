@@ -4,7 +4,7 @@
 use carom_algebra::{Four, Mat, wide};
 
 use super::Solid;
-use crate::body::{Inverted, one_by_one};
+use crate::body::Inverted;
 use crate::points::{LANES, Packed, set};
 use crate::shape::{Domain, Shape};
 
@@ -21,7 +21,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         energies: &mut [f64],
     ) -> Result<(), Inverted> {
         if !first.is_multiple_of(LANES) {
-            return one_by_one(self, first, y, forces, energies);
+            return self.one_by_one(first, y, forces, energies);
         }
         let blocks = forces.chunks_mut(LANES * N * D).zip(energies.chunks_mut(LANES));
         for (block, (forces, energies)) in blocks.enumerate() {
@@ -32,7 +32,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             );
             if !valid {
                 // One by one, to find it.
-                one_by_one(self, cells, y, forces, energies)?;
+                self.one_by_one(cells, y, forces, energies)?;
             }
         }
         Ok(())
@@ -73,7 +73,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let blocks = self.places.chunks(LANES).map(|places| {
             let mut packed = Packed { maps: [[[0.0; LANES]; D]; D], weights: [0.0; LANES] };
             for (l, place) in places.iter().enumerate() {
-                set(&mut packed.maps, l, &place.inverse, 1.0);
+                set(&mut packed.maps, l, &place.inverse);
                 packed.weights[l] = place.volume * weight;
             }
             packed

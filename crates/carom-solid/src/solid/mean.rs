@@ -17,12 +17,10 @@
 
 use carom_algebra::wide;
 
-use super::body::divergence_of;
 use super::integrals::scale;
 use super::{Place, Solid, SolidError};
-use crate::body::{Body, Inverted, PointState};
-use crate::bounds::Bounds;
-use crate::material::{NotPositive, Pointwise, Volumetric};
+use crate::body::{Inverted, PointState};
+use crate::material::{Law, Mean, NotPositive};
 use crate::mesh::Mesh;
 use crate::points::{LANES, sum};
 use crate::shape::Shape;
@@ -30,60 +28,77 @@ use crate::shape::Shape;
 /// Blocks of quadrature points of a cell: eight points of Hex8, the largest that has this.
 const BLOCKS: usize = 2;
 
-/// A solid with mean dilatation.
-pub struct MeanDilatation<const D: usize, const N: usize, S, L: Volumetric<D>> {
-    /// The body of Ψ₀.
-    solid: Solid<D, N, S>,
-    law: L,
-    measure: L::Measure,
-}
-
 /// The volumetric part of a cell: its force without the pressure, g, and m.
 struct Swelling {
     gradient: Vec<f64>,
     measure: f64,
 }
 
-impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> MeanDilatation<D, N, S, L> {
-    /// Body of a mesh, a law, a density ≥ 0 and a thickness > 0.
+impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
+    /// Body with mean dilatation of a mesh, a law, a density ≥ 0 and a thickness > 0.
     ///
     /// # Errors
     /// If a number is out of range, or the reference shape of a cell is degenerate or inverted.
-    pub fn new(mesh: Mesh, law: L, density: f64, thickness: f64) -> Result<Self, SolidError> {
-        let solid = Solid::new(mesh, Box::new(law.without_volumetric()), density, thickness)?;
-        Ok(Self { solid, measure: law.measure(), law })
+    pub(crate) fn averaged(mesh: Mesh, law: Law, density: f64, thickness: f64) -> Result<Self, SolidError> {
+        let (rest, mean) = law.averaged();
+        Ok(Self { mean: Some(mean), ..Self::new(mesh, rest.pointwise(), density, thickness)? })
     }
 
     /// Volume of a cell (× thickness) by the rule of the forces.
     fn volume(&self, cell: usize) -> f64 {
-        let place = &self.solid.places[cell];
-        let weights = self.solid.points[place.points.clone()].iter();
+        let place = &self.places[cell];
+        let weights = self.points[place.points.clone()].iter();
         place.volume * weights.map(|points| points.weights[..points.count].iter().sum::<f64>()).sum::<f64>()
     }
 
-    fn swelling(&self, cell: usize, y: &[f64], tangent: Option<&mut [f64]>) -> Result<Swelling, Inverted> {
+    fn swelling(
+        &self,
+        mean: &Mean<D>,
+        cell: usize,
+        y: &[f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<Swelling, Inverted> {
         let mut gradient = vec![0.0; N * D];
         let sum = match tangent {
-            None => self.solid.force_of(&self.measure, cell, y, &mut gradient)?,
-            Some(tangent) => self.solid.tangent_of(&self.measure, cell, y, &mut gradient, tangent)?,
+            None => self.force_of(&*mean.measure, cell, y, &mut gradient)?,
+            Some(tangent) => self.tangent_of(&*mean.measure, cell, y, &mut gradient, tangent)?,
         };
         Ok(Swelling { gradient, measure: sum / self.volume(cell) })
     }
 
+    /// [`Body::cell_force`](crate::Body::cell_force).
+    pub(super) fn mean_force(
+        &self,
+        mean: &Mean<D>,
+        cell: usize,
+        y: &[f64],
+        force: &mut [f64],
+    ) -> Result<f64, Inverted> {
+        wide(
+            #[inline(always)]
+            || self.mean_force_in_one_pass(mean, cell, y, force),
+        )
+    }
+
     /// The force of a cell, from one pass over its points: the pressure is known at its end.
     #[inline(always)]
-    fn force_of(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
+    fn mean_force_in_one_pass(
+        &self,
+        mean: &Mean<D>,
+        cell: usize,
+        y: &[f64],
+        force: &mut [f64],
+    ) -> Result<f64, Inverted> {
         let none = [[[0.0; LANES]; D]; D];
         let (mut stresses, mut cofactors) = ([none; BLOCKS], [none; BLOCKS]);
         let (mut energy, mut swollen, mut cell_volume) = (0.0, 0.0, 0.0);
-        let (u, Place { points, inverse, volume }) =
-            (self.solid.displacements(cell, y), &self.solid.places[cell]);
-        let points = &self.solid.points[points.clone()];
+        let (u, Place { points, inverse, volume }) = (self.displacements(cell, y), &self.places[cell]);
+        let points = &self.points[points.clone()];
         for ((points, stress), cofactor) in points.iter().zip(&mut stresses).zip(&mut cofactors) {
             let (h, count) = (points.gradient(&u, inverse), points.count);
             let inverted = |NotPositive(det_f)| Inverted { cell, det_f };
-            let densities = self.solid.law.stresses(&h, count, stress).map_err(inverted)?;
-            let measures = Pointwise::stresses(&self.measure, &h, count, cofactor).map_err(inverted)?;
+            let densities = self.law.stresses(&h, count, stress).map_err(inverted)?;
+            let measures = mean.measure.stresses(&h, count, cofactor).map_err(inverted)?;
             let weights = points.weights.map(|weight| volume * weight);
             for l in 0..count {
                 energy += weights[l] * densities[l];
@@ -93,7 +108,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> MeanDilat
             scale(stress, &weights);
             scale(cofactor, &weights);
         }
-        let [swelling, pressure, _] = self.law.volumetric(swollen / cell_volume);
+        let [swelling, pressure, _] = mean.volumetric.at(swollen / cell_volume);
         let mut f = [[[0.0; LANES]; D]; N];
         for ((points, stress), cofactor) in points.iter().zip(&mut stresses).zip(&cofactors) {
             for (stress, cofactor) in stress
@@ -112,10 +127,96 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> MeanDilat
         Ok(energy + cell_volume * swelling)
     }
 
+    /// Adds the volumetric force of a cell and its tangent; returns its energy, as the following.
+    pub(super) fn add_mean_tangent(
+        &self,
+        mean: &Mean<D>,
+        cell: usize,
+        y: &[f64],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> Result<f64, Inverted> {
+        let mut turning = vec![0.0; tangent.len()];
+        let Swelling { gradient, measure } = self.swelling(mean, cell, y, Some(&mut turning))?;
+        let volume = self.volume(cell);
+        let [energy, pressure, stiffness] = mean.volumetric.at(measure);
+        add(force, pressure, &gradient);
+        add(tangent, pressure, &turning);
+        for (row, a) in tangent.chunks_exact_mut(N * D).zip(&gradient) {
+            row.iter_mut().zip(&gradient).for_each(|(entry, b)| *entry += stiffness / volume * (a * b));
+        }
+        Ok(volume * energy)
+    }
+
+    /// Adds the discrete gradient of the volumetric energy of a cell.
+    pub(super) fn add_mean_between(
+        &self,
+        mean: &Mean<D>,
+        cell: usize,
+        [before, now]: [&[f64]; 2],
+        force: &mut [f64],
+    ) -> Result<f64, Inverted> {
+        let mut gradient = vec![0.0; N * D];
+        let sum = self.between_of(&*mean.measure, cell, [before, now], &mut gradient)?;
+        let (volume, start) = (self.volume(cell), self.swelling(mean, cell, before, None)?.measure);
+        let end = sum / volume;
+        let [pressure, _] = mean.volumetric.between([start, end]);
+        add(force, pressure, &gradient);
+        Ok(volume * mean.volumetric.at(end)[0])
+    }
+
+    /// Adds the product of the tangent of the volumetric force.
+    pub(super) fn add_mean_product(
+        &self,
+        mean: &Mean<D>,
+        cell: usize,
+        before: Option<&[f64]>,
+        [y, change]: [&[f64]; 2],
+        product: &mut [f64],
+    ) -> Result<(), Inverted> {
+        let mut turning = vec![0.0; N * D];
+        self.product_of(&*mean.measure, cell, before, [y, change], &mut turning)?;
+        let volume = self.volume(cell);
+        let now = self.swelling(mean, cell, y, None)?;
+        let swells = dot(&now.gradient, &self.of_cell(cell, change)) / volume;
+        let (pressure, stiffness, along) = match before {
+            None => {
+                let [_, pressure, stiffness] = mean.volumetric.at(now.measure);
+                (pressure, stiffness, now.gradient)
+            }
+            Some(before) => {
+                let start = self.swelling(mean, cell, before, None)?.measure;
+                let [pressure, stiffness] = mean.volumetric.between([start, now.measure]);
+                let mut along = vec![0.0; N * D];
+                self.between_of(&*mean.measure, cell, [before, y], &mut along)?;
+                (pressure, stiffness, along)
+            }
+        };
+        add(product, pressure, &turning);
+        add(product, stiffness * swells, &along);
+        Ok(())
+    }
+
+    /// Adds the volumetric stress at a point.
+    pub(super) fn add_mean_stress(
+        &self,
+        mean: &Mean<D>,
+        cell: usize,
+        xi: &[f64],
+        y: &[f64],
+        state: &mut PointState,
+    ) -> Result<(), Inverted> {
+        let unit = self.point_of(&*mean.measure, cell, xi, y)?;
+        let [_, pressure, _] = mean.volumetric.at(self.swelling(mean, cell, y, None)?.measure);
+        let cauchy = state.cauchy.as_flattened_mut().iter_mut().zip(unit.cauchy.as_flattened());
+        cauchy.for_each(|(stress, unit)| *stress += pressure * unit);
+        Ok(())
+    }
+
     /// The nodal vector of a cell from one over all nodes.
     fn of_cell(&self, cell: usize, vector: &[f64]) -> Vec<f64> {
         let vector = vector.as_chunks::<D>().0;
-        self.solid.nodes(cell).iter().flat_map(|&node| vector[node]).collect()
+        self.nodes(cell).iter().flat_map(|&node| vector[node]).collect()
     }
 }
 
@@ -125,159 +226,4 @@ fn add(to: &mut [f64], factor: f64, from: &[f64]) {
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-impl<const D: usize, const N: usize, S: Shape<D, N>, L: Volumetric<D>> Body for MeanDilatation<D, N, S, L> {
-    fn mesh(&self) -> &Mesh {
-        self.solid.mesh()
-    }
-
-    fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
-        wide(
-            #[inline(always)]
-            || self.force_of(cell, y, force),
-        )
-    }
-
-    fn add_cells(&self, first: usize, locals: &[f64], sum: &mut [f64]) {
-        self.solid.add_cells(first, locals, sum);
-    }
-
-    fn cell_tangent(
-        &self,
-        cell: usize,
-        y: &[f64],
-        force: &mut [f64],
-        tangent: &mut [f64],
-    ) -> Result<f64, Inverted> {
-        let shear = self.solid.cell_tangent(cell, y, force, tangent)?;
-        let mut turning = vec![0.0; tangent.len()];
-        let Swelling { gradient, measure } = self.swelling(cell, y, Some(&mut turning))?;
-        let volume = self.volume(cell);
-        let [energy, pressure, stiffness] = self.law.volumetric(measure);
-        add(force, pressure, &gradient);
-        add(tangent, pressure, &turning);
-        for (row, a) in tangent.chunks_exact_mut(N * D).zip(&gradient) {
-            row.iter_mut().zip(&gradient).for_each(|(entry, b)| *entry += stiffness / volume * (a * b));
-        }
-        Ok(shear + volume * energy)
-    }
-
-    fn cell_between(
-        &self,
-        cell: usize,
-        before: &[f64],
-        now: &[f64],
-        force: &mut [f64],
-    ) -> Result<f64, Inverted> {
-        let shear = self.solid.cell_between(cell, before, now, force)?;
-        let mut gradient = vec![0.0; N * D];
-        let sum = self.solid.between_of(&self.measure, cell, [before, now], &mut gradient)?;
-        let (volume, start) = (self.volume(cell), self.swelling(cell, before, None)?.measure);
-        let end = sum / volume;
-        let [pressure, _] = self.law.volumetric_between([start, end]);
-        add(force, pressure, &gradient);
-        Ok(shear + volume * self.law.volumetric(end)[0])
-    }
-
-    fn cell_product(
-        &self,
-        cell: usize,
-        before: Option<&[f64]>,
-        y: &[f64],
-        change: &[f64],
-        product: &mut [f64],
-    ) -> Result<(), Inverted> {
-        self.solid.cell_product(cell, before, y, change, product)?;
-        let mut turning = vec![0.0; N * D];
-        self.solid.product_of(&self.measure, cell, before, [y, change], &mut turning)?;
-        let volume = self.volume(cell);
-        let now = self.swelling(cell, y, None)?;
-        let swells = dot(&now.gradient, &self.of_cell(cell, change)) / volume;
-        let (pressure, stiffness, along) = match before {
-            None => {
-                let [_, pressure, stiffness] = self.law.volumetric(now.measure);
-                (pressure, stiffness, now.gradient)
-            }
-            Some(before) => {
-                let start = self.swelling(cell, before, None)?.measure;
-                let [pressure, stiffness] = self.law.volumetric_between([start, now.measure]);
-                let mut along = vec![0.0; N * D];
-                self.solid.between_of(&self.measure, cell, [before, y], &mut along)?;
-                (pressure, stiffness, along)
-            }
-        };
-        add(product, pressure, &turning);
-        add(product, stiffness * swells, &along);
-        Ok(())
-    }
-
-    fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted> {
-        let mut state = self.solid.point(cell, xi, y)?;
-        let unit = self.solid.point_of(&self.measure, cell, xi, y)?;
-        let [_, pressure, _] = self.law.volumetric(self.swelling(cell, y, None)?.measure);
-        let cauchy = state.cauchy.as_flattened_mut().iter_mut().zip(unit.cauchy.as_flattened());
-        cauchy.for_each(|(stress, unit)| *stress += pressure * unit);
-        Ok(state)
-    }
-
-    fn cell_mass(&self, cell: usize, mass: &mut [f64]) {
-        self.solid.cell_mass(cell, mass);
-    }
-
-    fn cell_volumes(&self, cell: usize, volumes: &mut [f64]) {
-        self.solid.cell_volumes(cell, volumes);
-    }
-
-    fn each_volume_point(&self, cell: usize, visit: &mut dyn FnMut(&[f64], &[f64], f64)) {
-        self.solid.each_volume_point(cell, visit);
-    }
-
-    fn each_moved_point(&self, cell: usize, y: &[f64], visit: &mut dyn FnMut(&[f64], &[f64], &[f64], f64)) {
-        self.solid.each_moved_point(cell, y, visit);
-    }
-
-    fn stress_divergence(&self, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
-        divergence_of(&self.law, h, second, out)
-    }
-
-    fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
-        self.solid.cell_min_det_f(cell, y)
-    }
-
-    fn cell_turn(&self, cell: usize, y: &[f64]) -> [f64; 2] {
-        self.solid.cell_turn(cell, y)
-    }
-
-    fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted> {
-        self.solid.cell_margin(cell, y)
-    }
-
-    fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64> {
-        self.solid.cell_lost_between(cell, before, now)
-    }
-
-    fn shape(&self, xi: &[f64], values: &mut [f64]) {
-        self.solid.shape(xi, values);
-    }
-
-    fn reference_nodes(&self) -> Vec<Vec<f64>> {
-        self.solid.reference_nodes()
-    }
-
-    fn locate(&self, point: &[f64]) -> Vec<(usize, Vec<f64>)> {
-        self.solid.locate(point)
-    }
-
-    fn cell_bounds(&self, cell: usize, y: &[f64]) -> Bounds {
-        self.solid.cell_bounds(cell, y)
-    }
-
-    fn invert(&self, cell: usize, y: &[f64], point: &[f64]) -> Option<Vec<f64>> {
-        self.solid.invert(cell, y, point)
-    }
-
-    fn density(&self) -> f64 {
-        self.solid.density()
-    }
 }

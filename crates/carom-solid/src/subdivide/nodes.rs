@@ -1,25 +1,17 @@
-//! The nodes of a divided mesh: one for each place, whatever cell meets it first.
+//! The nodes of a divided mesh: one for each place, whatever cell meets it first. What identifies a
+//! place is its weights at the corners of a cell, of which on an edge or a face only those of its
+//! corners are not zero.
 
 use std::collections::HashMap;
 
 use crate::mesh::{Facet, Mesh};
 use crate::positions::Positions;
 
-/// What identifies a node of the new mesh.
-#[derive(PartialEq, Eq, Hash)]
-pub(super) enum Place {
-    Corner(usize),
-    /// Between two corners, counted from the smaller one.
-    Edge([usize; 2], usize),
-    Inside(usize, [usize; 3]),
-    /// Between corners, in ascending order, with their weights.
-    Among(Vec<(usize, usize)>),
-}
-
 /// The nodes of the new mesh, each made where it is met first.
 pub(super) struct Nodes<'a> {
     mesh: &'a Mesh,
-    numbers: HashMap<Place, usize>,
+    /// By corners in ascending order, with their weights.
+    numbers: HashMap<Vec<(usize, usize)>, usize>,
     coordinates: Vec<f64>,
 }
 
@@ -28,9 +20,12 @@ impl<'a> Nodes<'a> {
         Self { mesh, numbers: HashMap::new(), coordinates: Vec::new() }
     }
 
-    /// The node at a place of a cell, there at Σ φᵃ Xᵃ.
-    pub(super) fn at(&mut self, place: Place, cell: usize, values: &[f64]) -> usize {
+    /// The node with these weights at the corners of a cell, there at Σ φᵃ Xᵃ.
+    pub(super) fn at(&mut self, weights: &[usize], cell: usize, values: &[f64]) -> usize {
         let (mesh, coordinates) = (self.mesh, &mut self.coordinates);
+        let corners = mesh.cell(cell).iter().copied().zip(weights.iter().copied());
+        let mut place: Vec<_> = corners.filter(|(_, weight)| *weight > 0).collect();
+        place.sort_unstable();
         *self.numbers.entry(place).or_insert_with(|| {
             let nodes = mesh.cell(cell);
             let sum = |i: usize| nodes.iter().zip(values).map(|(&n, v)| mesh.nodes[n][i] * v).sum::<f64>();

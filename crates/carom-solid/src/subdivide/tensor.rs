@@ -1,13 +1,13 @@
-//! A quadrilateral as `parts`² quadrilaterals, a hexahedron as `parts`³ hexahedra: the lattice of
-//! its reference square or cube. A point of the lattice is known to all cells that contain it by
-//! its multilinear weights at the corners, Π (i or count − i): on an edge or a face those of its
-//! corners alone are not zero.
+//! A line as `parts` lines, a quadrilateral as `parts`² quadrilaterals, a hexahedron as `parts`³
+//! hexahedra: the lattice of its reference interval, square or cube. A point of the lattice is
+//! known to all cells that contain it by its multilinear weights at the corners, Π (i or
+//! count − i): on an edge or a face those of its corners alone are not zero.
 
 use carom_algebra::Vector;
 
-use super::nodes::{Nodes, Place};
+use super::nodes::Nodes;
 use crate::mesh::{Facet, Mesh};
-use crate::shape::Shape;
+use crate::shape::{self, Shape};
 
 /// Whole coordinates from 0, of a point of the lattice or of a part.
 type At<const R: usize> = [usize; R];
@@ -25,8 +25,7 @@ fn number<const R: usize>(at: At<R>, size: usize) -> usize {
 pub(super) fn tensor<const R: usize, const N: usize, S: Shape<R, N>>(mesh: &Mesh, parts: usize) -> Mesh {
     let (degree, count) = (S::DEGREE, S::DEGREE * parts);
     let corners = 1 << R;
-    // Nodes in the lattice of the degree: from −1, 0, 1 to 0, …, degree.
-    let steps = S::NODES.map(|xi| xi.0.map(|x| (f64::midpoint(x, 1.0) * degree as f64).round() as usize));
+    let steps = shape::lattice::<R, N, S>();
     let values: Vec<[f64; N]> = lattice::<R>(count + 1)
         .map(|at| S::values(&Vector(at.map(|i| 2.0 * i as f64 / count as f64 - 1.0))))
         .collect();
@@ -37,20 +36,10 @@ pub(super) fn tensor<const R: usize, const N: usize, S: Shape<R, N>>(mesh: &Mesh
     let mut cells = Vec::with_capacity(mesh.cells.len() * parts.pow(R as u32));
     let mut numbers = Vec::with_capacity(values.len());
     for cell in 0..mesh.cell_count() {
-        let own = &mesh.cell(cell)[..corners];
         numbers.clear();
         for (at, values) in lattice::<R>(count + 1).zip(&values) {
-            let inside = at.iter().all(|i| (1..count).contains(i));
-            let place = if inside {
-                Place::Inside(cell, std::array::from_fn(|axis| at.get(axis).copied().unwrap_or_default()))
-            } else {
-                let mut among: Vec<_> =
-                    own.iter().enumerate().map(|(c, &node)| (node, weight(at, c))).collect();
-                among.retain(|(_, weight)| *weight > 0);
-                among.sort_unstable();
-                Place::Among(among)
-            };
-            numbers.push(nodes.at(place, cell, values));
+            let weights: Vec<usize> = (0..corners).map(|corner| weight(at, corner)).collect();
+            numbers.push(nodes.at(&weights, cell, values));
         }
         for part in lattice::<R>(parts) {
             cells.extend(steps.iter().map(|step| {
@@ -64,7 +53,7 @@ pub(super) fn tensor<const R: usize, const N: usize, S: Shape<R, N>>(mesh: &Mesh
         let its = |local: &&&[usize]| local.iter().all(|&a| facet.nodes.contains(&whole[a]));
         let local = mesh.element.facets().iter().find(its).copied().unwrap_or_default();
         // The corner at which the facet begins and the next ones along its two directions.
-        let [first, next, last] = [0, 1, (1 << (R - 1)) - 1].map(|k| steps[local[k]]);
+        let [first, next, last] = [0, 1.min(R - 1), (1 << (R - 1)) - 1].map(|k| steps[local[k]]);
         let along = lattice::<2>(parts).take(parts.pow(R as u32 - 1));
         let part = |[m, n]: At<2>| {
             let at: At<R> = std::array::from_fn(|axis| {

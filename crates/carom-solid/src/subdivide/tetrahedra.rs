@@ -8,9 +8,9 @@
 
 use carom_algebra::Vector;
 
-use super::nodes::{Nodes, Place};
+use super::nodes::Nodes;
 use crate::mesh::{Facet, Mesh};
-use crate::shape::Shape;
+use crate::shape::{Shape, lattice};
 
 /// Barycentric coordinates times a whole number.
 type Weights = [usize; 4];
@@ -19,33 +19,24 @@ type Weights = [usize; 4];
 /// third to that of the second and the fourth.
 const ORDERS: [[usize; 4]; 3] = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2]];
 
-/// Orders of the directions with positive volume after exchanging two corners of every other one.
+/// Paths from the lowest to the highest corner: orders of the directions, even and odd in turn.
 const PATHS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [1, 2, 0], [2, 1, 0], [2, 0, 1], [0, 2, 1]];
 
 pub(super) fn tetrahedra<const N: usize, S: Shape<3, N>>(mesh: &Mesh, parts: usize) -> Mesh {
     let count = S::DEGREE * parts;
-    let steps: Vec<Weights> = S::NODES
-        .iter()
-        .map(|xi| {
-            let [a, b, c] = [0, 1, 2].map(|i| (xi[i] * S::DEGREE as f64).round() as usize);
-            [S::DEGREE - a - b - c, a, b, c]
-        })
-        .collect();
+    let weights = |[a, b, c]: [usize; 3]| [S::DEGREE - a - b - c, a, b, c];
+    let steps: Vec<Weights> = lattice::<3, N, S>().into_iter().map(weights).collect();
     let children = ORDERS.map(|order| children(parts, order));
     let of = |cell: usize| &children[diagonal(mesh, cell)];
     let mut nodes = Nodes::new(mesh);
     let mut cells = Vec::with_capacity(mesh.cells.len() * parts.pow(3));
     for cell in 0..mesh.cell_count() {
-        let corners: [usize; 4] = std::array::from_fn(|a| mesh.cell(cell)[a]);
         for child in of(cell) {
             cells.extend(steps.iter().map(|step| {
                 let at: Weights =
                     std::array::from_fn(|c| (0..4).map(|q| step[q] * child[q][c]).sum::<usize>());
                 let xi = Vector([1, 2, 3].map(|c| at[c] as f64 / count as f64));
-                let mut among: Vec<_> =
-                    corners.into_iter().zip(at).filter(|(_, weight)| *weight > 0).collect();
-                among.sort_unstable();
-                nodes.at(Place::Among(among), cell, &S::values(&xi))
+                nodes.at(&at, cell, &S::values(&xi))
             }));
         }
     }
@@ -68,21 +59,30 @@ pub(super) fn tetrahedra<const N: usize, S: Shape<3, N>>(mesh: &Mesh, parts: usi
     nodes.into_mesh(cells.clone(), divided)
 }
 
+/// The six tetrahedra of a small cube around the diagonal from its lowest corner: one for every
+/// path along the edges to the highest one.
+pub(crate) fn freudenthal(low: [usize; 3]) -> impl Iterator<Item = [[usize; 3]; 4]> {
+    PATHS.iter().enumerate().map(move |(k, path)| {
+        let mut corners = [low; 4];
+        for (step, axis) in path.iter().enumerate() {
+            corners[step + 1..].iter_mut().for_each(|corner| corner[*axis] += 1);
+        }
+        if k % 2 == 1 {
+            // Odd orders have negative volume.
+            corners.swap(1, 2);
+        }
+        corners
+    })
+}
+
 /// Corners of all parts in the whole's weights.
 fn children(parts: usize, order: [usize; 4]) -> Vec<[Weights; 4]> {
     let mut all = Vec::with_capacity(parts.pow(3));
     for cube in 0..parts.pow(3) {
         let low = [cube % parts, cube / parts % parts, cube / (parts * parts)];
-        for (k, path) in PATHS.iter().enumerate() {
-            let mut corners = [low; 4];
-            for (step, axis) in path.iter().enumerate() {
-                corners[step + 1..].iter_mut().for_each(|corner| corner[*axis] += 1);
-            }
+        for corners in freudenthal(low) {
             if corners.iter().any(|[x, y, z]| y > x || z > y) {
                 continue;
-            }
-            if k % 2 == 1 {
-                corners.swap(1, 2);
             }
             all.push(corners.map(|[x, y, z]| {
                 let mut weights = [0; 4];

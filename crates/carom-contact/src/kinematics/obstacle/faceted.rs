@@ -21,6 +21,7 @@ use carom_solid::{Bounds, Tree, Triangles};
 
 use super::corner::{AtCorner, CORNER_COSINE};
 use super::near::{Near, Point, around, cross, distance, dot, minus};
+use crate::kinematics::space::Feature;
 
 /// Barycentric coordinate below zero by which a point counts as beyond an edge.
 const BEYOND: f64 = 1e-9;
@@ -48,14 +49,6 @@ struct Edge {
     along: Point,
     faces: [usize; 2],
     is_rim: bool,
-}
-
-/// The feature of a triangle that is nearest to a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Feature {
-    Face,
-    Edge(usize),
-    Corner(usize),
 }
 
 impl Faceted {
@@ -221,7 +214,7 @@ impl Surface {
     /// The piece that a feature of a face is, and whether it is on a rim.
     fn piece(&self, face: usize, feature: Feature) -> (usize, bool) {
         match feature {
-            Feature::Face => (face, false),
+            Feature::Inside => (face, false),
             Feature::Edge(edge) => {
                 let edge = self.edges_of[face][edge];
                 (self.faces() + edge, self.edges[edge].is_rim)
@@ -316,6 +309,6 @@ impl Surface {
         // The foot of the perpendicular: exact in a plane of which this is a part.
         let height = self.height(face, at);
         let foot = on(at, self.normals[face], -height);
-        (Feature::Face, height.abs(), foot)
+        (Feature::Inside, height.abs(), foot)
     }
 }

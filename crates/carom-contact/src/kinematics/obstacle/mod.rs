@@ -20,11 +20,11 @@ mod polyline;
 
 pub(super) use corner::AtCorner;
 pub use faceted::Faceted;
-pub(super) use near::{Near, Point};
+pub(super) use near::{Near, Point, dot};
 pub use polyline::{Polyline, PolylineError};
 
 use super::zero;
-use near::{across, around, dot, minus};
+use near::{across, around, minus};
 
 /// A rigid shape. All its data are in the coordinates of the body that carries it.
 #[derive(Clone, Debug)]

@@ -29,13 +29,8 @@ impl Near {
     }
 }
 
-/// A circle seen from outside (`side` = 1) or inside (−1).
-pub(crate) fn round(at: Point, center: Point, radius: f64, side: f64) -> Option<Near> {
-    around(minus(at, center), [0.0; 3], radius, side)
-}
-
-/// The same around a line through the origin, along a direction of length one; zero: around the
-/// origin.
+/// A circle around the origin, or a line through it along a direction of length one, seen from
+/// outside (`side` = 1) or inside (−1).
 pub(crate) fn around(arm: Point, axis: Point, radius: f64, side: f64) -> Option<Near> {
     let arm = across(arm, axis);
     let length = dot(arm, arm).sqrt();

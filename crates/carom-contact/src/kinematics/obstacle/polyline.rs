@@ -13,7 +13,7 @@
 //! The first and last segment of an open chain continue to infinity.
 
 use super::corner::{AtCorner, CORNER_COSINE};
-use super::near::{Near, Point, distance, round};
+use super::near::{Near, Point, around, distance};
 
 /// A piece of the chain.
 #[derive(Clone, Copy, Debug)]
@@ -171,7 +171,7 @@ impl Polyline {
     pub(in super::super) fn near(&self, piece: usize, at: Point) -> Option<Near> {
         match self.pieces[piece] {
             Piece::Segment { start, normal, .. } => Some(Near::flat(dot(minus(at, start), normal), normal)),
-            Piece::Corner { center, radius, side, .. } => round(at, center, radius, side),
+            Piece::Corner { center, radius, side, .. } => around(minus(at, center), [0.0; 3], radius, side),
         }
     }
 

@@ -9,10 +9,10 @@
 use std::collections::{BTreeMap, HashMap};
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, FacetShape, Hull};
+use carom_solid::FacetShape;
 
 use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
-use crate::depth::Depth;
+use crate::kinematics::{Depth, Facets};
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
 pub(super) const SHARP: f64 = 0.87;
@@ -83,24 +83,9 @@ impl Boundary {
         }
     }
 
-    /// Shape of every facet.
-    pub fn shape(&self) -> FacetShape {
-        self.shape
-    }
-
     /// Number of facets of the side.
     pub fn facets(&self) -> usize {
         self.side
-    }
-
-    /// Nodes of all its facets, facet by facet.
-    pub(crate) fn nodes(&self) -> &[usize] {
-        &self.nodes
-    }
-
-    /// Number of facets with those of the rest of the boundary.
-    pub(crate) fn all(&self) -> usize {
-        self.neighbours.len()
     }
 
     /// Whether the rest of the body's boundary is known, or there is none.
@@ -118,18 +103,12 @@ impl Boundary {
 
     /// A facet.
     pub(crate) fn patch(&self, facet: usize) -> Patch<'_> {
-        let n = self.shape.nodes();
-        Patch { shape: self.shape, nodes: &self.nodes[facet * n..(facet + 1) * n] }
+        Patch { shape: self.shape, nodes: self.nodes_of(facet) }
     }
 
     /// The smallest length of a facet.
     pub(super) fn shortest(&self, y: &[f64]) -> f64 {
-        (0..self.all()).map(|facet| self.patch(facet).length(y)).fold(f64::INFINITY, f64::min)
-    }
-
-    /// Global numbers of the nodes of a facet.
-    pub fn facet_nodes(&self, facet: usize) -> &[usize] {
-        self.patch(facet).nodes
+        (0..self.all()).map(|facet| self.length(facet, y)).fold(f64::INFINITY, f64::min)
     }
 
     /// The middle of a facet.
@@ -277,18 +256,7 @@ impl Boundary {
         points
     }
 
-    /// Box around a facet at positions `y`.
-    pub(crate) fn bounds(&self, hull: &Hull, facet: usize, y: &[f64]) -> Bounds {
-        let nodes = self.patch(facet).nodes;
-        hull.bounds(|a| &y[3 * nodes[a]..3 * nodes[a] + 3])
-    }
-
-    /// Where a point lies whose nearest facet is known.
-    pub(crate) fn depth(&self, facet: usize, point: Vector<3>, y: &[f64]) -> Depth {
-        self.depth_from(facet, self.patch(facet).nearest(y, point), point, y)
-    }
-
-    /// The same with the nearest point of the facet.
+    /// Where a point lies whose nearest facet, and the nearest point of that, are known.
     pub(super) fn depth_from(&self, facet: usize, nearest: Nearest, point: Vector<3>, y: &[f64]) -> Depth {
         let (d, normal) = self.way(facet, nearest, point, y);
         let distance = if d.dot(&normal) >= 0.0 { nearest.distance } else { -nearest.distance };
@@ -346,9 +314,30 @@ impl Boundary {
         }
         sum
     }
+}
 
-    /// A hierarchy of the boxes of all facets; filled by the caller.
-    pub(crate) fn hull(&self) -> Hull {
-        Hull::facet(self.shape)
+impl Facets<3> for Boundary {
+    fn shape(&self) -> FacetShape {
+        self.shape
+    }
+
+    fn nodes(&self) -> &[usize] {
+        &self.nodes
+    }
+
+    fn beside(&self, facet: usize) -> impl Iterator<Item = usize> {
+        self.ring(facet).iter().copied()
+    }
+
+    fn distance(&self, facet: usize, point: Vector<3>, y: &[f64]) -> f64 {
+        self.patch(facet).nearest(y, point).distance
+    }
+
+    fn depth(&self, facet: usize, point: Vector<3>, y: &[f64]) -> Depth {
+        self.depth_from(facet, self.patch(facet).nearest(y, point), point, y)
+    }
+
+    fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> Vector<3> {
+        self.patch(facet).at(y, xi).normal
     }
 }

@@ -7,8 +7,7 @@ use carom_solid::{Hull, Tree};
 use super::boundary::Boundary;
 use super::folds::{PatchFolds, update_normals};
 use super::patch::Nearest;
-use crate::depth::Depth;
-use crate::kinematics::amplification;
+use crate::kinematics::{Depth, Facets, amplification};
 
 /// The whole boundary of a body in space: how deep a point lies inside.
 #[derive(Debug)]
@@ -23,23 +22,19 @@ pub struct ClosedSurface {
 impl ClosedSurface {
     /// All facets of a body's boundary.
     pub fn new(boundary: Boundary) -> Self {
-        let hull = boundary.hull();
+        let hull = Hull::facet(boundary.shape());
         Self { boundary, hull, tree: Tree::default(), folds: None }
     }
 
     /// Global numbers of the nodes of a facet.
     pub fn facet_nodes(&self, facet: usize) -> &[usize] {
-        self.boundary.facet_nodes(facet)
+        self.boundary.nodes_of(facet)
     }
 
     /// Moves the boundary to positions `y`, flat over all nodes.
     pub fn update(&mut self, y: &[f64]) {
-        let bounds = |facet: usize| self.boundary.bounds(&self.hull, facet, y);
-        if self.tree.is_empty() {
-            self.tree = Tree::new(self.boundary.all(), bounds);
-        } else {
-            self.tree.update(bounds);
-        }
+        let (boundary, hull) = (&self.boundary, &self.hull);
+        self.tree.place(boundary.all(), |facet| boundary.bounds(hull, facet, y));
         if let Some((_, normals)) = &mut self.folds {
             update_normals(&self.boundary, y, normals);
         }

@@ -4,6 +4,7 @@
 use super::node_to_patch::{NodeToPatch, REACH};
 use super::patch::{WANDER, place};
 use super::paths::NOISE;
+use crate::kinematics::Facets;
 
 impl NodeToPatch {
     /// Of a node below a crease, where its nearest point is on an edge: the facet of which it is

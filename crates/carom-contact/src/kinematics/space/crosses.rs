@@ -13,15 +13,11 @@ use carom_solid::Bounds;
 use super::closed_surface::ClosedSurface;
 use super::folds::PatchFolds;
 use super::patch::{Feature, cross, place};
-use crate::depth::Depth;
-use crate::kinematics::Side;
+use crate::kinematics::{Depth, Facets, Side};
 use crate::solid_angle::solid_angle;
 
 /// Smallest solid angle of a body at a node that is told from that of a fold.
 const SHARPEST: f64 = 0.2;
-/// Distance up to which a facet is near another one, over its size.
-const NEAR: f64 = 0.25;
-
 type Triangle = [Vector<3>; 3];
 
 impl ClosedSurface {
@@ -95,17 +91,7 @@ impl ClosedSurface {
     /// two facets without a common node can cross; 0 where two are near at the positions of the
     /// last update.
     pub fn clearance_to_itself(&self, y: &[f64]) -> f64 {
-        let mut least = f64::INFINITY;
-        for a in 0..self.boundary.all() {
-            let bounds = self.boundary.bounds(&self.hull, a, y);
-            let around = NEAR * bounds.size();
-            if self.apart_from(a, &bounds.grown(around)).next().is_some() {
-                return 0.0;
-            }
-            least = least.min(around);
-        }
-        // Either box grows.
-        least / (2.0 * self.hull.weight())
+        self.boundary.clearance(&self.hull, &self.tree, y)
     }
 
     /// The pairs of facets that cross each other, the first of each ascending.
@@ -117,7 +103,7 @@ impl ClosedSurface {
         let of_facet = move |a: usize| {
             let bounds = self.boundary.bounds(&self.hull, a, y);
             let mut others: Vec<usize> =
-                self.apart_from(a, &bounds).filter(|&b| b > a && !known(a, b)).collect();
+                self.boundary.apart_from(a, &bounds, &self.tree).filter(|&b| b > a && !known(a, b)).collect();
             others.sort_unstable();
             let own = if others.is_empty() { Triangles::default() } else { self.triangles(a, y) };
             others.retain(|&b| {
@@ -127,13 +113,6 @@ impl ClosedSurface {
             others.into_iter().map(move |b| (a, b))
         };
         (0..self.boundary.all()).flat_map(of_facet)
-    }
-
-    /// The facets without a node of this one whose boxes meet another box.
-    fn apart_from(&self, facet: usize, bounds: &Bounds) -> impl Iterator<Item = usize> {
-        let nodes = self.facet_nodes(facet);
-        let joined = |b: usize| self.facet_nodes(b).iter().any(|node| nodes.contains(node));
-        self.tree.meeting(bounds).filter(move |&b| !joined(b))
     }
 
     /// The solid angle under which a node sees the facets that do not contain it.

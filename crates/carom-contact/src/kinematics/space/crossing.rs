@@ -8,7 +8,7 @@ use carom_algebra::{Mat, Vector};
 use carom_solid::Net;
 
 use super::patch::{Patch, WANDER, cross, place};
-use crate::kinematics::swept::{PatchHit, SweptPatch};
+use crate::kinematics::swept::{SpaceHit, SweptPatch};
 
 /// θ and ξ beyond their ranges: a node exactly on the surface has crossed it.
 const TOLERANCE: f64 = 1e-6;
@@ -37,7 +37,7 @@ pub(super) fn crossing(
     }
     let facet = places.each_ref().map(|places| &places[..patch.nodes.len()]);
     let hit = swept.first(ends(node), facet, SEPARATION * patch.length(before))?;
-    let hit = PatchHit { theta: until * hit.theta, ..hit };
+    let hit = SpaceHit { theta: until * hit.theta, ..hit };
     Some(polished(patch, before, now, node, hit).unwrap_or((hit.theta, hit.xi)))
 }
 
@@ -47,9 +47,9 @@ fn polished(
     before: &[f64],
     now: &[f64],
     node: usize,
-    hit: PatchHit,
+    hit: SpaceHit,
 ) -> Option<(f64, [f64; 2])> {
-    let PatchHit { mut theta, mut xi } = hit;
+    let SpaceHit { mut theta, mut xi } = hit;
     // Relative to the node: exact differences, however far from the origin.
     let [from, to] = [before, now].map(|y| place(y, node));
     let lerp =

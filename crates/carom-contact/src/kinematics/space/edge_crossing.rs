@@ -12,7 +12,7 @@ use carom_solid::shape::line_shape;
 use super::edge_to_edge::EdgeToEdge;
 use super::patch::{cross, place};
 use crate::kinematics::way::{Allowed, Between, Seen, Way, deepest};
-use crate::kinematics::{EdgeHit, Passed, SweptEdges};
+use crate::kinematics::{Passed, SpaceHit, SweptEdges};
 
 /// Edges this close to each other, relative to the shorter one, meet.
 const SEPARATION: f64 = 1e-6;
@@ -41,7 +41,7 @@ impl EdgeToEdge {
         edges: [usize; 2],
         before: &[f64],
         now: &[f64],
-    ) -> Option<EdgeHit> {
+    ) -> Option<SpaceHit> {
         let paths: [Path; 2] = [0, 1].map(|of| {
             [before, now].map(|y| self.nodes(edges, of).iter().map(|&node| place(y, node)).collect())
         });
@@ -78,7 +78,7 @@ impl EdgeToEdge {
             if fastest <= limit {
                 return;
             }
-            let Some(EdgeHit { theta, xi }) = self.crossing(&mut swept, edges, before, now) else { return };
+            let Some(SpaceHit { theta, xi }) = self.crossing(&mut swept, edges, before, now) else { return };
             if fastest * (1.0 - theta) <= limit {
                 return;
             }
@@ -97,8 +97,8 @@ impl EdgeToEdge {
 }
 
 /// Newton's method from an isolated crossing; none if it does not lead to one near it.
-fn polished(paths: &[Path; 2], hit: EdgeHit) -> Option<EdgeHit> {
-    let EdgeHit { mut theta, mut xi } = hit;
+fn polished(paths: &[Path; 2], hit: SpaceHit) -> Option<SpaceHit> {
+    let SpaceHit { mut theta, mut xi } = hit;
     for _ in 0..20 {
         // Relative to a node of B: exact differences, however far from the origin.
         let (mut miss, mut moved) = (Vector::ZERO, Vector::ZERO);
@@ -126,7 +126,7 @@ fn polished(paths: &[Path; 2], hit: EdgeHit) -> Option<EdgeHit> {
         }
         if size <= 1e-12 {
             let inside = (0.0..=1.0).contains(&theta) && xi.iter().all(|x| x.abs() <= 1.0 + SEPARATION);
-            return inside.then_some(EdgeHit { theta, xi });
+            return inside.then_some(SpaceHit { theta, xi });
         }
     }
     None

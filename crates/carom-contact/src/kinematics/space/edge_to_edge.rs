@@ -333,11 +333,7 @@ impl EdgeToEdge {
         if apart.holds(NOISE, [before, now]) {
             return;
         }
-        if tree.is_empty() {
-            *tree = Tree::new(self.sides[1].len(), |edge| swept(1, edge));
-        } else {
-            tree.update(|edge| swept(1, edge));
-        }
+        tree.place(self.sides[1].len(), |edge| swept(1, edge));
         let own: Vec<Bounds> = (0..self.sides[0].len()).map(|edge| swept(0, edge)).collect();
         let all = own.iter().skip(1).fold(own[0], carom_solid::Bounds::union);
         apart.searched([&tree.bounds(), &all], [NOISE, NOISE], now);
@@ -391,10 +387,9 @@ impl EdgeToEdge {
 
     /// Adds a row over the nodes of both edges.
     fn push(&self, edges: [usize; 2], gap: f64, slopes: impl Iterator<Item = Vector<3>>, rows: &mut Rows) {
-        let [own, other] = [0, 1].map(|i| self.sides[i].nodes(edges[i]));
-        let nodes = own.iter().chain(other);
-        rows.push(gap, nodes.zip(slopes).map(|(&node, slope)| (node, slope.0)));
-        rows.begin_with_edge(own.len());
+        let nodes = [0, 1].map(|i| self.nodes(edges, i));
+        rows.push_both(gap, nodes, slopes);
+        rows.begin_with_edge(nodes[0].len());
     }
 
     pub(super) fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {

@@ -8,6 +8,7 @@ use carom_solid::{Bounds, Hull};
 
 use super::boundary::Boundary;
 use super::patch::{cross, place};
+use crate::kinematics::Facets;
 
 /// Cosine of the angle up to which an edge continues another one.
 const STRAIGHT: f64 = 0.87;
@@ -32,7 +33,7 @@ impl Edges {
         let shape = boundary.shape();
         let nodes_of = |&(facet, edge): &(usize, usize)| {
             let (local, count) = shape.edge(edge);
-            local[..count].iter().map(|&k| boundary.facet_nodes(facet)[k]).collect::<Vec<usize>>()
+            local[..count].iter().map(|&k| boundary.nodes_of(facet)[k]).collect::<Vec<usize>>()
         };
         let mut places = boundary.sharp_edges(reference);
         places.retain(|place| !nodes_of(place).iter().all(|node| others.contains(node)));
@@ -87,7 +88,7 @@ impl Edges {
     pub(super) fn around(&self, edge: usize) -> impl Iterator<Item = usize> {
         let (facet, of_facet) = self.places[edge];
         let facets = std::iter::once(facet).chain(self.boundary.across(facet, of_facet));
-        facets.flat_map(|facet| self.boundary.facet_nodes(facet).iter().copied())
+        facets.flat_map(|facet| self.boundary.nodes_of(facet).iter().copied())
     }
 
     /// What bounds the sum of weights of an edge's nodes in the points of its box.

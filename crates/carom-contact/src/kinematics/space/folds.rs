@@ -20,11 +20,11 @@
 //! part that which lies further along a direction in which no symmetry of a usual mesh lies.
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, Tree};
+use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::{Boundary, SHARP};
 use super::patch::place;
-use crate::kinematics::Side;
+use crate::kinematics::{Facets, Side};
 
 /// −cos 60°.
 const OPPOSED: f64 = -0.5;
@@ -43,38 +43,13 @@ pub(super) struct PatchFolds {
     /// Smallest node.
     first: usize,
     /// Facets that contain each node, ascending.
-    own: Lists,
+    own: Vec<Vec<usize>>,
     /// Facets behind the middle of each facet, across its wall, ascending.
-    walls: Lists,
+    walls: Vec<Vec<usize>>,
     /// Piece and smooth part of each facet, and how far along the direction of the order it lies.
     places: Vec<(usize, usize, f64)>,
     /// The last of each node.
     along: Vec<f64>,
-}
-
-/// Ascending numbers for each of several items.
-#[derive(Debug, Default)]
-struct Lists {
-    starts: Vec<usize>,
-    all: Vec<usize>,
-}
-
-impl Lists {
-    fn new(lists: Vec<Vec<usize>>) -> Self {
-        let mut found = Self { starts: vec![0], all: Vec::new() };
-        for list in lists {
-            found.all.extend(list);
-            found.starts.push(found.all.len());
-        }
-        found
-    }
-
-    fn of(&self, item: usize) -> &[usize] {
-        match self.starts.get(item..item + 2) {
-            Some(ends) => &self.all[ends[0]..ends[1]],
-            None => &[],
-        }
-    }
 }
 
 impl PatchFolds {
@@ -86,25 +61,25 @@ impl PatchFolds {
         let count = nodes.iter().max().map_or(0, |last| last + 1 - first);
         let mut own = vec![Vec::new(); count];
         for facet in 0..boundary.all() {
-            boundary.facet_nodes(facet).iter().for_each(|node| own[node - first].push(facet));
+            boundary.nodes_of(facet).iter().for_each(|node| own[node - first].push(facet));
         }
         let parts = smooth_parts(boundary, reference);
         let along = |x: Vector<3>| x.dot(&ALONG);
         let places = |facet: usize| {
-            let nodes = boundary.facet_nodes(facet);
+            let nodes = boundary.nodes_of(facet);
             let middle = boundary.middle(facet, reference).position;
             (piece[nodes[0] - first_node], parts[facet], along(middle))
         };
         let along = (first..first + count).map(|node| along(place(reference, node))).collect();
-        let (own, places) = (Lists::new(own), (0..boundary.all()).map(places).collect());
-        let mut folds = Self { first, own, walls: Lists::default(), places, along };
+        let places = (0..boundary.all()).map(places).collect();
+        let mut folds = Self { first, own, walls: Vec::new(), places, along };
         folds.walls = folds.walls_of(boundary, reference);
         folds
     }
 
     /// The facets behind the middle of every facet.
-    fn walls_of(&self, boundary: &Boundary, reference: &[f64]) -> Lists {
-        let hull = boundary.hull();
+    fn walls_of(&self, boundary: &Boundary, reference: &[f64]) -> Vec<Vec<usize>> {
+        let hull = Hull::facet(boundary.shape());
         let tree = Tree::new(boundary.all(), |facet| boundary.bounds(&hull, facet, reference));
         let mut normals = Vec::new();
         update_normals(boundary, reference, &mut normals);
@@ -124,17 +99,17 @@ impl PatchFolds {
             walls.retain(is_behind);
             walls
         };
-        Lists::new((0..boundary.all()).map(of_facet).collect())
+        (0..boundary.all()).map(of_facet).collect()
     }
 
     /// Facets that contain a node.
     fn own(&self, node: usize) -> &[usize] {
-        node.checked_sub(self.first).map_or(&[], |k| self.own.of(k))
+        node.checked_sub(self.first).and_then(|k| self.own.get(k)).map_or(&[], Vec::as_slice)
     }
 
     /// Whether a facet lies behind another one across its wall.
     fn is_behind(&self, own: usize, facet: usize) -> bool {
-        self.walls.of(own).binary_search(&facet).is_ok()
+        self.walls[own].binary_search(&facet).is_ok()
     }
 
     /// Which of two places is that of a node on a facet `own` when it meets another facet.

@@ -25,5 +25,5 @@ pub use boundary::Boundary;
 pub use closed_surface::ClosedSurface;
 pub use edge_to_edge::EdgeToEdge;
 pub use node_to_patch::NodeToPatch;
-pub(crate) use patch::cross;
+pub(crate) use patch::{Feature, cross};
 pub use with_edges::WithEdges;

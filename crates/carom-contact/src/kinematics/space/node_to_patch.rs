@@ -26,10 +26,11 @@ use super::gap::PatchGap;
 use super::patch::{Feature, PatchPoint, WANDER, cross, place};
 use super::paths::{NOISE, Paths};
 use crate::kinematics::apart::Apart;
+use crate::kinematics::hand_over::{Held, Next, Sliding};
 use crate::kinematics::opposed::is_left;
 use crate::kinematics::recent::Recent;
 use crate::kinematics::tangents::tangents;
-use crate::kinematics::{Kinematics, OneWay, Passed, Side, SweptPatch};
+use crate::kinematics::{Facets, Kinematics, OneWay, Passed, Side, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::rows::Rows;
 
@@ -74,18 +75,10 @@ pub(super) struct Tools {
     pub(super) swept: SweptPatch,
 }
 
-/// Where a pair belongs.
-enum Next {
-    Stay,
-    HandOver(usize, [f64; 2]),
-    Concave(usize, [f64; 2]),
-    Leave,
-}
-
 impl NodeToPatch {
     /// Secondary nodes and primary boundary in global node numbers.
     pub fn new(secondary: Vec<usize>, primary: Boundary) -> Self {
-        let hull = primary.hull();
+        let hull = Hull::facet(primary.shape());
         let apart = Apart::new(primary.nodes().iter().chain(&secondary).copied(), 3, hull.weight());
         let recent = Recent::new(apart.nodes().to_vec(), 3, hull.weight(), secondary.len());
         let swept = SweptPatch::new(primary.shape());
@@ -231,9 +224,9 @@ impl NodeToPatch {
         }
     }
 
-    fn pairs_twice(pairs: &[Pair]) -> Vec<(usize, usize)> {
-        let twice = pairs.windows(2).filter(|two| two[0].node == two[1].node);
-        twice.flat_map(|two| [two[0], two[1]].map(|pair| (pair.node, pair.facet))).collect()
+    /// How far a pair is past an edge of its facet, over its height.
+    fn beyond(&self, pair: &Pair) -> f64 {
+        self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1
     }
 }
 
@@ -245,7 +238,7 @@ impl OneWay for NodeToPatch {
     }
 
     fn nodes_of(&self, facet: usize) -> &[usize] {
-        self.primary.facet_nodes(facet)
+        self.primary.nodes_of(facet)
     }
 
     fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> [f64; 3] {
@@ -279,7 +272,7 @@ impl Kinematics for NodeToPatch {
     }
 
     fn facet_nodes(&self, pair: &Pair) -> &[usize] {
-        self.primary.facet_nodes(pair.facet)
+        self.primary.nodes_of(pair.facet)
     }
 
     fn is_on_facet(&self, pair: &Pair) -> bool {
@@ -311,71 +304,16 @@ impl Kinematics for NodeToPatch {
         pairing: &mut Pairing,
         events: &mut Vec<PairEvent>,
     ) -> bool {
-        let Pairing { pairs, margin, left, fresh } = pairing;
-        let mut changed = false;
-        let starts = std::mem::replace(fresh, false);
-        // Facets of the pairs of every node, kept up to date: no node has two pairs with one facet.
-        let mut held: Vec<(usize, usize)> = pairs.iter().map(|pair| (pair.node, pair.facet)).collect();
-        let mut concave = Vec::new();
-        pairs.retain_mut(|pair| {
-            let node = self.secondary[pair.node];
-            for _ in 0..=self.primary.facets() {
-                let came_from = left.get(&pair.node).copied();
-                match self.next_facet(pair, came_from, now) {
-                    Next::Stay => return true,
-                    Next::HandOver(facet, _) | Next::Concave(facet, _)
-                        if held.contains(&(pair.node, facet)) =>
-                    {
-                        let beyond = self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1;
-                        // In the joint the node has both pairs. Beyond the reach of this facet that
-                        // of the other one is responsible: an extrapolated facet is not the
-                        // surface.
-                        if beyond <= REACH || pair.active && !starts {
-                            return true;
-                        }
-                        if pair.active {
-                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
-                            changed = true;
-                        }
-                        left.remove(&pair.node);
-                        held.retain(|&known| known != (pair.node, pair.facet));
-                        return false;
-                    }
-                    Next::Concave(facet, [xi, eta]) => {
-                        changed |= pair.active;
-                        held.push((pair.node, facet));
-                        concave.push(Pair::opened(pair.node, facet, [xi, eta]));
-                        return true;
-                    }
-                    Next::HandOver(facet, [xi, eta]) => {
-                        if pair.active {
-                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
-                        }
-                        let gap = self.gap(facet, [xi, eta], place(now, node), now);
-                        changed |= pair.active || gap + self.slack(pair.node) < 0.0;
-                        left.insert(pair.node, pair.facet);
-                        held.retain(|&known| known != (pair.node, pair.facet));
-                        held.push((pair.node, facet));
-                        (pair.facet, pair.xi, pair.eta) = (facet, xi, eta);
-                    }
-                    Next::Leave if pair.active && !starts => return true,
-                    Next::Leave => {
-                        if pair.active {
-                            events.push(PairEvent::SlidOff { node, facet: pair.facet });
-                            changed = true;
-                        }
-                        left.remove(&pair.node);
-                        held.retain(|&known| known != (pair.node, pair.facet));
-                        return false;
-                    }
-                }
-            }
-            true
-        });
-        if !concave.is_empty() {
-            pairs.append(&mut concave);
-            in_order(pairs);
-        }
+        let starts = pairing.fresh;
+        let enters = |place_of: usize, facet: usize, xi: [f64; 2]| {
+            let node = self.secondary[place_of];
+            self.gap(facet, xi, place(now, node), now) + self.slack(place_of) < 0.0
+        };
+        let next = |pair: &Pair, came_from| self.next_facet(pair, came_from, now);
+        let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
+        let (held, is_near) = (Held::all(&pairing.pairs), |pair: &Pair| self.beyond(pair) <= REACH);
+        let mut changed = sliding.search(pairing, held, is_near, enters, events);
+        let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         let Tools { paths, apart, recent, swept } = &mut *tools;
         if starts {
@@ -457,29 +395,10 @@ impl Kinematics for NodeToPatch {
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
-        let Pairing { pairs, left, .. } = pairing;
-        let twice = Self::pairs_twice(pairs);
-        let mut changed = false;
-        for pair in pairs.iter_mut().filter(|pair| pair.active) {
-            let came_from = left.get(&pair.node).copied();
-            let beyond = self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1;
-            let limit = if came_from.is_some() { HAND_BACK } else { HAND_OVER };
-            if beyond <= limit || twice.contains(&(pair.node, pair.facet)) {
-                continue;
-            }
-            let (from, mut previous) = (pair.facet, None);
-            for _ in 0..self.primary.facets() {
-                let Next::HandOver(facet, [xi, eta]) = self.next_facet(pair, previous, now) else { break };
-                previous = Some(pair.facet);
-                (pair.facet, pair.xi, pair.eta) = (facet, xi, eta);
-            }
-            if pair.facet != from {
-                left.extend(previous.map(|facet| (pair.node, facet)));
-                events.push(PairEvent::HandOver { node: self.secondary[pair.node], from, to: pair.facet });
-                changed = true;
-            }
-        }
-        changed
+        let is_near = |pair: &Pair, came: bool| self.beyond(pair) <= if came { HAND_BACK } else { HAND_OVER };
+        let next = |pair: &Pair, previous| self.next_facet(pair, previous, now);
+        let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
+        sliding.update(pairing, is_near, events)
     }
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
@@ -493,13 +412,9 @@ impl Kinematics for NodeToPatch {
         }
         let patch = self.primary.patch(pair.facet);
         let gap = PatchGap::new(patch, y, place(y, node), xi);
-        let a = gap.regularity();
-        if a <= 0.0 || !a.is_finite() {
-            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a });
-        }
-        let nodes = std::iter::once(&node).chain(patch.nodes);
+        ContactError::unless_regular(node, pair, gap.regularity())?;
         let slopes = gap.gradient(patch.nodes.len());
-        rows.push(gap.distance + self.slack(pair.node), nodes.zip(slopes).map(|(&n, slope)| (n, slope.0)));
+        rows.push_both(gap.distance + self.slack(pair.node), [&[node], patch.nodes], slopes);
         Ok(())
     }
 
@@ -511,14 +426,9 @@ impl Kinematics for NodeToPatch {
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let (node, patch) = (self.secondary[pair.node], self.primary.patch(pair.facet));
         let gap = PatchGap::new(patch, y, place(y, node), [pair.xi, pair.eta]);
-        let a = gap.regularity();
-        if a <= 0.0 || !a.is_finite() {
-            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a });
-        }
+        ContactError::unless_regular(node, pair, gap.regularity())?;
         for along in tangents(gap.normal(), pair.tangential.tangents) {
-            let nodes = std::iter::once(&node).chain(patch.nodes);
-            let slopes = gap.slip(along, patch.nodes.len());
-            rows.push(0.0, nodes.zip(slopes).map(|(&n, slope)| (n, slope.0)));
+            rows.push_both(0.0, [&[node], patch.nodes], gap.slip(along, patch.nodes.len()));
         }
         Ok(())
     }

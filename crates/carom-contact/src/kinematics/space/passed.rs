@@ -1,170 +1,44 @@
 //! Nodes in space that enter a body and leave it again within one step (`../passed.rs`).
 
-use carom_algebra::Vector;
-use carom_solid::Tree;
-
-use super::boundary::Boundary;
 use super::crossing::crossing;
 use super::node_to_patch::{NodeToPatch, Tools};
-use super::patch::place;
-use crate::kinematics::way::{Allowed, Between, Met, SHARE, Seen, Way, amplification, through};
-use crate::kinematics::{Kinematics, Passed, SweptPatch};
+use super::paths::path;
+use crate::kinematics::passed::Paths;
+use crate::kinematics::way::Met;
+use crate::kinematics::{Kinematics, Passed};
 
 impl NodeToPatch {
     /// The node that was deepest beyond its limit, if any; `bounce`: allowed depth, over the length
     /// of a facet, of a node that leaves where it entered.
-    pub(super) fn deepest(
-        &self,
-        tools: &mut Tools,
-        [before, now]: [&[f64]; 2],
-        bounce: f64,
-    ) -> Option<Passed> {
-        let (nodes, boundary) = (self.secondary(), &self.primary);
-        let first = *nodes.first()?;
+    pub(super) fn deepest(&self, tools: &mut Tools, ends: [&[f64]; 2], bounce: f64) -> Option<Passed> {
         let Tools { paths, apart, recent, swept, .. } = tools;
         recent.forget();
         // Within one piece, a path may begin and end on either side of its own boundary.
         let folds = self.folds.as_ref();
-        if folds.is_some_and(|(folds, _)| !folds.has_pieces()) {
+        let is_itself = folds.is_some_and(|(folds, _)| !folds.has_pieces());
+        if is_itself || !self.primary.is_whole() || apart.holds(0.0, ends) {
             return None;
         }
-        let bounds =
-            |node: usize, facet: usize| folds.is_none_or(|(folds, _)| folds.is_of_another_piece(node, facet));
-        if !boundary.is_whole() || apart.holds(0.0, [before, now]) {
-            return None;
-        }
-        let path = |node: usize| place(now, node) - place(before, node);
-        // Relative to one node: bodies that fly together do not count as moving.
-        let square = |v: Vector<3>| v.dot(&v);
-        let moved = |node: &usize| square(path(*node) - path(first));
-        let of_body = boundary.nodes().iter().map(moved).fold(0.0, f64::max).sqrt();
-        let of_nodes = nodes.iter().map(moved).fold(0.0, f64::max).sqrt();
-        let size = |facet: usize| {
-            let [a, b] = [0, 1].map(|k| place(before, boundary.facet_nodes(facet)[k]));
-            square(a - b)
+        let among = Paths {
+            boundary: &self.primary,
+            nodes: self.secondary(),
+            allowed: &|place| self.slack(place),
+            enters: &|node, facet| !self.excludes(node, facet),
+            bounds: &|node, facet| folds.is_none_or(|(folds, _)| folds.is_of_another_piece(node, facet)),
+            bounce,
         };
-        let shortest = (0..boundary.all()).map(size).fold(f64::INFINITY, f64::min).sqrt();
-        // Entry, depth and exit need a path of twice the depth.
-        if of_body + of_nodes <= 2.0 * SHARE * shortest {
-            return None;
-        }
-        paths.update(boundary, &self.hull, 0.0, [before, now]);
-        let (mut between, mut near) = (None, Vec::new());
-        let mut worst: Option<Passed> = None;
-        for (k, &node) in nodes.iter().enumerate() {
-            paths.find_into(node, [before, now], &mut near);
-            near.retain(|&facet| bounds(node, facet));
-            let relative = |&other: &usize| (path(node) - path(other)).norm();
-            let far = near.iter().any(|&facet| {
-                let most = boundary.facet_nodes(facet).iter().map(relative).fold(0.0, f64::max);
-                most > 2.0 * SHARE * boundary.patch(facet).length(before)
-            });
-            if !far {
-                continue;
-            }
-            let fastest = amplification(boundary.shape()) * (of_body + moved(&node).sqrt());
-            // What enters later, or leaves earlier, is not inside for long enough.
-            let until = 1.0 - (SHARE * shortest + self.slack(k)) / fastest;
-            if until <= 0.0 {
-                continue;
-            }
-            // The last exit is the first entry of the reversed motion.
-            let exit = self.earliest(swept, &near, node, [now, before], until);
-            near.retain(|&facet| !self.excludes(node, facet));
-            let entry = self.earliest(swept, &near, node, [before, now], until);
-            let exit = exit.map(|back| Met { theta: 1.0 - back.theta, ..back });
-            let mut way = OnWay {
-                boundary,
-                bounds: &bounds,
-                tree: paths.tree(),
-                between: between.get_or_insert_with(|| Between::new([before, now])),
-                before,
-                node,
-                slack: self.slack(k),
-                allowed: Allowed::default(),
-                from: entry.or(exit).map(|met| met.facet),
-            };
-            let Some(found) = through(&mut way, [entry, exit], bounce, fastest) else { continue };
-            let (depth, limit) = (found.depth, found.limit);
-            if worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
-                worst = Some(Passed { what: "node", node, depth, limit });
-            }
-        }
-        worst
-    }
-
-    /// The first entry through any facet of the boundary, up to θ = `until`.
-    fn earliest(
-        &self,
-        swept: &mut SweptPatch,
-        near: &[usize],
-        node: usize,
-        ends: [&[f64]; 2],
-        until: f64,
-    ) -> Option<Met> {
-        let crossings = near.iter().filter_map(|&facet| {
-            let (theta, xi) = crossing(swept, self.primary.patch(facet), ends, until, node)?;
-            Some(Met { theta, facet, xi })
-        });
-        crossings.min_by(|a, b| a.theta.total_cmp(&b.theta))
-    }
-}
-
-/// A node between entry and exit.
-struct OnWay<'a, 'b> {
-    boundary: &'a Boundary,
-    /// Whether a facet bounds what a node enters.
-    bounds: &'a dyn Fn(usize, usize) -> bool,
-    tree: &'a Tree,
-    between: &'a mut Between<'b, 3>,
-    before: &'a [f64],
-    node: usize,
-    slack: f64,
-    allowed: Allowed,
-    /// A facet near the node.
-    from: Option<usize>,
-}
-
-impl Way for OnWay<'_, '_> {
-    fn seen(&mut self, theta: f64) -> Option<Seen> {
-        let boundary = self.boundary;
-        let point = self.between.at(theta, self.node);
-        let distance = |facet: usize| {
-            if !(self.bounds)(self.node, facet) {
-                return None;
-            }
-            let patch = boundary.patch(facet);
-            Some(patch.nearest(self.between.with(theta, patch.nodes), point).distance)
-        };
-        let (facet, _) = self.tree.nearest(&point.0, self.from, distance)?;
-        for &facet in boundary.ring(facet) {
-            self.between.with(theta, boundary.facet_nodes(facet));
-        }
-        let found = boundary.depth(facet, point, self.between.with(theta, boundary.facet_nodes(facet)));
-        self.from = Some(facet);
-        Some(self.on(theta, facet, found.xi, -found.distance))
-    }
-
-    fn on(&self, theta: f64, facet: usize, xi: [f64; 2], depth: f64) -> Seen {
-        let patch = self.boundary.patch(facet);
-        let speed = self.between.speed(self.node, patch.shape, patch.nodes, xi);
-        let of_facet = self.slack + self.allowed.share * patch.length(self.before);
-        let limit = of_facet.max(self.allowed.at_end);
-        Seen { theta, facet, xi, depth, speed, limit }
-    }
-
-    fn between(&self, from: &Seen, to: &Seen) -> f64 {
-        let patch = self.boundary.patch(from.facet);
-        self.between.most(self.node, patch.shape, patch.nodes, from, to)
-    }
-
-    fn normal(&mut self, at: &Seen) -> Vector<3> {
-        let patch = self.boundary.patch(at.facet);
-        patch.at(self.between.with(at.theta, patch.nodes), at.xi).normal
-    }
-
-    fn allow(&mut self, allowed: Allowed) {
-        self.allowed = allowed;
+        let motion = among.motion(ends)?;
+        paths.update(&self.primary, &self.hull, 0.0, ends);
+        among.deepest(
+            motion,
+            ends,
+            paths.tree(),
+            |node| path(node, ends),
+            |facet, ends, until, node| {
+                let (theta, xi) = crossing(swept, self.primary.patch(facet), ends, until, node)?;
+                Some(Met { theta, facet, xi })
+            },
+        )
     }
 }
 
@@ -173,6 +47,7 @@ mod tests {
     use carom_solid::FacetShape;
 
     use super::*;
+    use crate::kinematics::Boundary;
 
     /// A prism 0 ≤ z ≤ 1 over a polygon, whose ends are divided into quadrilaterals, and whose
     /// facets over some edges are the side; the last node moves from `start` to `end`, all of it

@@ -7,6 +7,8 @@ use carom_algebra::{Mat, Vector};
 use carom_solid::shape::line_shape;
 use carom_solid::{FacetShape, Net};
 
+use crate::kinematics::projection::bisected;
+
 /// Positions of nodes in space, flat.
 pub(crate) fn place(y: &[f64], node: usize) -> Vector<3> {
     Vector([y[3 * node], y[3 * node + 1], y[3 * node + 2]])
@@ -280,30 +282,17 @@ impl Patch<'_> {
         let best = (0..=PIECES)
             .map(|k| (k, slope(at(k)).2))
             .fold((0, f64::INFINITY), |best, sample| if sample.1 < best.1 { sample } else { best });
-        let (mut low, mut high) = (at(best.0.saturating_sub(1)), at((best.0 + 1).min(PIECES)));
+        let (low, high) = (at(best.0.saturating_sub(1)), at((best.0 + 1).min(PIECES)));
         if slope(low).0 >= 0.0 {
             return low;
         }
         if slope(high).0 <= 0.0 {
             return high;
         }
-        let mut s = at(best.0);
-        for _ in 0..60 {
+        bisected(low, high, at(best.0), |s| {
             let (first, second, _) = slope(s);
-            if first <= 0.0 {
-                low = s;
-            } else {
-                high = s;
-            }
-            let newton = s - first / second;
-            let next =
-                if second > 0.0 && newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if (next - s).abs() <= 1e-15 {
-                return next;
-            }
-            s = next;
-        }
-        s
+            (first, second)
+        })
     }
 }
 

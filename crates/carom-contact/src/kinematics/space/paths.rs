@@ -4,6 +4,7 @@ use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::Boundary;
 use super::patch::{PatchPoint, place};
+use crate::kinematics::Facets;
 
 /// Depth relative to the length of a facet that round-off feigns.
 pub(super) const NOISE: f64 = 1e-9;
@@ -60,12 +61,8 @@ impl Paths {
         let boxes = self.start.boxes.iter().enumerate();
         self.tight.clear();
         self.tight.extend(boxes.map(|(facet, old)| old.union(&primary.bounds(hull, facet, now))));
-        let grown = |facet: usize| self.tight[facet].grown(margin * self.tight[facet].size());
-        if self.tree.is_empty() {
-            self.tree = Tree::new(self.tight.len(), grown);
-        } else {
-            self.tree.update(grown);
-        }
+        let tight = &self.tight;
+        self.tree.place(tight.len(), |facet| tight[facet].grown(margin * tight[facet].size()));
     }
 
     /// The middle of a facet at the start of the step.

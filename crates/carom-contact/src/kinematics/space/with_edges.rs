@@ -112,12 +112,6 @@ impl Kinematics for WithEdges {
         changed
     }
 
-    fn start_step(&self, pair: &mut Pair, y: &[f64]) {
-        if pair.node < self.nodes() {
-            self.nodes.start_step(pair, y);
-        }
-    }
-
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let Some(mut local) = self.of_edges(pair) else { return self.nodes.measure(pair, y, rows) };
         self.edges.measure(&mut local, y, rows)?;

@@ -35,7 +35,7 @@ impl Query {
         Self { edges, outwards: map(self.outwards) - map(Vector::ZERO) }
     }
 
-    fn answer(&self, separation: f64) -> Option<EdgeHit> {
+    fn answer(&self, separation: f64) -> Option<SpaceHit> {
         let edges = self.edges.each_ref().map(|both| both.each_ref().map(Vec::as_slice));
         SweptEdges::default().first(edges, self.outwards, separation)
     }
@@ -163,7 +163,7 @@ fn no_crossing_of_random_curves_is_missed() {
         match (query.answer(0.0), first) {
             (None, Some(first)) => panic!("missed {first}: {query:?}"),
             (None, None) => clear += 1,
-            (Some(EdgeHit { theta, xi }), first) => {
+            (Some(SpaceHit { theta, xi }), first) => {
                 hits += 1;
                 assert!(first.is_none_or(|first| theta <= first + 1e-9), "{theta} {first:?}: {query:?}");
                 // A false or early hit is near a contact.

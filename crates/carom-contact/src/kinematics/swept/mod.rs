@@ -117,10 +117,10 @@ impl SweptTest {
 
 /// A contact in space, or a distance below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PatchHit {
+pub struct SpaceHit {
     /// A lower bound of θ of the first contact.
     pub theta: f64,
-    /// The facet's coordinates there, within the tolerance.
+    /// The facet's coordinates there, or those of both edges, −1..1, within the tolerance.
     pub xi: [f64; 2],
 }
 
@@ -150,24 +150,15 @@ impl SweptPatch {
         node: [Vector<3>; 2],
         facet: [&[Vector<3>]; 2],
         separation: f64,
-    ) -> Option<PatchHit> {
+    ) -> Option<SpaceHit> {
         let path = PatchPath::new(&self.net, node, facet, separation);
         if path.is_clear() {
             return None;
         }
         let (net, end) = (&self.net, path.stop(&self.net, self.tolerance));
         let found = self.queue.first(path, |piece| piece.only_separates(net), |piece| piece.split(net, &end));
-        found.map(|piece| PatchHit { theta: piece.theta(), xi: piece.xi() })
+        found.map(|piece| SpaceHit { theta: piece.theta(), xi: piece.xi() })
     }
-}
-
-/// A contact of two edges, or a distance below the tolerance.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EdgeHit {
-    /// A lower bound of θ of the first contact.
-    pub theta: f64,
-    /// The coordinates of both edges there, −1..1, within the tolerance.
-    pub xi: [f64; 2],
 }
 
 /// Swept tests of edges of 2 to 4 nodes in space.
@@ -197,7 +188,7 @@ impl SweptEdges {
         [start, end]: [[&[Vector<3>]; 2]; 2],
         outwards: Vector<3>,
         separation: f64,
-    ) -> Option<EdgeHit> {
+    ) -> Option<SpaceHit> {
         assert!(start.iter().all(|edge| (2..=4).contains(&edge.len())), "edges of 2 to 4 nodes");
         let path = EdgePath::new([start, end], separation);
         if path.is_clear() {
@@ -206,6 +197,6 @@ impl SweptEdges {
         let end = path.stop(self.tolerance);
         let separates = |piece: &EdgePath| piece.only_separates(&outwards);
         let found = self.queue.first(path, separates, |piece| piece.split(&end));
-        found.map(|piece| EdgeHit { theta: piece.theta(), xi: piece.xi() })
+        found.map(|piece| SpaceHit { theta: piece.theta(), xi: piece.xi() })
     }
 }

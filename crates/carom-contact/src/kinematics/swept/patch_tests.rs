@@ -76,7 +76,7 @@ impl Query {
         columns
     }
 
-    fn answer(&self, separation: f64) -> Option<PatchHit> {
+    fn answer(&self, separation: f64) -> Option<SpaceHit> {
         let facet = self.facet.each_ref().map(Vec::as_slice);
         SweptPatch::new(self.shape).first(self.node, facet, separation)
     }
@@ -202,7 +202,7 @@ fn no_crossing_of_random_surfaces_is_missed() {
         match (query.answer(0.0), first) {
             (None, Some(first)) => panic!("missed {first}: {query:?}"),
             (None, None) => clear += 1,
-            (Some(PatchHit { theta, xi }), first) => {
+            (Some(SpaceHit { theta, xi }), first) => {
                 hits += 1;
                 assert!(first.is_none_or(|first| theta <= first + 1e-9), "{theta} {first:?}: {query:?}");
                 // A false or early hit is near a contact.

@@ -1,0 +1,64 @@
+//! The sets of pairs visited in one step, so that one that recurs is noticed. At first the set may
+//! change in every iteration; when one recurs, changes wait until Newton's method has converged;
+//! when one recurs again, only one pair changes at a time.
+
+use std::collections::HashSet;
+use std::hash::Hash;
+
+/// How often the set may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Caution {
+    EveryIteration,
+    AfterConvergence,
+    OneAtATime,
+}
+
+/// The sets visited in one step.
+#[derive(Clone, Debug)]
+pub(crate) struct Visited<S> {
+    sets: HashSet<S>,
+    caution: Caution,
+}
+
+impl<S: Eq + Hash> Visited<S> {
+    /// None yet; `within`: changes are allowed before Newton's method has converged.
+    pub(crate) fn new(within: bool) -> Self {
+        let caution = if within { Caution::EveryIteration } else { Caution::AfterConvergence };
+        Self { sets: HashSet::new(), caution }
+    }
+
+    /// Whether changes are restricted to one pair at a time.
+    pub(crate) fn is_cautious(&self) -> bool {
+        self.caution == Caution::OneAtATime
+    }
+
+    /// Whether no change is allowed yet.
+    pub(crate) fn waits(&self, converged: bool) -> bool {
+        self.caution > Caution::EveryIteration && !converged
+    }
+
+    pub(crate) fn contains(&self, set: &S) -> bool {
+        self.sets.contains(set)
+    }
+
+    /// Visits a set that is to change into `next`, another one: restricts changes if that recurs.
+    pub(crate) fn visit(&mut self, set: S, next: &S, converged: bool) {
+        if self.contains(next) && !self.is_cautious() {
+            self.sets.clear();
+            if self.caution == Caution::AfterConvergence {
+                self.caution = Caution::OneAtATime;
+                return;
+            }
+            self.caution = Caution::AfterConvergence;
+            if self.waits(converged) {
+                return;
+            }
+        }
+        self.sets.insert(set);
+    }
+
+    /// Forgets the sets: the pairs themselves have changed.
+    pub(crate) fn restart(&mut self) {
+        self.sets.clear();
+    }
+}
