@@ -162,7 +162,7 @@ impl NodeMatrix {
             1 => self.multiply::<1, 1>(x, out),
             2 => self.multiply::<2, 4>(x, out),
             3 => self.multiply::<3, 9>(x, out),
-            _ => out.fill(0.0),
+            dimension => unreachable!("dimension {dimension}"),
         }
     }
 

@@ -97,7 +97,9 @@ fn detection_in_contact(bencher: Bencher, shape: FacetShape) {
 fn gap(bencher: Bencher, shape: FacetShape) {
     let (contact, before, now) = scene(shape);
     let found = found(&contact, &before, &now).pairs[3];
-    let (mut rows, mut curvature) = (Rows::new(2), vec![0.0; (2 * contact.stencil()).pow(2)]);
+    let mut rows = Rows::new(2);
+    contact.measure(&mut found.clone(), &now, &mut rows).unwrap();
+    let mut curvature = vec![0.0; rows.row(0).gradient.len().pow(2)];
     bencher.bench_local(|| {
         let mut pair = found;
         rows.clear();

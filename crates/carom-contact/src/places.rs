@@ -13,7 +13,7 @@ pub(crate) struct Places<'a> {
 impl<'a> Places<'a> {
     /// Positions flat over nodes, in one dimension or in the plane.
     pub(crate) fn new(y: &'a [f64], dimension: usize) -> Self {
-        debug_assert!(dimension <= 2, "facets in three dimensions are not implemented");
+        debug_assert!(dimension <= 2, "positions in space are those of `space/`");
         Self { y, dimension }
     }
 

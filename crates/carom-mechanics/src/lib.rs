@@ -1,6 +1,6 @@
 //! The mechanics of Carom: a numeric model of bodies, loads and contacts, the balance of forces,
-//! and the steppers that advance its state in time. Independent of case files; the crate `carom`
-//! builds models from cases.
+//! and the steppers that advance its state in time. Independent of case files; the crate
+//! `carom-run` builds models from cases.
 
 mod carried;
 mod cells;

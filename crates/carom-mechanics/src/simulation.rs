@@ -180,7 +180,7 @@ impl Simulation {
     /// # Errors
     /// If a cell is inverted.
     pub fn assemble(&mut self) -> Result<(), Rejected> {
-        self.work.system.preconditioner.assemble(&self.model, &self.state.y)
+        self.work.system.assemble(&self.model, &self.state.y)
     }
 
     /// Advances to the next grid time and reports what happened.

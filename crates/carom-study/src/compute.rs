@@ -10,18 +10,19 @@ use carom_run::recording::{self, Options, Progress, RunError};
 use crate::error::StudyError;
 use crate::jobs::Ended;
 
-/// Computes a run to its end; `begun`: resumes it.
+/// Computes a run to its end on so many threads; `begun`: resumes it.
 pub(crate) fn compute(
     manifest: &StudyManifest,
     directory: &Path,
     i: usize,
     begun: bool,
+    threads: usize,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Ended, StudyError> {
     let arm = manifest.run(i);
     let path = directory.join(&arm.directory);
-    let options = Options::default();
+    let options = Options { threads, ..Options::default() };
     let done = if begun {
         recording::resume(&path, options, observe, stop)
     } else {

@@ -42,6 +42,11 @@ impl Ended {
     }
 }
 
+/// Threads of each of so many concurrent runs: those of the machine are shared.
+pub(crate) fn threads(jobs: usize) -> usize {
+    (std::thread::available_parallelism().map_or(1, usize::from) / jobs.max(1)).max(1)
+}
+
 /// Computes numbered runs, as many concurrently as there are jobs, started in the given order;
 /// stops at the first error.
 pub(crate) fn side_by_side<E: Send>(

@@ -31,7 +31,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::compute::{case_of, compute};
 use crate::error::StudyError;
-use crate::jobs::{Ended, Event, side_by_side};
+use crate::jobs::{Ended, Event, side_by_side, threads};
 
 /// Relative difference from the budget at which a cost is accepted; the page states twice this.
 const CLOSE: f64 = 0.05;
@@ -192,7 +192,7 @@ pub(crate) fn settle(
     let waiting = anchors.iter().copied().filter(not_ended).collect();
     let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
         let begun = directory.join(&manifest.arms[i].directory).join("manifest.json").is_file();
-        compute(manifest, directory, i, begun, progress, stop)
+        compute(manifest, directory, i, begun, threads(jobs), progress, stop)
     };
     side_by_side::<StudyError>(waiting, jobs, &one, observe, stop)?;
     if anchors.iter().any(not_ended) {

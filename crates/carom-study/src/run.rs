@@ -12,7 +12,7 @@ use carom_run::recording::Progress;
 
 use crate::compute::{case_of, compute};
 use crate::error::StudyError;
-use crate::jobs::{Event, side_by_side};
+use crate::jobs::{Event, side_by_side, threads};
 use crate::plan::Plan;
 use crate::{checks, matched, theory};
 
@@ -91,7 +91,7 @@ pub fn resume(
     order.sort_by(|a, b| b.1.total_cmp(&a.1));
     let order = order.into_iter().map(|(i, _)| i).collect();
     let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
-        compute(&manifest, directory, i, begun.get(&i) == Some(&true), progress, stop)
+        compute(&manifest, directory, i, begun.get(&i) == Some(&true), threads(jobs), progress, stop)
     };
     side_by_side(order, jobs, &one, observe, stop)?;
     conclude(manifest, directory, stop)

@@ -14,7 +14,7 @@
 //! The maps take the increment d since the step's start, and a solver should use d as its unknown:
 //! as a function of y the acceleration carries the last digit of y divided by Δt². The error of
 //! free fall from y = 1.5 over 400 steps of 1.875e-3 is 2e-11 with maps of y, 2e-12 with d formed
-//! as a difference of rounded y, 1e-13 with d stored (`tests/free_fall.rs`).
+//! as a difference of rounded y, 1e-13 with d stored (`tests/all/free_fall.rs`).
 
 /// Weights of the four force families in the balance of a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -67,6 +67,14 @@ pub enum Direction {
     DiscreteGradient,
 }
 
+impl Direction {
+    /// Whether gaps are accumulated over steps, along the midpoint of each: the force is a quotient
+    /// of differences, which is not linear in the gap.
+    pub fn accumulates(self) -> bool {
+        self == Self::Midpoint
+    }
+}
+
 /// A contact law with its enforcement.
 pub trait Interface: Send + Sync {
     /// Whether its pairs are constraints: an active set decides which of them are active.

@@ -146,10 +146,6 @@ impl<K: OneWay> Kinematics for BothSides<K> {
         direction.facets(node)
     }
 
-    fn stencil(&self) -> usize {
-        self.forward.stencil().max(self.reverse.stencil())
-    }
-
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
         let (direction, node) = self.direction(node);
         direction.signed_distance(node, y)

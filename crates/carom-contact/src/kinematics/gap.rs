@@ -6,10 +6,11 @@
 //! ∇²g = −(N_t T_nᵀ + T_n N_tᵀ)/a − κ/(a J²) N_t N_tᵀ − (g/a) T_n T_nᵀ,    N_t = (t; −ψᵅ t),  T_n = (0; φ'ᵅ n)
 //! ```
 //!
-//! At the closest point τ = 0, κ = n·y_S'' and a = J² − gκ: ξ depends on the positions (theory.md
-//! §1). With ξ fixed, as printed in the paper, the node slides on the tangent line at ξ: κ = 0,
-//! a = J², and τ = d·t/J² is the slip. Then −τ T_n is the extra term d·∂n/∂yᵅ of eqs. (9) and (11);
-//! it moves the force to the point of the line below the node, so that moments are balanced.
+//! At the closest point τ = 0, κ = n·y_S'' and a = J² − gκ: ξ depends on the positions (book, "The
+//! gap and its derivatives"). With ξ fixed, as printed in the paper, the node slides on the tangent
+//! line at ξ: κ = 0, a = J², and τ = d·t/J² is the slip. Then −τ T_n is the extra term d·∂n/∂yᵅ of
+//! eqs. (9) and (11); it moves the force to the point of the line below the node, so that moments
+//! are balanced.
 //!
 //! The slip at the closest point has the row
 //!

@@ -81,9 +81,6 @@ pub trait Kinematics: Send + Sync {
     /// Number of facets that a pair of a secondary node, given by index, may name.
     fn facets(&self, node: usize) -> usize;
 
-    /// Largest number of nodes that one gap depends on.
-    fn stencil(&self) -> usize;
-
     /// Signed distance of a secondary node, given by index, to the nearest point of the primary
     /// side, plus the depth that it keeps; `None` if no facet faces it.
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64>;

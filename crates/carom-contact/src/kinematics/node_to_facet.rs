@@ -203,10 +203,6 @@ impl Kinematics for NodeToFacet {
         self.primary.facets()
     }
 
-    fn stencil(&self) -> usize {
-        1 + self.primary.shape().nodes()
-    }
-
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
         let (kept, node, y) = (self.kept(node), self.secondary[node], self.places(y));
         (0..self.primary.facets())

@@ -162,6 +162,11 @@ impl NodeToObstacle {
         }
     }
 
+    /// Number of nodes of a row: the node, and those that carry the obstacle.
+    fn stencil(&self) -> usize {
+        self.carrier.as_ref().map_or(1, |carrier| if carrier.turn.is_some() { 3 } else { 2 })
+    }
+
     /// Fills the blocks of a node and of the one that carries the obstacle with `entry(i, k)`, with
     /// the other sign between the two.
     fn fill(&self, matrix: &mut [f64], entry: impl Fn(usize, usize) -> f64) {
@@ -190,10 +195,6 @@ impl Kinematics for NodeToObstacle {
 
     fn facets(&self, _: usize) -> usize {
         self.shape.pieces()
-    }
-
-    fn stencil(&self) -> usize {
-        self.carrier.as_ref().map_or(1, |carrier| if carrier.turn.is_some() { 3 } else { 2 })
     }
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {

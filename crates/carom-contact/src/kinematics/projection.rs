@@ -1,5 +1,5 @@
 //! Closest point of a curved facet: ξ with (y_N − y_S(ξ))·y_S'(ξ) = 0, a minimum of the distance
-//! (theory.md §1).
+//! (book, "The gap and its derivatives").
 //!
 //! The derivative of −(y_N − y_S)·t is a = J² − (y_N − y_S)·y_S''; a > 0 marks a minimum.
 

@@ -34,7 +34,7 @@ impl Surface {
     /// ([`Mesh::orientation`](carom_solid::Mesh::orientation)).
     ///
     /// # Panics
-    /// For facets in space, between which there is no contact yet.
+    /// For facets in space, whose sides are boundaries.
     pub fn new(shape: FacetShape, facets: &[Vec<usize>], orientations: &[f64]) -> Self {
         assert!(shape.dimension() < 3, "contact of surfaces in space");
         let end = |facet: &[usize]| facet[shape.nodes().min(2) - 1];

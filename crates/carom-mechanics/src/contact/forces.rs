@@ -91,7 +91,7 @@ impl Equations<'_> {
     ) -> Result<f64, ContactError> {
         let Evaluation { at, y, place, rows, .. } = evaluation;
         let (contact, rows) = (&self.model.contacts[k], &mut rows[k]);
-        let at_middle = contact.interface.direction() == Direction::Midpoint;
+        let at_middle = contact.interface.direction().accumulates();
         if at_middle && pair.start.is_none() {
             // The initial gap of a new pair; later it is updated.
             pair.start = match self.gap_at_start(k, pair, rows) {

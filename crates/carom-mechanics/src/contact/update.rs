@@ -7,7 +7,9 @@ use carom_contact::{
     ActiveSet, Contender, FrictionPair, FrictionState, Pair, PairEvent, Pairing, Row, StickSlip,
 };
 
+use crate::contact::augmented;
 use crate::contact::constraints::Constraints;
+use crate::contact::rounds::Rounds;
 use crate::linear::system::System;
 use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
@@ -68,7 +70,7 @@ fn each(
 
 /// Before the first load step, activates initial contacts if supports leave rigid motions free.
 /// Returns whether there are any.
-pub(crate) fn activate_initial(model: &Model, evaluation: &mut Evaluation) -> bool {
+fn activate_initial(model: &Model, evaluation: &mut Evaluation) -> bool {
     if model.unconstrained.is_empty() || evaluation.pressing().next().is_some() {
         return false;
     }
@@ -96,6 +98,7 @@ pub(crate) struct ContactUpdate<'a> {
     holds: Vec<StickSlip>,
     /// Remaining early facet updates.
     facet_updates: u32,
+    rounds: Rounds,
     /// The smallest relative singular value of the interface so far, with the sign of its
     /// determinant.
     pub(crate) regularity: f64,
@@ -115,9 +118,40 @@ impl<'a> ContactUpdate<'a> {
             sets: model.contacts.iter().map(set).collect(),
             holds: model.contacts.iter().map(friction_state).collect(),
             facet_updates: FACET_UPDATES,
+            rounds: Rounds::new(),
             regularity: f64::INFINITY,
             events: Events::new(),
         }
+    }
+
+    /// Prepares the multipliers of a guess.
+    pub(crate) fn start(&self, guess: &mut Iterate) {
+        augmented::start(self.equations.model, guess);
+    }
+
+    /// Activates the contacts of the first iterate of load steps that supports do not hold; returns
+    /// whether there are any.
+    pub(crate) fn activate_initial(&self, now: &mut Evaluation) -> bool {
+        self.equations.stage.is_static() && activate_initial(self.equations.model, now)
+    }
+
+    /// # Errors
+    /// If supports prevent an active constraint from being satisfied.
+    pub(crate) fn check_satisfiable(&self, now: &Evaluation) -> Result<(), Rejected> {
+        check_satisfiable(self.equations, now)
+    }
+
+    /// Begins another round from a converged iterate, if augmented Lagrangians need one; returns
+    /// whether they do.
+    ///
+    /// # Errors
+    /// If there were too many.
+    pub(crate) fn next_round(&mut self, now: &mut Evaluation) -> Result<bool, Rejected> {
+        let next = self.rounds.next(self.equations, now)?;
+        if next {
+            self.restart();
+        }
+        Ok(next)
     }
 
     /// Clears the visited sets: the pairs themselves have changed.
@@ -263,7 +297,7 @@ impl<'a> ContactUpdate<'a> {
 }
 
 /// Reports an active constraint without a row: supports prevent it from being satisfied.
-pub(crate) fn check_satisfiable(equations: &Equations, evaluation: &Evaluation) -> Result<(), Rejected> {
+fn check_satisfiable(equations: &Equations, evaluation: &Evaluation) -> Result<(), Rejected> {
     let model = equations.model;
     let rows = Constraints::of(equations, evaluation);
     let gaps: BTreeSet<_> = rows.list.iter().filter(|row| row.slip.is_none()).map(|row| row.place).collect();

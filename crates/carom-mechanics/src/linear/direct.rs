@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! [ A + Σ w λ∇²g  Fᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the frozen point
-//! [ G             0  ] [Δλ] = [−g]       (or M where velocities are projected)
+//! [ G             −C ] [Δλ] = [−g]       (or M where velocities are projected)
 //! ```
 //!
 //! F = G except with friction. Gradients and second derivatives of the gaps are those of the

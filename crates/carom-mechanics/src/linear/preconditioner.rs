@@ -3,11 +3,11 @@
 //!
 //! ```text
 //! [ A + Σ w λ∇²g  Fᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the frozen point
-//! [ G             0  ] [Δλ] = [−g]       (or M where velocities are projected)
+//! [ G             −C ] [Δλ] = [−g]       (or M where velocities are projected)
 //! ```
 //!
-//! Newton's method and its linear problem know no more of it. Its tangent is a function of the
-//! [`Point`] in the state alone.
+//! C is the gap per unit of multiplier of rows that yield. Newton's method and its linear problem
+//! know no more of it. Its tangent is a function of the [`Point`] in the state alone.
 
 use std::sync::Arc;
 
@@ -26,6 +26,11 @@ pub(crate) trait Preconditioner: Send + Sync {
     /// Iterations of all its solves so far; none without.
     fn iterations(&self) -> Option<u64> {
         None
+    }
+
+    /// Whether solves iterate, with no factor of the tangent.
+    fn is_iterative(&self) -> bool {
+        self.iterations().is_some()
     }
 
     /// Diagonals over the free dofs of the mass and of the last tangent of the internal forces.

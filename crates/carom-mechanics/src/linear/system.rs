@@ -24,6 +24,9 @@ pub(crate) struct System {
     pub factorisations: u64,
     /// The point of the tangent of a resumed state, until one is formed.
     pub restored: Option<Arc<Point>>,
+    /// The point of the last tangent that was assembled, whose diagonal gives the scales; none
+    /// where nothing may depend on it.
+    assembled: Option<Arc<Point>>,
 }
 
 impl System {
@@ -33,13 +36,14 @@ impl System {
             Linear::Direct => Box::new(Direct::new(model)),
             Linear::Iterative => Box::new(Iterative::new(model)),
         };
-        Self { preconditioner, factorisations: 0, restored: None }
+        Self { preconditioner, factorisations: 0, restored: None, assembled: None }
     }
 
     /// Diagonal of the tangent over the free dofs: force per unit of displacement.
     fn diagonal(&self, equations: &Equations) -> impl Iterator<Item = f64> + '_ {
         let [mass, stiffness] = self.preconditioner.diagonals();
-        let (mass_factor, stiffness_factor) = (equations.mass_factor(), equations.stiffness_factor());
+        let mass_factor = equations.mass_factor();
+        let stiffness_factor = if self.assembled.is_some() { equations.stiffness_factor() } else { 0.0 };
         mass.iter().zip(stiffness).map(move |(m, k)| mass_factor * m + stiffness_factor * k)
     }
 
@@ -71,7 +75,9 @@ impl System {
         if let Some(positive) = self.preconditioner.of(point) {
             return Ok(positive);
         }
+        self.assembled = None;
         let positive = self.preconditioner.form(model, point, double)?;
+        self.assembled = Some(point.clone());
         // That of a run that is resumed was counted when it was first formed.
         if self.restored.take().is_none_or(|restored| restored != *point) {
             self.factorisations += 1;
@@ -79,15 +85,34 @@ impl System {
         Ok(positive)
     }
 
-    /// Forms the tangent of the state's point, which only a resumed run lacks.
+    /// Starts a stage with the tangent of the state, which only a resumed run and a rejected step
+    /// lack. Where another tangent is due, its diagonal is still needed: the scales of a stage must
+    /// be functions of the state alone.
     ///
     /// # Errors
     /// If a cell is inverted there.
-    pub(crate) fn restore(&mut self, model: &Model, renewal: &Renewal) -> Result<(), Rejected> {
-        match &renewal.frozen.point {
-            Some(point) if !renewal.due => self.tangent_at(model, point, renewal.double).map(|_| ()),
-            _ => Ok(()),
+    pub(crate) fn start(&mut self, model: &Model, renewal: &Renewal) -> Result<(), Rejected> {
+        let Some(point) = &renewal.frozen.point else {
+            self.assembled = None;
+            return Ok(());
+        };
+        if !renewal.due {
+            self.tangent_at(model, point, renewal.double)?;
         }
+        if self.assembled.as_ref() != Some(point) {
+            self.assemble(model, &point.at)?;
+            self.assembled = Some(point.clone());
+        }
+        Ok(())
+    }
+
+    /// Assembles the tangent of the internal forces at positions.
+    ///
+    /// # Errors
+    /// If a cell is inverted there.
+    pub(crate) fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
+        self.assembled = None;
+        self.preconditioner.assemble(model, y)
     }
 
     /// Prepares solves with a tangent and the rows of an iterate, with a new tangent if it is due.

@@ -102,7 +102,7 @@ impl Mass {
             1 => self.multiply::<1>(x, factor, share, out),
             2 => self.multiply::<2>(x, factor, share, out),
             3 => self.multiply::<3>(x, factor, share, out),
-            _ => out.fill(0.0),
+            directions => unreachable!("{directions} directions"),
         }
     }
 

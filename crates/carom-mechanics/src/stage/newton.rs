@@ -4,16 +4,15 @@
 //!
 //! Convergence requires all of: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus round-off according to the
 //! system's diagonal), and with friction and inertia its resultants vanish
-//! (`resultants.rs`); |g| ≤ 1e-12·L on every active constraint; no pair penetrates, pulls, or has
+//! (`resultants.rs`); |g| ≤ 1e-12·L, and what positions
+//! are known to, on every active constraint; no pair penetrates, pulls, or has
 //! slid off its facet. Nothing less is accepted. With an augmented Lagrangian this is a round, of
 //! which there are several (`rounds.rs`).
 
 use carom_algebra::sums::max_abs;
 
-use crate::contact::augmented;
 use crate::contact::constraints::Constraints;
-use crate::contact::rounds::Rounds;
-use crate::contact::update::{ContactUpdate, Events, activate_initial, check_satisfiable};
+use crate::contact::update::{ContactUpdate, Events};
 use crate::model::check_rigid_modes;
 use crate::rejected::Rejected;
 use crate::settings::{Settings, Tangent};
@@ -81,7 +80,7 @@ pub(crate) fn solve_stage(
             continue;
         }
         if converged && !changed {
-            if newton.rounds.next(equations, &mut now)? {
+            if newton.contact.next_round(&mut now)? {
                 now = newton.next_round(now)?;
                 continue;
             }
@@ -112,7 +111,6 @@ struct Newton<'a> {
     work: &'a mut Workspace,
     contact: ContactUpdate<'a>,
     renewal: Renewal,
-    rounds: Rounds,
     /// A guess without predictor, until the predictor is known to help. Where contact begins,
     /// velocities and accelerations jump from node to node. Extrapolated over a step, that motion
     /// distorts or inverts cells, and Newton's method starts better without it.
@@ -142,7 +140,8 @@ impl<'a> Newton<'a> {
         work: &'a mut Workspace,
     ) -> Result<(Self, Evaluation), Rejected> {
         let (model, state, is_static) = (equations.model, equations.state, equations.stage.is_static());
-        augmented::start(model, &mut guess);
+        let contact = ContactUpdate::new(equations, before);
+        contact.start(&mut guess);
         let predicted = max_abs(&guess.increment);
         let start = || Iterate {
             increment: before.iter().zip(&state.y).map(|(start, old)| start - old).collect(),
@@ -156,9 +155,8 @@ impl<'a> Newton<'a> {
             equations,
             settings,
             work,
-            contact: ContactUpdate::new(equations, before),
+            contact,
             renewal: Renewal::new(frozen, factors, double, cost),
-            rounds: Rounds::new(),
             unpredicted: (!is_static).then(start),
             trust: if predicted > 0.0 { TRUST * predicted } else { f64::INFINITY },
             iteration: 0,
@@ -176,11 +174,11 @@ impl<'a> Newton<'a> {
             }
             evaluated => evaluated?,
         };
-        if is_static && activate_initial(model, &mut now) {
+        if newton.contact.activate_initial(&mut now) {
             now = newton.again(now)?;
         }
         let Workspace { system, timings, .. } = &mut *newton.work;
-        timed(&mut timings.factor, || system.restore(model, &newton.renewal))?;
+        timed(&mut timings.factor, || system.start(model, &newton.renewal))?;
         Ok((newton, now))
     }
 
@@ -210,20 +208,20 @@ impl<'a> Newton<'a> {
 
     /// Starts the next round, a solve of its own, from the solution of the last one.
     fn next_round(&mut self, now: Evaluation) -> Result<Evaluation, Rejected> {
-        self.contact.restart();
         (self.iteration, self.step, self.ratio, self.grown) = (0, f64::INFINITY, 1.0, 0);
         self.again(now)
     }
 
-    /// Whether the contacts of the guess would be tried at the cost of an iteration.
+    /// Whether it would cost an iteration to try the contacts that the predictor leads to.
     fn is_costly_guess(&self) -> bool {
-        self.iteration == 0 && self.work.system.preconditioner.iterations().is_some()
+        self.iteration == 0 && self.work.system.preconditioner.is_iterative()
     }
 
-    /// A tangent of a discarded motion misleads where it is all that is known; a factor is
-    /// corrected by products, and dearer.
+    /// A tangent formed at a predicted position that is given up is formed again if solves iterate
+    /// with it: they find no better direction than it gives. With a factor, a solve is corrected by
+    /// products with the exact tangent, and another factor would cost more.
     fn doubt_tangent(&mut self) {
-        self.renewal.due |= self.renewal.made > 0 && self.work.system.preconditioner.iterations().is_some();
+        self.renewal.due |= self.renewal.made > 0 && self.work.system.preconditioner.is_iterative();
         self.step = f64::INFINITY;
     }
 
@@ -268,7 +266,7 @@ impl<'a> Newton<'a> {
             return Ok(());
         }
         self.work.trace.blame(&now.residual, &model.free);
-        check_satisfiable(equations, now)?;
+        self.contact.check_satisfiable(now)?;
         Err(Rejected::NoConvergence {
             iterations: self.iteration as u32,
             step: [self.step / model.scale, self.settings.tolerance],

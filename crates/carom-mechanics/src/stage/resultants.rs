@@ -19,8 +19,6 @@
 //! Conserving springs are the exception: the last correction changes their force, a quotient of
 //! differences, by more than it was predicted to.
 
-use carom_contact::Direction;
-
 use crate::model::Contact;
 use crate::stage::balance::{contact_weights, terms};
 use crate::stage::equations::Equations;
@@ -67,7 +65,7 @@ pub(crate) fn are_balanced(equations: &Equations, now: &Evaluation, noise: f64) 
 
 /// Whether its force is a quotient of differences, which is not linear in the gap.
 fn is_conserving_spring(contact: &Contact) -> bool {
-    contact.interface.direction() == Direction::Midpoint
+    contact.interface.direction().accumulates()
 }
 
 /// Σ w k |∇g| |y| of the compressed springs over all dofs; |y| is the largest coordinate of the

@@ -257,7 +257,9 @@ impl Explicit {
             scratch.rows[k].row(p).add_to(scratch.pairings[k].pairs[p].lambda, &mut state.f_contact);
         }
         if model.has_friction() {
-            let mut friction = vec![0.0; state.a.len()];
+            let mut friction = std::mem::take(&mut state.f_friction);
+            friction.clear();
+            friction.resize(state.a.len(), 0.0);
             each_slip(model, state, |_, _, traction, row| row.add_to(traction, &mut friction));
             state.f_contact.iter_mut().zip(&friction).for_each(|(force, part)| *force += part);
             state.f_friction = friction;

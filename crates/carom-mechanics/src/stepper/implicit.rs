@@ -3,7 +3,7 @@
 //! in place of a step that is not accepted.
 
 use carom_algebra::sums::dot;
-use carom_contact::{Direction, Pairing, Rows};
+use carom_contact::{Pairing, Rows};
 use carom_time::schemes::backward_euler::BackwardEuler;
 use carom_time::{Kernel, Memory, PreviousStep, Stage, Weights};
 
@@ -160,7 +160,7 @@ impl Stepper for Implicit {
             model.mass.multiply_into(&change, &mut forces);
             next.ledger.contact_work -= dot(shift, &forces);
         }
-        let accumulates = |contact: &Contact| contact.interface.direction() == Direction::Midpoint;
+        let accumulates = |contact: &Contact| contact.interface.direction().accumulates();
         for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| accumulates(contact)) {
             debug_assert_eq!(next.pairs[k].len(), solved.rows[k].len(), "contact {}", contact.name);
             // The next step continues from the accumulated gap.

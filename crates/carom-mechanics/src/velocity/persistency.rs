@@ -7,11 +7,11 @@
 //! ```
 //!
 //! with all active rows as equalities of the velocities. Projecting v alone would retain the
-//! accelerations of the impact and does not remove the oscillations (theory.md §5.3). A multiplier
-//! that would pull is zero, and its gap may open; the others keep g̈ = 0. Massless dofs keep their
-//! velocity: they follow the massive side. With friction both systems have its impulses and forces
-//! (`cone.rs`). With a restitution, energy is returned (`restitution.rs`) before the accelerations
-//! are solved for.
+//! accelerations of the impact and does not remove the oscillations (book, "Contact activation"). A
+//! multiplier that would pull is zero, and its gap may open; the others keep g̈ = 0. Massless dofs
+//! keep their velocity: they follow the massive side. With friction both systems have its impulses
+//! and forces (`cone.rs`). With a restitution, energy is returned (`restitution.rs`) before the
+//! accelerations are solved for.
 
 use std::collections::BTreeMap;
 

@@ -28,7 +28,8 @@ fn many() -> Vec<Scheme> {
     all
 }
 
-/// theory.md §3.1: columns xi(T/10) and PE(T/10), as printed (half a unit of the last digit).
+/// ξ(T/10) and PE(T/10), derived independently from the amplification matrices; to half a unit of
+/// the last digit.
 #[test]
 fn damping_and_period_error_are_the_tabulated_ones() {
     let damped = |r| Scheme::newmark_damped(r).unwrap();
@@ -140,7 +141,8 @@ fn the_kernel_amplifies_as_the_matrix_says() {
     }
 }
 
-/// theory.md §2, fact 2: on a constrained dof both eigenvalues are −ρ∞, whatever the step.
+/// Book, "Three facts that explain the paper", 2: on a constrained dof both eigenvalues are −ρ∞,
+/// whatever the step.
 #[test]
 fn a_constrained_dof_sees_minus_rho_inf() {
     for r in [0.1, 0.6, 0.9] {
@@ -206,7 +208,7 @@ fn the_ringing_told_is_the_kernel_s() {
         }
         assert_eq!(ringing(r), last + 1, "ρ∞ = {r}");
     }
-    // theory.md §2, fact 2: a few steps at 0.1, 15 to 25 at 0.6.
+    // The same place: a few steps at 0.1, 15 to 25 at 0.6.
     assert!(ringing(0.1) <= 6 && (15..=25).contains(&ringing(0.6)));
     assert_eq!(explain(&Scheme::hu()).constrained.steps, Some(2));
 }

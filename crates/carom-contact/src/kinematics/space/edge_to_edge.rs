@@ -123,11 +123,6 @@ impl EdgeToEdge {
         self.sides[1].nodes(self.of(pair)[1])
     }
 
-    /// Largest number of nodes of a row.
-    pub(super) fn stencil(&self) -> usize {
-        self.sides.iter().map(|side| (0..side.len()).map(|k| side.nodes(k).len()).max().unwrap_or(0)).sum()
-    }
-
     /// Numbers of the edges of a pair.
     fn of(&self, pair: &Pair) -> [usize; 2] {
         [pair.node, pair.facet - self.sides[1].facets()]

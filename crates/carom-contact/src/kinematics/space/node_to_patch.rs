@@ -283,10 +283,6 @@ impl Kinematics for NodeToPatch {
         self.primary.facets()
     }
 
-    fn stencil(&self) -> usize {
-        1 + self.primary.shape().nodes()
-    }
-
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
         let from = place(y, self.secondary[node]);
         let gap = |facet: usize| {

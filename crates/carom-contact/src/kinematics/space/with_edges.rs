@@ -68,10 +68,6 @@ impl Kinematics for WithEdges {
         if node < self.nodes() { self.nodes.facets(node) } else { self.facets + self.edges.count() }
     }
 
-    fn stencil(&self) -> usize {
-        self.nodes.stencil().max(self.edges.stencil())
-    }
-
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
         // An edge has no gap without the other one.
         if node < self.nodes() { self.nodes.signed_distance(node, y) } else { Some(f64::INFINITY) }

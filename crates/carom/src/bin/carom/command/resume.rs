@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         if let Some((_, option)) = of_a_run.iter().find(|(given, _)| *given) {
             let what =
                 format!("{option} is an option for runs, but {} is a study", arguments.directory.display());
-            let help = "each arm of a study uses one thread, without audit and without trials where it stops; \
+            let help = "the arms of a study share the cores, without audit and without trials where it stops; \
                 --jobs sets the number of concurrent arms, and the timings of an arm are in its manifest.json";
             return Err(Failure::Argument { what, help: help.to_owned() });
         }
