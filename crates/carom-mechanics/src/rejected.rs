@@ -136,7 +136,7 @@ pub enum Rejected {
     Unconstrained(#[from] Unconstrained),
     /// A moving support does not start at the position of its formula.
     #[error(
-        "a moved support would jump: node {node} is {distance:.3e} from the position that its `move` gives at t = 0; let the formula begin at the position of the node"
+        "a moved support would jump: node {node} is {distance:.3e} from its prescribed position at t = 0; let the motion begin where the node is"
     )]
     Jump {
         /// Global number of the node.

@@ -13,7 +13,8 @@ use crate::stepper::Scratch;
 use crate::timings::Timings;
 use crate::trace::Trace;
 
-/// Buffers that may be discarded: no result depends on them.
+/// Buffers that may be discarded: no state depends on them. Timings, the trace of iterations and
+/// the number of factorisations are records of what was done.
 pub struct Workspace {
     /// Linear system.
     pub(crate) system: System,

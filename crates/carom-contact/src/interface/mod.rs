@@ -47,9 +47,10 @@ pub struct Answer {
     /// Residual of the row: the gap of a constraint; zero if the traction already corresponds to
     /// the gap.
     pub open: f64,
-    /// ∂g/∂λ of a spring, whose traction follows from its gap: 0 for a constraint.
+    /// ∂g/∂λ of a spring, whose traction follows from its gap, so that its row is eliminated; 0 for
+    /// a constraint.
     pub compliance: f64,
-    /// ∂g/∂λ where λ is an unknown.
+    /// ∂g/∂λ of a row that remains, with λ as an unknown.
     pub yields: f64,
     /// Stored energy.
     pub energy: f64,

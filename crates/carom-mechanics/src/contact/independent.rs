@@ -10,10 +10,12 @@ use crate::model::Model;
 /// others.
 pub(crate) const DEPENDENT: f64 = 1e-8;
 
-/// The same of rows whose multipliers are found from G M⁻¹Gᵀ.
+/// Remainder below which rows whose multipliers are found from G M⁻¹Gᵀ, which contains its square,
+/// depend on each other.
 const NEARLY: f64 = 1e-5;
 
-/// The same for the slip of a pair whose nodes supports constrain along a tangent.
+/// Remainder below which the slip of a pair whose nodes supports constrain along a tangent depends
+/// on other rows.
 pub(crate) const HELD: f64 = 1e-3;
 
 /// The places whose rows are linearly independent on the free dofs.

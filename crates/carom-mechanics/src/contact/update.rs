@@ -279,6 +279,7 @@ impl<'a> ContactUpdate<'a> {
                     && equations.laws[k][pair.node].is_none();
                 (pair.active && pair.lambda != 0.0 && !slips).then(|| equations.rubs(evaluation, (k, p)))
             };
+            // Pairs that were found since the evaluation have no rows yet.
             let pairs = &evaluation.at.pairings[k].pairs[..evaluation.rows[k].len()];
             let rubs: Vec<Option<FrictionPair>> = pairs.iter().enumerate().map(rub).collect();
             let pairs = &mut evaluation.at.pairings[k].pairs;

@@ -54,7 +54,7 @@ impl Wholes {
     /// Adds to an increment the translations that close the balance of each piece with `forces`,
     /// from which those of its contacts due to the increment are subtracted; `factor`: w.mass a'.
     /// The balance of one on springs is one with that of their other side.
-    pub(crate) fn close(&self, forces: &[f64], factor: f64, rows: &Constraints, increment: &mut [f64]) {
+    pub(crate) fn complete(&self, forces: &[f64], factor: f64, rows: &Constraints, increment: &mut [f64]) {
         let springs: Vec<usize> = (0..rows.len()).filter(|&r| rows.list[r].compliance > 0.0).collect();
         let is_on = |whole: &Whole, r: usize| rows.rows.row(r).entries().any(|(dof, _)| whole.has(dof));
         for whole in self.0.iter().filter(|whole| !springs.iter().any(|&r| is_on(whole, r))) {

@@ -36,10 +36,10 @@ pub struct Unconstrained {
     pub slips: bool,
 }
 
-const FREE: &str = "neither supports nor closed contacts constrain this motion. Add a [[support]], press the body with the `move` of a support instead of \
-     a force, start with the contact closed, or use a scheme with inertia";
-const SLIPS: &str = "its closed contacts slip, and the load exceeds what friction can carry. Use a smaller \
-    load, a larger `mu` or `shear`, the `move` of a support instead of a force, or a scheme with inertia";
+const FREE: &str = "neither supports nor closed contacts constrain this motion. Add a support, press the body with \
+    a support that moves instead of a force, start with the contact closed, or use a scheme with inertia";
+const SLIPS: &str = "its closed contacts slip, and the load exceeds what friction can carry. Use a smaller load, a \
+    larger coefficient or shear limit of friction, a support that moves, or a scheme with inertia";
 
 /// Axes of the translations and of the rotations in a dimension.
 fn axes(dimension: usize) -> (&'static [usize], &'static [usize]) {

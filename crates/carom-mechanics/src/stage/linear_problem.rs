@@ -184,7 +184,7 @@ impl LinearProblem {
         }
         total.solves += 1;
         self.mixing.improve([&mut self.increment, &mut self.multipliers], depth);
-        self.close(equations, rows);
+        self.complete(equations, rows);
         total.increment.iter_mut().zip(&self.increment).for_each(|(total, change)| *total += change);
         total.multipliers.iter_mut().zip(&self.multipliers).for_each(|(total, change)| *total += change);
         Ok(())
@@ -221,7 +221,7 @@ impl LinearProblem {
     }
 
     /// Completes a correction by the translations of the bodies.
-    fn close(&mut self, equations: &Equations, rows: &Constraints) {
+    fn complete(&mut self, equations: &Equations, rows: &Constraints) {
         let model = equations.model;
         // What earlier corrections leave, the next ones correct. Pressures that follow their sides
         // change their resultant with the shape.
@@ -231,6 +231,6 @@ impl LinearProblem {
         }
         self.product.clone_from(&self.forces);
         rows.subtract_forces([&self.increment, &self.multipliers], &mut self.product);
-        self.wholes.close(&self.product, equations.mass_factor(), rows, &mut self.increment);
+        self.wholes.complete(&self.product, equations.mass_factor(), rows, &mut self.increment);
     }
 }

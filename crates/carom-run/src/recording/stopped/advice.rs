@@ -84,7 +84,13 @@ const TABLE: &[(&str, &[Remedy])] = &[
             "a formula with a finite value up to the end of the run; for `mu` one that is not negative, as max(…, 0)",
         )],
     ),
-    ("unconstrained-body", &[(None, "a support for the body, or a scheme with inertia")]),
+    (
+        "unconstrained-body",
+        &[
+            (None, "a [[support]] for the body, or its `move` in place of a force; or a scheme with inertia"),
+            (None, "a larger `mu` or `shear` of a contact that is to hold it"),
+        ],
+    ),
     ("jump", &[(None, "a `move` that starts at the positions of its nodes")]),
     ("penetration", &[SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
     ("unstable-step", &[SHORTER, BATHE, FINER]),
