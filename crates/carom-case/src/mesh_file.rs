@@ -9,7 +9,6 @@ use carom_solid::{Element, Mesh, generate, gmsh};
 use super::MeshSpec;
 use super::machine::available_memory;
 use super::no_mesh::NoMesh;
-use super::problem::Problem;
 use super::view::View;
 
 /// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2,
@@ -57,43 +56,30 @@ pub(super) struct Purpose {
 }
 
 /// Reads the table of a mesh from a file; its path is relative to the folder of the case.
-pub(super) fn read(
-    v: View,
-    purpose: Purpose,
-    folder: &Path,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<MeshSpec> {
+pub(super) fn read(v: &View, purpose: Purpose) -> Option<MeshSpec> {
     let Purpose { dimension, element, extruded } = purpose;
-    let (name, slits) = (v.text("file")?, v.value("slits")?.flag()?);
+    let (name, slits) = (v.text("file")?, v.flag("slits")?);
     let (named, other) = if dimension == 3 { ("volume", "surface") } else { ("surface", "volume") };
     // The table of an extrusion has no such key.
     if v.has(other) && !extruded {
         let what = format!("the body of a file is its `{named}`, not its `{other}`");
         let why = format!("the case has dimension = {dimension}");
-        problems
-            .push(Problem::new(format!("{path}.{other}"), what, why, format!("write `{named}`")).at_key());
-        return None;
+        return v.report(v.problem(other, what, why, format!("write `{named}`")).at_key());
     }
     let surface = v.text(named)?;
-    let joined = folder.join(&name);
-    let file = std::path::absolute(&joined).unwrap_or(joined);
-    let mut wrong = |key: &str, what: String, why: String, help: &str| {
+    let file = v.file("file")?;
+    let wrong = |key: &str, what: String, why: String, help: &str| {
         // A file of several bodies is reported once.
-        if key != "file" || problems.iter().all(|known| known.what != what) {
-            problems.push(Problem::new(format!("{path}.{key}"), what, why, help));
+        if key == "file" && v.has_problem(|known| known.what == what) {
+            return None;
         }
-        None
+        v.wrong(key, what, why, help)
     };
     let bytes = match bytes(&file) {
         Ok(bytes) => bytes,
         Err(why) => {
-            return wrong(
-                "file",
-                format!("the mesh \"{name}\" cannot be read"),
-                why,
-                "check the path; it is relative to the folder of the case",
-            );
+            let what = format!("the mesh \"{name}\" cannot be read");
+            return wrong("file", what, why, "check the path; it is relative to the folder of the case");
         }
     };
     let facts = |file: gmsh::MshFile| group(file, dimension, &surface, slits).map(Facts::from);
