@@ -1,12 +1,12 @@
 //! Keys of materials and bodies.
 
 use super::Kind::{Choice, Formulas, FormulasOr, Name, Number, Variant, Vector};
-use super::{ANY, IN_SPACE, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, shapes};
+use super::{ANY, IN_SPACE, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, shapes, table};
 
-pub(super) const MATERIAL: Table = Table {
-    name: "[[material]]",
-    doc: "A hyperelastic material, given by lambda and mu or by young and poisson.",
-    keys: &[
+pub(super) const MATERIAL: Table = table(
+    "[[material]]",
+    "A hyperelastic material, given by lambda and mu or by young and poisson.",
+    &[
         key("name", Name, "Name by which bodies refer to it.").example("\"rubber\""),
         key(
             "law",
@@ -37,13 +37,12 @@ pub(super) const MATERIAL: Table = Table {
         .optional()
         .example("0.49"),
     ],
-    later: &[],
-};
+);
 
-pub(super) const BODY: Table = Table {
-    name: "[[body]]",
-    doc: "A deformable body; its sides are written name.side.",
-    keys: &[
+pub(super) const BODY: Table = table(
+    "[[body]]",
+    "A deformable body; its sides are written name.side.",
+    &[
         key("name", Name, "Name; its sides are written name.side.").example("\"cylinder\""),
         key("material", Name, "Name of its material.").example("\"rubber\""),
         key(
@@ -90,13 +89,12 @@ pub(super) const BODY: Table = Table {
         )
         .default("\"consistent\""),
     ],
-    later: &[],
-};
+);
 
-const VELOCITY: Table = Table {
-    name: "velocity",
-    doc: "Initial velocity of a rigid-body motion: linear + angular × (X − about).",
-    keys: &[
+const VELOCITY: Table = table(
+    "velocity",
+    "Initial velocity of a rigid-body motion: linear + angular × (X − about).",
+    &[
         key("linear", Vector, "Velocity of the point `about`. Default: zero.")
             .unit("length/time")
             .optional()
@@ -114,23 +112,21 @@ const VELOCITY: Table = Table {
             .optional()
             .example("[0.0, 1.0]"),
     ],
-    later: &[],
-};
+);
 
-const ROTATION: Table = Table {
-    name: "rotate",
-    doc: "A rotation in space.",
-    keys: &[
+const ROTATION: Table = table(
+    "rotate",
+    "A rotation in space.",
+    &[
         key("axis", Vector, "Direction of the axis, of any length.").example("[0.0, 0.0, 1.0]"),
         key("angle", Number(ANY), "Angle, right-handed about the axis.").unit("degrees").example("30.0"),
     ],
-    later: &[],
-};
+);
 
-const PLACE: Table = Table {
-    name: "place",
-    doc: "Rotation, then translation of a mesh, built in or from a file.",
-    keys: &[
+const PLACE: Table = table(
+    "place",
+    "Rotation, then translation of a mesh, built in or from a file.",
+    &[
         key("rotate", Kind::Rotation(&ROTATION), "Angle of rotation, counter-clockwise, in dimension 2; the table of axis and angle in dimension 3. Default: none.")
             .unit("degrees")
             .optional()
@@ -141,5 +137,4 @@ const PLACE: Table = Table {
             .example("[0.0, 0.0]"),
         key("shift", Vector, "Translation. Default: zero.").unit("length").optional().example("[0.0, 1.0]"),
     ],
-    later: &[],
-};
+);

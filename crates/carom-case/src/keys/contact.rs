@@ -1,12 +1,12 @@
 //! Keys of contacts and rigid obstacles.
 
 use super::Kind::{Choice, Formula, Name, Number, Side, SideOr, Truth, Vector};
-use super::{IN_SPACE_AND_TIME, IN_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key};
+use super::{IN_SPACE_AND_TIME, IN_TIME, Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, table};
 
-pub(super) const CONTACT: Table = Table {
-    name: "[[contact]]",
-    doc: "A contact pair: two sides that may come into contact.",
-    keys: &[
+pub(super) const CONTACT: Table = table(
+    "[[contact]]",
+    "A contact pair: two sides that may come into contact.",
+    &[
         key("name", Name, "Name used in records and messages.").example("\"strike\""),
         key("secondary", Side, "Secondary (slave) side: its nodes must not penetrate the primary. `body.skin` is the whole boundary of a body.").example("\"cylinder.arc\"").unless("between"),
         key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of \
@@ -144,15 +144,14 @@ pub(super) const CONTACT: Table = Table {
         )
         .default("0.0"),
     ],
-    later: &["passes", "normals"],
-};
+).later(&["passes", "normals"]);
 
 const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
 
-const RIGID: Table = Table {
-    name: "a rigid primary",
-    doc: "A primary surface that does not deform: exactly one shape, fixed, moved by `motion`, or free with `mass`.",
-    keys: &[
+const RIGID: Table = table(
+    "a rigid primary",
+    "A primary surface that does not deform: exactly one shape, fixed, moved by `motion`, or free with `mass`.",
+    &[
         key("plane", Kind::Table(&PLANE), "A rigid half-space.")
             .optional()
             .example("{ point = [0.0, 0.0], normal = [0.0, 1.0] }"),
@@ -195,64 +194,61 @@ const RIGID: Table = Table {
             .optional()
             .example("[0.0, -9.81]"),
     ],
-    later: &["spring"],
-};
+).later(&["spring"]);
 
-const CIRCLE: Table = Table {
-    name: "circle",
-    doc: "A rigid circle.",
-    keys: &[
+const CIRCLE: Table = table(
+    "circle",
+    "A rigid circle.",
+    &[
         key("center", Vector, "Its centre.").unit("length").example("[0.0, 0.0]"),
         key("radius", Number(POSITIVE), "Its radius.").unit("length").example("1.0"),
-        key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false"),
+        INSIDE,
     ],
-    later: &[],
-};
+);
 
-const SPHERE: Table = Table {
-    name: "sphere",
-    doc: "A rigid sphere.",
-    keys: &[
+const SPHERE: Table = table(
+    "sphere",
+    "A rigid sphere.",
+    &[
         key("center", Vector, "Its centre.").unit("length").example("[0.0, 0.0, 0.0]"),
         key("radius", Number(POSITIVE), "Its radius.").unit("length").example("1.0"),
-        key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false"),
+        INSIDE,
     ],
-    later: &[],
-};
+);
 
-const CYLINDER: Table = Table {
-    name: "cylinder",
-    doc: "A rigid infinite cylinder.",
-    keys: &[
+const CYLINDER: Table = table(
+    "cylinder",
+    "A rigid infinite cylinder.",
+    &[
         key("point", Vector, "A point of its axis.").unit("length").example("[0.0, 0.0, 0.0]"),
         key("axis", Vector, "Direction of its axis, of any length > 0.").example("[0.0, 1.0, 0.0]"),
         key("radius", Number(POSITIVE), "Its radius.").unit("length").example("0.5"),
-        key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false"),
+        INSIDE,
     ],
-    later: &[],
-};
+);
 
-const SURFACE: Table = Table {
-    name: "surface",
-    doc: "A rigid triangulated surface, with the vertices of its triangles counter-clockwise as seen from \
+const INSIDE: Key = key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false");
+
+const SURFACE: Table = table(
+    "surface",
+    "A rigid triangulated surface, with the vertices of its triangles counter-clockwise as seen from \
         outside. It may be closed, or open: past its rim there is no contact, and behind it a body is inside. \
         Nodes of bodies must not penetrate it; its own edges and vertices do not meet facets of bodies between \
         their nodes. A node that slides across a convex edge of more than 30° leaves the surface; in a groove \
         it is constrained by one of the faces only.",
-    keys: &[
+    &[
         key("file", Kind::Text, "A file in STL, text or binary, or a .msh of Gmsh with triangles of order 1; relative to the folder of the case.")
             .example("\"part.stl\""),
         key("group", Kind::Text, "Physical surface of a .msh. Default: all triangles of the file.").optional().example("\"tool\""),
         key("scale", Number(POSITIVE), "Factor of the coordinates of the file.").default("1.0"),
         key("reverse", Truth, "Whether inside and outside are exchanged.").default("false"),
     ],
-    later: &[],
-};
+);
 
-const POLYLINE: Table = Table {
-    name: "polyline",
-    doc: "A rigid chain of straight segments, with the rigid material to the left of the direction of travel.",
-    keys: &[
+const POLYLINE: Table = table(
+    "polyline",
+    "A rigid chain of straight segments, with the rigid material to the left of the direction of travel.",
+    &[
         key(
             "points",
             Kind::Points(2),
@@ -269,13 +265,12 @@ const POLYLINE: Table = Table {
         .unit("length")
         .default("0.0"),
     ],
-    later: &[],
-};
+);
 
-const MOTION: Table = Table {
-    name: "motion",
-    doc: "Prescribed motion of a rigid obstacle, zero at t = 0: rotation about a point that moves with it.",
-    keys: &[
+const MOTION: Table = table(
+    "motion",
+    "Prescribed motion of a rigid obstacle, zero at t = 0: rotation about a point that moves with it.",
+    &[
         key("x", Formula(IN_TIME), "Displacement along x.").unit("length").optional().example("\"0.1*t\""),
         key("y", Formula(IN_TIME), "Displacement along y; dimensions 2 and 3.")
             .unit("length")
@@ -294,15 +289,13 @@ const MOTION: Table = Table {
             .optional()
             .example("[0.0, 0.0]"),
     ],
-    later: &[],
-};
+);
 
-const PLANE: Table = Table {
-    name: "plane",
-    doc: "A rigid half-space.",
-    keys: &[
+const PLANE: Table = table(
+    "plane",
+    "A rigid half-space.",
+    &[
         key("point", Vector, "A point on its boundary.").unit("length").example("[0.0, 0.0]"),
         key("normal", Vector, "Outward normal, of any length > 0.").example("[0.0, 1.0]"),
     ],
-    later: &[],
-};
+);

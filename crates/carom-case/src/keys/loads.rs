@@ -1,12 +1,12 @@
 //! Keys of supports and loads.
 
 use super::Kind::{Choices, Formula, Formulas, Name, Sides, Text, Vector};
-use super::{IN_SPACE_AND_TIME, Kind, Table, key};
+use super::{IN_SPACE_AND_TIME, Kind, Table, key, table};
 
-pub(super) const SUPPORT: Table = Table {
-    name: "[[support]]",
-    doc: "Displacement boundary condition: sides fixed in some directions with `fix`, or moved with `move`.",
-    keys: &[
+pub(super) const SUPPORT: Table = table(
+    "[[support]]",
+    "Displacement boundary condition: sides fixed in some directions with `fix`, or moved with `move`.",
+    &[
         key("name", Name, "Name; the reaction forces of a named support are recorded.").optional().example("\"floor\""),
         key("on", Sides, "Sides that are constrained.").example("[\"prism.bottom\"]"),
         key(
@@ -33,13 +33,12 @@ pub(super) const SUPPORT: Table = Table {
         .optional()
         .example("{ y = \"-0.1*t\" }"),
     ],
-    later: &[],
-};
+);
 
-const MOVE: Table = Table {
-    name: "move",
-    doc: "Displacements of a side from its reference position.",
-    keys: &[
+const MOVE: Table = table(
+    "move",
+    "Displacements of a side from its reference position.",
+    &[
         key("x", Formula(IN_SPACE_AND_TIME), "Displacement along x.")
             .unit("length")
             .optional()
@@ -53,13 +52,12 @@ const MOVE: Table = Table {
             .optional()
             .example("\"0.1*t\""),
     ],
-    later: &[],
-};
+);
 
-pub(super) const LOAD: Table = Table {
-    name: "[[load]]",
-    doc: "A load on sides (`on` with `traction` or `pressure`) or in a body (`body` with `body_force`). Formulas are functions of the reference position X, Y, Z and the time t.",
-    keys: &[
+pub(super) const LOAD: Table = table(
+    "[[load]]",
+    "A load on sides (`on` with `traction` or `pressure`) or in a body (`body` with `body_force`). Formulas are functions of the reference position X, Y, Z and the time t.",
+    &[
         key("name", Name, "Name used in messages.").optional().example("\"press\""),
         key("on", Sides, "Loaded sides, with `traction` or `pressure`.")
             .optional()
@@ -89,5 +87,4 @@ pub(super) const LOAD: Table = Table {
         .optional()
         .example("\"amplitude.csv\""),
     ],
-    later: &[],
-};
+);

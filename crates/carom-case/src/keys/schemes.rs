@@ -26,8 +26,6 @@ pub fn schemes() -> &'static Variants {
         tables: KINDS.iter().map(|kind| (kind.name, table(kind))).collect::<Vec<_>>().leak(),
         or: None,
         dimension: None,
-        later: &[],
-        later_keys: &[],
     });
     &SCHEMES
 }
@@ -45,10 +43,5 @@ fn table(kind: &KindInfo) -> Table {
     };
     let keys: Vec<Key> =
         kind.parameters().into_iter().map(number).chain(kind.is_alpha().then_some(FORCES)).collect();
-    Table {
-        name: format!("scheme \"{}\"", kind.name).leak(),
-        doc: kind.summary,
-        keys: keys.leak(),
-        later: &[],
-    }
+    super::table(format!("scheme \"{}\"", kind.name).leak(), kind.summary, keys.leak())
 }

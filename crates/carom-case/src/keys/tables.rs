@@ -8,13 +8,13 @@ use super::Kind::{
 use super::bodies::{BODY, MATERIAL};
 use super::contact::CONTACT;
 use super::loads::{LOAD, SUPPORT};
-use super::{ANY, IN_SPACE_AND_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, schemes};
+use super::{ANY, IN_SPACE_AND_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, schemes, table};
 
 /// The whole file.
-pub const CASE: Table = Table {
-    name: "the case",
-    doc: "One simulation of impact or contact of deformable bodies.",
-    keys: &[
+pub const CASE: Table = table(
+    "the case",
+    "One simulation of impact or contact of deformable bodies.",
+    &[
         key("title", Text, "Title of figures and report pages. Default: the name of the file.")
             .optional()
             .example("\"Two bars\""),
@@ -70,24 +70,22 @@ pub const CASE: Table = Table {
         .example("{ \"A.uy\" = \"-0.5*9.81*t^2\" }"),
         key("expect", Tables(&EXPECT), "An expected value; a case that has one is also a test.").optional(),
     ],
-    later: &[],
-};
+);
 
-const UNITS: Table = Table {
-    name: "units",
-    doc: "Unit labels in figures and columns; values are not converted.",
-    keys: &[
+const UNITS: Table = table(
+    "units",
+    "Unit labels in figures and columns; values are not converted.",
+    &[
         key("length", Text, "Unit label of length.").default("\"m\""),
         key("time", Text, "Unit label of time.").default("\"s\""),
         key("mass", Text, "Unit label of mass.").default("\"kg\""),
     ],
-    later: &[],
-};
+);
 
-const INITIAL: Table = Table {
-    name: "[initial]",
-    doc: "Start from the final state of another run with the same meshes; time starts at 0 again. Or continue from a state that `carom reduce` saved, at its time.",
-    keys: &[
+const INITIAL: Table = table(
+    "[initial]",
+    "Start from the final state of another run with the same meshes; time starts at 0 again. Or continue from a state that `carom reduce` saved, at its time.",
+    &[
         key(
             "from",
             Text,
@@ -101,26 +99,24 @@ const INITIAL: Table = Table {
         )
         .default("\"keep\""),
     ],
-    later: &[],
-};
+);
 
-const MANUFACTURED: Table = Table {
-    name: "[manufactured]",
-    doc: "A manufactured solution for all bodies: the load is ρÿ − Div P, boundary nodes follow the given motion, and history.csv has the columns error_l2 and error_h1.",
-    keys: &[key("y", Formulas(IN_SPACE_AND_TIME), "Current positions as formulas in X, Y, Z and t.")
+const MANUFACTURED: Table = table(
+    "[manufactured]",
+    "A manufactured solution for all bodies: the load is ρÿ − Div P, boundary nodes follow the given motion, and history.csv has the columns error_l2 and error_h1.",
+    &[key("y", Formulas(IN_SPACE_AND_TIME), "Current positions as formulas in X, Y, Z and t.")
         .unit("length")
         .example("[\"X + 0.1*sin(X + 2*Y)*t\", \"Y - 0.1*cos(X*Y)*t\"]")],
-    later: &[],
-};
+);
 
 const FRACTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, false)) };
 
 const AT_LEAST_ONE: Range = Range { low: Some((1.0, true)), high: None };
 
-const TIME: Table = Table {
-    name: "[time]",
-    doc: "Time interval, time step and time integrator.",
-    keys: &[
+const TIME: Table = table(
+    "[time]",
+    "Time interval, time step and time integrator.",
+    &[
         key("end", Number(POSITIVE), "End time, a multiple of the time step.").unit("time").example("0.75"),
         key("step", Number(POSITIVE), "Time step.")
             .unit("time")
@@ -152,13 +148,12 @@ const TIME: Table = Table {
         )
         .default("\"none\""),
     ],
-    later: &[],
-};
+);
 
-const NEWTON: Table = Table {
-    name: "[newton]",
-    doc: "Settings of Newton's method.",
-    keys: &[
+const NEWTON: Table = table(
+    "[newton]",
+    "Settings of Newton's method.",
+    &[
         key(
             "tolerance",
             Number(Range { low: Some((0.0, false)), high: Some((1.0, false)) }),
@@ -189,13 +184,12 @@ const NEWTON: Table = Table {
         )
         .default("4"),
     ],
-    later: &[],
-};
+);
 
-const PROBE: Table = Table {
-    name: "[[probe]]",
-    doc: "A material point whose quantities are recorded as columns name.quantity.",
-    keys: &[
+const PROBE: Table = table(
+    "[[probe]]",
+    "A material point whose quantities are recorded as columns name.quantity.",
+    &[
         key("name", Name, "Name; its columns are name.quantity.").example("\"A\""),
         key("at", Vector, "Reference position of the point.").unit("length").example("[0.0, 1.5]"),
         key("body", Name, "Body it belongs to.").example("\"cylinder\""),
@@ -206,8 +200,7 @@ const PROBE: Table = Table {
         )
         .example("[\"uy\", \"sigma_yy\"]"),
     ],
-    later: &[],
-};
+);
 
 const QUANTITIES: &[&str] = &[
     "ux",
@@ -229,10 +222,10 @@ const QUANTITIES: &[&str] = &[
     "det_f",
 ];
 
-const OUTPUT: Table = Table {
-    name: "[output]",
-    doc: "What is written, and how often.",
-    keys: &[
+const OUTPUT: Table = table(
+    "[output]",
+    "What is written, and how often.",
+    &[
         key(
             "fields_every",
             Count(0),
@@ -252,14 +245,13 @@ const OUTPUT: Table = Table {
         key("history_every", Count(1), "Steps between two rows of history.csv.").default("1"),
         key("checkpoint_every", Count(1), "Steps between two checkpoints, from which a run that is killed is continued; after a power failure, from the last one that was flushed to the disk (at most one in five seconds).").default("50"),
     ],
-    later: &[],
-};
+);
 
 /// Measured data of a column, of a case or a study.
-pub const OVERLAY: Table = Table {
-    name: "[[overlay]]",
-    doc: "Measured data of one column: drawn with it, and compared by the metrics `overlay_rms:NAME`, `overlay_peak:NAME` and `overlay_shift:NAME`.",
-    keys: &[
+pub const OVERLAY: Table = table(
+    "[[overlay]]",
+    "Measured data of one column: drawn with it, and compared by the metrics `overlay_rms:NAME`, `overlay_peak:NAME` and `overlay_shift:NAME`.",
+    &[
         key("name", Name, "Name in figures and metrics.").example("\"test-3\""),
         key("file", Text, "CSV file with a line of headings, relative to the folder of the case or study; its lines that begin with # are comments.")
             .example("\"measured.csv\""),
@@ -272,14 +264,13 @@ pub const OVERLAY: Table = Table {
             .default("1.0"),
         key("source", Text, "Where the data come from.").optional().example("\"own test, 3 May\""),
     ],
-    later: &[],
-};
+);
 
 /// One expected value, of a case, an arm or a study.
-pub const EXPECT: Table = Table {
-    name: "[[expect]]",
-    doc: "An expected value with one bound: `value` and `tolerance`, `value` and `relative`, `at_most`, or `at_least`. With a `formula`, `tolerance` alone is sufficient.",
-    keys: &[
+pub const EXPECT: Table = table(
+    "[[expect]]",
+    "An expected value with one bound: `value` and `tolerance`, `value` and `relative`, `at_most`, or `at_least`. With a `formula`, `tolerance` alone is sufficient.",
+    &[
         key(
             "what",
             Text,
@@ -316,5 +307,4 @@ pub const EXPECT: Table = Table {
         key("exact", Number(ANY), "With what = \"order\": the exact value that errors are computed against.").optional().example("1.0"),
         key("slow", Truth, "Skipped by `carom verify --fast`.").default("false"),
     ],
-    later: &[],
-};
+);
