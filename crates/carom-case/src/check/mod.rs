@@ -320,7 +320,7 @@ impl<'a> Check<'a> {
             let Some(probe) = probe else { continue };
             self.reference("body", &probe.body, format!("probe[{i}].body"));
             for (j, quantity) in probe.record.iter().enumerate() {
-                let name = columns::quantity(*quantity);
+                let name = quantity.name();
                 let path = format!("probe[{i}].record[{j}]");
                 if let Some(d) = self.draft.dimension.filter(|d| !columns::exists(*quantity, *d)) {
                     let why = format!("the case has dimension = {d}");

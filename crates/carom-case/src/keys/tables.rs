@@ -9,6 +9,7 @@ use super::bodies::{BODY, MATERIAL};
 use super::contact::CONTACT;
 use super::loads::{LOAD, SUPPORT};
 use super::{ANY, IN_SPACE_AND_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, schemes, table};
+use crate::Quantity;
 
 /// The whole file.
 pub const CASE: Table = table(
@@ -195,32 +196,12 @@ const PROBE: Table = table(
         key("body", Name, "Body it belongs to.").example("\"cylinder\""),
         key(
             "record",
-            Choices(QUANTITIES),
+            Choices(&Quantity::NAMES),
             "Recorded quantities: displacement, velocity, acceleration, Cauchy stress, von Mises stress, volume ratio.",
         )
         .example("[\"uy\", \"sigma_yy\"]"),
     ],
 );
-
-const QUANTITIES: &[&str] = &[
-    "ux",
-    "uy",
-    "uz",
-    "vx",
-    "vy",
-    "vz",
-    "ax",
-    "ay",
-    "az",
-    "sigma_xx",
-    "sigma_yy",
-    "sigma_zz",
-    "sigma_xy",
-    "sigma_yz",
-    "sigma_xz",
-    "von_mises",
-    "det_f",
-];
 
 const OUTPUT: Table = table(
     "[output]",

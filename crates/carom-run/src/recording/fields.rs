@@ -15,11 +15,9 @@ use carom_mechanics::model::{Contact, Model, von_mises};
 use carom_record::{Block, Cell, FieldSet, PointArray};
 use carom_solid::{Element, FacetShape};
 
-use super::units::labels;
-
 /// Fields of a state.
 pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
-    let label = labels(case);
+    let label = case.labels();
     let spatial = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)) };
     let vectors =
         |values: &[f64]| values.chunks_exact(model.dimension).flat_map(spatial).collect::<Vec<f64>>();
@@ -65,7 +63,7 @@ pub fn initial_fields(case: &Case, model: &Model) -> FieldSet {
     let axes = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)) };
     let moved = model.initial_position.iter().zip(&model.reference).map(|(y, x)| y - x).collect::<Vec<_>>();
     let values = moved.chunks_exact(model.dimension).flat_map(axes).collect();
-    let unit = labels(case).length;
+    let unit = case.labels().length;
     FieldSet {
         points: model.reference.chunks_exact(model.dimension).map(axes).collect(),
         blocks: blocks(model),

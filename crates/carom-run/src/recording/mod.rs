@@ -9,10 +9,8 @@ mod session;
 mod start;
 mod stopped;
 mod tally;
-mod units;
 mod verdicts;
 
-pub use columns::columns;
 pub(crate) use fields::consistent_weights;
 pub use fields::initial_fields;
 pub use outcome::{End, Options, Outcome, Progress, RunError};

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use carom_case::{Case, ContactSpec, Functions, PrimarySpec};
+use carom_case::{Case, ContactSpec, Functions, PrimarySpec, history_columns};
 use carom_mechanics::Simulation;
 use carom_record::{Manifest, MemoryRecord, Run, RunWriter, Source, Status, Stop};
 
-use super::columns::{Since, columns};
+use super::columns::Since;
 use super::fields::sides;
 use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::session::Session;
@@ -70,8 +70,7 @@ fn started(case: &Case, source: Source, options: Options) -> Result<(Simulation,
     let simulation = if options.audit { simulation.audited() } else { simulation };
     let resolved = case.to_json().map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
-    let mut manifest =
-        Manifest::new(version, resolved, source, columns(case, simulation.model()), options.threads);
+    let mut manifest = Manifest::new(version, resolved, source, history_columns(case), options.threads);
     manifest.sides = sides(simulation.model());
     manifest.surfaces = surfaces(case);
     manifest.warnings = warnings(case, simulation.model());
