@@ -22,28 +22,6 @@ fn group(file: gmsh::MshFile, dimension: usize, name: &str, slits: bool) -> Resu
     }
 }
 
-/// What the resolved case stores of a mesh.
-struct Facts {
-    element: Element,
-    nodes: usize,
-    cells: usize,
-    sides: Vec<String>,
-    repairs: Vec<String>,
-}
-
-impl From<Mesh> for Facts {
-    fn from(mesh: Mesh) -> Self {
-        let (nodes, cells) = (mesh.nodes.len(), mesh.cell_count());
-        Self {
-            element: mesh.element,
-            nodes,
-            cells,
-            sides: mesh.sides.into_keys().collect(),
-            repairs: mesh.repairs,
-        }
-    }
-}
-
 /// What a mesh from a file is for.
 #[derive(Clone, Copy)]
 pub(super) struct Purpose {
@@ -82,9 +60,8 @@ pub(super) fn read(v: &View, purpose: Purpose) -> Option<MeshSpec> {
             return wrong("file", what, why, "check the path; it is relative to the folder of the case");
         }
     };
-    let facts = |file: gmsh::MshFile| group(file, dimension, &surface, slits).map(Facts::from);
-    let facts = match gmsh::read(&bytes).and_then(facts) {
-        Ok(facts) => facts,
+    let mesh = match gmsh::read(&bytes).and_then(|file| group(file, dimension, &surface, slits)) {
+        Ok(mesh) => mesh,
         Err(error) => {
             // `slits` may be misspelt, which `conform` reports.
             let unknown = || {
@@ -97,7 +74,7 @@ pub(super) fn read(v: &View, purpose: Purpose) -> Option<MeshSpec> {
             return wrong(key, format!("{name}: {error}"), error.why(), error.help());
         }
     };
-    let found = if extruded { generate::extruded(facts.element)? } else { facts.element };
+    let found = if extruded { generate::extruded(mesh.element)? } else { mesh.element };
     if let Some(element) = element.filter(|e| *e != found && e.dimension() == found.dimension()) {
         let of = if extruded { "the extrusion of " } else { "" };
         let what = format!("{of}\"{surface}\" of {name} has {found:?} cells, not {element:?}");
@@ -111,9 +88,17 @@ pub(super) fn read(v: &View, purpose: Purpose) -> Option<MeshSpec> {
         let help = format!("write element = \"{found:?}\", or {in_gmsh} in Gmsh");
         return wrong(named, what, "the element of a body must be that of its mesh".into(), &help);
     }
-    let hash = blake3::hash(&bytes).to_hex().to_string();
-    let Facts { nodes, cells, sides, repairs, .. } = facts;
-    Some(MeshSpec::File { file, surface, slits, hash, nodes, cells, sides, repairs, parts: 1 })
+    Some(MeshSpec::File {
+        file,
+        surface,
+        slits,
+        hash: blake3::hash(&bytes).to_hex().to_string(),
+        nodes: mesh.nodes.len(),
+        cells: mesh.cell_count(),
+        sides: mesh.sides.into_keys().collect(),
+        repairs: mesh.repairs,
+        parts: 1,
+    })
 }
 
 /// The shape of an element's cells.

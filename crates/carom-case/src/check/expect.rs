@@ -102,10 +102,7 @@ impl Check<'_> {
 
     fn no_column(&mut self, path: String, column: &str, known: &[String]) {
         let why = "a column is one of history.csv; each probe adds columns name.quantity";
-        let help = suggest::nearest(column, known.iter().map(String::as_str)).map_or_else(
-            || format!("use one of: {}", known.join(", ")),
-            |near| format!("did you mean `{near}`?"),
-        );
+        let help = suggest::help(column, known.iter().map(String::as_str));
         self.add(path, format!("history.csv will have no column `{column}`"), why, help);
     }
 
