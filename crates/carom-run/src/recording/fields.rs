@@ -13,7 +13,7 @@ use carom_contact::{Pair, Rows};
 use carom_mechanics::State;
 use carom_mechanics::model::{Contact, Model, von_mises};
 use carom_record::{Block, Cell, FieldSet, PointArray};
-use carom_solid::{Element, FacetShape};
+use carom_solid::{Element, FacetShape, Mesh};
 
 /// Fields of a state.
 pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
@@ -78,26 +78,24 @@ pub(super) fn displacements(model: &Model, y: &[f64]) -> Vec<f64> {
 
 /// The cells of the bodies.
 fn blocks(model: &Model) -> Vec<Block> {
-    let blocks = model.parts.iter().filter(|part| !part.is_rigid()).map(|part| {
-        let mesh = part.body.mesh();
-        Block {
-            body: part.name.clone(),
-            cell: cell(mesh.element),
-            degree: mesh.element.degree(),
-            connectivity: mesh.cells.iter().map(|n| n + part.first_node).collect(),
-        }
-    });
-    blocks.collect()
+    let bodies = model.parts.iter().filter(|part| !part.is_rigid());
+    bodies.map(|part| block(&part.name, part.body.mesh(), part.first_node)).collect()
 }
 
-/// The viewer's cell type of an element.
-fn cell(element: Element) -> Cell {
-    match element {
+/// The cells of a body whose nodes begin with this number.
+pub fn block(name: &str, mesh: &Mesh, first: usize) -> Block {
+    let cell = match mesh.element {
         Element::L2 | Element::L3 | Element::L4 => Cell::Curve,
         Element::T3 | Element::T6 | Element::T10 => Cell::Triangle,
         Element::Q4 | Element::Q9 => Cell::Quadrilateral,
         Element::Tet4 | Element::Tet10 | Element::Tet20 => Cell::Tetrahedron,
         Element::Hex8 | Element::Hex27 => Cell::Hexahedron,
+    };
+    Block {
+        body: name.to_owned(),
+        cell,
+        degree: mesh.element.degree(),
+        connectivity: mesh.cells.iter().map(|n| n + first).collect(),
     }
 }
 

@@ -12,7 +12,7 @@ mod tally;
 mod verdicts;
 
 pub(crate) use fields::consistent_weights;
-pub use fields::initial_fields;
+pub use fields::{block, initial_fields};
 pub use outcome::{End, Options, Outcome, Progress, RunError};
 pub use rows::{ContactStates, Rows};
 pub use start::{resume, resume_with, run, run_in_memory};
