@@ -25,6 +25,7 @@ use carom_mechanics::model::Model;
 use carom_mechanics::{Grid, Implicit, InitialState, Linear, Settings, Simulation, Stepper, Tangent, depths};
 use carom_time::ForceRule;
 
+use crate::build::side::owner;
 use crate::build::{Materials, build, overlaps};
 
 /// Stages in which the depths are reduced.
@@ -67,7 +68,7 @@ pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
         let first = nodes.len();
         for (&node, &depth) in contact.kinematics.secondary().iter().zip(depths) {
             if depth > CLOSED * model.scale {
-                let body = model.parts.iter().find(|part| part.nodes().contains(&node));
+                let body = owner(&model.parts, node);
                 nodes.push(OverlapNode {
                     contact: contact.name.clone(),
                     node,

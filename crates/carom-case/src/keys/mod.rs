@@ -293,8 +293,9 @@ impl Key {
         Self { unit, ..self }
     }
 
-    const fn optional(self) -> Self {
-        Self { default: Default::Absent, ..self }
+    /// Optional, with an example; a table has those of its keys.
+    const fn optional(self, toml: &'static str) -> Self {
+        Self { default: Default::Absent, example: toml, ..self }
     }
 
     const fn default(self, toml: &'static str) -> Self {

@@ -38,8 +38,9 @@ fn table(kind: &KindInfo) -> Table {
             Bound::Unbounded => None,
         };
         let range = Range { low: end(parameter.range.0), high: end(parameter.range.1) };
-        let key = key(parameter.key, Number(range), parameter.meaning).example(parameter.example);
-        if kind.sets.len() > 1 { key.optional() } else { key }
+        let key = key(parameter.key, Number(range), parameter.meaning);
+        let example = parameter.example;
+        if kind.sets.len() > 1 { key.optional(example) } else { key.example(example) }
     };
     let keys: Vec<Key> =
         kind.parameters().into_iter().map(number).chain(kind.is_alpha().then_some(FORCES)).collect();

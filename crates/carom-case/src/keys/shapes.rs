@@ -66,12 +66,10 @@ const BOX: Table = table(
         key("min", Vector, "Lowest corner.").unit("length").example("[0.0, 0.0, 0.0]"),
         key("max", Vector, "Highest corner.").unit("length").example("[1.0, 1.0, 1.0]"),
         key("cells", Counts(1), "Number of boxes along x, y and z, each a hexahedron or split into six tetrahedra; or give `size`.")
-            .optional()
-            .example("[8, 4, 4]"),
+            .optional("[8, 4, 4]"),
         key("size", Number(POSITIVE), "Largest side length of the boxes; or give `cells`.")
             .unit("length")
-            .optional()
-            .example("0.1"),
+            .optional("0.1"),
         SYMMETRY,
     ],
 );
@@ -124,8 +122,7 @@ const EXTRUSION: Table = table(
                 other shapes: z, which leaves the upper half of the height; x and y of a rectangle; x \
                 of a disc.",
         )
-        .optional()
-        .example("[\"z\"]"),
+        .optional("[\"z\"]"),
     ],
 );
 
@@ -136,12 +133,10 @@ const RECTANGLE: Table = table(
         key("min", Vector, "Lower left corner.").unit("length").example("[0.0, 0.0]"),
         key("max", Vector, "Upper right corner.").unit("length").example("[1.0, 1.0]"),
         key("cells", Counts(1), "Number of squares along x and y, each a quadrilateral or split into two triangles; or give `size`.")
-            .optional()
-            .example("[8, 4]"),
+            .optional("[8, 4]"),
         key("size", Number(POSITIVE), "Largest side length of the squares; or give `cells`.")
             .unit("length")
-            .optional()
-            .example("0.1"),
+            .optional("0.1"),
     ],
 );
 
@@ -181,8 +176,7 @@ const POLYGON: Table = table(
             .unit("length")
             .example("0.1"),
         key("refine", Tables(&REFINE), "Regions of local refinement.")
-            .optional()
-            .example("[{ near = [48.0, 60.0], radius = 2.0, size = 0.02 }]"),
+            .optional("[{ near = [48.0, 60.0], radius = 2.0, size = 0.02 }]"),
     ],
 );
 
@@ -203,8 +197,7 @@ const SYMMETRY: Key = key(
     Choices(&["x", "y", "z"]),
     "Directions in which a plane of symmetry through the middle of the shape cuts it; the half with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or plane_z. A cylinder or a tube is cut only if its axis is a coordinate.",
 )
-.optional()
-.example("[\"x\", \"y\"]");
+.optional("[\"x\", \"y\"]");
 
 const REFINE: Table = table(
     "refine",
@@ -227,8 +220,7 @@ const MESH_FILE: Table = table(
             .unless("volume")
             .example("\"cylinder\""),
         key("volume", Text, "Dimension 3: name of the physical volume that is the body.")
-            .optional()
-            .example("\"part\""),
+            .optional("\"part\""),
         SLITS,
     ],
 );

@@ -17,8 +17,7 @@ pub const CASE: Table = table(
     "One simulation of impact or contact of deformable bodies.",
     &[
         key("title", Text, "Title of figures and report pages. Default: the name of the file.")
-            .optional()
-            .example("\"Two bars\""),
+            .optional("\"Two bars\""),
         key("dimension", Kind::Count(1), "Space dimension: 1 (bars), 2 (the plane) or 3.").example("2"),
         key(
             "plane",
@@ -36,40 +35,38 @@ pub const CASE: Table = table(
         )
         .default("1.0"),
         key("units", Kind::Table(&UNITS), "Unit labels in figures and columns; values are not converted.")
-            .optional()
-            .example("{ length = \"m\", time = \"s\", mass = \"kg\" }"),
+            .optional("{ length = \"m\", time = \"s\", mass = \"kg\" }"),
         key("preset", Choice(&["default", "paper"], &[]), "Set of default values; keys given explicitly take precedence.")
             .default("\"default\""),
         key("material", Tables(&MATERIAL), "A material; bodies refer to it by name."),
         key("body", Tables(&BODY), "A deformable body."),
-        key("support", Tables(&SUPPORT), "Displacement boundary condition: sides fixed or moved in given directions.").optional(),
-        key("load", Tables(&LOAD), "A load: traction or pressure on sides, or body force in a body.").optional(),
+        key("support", Tables(&SUPPORT), "Displacement boundary condition: sides fixed or moved in given directions.").optional(""),
+        key("load", Tables(&LOAD), "A load: traction or pressure on sides, or body force in a body.").optional(""),
         key(
             "initial",
             Kind::Table(&INITIAL),
             "Start from the final state of another run instead of the reference positions.",
         )
-        .optional(),
+        .optional(""),
         key(
             "manufactured",
             Kind::Table(&MANUFACTURED),
             "A manufactured solution: load, boundary motion and initial state are derived from it, and errors are measured against it.",
         )
-        .optional(),
-        key("contact", Tables(&CONTACT), "A contact pair: two sides that may come into contact.").optional(),
+        .optional(""),
+        key("contact", Tables(&CONTACT), "A contact pair: two sides that may come into contact.").optional(""),
         key("time", Kind::Table(&TIME), "Time interval, time step and time integrator."),
-        key("newton", Kind::Table(&NEWTON), "Settings of Newton's method.").optional(),
-        key("overlay", Tables(&OVERLAY), "Measured data, drawn with a column of history.csv and compared with it.").optional(),
-        key("probe", Tables(&PROBE), "A material point whose quantities are recorded as columns of history.csv.").optional(),
-        key("output", Kind::Table(&OUTPUT), "What is written, and how often.").optional(),
+        key("newton", Kind::Table(&NEWTON), "Settings of Newton's method.").optional(""),
+        key("overlay", Tables(&OVERLAY), "Measured data, drawn with a column of history.csv and compared with it.").optional(""),
+        key("probe", Tables(&PROBE), "A material point whose quantities are recorded as columns of history.csv.").optional(""),
+        key("output", Kind::Table(&OUTPUT), "What is written, and how often.").optional(""),
         key(
             "exact",
             Kind::ByColumn,
             "Exact solution by column, as formulas in t: used by `formula = \"exact\"` in [[expect]] and by `reference = \"exact\"` in a study.",
         )
-        .optional()
-        .example("{ \"A.uy\" = \"-0.5*9.81*t^2\" }"),
-        key("expect", Tables(&EXPECT), "An expected value; a case that has one is also a test.").optional(),
+        .optional("{ \"A.uy\" = \"-0.5*9.81*t^2\" }"),
+        key("expect", Tables(&EXPECT), "An expected value; a case that has one is also a test.").optional(""),
     ],
 );
 
@@ -212,8 +209,7 @@ const OUTPUT: Table = table(
             Count(0),
             "Steps between two outputs of the fields; 0: none. Default: 20, or 0 if at_times is given.",
         )
-        .optional()
-        .example("20"),
+        .optional("20"),
         key(
             "format",
             Choice(&["vtu", "vtkhdf"], &[]),
@@ -243,7 +239,7 @@ pub const OVERLAY: Table = table(
             .default("1.0"),
         key("scale", Number(ANY), "Values of the column in one unit of those of the file: −1e-3 for mm downwards in a case in m upwards.")
             .default("1.0"),
-        key("source", Text, "Where the data come from.").optional().example("\"own test, 3 May\""),
+        key("source", Text, "Where the data come from.").optional("\"own test, 3 May\""),
     ],
 );
 
@@ -260,32 +256,28 @@ pub const EXPECT: Table = table(
         )
         .example("\"min A.uy\""),
         key("formula", Text, "Expected values of the column `what`, as a formula in t; the bound is on the norm of the deviation from it.")
-            .optional()
-            .example("\"-0.5*9.81*t^2\""),
+            .optional("\"-0.5*9.81*t^2\""),
         key(
             "norm",
             Choice(&["max", "rms"], &[]),
             "Norm of the deviation: largest absolute value, or root mean square over the rows. Default: max; for an order, rms.",
         )
-        .optional()
-        .example("\"rms\""),
+        .optional("\"rms\""),
         key("scale", Number(POSITIVE), "Number that divides the deviation.").default("1.0"),
-        key("after", Number(ANY), "Only rows strictly after this time are used.").unit("time").optional().example("0.52"),
-        key("before", Number(ANY), "Only rows strictly before this time are used.").unit("time").optional().example("1.147"),
-        key("value", Number(ANY), "Expected value.").optional().example("-0.7827"),
-        key("tolerance", Number(NOT_NEGATIVE), "Absolute tolerance.").optional().example("4e-3"),
-        key("relative", Number(NOT_NEGATIVE), "Relative tolerance.").optional().example("0.01"),
-        key("at_most", Number(ANY), "Upper bound.").optional().example("0.0"),
-        key("at_least", Number(ANY), "Lower bound.").optional().example("0.0"),
-        key("source", Text, "Where the expected value comes from.").optional().example("\"exact solution\""),
+        key("after", Number(ANY), "Only rows strictly after this time are used.").unit("time").optional("0.52"),
+        key("before", Number(ANY), "Only rows strictly before this time are used.").unit("time").optional("1.147"),
+        key("value", Number(ANY), "Expected value.").optional("-0.7827"),
+        key("tolerance", Number(NOT_NEGATIVE), "Absolute tolerance.").optional("4e-3"),
+        key("relative", Number(NOT_NEGATIVE), "Relative tolerance.").optional("0.01"),
+        key("at_most", Number(ANY), "Upper bound.").optional("0.0"),
+        key("at_least", Number(ANY), "Lower bound.").optional("0.0"),
+        key("source", Text, "Where the expected value comes from.").optional("\"exact solution\""),
         key("of", Text, "In a study, with what = \"order\": the quantity or column whose order of convergence is observed.")
-            .optional()
-            .example("\"last A.uy\""),
+            .optional("\"last A.uy\""),
         key("against", Text, "With what = \"order\": the key of the case that is refined from arm to arm.")
-            .optional()
-            .example("\"time.step\""),
-        key("where", Text, "With what = \"order\": only arms whose names contain these whole words.").optional().example("\"hu\""),
-        key("exact", Number(ANY), "With what = \"order\": the exact value that errors are computed against.").optional().example("1.0"),
+            .optional("\"time.step\""),
+        key("where", Text, "With what = \"order\": only arms whose names contain these whole words.").optional("\"hu\""),
+        key("exact", Number(ANY), "With what = \"order\": the exact value that errors are computed against.").optional("1.0"),
         key("slow", Truth, "Skipped by `carom verify --fast`.").default("false"),
     ],
 );

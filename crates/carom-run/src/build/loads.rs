@@ -33,32 +33,30 @@ pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Prob
                 continue;
             }
         };
-        if let LoadKind::BodyForce { body, .. } = &spec.kind {
-            if let Some(part) = parts.iter().position(|p| p.name == *body) {
-                loads.add_body_force(load(spec, part, value));
-            }
-            continue;
+        if let LoadKind::BodyForce { body, .. } = &spec.kind
+            && let Some(part) = parts.iter().position(|p| p.name == *body)
+        {
+            loads.add_body_force(load(spec, part, value.clone()));
         }
         for (j, name) in spec.sides().iter().enumerate() {
-            let found = match side(parts, name, &format!("load[{k}].on[{j}]")) {
-                Ok(side) => &parts[side.part],
-                Err(problem) => {
-                    problems.push(problem);
-                    continue;
+            match loaded(case, parts, name, &format!("load[{k}].on[{j}]")) {
+                Ok(side) if matches!(spec.kind, LoadKind::Pressure { .. }) => {
+                    loads.add_pressure(load(spec, side, value.clone()));
                 }
-            };
-            let mesh = found.body.mesh();
-            let facets = name.split_once('.').and_then(|(_, side)| mesh.sides.get(side));
-            let facets = facets.map_or(&[][..], Vec::as_slice);
-            let side = LoadedSide::new(mesh, facets, found.first_node, case.thickness);
-            if matches!(spec.kind, LoadKind::Pressure { .. }) {
-                loads.add_pressure(load(spec, side, value.clone()));
-            } else {
-                loads.add_traction(load(spec, side, value.clone()));
+                Ok(side) => loads.add_traction(load(spec, side, value.clone())),
+                Err(problem) => problems.push(problem),
             }
         }
     }
     loads
+}
+
+fn loaded(case: &Case, parts: &[BodyInstance], name: &str, path: &str) -> Result<LoadedSide, Problem> {
+    let part = &parts[side(parts, name, path)?.part];
+    let mesh = part.body.mesh();
+    let facets = name.split_once('.').and_then(|(_, side)| mesh.sides.get(side));
+    let facets = facets.map_or(&[][..], Vec::as_slice);
+    Ok(LoadedSide::new(mesh, facets, part.first_node, case.thickness))
 }
 
 /// A load with the name and the amplitude of its table in the case.

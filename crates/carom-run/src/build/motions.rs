@@ -8,7 +8,7 @@ use carom_mechanics::model::{BodyInstance, Motions};
 
 use super::given::in_space_and_time;
 use super::obstacles::Moving;
-use super::side::{coordinates, side};
+use super::side::{coordinates, owner, side};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -117,6 +117,5 @@ impl Moves {
 
 /// Reference position of a node.
 fn place_of(parts: &[BodyInstance], node: usize) -> Vec<f64> {
-    let part = parts.iter().find(|p| p.nodes().contains(&node));
-    part.map_or_else(Vec::new, |p| p.body.mesh().nodes[node - p.first_node].to_vec())
+    owner(parts, node).map_or_else(Vec::new, |p| p.body.mesh().nodes[node - p.first_node].to_vec())
 }
