@@ -59,28 +59,27 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
     }
     let problems = RefCell::new(conform::problems(document));
     let reader = Reader::of(document, &problems);
-    let mut draft = Draft {
-        dimension: reader.dimension,
-        materials: reader.each("material", material),
-        bodies: Vec::new(),
-        supports: reader.each("support", support),
-        loads: Vec::new(),
-        contacts: Vec::new(),
-        probes: reader.each("probe", probe),
-        overlays: Vec::new(),
-        exact: reader.exact(),
-        expects: Vec::new(),
-        time: reader.root.at("time").and_then(|v| time(&v)),
-    };
+    let materials = reader.each("material", material);
+    let time = reader.root.at("time").and_then(|v| time(&v));
     let refine = reader.root.number("refine").filter(|factor| *factor >= 1.0).unwrap_or(1.0);
     let counts = |v: &View| Counts::of(v.table.get("mesh")?.table()?, format!("{}.mesh", v.path));
     let counts: Vec<_> = reader.each("body", counts).into_iter().flatten().collect();
     problems.borrow_mut().extend(refine::problem(refine, &counts));
-    draft.bodies = reader.each("body", |v| body(v, reader.dimension?, refine));
-    draft.contacts = reader.contacts(&draft);
-    draft.loads = reader.each("load", load::read);
-    draft.overlays = reader.each("overlay", overlay::read);
-    draft.expects = reader.each("expect", |v| expect::one(v, Asked::OfARun, Exact::Of(&draft.exact)));
+    let bodies = reader.each("body", |v| body(v, reader.dimension?, refine));
+    let exact = reader.exact();
+    let draft = Draft {
+        dimension: reader.dimension,
+        contacts: reader.contacts(&Bodies { bodies: &bodies, materials: &materials }),
+        supports: reader.each("support", support),
+        loads: reader.each("load", load::read),
+        probes: reader.each("probe", probe),
+        overlays: reader.each("overlay", overlay::read),
+        expects: reader.each("expect", |v| expect::one(v, Asked::OfARun, Exact::Of(&exact))),
+        materials,
+        bodies,
+        exact,
+        time,
+    };
     let mut problems = problems.take();
     check::problems(document, &draft, &mut problems);
     if !problems.is_empty() {
@@ -117,12 +116,11 @@ impl<'a> Reader<'a> {
     }
 
     /// The contacts of all tables; those of `between` need the bodies.
-    fn contacts(&self, draft: &Draft) -> Vec<Option<ContactSpec>> {
+    fn contacts(&self, bodies: &Bodies) -> Vec<Option<ContactSpec>> {
         let mut entry = 0..;
         let tables = self.each("contact", |v| Some((v.clone(), contact(v, entry.next()?, self.dimension))));
         let specs = tables.iter().flatten().filter_map(|(_, contact)| contact.clone());
         let declared: Vec<ContactSpec> = specs.filter(|contact| !contact.between).collect();
-        let bodies = Bodies { bodies: &draft.bodies, materials: &draft.materials };
         let mut contacts = Vec::new();
         for table in tables {
             match table {

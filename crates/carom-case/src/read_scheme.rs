@@ -53,7 +53,7 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
     if let Some(parameter) = parameters.iter().find(|parameter| !parameter.contains('=')) {
         let what = format!("`{parameter}` is not a parameter");
         let (why, help) = ("parameters are written KEY=VALUE", "write for example rho_inf=0.1");
-        return Err(CaseError::Wrong(vec![Diagnostic::of_file("carom explain", what, why, help)]));
+        return Err(CaseError::of_file("carom explain", what, why, help));
     }
     let kind_line = format!("kind = {}", toml_edit::Value::from(kind));
     let text = std::iter::once(kind_line).chain(parameters.iter().map(line)).collect::<Vec<_>>().join("\n");

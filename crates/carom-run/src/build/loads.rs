@@ -1,6 +1,6 @@
 //! The loads of a model; names and formulas were checked when the case was read.
 
-use carom_case::{Case, LoadKind, LoadSpec, Problem, load_variables};
+use carom_case::{Case, LoadKind, LoadSpec, Problem};
 use carom_formula::Formula;
 use carom_mechanics::model::{Amplitude, BodyInstance, Load, Loads, Manufactured};
 use carom_solid::LoadedSide;
@@ -12,12 +12,9 @@ use super::side::side;
 pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Problem>) -> Loads {
     let mut loads = Loads::default();
     if let Some(y) = &case.manufactured {
-        match y.iter().map(|f| f.formula(&load_variables(case.dimension))).collect() {
+        match y.iter().map(|f| in_space_and_time(case, f, "manufactured.y")).collect() {
             Ok(y) => loads.manufactured = Some(Manufactured::new(y)),
-            Err(error) => {
-                let error: carom_formula::FormulaError = error;
-                problems.push(Problem::new("manufactured.y", error.to_string(), "", ""));
-            }
+            Err(problem) => problems.push(problem),
         }
     }
     for (k, spec) in case.loads.iter().enumerate() {

@@ -189,12 +189,9 @@ fn nodal(
     let path = format!("body[{body}].{key}");
     let what = format!("the {key} of body \"{}\"", part.name);
     let variables = carom_case::keys::variables(carom_case::keys::IN_SPACE, part.body.mesh().dimension());
-    let formulas: Vec<_> = match formulas.iter().map(|f| f.formula(&variables)).collect() {
+    let formulas = match formulas.iter().map(|f| f.formula(&variables)).collect::<Result<Vec<_>, _>>() {
         Ok(formulas) => formulas,
-        Err(error) => {
-            let error: carom_formula::FormulaError = error;
-            return problems.push(Problem::new(path, what, error.to_string(), ""));
-        }
+        Err(error) => return problems.push(Problem::new(path, what, error.to_string(), "")),
     };
     for place in &part.body.mesh().nodes {
         for formula in &formulas {

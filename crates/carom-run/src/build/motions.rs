@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_case::{Case, FormulaSpec, Problem, load_variables};
+use carom_case::{Case, FormulaSpec, Problem};
 use carom_formula::Formula;
 use carom_mechanics::model::{BodyInstance, Motions};
 
@@ -59,20 +59,18 @@ pub(super) fn motions(
     for obstacle in obstacles {
         for (dof, formula) in obstacle.prescribed() {
             let Some(formula) = formula else { continue };
-            match formula.formula(&load_variables(d)) {
+            let path = format!("{}.motion", case.contacts[obstacle.contact].path("primary"));
+            match in_space_and_time(case, &formula, &path) {
                 Ok(read) => {
                     moves.by_dof.insert(dof, moves.formulas.len());
                     moves.formulas.push((obstacle.label(), read));
                 }
-                Err(error) => {
-                    let path = format!("{}.motion", case.contacts[obstacle.contact].path("primary"));
-                    problems.push(Problem::new(path, error.to_string(), "", ""));
-                }
+                Err(problem) => problems.push(problem),
             }
         }
     }
     if let Some(y) = &case.manufactured {
-        moves.manufactured(y, d, parts, problems);
+        moves.manufactured(case, y, parts, problems);
     }
     let Moves { formulas, by_dof } = moves;
     Motions::new(formulas, by_dof.into_iter().map(|(dof, formula)| (dof, formula, place_of(parts, dof / d))))
@@ -92,24 +90,22 @@ impl Moves {
     /// Prescribes y − X at all boundary nodes.
     fn manufactured(
         &mut self,
+        case: &Case,
         y: &[FormulaSpec],
-        d: usize,
         parts: &[BodyInstance],
         problems: &mut Vec<Problem>,
     ) {
         for (axis, formula) in y.iter().enumerate() {
-            let text = format!("({formula}) - {}", ["X", "Y", "Z"][axis]);
-            match Formula::parse(&text, &load_variables(d)) {
+            let moved = FormulaSpec::Text(format!("({formula}) - {}", ["X", "Y", "Z"][axis]));
+            match in_space_and_time(case, &moved, "manufactured.y") {
                 Ok(read) => self.formulas.push((format!("component {} of [manufactured]", axis + 1), read)),
-                Err(error) => {
-                    return problems.push(Problem::new("manufactured.y", error.to_string(), "", ""));
-                }
+                Err(problem) => return problems.push(problem),
             }
             let place = self.formulas.len() - 1;
             for part in parts {
                 let on = part.body.mesh().on_boundary();
                 let nodes = part.nodes().zip(on).filter_map(|(node, on)| on.then_some(node));
-                self.by_dof.extend(nodes.map(|node| (node * d + axis, place)));
+                self.by_dof.extend(nodes.map(|node| (node * case.dimension + axis, place)));
             }
         }
     }
