@@ -1,9 +1,8 @@
 //! Contacts among bodies, `between = "all"` or a list: one contact for each pair and one for each
 //! side with itself.
 
-use super::problem::Problem;
 use super::spec::SKIN;
-use super::tree::{Node, Value};
+use super::tree::Value;
 use super::view::View;
 use super::{BodySpec, ContactSpec, MaterialSpec, PrimarySpec};
 
@@ -29,11 +28,9 @@ impl Bodies<'_> {
         v: &View,
         one: &ContactSpec,
         declared: &[ContactSpec],
-        path: &str,
-        problems: &mut Vec<Problem>,
     ) -> Option<Vec<ContactSpec>> {
-        let of_itself = v.value("self")?.flag()?;
-        let sides = self.sides(v.table.get("between")?, path, problems)?;
+        let of_itself = v.flag("self")?;
+        let sides = self.sides(v)?;
         let body = |side: &str| side.split_once('.').map_or("", |side| side.0).to_owned();
         let known = |a: &str, b: &str| {
             let both = |contact: &&ContactSpec| {
@@ -69,14 +66,13 @@ impl Bodies<'_> {
         match &mut contacts[..] {
             // A case without bodies and an empty list are errors of their own.
             [] if self.bodies.is_empty() => return None,
-            [] if problems.iter().any(|p| p.path == format!("{path}.between")) => return None,
+            [] if v.has_problem(|p| p.path == format!("{}.between", v.path)) => return None,
             [] => {
                 let what = format!("contact `{}` has no pair of sides", one.name);
                 let why = "there is no other body, or the contacts of these bodies are all declared in \
                     tables of their own";
                 let help = if of_itself { "leave it out" } else { "leave out `self = false`" };
-                problems.push(Problem::new(format!("{path}.between"), what, why, help));
-                return None;
+                return v.wrong("between", what, why, help);
             }
             [only] => only.name.clone_from(&one.name),
             _ => {}
@@ -85,7 +81,8 @@ impl Bodies<'_> {
     }
 
     /// The sides that `between` names; `None` if a body could not be read or is named wrongly.
-    fn sides(&self, between: &Node, path: &str, problems: &mut Vec<Problem>) -> Option<Vec<String>> {
+    fn sides(&self, v: &View) -> Option<Vec<String>> {
+        let between = v.table.get("between")?;
         if between.text() == Some("all") {
             return self.bodies.iter().map(|body| Some(format!("{}.{SKIN}", body.as_ref()?.name))).collect();
         }
@@ -98,8 +95,7 @@ impl Bodies<'_> {
                 let what = format!("`between` has two sides of the body `{}`", body(side));
                 let why = "a body meets each other body, and itself, in one contact";
                 let help = format!("write \"{}\", which is its whole boundary", body(side));
-                problems.push(Problem::new(format!("{path}.between[{j}]"), what, why, help));
-                return None;
+                return v.wrong(&format!("between[{j}]"), what, why, help);
             }
         }
         Some(sides)

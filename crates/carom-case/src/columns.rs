@@ -1,137 +1,206 @@
-//! The columns of history.csv, in the order that the run directory specifies.
+//! The columns of history.csv, in the order that the run directory specifies: the one list of their
+//! names, units and meanings. Their values: `recording/columns.rs` of `carom-run`.
+
+use carom_record::Column;
+use carom_record::units::Labels;
 
 use super::{BodySpec, Case, ContactSpec, Fallback, ObstacleMotion, ProbeSpec, Quantity, SupportSpec};
 
-const SCALARS: [&str; 13] = [
-    "step",
-    "time",
-    "dt",
-    "kinetic",
-    "strain",
-    "potential",
-    "total",
-    "external_work",
-    "contact_work",
-    "friction_work",
-    "dissipation",
-    "energy_created",
-    "energy_scale",
-];
-const COUNTS: [&str; 5] = ["active", "activations", "releases", "newton", "rejected"];
-
-const SMALLEST: [&str; 3] = ["penetration", "penetration_secondary", "min_det_f"];
-
-const FRICTION: [&str; 4] = ["sticking", "stick_time", "rub_time", "slip"];
-
-const ERRORS: [&str; 2] = ["error_l2", "error_h1"];
-
-/// Name of a quantity in column names.
-pub(super) fn quantity(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Ux => "ux",
-        Quantity::Uy => "uy",
-        Quantity::Uz => "uz",
-        Quantity::Vx => "vx",
-        Quantity::Vy => "vy",
-        Quantity::Vz => "vz",
-        Quantity::Ax => "ax",
-        Quantity::Ay => "ay",
-        Quantity::Az => "az",
-        Quantity::SigmaXx => "sigma_xx",
-        Quantity::SigmaYy => "sigma_yy",
-        Quantity::SigmaZz => "sigma_zz",
-        Quantity::SigmaXy => "sigma_xy",
-        Quantity::SigmaYz => "sigma_yz",
-        Quantity::SigmaXz => "sigma_xz",
-        Quantity::VonMises => "von_mises",
-        Quantity::DetF => "det_f",
-    }
-}
-
-impl Quantity {
-    /// Its name in columns.
-    pub fn name(self) -> &'static str {
-        quantity(self)
-    }
-}
-
 /// Whether a quantity exists in a space of this dimension: its name has no axis beyond it.
 pub(super) fn exists(of: Quantity, dimension: usize) -> bool {
-    let axes = quantity(of).trim_start_matches("sigma_");
+    let axes = of.name().trim_start_matches("sigma_");
     let lacks = |axis: &str| axes.len() == 2 && axes.contains(axis);
     !(dimension < 2 && lacks("y") || dimension < 3 && lacks("z"))
 }
 
-/// Names of the columns of history.csv of a case, in their order.
-pub fn history_columns(case: &Case) -> Vec<String> {
-    of(
-        case.dimension,
-        &case.bodies.iter().cloned().map(Some).collect::<Vec<_>>(),
-        &case.contacts.iter().cloned().map(Some).collect::<Vec<_>>(),
-        &case.supports.iter().cloned().map(Some).collect::<Vec<_>>(),
-        &case.probes.iter().cloned().map(Some).collect::<Vec<_>>(),
-        case.manufactured.is_some(),
-        case.time.fallback,
-    )
+impl Case {
+    /// Unit labels of what is recorded.
+    pub fn labels(&self) -> Labels {
+        Labels::of(&self.units.length, &self.units.time, &self.units.mass)
+    }
 }
 
-/// Column names of a case in the given dimension.
-pub(super) fn of(
-    dimension: usize,
-    bodies: &[Option<BodySpec>],
-    contacts: &[Option<ContactSpec>],
-    supports: &[Option<SupportSpec>],
-    probes: &[Option<ProbeSpec>],
-    manufactured: bool,
-    fallback: Fallback,
-) -> Vec<String> {
-    let axes = &["x", "y", "z"][..dimension.clamp(1, 3)];
-    let mut columns: Vec<String> = SCALARS.iter().map(ToString::to_string).collect();
-    let vector = |columns: &mut Vec<String>, name: &str| {
-        columns.extend(axes.iter().map(|axis| format!("{name}_{axis}")));
+/// The columns of history.csv of a case, in their order.
+pub fn history_columns(case: &Case) -> Vec<Column> {
+    let recorded = Recorded {
+        dimension: case.dimension,
+        bodies: case.bodies.iter().collect(),
+        contacts: case.contacts.iter().collect(),
+        by_contact: case.contacts.len() > 1,
+        supports: case.supports.iter().collect(),
+        probes: case.probes.iter().collect(),
+        manufactured: case.manufactured.is_some(),
+        fallback: case.time.fallback,
     };
-    vector(&mut columns, "momentum");
-    match dimension {
-        2 => columns.push("angular_momentum".to_owned()),
-        3 => vector(&mut columns, "angular_momentum"),
-        _ => {}
+    recorded.columns(&case.labels())
+}
+
+/// What of a case is recorded.
+pub(super) struct Recorded<'a> {
+    pub(super) dimension: usize,
+    pub(super) bodies: Vec<&'a BodySpec>,
+    pub(super) contacts: Vec<&'a ContactSpec>,
+    /// Whether the force of each contact is recorded.
+    pub(super) by_contact: bool,
+    pub(super) supports: Vec<&'a SupportSpec>,
+    pub(super) probes: Vec<&'a ProbeSpec>,
+    pub(super) manufactured: bool,
+    pub(super) fallback: Fallback,
+}
+
+/// Columns of a space.
+struct Columns {
+    axes: &'static [&'static str],
+    list: Vec<Column>,
+}
+
+impl Columns {
+    fn push(&mut self, name: &str, unit: &str, description: &str, integer: bool) {
+        let [name, unit, description] = [name, unit, description].map(str::to_owned);
+        self.list.push(Column { name, unit, description, integer });
     }
-    vector(&mut columns, "contact_force");
-    vector(&mut columns, "contact_impulse");
-    vector(&mut columns, "algorithmic_impulse");
-    columns.extend(COUNTS.map(String::from));
-    columns.extend((fallback != Fallback::None).then(|| "fallbacks".to_owned()));
-    columns.extend(SMALLEST.map(String::from));
-    if contacts.iter().flatten().any(|contact| contact.friction.exists()) {
-        columns.extend(FRICTION.map(String::from));
+
+    fn add(&mut self, name: &str, unit: &str, description: &str) {
+        self.push(name, unit, description, false);
     }
-    for body in bodies.iter().flatten() {
-        vector(&mut columns, &format!("{}.center", body.name));
-        vector(&mut columns, &format!("{}.velocity", body.name));
+
+    fn count(&mut self, name: &str, description: &str) {
+        self.push(name, "", description, true);
     }
-    let moving = || contacts.iter().flatten().filter(|contact| !contact.motion.is_fixed());
-    for contact in moving() {
-        vector(&mut columns, &format!("{}.center", contact.name));
-        vector(&mut columns, &format!("{}.velocity", contact.name));
+
+    fn vector(&mut self, name: &str, unit: &str, description: &str) {
+        for axis in self.axes {
+            self.add(&format!("{name}_{axis}"), unit, description);
+        }
     }
-    for contact in contacts.iter().flatten().filter(|_| contacts.len() > 1) {
-        vector(&mut columns, &format!("{}.force", contact.name));
-    }
-    for support in supports.iter().flatten() {
-        let Some(name) = &support.name else { continue };
-        vector(&mut columns, &format!("{name}.reaction"));
-        match (dimension, &support.moment_about) {
-            (2, Some(_)) => columns.push(format!("{name}.moment")),
-            (3, Some(_)) => vector(&mut columns, &format!("{name}.moment")),
+
+    /// Of a rotation: a number in the plane, a vector in space.
+    fn rotational(&mut self, name: &str, unit: &str, description: &str) {
+        match self.axes.len() {
+            2 => self.add(name, unit, description),
+            3 => self.vector(name, unit, description),
             _ => {}
         }
     }
-    for contact in moving().filter(|c| matches!(c.motion, ObstacleMotion::Prescribed { .. })) {
-        vector(&mut columns, &format!("{}.reaction", contact.name));
+}
+
+impl Recorded<'_> {
+    pub(super) fn columns(&self, label: &Labels) -> Vec<Column> {
+        let axes = &["x", "y", "z"][..self.dimension.clamp(1, 3)];
+        let mut columns = Columns { axes, list: Vec::new() };
+        columns.count("step", "step on the grid of times");
+        columns.add("time", &label.time, "time, step × Δt");
+        columns.add("dt", &label.time, "time step of the grid");
+        for (name, what) in ENERGIES {
+            columns.add(name, &label.energy, what);
+        }
+        columns.vector("momentum", &label.momentum, "momentum of all bodies");
+        let unit = &label.angular_momentum;
+        columns.rotational("angular_momentum", unit, "angular momentum about the origin");
+        let what = "contact force on the secondary sides at the end of the step";
+        columns.vector("contact_force", &label.force, what);
+        let what = "time integral of the contact force, including projections";
+        columns.vector("contact_impulse", &label.momentum, what);
+        let what = "part of contact_impulse that projections and changes of the step move between velocities and algorithmic accelerations";
+        columns.vector("algorithmic_impulse", &label.momentum, what);
+        for (name, what) in COUNTS {
+            columns.count(name, what);
+        }
+        if self.fallback != Fallback::None {
+            columns.count("fallbacks", "grid steps that the fallback took since the previous row");
+        }
+        let what =
+            "depth of the deepest node of either side of a contact in the other body, since the previous row";
+        columns.add("penetration", &label.length, what);
+        let what =
+            "the same of the nodes that the contact constrains: secondary nodes and corners of the primary";
+        columns.add("penetration_secondary", &label.length, what);
+        columns.add("min_det_f", "", "smallest J over all quadrature points");
+        if self.contacts.iter().any(|contact| contact.friction.exists()) {
+            columns.count("sticking", "pairs in contact that stick");
+            columns.add("stick_time", &label.time, "stick time, summed over pairs, cumulative");
+            columns.add("rub_time", &label.time, "the same of all closed pairs with friction");
+            columns.add("slip", &label.length, "largest slip of a pair since it closed, so far");
+        }
+        let moving = || self.contacts.iter().filter(|contact| !contact.motion.is_fixed());
+        let bodies = self.bodies.iter().map(|body| &body.name);
+        for name in bodies.chain(moving().map(|contact| &contact.name)) {
+            columns.vector(&format!("{name}.center"), &label.length, "centre of mass");
+            let what = "velocity of the centre of mass";
+            columns.vector(&format!("{name}.velocity"), &label.velocity, what);
+        }
+        for contact in self.contacts.iter().filter(|_| self.by_contact) {
+            let what = "contact force on its secondary side";
+            columns.vector(&format!("{}.force", contact.name), &label.force, what);
+        }
+        let named = self.supports.iter().filter_map(|support| Some((support.name.as_ref()?, *support)));
+        let prescribed = moving().filter(|c| matches!(c.motion, ObstacleMotion::Prescribed { .. }));
+        let supports = named.map(|(name, support)| (name, support.moment_about.is_some()));
+        for (name, has_moment) in supports.chain(prescribed.map(|contact| (&contact.name, false))) {
+            let what = "force of the support on the bodies";
+            columns.vector(&format!("{name}.reaction"), &label.force, what);
+            if has_moment {
+                let what = "moment of the reaction forces about the given point";
+                columns.rotational(&format!("{name}.moment"), &label.moment, what);
+            }
+        }
+        for probe in &self.probes {
+            for quantity in &probe.record {
+                let (unit, what) = of_point(*quantity, label);
+                columns.add(&format!("{}.{}", probe.name, quantity.name()), unit, &what);
+            }
+        }
+        if self.manufactured {
+            columns.add("error_l2", "", "√∫|y_h − y|² dΩ₀ against the motion of [manufactured]");
+            columns.add("error_h1", "", "√∫|∂y_h/∂X − ∂y/∂X|² dΩ₀ against the motion of [manufactured]");
+        }
+        columns.list
     }
-    for probe in probes.iter().flatten() {
-        columns.extend(probe.record.iter().map(|q| format!("{}.{}", probe.name, quantity(*q))));
+}
+
+const ENERGIES: [(&str, &str); 10] = [
+    ("kinetic", "kinetic energy ½ vᵀM v"),
+    ("strain", "strain energy"),
+    ("potential", "potential of constant conservative loads"),
+    ("total", "kinetic + strain + potential"),
+    ("external_work", "work of the loads without potential and of the supports, cumulative"),
+    (
+        "contact_work",
+        "work of the contact forces without friction on the bodies and of projections, cumulative",
+    ),
+    ("friction_work", "work of friction on the bodies, cumulative"),
+    (
+        "dissipation",
+        "external_work + contact_work + friction_work − (total − total at the start); negative if energy was created",
+    ),
+    (
+        "energy_created",
+        "largest rise of total − external_work above its running minimum so far, beyond work that means over steps have missed since",
+    ),
+    (
+        "energy_scale",
+        "largest kinetic + strain energy at the end of a step so far, or Σ |change of external_work| if that is larger",
+    ),
+];
+
+const COUNTS: [(&str, &str); 5] = [
+    ("active", "pairs in contact"),
+    ("activations", "nodes that came into contact since the previous row"),
+    ("releases", "nodes that left contact since the previous row"),
+    ("newton", "Newton iterations since the previous row"),
+    ("rejected", "rejected (bisected) steps since the previous row"),
+];
+
+/// Unit and meaning of a probe's column.
+fn of_point(quantity: Quantity, label: &Labels) -> (&str, String) {
+    use Quantity::{Ax, Ay, Az, DetF, Ux, Uy, Uz, VonMises, Vx, Vy, Vz};
+    let axis = &quantity.name()[1..];
+    match quantity {
+        Ux | Uy | Uz => (&label.length, format!("displacement along {axis}")),
+        Vx | Vy | Vz => (&label.velocity, format!("velocity along {axis}")),
+        Ax | Ay | Az => (&label.acceleration, format!("acceleration along {axis}")),
+        VonMises => (&label.stress, "von Mises stress (from the Cauchy stress)".to_owned()),
+        DetF => (&label.none, "volume ratio J".to_owned()),
+        _ => (&label.stress, "Cauchy stress".to_owned()),
     }
-    columns.extend(ERRORS.iter().filter(|_| manufactured).map(ToString::to_string));
-    columns
 }

@@ -20,37 +20,25 @@ pub(super) fn problems(document: &Document) -> Vec<Problem> {
         labels: Labels::of(document.root()),
         problems: Vec::new(),
     };
-    check.keys(
-        document.root(),
-        &Spec {
-            name: keys::CASE.name,
-            tag: None,
-            keys: keys::CASE.keys.iter().collect(),
-            later: keys::CASE.later.to_vec(),
-        },
-        "",
-    );
+    check.table(document.root(), &keys::CASE, "");
     check.problems
 }
 
 /// The same for a table of variants alone.
 pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
-    let mut check =
-        Check { dimension: None, names: Names::default(), labels: Labels::default(), problems: Vec::new() };
+    let mut check = Check::default();
     check.variant(table, variants, "");
     check.problems
 }
 
 /// The same for one table of fixed keys.
 pub(super) fn table(table: &Table, keys: &keys::Table, path: &str) -> Vec<Problem> {
-    let mut check =
-        Check { dimension: None, names: Names::default(), labels: Labels::default(), problems: Vec::new() };
-    let spec =
-        Spec { name: keys.name, tag: None, keys: keys.keys.iter().collect(), later: keys.later.to_vec() };
-    check.keys(table, &spec, path);
+    let mut check = Check::default();
+    check.table(table, keys, path);
     check.problems
 }
 
+#[derive(Default)]
 struct Check {
     dimension: Option<usize>,
     names: Names,
@@ -63,7 +51,14 @@ struct Spec<'a> {
     name: &'a str,
     tag: Option<&'a str>,
     keys: Vec<&'a Key>,
-    later: Vec<&'a str>,
+    later: &'a [&'a str],
+}
+
+impl<'a> Spec<'a> {
+    /// Of a table, which belongs to a value of the key `tag` if there is one.
+    fn of(table: &'a keys::Table, tag: Option<&'a str>) -> Self {
+        Self { name: table.name, tag, keys: table.keys.iter().collect(), later: table.later }
+    }
 }
 
 impl Check {
@@ -133,21 +128,11 @@ impl Check {
     }
 
     fn table(&mut self, table: &Table, spec: &keys::Table, path: &str) {
-        let spec =
-            Spec { name: spec.name, tag: None, keys: spec.keys.iter().collect(), later: spec.later.to_vec() };
-        self.keys(table, &spec, path);
+        self.keys(table, &Spec::of(spec, None), path);
     }
 
     fn variant(&mut self, table: &Table, variants: &Variants, path: &str) {
         let tag = variants.tag;
-        let later = variants.later_keys.to_vec();
-        if let Some(entry) = table.0.iter().find(|e| later.contains(&e.key.as_str())) {
-            let what = format!("`{}` of {} is not supported yet", entry.key, variants.name);
-            let here = joined(path, &entry.key);
-            let why =
-                format!("it is planned for a later version of Carom; {} is one of {}", tag, words(variants));
-            return self.problems.push(Problem::new(here, what, why, "leave it out").at_key());
-        }
         if let Some(spec) =
             variants.or.filter(|spec| spec.keys.iter().take(1).any(|k| table.get(k.name).is_some()))
         {
@@ -157,14 +142,13 @@ impl Check {
         if let Some(Ok(word)) = named
             && let Some(spec) = variants.table(word)
         {
-            let spec = Spec { name: spec.name, tag: Some(tag), keys: spec.keys.iter().collect(), later };
-            return self.keys(table, &spec, path);
+            return self.keys(table, &Spec::of(spec, Some(tag)), path);
         }
         let or = variants.or.filter(|_| named.is_none());
         // The tag is missing or wrong: any key of any variant is known, none is required.
         let before = self.problems.len();
-        let mut spec = Spec { name: variants.name, tag: Some(tag), keys: Vec::new(), later };
-        spec.keys.extend(variants.tables.iter().map(|(_, t)| t).chain(or).flat_map(|t| t.keys));
+        let keys = variants.tables.iter().map(|(_, t)| t).chain(or).flat_map(|t| t.keys).collect();
+        let spec = Spec { name: variants.name, tag: Some(tag), keys, later: &[] };
         for entry in table.0.iter().filter(|e| e.key != tag && !spec.keys.iter().any(|k| k.name == e.key)) {
             let (problem, _) = unknown(&entry.key, table, &spec, joined(path, &entry.key));
             self.problems.push(problem);
@@ -173,7 +157,7 @@ impl Check {
         match named {
             Some(Ok(word)) => {
                 let now: Vec<_> = variants.tables.iter().map(|(word, _)| *word).collect();
-                self.choice(word, tag, &now, variants.later, variants.doc, &here);
+                self.choice(word, tag, &now, &[], variants.doc, &here);
             }
             Some(Err(node)) => {
                 let what = format!("`{tag}` must be a string in quotes, not {}", node.described());

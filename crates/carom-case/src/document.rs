@@ -55,32 +55,30 @@ impl Document {
     /// Reads a file and applies overrides `key=value`, in their order.
     pub fn open(path: &Path, sets: &[String]) -> Result<Self, CaseError> {
         let name = path.display().to_string();
-        let wrong = |what: &str, why: &str, help: &str| {
-            CaseError::Wrong(vec![Diagnostic::of_file(&name, what, why, help)])
-        };
-        let unreadable = |source: std::io::Error| match source.kind() {
-            std::io::ErrorKind::NotFound if let Some(near) = beside(path) => wrong(
-                "there is no such file",
-                "its folder has one with a similar name",
-                &format!("did you mean {}?", near.display()),
-            ),
-            std::io::ErrorKind::NotFound if path.is_absolute() => {
-                wrong("there is no such file", "no file or directory has this path", "check the path")
+        let unreadable = |source: std::io::Error| {
+            if source.kind() != std::io::ErrorKind::NotFound {
+                return CaseError::Refused { path: name.clone(), source };
             }
-            std::io::ErrorKind::NotFound => wrong(
-                "there is no such file",
-                "relative paths are resolved from the working directory",
-                "check the path and the working directory",
-            ),
-            _ => CaseError::Refused { path: name.clone(), source },
+            let (why, help) = match beside(path) {
+                Some(near) => {
+                    let help = format!("did you mean {}?", near.display());
+                    ("its folder has one with a similar name", help)
+                }
+                None if path.is_absolute() => {
+                    ("no file or directory has this path", "check the path".to_owned())
+                }
+                None => {
+                    let help = "check the path and the working directory".to_owned();
+                    ("relative paths are resolved from the working directory", help)
+                }
+            };
+            CaseError::of_file(&name, "there is no such file", why, help)
         };
         let facts = std::fs::metadata(path).map_err(unreadable)?;
         if facts.is_dir() {
-            return Err(wrong(
-                "this is a directory",
-                "a case or a study is a single TOML file",
-                "give the path of the .toml file inside it",
-            ));
+            let why = "a case or a study is a single TOML file";
+            let help = "give the path of the .toml file inside it";
+            return Err(CaseError::of_file(&name, "this is a directory", why, help));
         }
         let file = std::fs::File::open(path).map_err(unreadable)?;
         Self::read_from(&name, file, sets)
@@ -89,28 +87,19 @@ impl Document {
     /// Reads a stream (`name` stands for the file in messages) and applies overrides `key=value`,
     /// in their order. A stream without an end is an error.
     pub fn read_from(name: &str, stream: impl Read, sets: &[String]) -> Result<Self, CaseError> {
-        let wrong = |what: &str, why: &str, help: &str| {
-            CaseError::Wrong(vec![Diagnostic::of_file(name, what, why, help)])
-        };
         let mut bytes = Vec::new();
         let read = stream.take(LARGEST + 1).read_to_end(&mut bytes);
         read.map_err(|source| CaseError::Refused { path: name.to_owned(), source })?;
         if bytes.len() as u64 > LARGEST {
             let why = format!("a case file has at most {LARGEST} bytes");
-            return Err(wrong(
-                "the file is too large to be a case",
-                &why,
-                "give the path of the .toml file of the case",
-            ));
+            let help = "give the path of the .toml file of the case";
+            return Err(CaseError::of_file(name, "the file is too large to be a case", why, help));
         }
         let text = String::from_utf8(bytes).map_err(|e| {
             let at = e.utf8_error().valid_up_to();
             let why = format!("byte {} is not valid UTF-8, and TOML files are UTF-8 text", at + 1);
-            wrong(
-                "the file is not text",
-                &why,
-                "give the path of the .toml file of the case, or save it as UTF-8",
-            )
+            let help = "give the path of the .toml file of the case, or save it as UTF-8";
+            CaseError::of_file(name, "the file is not text", why, help)
         })?;
         Self::parse(name, &text, sets)
     }
@@ -122,11 +111,9 @@ impl Document {
         let wrong = |diagnostic| CaseError::Wrong(vec![diagnostic]);
         let parsed = toml_edit::Document::parse(text).map_err(|e| wrong(without_unit(name, text, &e)))?;
         if parsed.as_table().is_empty() && sets.is_empty() {
-            let (what, why) = (
-                "the case is empty",
-                "a case needs at least `dimension`, a [[material]], a [[body]] and [time]",
-            );
-            return Err(wrong(Diagnostic::of_file(name, what, why, "start from a template: carom new")));
+            let why = "a case needs at least `dimension`, a [[material]], a [[body]] and [time]";
+            let help = "start from a template: carom new";
+            return Err(CaseError::of_file(name, "the case is empty", why, help));
         }
         let root = tree::node(parsed.as_item(), 0, 0, &(0..0));
         let mut document = Self { sources: vec![(name.to_owned(), text.to_owned())], root };

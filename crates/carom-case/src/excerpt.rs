@@ -43,7 +43,7 @@ fn applied(text: &str, sets: &[String]) -> Result<DocumentMut, CaseError> {
     for set in sets {
         apply(&mut case, set).ok_or_else(|| {
             let (what, why) = ("an override of the run cannot be applied", set.as_str());
-            CaseError::Wrong(vec![Diagnostic::of_file("--set", what, why, "")])
+            CaseError::of_file("--set", what, why, "")
         })?;
     }
     Ok(case)

@@ -1,36 +1,24 @@
 //! Reads loads, motions of supports and initial velocities of bodies.
 
-use std::path::Path;
-
 use super::keys::{self, IN_SPACE_AND_TIME};
 use super::load_table;
-use super::problem::Problem;
-use super::tree::{Node, Table};
-use super::view::{View, formula};
+use super::view::View;
 use super::{FormulaSpec, LoadKind, LoadSpec};
 
 /// Reads a `[[load]]`.
-pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Problem>) -> Option<LoadSpec> {
+pub(super) fn read(v: &View) -> Option<LoadSpec> {
     let given: Vec<_> = ["traction", "pressure", "body_force"].into_iter().filter(|k| v.has(k)).collect();
     let place = if given == ["body_force"] { "body" } else { "on" };
     let other = if place == "body" { "on" } else { "body" };
     if given.len() != 1 || !v.has(place) || v.has(other) {
-        // A misspelt key is reported once, not as a missing key too.
-        if !v.table.0.iter().any(|e| !v.keys.iter().any(|k| k.name == e.key)) {
+        if !v.has_unknown_key() {
             let had = if given.is_empty() { "no force".to_owned() } else { given.join(", ") };
             let places: Vec<_> = ["on", "body"].into_iter().filter(|k| v.has(k)).collect();
             let where_ = if places.is_empty() { "no place".to_owned() } else { places.join(", ") };
             let what = format!("the load needs exactly one force and its place; it has {had} and {where_}");
             let help = "give `on` with `traction` or `pressure`, or `body` with `body_force`";
-            problems.push(
-                Problem::new(
-                    path,
-                    what,
-                    "tractions and pressures act on sides, a body force acts in a body",
-                    help,
-                )
-                .at_key(),
-            );
+            let why = "tractions and pressures act on sides, a body force acts in a body";
+            return v.report(v.problem("", what, why, help).at_key());
         }
         return None;
     }
@@ -40,12 +28,11 @@ pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Proble
         _ => LoadKind::BodyForce { body: v.text("body")?, value: v.formulas("body_force")? },
     };
     let table = match v.text("table") {
-        Some(file) => match load_table::read(&folder.join(&file), &file) {
+        Some(file) => match load_table::read(&v.folder.join(&file), &file) {
             Ok(table) => Some(table),
             Err(error) => {
                 let what = format!("the table \"{file}\" cannot be used");
-                problems.push(Problem::new(format!("{path}.table"), what, error.why, error.help));
-                return None;
+                return v.wrong("table", what, error.why, error.help);
             }
         },
         None => None,
@@ -55,54 +42,38 @@ pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Proble
 
 /// Reads the displacements of a support: (direction, formula).
 pub(super) fn motion(v: &View) -> Option<Vec<(usize, FormulaSpec)>> {
-    v.table.get("move").map_or_else(|| Some(Vec::new()), |table| displacements(table.table()?))
+    displacements(&v.at("move")?)
 }
 
 /// Reads displacements by direction.
-pub(super) fn displacements(table: &Table) -> Option<Vec<(usize, FormulaSpec)>> {
-    let axis = |(i, name)| table.get(name).map(|node| Some((i, formula(node)?)));
+pub(super) fn displacements(v: &View) -> Option<Vec<(usize, FormulaSpec)>> {
+    let axis = |(i, name)| v.has(name).then(|| Some((i, v.formula(name)?)));
     ["x", "y", "z"].into_iter().enumerate().filter_map(axis).collect()
 }
 
 /// Reads a body's initial velocity; a rigid-body motion is converted to formulas.
-pub(super) fn velocity(
-    v: &View,
-    dimension: usize,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<Vec<FormulaSpec>> {
-    let Some(node) = v.table.get("velocity") else { return Some(vec![FormulaSpec::Number(0.0); dimension]) };
-    let Some(table) = node.table() else { return v.formulas("velocity") };
-    let numbers = |key| match table.get(key) {
-        Some(node) => node.list()?.iter().map(Node::number).collect::<Option<Vec<f64>>>(),
-        None => Some(vec![0.0; dimension]),
-    };
-    let linear = numbers("linear")?;
-    let angular = match table.get("angular") {
-        Some(node) => match node.list() {
-            Some(list) => list.iter().map(Node::number).collect::<Option<Vec<f64>>>()?,
-            None => vec![0.0, 0.0, node.number()?],
-        },
-        None => vec![0.0; 3],
+pub(super) fn velocity(v: &View, dimension: usize) -> Option<Vec<FormulaSpec>> {
+    let Some(v) = v.at("velocity") else { return v.formulas("velocity") };
+    let linear = v.vector("linear", dimension)?;
+    let angular = match v.number("angular") {
+        Some(about_z) => vec![0.0, 0.0, about_z],
+        None => v.vector("angular", 3)?,
     };
     if angular.iter().all(|component| *component == 0.0) {
         return Some(linear.into_iter().map(FormulaSpec::Number).collect());
     }
-    let misspelt = table.0.iter().any(|e| !["linear", "angular", "about"].contains(&e.key.as_str()));
-    if misspelt {
+    if v.has_unknown_key() {
         return None;
     }
-    if dimension == 1 || table.get("about").is_none() {
-        let (key, what, why, help) = if dimension == 1 {
-            ("angular", "a bar cannot rotate", "the case has dimension = 1", "leave `angular` out")
-        } else {
-            let help = if dimension == 2 { "add `about = [x, y]`" } else { "add `about = [x, y, z]`" };
-            ("angular", "the rotation has no centre", "a body rotates about a point", help)
-        };
-        problems.push(Problem::new(format!("{path}.velocity.{key}"), what, why, help));
-        return None;
+    if dimension == 1 {
+        let why = "the case has dimension = 1";
+        return v.wrong("angular", "a bar cannot rotate", why, "leave `angular` out");
     }
-    let about = numbers("about")?;
+    if !v.has("about") {
+        let help = if dimension == 2 { "add `about = [x, y]`" } else { "add `about = [x, y, z]`" };
+        return v.wrong("angular", "the rotation has no centre", "a body rotates about a point", help);
+    }
+    let about = v.numbers("about")?;
     // Component i of linear + ω × (X − about), without the terms that vanish.
     let component = |i: usize| {
         let [j, k] = [(i + 1) % 3, (i + 2) % 3];

@@ -6,6 +6,7 @@ use carom_solid::{Element, Mesh};
 
 use crate::mesh_file;
 use crate::no_mesh::NoMesh;
+use crate::spec::PLANES;
 use crate::{BodySpec, MeshSpec, RefineSpec};
 
 impl BodySpec {
@@ -20,14 +21,8 @@ impl BodySpec {
                 return Err(NoMesh::Dimension(1));
             }
             MeshSpec::Interval { min, max, cells } => generate::interval(self.element, min, max, cells)?,
-            MeshSpec::Box { min, max, cells, symmetry } if dimension == 3 => {
-                let mut mesh = generate::cuboid(self.element, min, max, cells)?;
-                let cuts = ["left", "front", "bottom"].into_iter().zip(["plane_x", "plane_y", "plane_z"]);
-                for ((side, plane), _) in cuts.zip(symmetry).filter(|(_, cut)| *cut) {
-                    let facets = mesh.sides.remove(side).unwrap_or_default();
-                    mesh.sides.insert(plane.to_owned(), facets);
-                }
-                mesh
+            MeshSpec::Box { min, max, cells, .. } if dimension == 3 => {
+                generate::cuboid(self.element, min, max, cells)?
             }
             MeshSpec::Ball { radius, center, size, symmetry } if dimension == 3 => {
                 generate::ball(self.element, radius, center, size, symmetry)?
@@ -47,12 +42,6 @@ impl BodySpec {
                 let low = if symmetry[2] { 0.5 * height } else { 0.0 };
                 let mut mesh = generate::extrusion(&plane_mesh(of, element)?, height - low, layers)?;
                 mesh.nodes.iter_mut().for_each(|x| x[2] += low);
-                let planes = ["plane_x", "plane_y", "plane_z"];
-                for (side, plane) in self.mesh.cut_sides().into_iter().zip(planes) {
-                    if let Some(facets) = side.and_then(|side| mesh.sides.remove(&side)) {
-                        mesh.sides.insert(plane.to_owned(), facets);
-                    }
-                }
                 mesh
             }
             MeshSpec::Box { .. }
@@ -63,6 +52,11 @@ impl BodySpec {
             _ if dimension != 2 => return Err(NoMesh::Dimension(2)),
             ref shape => plane_mesh(shape, self.element)?,
         };
+        for (side, plane) in self.mesh.cut_sides().into_iter().zip(PLANES) {
+            if let Some(facets) = side.and_then(|side| mesh.sides.remove(&side)) {
+                mesh.sides.insert(plane.to_owned(), facets);
+            }
+        }
         if let Some(place) = &self.place {
             place.apply(&mut mesh);
         }

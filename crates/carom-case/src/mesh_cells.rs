@@ -1,19 +1,13 @@
 //! Numbers and sizes of the cells of a built-in shape.
 
-use super::problem::{Problem, rounded};
+use super::problem::rounded;
 use super::tree::Node;
 use super::view::View;
 
 /// Numbers of cells between two corners, given or by their size.
-pub(super) fn divided<const D: usize>(
-    v: View,
-    min: [f64; D],
-    max: [f64; D],
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<[usize; D]> {
+pub(super) fn divided<const D: usize>(v: &View, min: [f64; D], max: [f64; D]) -> Option<[usize; D]> {
     for i in 0..D {
-        ordered(min[i], max[i], &format!("[{i}]"), path, problems)?;
+        ordered(v, min[i], max[i], &format!("[{i}]"))?;
     }
     let extents: [f64; D] = std::array::from_fn(|i| max[i] - min[i]);
     match (v.has("cells"), v.has("size")) {
@@ -26,7 +20,7 @@ pub(super) fn divided<const D: usize>(
                 if D == 2 { "longer side" } else { "longest side" },
                 extents.iter().copied().fold(0.0, f64::max),
             );
-            fitting(size, (name, longest), path, problems)?;
+            fitting(v, size, (name, longest))?;
             Some(extents.map(|extent| (extent / size - 1e-9).ceil().max(1.0) as usize))
         }
         (both, _) => {
@@ -40,12 +34,8 @@ pub(super) fn divided<const D: usize>(
                     format!("the {shape} has neither `cells` nor `size`")
                 };
                 let example = if D == 2 { "[8, 4]" } else { "[8, 4, 4]" };
-                problems.push(Problem::new(
-                    path,
-                    what,
-                    "each of them sets the size of the cells",
-                    format!("write for example `cells = {example}`"),
-                ));
+                let why = "each of them sets the size of the cells";
+                return v.wrong("", what, why, format!("write for example `cells = {example}`"));
             }
             None
         }
@@ -53,41 +43,35 @@ pub(super) fn divided<const D: usize>(
 }
 
 /// Reports cells that are larger than their body.
-pub(super) fn fitting(
-    size: f64,
-    (extent, length): (&str, f64),
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<()> {
+pub(super) fn fitting(v: &View, size: f64, (extent, length): (&str, f64)) -> Option<()> {
     // A value that is not positive is reported elsewhere.
     if size > length && length > 0.0 {
         let what = format!("`size` = {size} is larger than the {extent}, {}", rounded(length));
         let why = "it is the edge length of the cells, and none would fit";
         let help = format!("give size ≤ {}, for example size = {}", rounded(length), rounded(length / 5.0));
-        problems.push(Problem::new(format!("{path}.size"), what, why, help));
-        return None;
+        return v.wrong("size", what, why, help);
     }
     Some(())
 }
 
-pub(super) fn ordered(
-    min: f64,
-    max: f64,
-    index: &str,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<()> {
+/// The inner and the outer radius of a shape; `why`: if the outer one is not greater.
+pub(super) fn radii(v: &View, why: &str) -> Option<(f64, f64)> {
+    let (inner, outer) = (v.number("inner")?, v.number("outer")?);
+    if inner >= outer {
+        let what = format!("`outer` = {outer} is not greater than `inner` = {inner}");
+        return v.wrong("outer", what, why, "give outer > inner");
+    }
+    Some((inner, outer))
+}
+
+/// Reports ends of an extent in the wrong order; `index`: of its direction.
+pub(super) fn ordered(v: &View, min: f64, max: f64, index: &str) -> Option<()> {
     if min < max {
         return Some(());
     }
     if min.is_finite() && max.is_finite() {
         let what = format!("`max` = {max} is not greater than `min` = {min}");
-        problems.push(Problem::new(
-            format!("{path}.max{index}"),
-            what,
-            "the shape would have no extent",
-            "give max > min",
-        ));
+        return v.wrong(&format!("max{index}"), what, "the shape would have no extent", "give max > min");
     }
     None
 }

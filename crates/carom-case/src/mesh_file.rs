@@ -9,7 +9,6 @@ use carom_solid::{Element, Mesh, generate, gmsh};
 use super::MeshSpec;
 use super::machine::available_memory;
 use super::no_mesh::NoMesh;
-use super::problem::Problem;
 use super::view::View;
 
 /// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2,
@@ -20,28 +19,6 @@ fn group(file: gmsh::MshFile, dimension: usize, name: &str, slits: bool) -> Resu
         1 => file.bar(name),
         3 => file.volume(name),
         _ => file.body(name),
-    }
-}
-
-/// What the resolved case stores of a mesh.
-struct Facts {
-    element: Element,
-    nodes: usize,
-    cells: usize,
-    sides: Vec<String>,
-    repairs: Vec<String>,
-}
-
-impl From<Mesh> for Facts {
-    fn from(mesh: Mesh) -> Self {
-        let (nodes, cells) = (mesh.nodes.len(), mesh.cell_count());
-        Self {
-            element: mesh.element,
-            nodes,
-            cells,
-            sides: mesh.sides.into_keys().collect(),
-            repairs: mesh.repairs,
-        }
     }
 }
 
@@ -57,48 +34,34 @@ pub(super) struct Purpose {
 }
 
 /// Reads the table of a mesh from a file; its path is relative to the folder of the case.
-pub(super) fn read(
-    v: View,
-    purpose: Purpose,
-    folder: &Path,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<MeshSpec> {
+pub(super) fn read(v: &View, purpose: Purpose) -> Option<MeshSpec> {
     let Purpose { dimension, element, extruded } = purpose;
-    let (name, slits) = (v.text("file")?, v.value("slits")?.flag()?);
+    let (name, slits) = (v.text("file")?, v.flag("slits")?);
     let (named, other) = if dimension == 3 { ("volume", "surface") } else { ("surface", "volume") };
     // The table of an extrusion has no such key.
     if v.has(other) && !extruded {
         let what = format!("the body of a file is its `{named}`, not its `{other}`");
         let why = format!("the case has dimension = {dimension}");
-        problems
-            .push(Problem::new(format!("{path}.{other}"), what, why, format!("write `{named}`")).at_key());
-        return None;
+        return v.report(v.problem(other, what, why, format!("write `{named}`")).at_key());
     }
     let surface = v.text(named)?;
-    let joined = folder.join(&name);
-    let file = std::path::absolute(&joined).unwrap_or(joined);
-    let mut wrong = |key: &str, what: String, why: String, help: &str| {
+    let file = v.file("file")?;
+    let wrong = |key: &str, what: String, why: String, help: &str| {
         // A file of several bodies is reported once.
-        if key != "file" || problems.iter().all(|known| known.what != what) {
-            problems.push(Problem::new(format!("{path}.{key}"), what, why, help));
+        if key == "file" && v.has_problem(|known| known.what == what) {
+            return None;
         }
-        None
+        v.wrong(key, what, why, help)
     };
     let bytes = match bytes(&file) {
         Ok(bytes) => bytes,
         Err(why) => {
-            return wrong(
-                "file",
-                format!("the mesh \"{name}\" cannot be read"),
-                why,
-                "check the path; it is relative to the folder of the case",
-            );
+            let what = format!("the mesh \"{name}\" cannot be read");
+            return wrong("file", what, why, "check the path; it is relative to the folder of the case");
         }
     };
-    let facts = |file: gmsh::MshFile| group(file, dimension, &surface, slits).map(Facts::from);
-    let facts = match gmsh::read(&bytes).and_then(facts) {
-        Ok(facts) => facts,
+    let mesh = match gmsh::read(&bytes).and_then(|file| group(file, dimension, &surface, slits)) {
+        Ok(mesh) => mesh,
         Err(error) => {
             // `slits` may be misspelt, which `conform` reports.
             let unknown = || {
@@ -111,7 +74,7 @@ pub(super) fn read(
             return wrong(key, format!("{name}: {error}"), error.why(), error.help());
         }
     };
-    let found = if extruded { generate::extruded(facts.element)? } else { facts.element };
+    let found = if extruded { generate::extruded(mesh.element)? } else { mesh.element };
     if let Some(element) = element.filter(|e| *e != found && e.dimension() == found.dimension()) {
         let of = if extruded { "the extrusion of " } else { "" };
         let what = format!("{of}\"{surface}\" of {name} has {found:?} cells, not {element:?}");
@@ -125,9 +88,17 @@ pub(super) fn read(
         let help = format!("write element = \"{found:?}\", or {in_gmsh} in Gmsh");
         return wrong(named, what, "the element of a body must be that of its mesh".into(), &help);
     }
-    let hash = blake3::hash(&bytes).to_hex().to_string();
-    let Facts { nodes, cells, sides, repairs, .. } = facts;
-    Some(MeshSpec::File { file, surface, slits, hash, nodes, cells, sides, repairs, parts: 1 })
+    Some(MeshSpec::File {
+        file,
+        surface,
+        slits,
+        hash: blake3::hash(&bytes).to_hex().to_string(),
+        nodes: mesh.nodes.len(),
+        cells: mesh.cell_count(),
+        sides: mesh.sides.into_keys().collect(),
+        repairs: mesh.repairs,
+        parts: 1,
+    })
 }
 
 /// The shape of an element's cells.

@@ -1,12 +1,8 @@
 //! Reads the primary of a contact: a side, or a rigid obstacle with its motion.
 
-use std::path::Path;
-
 use super::load::displacements;
-use super::problem::Problem;
 use super::surface_file;
-use super::tree::{Node, Table};
-use super::view::{View, formula};
+use super::view::View;
 use super::{ObstacleMotion, PrimarySpec};
 
 /// Shapes with the dimension that they need.
@@ -20,40 +16,17 @@ const SHAPES: [(&str, Option<usize>); 6] = [
 ];
 
 /// Reads `primary`.
-pub(super) fn read(
-    v: &View,
-    dimension: Option<usize>,
-    folder: &Path,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<(PrimarySpec, ObstacleMotion)> {
-    let node = v.table.get("primary")?;
-    if let Some(side) = node.text() {
-        return Some((PrimarySpec::Side(side.to_owned()), ObstacleMotion::Fixed));
+pub(super) fn read(v: &View, dimension: Option<usize>) -> Option<(PrimarySpec, ObstacleMotion)> {
+    if let Some(side) = v.text("primary") {
+        return Some((PrimarySpec::Side(side), ObstacleMotion::Fixed));
     }
-    let path = format!("{path}.primary");
-    let table = node.table()?;
-    // A misspelt key is reported once, by `conform`.
-    let is_known = |key: &str| {
-        SHAPES.iter().any(|(shape, _)| *shape == key)
-            || ["motion", "mass", "velocity", "gravity"].contains(&key)
-    };
-    if table.0.iter().any(|entry| !is_known(&entry.key)) {
-        return None;
-    }
-    let shape = shape(table, dimension, folder, &path, problems);
-    let motion = motion(table, dimension, &path, problems);
+    let rigid = v.at("primary").filter(|rigid| v.has("primary") && !rigid.has_unknown_key())?;
+    let (shape, motion) = (shape(&rigid, dimension), motion(&rigid, dimension));
     Some((shape?, motion?))
 }
 
-fn shape(
-    table: &Table,
-    dimension: Option<usize>,
-    folder: &Path,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<PrimarySpec> {
-    let given: Vec<_> = SHAPES.into_iter().filter(|(key, _)| table.get(key).is_some()).collect();
+fn shape(v: &View, dimension: Option<usize>) -> Option<PrimarySpec> {
+    let given: Vec<_> = SHAPES.into_iter().filter(|(key, _)| v.has(key)).collect();
     let [(shape, needs)] = given[..] else {
         let names: Vec<_> = given.iter().map(|(name, _)| *name).collect();
         let had = if given.is_empty() { "none".to_owned() } else { names.join(", ") };
@@ -66,8 +39,7 @@ fn shape(
         };
         let help =
             format!("write for example primary = {{ plane = {{ point = {point}, normal = {normal} }} }}");
-        problems.push(Problem::new(path, what, why, help).at_key());
-        return None;
+        return v.report(v.problem("", what, why, help).at_key());
     };
     if let (Some(needs), Some(d)) = (needs, dimension)
         && needs != d
@@ -79,84 +51,59 @@ fn shape(
             _ => "use a plane, a sphere, a cylinder or a triangulated surface",
         };
         let why = format!("the case has dimension = {d}");
-        problems.push(Problem::new(format!("{path}.{shape}"), what, why, help));
-        return None;
+        return v.wrong(shape, what, why, help);
     }
-    let keys = table.get(shape)?.table()?;
-    let number = |key: &str, default: f64| keys.get(key).map_or(Some(default), Node::number);
+    let v = v.at(shape)?;
     Some(match shape {
-        "plane" => PrimarySpec::Plane { point: numbers(keys, "point")?, normal: numbers(keys, "normal")? },
+        "plane" => PrimarySpec::Plane { point: v.numbers("point")?, normal: v.numbers("normal")? },
         "circle" | "sphere" => PrimarySpec::Circle {
-            center: numbers(keys, "center")?,
-            radius: keys.get("radius")?.number()?,
-            inside: keys.get("inside").map_or(Some(false), Node::flag)?,
+            center: v.numbers("center")?,
+            radius: v.number("radius")?,
+            inside: v.flag("inside")?,
         },
         "cylinder" => PrimarySpec::Cylinder {
-            point: numbers(keys, "point")?,
-            axis: numbers(keys, "axis")?,
-            radius: keys.get("radius")?.number()?,
-            inside: keys.get("inside").map_or(Some(false), Node::flag)?,
+            point: v.numbers("point")?,
+            axis: v.numbers("axis")?,
+            radius: v.number("radius")?,
+            inside: v.flag("inside")?,
         },
-        "surface" => surface_file::read(keys, folder, &format!("{path}.surface"), problems)?,
-        _ => PrimarySpec::Polyline {
-            points: keys
-                .get("points")?
-                .list()?
-                .iter()
-                .map(|point| match point.list()? {
-                    [x, y] => Some([x.number()?, y.number()?]),
-                    _ => None,
-                })
-                .collect::<Option<_>>()?,
-            radius: number("radius", 0.0)?,
-        },
+        "surface" => surface_file::read(&v)?,
+        _ => PrimarySpec::Polyline { points: v.points("points")?, radius: v.number("radius")? },
     })
 }
 
-fn motion(
-    table: &Table,
-    dimension: Option<usize>,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<ObstacleMotion> {
-    let given = |key: &str| table.get(key).is_some();
-    let mut wrong = |key: &str, what: &str, why: &str, help: &str| {
-        problems.push(Problem::new(format!("{path}.{key}"), what, why, help).at_key());
-    };
-    if given("motion") && given("mass") {
+fn motion(v: &View, dimension: Option<usize>) -> Option<ObstacleMotion> {
+    if v.has("motion") && v.has("mass") {
         let why = "a prescribed motion does not depend on a mass";
-        wrong("mass", "the obstacle has both `motion` and `mass`", why, "leave one of them out");
-        return None;
+        return v.report(
+            v.problem("mass", "the obstacle has both `motion` and `mass`", why, "leave one of them out")
+                .at_key(),
+        );
     }
-    if let Some(key) = ["velocity", "gravity"].into_iter().find(|key| given(key) && !given("mass")) {
-        let what = format!("`{key}` needs `mass`");
+    if let Some(key) = ["velocity", "gravity"].into_iter().find(|key| v.has(key) && !v.has("mass")) {
         let why = "it belongs to an obstacle that is free to move";
-        wrong(key, &what, why, "add `mass`, or prescribe a `motion`");
-        return None;
+        return v.report(
+            v.problem(key, format!("`{key}` needs `mass`"), why, "add `mass`, or prescribe a `motion`")
+                .at_key(),
+        );
     }
-    if given("mass") {
-        let vector = |key| match table.get(key) {
-            Some(_) => numbers(table, key),
-            None => Some(vec![0.0; dimension?]),
-        };
-        let mass = table.get("mass")?.number()?;
+    if v.has("mass") {
+        let vector = |key| if v.has(key) { v.numbers(key) } else { Some(vec![0.0; dimension?]) };
         return Some(ObstacleMotion::Free {
-            mass,
+            mass: v.number("mass")?,
             velocity: vector("velocity")?,
             gravity: vector("gravity")?,
         });
     }
-    let Some(keys) = table.get("motion") else { return Some(ObstacleMotion::Fixed) };
-    let keys = keys.table()?;
-    if keys.0.iter().any(|entry| !["x", "y", "z", "rotate", "about"].contains(&entry.key.as_str())) {
-        return None;
+    if !v.has("motion") {
+        return Some(ObstacleMotion::Fixed);
     }
-    let turns = keys.get("rotate").is_some();
-    if turns != keys.get("about").is_some() {
+    let v = v.at("motion").filter(|motion| !motion.has_unknown_key())?;
+    let turns = v.has("rotate");
+    if turns != v.has("about") {
         let (key, help) = if turns { ("rotate", "add `about = [x, y]`") } else { ("about", "add `rotate`") };
         let what = "`rotate` and `about` belong together";
-        wrong(&format!("motion.{key}"), what, "an obstacle turns about a point by an angle", help);
-        return None;
+        return v.report(v.problem(key, what, "an obstacle turns about a point by an angle", help).at_key());
     }
     let absent: &[&str] = match dimension {
         Some(1) => &["y", "z", "rotate"],
@@ -164,27 +111,20 @@ fn motion(
         Some(3) => &["rotate"],
         _ => &[],
     };
-    if let (Some(d), Some(key)) = (dimension, absent.iter().find(|key| keys.get(key).is_some())) {
+    if let (Some(d), Some(key)) = (dimension, absent.iter().find(|key| v.has(key))) {
         let what = format!("there is no motion `{key}` in dimension {d}");
         let why = format!("the case has dimension = {d}");
         let axes = ["x", "x and y", "x, y and z"][d.clamp(1, 3) - 1];
         let help = format!("an obstacle moves along {axes} here; in the plane it also turns");
-        wrong(&format!("motion.{key}"), &what, &why, &help);
-        return None;
+        return v.report(v.problem(key, what, why, help).at_key());
     }
-    let moves = displacements(keys)?;
+    let moves = displacements(&v)?;
     if moves.is_empty() && !turns {
         let why = "a motion has at least one of `x`, `y`, `z` and `rotate`";
-        wrong("motion", "the motion is empty", why, "leave `motion` out for a fixed obstacle");
-        return None;
+        return v.report(
+            v.problem("", "the motion is empty", why, "leave `motion` out for a fixed obstacle").at_key(),
+        );
     }
-    let rotate = match keys.get("rotate") {
-        Some(angle) => Some((formula(angle)?, numbers(keys, "about")?)),
-        None => None,
-    };
+    let rotate = if turns { Some((v.formula("rotate")?, v.numbers("about")?)) } else { None };
     Some(ObstacleMotion::Prescribed { moves, rotate })
-}
-
-fn numbers(table: &Table, key: &str) -> Option<Vec<f64>> {
-    table.get(key)?.list()?.iter().map(Node::number).collect()
 }

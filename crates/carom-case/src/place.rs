@@ -4,45 +4,34 @@
 use carom_solid::Mesh;
 
 use super::PlaceSpec;
-use super::problem::Problem;
-use super::tree::{Node, Table};
 use super::view::View;
 
 /// Reads the table `place` of a body.
-pub(super) fn read(v: View, dimension: usize, path: &str, problems: &mut Vec<Problem>) -> Option<PlaceSpec> {
+pub(super) fn read(v: &View, dimension: usize) -> Option<PlaceSpec> {
     let (rotate, axis) = match v.table.get("rotate") {
-        Some(node) => match node.table() {
-            Some(table) => about_axis(table, path, problems)?,
-            None => (node.number()?, Vec::new()),
-        },
+        Some(node) if node.table().is_some() => about_axis(&v.at("rotate")?)?,
+        Some(node) => (node.number()?, Vec::new()),
         None => (0.0, Vec::new()),
     };
     if dimension == 1 && rotate != 0.0 {
         let (what, why) = ("a bar cannot be rotated", "the case has dimension = 1");
-        problems.push(Problem::new(
-            format!("{path}.rotate"),
-            what,
-            why,
-            "leave it out, or use `shift` alone",
-        ));
-        return None;
+        return v.wrong("rotate", what, why, "leave it out, or use `shift` alone");
     }
-    let vector = |name| if v.has(name) { v.numbers(name) } else { Some(vec![0.0; dimension]) };
-    Some(PlaceSpec { rotate, axis, about: vector("about")?, shift: vector("shift")? })
+    let [about, shift] = ["about", "shift"].map(|name| v.vector(name, dimension));
+    Some(PlaceSpec { rotate, axis, about: about?, shift: shift? })
 }
 
 /// The angle and the unit axis of a rotation in space.
-fn about_axis(table: &Table, path: &str, problems: &mut Vec<Problem>) -> Option<(f64, Vec<f64>)> {
-    let axis = table.get("axis")?.list()?.iter().map(Node::number).collect::<Option<Vec<f64>>>()?;
+fn about_axis(v: &View) -> Option<(f64, Vec<f64>)> {
+    let axis = v.numbers("axis")?;
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     if !(length > 0.0 && length.is_finite()) {
         let what = "the axis of the rotation has no direction";
         let why = "its components are all zero, or too large";
         let help = "give a direction, for example axis = [0.0, 0.0, 1.0]";
-        problems.push(Problem::new(format!("{path}.rotate.axis"), what, why, help));
-        return None;
+        return v.wrong("axis", what, why, help);
     }
-    Some((table.get("angle")?.number()?, axis.iter().map(|x| x / length).collect()))
+    Some((v.number("angle")?, axis.iter().map(|x| x / length).collect()))
 }
 
 impl PlaceSpec {

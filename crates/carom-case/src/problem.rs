@@ -209,6 +209,18 @@ pub enum CaseError {
     },
 }
 
+impl CaseError {
+    /// Of a file as a whole.
+    pub(super) fn of_file(
+        file: &str,
+        what: impl Into<String>,
+        why: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        Self::Wrong(vec![Diagnostic::of_file(file, what, why, help)])
+    }
+}
+
 fn joined(diagnostics: &[Diagnostic]) -> String {
     diagnostics.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
 }

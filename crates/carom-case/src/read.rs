@@ -1,5 +1,6 @@
 //! Document → case: all tables (`tables.rs`), what follows from several of them, and the checks.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -9,13 +10,13 @@ use super::conform;
 use super::document::Document;
 use super::draft::Draft;
 use super::expect::{self, Asked, Exact};
-use super::keys::{self, Kind};
+use super::keys;
 use super::load;
 use super::overlay;
 use super::problem::{CaseError, Problem, Problems};
 use super::refine::{self, Counts};
 use super::tables::{body, contact, initial, material, newton, output, probe, support, time};
-use super::tree::{Entry, Node, Table};
+use super::tree::{Entry, Node};
 use super::view::View;
 use super::{BodySpec, Case, ContactSpec, Persistency, Preset, Units};
 
@@ -56,39 +57,35 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
         let help = "run it with carom study, or check it with carom check";
         return Err(vec![Problem::new(key, "this is a study, not a case", why, help).at_key()].into());
     }
-    let reader = Reader::of(document);
-    let mut problems = conform::problems(document);
-    let mut draft = Draft {
-        dimension: reader.dimension,
-        materials: reader.each("material", |v, path| material(v, path, &mut problems)),
-        bodies: Vec::new(),
-        supports: reader.each("support", |v, _| support(v)),
-        loads: Vec::new(),
-        contacts: Vec::new(),
-        probes: reader.each("probe", |v, _| probe(v)),
-        overlays: Vec::new(),
-        exact: reader.exact(),
-        expects: Vec::new(),
-        time: reader.one("time").and_then(|v| time(v, &mut problems)),
-    };
-    let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
+    let problems = RefCell::new(conform::problems(document));
+    let reader = Reader::of(document, &problems);
+    let materials = reader.each("material", material);
+    let time = reader.root.at("time").and_then(|v| time(&v));
     let refine = reader.root.number("refine").filter(|factor| *factor >= 1.0).unwrap_or(1.0);
-    let counts = |v: View, path: &str| Counts::of(v.table.get("mesh")?.table()?, format!("{path}.mesh"));
+    let counts = |v: &View| Counts::of(v.table.get("mesh")?.table()?, format!("{}.mesh", v.path));
     let counts: Vec<_> = reader.each("body", counts).into_iter().flatten().collect();
-    problems.extend(refine::problem(refine, &counts));
-    draft.bodies =
-        reader.each("body", |v, path| body(v, reader.dimension?, refine, folder, path, &mut problems));
-    draft.contacts = reader.contacts(&draft, folder, &mut problems);
-    draft.loads = reader.each("load", |v, path| load::read(v, folder, path, &mut problems));
-    draft.overlays = reader.each("overlay", |v, path| overlay::read(v, folder, path, &mut problems));
-    draft.expects = reader.each("expect", |v, path| {
-        expect::one(v, path, Asked::OfARun, Exact::Of(&draft.exact), &mut problems)
-    });
+    problems.borrow_mut().extend(refine::problem(refine, &counts));
+    let bodies = reader.each("body", |v| body(v, reader.dimension?, refine));
+    let exact = reader.exact();
+    let draft = Draft {
+        dimension: reader.dimension,
+        contacts: reader.contacts(&Bodies { bodies: &bodies, materials: &materials }),
+        supports: reader.each("support", support),
+        loads: reader.each("load", load::read),
+        probes: reader.each("probe", probe),
+        overlays: reader.each("overlay", overlay::read),
+        expects: reader.each("expect", |v| expect::one(v, Asked::OfARun, Exact::Of(&exact))),
+        materials,
+        bodies,
+        exact,
+        time,
+    };
+    let mut problems = problems.take();
     check::problems(document, &draft, &mut problems);
     if !problems.is_empty() {
         return Err(problems.into());
     }
-    reader.case(document, draft, folder).ok_or_else(|| {
+    reader.case(document, draft).ok_or_else(|| {
         let why = "all keys passed the checks, but one of them could not be read";
         vec![Problem::new(
             "",
@@ -106,62 +103,32 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn of(document: &'a Document) -> Self {
-        let root = View { table: document.root(), keys: keys::CASE.keys, preset: Preset::Default };
+    fn of(document: &'a Document, problems: &'a RefCell<Vec<Problem>>) -> Self {
+        let root = View::of_keys(document.root(), keys::CASE.keys, problems);
         let preset = root.choice("preset").unwrap_or(Preset::Default);
-        Self {
-            root: View { preset, ..root },
-            dimension: root.count("dimension").filter(|d| (1..=3).contains(d)),
-        }
+        let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
+        let root = View { preset, folder, ..root };
+        Self { dimension: root.count("dimension").filter(|d| (1..=3).contains(d)), root }
     }
 
-    fn spec(name: &str) -> &'static [keys::Key] {
-        match keys::CASE.key(name).map(|k| k.kind) {
-            Some(Kind::Table(table) | Kind::Tables(table)) => table.keys,
-            _ => &[],
-        }
-    }
-
-    /// A table; an empty one with all defaults if it is not given.
-    fn one(&self, name: &str) -> Option<View<'a>> {
-        const EMPTY: &Table = &Table(Vec::new());
-        let table = self.root.table.get(name).map_or(Some(EMPTY), Node::table)?;
-        Some(View { table, keys: Self::spec(name), preset: self.root.preset })
-    }
-
-    fn each<T>(&self, name: &str, mut read: impl FnMut(View<'a>, &str) -> Option<T>) -> Vec<Option<T>> {
-        let list = self.root.table.get(name).and_then(Node::list).unwrap_or(&[]);
-        let view = |node: &'a Node| {
-            Some(View { table: node.table()?, keys: Self::spec(name), preset: self.root.preset })
-        };
-        list.iter().enumerate().map(|(i, node)| read(view(node)?, &format!("{name}[{i}]"))).collect()
+    fn each<T>(&self, name: &str, read: impl FnMut(&View<'a>) -> Option<T>) -> Vec<Option<T>> {
+        self.root.each(name, read).unwrap_or_default()
     }
 
     /// The contacts of all tables; those of `between` need the bodies.
-    fn contacts(
-        &self,
-        draft: &Draft,
-        folder: &Path,
-        problems: &mut Vec<Problem>,
-    ) -> Vec<Option<ContactSpec>> {
+    fn contacts(&self, bodies: &Bodies) -> Vec<Option<ContactSpec>> {
         let mut entry = 0..;
-        let tables = self.each("contact", |v, path| {
-            let entry = entry.next()?;
-            Some((v, path.to_owned(), contact(v, entry, self.dimension, folder, problems)))
-        });
-        let specs = tables.iter().flatten().filter_map(|(.., contact)| contact.clone());
+        let tables = self.each("contact", |v| Some((v.clone(), contact(v, entry.next()?, self.dimension))));
+        let specs = tables.iter().flatten().filter_map(|(_, contact)| contact.clone());
         let declared: Vec<ContactSpec> = specs.filter(|contact| !contact.between).collect();
-        let bodies = Bodies { bodies: &draft.bodies, materials: &draft.materials };
         let mut contacts = Vec::new();
         for table in tables {
             match table {
-                Some((v, path, Some(one))) if one.between => {
-                    match bodies.contacts(&v, &one, &declared, &path, problems) {
-                        Some(several) => contacts.extend(several.into_iter().map(Some)),
-                        None => contacts.push(None),
-                    }
-                }
-                Some((.., contact)) => contacts.push(contact),
+                Some((v, Some(one))) if one.between => match bodies.contacts(&v, &one, &declared) {
+                    Some(several) => contacts.extend(several.into_iter().map(Some)),
+                    None => contacts.push(None),
+                },
+                Some((_, contact)) => contacts.push(contact),
                 None => contacts.push(None),
             }
         }
@@ -181,11 +148,11 @@ impl<'a> Reader<'a> {
         table.into_iter().flat_map(|t| &t.0).filter_map(formula).collect()
     }
 
-    fn case(&self, document: &Document, draft: Draft, folder: &Path) -> Option<Case> {
+    fn case(&self, document: &Document, draft: Draft) -> Option<Case> {
         let dimension = draft.dimension?;
         let stem =
             std::path::Path::new(document.name()).file_stem().map(|s| s.to_string_lossy().into_owned());
-        let units = self.one("units")?;
+        let units = self.root.at("units")?;
         let mut bodies: Vec<BodySpec> = all(draft.bodies)?;
         for body in &mut bodies {
             body.gravity.resize(dimension, 0.0);
@@ -215,18 +182,18 @@ impl<'a> Reader<'a> {
             bodies,
             supports: all(draft.supports)?,
             loads: all(draft.loads)?,
-            initial: self.root.has("initial").then(|| initial(self.one("initial")?, folder)).flatten(),
+            initial: self.root.has("initial").then(|| initial(&self.root.at("initial")?)).flatten(),
             manufactured: self
                 .root
                 .has("manufactured")
-                .then(|| self.one("manufactured")?.formulas("y"))
+                .then(|| self.root.at("manufactured")?.formulas("y"))
                 .flatten(),
             contacts,
             time,
-            newton: newton(self.one("newton")?)?,
+            newton: newton(&self.root.at("newton")?)?,
             probes: all(draft.probes)?,
             overlays: all(draft.overlays)?,
-            output: output(self.one("output")?)?,
+            output: output(&self.root.at("output")?)?,
             exact: draft.exact,
             expects: all(draft.expects)?,
             functions: carom_formula::Functions::default(),

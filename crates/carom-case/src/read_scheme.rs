@@ -1,25 +1,21 @@
 //! A scheme and its parameters, from the case or from the command line.
 
+use std::cell::RefCell;
+
 use carom_time::SchemeError;
 
+use super::SchemeSpec;
 use super::conform;
-use super::document::{Document, joined};
+use super::document::Document;
 use super::keys::{self, Kind};
-use super::problem::{CaseError, Diagnostic, Problem};
+use super::problem::{CaseError, Diagnostic};
 use super::suggest;
-use super::tree::Table;
 use super::view::View;
-use super::{Preset, SchemeSpec};
 
 /// The scheme of a table with `kind` and parameters.
-pub(super) fn scheme(
-    table: &Table,
-    preset: Preset,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<SchemeSpec> {
-    let kind = table.get("kind")?.text()?;
-    let v = View { table, keys: keys::schemes().table(kind)?.keys, preset };
+pub(super) fn scheme(v: &View) -> Option<SchemeSpec> {
+    let kind = v.table.get("kind")?.text()?;
+    let v = &View { keys: keys::schemes().table(kind)?.keys, ..v.clone() };
     let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
     let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
     let forces = if v.keys.iter().any(|k| k.name == "forces") {
@@ -29,7 +25,7 @@ pub(super) fn scheme(
     };
     let spec = SchemeSpec { kind: kind.to_owned(), parameters, forces };
     if let Err(error) = spec.integrator()
-        && !problems.iter().any(|p| p.path.starts_with(path))
+        && !v.has_problem(|problem| problem.path.starts_with(&v.path))
     {
         let help = match &error {
             SchemeError::OutOfRange { hint, .. } => hint.clone(),
@@ -40,7 +36,7 @@ pub(super) fn scheme(
             SchemeError::UnknownKind { .. } => suggest::help(kind, error.known().iter().copied()),
         };
         let why = keys::schemes().table(kind).map_or(keys::schemes().doc, |t| t.doc);
-        problems.push(Problem::new(joined(path, error.key()), error.to_string(), why, help));
+        v.wrong::<()>(error.key(), error.to_string(), why, help);
     }
     Some(spec)
 }
@@ -57,14 +53,15 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
     if let Some(parameter) = parameters.iter().find(|parameter| !parameter.contains('=')) {
         let what = format!("`{parameter}` is not a parameter");
         let (why, help) = ("parameters are written KEY=VALUE", "write for example rho_inf=0.1");
-        return Err(CaseError::Wrong(vec![Diagnostic::of_file("carom explain", what, why, help)]));
+        return Err(CaseError::of_file("carom explain", what, why, help));
     }
     let kind_line = format!("kind = {}", toml_edit::Value::from(kind));
     let text = std::iter::once(kind_line).chain(parameters.iter().map(line)).collect::<Vec<_>>().join("\n");
     let read = || {
         let document = Document::parse("arguments", &text, &[])?;
-        let mut problems = conform::variant(document.root(), keys::schemes());
-        let spec = scheme(document.root(), Preset::Default, "", &mut problems);
+        let problems = RefCell::new(conform::variant(document.root(), keys::schemes()));
+        let spec = scheme(&View::of_keys(document.root(), &[], &problems));
+        let problems = problems.take();
         spec.filter(|_| problems.is_empty()).ok_or_else(|| document.diagnose_all(&problems))
     };
     read().map_err(|error| match error {

@@ -186,22 +186,8 @@ fn number(range: &Range) -> Map<String, Value> {
 
 /// A TOML value as JSON.
 fn json_of(toml: &str) -> Option<Value> {
-    fn value(node: &super::tree::Node) -> Option<Value> {
-        use super::tree::Value as Toml;
-        Some(match &node.value {
-            Toml::Text(text) => json!(text),
-            Toml::Integer(n) => json!(n),
-            Toml::Float(x) => json!(x),
-            Toml::Flag(flag) => json!(flag),
-            Toml::Date(date) => json!(date),
-            Toml::List(list) => Value::Array(list.iter().map(value).collect::<Option<_>>()?),
-            Toml::Table(table) => Value::Object(
-                table.0.iter().map(|e| Some((e.key.clone(), value(&e.node)?))).collect::<Option<_>>()?,
-            ),
-        })
-    }
-    let parsed = toml_edit::Document::parse(format!("v = {toml}")).ok()?;
-    value(&super::tree::node(parsed.get("v")?, 0, 0, &(0..0)))
+    let mut table: Map<String, Value> = toml_edit::de::from_str(&format!("v = {toml}")).ok()?;
+    table.remove("v")
 }
 
 #[cfg(test)]

@@ -1,14 +1,11 @@
 //! A rigid triangulated surface from a file in STL or from Gmsh. It is read together with the case,
 //! so that its errors are reported at the key that names it; the resolved case stores its hash.
 
-use std::path::Path;
-
 use carom_solid::{Triangles, gmsh, stl};
 
 use super::mesh_file::{bytes, unchanged};
 use super::no_mesh::NoMesh;
-use super::problem::Problem;
-use super::tree::{Node, Table};
+use super::view::View;
 use super::{PrimarySpec, SurfaceSpec};
 
 /// Why a file gives no surface: the key at fault, what, why, and what to try.
@@ -20,21 +17,11 @@ struct Fault {
 }
 
 /// Reads the table of a surface; its path is relative to the folder of the case.
-pub(super) fn read(
-    keys: &Table,
-    folder: &Path,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<PrimarySpec> {
-    let name = keys.get("file")?.text()?;
-    let group = match keys.get("group") {
-        Some(group) => Some(group.text()?.to_owned()),
-        None => None,
-    };
-    let scale = keys.get("scale").map_or(Some(1.0), Node::number).filter(|scale| *scale > 0.0)?;
-    let reverse = keys.get("reverse").map_or(Some(false), Node::flag)?;
-    let joined = folder.join(name);
-    let file = std::path::absolute(&joined).unwrap_or(joined);
+pub(super) fn read(v: &View) -> Option<PrimarySpec> {
+    let (name, file) = (v.text("file")?, v.file("file")?);
+    let group = if v.has("group") { Some(v.text("group")?) } else { None };
+    let scale = v.number("scale").filter(|scale| *scale > 0.0)?;
+    let reverse = v.flag("reverse")?;
     let found = bytes(&file)
         .map_err(|why| {
             let what = format!("the surface \"{name}\" cannot be read");
@@ -53,9 +40,8 @@ pub(super) fn read(
             rim: triangles.rim(),
         })),
         Err(Fault { key, what, why, help }) => {
-            let what = if what.contains(name) { what } else { format!("{name}: {what}") };
-            problems.push(Problem::new(format!("{path}.{key}"), what, why, help));
-            None
+            let what = if what.contains(&name) { what } else { format!("{name}: {what}") };
+            v.wrong(key, what, why, help)
         }
     }
 }

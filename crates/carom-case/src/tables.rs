@@ -1,13 +1,10 @@
 //! A table of a case → its numbers, with the checks that concern this table alone.
 
-use std::path::Path;
-
-use super::keys::Kind;
 use super::load;
 use super::mesh;
+use super::mesh_file::Purpose;
 use super::obstacle;
 use super::place;
-use super::problem::Problem;
 use super::read_scheme::scheme;
 use super::view::{View, word};
 use super::{
@@ -15,7 +12,7 @@ use super::{
     PrimarySpec, ProbeSpec, SupportSpec, TimeSpec,
 };
 
-pub(super) fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<MaterialSpec> {
+pub(super) fn material(v: &View) -> Option<MaterialSpec> {
     let (name, law, density) = (v.text("name"), v.choice("law"), v.number("density"));
     let given: Vec<_> = ["lambda", "mu", "young", "poisson"].into_iter().filter(|k| v.has(k)).collect();
     let (lambda, mu) = match given.as_slice() {
@@ -25,18 +22,15 @@ pub(super) fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Opti
             (young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson)))
         }
         given => {
-            // A misspelt key is reported once, not as a missing key too.
-            let misspelt = v.table.0.iter().any(|e| !v.keys.iter().any(|k| k.name == e.key));
-            if !misspelt || given.len() > 2 {
+            if !v.has_unknown_key() || given.len() > 2 {
                 let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
                 let what = format!("the elastic constants are not a valid pair: {had}");
                 let help = elastic_help(v, given);
                 // One from an option is too much, whatever the file says.
                 let is_set = |key: &&&str| v.table.get(key).is_some_and(|node| node.origin.source > 0);
-                let path = given.iter().find(is_set).map_or(path.to_owned(), |key| format!("{path}.{key}"));
-                problems.push(
-                    Problem::new(path, what, "an isotropic material has two elastic constants", help)
-                        .at_key(),
+                let key = given.iter().find(is_set).copied().unwrap_or("");
+                return v.report(
+                    v.problem(key, what, "an isotropic material has two elastic constants", help).at_key(),
                 );
             }
             return None;
@@ -47,54 +41,29 @@ pub(super) fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Opti
         let what = format!("the elastic constants Λ = {lambda}, μ = {mu} are not positive definite");
         let why = format!("the bulk modulus Λ + 2μ/3 = {} must be > 0", lambda + 2.0 * mu / 3.0);
         let help = format!("lambda must be > {}", -2.0 * mu / 3.0);
-        problems.push(Problem::new(format!("{path}.lambda"), what, why, help));
+        v.wrong::<()>("lambda", what, why, help);
     }
     Some(MaterialSpec { name: name?, law: law?, density: density?, lambda, mu })
 }
 
-pub(super) fn body(
-    v: View,
-    dimension: usize,
-    refine: f64,
-    folder: &Path,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<BodySpec> {
-    let shape = v.value("mesh")?;
-    let mesh = mesh::read(
-        shape.table()?,
-        dimension,
-        v.choice("element"),
-        folder,
-        v.preset,
-        &format!("{path}.mesh"),
-        problems,
-    )?;
+pub(super) fn body(v: &View, dimension: usize, refine: f64) -> Option<BodySpec> {
+    let purpose = Purpose { dimension, element: v.choice("element"), extruded: false };
+    let mesh = mesh::read(&v.at("mesh")?, purpose)?;
     Some(BodySpec {
         name: v.text("name")?,
         material: v.text("material")?,
         element: v.choice("element")?,
         volumetric: v.choice("volumetric")?,
         mesh: mesh.refined(refine),
-        place: match v.table.get("place") {
-            Some(node) => {
-                let Some(Kind::Table(spec)) = v.keys.iter().find(|k| k.name == "place").map(|k| k.kind)
-                else {
-                    return None;
-                };
-                let v = View { table: node.table()?, keys: spec.keys, preset: v.preset };
-                Some(place::read(v, dimension, &format!("{path}.place"), problems)?)
-            }
-            None => None,
-        },
+        place: if v.has("place") { Some(place::read(&v.at("place")?, dimension)?) } else { None },
         position: if v.has("position") { Some(v.formulas("position")?) } else { None },
         gravity: if v.has("gravity") { v.numbers("gravity")? } else { Vec::new() },
-        velocity: load::velocity(&v, dimension, path, problems)?,
+        velocity: load::velocity(v, dimension)?,
         mass: v.choice("mass")?,
     })
 }
 
-pub(super) fn support(v: View) -> Option<SupportSpec> {
+pub(super) fn support(v: &View) -> Option<SupportSpec> {
     let fix = if v.has("fix") { v.texts("fix")? } else { Vec::new() };
     let (normal, axes): (Vec<_>, Vec<_>) = fix.into_iter().partition(|direction| direction == "normal");
     let axes = axes.iter().map(|d| ["x", "y", "z"].iter().position(|x| x == d)).collect::<Option<_>>()?;
@@ -104,29 +73,20 @@ pub(super) fn support(v: View) -> Option<SupportSpec> {
         fix: axes,
         normal: !normal.is_empty(),
         moment_about: if v.has("moment_about") { Some(v.numbers("moment_about")?) } else { None },
-        moves: load::motion(&v)?,
+        moves: load::motion(v)?,
     })
 }
 
-pub(super) fn initial(v: View, folder: &Path) -> Option<InitialSpec> {
-    let joined = folder.join(v.text("from")?);
-    let from = std::path::absolute(&joined).unwrap_or(joined);
-    Some(InitialSpec { from, velocities: v.choice("velocities")? })
+pub(super) fn initial(v: &View) -> Option<InitialSpec> {
+    Some(InitialSpec { from: v.file("from")?, velocities: v.choice("velocities")? })
 }
 
-pub(super) fn contact(
-    v: View,
-    entry: usize,
-    dimension: Option<usize>,
-    folder: &Path,
-    problems: &mut Vec<Problem>,
-) -> Option<ContactSpec> {
+pub(super) fn contact(v: &View, entry: usize, dimension: Option<usize>) -> Option<ContactSpec> {
     let between = v.has("between");
     let (secondary, primary, motion) = if between {
         (String::new(), PrimarySpec::Side(String::new()), ObstacleMotion::Fixed)
     } else {
-        let (primary, motion) =
-            obstacle::read(&v, dimension, folder, &format!("contact[{entry}]"), problems)?;
+        let (primary, motion) = obstacle::read(v, dimension)?;
         (v.text("secondary")?, primary, motion)
     };
     Some(ContactSpec {
@@ -145,7 +105,7 @@ pub(super) fn contact(
         xi: v.choice("xi")?,
         law: v.choice("law"),
         overlap: v.choice("overlap")?,
-        friction: friction(&v),
+        friction: friction(v),
         restitution: v.number("restitution")?,
     })
 }
@@ -153,7 +113,7 @@ pub(super) fn contact(
 /// What depends on a misspelt key is not judged.
 fn friction(v: &View) -> FrictionSpec {
     let mu = v.formula("mu");
-    if v.table.0.iter().any(|entry| !v.keys.iter().any(|key| key.name == entry.key)) {
+    if v.has_unknown_key() {
         return FrictionSpec { mu, ..FrictionSpec::default() };
     }
     FrictionSpec {
@@ -166,7 +126,7 @@ fn friction(v: &View) -> FrictionSpec {
 }
 
 /// The pair of elastic constants that was probably meant.
-fn elastic_help(v: View, given: &[&str]) -> String {
+fn elastic_help(v: &View, given: &[&str]) -> String {
     let pairs = "give `lambda` and `mu`, or `young` and `poisson`";
     let ([mu, poisson], ["lambda", "mu", "poisson"]) =
         (["mu", "poisson"].map(|key| v.number(key).filter(|x| x.is_finite())), given)
@@ -180,13 +140,13 @@ fn elastic_help(v: View, given: &[&str]) -> String {
     format!("{pairs}; with this `mu`, Poisson's ratio is {poisson} for `lambda = {lambda}`")
 }
 
-pub(super) fn probe(v: View) -> Option<ProbeSpec> {
+pub(super) fn probe(v: &View) -> Option<ProbeSpec> {
     let record = v.texts("record")?.iter().map(|q| word(q)).collect::<Option<_>>()?;
     Some(ProbeSpec { name: v.text("name")?, at: v.numbers("at")?, body: v.text("body")?, record })
 }
 
-pub(super) fn time(v: View, problems: &mut Vec<Problem>) -> Option<TimeSpec> {
-    let scheme = v.value("scheme").and_then(|node| scheme(node.table()?, v.preset, "time.scheme", problems));
+pub(super) fn time(v: &View) -> Option<TimeSpec> {
+    let scheme = v.at("scheme").and_then(|v| scheme(&v));
     Some(TimeSpec {
         end: v.number("end")?,
         step: v.number("step")?,
@@ -197,7 +157,7 @@ pub(super) fn time(v: View, problems: &mut Vec<Problem>) -> Option<TimeSpec> {
     })
 }
 
-pub(super) fn newton(v: View) -> Option<NewtonSpec> {
+pub(super) fn newton(v: &View) -> Option<NewtonSpec> {
     Some(NewtonSpec {
         tolerance: v.number("tolerance")?,
         max_iterations: v.count("max_iterations")?,
@@ -207,7 +167,7 @@ pub(super) fn newton(v: View) -> Option<NewtonSpec> {
     })
 }
 
-pub(super) fn output(v: View) -> Option<OutputSpec> {
+pub(super) fn output(v: &View) -> Option<OutputSpec> {
     let every = if v.has("at_times") { 0 } else { 20 };
     Some(OutputSpec {
         fields_every: if v.has("fields_every") { v.count("fields_every")? } else { every },

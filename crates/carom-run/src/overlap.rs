@@ -23,8 +23,9 @@ use carom_case::{
 use carom_contact::{Pairing, Rows};
 use carom_mechanics::model::Model;
 use carom_mechanics::{Grid, Implicit, InitialState, Linear, Settings, Simulation, Stepper, Tangent, depths};
-use carom_time::{ForceRule, Integrator};
+use carom_time::ForceRule;
 
+use crate::build::side::owner;
 use crate::build::{Materials, build, overlaps};
 
 /// Stages in which the depths are reduced.
@@ -67,7 +68,7 @@ pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
         let first = nodes.len();
         for (&node, &depth) in contact.kinematics.secondary().iter().zip(depths) {
             if depth > CLOSED * model.scale {
-                let body = model.parts.iter().find(|part| part.nodes().contains(&node));
+                let body = owner(&model.parts, node);
                 nodes.push(OverlapNode {
                     contact: contact.name.clone(),
                     node,
@@ -173,10 +174,7 @@ pub(crate) fn floor(case: &Case, model: &Model) -> f64 {
 /// without pressure.
 fn swells(case: &Case, start: &Model, y: &[f64]) -> Option<String> {
     let deepest = depths(start, &start.initial_position).concat().into_iter().fold(0.0, f64::max);
-    let is_small = |spec: &&BodySpec| {
-        let law = case.materials.iter().find(|material| material.name == spec.material).map(|m| m.law);
-        law == Some(Law::LinearElastic)
-    };
+    let is_small = |spec: &&BodySpec| case.material(spec).is_some_and(|m| m.law == Law::LinearElastic);
     case.bodies.iter().filter(is_small).find_map(|spec| {
         let part = start.parts.iter().find(|part| part.name == spec.name)?;
         let turn = rotation(start.dimension, part.of(&start.reference), part.of(y));
@@ -252,11 +250,8 @@ fn stepper(tolerance: f64) -> Result<Box<dyn Stepper>, String> {
         linear: Linear::Direct,
         mixing: 0,
     };
-    match scheme().integrator().map_err(|e| e.to_string())? {
-        Integrator::Alpha(scheme, _) => Ok(Box::new(Implicit::new(Box::new(scheme), settings))),
-        Integrator::Stages(kernel, _) => Ok(Box::new(Implicit::new(kernel, settings))),
-        Integrator::Nonsmooth(..) => Err("backward Euler has no stages".to_owned()),
-    }
+    let kernel = scheme().kernel().ok_or("backward Euler has no stages")?;
+    Ok(Box::new(Implicit::new(kernel, settings)))
 }
 
 fn scheme() -> SchemeSpec {

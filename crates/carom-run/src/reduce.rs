@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use carom_case::{Case, ContactSpec, Excerpt, LoadKind, MeshSpec, Problems};
+use carom_case::{Case, ContactSpec, Excerpt, LoadKind, LoadSpec, MeshSpec, Problems};
 use carom_mechanics::{GridReport, Simulation, State};
 use carom_record::{Manifest, RecordError, Stop, StopPlace, checkpoints};
 
@@ -227,8 +227,8 @@ fn without(candidate: &Candidate, what: &Removable) -> Option<Candidate> {
                 }
             }
             case.loads.retain(|load| match &load.kind {
-                LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } => !on.is_empty(),
                 LoadKind::BodyForce { body, .. } => body != name,
+                _ => !load.sides().is_empty(),
             });
         }
         Removable::Contacts(entry) => case.contacts.retain(|contact| contact.entry != *entry),
@@ -287,15 +287,13 @@ fn write(
     }
     let body_of = |side: &str| side.split('.').next().unwrap_or_default().to_owned();
     let remains = |body: &str| best.case.bodies.iter().any(|b| b.name == body);
-    let acts = |kind: &LoadKind| match kind {
-        LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } => {
-            on.iter().any(|s| remains(&body_of(s)))
-        }
+    let acts = |load: &LoadSpec| match &load.kind {
         LoadKind::BodyForce { body, .. } => remains(body),
+        _ => load.sides().iter().any(|side| remains(&body_of(side))),
     };
     let mut tables = Vec::new();
     for (k, load) in whole.loads.iter().enumerate() {
-        let Some(table) = load.table.as_ref().filter(|_| acts(&load.kind)) else {
+        let Some(table) = load.table.as_ref().filter(|_| acts(load)) else {
             tables.push(String::new());
             continue;
         };

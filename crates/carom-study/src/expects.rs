@@ -27,7 +27,7 @@ pub(crate) fn overlays(overlays: &[Overlay], arms: &[(&str, &Case)], problems: &
             let what = format!("two [[overlay]] are named \"{name}\"");
             problems.push(Problem::new(format!("overlay[{i}].name"), what, why, "rename one of them"));
         }
-        let columns: Vec<String> = arms.iter().flat_map(|(_, case)| history_columns(case)).collect();
+        let columns: Vec<String> = arms.iter().flat_map(|(_, case)| names(case)).collect();
         if !columns.contains(column) {
             let what = format!("the records of the arms will have no column `{column}`");
             let why = "measured data are compared with a column of history.csv";
@@ -107,9 +107,14 @@ fn measured(name: &str, arm: Option<&str>, known: &Known) -> Result<(), Reason> 
     Ok(())
 }
 
+/// Names of the columns of a case.
+fn names(case: &Case) -> impl Iterator<Item = String> + use<> {
+    history_columns(case).into_iter().map(|column| column.name)
+}
+
 fn column(asked: &Asked, arms: &[(&str, &Case)]) -> Result<(), Reason> {
     for (name, case) in arms_of(asked.arm.as_deref(), arms)? {
-        let columns = history_columns(case);
+        let columns: Vec<String> = names(case).collect();
         if !columns.contains(&asked.column) {
             let near = columns.iter().min_by_key(|c| strsim::damerau_levenshtein(c, &asked.column));
             let near = near.map_or_else(String::new, |near| format!(": did you mean `{near}`?"));

@@ -14,15 +14,15 @@ impl Check<'_> {
         let (predictor, penalty) =
             (contact.law == Some(ContactLaw::Predictor), contact.enforcement == Enforcement::Penalty);
         let multiplier = contact.enforcement == Enforcement::Multiplier;
-        let tables = self.tables("contact");
-        let given = |key: &str| tables.get(contact.entry).and_then(|n| n.table()?.get(key)).is_some();
-        if contact.persistency == Persistency::Project && given("persistency") && (predictor || penalty) {
+        let given = |key: &str| self.given("contact", contact.entry, key).is_some();
+        let (given_persistency, given_stiffness) = (given("persistency"), given("stiffness"));
+        if contact.persistency == Persistency::Project && given_persistency && (predictor || penalty) {
             let by = if penalty { "enforcement = \"penalty\"" } else { "law = \"predictor\"" };
             let why = format!("with {by} there is nothing to project where contact begins");
             let what = "persistency = \"project\" cannot be used here";
             self.add(path("persistency"), what, why, "leave persistency out");
         }
-        if multiplier && given("stiffness") && !self.is_misspelt("contact", contact.entry, "enforcement") {
+        if multiplier && given_stiffness && !self.is_misspelt("contact", contact.entry, "enforcement") {
             let why = "a multiplier enforces the constraint exactly; only \"penalty\" and \"augmented\" have a stiffness";
             self.add(
                 path("stiffness"),
@@ -34,30 +34,29 @@ impl Check<'_> {
         if !predictor {
             return;
         }
-        if penalty {
-            let why = "the predictor is projected onto constraints, and a penalty spring is not a constraint";
-            self.add(
-                path("law"),
-                "law = \"predictor\" cannot be used with a penalty",
-                why,
-                "use law = \"position\", or enforcement = \"multiplier\"",
-            );
-        }
-        if contact.enforcement == Enforcement::Augmented {
-            let why = "the predictor is projected in a problem of masses alone, which needs no springs";
-            self.add(
-                path("law"),
-                "law = \"predictor\" cannot be used with an augmented Lagrangian",
-                why,
-                "use law = \"position\", or enforcement = \"multiplier\"",
-            );
+        let springs = match contact.enforcement {
+            Enforcement::Multiplier => None,
+            Enforcement::Penalty => {
+                let why =
+                    "the predictor is projected onto constraints, and a penalty spring is not a constraint";
+                Some(("a penalty", why))
+            }
+            Enforcement::Augmented => {
+                let why = "the predictor is projected in a problem of masses alone, which needs no springs";
+                Some(("an augmented Lagrangian", why))
+            }
+        };
+        if let Some((springs, why)) = springs {
+            let what = format!("law = \"predictor\" cannot be used with {springs}");
+            let help = "use law = \"position\", or enforcement = \"multiplier\"";
+            self.add(path("law"), what, why, help);
         }
         if self.draft.contacts.iter().flatten().any(|other| other.law != contact.law) {
             let why =
                 "the predictor belongs to the whole system, so it is projected for all contacts or for none";
             self.add(path("law"), "the contacts have different laws", why, "give all contacts the same law");
         }
-        let Some(scheme) = self.draft.time.as_ref().map(|time| &time.scheme) else { return };
+        let Some(scheme) = self.scheme() else { return };
         if let Some(kernel) = scheme.kernel()
             && !kernel.has_predictor()
         {
@@ -78,7 +77,7 @@ impl Check<'_> {
         if contact.xi != ContactPoint::Frozen {
             return;
         }
-        let draft = self.draft;
+        let (draft, scheme) = (self.draft, self.scheme());
         let mut add = |what: &str, why: &str, hint: &str| {
             self.add(contact.path("xi"), format!("xi = \"frozen\" cannot be used {what}"), why, hint);
         };
@@ -98,7 +97,7 @@ impl Check<'_> {
             let why = "ξ changes at the start of every step, and the energy of a spring would change with it";
             add("with a penalty", why, "give enforcement = \"multiplier\", or xi = \"closest\"");
         }
-        let scheme = draft.time.as_ref().map(|time| &time.scheme).filter(|scheme| !scheme.is_alpha());
+        let scheme = scheme.filter(|scheme| !scheme.is_alpha());
         let what = match scheme {
             _ if contact.law == Some(ContactLaw::Predictor) => "with law = \"predictor\"",
             Some(scheme) => &format!("with scheme `{}`", scheme.kind),
@@ -112,10 +111,7 @@ impl Check<'_> {
 
     /// What contact in space is not built for is refused.
     fn in_space(&mut self, contact: &ContactSpec) {
-        if self.draft.dimension != Some(3) {
-            return;
-        }
-        if contact.detection == Detection::Trajectory {
+        if self.draft.dimension == Some(3) && contact.detection == Detection::Trajectory {
             let what = "detection = \"trajectory\" cannot be used in dimension 3";
             let why = "it is the method of the paper, for the plane";
             self.add_unique(contact.path("detection"), what, why, "leave it out");
@@ -142,8 +138,7 @@ impl Check<'_> {
 
     /// `self` is a key of `between`.
     fn of_between(&mut self, contact: &ContactSpec) {
-        let table = self.tables("contact").get(contact.entry).and_then(Node::table);
-        if !contact.between && table.is_some_and(|table| table.get("self").is_some()) {
+        if !contact.between && self.given("contact", contact.entry, "self").is_some() {
             let why = "it says whether the bodies of `between` are in contact with themselves";
             self.add(contact.path("self"), "`self` needs `between`", why, "leave it out");
         }
@@ -151,22 +146,17 @@ impl Check<'_> {
 
     /// What an obstacle that moves needs: inertia if it is free, and a name for its columns.
     fn obstacle(&mut self, contact: &ContactSpec) {
-        let is_static = self.draft.time.as_ref().is_some_and(|time| time.scheme.is_static());
-        if is_free(contact) && is_static {
+        if is_free(contact) && self.is_static() {
             let why = "the scheme \"static\" has no inertia, and nothing else constrains a free obstacle";
             let help = "give it a `motion`, or use a scheme with inertia";
             self.add(contact.path("primary.mass"), "the obstacle has no equilibrium", why, help);
         }
         let draft = self.draft;
-        let other = |kind: &'static str, mut names: Box<dyn Iterator<Item = &String> + '_>| {
-            names.any(|name| *name == contact.name).then_some(kind)
-        };
-        let taken = other("body", Box::new(draft.bodies.iter().flatten().map(|b| &b.name)))
-            .or_else(|| {
-                other("support", Box::new(draft.supports.iter().flatten().filter_map(|s| s.name.as_ref())))
-            })
-            .filter(|_| !contact.motion.is_fixed());
-        if let Some(kind) = taken {
+        let bodies = draft.bodies.iter().flatten().map(|body| ("body", &body.name));
+        let supports = draft.supports.iter().flatten();
+        let supports = supports.filter_map(|support| Some(("support", support.name.as_ref()?)));
+        let mut taken = bodies.chain(supports).filter(|_| !contact.motion.is_fixed());
+        if let Some((kind, _)) = taken.find(|(_, name)| **name == contact.name) {
             let what =
                 format!("a {kind} and a contact with a moving obstacle are both named `{}`", contact.name);
             let why = "the columns of a moving obstacle have the name of its contact";
@@ -176,8 +166,7 @@ impl Check<'_> {
 
     /// Path of the entry of `between` that is a side; none if there is no such list.
     fn entry_of_between(&self, contact: &ContactSpec, side: &str) -> Option<String> {
-        let table = self.tables("contact").get(contact.entry).and_then(Node::table)?;
-        let list = table.get("between").and_then(Node::list)?;
+        let list = self.given("contact", contact.entry, "between")?.list()?;
         let is = |node: &Node| {
             let name = node.text().unwrap_or_default();
             name == side || side.strip_suffix(SKIN).and_then(|body| body.strip_suffix('.')) == Some(name)
@@ -239,27 +228,19 @@ impl Check<'_> {
                     }
                     primary
                 }
-                PrimarySpec::Circle { .. } | PrimarySpec::Polyline { .. } | PrimarySpec::Surface(_) => None,
-                PrimarySpec::Cylinder { axis, .. } => {
-                    if axis.iter().all(|a| *a == 0.0) {
-                        let why = "it is the direction of the cylinder, so its length must be > 0";
-                        let help = "write for example axis = [0.0, 0.0, 1.0]";
-                        self.add(path("primary.cylinder.axis"), "the axis is zero", why, help);
-                    }
+                PrimarySpec::Cylinder { axis, .. } if axis.iter().all(|a| *a == 0.0) => {
+                    let why = "it is the direction of the cylinder, so its length must be > 0";
+                    let help = "write for example axis = [0.0, 0.0, 1.0]";
+                    self.add(path("primary.cylinder.axis"), "the axis is zero", why, help);
                     None
                 }
-                PrimarySpec::Plane { normal, .. } => {
-                    if normal.iter().all(|n| *n == 0.0) {
-                        let why = "it is the direction out of the half-space, so its length must be > 0";
-                        self.add(
-                            path("primary.plane.normal"),
-                            "the normal is zero",
-                            why,
-                            format!("write for example normal = {}", upward(normal.len())),
-                        );
-                    }
+                PrimarySpec::Plane { normal, .. } if normal.iter().all(|n| *n == 0.0) => {
+                    let why = "it is the direction out of the half-space, so its length must be > 0";
+                    let help = format!("write for example normal = {}", upward(normal.len()));
+                    self.add(path("primary.plane.normal"), "the normal is zero", why, help);
                     None
                 }
+                _ => None,
             };
             self.obstacle(contact);
             self.itself(contact);
@@ -268,7 +249,7 @@ impl Check<'_> {
                 && self.massless(body)
                 && (rigid || primary.is_some_and(|p| self.massless(p)))
                 && contact.persistency == Persistency::Project
-                && !self.draft.time.as_ref().is_some_and(|time| time.scheme.is_static())
+                && !self.is_static()
             {
                 let what = format!("no node in contact `{}` has mass", contact.name);
                 let why = "persistency = \"project\" projects velocities with the mass matrix, which is zero for these nodes";

@@ -4,9 +4,12 @@ use carom_record::question::{
     Form, Quantity, Question, Series, column_metric_names, form_names, metric_names,
 };
 
+use carom_record::units::Labels;
+
+use super::super::columns::Recorded;
 use super::super::document::joined;
 use super::super::{Fallback, suggest};
-use super::{Check, columns};
+use super::Check;
 
 impl Check<'_> {
     pub(super) fn expects(&mut self) {
@@ -20,15 +23,18 @@ impl Check<'_> {
             && draft.bodies.iter().all(Option::is_some)
             && draft.contacts.iter().all(Option::is_some)
             && draft.supports.iter().all(Option::is_some);
-        let known = columns::of(
-            draft.dimension.unwrap_or(2),
-            &draft.bodies,
-            &draft.contacts,
-            &draft.supports,
-            &draft.probes,
-            self.document.root().get("manufactured").is_some(),
-            draft.time.as_ref().map_or_else(Fallback::default, |time| time.fallback),
-        );
+        let recorded = Recorded {
+            dimension: draft.dimension.unwrap_or(2),
+            bodies: draft.bodies.iter().flatten().collect(),
+            contacts: draft.contacts.iter().flatten().collect(),
+            by_contact: draft.contacts.len() > 1,
+            supports: draft.supports.iter().flatten().collect(),
+            probes: draft.probes.iter().flatten().collect(),
+            manufactured: self.document.root().get("manufactured").is_some(),
+            fallback: draft.time.as_ref().map_or_else(Fallback::default, |time| time.fallback),
+        };
+        let columns = recorded.columns(&Labels::of("", "", "")).into_iter();
+        let known: Vec<String> = columns.map(|column| column.name).collect();
         let end = draft.time.as_ref().map_or(f64::INFINITY, |t| t.end);
         for column in draft.exact.keys().filter(|column| complete && !known.contains(column)) {
             self.no_column(joined("exact", column), column, &known);
@@ -96,10 +102,7 @@ impl Check<'_> {
 
     fn no_column(&mut self, path: String, column: &str, known: &[String]) {
         let why = "a column is one of history.csv; each probe adds columns name.quantity";
-        let help = suggest::nearest(column, known.iter().map(String::as_str)).map_or_else(
-            || format!("use one of: {}", known.join(", ")),
-            |near| format!("did you mean `{near}`?"),
-        );
+        let help = suggest::help(column, known.iter().map(String::as_str));
         self.add(path, format!("history.csv will have no column `{column}`"), why, help);
     }
 

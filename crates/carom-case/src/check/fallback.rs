@@ -46,48 +46,45 @@ fn of_scheme(scheme: &SchemeSpec) -> Option<&'static str> {
 }
 
 /// Everything that the step is not built for, why, and what to do.
-fn of_contact(contact: &ContactSpec) -> Vec<(&'static str, &'static str, &'static str)> {
-    let mut found = Vec::new();
-    match contact.enforcement {
-        Enforcement::Multiplier => {}
-        Enforcement::Penalty => found.push((
+fn of_contact(contact: &ContactSpec) -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+    let is_of_the_paper = contact.xi == ContactPoint::Frozen || contact.detection == Detection::Trajectory;
+    let all = [
+        (
+            contact.enforcement == Enforcement::Penalty,
             "enforcement = \"penalty\"",
             "the step constrains gaps, and would eject nodes that springs let penetrate",
             "use enforcement = \"multiplier\", or leave out `fallback`",
-        )),
-        Enforcement::Augmented => found.push((
+        ),
+        (
+            contact.enforcement == Enforcement::Augmented,
             "enforcement = \"augmented\"",
             "the step finds its impulses by a complementarity problem, not in rounds",
             "use enforcement = \"multiplier\", or leave out `fallback`",
-        )),
-    }
-    if contact.friction.exists() {
-        found.push((
+        ),
+        (
+            contact.friction.exists(),
             "friction",
             "the step has normal impulses only, and a node that sticks would slip in it",
             "leave out the friction, or `fallback`",
-        ));
-    }
-    if contact.restitution != 0.0 {
-        found.push((
+        ),
+        (
+            contact.restitution != 0.0,
             "a restitution",
             "the step is inelastic: it would lose the energy that the restitution returns",
             "leave out the restitution, or `fallback`",
-        ));
-    }
-    if contact.law == Some(ContactLaw::Predictor) {
-        found.push((
+        ),
+        (
+            contact.law == Some(ContactLaw::Predictor),
             "law = \"predictor\"",
             "the step has no predictor to project",
             "use law = \"position\", or leave out `fallback`",
-        ));
-    }
-    if contact.xi == ContactPoint::Frozen || contact.detection == Detection::Trajectory {
-        found.push((
+        ),
+        (
+            is_of_the_paper,
             "detection = \"trajectory\"",
             "the step measures gaps at closest points, and the paper's method does not",
             "use detection = \"closest-point\", or leave out `fallback`",
-        ));
-    }
-    found
+        ),
+    ];
+    all.into_iter().filter(|(applies, ..)| *applies).map(|(_, what, why, help)| (what, why, help))
 }

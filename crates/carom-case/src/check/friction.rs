@@ -2,7 +2,7 @@
 //! friction that it asks for.
 
 use super::super::{ContactLaw, Detection};
-use super::super::{ContactPoint, ContactSpec, Enforcement, FormulaSpec, FrictionSpec, MassKind};
+use super::super::{ContactPoint, ContactSpec, Enforcement, FormulaSpec, FrictionSpec};
 use super::Check;
 
 impl Check<'_> {
@@ -12,13 +12,10 @@ impl Check<'_> {
         if !contact.friction.exists() {
             return;
         }
-        let draft = self.draft;
-        let scheme = draft.time.as_ref().map(|time| &time.scheme);
+        let (draft, scheme) = (self.draft, self.scheme());
         let is_light = |side: &str| {
             let name = side.split_once('.').map_or(side, |(body, _)| body);
-            draft.bodies.iter().flatten().any(|body| {
-                body.name == name && body.mass != MassKind::Consistent && body.mass != MassKind::Lumped
-            })
+            draft.bodies.iter().flatten().any(|body| body.name == name && body.mass.is_redistributed())
         };
         let light = is_light(&contact.secondary) || contact.primary.side().is_some_and(is_light);
         let mut refuse = |with: &str, why: &str, help: &str| {

@@ -1,5 +1,6 @@
 //! What solves the linear systems of a case, and what `newton.linear = "iterative"` cannot solve.
 
+use super::super::view::word;
 use super::super::{ContactSpec, LinearRule, TimeSpec};
 use super::Check;
 
@@ -35,11 +36,7 @@ impl<'a> Check<'a> {
 
     /// `newton.linear`.
     pub(super) fn linear_rule(&self) -> LinearRule {
-        match self.newton("linear") {
-            Some("direct") => LinearRule::Direct,
-            Some("iterative") => LinearRule::Iterative,
-            _ => LinearRule::Auto,
-        }
+        self.newton("linear").and_then(word).unwrap_or_default()
     }
 
     pub(super) fn linear(&mut self) {

@@ -93,21 +93,14 @@ impl Check<'_> {
         }
         for (i, body) in self.draft.bodies.iter().enumerate() {
             let Some(body) = body else { continue };
-            if body.gravity.iter().any(|g| *g != 0.0) {
-                self.add(
-                    format!("body[{i}].gravity"),
-                    "`gravity` cannot be used with [manufactured]",
-                    why,
-                    "leave it out",
-                );
-            }
-            if !body.velocity.iter().all(super::super::FormulaSpec::is_zero) {
-                let what = "`velocity` cannot be used with [manufactured]";
-                self.add(format!("body[{i}].velocity"), what, why, "leave it out");
-            }
-            if body.position.is_some() {
-                let what = "`position` cannot be used with [manufactured]";
-                self.add(format!("body[{i}].position"), what, why, "leave it out");
+            let given = [
+                ("gravity", body.gravity.iter().any(|g| *g != 0.0)),
+                ("velocity", body.starts_moving()),
+                ("position", body.position.is_some()),
+            ];
+            for (key, _) in given.into_iter().filter(|(_, given)| *given) {
+                let what = format!("`{key}` cannot be used with [manufactured]");
+                self.add(format!("body[{i}].{key}"), what, why, "leave it out");
             }
         }
     }
@@ -115,31 +108,21 @@ impl Check<'_> {
     /// Reports initial velocities without inertia, and initial velocities or positions where
     /// [initial] takes them from another run.
     pub(super) fn starts(&mut self) {
-        let draft = self.draft;
-        let is_static = draft.time.as_ref().is_some_and(|t| t.scheme.is_static());
         let initial = self.document.root().get("initial").is_some();
-        let why = match (is_static, initial) {
+        let why = match (self.is_static(), initial) {
             (true, _) => "the scheme \"static\" has no velocities",
             (false, true) => "[initial] sets the velocities",
             (false, false) => return,
         };
-        for (i, body) in draft.bodies.iter().enumerate() {
-            if body.as_ref().is_some_and(|b| !b.velocity.iter().all(super::super::FormulaSpec::is_zero)) {
-                self.add(
-                    format!("body[{i}].velocity"),
-                    "the body has an initial velocity",
-                    why,
-                    "leave it out",
-                );
+        for (i, body) in self.draft.bodies.iter().enumerate() {
+            let Some(body) = body else { continue };
+            if body.starts_moving() {
+                let what = "the body has an initial velocity";
+                self.add(format!("body[{i}].velocity"), what, why, "leave it out");
             }
-            if initial && body.as_ref().is_some_and(|b| b.position.is_some()) {
-                let why = "[initial] sets the positions";
-                self.add(
-                    format!("body[{i}].position"),
-                    "the body has an initial position",
-                    why,
-                    "leave it out",
-                );
+            if initial && body.position.is_some() {
+                let (what, why) = ("the body has an initial position", "[initial] sets the positions");
+                self.add(format!("body[{i}].position"), what, why, "leave it out");
             }
         }
     }

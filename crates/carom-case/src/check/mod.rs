@@ -11,7 +11,8 @@ mod restitution;
 mod scheme;
 mod time;
 
-use super::BodySpec;
+use carom_solid::Element;
+
 use super::columns;
 use super::document::Document;
 use super::draft::Draft;
@@ -20,6 +21,7 @@ use super::problem::Problem;
 use super::spec::SKIN;
 use super::suggest;
 use super::tree::{Node, Table};
+use super::{BodySpec, SchemeSpec};
 
 /// Adds the problems found across tables.
 pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Problem>) {
@@ -37,7 +39,7 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
     check.contacts();
     check.probes();
     check.time();
-    check.scheme();
+    check.requirements_of_scheme();
     check.fallback();
     check.linear();
     check.expects();
@@ -63,6 +65,20 @@ impl<'a> Check<'a> {
 
     fn tables(&self, list: &str) -> &'a [Node] {
         self.document.root().get(list).and_then(Node::list).unwrap_or(&[])
+    }
+
+    /// The value of a key of a table in a list, as it was written.
+    fn given(&self, list: &str, i: usize, key: &str) -> Option<&'a Node> {
+        self.tables(list).get(i)?.table()?.get(key)
+    }
+
+    /// The scheme, if it could be read.
+    fn scheme(&self) -> Option<&'a SchemeSpec> {
+        self.draft.time.as_ref().map(|time| &time.scheme)
+    }
+
+    fn is_static(&self) -> bool {
+        self.scheme().is_some_and(SchemeSpec::is_static)
     }
 
     /// Whether a key of a table in a list is missing, and another one resembles it: one mistake is
@@ -215,7 +231,7 @@ impl<'a> Check<'a> {
             if let Some(material) = text("material") {
                 self.reference("material", material, format!("body[{i}].material"));
             }
-            let element: Option<carom_solid::Element> = text("element").and_then(super::view::word);
+            let element: Option<Element> = text("element").and_then(super::view::word);
             if let (Some(d), Some(element)) = (self.draft.dimension, element)
                 && element.dimension() != d
             {
@@ -232,30 +248,31 @@ impl<'a> Check<'a> {
             {
                 self.mean_dilatation(element, format!("body[{i}].volumetric"));
             }
-            let shape = || table.table()?.get("mesh")?.table()?.get("shape")?.text();
-            if let Some(element @ (carom_solid::Element::Q4 | carom_solid::Element::Q9)) = element
-                && let Some(shape) = shape().filter(|shape| *shape != "rectangle")
-            {
-                let what = format!("the element {element:?} does not fill the shape \"{shape}\"");
-                let why = "of the built-in shapes, quadrilaterals fill rectangles only";
-                let help = "use T3, T6 or T10, or a mesh of quadrilaterals from a file";
-                self.add(format!("body[{i}].element"), what, why, help);
-            }
-            let of = || table.table()?.get("mesh")?.table()?.get("of")?.table()?.get("shape")?.text();
-            if let Some(element @ (carom_solid::Element::Hex8 | carom_solid::Element::Hex27)) = element
-                && let Some(of) = of().filter(|shape| *shape != "rectangle")
-            {
-                let what = format!("the element {element:?} does not fill the extrusion of a \"{of}\"");
-                let why =
-                    "of the built-in shapes, quadrilaterals, the faces of hexahedra, fill rectangles only";
-                let help = "use Tet4, Tet10 or Tet20, or a mesh of quadrilaterals from a file";
+            let mesh = table.table().and_then(|table| table.get("mesh")?.table());
+            let shape_of = |mesh: Option<&'a Table>| mesh?.get("shape")?.text().filter(|s| *s != "rectangle");
+            let of = mesh.and_then(|mesh| mesh.get("of")?.table());
+            let unfilled = match element {
+                Some(Element::Q4 | Element::Q9) => shape_of(mesh).map(|shape| {
+                    let why = "of the built-in shapes, quadrilaterals fill rectangles only";
+                    (format!("the shape \"{shape}\""), why, "T3, T6 or T10")
+                }),
+                Some(Element::Hex8 | Element::Hex27) => shape_of(of).map(|shape| {
+                    let why =
+                        "of the built-in shapes, quadrilaterals, the faces of hexahedra, fill rectangles only";
+                    (format!("the extrusion of a \"{shape}\""), why, "Tet4, Tet10 or Tet20")
+                }),
+                _ => None,
+            };
+            if let (Some(element), Some((shape, why, others))) = (element, unfilled) {
+                let what = format!("the element {element:?} does not fill {shape}");
+                let help = format!("use {others}, or a mesh of quadrilaterals from a file");
                 self.add(format!("body[{i}].element"), what, why, help);
             }
         }
     }
 
-    fn mean_dilatation(&mut self, element: carom_solid::Element, path: String) {
-        use carom_solid::Element::{Hex8, Q4, T3, Tet4};
+    fn mean_dilatation(&mut self, element: Element, path: String) {
+        use Element::{Hex8, Q4, T3, Tet4};
         let stress = self.document.root().get("plane").and_then(Node::text) == Some("stress");
         let (what, why, help) = match element {
             Q4 if stress => {
@@ -320,7 +337,7 @@ impl<'a> Check<'a> {
             let Some(probe) = probe else { continue };
             self.reference("body", &probe.body, format!("probe[{i}].body"));
             for (j, quantity) in probe.record.iter().enumerate() {
-                let name = columns::quantity(*quantity);
+                let name = quantity.name();
                 let path = format!("probe[{i}].record[{j}]");
                 if let Some(d) = self.draft.dimension.filter(|d| !columns::exists(*quantity, *d)) {
                     let why = format!("the case has dimension = {d}");

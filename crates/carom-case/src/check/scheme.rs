@@ -6,14 +6,17 @@ use super::super::{ContactLaw, MassKind, ObstacleMotion, SchemeSpec};
 use super::Check;
 
 impl Check<'_> {
-    pub(super) fn scheme(&mut self) {
+    pub(super) fn requirements_of_scheme(&mut self) {
         let draft = self.draft;
-        let Some(spec) = draft.time.as_ref().map(|time| &time.scheme) else { return };
+        let Some(spec) = self.scheme() else { return };
         if let Some(scheme) = spec.nonsmooth() {
             self.masses(spec);
             self.nothing_moves(spec);
             self.rules_of_stages(spec);
-            self.restitutions(spec, &scheme);
+            if matches!(scheme, Nonsmooth::Explicit(scheme) if !scheme.restitution) {
+                let why = "its contact force only prevents penetration at the next positions";
+                self.no_restitution(spec, why);
+            }
         } else if spec.conserves() {
             self.conserving_restitution(spec);
         } else if spec.integrator().is_ok() {
@@ -74,9 +77,8 @@ impl Check<'_> {
                 );
                 let why = "an explicit step divides each force by the mass of its node; a consistent mass couples the nodes and would \
                            require solving a linear system in every step";
-                let path = format!("body[{i}]");
-                let given = self.tables("body").get(i).and_then(|b| b.table()?.get("mass")).is_some();
-                let path = if given { format!("{path}.mass") } else { path };
+                let key = if self.given("body", i, "mass").is_some() { ".mass" } else { "" };
+                let path = format!("body[{i}]{key}");
                 self.add(path, what, why, format!("give body `{}` mass = \"lumped\"", body.name));
             }
         }
@@ -137,12 +139,6 @@ impl Check<'_> {
                 let what = "persistency = \"project\" cannot be used with this scheme";
                 self.add(format!("contact[{i}].persistency"), what, why, "leave it out, or use \"none\"");
             }
-        }
-    }
-
-    fn restitutions(&mut self, spec: &SchemeSpec, scheme: &Nonsmooth) {
-        if matches!(scheme, Nonsmooth::Explicit(scheme) if !scheme.restitution) {
-            self.no_restitution(spec, "its contact force only prevents penetration at the next positions");
         }
     }
 

@@ -22,13 +22,10 @@ impl Check {
                 self.choice(word, key.name, &now, later, &key.meaning(), path);
             }
             (Kind::Choices(words), Value::List(list)) if !list.is_empty() => {
-                for (i, node) in list.iter().enumerate() {
-                    let path = format!("{path}[{i}]");
-                    match node.text() {
-                        Some(word) => self.choice(word, key.name, words, &[], &key.meaning(), &path),
-                        None => self.wrong(node, key, &path),
-                    }
-                }
+                self.each(list, path, |check, node, path| match node.text() {
+                    Some(word) => check.choice(word, key.name, words, &[], &key.meaning(), path),
+                    None => check.wrong(node, key, path),
+                });
             }
             (Kind::Number(range) | Kind::NumberOrFalse(range), Value::Integer(_) | Value::Float(_)) => {
                 self.number(node, range, key, path);
@@ -40,24 +37,16 @@ impl Check {
             (Kind::Counts(least), Value::List(list))
                 if self.dimension.map_or([2, 3].contains(&list.len()), |d| d == list.len()) =>
             {
-                for (i, node) in list.iter().enumerate() {
-                    let path = format!("{path}[{i}]");
-                    match node.value {
-                        Value::Integer(n) => self.count(n, *least, node, key, &path),
-                        _ => self.wrong(node, key, &path),
-                    }
-                }
-            }
-            (Kind::Vector, Value::List(list)) if self.dimension.is_none_or(|d| d == list.len()) => {
-                self.numbers(list, key, path);
+                self.each(list, path, |check, node, path| match node.value {
+                    Value::Integer(n) => check.count(n, *least, node, key, path),
+                    _ => check.wrong(node, key, path),
+                });
             }
             (Kind::Direction, Value::Text(word)) if ["x", "y", "z"].contains(&word.as_str()) => {}
-            (Kind::Direction, Value::List(list)) if self.dimension.is_none_or(|d| d == list.len()) => {
+            (Kind::Vector | Kind::Direction, Value::List(list)) if self.has_dimension(list.len()) => {
                 self.numbers(list, key, path);
             }
-            (Kind::Angular, Value::List(list))
-                if self.dimension.is_none_or(|d| d == 3) && list.len() == 3 =>
-            {
+            (Kind::Angular, Value::List(list)) if self.has_dimension(3) && list.len() == 3 => {
                 self.numbers(list, key, path);
             }
             (Kind::Angular | Kind::Rotation(_), Value::Integer(_) | Value::Float(_))
@@ -65,18 +54,15 @@ impl Check {
             {
                 self.number(node, &keys::ANY, key, path);
             }
-            (Kind::Rotation(spec), Value::Table(table)) if self.dimension.is_none_or(|d| d == 3) => {
+            (Kind::Rotation(spec), Value::Table(table)) if self.has_dimension(3) => {
                 self.table(table, spec, path);
             }
             (Kind::Numbers, Value::List(list)) => self.numbers(list, key, path),
             (Kind::Points(least), Value::List(list)) if list.len() >= *least => {
-                for (i, node) in list.iter().enumerate() {
-                    let path = format!("{path}[{i}]");
-                    match &node.value {
-                        Value::List(point) if point.len() == 2 => self.numbers(point, key, &path),
-                        _ => self.wrong(node, key, &path),
-                    }
-                }
+                self.each(list, path, |check, node, path| match &node.value {
+                    Value::List(point) if point.len() == 2 => check.numbers(point, key, path),
+                    _ => check.wrong(node, key, path),
+                });
             }
             (Kind::ByColumn, Value::Table(table)) => {
                 for entry in &table.0 {
@@ -85,17 +71,16 @@ impl Check {
             }
             (Kind::Formula(variables), _) => self.formula(node, variables, key, path),
             (Kind::Formulas(variables) | Kind::FormulasOr(variables, _), Value::List(list))
-                if self.dimension.is_none_or(|d| d == list.len()) =>
+                if self.has_dimension(list.len()) =>
             {
-                for (i, node) in list.iter().enumerate() {
-                    self.formula(node, variables, key, &format!("{path}[{i}]"));
-                }
+                self.each(list, path, |check, node, path| check.formula(node, variables, key, path));
             }
             (Kind::Between, Value::Text(word)) if word == "all" => {}
             (Kind::Sides | Kind::Between, Value::List(list)) if !list.is_empty() => {
-                for (i, node) in list.iter().enumerate().filter(|(_, n)| n.text().is_none()) {
-                    self.wrong(node, key, &format!("{path}[{i}]"));
-                }
+                self.each(list, path, |check, node, path| match node.text() {
+                    Some(_) => {}
+                    None => check.wrong(node, key, path),
+                });
             }
             (Kind::Table(spec) | Kind::SideOr(spec) | Kind::FormulasOr(_, spec), Value::Table(table)) => {
                 self.table(table, spec, path);
@@ -103,13 +88,10 @@ impl Check {
             (Kind::Tables(spec), Value::List(list))
                 if !list.is_empty() || matches!(key.default, Default::Absent) =>
             {
-                for (i, node) in list.iter().enumerate() {
-                    let path = format!("{path}[{i}]");
-                    match node.table() {
-                        Some(table) => self.table(table, spec, &path),
-                        None => self.wrong(node, key, &path),
-                    }
-                }
+                self.each(list, path, |check, node, path| match node.table() {
+                    Some(table) => check.table(table, spec, path),
+                    None => check.wrong(node, key, path),
+                });
             }
             (Kind::Variant(variants), Value::Table(table)) => {
                 let variants = variants();
@@ -120,6 +102,18 @@ impl Check {
             }
             _ => self.wrong(node, key, path),
         }
+    }
+
+    /// Checks every value of a list at its path.
+    fn each(&mut self, list: &[Node], path: &str, mut check: impl FnMut(&mut Self, &Node, &str)) {
+        for (i, node) in list.iter().enumerate() {
+            check(self, node, &format!("{path}[{i}]"));
+        }
+    }
+
+    /// Whether the case has this dimension, or none that is known.
+    fn has_dimension(&self, dimension: usize) -> bool {
+        self.dimension.is_none_or(|d| d == dimension)
     }
 
     /// The words without cells of another dimension than that of the case.
@@ -198,14 +192,10 @@ impl Check {
     }
 
     fn numbers(&mut self, list: &[Node], key: &Key, path: &str) {
-        for (i, node) in list.iter().enumerate() {
-            let path = format!("{path}[{i}]");
-            if node.number().is_some() {
-                self.number(node, &keys::ANY, key, &path);
-            } else {
-                self.wrong(node, key, &path);
-            }
-        }
+        self.each(list, path, |check, node, path| match node.number() {
+            Some(_) => check.number(node, &keys::ANY, key, path),
+            None => check.wrong(node, key, path),
+        });
     }
 
     fn formula(&mut self, node: &Node, variables: &'static [&'static str], key: &Key, path: &str) {

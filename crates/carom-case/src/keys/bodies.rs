@@ -1,12 +1,12 @@
 //! Keys of materials and bodies.
 
 use super::Kind::{Choice, Formulas, FormulasOr, Name, Number, Variant, Vector};
-use super::{ANY, IN_SPACE, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, shapes};
+use super::{ANY, IN_SPACE, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, shapes, table};
 
-pub(super) const MATERIAL: Table = Table {
-    name: "[[material]]",
-    doc: "A hyperelastic material, given by lambda and mu or by young and poisson.",
-    keys: &[
+pub(super) const MATERIAL: Table = table(
+    "[[material]]",
+    "A hyperelastic material, given by lambda and mu or by young and poisson.",
+    &[
         key("name", Name, "Name by which bodies refer to it.").example("\"rubber\""),
         key(
             "law",
@@ -19,31 +19,26 @@ pub(super) const MATERIAL: Table = Table {
             .example("0.25"),
         key("lambda", Number(ANY), "First Lamé constant Λ; 3Λ + 2μ > 0.")
             .unit("mass/(length·time²)")
-            .optional()
-            .example("200.0"),
+            .optional("200.0"),
         key("mu", Number(POSITIVE), "Second Lamé constant (shear modulus) μ.")
             .unit("mass/(length·time²)")
-            .optional()
-            .example("15.0"),
+            .optional("15.0"),
         key("young", Number(POSITIVE), "Young's modulus, with poisson instead of lambda and mu.")
             .unit("mass/(length·time²)")
-            .optional()
-            .example("43.95"),
+            .optional("43.95"),
         key(
             "poisson",
             Number(Range { low: Some((-1.0, false)), high: Some((0.5, false)) }),
             "Poisson's ratio; given together with young. At 0.5 the material would be incompressible and its bulk modulus infinite.",
         )
-        .optional()
-        .example("0.49"),
+        .optional("0.49"),
     ],
-    later: &[],
-};
+);
 
-pub(super) const BODY: Table = Table {
-    name: "[[body]]",
-    doc: "A deformable body; its sides are written name.side.",
-    keys: &[
+pub(super) const BODY: Table = table(
+    "[[body]]",
+    "A deformable body; its sides are written name.side.",
+    &[
         key("name", Name, "Name; its sides are written name.side.").example("\"cylinder\""),
         key("material", Name, "Name of its material.").example("\"rubber\""),
         key(
@@ -63,24 +58,20 @@ pub(super) const BODY: Table = Table {
         key("mesh", Variant(shapes), "Mesh: a built-in shape with its mesh size, or a body of a Gmsh file.")
             .example("{ shape = \"rectangle\", min = [0.0, 0.0], max = [1.0, 1.0], cells = [8, 8] }"),
         key("place", Kind::Table(&PLACE), "Rotation and translation of the mesh, applied before anything else.")
-            .optional()
-            .example("{ rotate = 30.0, about = [0.0, 0.0], shift = [0.0, 1.0] }"),
+            .optional("{ rotate = 30.0, about = [0.0, 0.0], shift = [0.0, 1.0] }"),
         key("position", Formulas(IN_SPACE), "Positions at t = 0 as formulas in X, Y, Z, for a body that starts deformed. Default: X, Y, Z.")
             .unit("length")
-            .optional()
-            .example("[\"X + 0.1*X*Y\", \"Y\"]"),
+            .optional("[\"X + 0.1*X*Y\", \"Y\"]"),
         key("gravity", Vector, "Gravitational acceleration. Default: zero.")
             .unit("length/time²")
-            .optional()
-            .example("[0.0, -9.81]"),
+            .optional("[0.0, -9.81]"),
         key(
             "velocity",
             FormulasOr(IN_SPACE, &VELOCITY),
             "Initial velocity: numbers or formulas in X, Y, Z, or the table of a rigid-body motion. Default: zero.",
         )
         .unit("length/time")
-        .optional()
-        .example("[0.0, -1.0]"),
+        .optional("[0.0, -1.0]"),
         key(
             "mass",
             Choice(&["consistent", "lumped", "redistributed", "redistributed-nearest"], &[]),
@@ -90,56 +81,47 @@ pub(super) const BODY: Table = Table {
         )
         .default("\"consistent\""),
     ],
-    later: &[],
-};
+);
 
-const VELOCITY: Table = Table {
-    name: "velocity",
-    doc: "Initial velocity of a rigid-body motion: linear + angular × (X − about).",
-    keys: &[
+const VELOCITY: Table = table(
+    "velocity",
+    "Initial velocity of a rigid-body motion: linear + angular × (X − about).",
+    &[
         key("linear", Vector, "Velocity of the point `about`. Default: zero.")
             .unit("length/time")
-            .optional()
-            .example("[0.0, -1.0]"),
+            .optional("[0.0, -1.0]"),
         key(
             "angular",
             Kind::Angular,
             "Angular velocity: counter-clockwise in dimension 2, [ωx, ωy, ωz] in dimension 3. Default: zero.",
         )
         .unit("1/time")
-        .optional()
-        .example("2.0"),
+        .optional("2.0"),
         key("about", Vector, "Centre of the rotation; required with `angular`.")
             .unit("length")
-            .optional()
-            .example("[0.0, 1.0]"),
+            .optional("[0.0, 1.0]"),
     ],
-    later: &[],
-};
+);
 
-const ROTATION: Table = Table {
-    name: "rotate",
-    doc: "A rotation in space.",
-    keys: &[
+const ROTATION: Table = table(
+    "rotate",
+    "A rotation in space.",
+    &[
         key("axis", Vector, "Direction of the axis, of any length.").example("[0.0, 0.0, 1.0]"),
         key("angle", Number(ANY), "Angle, right-handed about the axis.").unit("degrees").example("30.0"),
     ],
-    later: &[],
-};
+);
 
-const PLACE: Table = Table {
-    name: "place",
-    doc: "Rotation, then translation of a mesh, built in or from a file.",
-    keys: &[
+const PLACE: Table = table(
+    "place",
+    "Rotation, then translation of a mesh, built in or from a file.",
+    &[
         key("rotate", Kind::Rotation(&ROTATION), "Angle of rotation, counter-clockwise, in dimension 2; the table of axis and angle in dimension 3. Default: none.")
             .unit("degrees")
-            .optional()
-            .example("30.0"),
+            .optional("30.0"),
         key("about", Vector, "Centre of rotation. Default: the origin.")
             .unit("length")
-            .optional()
-            .example("[0.0, 0.0]"),
-        key("shift", Vector, "Translation. Default: zero.").unit("length").optional().example("[0.0, 1.0]"),
+            .optional("[0.0, 0.0]"),
+        key("shift", Vector, "Translation. Default: zero.").unit("length").optional("[0.0, 1.0]"),
     ],
-    later: &[],
-};
+);

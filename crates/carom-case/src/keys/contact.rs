@@ -1,12 +1,12 @@
 //! Keys of contacts and rigid obstacles.
 
 use super::Kind::{Choice, Formula, Name, Number, Side, SideOr, Truth, Vector};
-use super::{IN_SPACE_AND_TIME, IN_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key};
+use super::{IN_SPACE_AND_TIME, IN_TIME, Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, table};
 
-pub(super) const CONTACT: Table = Table {
-    name: "[[contact]]",
-    doc: "A contact pair: two sides that may come into contact.",
-    keys: &[
+pub(super) const CONTACT: Table = table(
+    "[[contact]]",
+    "A contact pair: two sides that may come into contact.",
+    &[
         key("name", Name, "Name used in records and messages.").example("\"strike\""),
         key("secondary", Side, "Secondary (slave) side: its nodes must not penetrate the primary. `body.skin` is the whole boundary of a body.").example("\"cylinder.arc\"").unless("between"),
         key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of \
@@ -21,8 +21,7 @@ pub(super) const CONTACT: Table = Table {
              pair of bodies with a [[contact]] of its own is excluded. Contacts are named NAME-BODY-BODY and \
              NAME-BODY, or NAME if there is one.",
         )
-        .optional()
-        .example("\"all\""),
+        .optional("\"all\""),
         key("self", Truth, "With `between`: whether bodies are in contact with themselves, where their boundary folds.").default("true"),
         key("method", Choice(&["node-to-segment"], &["mortar"]), "Discretisation of the contact.")
             .default("\"node-to-segment\""),
@@ -47,8 +46,7 @@ pub(super) const CONTACT: Table = Table {
             "What contact constrains: positions at the end of the step; positions and the predictor y + Δt v (contact-stabilised); or velocities, \
              by impulses. Default: the law of the scheme.",
         )
-        .optional()
-        .example("\"position\""),
+        .optional("\"position\""),
         key(
             "force",
             Choice(&["alpha_f", "end"], &[]),
@@ -97,16 +95,14 @@ pub(super) const CONTACT: Table = Table {
              less than μ times its normal force, and otherwise slips against exactly this force. A number, or a formula of the node's reference \
              position and time. 0: no friction. Default: no friction, or that of `shear`. Dimensions 2 and 3.",
         )
-        .optional()
-        .example("0.3"),
+        .optional("0.3"),
         key(
             "mu_dynamic",
             Number(NOT_NEGATIVE),
             "Coefficient of friction of a node that slips, at most `mu`, which is then that of a node that \
              sticks. Where a formula `mu` is smaller, it is used for both. Default: `mu`.",
         )
-        .optional()
-        .example("0.2"),
+        .optional("0.2"),
         key(
             "decay",
             Number(POSITIVE),
@@ -115,8 +111,7 @@ pub(super) const CONTACT: Table = Table {
              transition.",
         )
         .unit("time/length")
-        .optional()
-        .example("10.0"),
+        .optional("10.0"),
         key(
             "shear",
             Number(POSITIVE),
@@ -124,16 +119,14 @@ pub(super) const CONTACT: Table = Table {
              its normal force is larger, or if `mu` is not given.",
         )
         .unit("stress")
-        .optional()
-        .example("1e3"),
+        .optional("1e3"),
         key(
             "stick_stiffness",
             Number(POSITIVE),
             "Stiffness of the tangential spring of a node that sticks, as `stiffness`. With enforcement = \"penalty\" its energy counts as strain \
              energy. Default: `stiffness`.",
         )
-        .optional()
-        .example("10.0"),
+        .optional("10.0"),
         key(
             "restitution",
             Number(RESTITUTION),
@@ -144,115 +137,101 @@ pub(super) const CONTACT: Table = Table {
         )
         .default("0.0"),
     ],
-    later: &["passes", "normals"],
-};
+).later(&["passes", "normals"]);
 
 const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
 
-const RIGID: Table = Table {
-    name: "a rigid primary",
-    doc: "A primary surface that does not deform: exactly one shape, fixed, moved by `motion`, or free with `mass`.",
-    keys: &[
+const RIGID: Table = table(
+    "a rigid primary",
+    "A primary surface that does not deform: exactly one shape, fixed, moved by `motion`, or free with `mass`.",
+    &[
         key("plane", Kind::Table(&PLANE), "A rigid half-space.")
-            .optional()
-            .example("{ point = [0.0, 0.0], normal = [0.0, 1.0] }"),
+            .optional("{ point = [0.0, 0.0], normal = [0.0, 1.0] }"),
         key("circle", Kind::Table(&CIRCLE), "A rigid circle, with bodies outside or inside it; dimension 2.")
-            .optional()
-            .example("{ center = [0.0, 0.0], radius = 1.0, inside = true }"),
+            .optional("{ center = [0.0, 0.0], radius = 1.0, inside = true }"),
         key("sphere", Kind::Table(&SPHERE), "A rigid sphere, with bodies outside or inside it; dimension 3.")
-            .optional()
-            .example("{ center = [0.0, 0.0, 0.0], radius = 1.0, inside = true }"),
+            .optional("{ center = [0.0, 0.0, 0.0], radius = 1.0, inside = true }"),
         key("cylinder", Kind::Table(&CYLINDER), "A rigid infinite cylinder, with bodies outside or inside it; dimension 3.")
-            .optional()
-            .example("{ point = [0.0, 0.0, 0.0], axis = [0.0, 1.0, 0.0], radius = 0.5 }"),
+            .optional("{ point = [0.0, 0.0, 0.0], axis = [0.0, 1.0, 0.0], radius = 0.5 }"),
         key("surface", Kind::Table(&SURFACE), "A rigid triangulated surface from a file, with bodies outside it; dimension 3.")
-            .optional()
-            .example("{ file = \"part.stl\" }"),
+            .optional("{ file = \"part.stl\" }"),
         key("polyline", Kind::Table(&POLYLINE), "A rigid chain of segments, solid to the left of the direction of travel; dimension 2.")
-            .optional()
-            .example("{ points = [[2.0, 0.0], [0.0, 0.0], [-2.0, 1.0]], radius = 0.1 }"),
+            .optional("{ points = [[2.0, 0.0], [0.0, 0.0], [-2.0, 1.0]], radius = 0.1 }"),
         key(
             "motion",
             Kind::Table(&MOTION),
             "Prescribed motion by formulas in t, with implicit schemes. Its reaction forces are recorded under the name of the contact, and its work is external_work.",
         )
-        .optional()
-        .example("{ x = \"0.1*t\" }"),
+        .optional("{ x = \"0.1*t\" }"),
         key(
             "mass",
             Number(POSITIVE),
             "Mass of an obstacle that is free in translation and does not turn; its position and velocity are recorded under the name of the contact.",
         )
         .unit("mass")
-        .optional()
-        .example("0.5"),
+        .optional("0.5"),
         key("velocity", Vector, "Initial velocity, with `mass`. Default: zero.")
             .unit("length/time")
-            .optional()
-            .example("[0.0, -1.0]"),
+            .optional("[0.0, -1.0]"),
         key("gravity", Vector, "Gravitational acceleration, with `mass`. Default: zero.")
             .unit("length/time²")
-            .optional()
-            .example("[0.0, -9.81]"),
+            .optional("[0.0, -9.81]"),
     ],
-    later: &["spring"],
-};
+).later(&["spring"]);
 
-const CIRCLE: Table = Table {
-    name: "circle",
-    doc: "A rigid circle.",
-    keys: &[
+const CIRCLE: Table = table(
+    "circle",
+    "A rigid circle.",
+    &[
         key("center", Vector, "Its centre.").unit("length").example("[0.0, 0.0]"),
         key("radius", Number(POSITIVE), "Its radius.").unit("length").example("1.0"),
-        key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false"),
+        INSIDE,
     ],
-    later: &[],
-};
+);
 
-const SPHERE: Table = Table {
-    name: "sphere",
-    doc: "A rigid sphere.",
-    keys: &[
+const SPHERE: Table = table(
+    "sphere",
+    "A rigid sphere.",
+    &[
         key("center", Vector, "Its centre.").unit("length").example("[0.0, 0.0, 0.0]"),
         key("radius", Number(POSITIVE), "Its radius.").unit("length").example("1.0"),
-        key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false"),
+        INSIDE,
     ],
-    later: &[],
-};
+);
 
-const CYLINDER: Table = Table {
-    name: "cylinder",
-    doc: "A rigid infinite cylinder.",
-    keys: &[
+const CYLINDER: Table = table(
+    "cylinder",
+    "A rigid infinite cylinder.",
+    &[
         key("point", Vector, "A point of its axis.").unit("length").example("[0.0, 0.0, 0.0]"),
         key("axis", Vector, "Direction of its axis, of any length > 0.").example("[0.0, 1.0, 0.0]"),
         key("radius", Number(POSITIVE), "Its radius.").unit("length").example("0.5"),
-        key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false"),
+        INSIDE,
     ],
-    later: &[],
-};
+);
 
-const SURFACE: Table = Table {
-    name: "surface",
-    doc: "A rigid triangulated surface, with the vertices of its triangles counter-clockwise as seen from \
+const INSIDE: Key = key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false");
+
+const SURFACE: Table = table(
+    "surface",
+    "A rigid triangulated surface, with the vertices of its triangles counter-clockwise as seen from \
         outside. It may be closed, or open: past its rim there is no contact, and behind it a body is inside. \
         Nodes of bodies must not penetrate it; its own edges and vertices do not meet facets of bodies between \
         their nodes. A node that slides across a convex edge of more than 30° leaves the surface; in a groove \
         it is constrained by one of the faces only.",
-    keys: &[
+    &[
         key("file", Kind::Text, "A file in STL, text or binary, or a .msh of Gmsh with triangles of order 1; relative to the folder of the case.")
             .example("\"part.stl\""),
-        key("group", Kind::Text, "Physical surface of a .msh. Default: all triangles of the file.").optional().example("\"tool\""),
+        key("group", Kind::Text, "Physical surface of a .msh. Default: all triangles of the file.").optional("\"tool\""),
         key("scale", Number(POSITIVE), "Factor of the coordinates of the file.").default("1.0"),
         key("reverse", Truth, "Whether inside and outside are exchanged.").default("false"),
     ],
-    later: &[],
-};
+);
 
-const POLYLINE: Table = Table {
-    name: "polyline",
-    doc: "A rigid chain of straight segments, with the rigid material to the left of the direction of travel.",
-    keys: &[
+const POLYLINE: Table = table(
+    "polyline",
+    "A rigid chain of straight segments, with the rigid material to the left of the direction of travel.",
+    &[
         key(
             "points",
             Kind::Points(2),
@@ -269,40 +248,33 @@ const POLYLINE: Table = Table {
         .unit("length")
         .default("0.0"),
     ],
-    later: &[],
-};
+);
 
-const MOTION: Table = Table {
-    name: "motion",
-    doc: "Prescribed motion of a rigid obstacle, zero at t = 0: rotation about a point that moves with it.",
-    keys: &[
-        key("x", Formula(IN_TIME), "Displacement along x.").unit("length").optional().example("\"0.1*t\""),
+const MOTION: Table = table(
+    "motion",
+    "Prescribed motion of a rigid obstacle, zero at t = 0: rotation about a point that moves with it.",
+    &[
+        key("x", Formula(IN_TIME), "Displacement along x.").unit("length").optional("\"0.1*t\""),
         key("y", Formula(IN_TIME), "Displacement along y; dimensions 2 and 3.")
             .unit("length")
-            .optional()
-            .example("\"-0.1*t\""),
+            .optional("\"-0.1*t\""),
         key("z", Formula(IN_TIME), "Displacement along z; dimension 3.")
             .unit("length")
-            .optional()
-            .example("\"-0.1*t\""),
+            .optional("\"-0.1*t\""),
         key("rotate", Formula(IN_TIME), "Angle of rotation, counter-clockwise; dimension 2.")
             .unit("degrees")
-            .optional()
-            .example("\"360*t\""),
+            .optional("\"360*t\""),
         key("about", Vector, "Centre of the rotation at t = 0; required with `rotate`.")
             .unit("length")
-            .optional()
-            .example("[0.0, 0.0]"),
+            .optional("[0.0, 0.0]"),
     ],
-    later: &[],
-};
+);
 
-const PLANE: Table = Table {
-    name: "plane",
-    doc: "A rigid half-space.",
-    keys: &[
+const PLANE: Table = table(
+    "plane",
+    "A rigid half-space.",
+    &[
         key("point", Vector, "A point on its boundary.").unit("length").example("[0.0, 0.0]"),
         key("normal", Vector, "Outward normal, of any length > 0.").example("[0.0, 1.0]"),
     ],
-    later: &[],
-};
+);

@@ -132,10 +132,6 @@ pub struct Variants {
     pub or: Option<&'static Table>,
     /// Dimension of its vectors, if it is not that of the case.
     pub dimension: Option<usize>,
-    /// Values planned for a later version.
-    pub later: &'static [&'static str],
-    /// Keys planned for a later version, for any value.
-    pub later_keys: &'static [&'static str],
 }
 
 /// An interval of numbers.
@@ -206,7 +202,15 @@ pub fn variables(all: &'static [&'static str], dimension: usize) -> Vec<&'static
     all.iter().copied().filter(exists).collect()
 }
 
+const fn table(name: &'static str, doc: &'static str, keys: &'static [Key]) -> Table {
+    Table { name, doc, keys, later: &[] }
+}
+
 impl Table {
+    const fn later(self, keys: &'static [&'static str]) -> Self {
+        Self { later: keys, ..self }
+    }
+
     /// A key by name.
     pub fn key(&self, name: &str) -> Option<&Key> {
         self.keys.iter().find(|k| k.name == name)
@@ -289,8 +293,9 @@ impl Key {
         Self { unit, ..self }
     }
 
-    const fn optional(self) -> Self {
-        Self { default: Default::Absent, ..self }
+    /// Optional, with an example; a table has those of its keys.
+    const fn optional(self, toml: &'static str) -> Self {
+        Self { default: Default::Absent, example: toml, ..self }
     }
 
     const fn default(self, toml: &'static str) -> Self {

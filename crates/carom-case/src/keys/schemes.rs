@@ -26,8 +26,6 @@ pub fn schemes() -> &'static Variants {
         tables: KINDS.iter().map(|kind| (kind.name, table(kind))).collect::<Vec<_>>().leak(),
         or: None,
         dimension: None,
-        later: &[],
-        later_keys: &[],
     });
     &SCHEMES
 }
@@ -40,15 +38,11 @@ fn table(kind: &KindInfo) -> Table {
             Bound::Unbounded => None,
         };
         let range = Range { low: end(parameter.range.0), high: end(parameter.range.1) };
-        let key = key(parameter.key, Number(range), parameter.meaning).example(parameter.example);
-        if kind.sets.len() > 1 { key.optional() } else { key }
+        let key = key(parameter.key, Number(range), parameter.meaning);
+        let example = parameter.example;
+        if kind.sets.len() > 1 { key.optional(example) } else { key.example(example) }
     };
     let keys: Vec<Key> =
         kind.parameters().into_iter().map(number).chain(kind.is_alpha().then_some(FORCES)).collect();
-    Table {
-        name: format!("scheme \"{}\"", kind.name).leak(),
-        doc: kind.summary,
-        keys: keys.leak(),
-        later: &[],
-    }
+    super::table(format!("scheme \"{}\"", kind.name).leak(), kind.summary, keys.leak())
 }

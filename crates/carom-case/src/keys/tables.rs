@@ -8,16 +8,16 @@ use super::Kind::{
 use super::bodies::{BODY, MATERIAL};
 use super::contact::CONTACT;
 use super::loads::{LOAD, SUPPORT};
-use super::{ANY, IN_SPACE_AND_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, schemes};
+use super::{ANY, IN_SPACE_AND_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, schemes, table};
+use crate::Quantity;
 
 /// The whole file.
-pub const CASE: Table = Table {
-    name: "the case",
-    doc: "One simulation of impact or contact of deformable bodies.",
-    keys: &[
+pub const CASE: Table = table(
+    "the case",
+    "One simulation of impact or contact of deformable bodies.",
+    &[
         key("title", Text, "Title of figures and report pages. Default: the name of the file.")
-            .optional()
-            .example("\"Two bars\""),
+            .optional("\"Two bars\""),
         key("dimension", Kind::Count(1), "Space dimension: 1 (bars), 2 (the plane) or 3.").example("2"),
         key(
             "plane",
@@ -35,59 +35,55 @@ pub const CASE: Table = Table {
         )
         .default("1.0"),
         key("units", Kind::Table(&UNITS), "Unit labels in figures and columns; values are not converted.")
-            .optional()
-            .example("{ length = \"m\", time = \"s\", mass = \"kg\" }"),
+            .optional("{ length = \"m\", time = \"s\", mass = \"kg\" }"),
         key("preset", Choice(&["default", "paper"], &[]), "Set of default values; keys given explicitly take precedence.")
             .default("\"default\""),
         key("material", Tables(&MATERIAL), "A material; bodies refer to it by name."),
         key("body", Tables(&BODY), "A deformable body."),
-        key("support", Tables(&SUPPORT), "Displacement boundary condition: sides fixed or moved in given directions.").optional(),
-        key("load", Tables(&LOAD), "A load: traction or pressure on sides, or body force in a body.").optional(),
+        key("support", Tables(&SUPPORT), "Displacement boundary condition: sides fixed or moved in given directions.").optional(""),
+        key("load", Tables(&LOAD), "A load: traction or pressure on sides, or body force in a body.").optional(""),
         key(
             "initial",
             Kind::Table(&INITIAL),
             "Start from the final state of another run instead of the reference positions.",
         )
-        .optional(),
+        .optional(""),
         key(
             "manufactured",
             Kind::Table(&MANUFACTURED),
             "A manufactured solution: load, boundary motion and initial state are derived from it, and errors are measured against it.",
         )
-        .optional(),
-        key("contact", Tables(&CONTACT), "A contact pair: two sides that may come into contact.").optional(),
+        .optional(""),
+        key("contact", Tables(&CONTACT), "A contact pair: two sides that may come into contact.").optional(""),
         key("time", Kind::Table(&TIME), "Time interval, time step and time integrator."),
-        key("newton", Kind::Table(&NEWTON), "Settings of Newton's method.").optional(),
-        key("overlay", Tables(&OVERLAY), "Measured data, drawn with a column of history.csv and compared with it.").optional(),
-        key("probe", Tables(&PROBE), "A material point whose quantities are recorded as columns of history.csv.").optional(),
-        key("output", Kind::Table(&OUTPUT), "What is written, and how often.").optional(),
+        key("newton", Kind::Table(&NEWTON), "Settings of Newton's method.").optional(""),
+        key("overlay", Tables(&OVERLAY), "Measured data, drawn with a column of history.csv and compared with it.").optional(""),
+        key("probe", Tables(&PROBE), "A material point whose quantities are recorded as columns of history.csv.").optional(""),
+        key("output", Kind::Table(&OUTPUT), "What is written, and how often.").optional(""),
         key(
             "exact",
             Kind::ByColumn,
             "Exact solution by column, as formulas in t: used by `formula = \"exact\"` in [[expect]] and by `reference = \"exact\"` in a study.",
         )
-        .optional()
-        .example("{ \"A.uy\" = \"-0.5*9.81*t^2\" }"),
-        key("expect", Tables(&EXPECT), "An expected value; a case that has one is also a test.").optional(),
+        .optional("{ \"A.uy\" = \"-0.5*9.81*t^2\" }"),
+        key("expect", Tables(&EXPECT), "An expected value; a case that has one is also a test.").optional(""),
     ],
-    later: &[],
-};
+);
 
-const UNITS: Table = Table {
-    name: "units",
-    doc: "Unit labels in figures and columns; values are not converted.",
-    keys: &[
+const UNITS: Table = table(
+    "units",
+    "Unit labels in figures and columns; values are not converted.",
+    &[
         key("length", Text, "Unit label of length.").default("\"m\""),
         key("time", Text, "Unit label of time.").default("\"s\""),
         key("mass", Text, "Unit label of mass.").default("\"kg\""),
     ],
-    later: &[],
-};
+);
 
-const INITIAL: Table = Table {
-    name: "[initial]",
-    doc: "Start from the final state of another run with the same meshes; time starts at 0 again. Or continue from a state that `carom reduce` saved, at its time.",
-    keys: &[
+const INITIAL: Table = table(
+    "[initial]",
+    "Start from the final state of another run with the same meshes; time starts at 0 again. Or continue from a state that `carom reduce` saved, at its time.",
+    &[
         key(
             "from",
             Text,
@@ -101,26 +97,24 @@ const INITIAL: Table = Table {
         )
         .default("\"keep\""),
     ],
-    later: &[],
-};
+);
 
-const MANUFACTURED: Table = Table {
-    name: "[manufactured]",
-    doc: "A manufactured solution for all bodies: the load is ρÿ − Div P, boundary nodes follow the given motion, and history.csv has the columns error_l2 and error_h1.",
-    keys: &[key("y", Formulas(IN_SPACE_AND_TIME), "Current positions as formulas in X, Y, Z and t.")
+const MANUFACTURED: Table = table(
+    "[manufactured]",
+    "A manufactured solution for all bodies: the load is ρÿ − Div P, boundary nodes follow the given motion, and history.csv has the columns error_l2 and error_h1.",
+    &[key("y", Formulas(IN_SPACE_AND_TIME), "Current positions as formulas in X, Y, Z and t.")
         .unit("length")
         .example("[\"X + 0.1*sin(X + 2*Y)*t\", \"Y - 0.1*cos(X*Y)*t\"]")],
-    later: &[],
-};
+);
 
 const FRACTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, false)) };
 
 const AT_LEAST_ONE: Range = Range { low: Some((1.0, true)), high: None };
 
-const TIME: Table = Table {
-    name: "[time]",
-    doc: "Time interval, time step and time integrator.",
-    keys: &[
+const TIME: Table = table(
+    "[time]",
+    "Time interval, time step and time integrator.",
+    &[
         key("end", Number(POSITIVE), "End time, a multiple of the time step.").unit("time").example("0.75"),
         key("step", Number(POSITIVE), "Time step.")
             .unit("time")
@@ -152,13 +146,12 @@ const TIME: Table = Table {
         )
         .default("\"none\""),
     ],
-    later: &[],
-};
+);
 
-const NEWTON: Table = Table {
-    name: "[newton]",
-    doc: "Settings of Newton's method.",
-    keys: &[
+const NEWTON: Table = table(
+    "[newton]",
+    "Settings of Newton's method.",
+    &[
         key(
             "tolerance",
             Number(Range { low: Some((0.0, false)), high: Some((1.0, false)) }),
@@ -189,57 +182,34 @@ const NEWTON: Table = Table {
         )
         .default("4"),
     ],
-    later: &[],
-};
+);
 
-const PROBE: Table = Table {
-    name: "[[probe]]",
-    doc: "A material point whose quantities are recorded as columns name.quantity.",
-    keys: &[
+const PROBE: Table = table(
+    "[[probe]]",
+    "A material point whose quantities are recorded as columns name.quantity.",
+    &[
         key("name", Name, "Name; its columns are name.quantity.").example("\"A\""),
         key("at", Vector, "Reference position of the point.").unit("length").example("[0.0, 1.5]"),
         key("body", Name, "Body it belongs to.").example("\"cylinder\""),
         key(
             "record",
-            Choices(QUANTITIES),
+            Choices(&Quantity::NAMES),
             "Recorded quantities: displacement, velocity, acceleration, Cauchy stress, von Mises stress, volume ratio.",
         )
         .example("[\"uy\", \"sigma_yy\"]"),
     ],
-    later: &[],
-};
+);
 
-const QUANTITIES: &[&str] = &[
-    "ux",
-    "uy",
-    "uz",
-    "vx",
-    "vy",
-    "vz",
-    "ax",
-    "ay",
-    "az",
-    "sigma_xx",
-    "sigma_yy",
-    "sigma_zz",
-    "sigma_xy",
-    "sigma_yz",
-    "sigma_xz",
-    "von_mises",
-    "det_f",
-];
-
-const OUTPUT: Table = Table {
-    name: "[output]",
-    doc: "What is written, and how often.",
-    keys: &[
+const OUTPUT: Table = table(
+    "[output]",
+    "What is written, and how often.",
+    &[
         key(
             "fields_every",
             Count(0),
             "Steps between two outputs of the fields; 0: none. Default: 20, or 0 if at_times is given.",
         )
-        .optional()
-        .example("20"),
+        .optional("20"),
         key(
             "format",
             Choice(&["vtu", "vtkhdf"], &[]),
@@ -252,14 +222,13 @@ const OUTPUT: Table = Table {
         key("history_every", Count(1), "Steps between two rows of history.csv.").default("1"),
         key("checkpoint_every", Count(1), "Steps between two checkpoints, from which a run that is killed is continued; after a power failure, from the last one that was flushed to the disk (at most one in five seconds).").default("50"),
     ],
-    later: &[],
-};
+);
 
 /// Measured data of a column, of a case or a study.
-pub const OVERLAY: Table = Table {
-    name: "[[overlay]]",
-    doc: "Measured data of one column: drawn with it, and compared by the metrics `overlay_rms:NAME`, `overlay_peak:NAME` and `overlay_shift:NAME`.",
-    keys: &[
+pub const OVERLAY: Table = table(
+    "[[overlay]]",
+    "Measured data of one column: drawn with it, and compared by the metrics `overlay_rms:NAME`, `overlay_peak:NAME` and `overlay_shift:NAME`.",
+    &[
         key("name", Name, "Name in figures and metrics.").example("\"test-3\""),
         key("file", Text, "CSV file with a line of headings, relative to the folder of the case or study; its lines that begin with # are comments.")
             .example("\"measured.csv\""),
@@ -270,16 +239,15 @@ pub const OVERLAY: Table = Table {
             .default("1.0"),
         key("scale", Number(ANY), "Values of the column in one unit of those of the file: −1e-3 for mm downwards in a case in m upwards.")
             .default("1.0"),
-        key("source", Text, "Where the data come from.").optional().example("\"own test, 3 May\""),
+        key("source", Text, "Where the data come from.").optional("\"own test, 3 May\""),
     ],
-    later: &[],
-};
+);
 
 /// One expected value, of a case, an arm or a study.
-pub const EXPECT: Table = Table {
-    name: "[[expect]]",
-    doc: "An expected value with one bound: `value` and `tolerance`, `value` and `relative`, `at_most`, or `at_least`. With a `formula`, `tolerance` alone is sufficient.",
-    keys: &[
+pub const EXPECT: Table = table(
+    "[[expect]]",
+    "An expected value with one bound: `value` and `tolerance`, `value` and `relative`, `at_most`, or `at_least`. With a `formula`, `tolerance` alone is sufficient.",
+    &[
         key(
             "what",
             Text,
@@ -288,33 +256,28 @@ pub const EXPECT: Table = Table {
         )
         .example("\"min A.uy\""),
         key("formula", Text, "Expected values of the column `what`, as a formula in t; the bound is on the norm of the deviation from it.")
-            .optional()
-            .example("\"-0.5*9.81*t^2\""),
+            .optional("\"-0.5*9.81*t^2\""),
         key(
             "norm",
             Choice(&["max", "rms"], &[]),
             "Norm of the deviation: largest absolute value, or root mean square over the rows. Default: max; for an order, rms.",
         )
-        .optional()
-        .example("\"rms\""),
+        .optional("\"rms\""),
         key("scale", Number(POSITIVE), "Number that divides the deviation.").default("1.0"),
-        key("after", Number(ANY), "Only rows strictly after this time are used.").unit("time").optional().example("0.52"),
-        key("before", Number(ANY), "Only rows strictly before this time are used.").unit("time").optional().example("1.147"),
-        key("value", Number(ANY), "Expected value.").optional().example("-0.7827"),
-        key("tolerance", Number(NOT_NEGATIVE), "Absolute tolerance.").optional().example("4e-3"),
-        key("relative", Number(NOT_NEGATIVE), "Relative tolerance.").optional().example("0.01"),
-        key("at_most", Number(ANY), "Upper bound.").optional().example("0.0"),
-        key("at_least", Number(ANY), "Lower bound.").optional().example("0.0"),
-        key("source", Text, "Where the expected value comes from.").optional().example("\"exact solution\""),
+        key("after", Number(ANY), "Only rows strictly after this time are used.").unit("time").optional("0.52"),
+        key("before", Number(ANY), "Only rows strictly before this time are used.").unit("time").optional("1.147"),
+        key("value", Number(ANY), "Expected value.").optional("-0.7827"),
+        key("tolerance", Number(NOT_NEGATIVE), "Absolute tolerance.").optional("4e-3"),
+        key("relative", Number(NOT_NEGATIVE), "Relative tolerance.").optional("0.01"),
+        key("at_most", Number(ANY), "Upper bound.").optional("0.0"),
+        key("at_least", Number(ANY), "Lower bound.").optional("0.0"),
+        key("source", Text, "Where the expected value comes from.").optional("\"exact solution\""),
         key("of", Text, "In a study, with what = \"order\": the quantity or column whose order of convergence is observed.")
-            .optional()
-            .example("\"last A.uy\""),
+            .optional("\"last A.uy\""),
         key("against", Text, "With what = \"order\": the key of the case that is refined from arm to arm.")
-            .optional()
-            .example("\"time.step\""),
-        key("where", Text, "With what = \"order\": only arms whose names contain these whole words.").optional().example("\"hu\""),
-        key("exact", Number(ANY), "With what = \"order\": the exact value that errors are computed against.").optional().example("1.0"),
+            .optional("\"time.step\""),
+        key("where", Text, "With what = \"order\": only arms whose names contain these whole words.").optional("\"hu\""),
+        key("exact", Number(ANY), "With what = \"order\": the exact value that errors are computed against.").optional("1.0"),
         key("slow", Truth, "Skipped by `carom verify --fast`.").default("false"),
     ],
-    later: &[],
-};
+);

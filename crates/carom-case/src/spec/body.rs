@@ -83,6 +83,13 @@ pub struct BodySpec {
     pub mass: MassKind,
 }
 
+impl BodySpec {
+    /// Whether it has an initial velocity.
+    pub(crate) fn starts_moving(&self) -> bool {
+        !self.velocity.iter().all(FormulaSpec::is_zero)
+    }
+}
+
 /// On which change of volume the volumetric energy of a cell depends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

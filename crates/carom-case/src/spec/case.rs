@@ -77,6 +77,11 @@ pub struct Case {
 }
 
 impl Case {
+    /// The material of a body.
+    pub fn material(&self, body: &BodySpec) -> Option<&MaterialSpec> {
+        self.materials.iter().find(|material| material.name == body.material)
+    }
+
     /// An estimate of the work, steps × nodes, used to start long runs before short ones.
     pub fn work(&self) -> f64 {
         let nodes: f64 = self.bodies.iter().map(|body| body.mesh.estimate(body.element).1).sum();

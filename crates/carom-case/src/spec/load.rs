@@ -48,10 +48,8 @@ impl LoadSpec {
     pub fn label(&self) -> String {
         match (&self.name, &self.kind) {
             (Some(name), _) => name.clone(),
-            (None, LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. }) => {
-                format!("on {}", on.join(", "))
-            }
             (None, LoadKind::BodyForce { body, .. }) => format!("in {body}"),
+            (None, _) => format!("on {}", self.sides().join(", ")),
         }
     }
 }

@@ -168,6 +168,9 @@ pub enum MeshSpec {
     },
 }
 
+/// Sides in planes of symmetry across x, y and z.
+pub(crate) const PLANES: [&str; 3] = ["plane_x", "plane_y", "plane_z"];
+
 /// Edges as they are in the file.
 fn whole() -> usize {
     1
@@ -226,11 +229,10 @@ impl MeshSpec {
 
     /// Names of the sides, in order along the boundary.
     pub fn sides(&self) -> Vec<String> {
-        let planes = ["plane_x", "plane_y", "plane_z"];
         let cut = |words: &[&str], symmetry: &[bool; 3], across: [Option<&str>; 3]| {
             let gone = |word: &str| (0..3).any(|i| symmetry[i] && across[i] == Some(word));
             let kept = words.iter().filter(|word| !gone(word)).copied();
-            kept.chain((0..3).filter(|&i| symmetry[i]).map(|i| planes[i])).map(str::to_owned).collect()
+            kept.chain((0..3).filter(|&i| symmetry[i]).map(|i| PLANES[i])).map(str::to_owned).collect()
         };
         let bottom = |axis: [f64; 3]| {
             let along = coordinate(axis);
@@ -239,7 +241,7 @@ impl MeshSpec {
         let words: &[&str] = match self {
             Self::Box { symmetry, .. } => {
                 let words = ["left", "right", "front", "back", "bottom", "top"];
-                return cut(&words, symmetry, [Some("left"), Some("front"), Some("bottom")]);
+                return cut(&words, symmetry, self.cut_sides().each_ref().map(Option::as_deref));
             }
             Self::Ball { symmetry, .. } => return cut(&["sphere"], symmetry, [None; 3]),
             Self::Cylinder { symmetry, axis, .. } => {
@@ -255,8 +257,7 @@ impl MeshSpec {
                     sides.push(end.to_owned());
                 }
                 let words: Vec<&str> = sides.iter().map(String::as_str).collect();
-                let across = self.cut_sides();
-                return cut(&words, symmetry, std::array::from_fn(|i| across[i].as_deref()));
+                return cut(&words, symmetry, self.cut_sides().each_ref().map(Option::as_deref));
             }
             Self::File { sides, .. } => return sides.clone(),
             Self::Polygon { points, .. } => return (1..=points.len()).map(|k| format!("side{k}")).collect(),
@@ -269,18 +270,22 @@ impl MeshSpec {
         words.iter().map(ToString::to_string).collect()
     }
 
-    /// The sides of an extrusion that planes of symmetry across x, y and z replace; of other
-    /// shapes, none.
+    /// The sides of a box or of an extrusion that planes of symmetry across x, y and z replace; of
+    /// other shapes, none.
     pub fn cut_sides(&self) -> [Option<String>; 3] {
-        let Self::Extrusion { of, symmetry, .. } = self else { return [None, None, None] };
-        let low = if of.sides().iter().any(|side| side == "bottom") { "base" } else { "bottom" };
-        let of_plane = match **of {
-            Self::Rectangle { .. } => [Some("left"), Some("bottom")],
-            Self::HalfDisc { .. } => [Some("axis"), None],
-            _ => [None, None],
+        let (all, symmetry) = match self {
+            Self::Box { symmetry, .. } => ([Some("left"), Some("front"), Some("bottom")], symmetry),
+            Self::Extrusion { of, symmetry, .. } => {
+                let low = if of.sides().iter().any(|side| side == "bottom") { "base" } else { "bottom" };
+                let [x, y] = match **of {
+                    Self::Rectangle { .. } => [Some("left"), Some("bottom")],
+                    Self::HalfDisc { .. } => [Some("axis"), None],
+                    _ => [None, None],
+                };
+                ([x, y, Some(low)], symmetry)
+            }
+            _ => return [None, None, None],
         };
-        let [x, y] = of_plane;
-        let all = [x, y, Some(low)];
         std::array::from_fn(|i| all[i].filter(|_| symmetry[i]).map(str::to_owned))
     }
 
@@ -318,7 +323,7 @@ impl MeshSpec {
             }
             Self::Box { cells, .. } => {
                 let [nx, ny, nz] = cells.map(|n| n as f64);
-                let each = if matches!(element, Element::Hex8 | Element::Hex27) { 1.0 } else { 6.0 };
+                let each = if is_hexahedral(element) { 1.0 } else { 6.0 };
                 (each * nx * ny * nz, (k * nx + 1.0) * (k * ny + 1.0) * (k * nz + 1.0))
             }
             Self::Ball { radius, size, symmetry, .. } => {
@@ -331,10 +336,9 @@ impl MeshSpec {
                 filled_space(element, generate::tube_hexahedra([inner, outer], height, size, symmetry))
             }
             Self::Extrusion { ref of, layers, .. } => {
-                let hexahedral = matches!(element, Element::Hex8 | Element::Hex27);
                 let (cells, nodes) = of.estimate(generate::plane_of(element).unwrap_or(Element::T3));
                 let layers = layers as f64;
-                (cells * layers * if hexahedral { 1.0 } else { 3.0 }, nodes * (k * layers + 1.0))
+                (cells * layers * if is_hexahedral(element) { 1.0 } else { 3.0 }, nodes * (k * layers + 1.0))
             }
             Self::Disc { radius, size, .. } => {
                 let n = rings(radius, size);
@@ -348,11 +352,14 @@ impl MeshSpec {
     }
 }
 
+fn is_hexahedral(element: Element) -> bool {
+    matches!(element, Element::Hex8 | Element::Hex27)
+}
+
 /// Cells and nodes of a body of hexahedra, about as thick in all directions.
 fn filled_space(element: Element, hexahedra: f64) -> (f64, f64) {
-    let hexahedral = matches!(element, Element::Hex8 | Element::Hex27);
     let along = element.degree() as f64 * hexahedra.cbrt();
-    (if hexahedral { hexahedra } else { 6.0 * hexahedra }, (along + 1.0).powi(3))
+    (if is_hexahedral(element) { hexahedra } else { 6.0 * hexahedra }, (along + 1.0).powi(3))
 }
 
 /// A region of local refinement.

@@ -18,6 +18,7 @@ pub use contact::{
 };
 pub use formula::FormulaSpec;
 pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};
+pub(crate) use mesh::PLANES;
 pub use mesh::{MeshSpec, RefineSpec, SKIN};
 pub use obstacle::{ObstacleMotion, SurfaceSpec};
 pub use output::{OutputSpec, OverlaySpec, ProbeSpec, Quantity};

@@ -58,6 +58,34 @@ pub enum Quantity {
     DetF,
 }
 
+impl Quantity {
+    /// Names in the order of the quantities.
+    pub const NAMES: [&str; 17] = [
+        "ux",
+        "uy",
+        "uz",
+        "vx",
+        "vy",
+        "vz",
+        "ax",
+        "ay",
+        "az",
+        "sigma_xx",
+        "sigma_yy",
+        "sigma_zz",
+        "sigma_xy",
+        "sigma_yz",
+        "sigma_xz",
+        "von_mises",
+        "det_f",
+    ];
+
+    /// Its name in cases and columns.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
 /// What is written, and how often.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutputSpec {
@@ -72,4 +100,17 @@ pub struct OutputSpec {
     pub history_every: usize,
     /// Steps between two checkpoints.
     pub checkpoint_every: usize,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_quantities_are_those_of_cases() {
+        for name in Quantity::NAMES {
+            let read: Quantity = serde_json::from_value(name.into()).unwrap();
+            assert_eq!(read.name(), name);
+        }
+    }
 }

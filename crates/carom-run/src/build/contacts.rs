@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use carom_case::{
     ActiveSetRule, Case, ContactLaw, ContactSpec, Detection, Enforcement, ForceTime, FrictionSpec,
-    ObstacleMotion, Persistency, Problem, load_variables,
+    ObstacleMotion, Persistency, Problem,
 };
 use carom_contact::{
     Augmented, ConservingPenalty, ConservingUnilateral, Direction, Kinematics, NodeToObstacle, Obstacle,
@@ -16,6 +16,7 @@ use carom_solid::FacetShape;
 
 use super::between_sides::{Bodies, Which, longest, without};
 use super::branching::branching;
+use super::given::in_space_and_time;
 use super::obstacles::{self, Moving};
 use super::side::{Side, side};
 use crate::recording::consistent_weights;
@@ -186,10 +187,8 @@ fn friction(
     if !spec.friction.exists() {
         return Ok(None);
     }
-    let stick = match mu.as_ref().map(|mu| mu.formula(&load_variables(case.dimension))).transpose() {
-        Ok(formula) => formula.map(|formula| (formula, format!("mu of contact \"{}\"", spec.name))),
-        Err(error) => return Err(Problem::new(spec.path("mu"), error.to_string(), "", "")),
-    };
+    let read = |mu| in_space_and_time(case, mu, &spec.path("mu"));
+    let stick = mu.as_ref().map(read).transpose()?;
     let d = case.dimension;
     let limits = shear.map(|shear| {
         let facets = facets.iter().map(|(shape, facets)| (*shape, facets));
@@ -197,7 +196,7 @@ fn friction(
         areas.iter().map(|area| shear * area).collect()
     });
     Ok(Some(Friction {
-        stick,
+        stick: stick.map(|formula| (formula, format!("mu of contact \"{}\"", spec.name))),
         slip: *mu_dynamic,
         decay: decay.unwrap_or(f64::INFINITY),
         places: nodes.iter().map(|node| reference[node * d..(node + 1) * d].to_vec()).collect(),

@@ -3,7 +3,7 @@
 use carom_case::{Case, FormulaSpec, Problem, load_variables};
 use carom_formula::Formula;
 
-/// The formula of a load or a motion, or the function that it names.
+/// A formula of position and time, or the function that it names.
 pub(super) fn in_space_and_time(case: &Case, spec: &FormulaSpec, path: &str) -> Result<Formula, Problem> {
     let variables = load_variables(case.dimension);
     let Some(name) = spec.function() else {

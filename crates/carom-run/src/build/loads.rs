@@ -1,6 +1,6 @@
 //! The loads of a model; names and formulas were checked when the case was read.
 
-use carom_case::{Case, LoadKind, LoadSpec, Problem, load_variables};
+use carom_case::{Case, LoadKind, LoadSpec, Problem};
 use carom_formula::Formula;
 use carom_mechanics::model::{Amplitude, BodyInstance, Load, Loads, Manufactured};
 use carom_solid::LoadedSide;
@@ -12,12 +12,9 @@ use super::side::side;
 pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Problem>) -> Loads {
     let mut loads = Loads::default();
     if let Some(y) = &case.manufactured {
-        match y.iter().map(|f| f.formula(&load_variables(case.dimension))).collect() {
+        match y.iter().map(|f| in_space_and_time(case, f, "manufactured.y")).collect() {
             Ok(y) => loads.manufactured = Some(Manufactured::new(y)),
-            Err(error) => {
-                let error: carom_formula::FormulaError = error;
-                problems.push(Problem::new("manufactured.y", error.to_string(), "", ""));
-            }
+            Err(problem) => problems.push(problem),
         }
     }
     for (k, spec) in case.loads.iter().enumerate() {
@@ -33,32 +30,30 @@ pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Prob
                 continue;
             }
         };
-        if let LoadKind::BodyForce { body, .. } = &spec.kind {
-            if let Some(part) = parts.iter().position(|p| p.name == *body) {
-                loads.add_body_force(load(spec, part, value));
-            }
-            continue;
+        if let LoadKind::BodyForce { body, .. } = &spec.kind
+            && let Some(part) = parts.iter().position(|p| p.name == *body)
+        {
+            loads.add_body_force(load(spec, part, value.clone()));
         }
         for (j, name) in spec.sides().iter().enumerate() {
-            let found = match side(parts, name, &format!("load[{k}].on[{j}]")) {
-                Ok(side) => &parts[side.part],
-                Err(problem) => {
-                    problems.push(problem);
-                    continue;
+            match loaded(case, parts, name, &format!("load[{k}].on[{j}]")) {
+                Ok(side) if matches!(spec.kind, LoadKind::Pressure { .. }) => {
+                    loads.add_pressure(load(spec, side, value.clone()));
                 }
-            };
-            let mesh = found.body.mesh();
-            let facets = name.split_once('.').and_then(|(_, side)| mesh.sides.get(side));
-            let facets = facets.map_or(&[][..], Vec::as_slice);
-            let side = LoadedSide::new(mesh, facets, found.first_node, case.thickness);
-            if matches!(spec.kind, LoadKind::Pressure { .. }) {
-                loads.add_pressure(load(spec, side, value.clone()));
-            } else {
-                loads.add_traction(load(spec, side, value.clone()));
+                Ok(side) => loads.add_traction(load(spec, side, value.clone())),
+                Err(problem) => problems.push(problem),
             }
         }
     }
     loads
+}
+
+fn loaded(case: &Case, parts: &[BodyInstance], name: &str, path: &str) -> Result<LoadedSide, Problem> {
+    let part = &parts[side(parts, name, path)?.part];
+    let mesh = part.body.mesh();
+    let facets = name.split_once('.').and_then(|(_, side)| mesh.sides.get(side));
+    let facets = facets.map_or(&[][..], Vec::as_slice);
+    Ok(LoadedSide::new(mesh, facets, part.first_node, case.thickness))
 }
 
 /// A load with the name and the amplitude of its table in the case.

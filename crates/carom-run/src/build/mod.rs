@@ -70,22 +70,14 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
             match side(&parts, name, &format!("support[{k}].on[{j}]")) {
                 Ok(side) => {
                     let dofs = |axis: usize| side.nodes.iter().map(move |n| n * d + axis).collect::<Vec<_>>();
-                    for dof in spec.fix.iter().flat_map(|i| dofs(*i)) {
+                    let normal = spec.normal.then(|| across(&side.nodes, &reference, d));
+                    if normal == Some(None) {
+                        problems.push(not_plane(name, format!("support[{k}].fix")));
+                    }
+                    for dof in spec.fix.iter().copied().chain(normal.flatten()).flat_map(dofs) {
                         fixed[dof] = true;
                         initial_velocity[dof] = 0.0;
                         constrained.push(dof);
-                    }
-                    if spec.normal {
-                        match across(&side.nodes, &reference, d) {
-                            Some(axis) => {
-                                for dof in dofs(axis) {
-                                    fixed[dof] = true;
-                                    initial_velocity[dof] = 0.0;
-                                    constrained.push(dof);
-                                }
-                            }
-                            None => problems.push(not_plane(name, format!("support[{k}].fix"))),
-                        }
                     }
                     constrained.extend(spec.moves.iter().flat_map(|(i, _)| dofs(*i)));
                 }
@@ -197,12 +189,9 @@ fn nodal(
     let path = format!("body[{body}].{key}");
     let what = format!("the {key} of body \"{}\"", part.name);
     let variables = carom_case::keys::variables(carom_case::keys::IN_SPACE, part.body.mesh().dimension());
-    let formulas: Vec<_> = match formulas.iter().map(|f| f.formula(&variables)).collect() {
+    let formulas = match formulas.iter().map(|f| f.formula(&variables)).collect::<Result<Vec<_>, _>>() {
         Ok(formulas) => formulas,
-        Err(error) => {
-            let error: carom_formula::FormulaError = error;
-            return problems.push(Problem::new(path, what, error.to_string(), ""));
-        }
+        Err(error) => return problems.push(Problem::new(path, what, error.to_string(), "")),
     };
     for place in &part.body.mesh().nodes {
         for formula in &formulas {
@@ -223,14 +212,13 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
     let mut problems = Vec::new();
     let mut first_node = 0;
     for (k, spec) in case.bodies.iter().enumerate() {
-        let Some(material) = case.materials.iter().find(|m| m.name == spec.material) else { continue };
+        let Some(material) = case.material(spec) else { continue };
         let (lambda, mu) = (material.lambda, material.mu);
         let law = match material.law {
             carom_case::Law::NeoHookean => Law::NeoHookean { lambda, mu },
             carom_case::Law::SaintVenantKirchhoff => Law::SaintVenantKirchhoff { lambda, mu },
             carom_case::Law::LinearElastic => Law::LinearElastic { lambda, mu },
         };
-        let of_law = law;
         let of_case = law.constitutive();
         let averages = spec.volumetric == Volumetric::Mean;
         if averages && materials.contains_key(&material.name) {
@@ -240,11 +228,11 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
             problems.push(Problem::new(format!("body[{k}].volumetric"), what, why, help));
             continue;
         }
-        let law = materials.get(&material.name).unwrap_or(&of_case);
+        let own = materials.get(&material.name).unwrap_or(&of_case);
         let body = |mesh: carom_solid::Mesh| match (mesh.dimension(), case.plane) {
-            _ if averages => mean_dilatation_body(mesh, of_law, material.density, case.thickness),
-            (2, carom_case::Plane::Stress) => law.plane_stress_body(mesh, material.density, case.thickness),
-            _ => law.body(mesh, material.density, case.thickness),
+            _ if averages => mean_dilatation_body(mesh, law, material.density, case.thickness),
+            (2, carom_case::Plane::Stress) => own.plane_stress_body(mesh, material.density, case.thickness),
+            _ => own.body(mesh, material.density, case.thickness),
         };
         let made = spec.make_mesh(case.dimension).map_err(|error| error.to_string());
         let made =

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use carom_case::{Case, FormulaSpec, Problem, load_variables};
+use carom_case::{Case, FormulaSpec, Problem};
 use carom_formula::Formula;
 use carom_mechanics::model::{BodyInstance, Motions};
 
 use super::given::in_space_and_time;
 use super::obstacles::Moving;
-use super::side::{coordinates, side};
+use super::side::{coordinates, owner, side};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -59,20 +59,18 @@ pub(super) fn motions(
     for obstacle in obstacles {
         for (dof, formula) in obstacle.prescribed() {
             let Some(formula) = formula else { continue };
-            match formula.formula(&load_variables(d)) {
+            let path = format!("{}.motion", case.contacts[obstacle.contact].path("primary"));
+            match in_space_and_time(case, &formula, &path) {
                 Ok(read) => {
                     moves.by_dof.insert(dof, moves.formulas.len());
                     moves.formulas.push((obstacle.label(), read));
                 }
-                Err(error) => {
-                    let path = format!("{}.motion", case.contacts[obstacle.contact].path("primary"));
-                    problems.push(Problem::new(path, error.to_string(), "", ""));
-                }
+                Err(problem) => problems.push(problem),
             }
         }
     }
     if let Some(y) = &case.manufactured {
-        moves.manufactured(y, d, parts, problems);
+        moves.manufactured(case, y, parts, problems);
     }
     let Moves { formulas, by_dof } = moves;
     Motions::new(formulas, by_dof.into_iter().map(|(dof, formula)| (dof, formula, place_of(parts, dof / d))))
@@ -92,24 +90,22 @@ impl Moves {
     /// Prescribes y − X at all boundary nodes.
     fn manufactured(
         &mut self,
+        case: &Case,
         y: &[FormulaSpec],
-        d: usize,
         parts: &[BodyInstance],
         problems: &mut Vec<Problem>,
     ) {
         for (axis, formula) in y.iter().enumerate() {
-            let text = format!("({formula}) - {}", ["X", "Y", "Z"][axis]);
-            match Formula::parse(&text, &load_variables(d)) {
+            let moved = FormulaSpec::Text(format!("({formula}) - {}", ["X", "Y", "Z"][axis]));
+            match in_space_and_time(case, &moved, "manufactured.y") {
                 Ok(read) => self.formulas.push((format!("component {} of [manufactured]", axis + 1), read)),
-                Err(error) => {
-                    return problems.push(Problem::new("manufactured.y", error.to_string(), "", ""));
-                }
+                Err(problem) => return problems.push(problem),
             }
             let place = self.formulas.len() - 1;
             for part in parts {
                 let on = part.body.mesh().on_boundary();
                 let nodes = part.nodes().zip(on).filter_map(|(node, on)| on.then_some(node));
-                self.by_dof.extend(nodes.map(|node| (node * d + axis, place)));
+                self.by_dof.extend(nodes.map(|node| (node * case.dimension + axis, place)));
             }
         }
     }
@@ -117,6 +113,5 @@ impl Moves {
 
 /// Reference position of a node.
 fn place_of(parts: &[BodyInstance], node: usize) -> Vec<f64> {
-    let part = parts.iter().find(|p| p.nodes().contains(&node));
-    part.map_or_else(Vec::new, |p| p.body.mesh().nodes[node - p.first_node].to_vec())
+    owner(parts, node).map_or_else(Vec::new, |p| p.body.mesh().nodes[node - p.first_node].to_vec())
 }

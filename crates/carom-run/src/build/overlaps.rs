@@ -3,7 +3,7 @@
 use carom_case::{Case, Overlap, PrimarySpec, Problem};
 use carom_mechanics::model::Model;
 
-use super::side::coordinates;
+use super::side::{coordinates, owner};
 
 /// Initial overlaps of the bodies of a case deeper than round-off: a problem per contact with the
 /// deepest point.
@@ -14,8 +14,7 @@ pub fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
     let problem = |(k, node, depth): (usize, usize, f64)| {
         let place = coordinates(&x[node * model.dimension..(node + 1) * model.dimension]);
         let name = &model.contacts[k].name;
-        let owner = model.parts.iter().find(|part| part.nodes().contains(&node));
-        let owner = owner.map_or("", |part| part.name.as_str());
+        let owner = owner(&model.parts, node).map_or("", |part| part.name.as_str());
         let (inside, turn) = match &case.contacts[k].primary {
             PrimarySpec::Plane { .. } => ("behind the rigid plane", "reverse its normal, "),
             PrimarySpec::Polyline { .. } => {

@@ -58,6 +58,11 @@ pub(crate) fn side(parts: &[BodyInstance], name: &str, path: &str) -> Result<Sid
     })
 }
 
+/// The part that a node belongs to.
+pub(crate) fn owner(parts: &[BodyInstance], node: usize) -> Option<&BodyInstance> {
+    parts.iter().find(|part| part.nodes().contains(&node))
+}
+
 /// A position for messages, without the noise of its last digits.
 pub(super) fn coordinates(place: &[f64]) -> String {
     let places: Vec<_> = place.iter().map(|x| ((x * 1e9).round() / 1e9 + 0.0).to_string()).collect();

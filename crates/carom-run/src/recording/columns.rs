@@ -1,208 +1,15 @@
-//! Columns of `history.csv`: a single list of names, units and values keeps them consistent.
+//! Values of the columns of `history.csv`, in the order of `columns.rs` of `carom-case`, which has
+//! their names.
 
-use carom_case::{Case, Fallback};
 use carom_contact::{FrictionState, Pair, Rows};
-use carom_mechanics::model::{BodyInstance, Model, Quantity};
+use carom_mechanics::model::{BodyInstance, Model};
 use carom_mechanics::{Depths, GridReport, State, each_slip};
-use carom_record::Column;
-use carom_record::units::Labels;
 
 use serde::{Deserialize, Serialize};
-
-use super::units::labels;
-
-const AXES: [&str; 3] = ["x", "y", "z"];
-
-/// Names, units and meanings of the columns of a case.
-pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
-    let label = labels(case);
-    let mut columns = Vec::new();
-    let mut add = |name: String, unit: &str, description: &str, integer: bool| {
-        columns.push(Column { name, unit: unit.into(), description: description.into(), integer });
-    };
-    let axes = &AXES[..model.dimension];
-    add("step".into(), "", "step on the grid of times", true);
-    add("time".into(), &label.time, "time, step × Δt", false);
-    add("dt".into(), &label.time, "time step of the grid", false);
-    for (name, what) in [
-        ("kinetic", "kinetic energy ½ vᵀM v"),
-        ("strain", "strain energy"),
-        ("potential", "potential of constant conservative loads"),
-        ("total", "kinetic + strain + potential"),
-        ("external_work", "work of the loads without potential and of the supports, cumulative"),
-        (
-            "contact_work",
-            "work of the contact forces without friction on the bodies and of projections, cumulative",
-        ),
-        ("friction_work", "work of friction on the bodies, cumulative"),
-        (
-            "dissipation",
-            "external_work + contact_work + friction_work − (total − total at the start); negative if energy was created",
-        ),
-        (
-            "energy_created",
-            "largest rise of total − external_work above its running minimum so far, beyond work that means over steps have missed since",
-        ),
-        (
-            "energy_scale",
-            "largest kinetic + strain energy at the end of a step so far, or Σ |change of external_work| if that is larger",
-        ),
-    ] {
-        add(name.into(), &label.energy, what, false);
-    }
-    for axis in axes {
-        add(format!("momentum_{axis}"), &label.momentum, "momentum of all bodies", false);
-    }
-    let about_the_origin = "angular momentum about the origin";
-    match model.dimension {
-        2 => add("angular_momentum".into(), &label.angular_momentum, about_the_origin, false),
-        3 => {
-            for axis in axes {
-                let name = format!("angular_momentum_{axis}");
-                add(name, &label.angular_momentum, about_the_origin, false);
-            }
-        }
-        _ => {}
-    }
-    for axis in axes {
-        add(
-            format!("contact_force_{axis}"),
-            &label.force,
-            "contact force on the secondary sides at the end of the step",
-            false,
-        );
-    }
-    for axis in axes {
-        add(
-            format!("contact_impulse_{axis}"),
-            &label.momentum,
-            "time integral of the contact force, including projections",
-            false,
-        );
-    }
-    for axis in axes {
-        add(
-            format!("algorithmic_impulse_{axis}"),
-            &label.momentum,
-            "part of contact_impulse that projections and changes of the step move between velocities and algorithmic accelerations",
-            false,
-        );
-    }
-    for (name, what) in [
-        ("active", "pairs in contact"),
-        ("activations", "nodes that came into contact since the previous row"),
-        ("releases", "nodes that left contact since the previous row"),
-        ("newton", "Newton iterations since the previous row"),
-        ("rejected", "rejected (bisected) steps since the previous row"),
-    ] {
-        add(name.into(), "", what, true);
-    }
-    if case.time.fallback != Fallback::None {
-        add("fallbacks".into(), "", "grid steps that the fallback took since the previous row", true);
-    }
-    add(
-        "penetration".into(),
-        &label.length,
-        "depth of the deepest node of either side of a contact in the other body, since the previous row",
-        false,
-    );
-    add(
-        "penetration_secondary".into(),
-        &label.length,
-        "the same of the nodes that the contact constrains: secondary nodes and corners of the primary",
-        false,
-    );
-    add("min_det_f".into(), "", "smallest J over all quadrature points", false);
-    if rubs(model) {
-        add("sticking".into(), "", "pairs in contact that stick", true);
-        add("stick_time".into(), &label.time, "stick time, summed over pairs, cumulative", false);
-        add("rub_time".into(), &label.time, "the same of all closed pairs with friction", false);
-        add("slip".into(), &label.length, "largest slip of a pair since it closed, so far", false);
-    }
-    for part in &model.parts {
-        for axis in axes {
-            add(format!("{}.center_{axis}", part.name), &label.length, "centre of mass", false);
-        }
-        for axis in axes {
-            add(
-                format!("{}.velocity_{axis}", part.name),
-                &label.velocity,
-                "velocity of the centre of mass",
-                false,
-            );
-        }
-    }
-    if model.contacts.len() > 1 {
-        for contact in &model.contacts {
-            for axis in axes {
-                add(
-                    format!("{}.force_{axis}", contact.name),
-                    &label.force,
-                    "contact force on its secondary side",
-                    false,
-                );
-            }
-        }
-    }
-    for support in &model.supports {
-        for axis in axes {
-            add(
-                format!("{}.reaction_{axis}", support.name),
-                &label.force,
-                "force of the support on the bodies",
-                false,
-            );
-        }
-        let moment = |name: String| (name, "moment of the reaction forces about the given point");
-        let columns = match (model.dimension, &support.moment_about) {
-            (2, Some(_)) => vec![moment(format!("{}.moment", support.name))],
-            (3, Some(_)) => {
-                axes.iter().map(|axis| moment(format!("{}.moment_{axis}", support.name))).collect()
-            }
-            _ => Vec::new(),
-        };
-        for (name, what) in columns {
-            add(name, &label.moment, what, false);
-        }
-    }
-    for probe in &model.probes {
-        for quantity in &probe.record {
-            let (name, unit, what) = quantity_column(*quantity, &label);
-            add(format!("{}.{name}", probe.name), &unit, &what, false);
-        }
-    }
-    if model.loads.manufactured.is_some() {
-        add("error_l2".into(), "", "√∫|y_h − y|² dΩ₀ against the motion of [manufactured]", false);
-        add("error_h1".into(), "", "√∫|∂y_h/∂X − ∂y/∂X|² dΩ₀ against the motion of [manufactured]", false);
-    }
-    columns
-}
 
 /// Whether a contact has friction.
 fn rubs(model: &Model) -> bool {
     model.contacts.iter().any(|contact| contact.friction.is_some())
-}
-
-/// Name, unit and meaning of a probe's column.
-fn quantity_column(quantity: Quantity, label: &Labels) -> (String, String, String) {
-    match quantity {
-        Quantity::Displacement(i) => {
-            (format!("u{}", AXES[i]), label.length.clone(), format!("displacement along {}", AXES[i]))
-        }
-        Quantity::Velocity(i) => {
-            (format!("v{}", AXES[i]), label.velocity.clone(), format!("velocity along {}", AXES[i]))
-        }
-        Quantity::Acceleration(i) => {
-            (format!("a{}", AXES[i]), label.acceleration.clone(), format!("acceleration along {}", AXES[i]))
-        }
-        Quantity::Stress(i, j) => {
-            (format!("sigma_{}{}", AXES[i], AXES[j]), label.stress.clone(), "Cauchy stress".into())
-        }
-        Quantity::VonMises => {
-            ("von_mises".into(), label.stress.clone(), "von Mises stress (from the Cauchy stress)".into())
-        }
-        Quantity::DetF => ("det_f".into(), label.none.clone(), "volume ratio J".into()),
-    }
 }
 
 /// Weights of a body's nodes in its centre of mass, or of volume if it is massless. They sum to
@@ -233,7 +40,8 @@ pub(super) fn center_weights(model: &Model) -> Vec<f64> {
     weights
 }
 
-/// One row, in the order of [`columns`]; `since` with whether there is a fallback.
+/// One row, in the order of [`history_columns`](carom_case::history_columns); `since` with whether
+/// there is a fallback.
 pub(super) fn row(
     model: &Model,
     state: &State,

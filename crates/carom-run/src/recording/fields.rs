@@ -13,17 +13,11 @@ use carom_contact::{Pair, Rows};
 use carom_mechanics::State;
 use carom_mechanics::model::{Contact, Model, von_mises};
 use carom_record::{Block, Cell, FieldSet, PointArray};
-use carom_solid::{Element, FacetShape};
-
-use super::units::labels;
+use carom_solid::{Element, FacetShape, Mesh};
 
 /// Fields of a state.
 pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
-    let label = labels(case);
-    let spatial = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)) };
-    let vectors =
-        |values: &[f64]| values.chunks_exact(model.dimension).flat_map(spatial).collect::<Vec<f64>>();
-    let moved: Vec<f64> = state.y.iter().zip(&model.reference).map(|(y, x)| y - x).collect();
+    let label = case.labels();
     let array = |name: &str, unit: &str, components: usize, values: Vec<f64>| PointArray {
         name: name.into(),
         unit: unit.into(),
@@ -37,11 +31,11 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     let principal_stress: Vec<f64> = stress.iter().flat_map(|s| principal(tensor(s))).collect();
     let principal_strain: Vec<f64> = strain.iter().flat_map(|e| logarithmic(principal(tensor(e)))).collect();
     let mut set = FieldSet {
-        points: model.reference.chunks_exact(model.dimension).map(spatial).collect(),
+        points: in_space(model, &model.reference).collect(),
         blocks: blocks(model),
         arrays: vec![
-            array("displacement", &label.length, 3, vectors(&moved)),
-            array("velocity", &label.velocity, 3, vectors(&state.v)),
+            array("displacement", &label.length, 3, displacements(model, &state.y)),
+            array("velocity", &label.velocity, 3, in_space(model, &state.v).flatten().collect()),
             array("stress", &label.stress, 6, stress.into_flattened()),
             array("von_mises", &label.stress, 1, mises),
             array("principal_stress", &label.stress, 3, principal_stress),
@@ -62,39 +56,46 @@ fn logarithmic(green: [f64; 3]) -> [f64; 3] {
 
 /// The initial positions of a model, without other fields.
 pub fn initial_fields(case: &Case, model: &Model) -> FieldSet {
-    let axes = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)) };
-    let moved = model.initial_position.iter().zip(&model.reference).map(|(y, x)| y - x).collect::<Vec<_>>();
-    let values = moved.chunks_exact(model.dimension).flat_map(axes).collect();
-    let unit = labels(case).length;
+    let (unit, values) = (case.labels().length, displacements(model, &model.initial_position));
     FieldSet {
-        points: model.reference.chunks_exact(model.dimension).map(axes).collect(),
+        points: in_space(model, &model.reference).collect(),
         blocks: blocks(model),
         arrays: vec![PointArray { name: "displacement".into(), unit, components: 3, values }],
     }
 }
 
-/// The cells of the bodies.
-fn blocks(model: &Model) -> Vec<Block> {
-    let blocks = model.parts.iter().filter(|part| !part.is_rigid()).map(|part| {
-        let mesh = part.body.mesh();
-        Block {
-            body: part.name.clone(),
-            cell: cell(mesh.element),
-            degree: mesh.element.degree(),
-            connectivity: mesh.cells.iter().map(|n| n + part.first_node).collect(),
-        }
-    });
-    blocks.collect()
+/// Values per node, with zeros for directions that the model does not have.
+fn in_space<'a>(model: &Model, values: &'a [f64]) -> impl Iterator<Item = [f64; 3]> + use<'a> {
+    let nodes = values.chunks_exact(model.dimension);
+    nodes.map(|x| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)))
 }
 
-/// The viewer's cell type of an element.
-fn cell(element: Element) -> Cell {
-    match element {
+/// Displacements of the nodes at positions `y`, in space.
+pub(super) fn displacements(model: &Model, y: &[f64]) -> Vec<f64> {
+    let moved: Vec<f64> = y.iter().zip(&model.reference).map(|(y, x)| y - x).collect();
+    in_space(model, &moved).flatten().collect()
+}
+
+/// The cells of the bodies.
+fn blocks(model: &Model) -> Vec<Block> {
+    let bodies = model.parts.iter().filter(|part| !part.is_rigid());
+    bodies.map(|part| block(&part.name, part.body.mesh(), part.first_node)).collect()
+}
+
+/// The cells of a body whose nodes begin with this number.
+pub fn block(name: &str, mesh: &Mesh, first: usize) -> Block {
+    let cell = match mesh.element {
         Element::L2 | Element::L3 | Element::L4 => Cell::Curve,
         Element::T3 | Element::T6 | Element::T10 => Cell::Triangle,
         Element::Q4 | Element::Q9 => Cell::Quadrilateral,
         Element::Tet4 | Element::Tet10 | Element::Tet20 => Cell::Tetrahedron,
         Element::Hex8 | Element::Hex27 => Cell::Hexahedron,
+    };
+    Block {
+        body: name.to_owned(),
+        cell,
+        degree: mesh.element.degree(),
+        connectivity: mesh.cells.iter().map(|n| n + first).collect(),
     }
 }
 

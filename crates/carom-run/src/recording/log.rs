@@ -6,6 +6,8 @@ use carom_mechanics::model::Model;
 use carom_mechanics::{LogEvent, Overlap as Undeclared};
 use carom_record::Event;
 
+use crate::build::side::owner;
+
 /// Repairs of meshes that were read from files.
 pub(super) fn repairs(case: &Case) -> Vec<Event> {
     let of_body = |body: &BodySpec| match body.mesh.source() {
@@ -34,10 +36,7 @@ pub(super) fn relaxed(case: &Case, strain: f64) -> Vec<Event> {
 /// An event of the step being computed.
 pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
     let contact_name = |k: usize| model.contacts[k].name.as_str();
-    let body_of = |node: usize| {
-        let part = model.parts.iter().find(|p| p.nodes().contains(&node));
-        part.map_or("?", |p| p.name.as_str())
-    };
+    let body_of = |node: usize| owner(&model.parts, node).map_or("?", |part| part.name.as_str());
     match event {
         LogEvent::Rejected { time, dt, rejected } => {
             Event::new(step, *time, "rejected", format!("step of {dt:.6e} rejected: {rejected}"))

@@ -9,12 +9,10 @@ mod session;
 mod start;
 mod stopped;
 mod tally;
-mod units;
 mod verdicts;
 
-pub use columns::columns;
 pub(crate) use fields::consistent_weights;
-pub use fields::initial_fields;
+pub use fields::{block, initial_fields};
 pub use outcome::{End, Options, Outcome, Progress, RunError};
 pub use rows::{ContactStates, Rows};
 pub use start::{resume, resume_with, run, run_in_memory};

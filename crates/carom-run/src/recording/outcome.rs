@@ -25,7 +25,7 @@ impl Default for Options {
 }
 
 /// Progress of a simulation after an accepted step, and every second while a step is bisected.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize)]
 pub struct Progress {
     /// Step just finished.
     pub step: u64,
@@ -52,6 +52,7 @@ pub struct Progress {
     /// Wall seconds of this process.
     pub wall: f64,
     /// Estimated wall seconds remaining.
+    #[serde(rename = "eta")]
     pub left: f64,
 }
 

@@ -1,12 +1,12 @@
 //! The rows of a state, as a run records them.
 
-use carom_case::Case;
+use carom_case::{Case, history_columns};
 use carom_contact::{FrictionState, Pair, Tangential, length};
 use carom_mechanics::model::{Contact, Model};
 use carom_mechanics::{GridReport, Simulation, State, each_slip, penetration};
 use carom_record::{Column, ContactRow};
 
-use super::columns::{Since, center_weights, columns, row};
+use super::columns::{Since, center_weights, row};
 use super::fields::{gap_of, weights};
 
 /// Rows of a simulation that is advanced step by step.
@@ -24,7 +24,7 @@ impl Rows {
     pub fn new(case: &Case, simulation: &Simulation) -> Self {
         let model = simulation.model();
         let mut rows =
-            Self { columns: columns(case, model), weights: center_weights(model), since: Since::default() };
+            Self { columns: history_columns(case), weights: center_weights(model), since: Since::default() };
         let penetration = penetration(model, simulation.state());
         rows.advanced(&GridReport { penetration, ..GridReport::default() });
         rows

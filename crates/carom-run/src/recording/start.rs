@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use carom_case::{Case, ContactSpec, Functions, PrimarySpec};
+use carom_case::{Case, ContactSpec, Functions, PrimarySpec, history_columns};
 use carom_mechanics::Simulation;
 use carom_record::{Manifest, MemoryRecord, Run, RunWriter, Source, Status, Stop};
 
-use super::columns::{Since, columns};
+use super::columns::Since;
 use super::fields::sides;
 use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::session::Session;
@@ -36,11 +36,7 @@ pub fn run(
         &checkpoint(simulation.state(), Since::default(), &Tally::at_start(&simulation))?,
     )?;
     writer.field_format(case.output.format);
-    let mut session = Session::new(case, simulation, &mut writer, manifest);
-    session.trials_from = options.trials.then(|| [(); 2].map(|()| session.simulation.state().clone()));
-    session.write_start()?;
-    let remarks = audit_remarks(options, &session);
-    session.go(options, observe, stop, remarks)
+    from_start(Session::new(case, simulation, &mut writer, manifest), options, observe, stop)
 }
 
 /// Runs a case and records it in memory. Such a run cannot be resumed.
@@ -56,11 +52,8 @@ pub fn run_in_memory(
 ) -> Result<(Outcome, MemoryRecord), RunError> {
     let (simulation, manifest) = started(case, source, options)?;
     let mut record = MemoryRecord::new(manifest.clone());
-    let mut session = Session::new(case, simulation, &mut record, manifest);
-    session.trials_from = options.trials.then(|| [(); 2].map(|()| session.simulation.state().clone()));
-    session.write_start()?;
-    let remarks = audit_remarks(options, &session);
-    let outcome = session.go(options, observe, stop, remarks)?;
+    let session = Session::new(case, simulation, &mut record, manifest);
+    let outcome = from_start(session, options, observe, stop)?;
     Ok((outcome, record))
 }
 
@@ -70,8 +63,7 @@ fn started(case: &Case, source: Source, options: Options) -> Result<(Simulation,
     let simulation = if options.audit { simulation.audited() } else { simulation };
     let resolved = case.to_json().map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
-    let mut manifest =
-        Manifest::new(version, resolved, source, columns(case, simulation.model()), options.threads);
+    let mut manifest = Manifest::new(version, resolved, source, history_columns(case), options.threads);
     manifest.sides = sides(simulation.model());
     manifest.surfaces = surfaces(case);
     manifest.warnings = warnings(case, simulation.model());
@@ -92,13 +84,18 @@ fn surfaces(case: &Case) -> BTreeMap<String, Vec<[[f64; 3]; 2]>> {
     case.contacts.iter().filter_map(one).collect()
 }
 
-/// What an audit leaves out.
-fn audit_remarks(options: Options, session: &Session) -> Vec<String> {
-    if !options.audit {
-        return Vec::new();
-    }
-    let left_out = carom_mechanics::unaudited(session.simulation.model());
-    vec![format!("the audit did not check: {}", left_out.join("; "))]
+/// A run with its first row; it remarks what an audit leaves out.
+fn from_start(
+    mut session: Session,
+    options: Options,
+    observe: &mut (dyn FnMut(&Progress) + Send),
+    stop: &AtomicBool,
+) -> Result<Outcome, RunError> {
+    session.trials_from = options.trials.then(|| [(); 2].map(|()| session.simulation.state().clone()));
+    session.write_start()?;
+    let left_out = options.audit.then(|| carom_mechanics::unaudited(session.simulation.model()));
+    let remark = left_out.map(|left_out| format!("the audit did not check: {}", left_out.join("; ")));
+    session.go(options, observe, stop, remark.into_iter().collect())
 }
 
 /// Resumes a run that was stopped or killed; a finished one is returned as it is.

@@ -30,7 +30,7 @@ pub(super) fn locking(case: &Case, _: &Model) -> Vec<Found> {
     };
     let locking = case.bodies.iter().filter(locks).filter(|body| body.volumetric == Volumetric::Pointwise);
     for body in locking {
-        let Some(material) = case.materials.iter().find(|m| m.name == body.material) else { continue };
+        let Some(material) = case.material(body) else { continue };
         let poisson = material.lambda / (2.0 * (material.lambda + material.mu));
         // A ratio given as 0.45 and recomputed from Λ and μ differs in its last digits.
         if poisson > LOCKING + 1e-9 {
@@ -49,7 +49,7 @@ pub(super) fn locking(case: &Case, _: &Model) -> Vec<Found> {
 pub(super) fn bar_modulus(case: &Case, _: &Model) -> Vec<Found> {
     let mut found = Vec::new();
     for body in case.bodies.iter().filter(|_| case.dimension == 1 && case.manufactured.is_none()) {
-        let Some(material) = case.materials.iter().find(|m| m.name == body.material) else { continue };
+        let Some(material) = case.material(body) else { continue };
         let (lambda, mu) = (material.lambda, material.mu);
         let young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
         let confined = lambda + 2.0 * mu;

@@ -14,6 +14,10 @@ impl Found {
         Self { place: format!("body \"{name}\""), what }
     }
 
+    pub(super) fn of_the_run(what: String) -> Self {
+        Self { place: "the run".into(), what }
+    }
+
     pub(super) fn of_contact(name: &str, what: String) -> Self {
         Self { place: format!("contact \"{name}\""), what }
     }

@@ -1,6 +1,7 @@
 //! Warnings about the meshes of the two sides of a contact, where these are near each other at the
 //! start.
 
+use carom_algebra::Vector;
 use carom_case::{Case, PrimarySpec, Quantity};
 use carom_mechanics::model::Model;
 
@@ -16,7 +17,7 @@ const MATCH: f64 = 0.01;
 /// Pairs of facets that are compared to find those that are near; larger sides are not judged.
 const MOST: usize = 100_000_000;
 
-type Place = [f64; 3];
+type Place = Vector<3>;
 
 /// The facets of a contact's sides that are near the other side.
 struct Zone {
@@ -38,18 +39,6 @@ struct Near {
     degree: usize,
 }
 
-fn minus(a: Place, b: Place) -> Place {
-    std::array::from_fn(|i| a[i] - b[i])
-}
-
-fn dot(a: Place, b: Place) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn distance(a: Place, b: Place) -> f64 {
-    dot(minus(b, a), minus(b, a)).sqrt()
-}
-
 /// The zone of a contact of deformable sides in the plane or in space: facets whose middle is at
 /// most two facet lengths further from the other side than the nearest one.
 fn zone(case: &Case, model: &Model, contact: usize) -> Option<Zone> {
@@ -60,7 +49,7 @@ fn zone(case: &Case, model: &Model, contact: usize) -> Option<Zone> {
         return None;
     }
     let at = |n: usize| -> Place {
-        std::array::from_fn(|i| if i < d { model.initial_position[d * n + i] } else { 0.0 })
+        Vector(std::array::from_fn(|i| if i < d { model.initial_position[d * n + i] } else { 0.0 }))
     };
     let facets = |name: &str| -> Option<Vec<Near>> {
         let side = side(&model.parts, name, "").ok()?;
@@ -68,7 +57,7 @@ fn zone(case: &Case, model: &Model, contact: usize) -> Option<Zone> {
         let near = |nodes: &Vec<usize>| {
             let nodes: Vec<Place> = nodes.iter().map(|&n| at(n)).collect();
             let edges = if corners == 2 { 1 } else { corners };
-            let edge = |k: usize| distance(nodes[k], nodes[(k + 1) % corners]);
+            let edge = |k: usize| (nodes[(k + 1) % corners] - nodes[k]).norm();
             let length = (0..edges).map(edge).sum::<f64>() / edges as f64;
             Near { nodes, corners, length, degree }
         };
@@ -82,7 +71,7 @@ fn zone(case: &Case, model: &Model, contact: usize) -> Option<Zone> {
     let mean = |side: &[Near]| side.iter().map(|f| f.length).sum::<f64>() / side.len() as f64;
     let reach = 2.0 * f64::max(mean(&sides[0]), mean(&sides[1]));
     let gap = |middle: Place, other: &[Place]| {
-        other.iter().map(|&o| distance(middle, o)).fold(f64::INFINITY, f64::min)
+        other.iter().map(|&o| (o - middle).norm()).fold(f64::INFINITY, f64::min)
     };
     let gaps: [Vec<f64>; 2] =
         [0, 1].map(|s| middles[s].iter().map(|&middle| gap(middle, &middles[1 - s])).collect());
@@ -100,16 +89,16 @@ fn zone(case: &Case, model: &Model, contact: usize) -> Option<Zone> {
 impl Near {
     fn middle(&self) -> Place {
         let corners = &self.nodes[..self.corners];
-        std::array::from_fn(|i| corners.iter().map(|x| x[i]).sum::<f64>() / corners.len() as f64)
+        let mean = |i: usize| corners.iter().map(|x| x[i]).sum::<f64>() / corners.len() as f64;
+        Vector(std::array::from_fn(mean))
     }
 
     fn normal(&self) -> Place {
-        let a = minus(self.nodes[1], self.nodes[0]);
+        let a = self.nodes[1] - self.nodes[0];
         // In the plane z is across.
-        let b = if self.corners == 2 { [0.0, 0.0, 1.0] } else { minus(self.nodes[2], self.nodes[0]) };
-        let n = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-        let size = dot(n, n).sqrt();
-        n.map(|x| x / size)
+        let b = if self.corners == 2 { Vector([0.0, 0.0, 1.0]) } else { self.nodes[2] - self.nodes[0] };
+        let n = Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]);
+        Vector(n.0.map(|x| x / n.norm()))
     }
 }
 
@@ -123,11 +112,11 @@ impl Zone {
     /// Whether a place is within a facet's length of a side, and not much further from the other
     /// one than this side is: on a coarse round body the far end may be in the zone, too.
     fn reaches(&self, at: Place) -> bool {
-        let height = |y: Place| dot(minus(y, self.closest), self.normal).abs();
+        let height = |y: Place| (y - self.closest).dot(&self.normal).abs();
         self.sides.iter().any(|side| {
             let least = side.iter().flat_map(|f| &f.nodes).map(|&y| height(y)).fold(f64::INFINITY, f64::min);
             side.iter().any(|facet| {
-                facet.nodes.iter().any(|&y| distance(at, y) <= facet.length)
+                facet.nodes.iter().any(|&y| (y - at).norm() <= facet.length)
                     && height(at) <= least + 2.0 * facet.length
             })
         })
@@ -137,11 +126,11 @@ impl Zone {
     fn matches(&self) -> bool {
         let along = |side: usize| {
             let places = self.sides[side].iter().flat_map(|facet| &facet.nodes);
-            let flat = |y: &Place| minus(*y, self.normal.map(|n| n * dot(*y, self.normal)));
+            let flat = |y: &Place| *y - self.normal * y.dot(&self.normal);
             places.map(flat).collect::<Vec<Place>>()
         };
         let (near, tolerance) = (along(1), MATCH * self.spacing(1));
-        along(0).iter().all(|s| near.iter().any(|p| distance(*s, *p) <= tolerance))
+        along(0).iter().all(|s| near.iter().any(|p| (*p - *s).norm() <= tolerance))
     }
 }
 
@@ -179,7 +168,7 @@ pub(super) fn unmatched_pressure(case: &Case, model: &Model) -> Vec<Found> {
             readers.push("an expectation reads a pressure there".to_owned());
         }
         for probe in &probes {
-            if zone.reaches(std::array::from_fn(|i| probe.at.get(i).copied().unwrap_or(0.0))) {
+            if zone.reaches(Vector(std::array::from_fn(|i| probe.at.get(i).copied().unwrap_or(0.0)))) {
                 let names: Vec<&str> = probe.record.iter().filter(|q| stress(q)).map(|q| q.name()).collect();
                 readers.push(format!("probe \"{}\" reads {} there", probe.name, names.join(", ")));
             }

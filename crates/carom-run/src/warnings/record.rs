@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use carom_case::{Case, ContactSpec};
-use carom_record::Run;
 use carom_record::metrics::{self, MUCH_CREATED};
+use carom_record::{Event, Run};
 
 use super::found::{Found, covered_by, short};
 
@@ -13,6 +13,21 @@ use super::found::{Found, covered_by, short};
 pub(crate) const LARGE_ROTATION: f64 = 0.1;
 /// Strain beyond which linear elasticity is doubtful.
 pub(crate) const LARGE_STRAIN: f64 = 0.05;
+
+fn events<'a>(run: &'a Run, kind: &'static str) -> impl Iterator<Item = &'a Event> {
+    run.log.iter().filter(move |event| event.kind == kind)
+}
+
+/// Events of bodies, with the name of the body and a number.
+fn of_bodies<'a>(
+    run: &'a Run,
+    kind: &'static str,
+    number: &'static str,
+) -> impl Iterator<Item = (&'a Event, &'a str, f64)> {
+    events(run, kind).filter_map(move |event| {
+        Some((event, event.data.get("body")?.as_str()?, event.data.get(number)?.as_f64()?))
+    })
+}
 
 /// A contact in the plane in which no row has more than one active node, of several. A node in a
 /// concave corner has several pairs; a corner of the primary side is a node, too.
@@ -38,7 +53,7 @@ pub(super) fn one_node(case: &Case, run: &Run) -> Vec<Found> {
 
 /// Bodies that overlapped, or lay in a rigid obstacle, where no contact between them acts.
 pub(super) fn undeclared_contact(case: &Case, run: &Run) -> Vec<Found> {
-    let overlaps = run.log.iter().filter(|event| event.kind == "overlap");
+    let overlaps = events(run, "overlap");
     let found = overlaps.filter_map(|event| {
         let text = |key: &str| event.data.get(key)?.as_str();
         let (place, from) = (text("place")?.to_owned(), format!("from t = {} on", short(event.time)));
@@ -63,51 +78,49 @@ pub(super) fn undeclared_contact(case: &Case, run: &Run) -> Vec<Found> {
 
 /// Bodies of linear elasticity that have turned by more than [`LARGE_ROTATION`].
 pub(super) fn large_rotation(_: &Case, run: &Run) -> Vec<Found> {
-    let found = run.log.iter().filter(|event| event.kind == "rotation").filter_map(|event| {
-        let (name, angle) = (event.data.get("body")?.as_str()?, event.data.get("angle")?.as_f64()?);
+    let found = of_bodies(run, "rotation", "angle").map(|(event, name, angle)| {
         let what = format!(
             "a point turned by {} rad at t = {}, which alone makes strains of cos θ − 1 = {}",
             short(angle),
             short(event.time),
             short(angle.cos() - 1.0)
         );
-        Some(Found::of_body(name, what))
+        Found::of_body(name, what)
     });
     found.collect()
 }
 
 /// Bodies of linear elasticity that are strained by more than [`LARGE_STRAIN`].
 pub(super) fn large_strain(_: &Case, run: &Run) -> Vec<Found> {
-    let found = run.log.iter().filter(|event| event.kind == "strain").filter_map(|event| {
-        let (name, strain) = (event.data.get("body")?.as_str()?, event.data.get("strain")?.as_f64()?);
+    let found = of_bodies(run, "strain", "strain").map(|(event, name, strain)| {
         let what = format!("the strain reached {} at t = {}", short(strain), short(event.time));
-        Some(Found::of_body(name, what))
+        Found::of_body(name, what)
     });
     found.collect()
 }
 
 /// Friction so large that stick and slip were not unique in some step.
 pub(super) fn ambiguous_friction(_: &Case, run: &Run) -> Vec<Found> {
-    let mut events = run.log.iter().filter(|event| event.kind == "ambiguous");
+    let mut events = events(run, "ambiguous");
     let Some(first) = events.next() else { return Vec::new() };
     let what = format!(
         "stick and slip were not unique from t = {} on, {} times",
         short(first.time),
         1 + events.count()
     );
-    vec![Found { place: "the run".into(), what }]
+    vec![Found::of_the_run(what)]
 }
 
 /// Grid steps that the fallback took.
 pub(super) fn fallback_steps(_: &Case, run: &Run) -> Vec<Found> {
-    let mut events = run.log.iter().filter(|event| event.kind == "fallback");
+    let mut events = events(run, "fallback");
     let Some(first) = events.next() else { return Vec::new() };
     let (time, count) = (short(first.time), 1 + events.count());
     let what = match count {
         1 => format!("the fallback took the grid step that begins at t = {time}"),
         _ => format!("the fallback took {count} grid steps, the first at t = {time}"),
     };
-    vec![Found { place: "the run".into(), what }]
+    vec![Found::of_the_run(what)]
 }
 
 /// More energy created than the default of `time.energy_guard` allows. Load steps create none: the
@@ -121,7 +134,7 @@ pub(super) fn energy_created(case: &Case, run: &Run) -> Vec<Found> {
     let what = |share: f64| {
         format!("the total energy rose by {} % of its scale beyond the work of loads", short(100.0 * share))
     };
-    share.map(|share| Found { place: "the run".into(), what: what(share) }).into_iter().collect()
+    share.map(|share| Found::of_the_run(what(share))).into_iter().collect()
 }
 
 /// The same with the work of friction added, which may take what contact and scheme create: the
@@ -154,5 +167,5 @@ pub(super) fn hidden_energy(case: &Case, run: &Run) -> Vec<Found> {
         "scheme and contact created {made} % of its energy scale until t = {}, where friction took {taken} %",
         short(history.times()[at])
     );
-    vec![Found { place: "the run".into(), what }]
+    vec![Found::of_the_run(what)]
 }

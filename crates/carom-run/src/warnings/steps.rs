@@ -23,7 +23,7 @@ pub(super) fn long_step(case: &Case, model: &Model) -> Vec<Found> {
     let touches = |name: &str| case.contacts.iter().flat_map(ContactSpec::bodies).any(|body| body == name);
     let mut found = Vec::new();
     for (part, spec) in model.parts.iter().zip(&case.bodies).filter(|(part, _)| touches(&part.name)) {
-        let Some(material) = case.materials.iter().find(|m| m.name == spec.material) else { continue };
+        let Some(material) = case.material(spec) else { continue };
         let cell = cell_size(part.body.mesh());
         let courant = material.wave_speed(case.plane) * case.time.step / cell;
         if courant > LONG && material.density > 0.0 {

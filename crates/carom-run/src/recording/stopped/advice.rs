@@ -112,14 +112,11 @@ pub(super) fn of(
     let original = Original::new(case, source);
     let contact = place.and_then(|place| place.contact.as_deref());
     let body = place.and_then(|place| place.body.as_deref().or(place.node.as_ref().map(|n| n.body.as_str())));
-    let lowest = || {
-        let mut there = case.bodies.iter().filter(|b| body.is_none_or(|body| body == b.name));
-        there.all(|body| body.element.degree() == 1)
-    };
-    let softens = case.bodies.iter().filter(|b| body.is_none_or(|body| body == b.name)).any(|b| {
-        let law = case.materials.iter().find(|m| m.name == b.material).map(|m| m.law);
-        law == Some(Law::SaintVenantKirchhoff)
-    });
+    let there = || case.bodies.iter().filter(|b| body.is_none_or(|body| body == b.name));
+    let lowest = || there().all(|body| body.element.degree() == 1);
+    let softens = there()
+        .filter_map(|body| case.material(body))
+        .any(|material| material.law == Law::SaintVenantKirchhoff);
     let advice = |&(change, what): &Remedy| {
         let of_contact = [LONGER.1, PROJECT.1, ROUNDED.1].contains(&what);
         if what == OTHER_LAW.1 && !softens

@@ -13,7 +13,7 @@ use carom_record::{
     Advice, FieldSet, Manifest, PointArray, RecordError, Recorder, Source, Stop, StopIteration,
 };
 
-use super::fields::field_set;
+use super::fields::{displacements, field_set};
 use change::Change;
 use place::place;
 use trials::{Effort, Trials, Tried};
@@ -118,11 +118,8 @@ pub(crate) fn explain(
     });
     let mut fields = field_set(case, model, state);
     if trace.positions().len() == state.y.len() {
-        let axes = model.dimension;
-        let moved = trace.positions().iter().zip(&model.reference).map(|(y, x)| y - x).collect::<Vec<_>>();
-        let vectors =
-            moved.chunks_exact(axes).flat_map(|u| [0, 1, 2].map(|i| u.get(i).copied().unwrap_or(0.0)));
-        let values = vectors.take(3 * fields.points.len()).collect();
+        let mut values = displacements(model, trace.positions());
+        values.truncate(3 * fields.points.len());
         let unit = case.units.length.clone();
         fields.arrays.push(PointArray { name: "rejected".into(), unit, components: 3, values });
     }

@@ -6,6 +6,8 @@ use carom_mechanics::model::Model;
 use carom_mechanics::{AuditFailure, GridReport, LogEvent, Place, State, Stopped, Trace};
 use carom_record::{StopNode, StopPlace};
 
+use crate::build::side::owner;
+
 /// The place; none if nothing points to one.
 pub(super) fn place(
     model: &Model,
@@ -92,7 +94,7 @@ fn elsewhere(
 
 /// A node of a body; none of the carrier of an obstacle.
 fn described(model: &Model, state: &State, node: usize) -> Option<StopNode> {
-    let part = model.parts.iter().find(|part| !part.is_rigid() && part.nodes().contains(&node))?;
+    let part = owner(&model.parts, node).filter(|part| !part.is_rigid())?;
     let range = node * model.dimension..(node + 1) * model.dimension;
     Some(StopNode {
         number: node,

@@ -49,7 +49,7 @@ pub(crate) fn of_run(case: &Path, out: Option<&Path>) -> Result<NewDirectory, Fa
 pub(crate) fn given(out: &Path, help: &str) -> Result<NewDirectory, Failure> {
     if out.exists() {
         let what = format!("{} exists already, and Carom never overwrites a run", out.display());
-        return Err(Failure::Argument { what, help: help.to_owned() });
+        return Err(Failure::argument(what, help));
     }
     Ok(NewDirectory { path: out.to_owned(), reserved: false, parent: None })
 }
@@ -68,11 +68,8 @@ pub(crate) fn beside(run: &Path, word: &str, out: Option<&Path>) -> Result<NewDi
 /// Creates the first of `NAME`, `NAME-2`, … that does not exist. Creating a directory fails if
 /// another process has just done so, unlike a look whether it exists.
 fn reserved(parent: &Path, name: &str) -> Result<NewDirectory, Failure> {
-    let failed = |path: &Path, error: std::io::Error| Failure::System {
-        what: format!("cannot create {}: {error}", path.display()),
-    };
     let is_new = !parent.exists();
-    std::fs::create_dir_all(parent).map_err(|error| failed(parent, error))?;
+    std::fs::create_dir_all(parent).map_err(|error| Failure::cannot("create", parent, &error))?;
     let mut number = 1_u64;
     loop {
         let path = parent.join(if number == 1 { name.to_owned() } else { format!("{name}-{number}") });
@@ -82,7 +79,7 @@ fn reserved(parent: &Path, name: &str) -> Result<NewDirectory, Failure> {
                 return Ok(NewDirectory { path, reserved: true, parent });
             }
             Err(error) if error.kind() == ErrorKind::AlreadyExists => number += 1,
-            Err(error) => return Err(failed(&path, error)),
+            Err(error) => return Err(Failure::cannot("create", &path, &error)),
         }
     }
 }

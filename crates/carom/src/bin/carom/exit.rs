@@ -1,6 +1,7 @@
 //! Exit codes, and the failures they stand for.
 
-use std::path::PathBuf;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
 
 use carom::case::{CaseError, Problem};
 use carom::recording::RunError;
@@ -44,6 +45,16 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
+    /// A wrong argument, and what to do.
+    pub(crate) fn argument(what: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Argument { what: what.into(), help: help.into() }
+    }
+
+    /// What the system refused: `cannot write FILE: …`.
+    pub(crate) fn cannot(verb: &str, path: &Path, error: &dyn Display) -> Self {
+        Self::System { what: format!("cannot {verb} {}: {error}", path.display()) }
+    }
+
     pub(crate) fn exit(&self) -> Exit {
         match self {
             Self::Case(CaseError::Wrong(found)) if found.iter().any(|d| d.system) => Exit::System,
@@ -97,7 +108,7 @@ impl From<RunError> for Failure {
                 let help = problems.first().map_or_else(String::new, |p| p.help.clone());
                 Self::Argument { what, help }
             }
-            RunError::Incompatible { what } => Self::Argument { what, help: "run the case again".into() },
+            RunError::Incompatible { what } => Self::argument(what, "run the case again"),
         }
     }
 }
@@ -108,14 +119,12 @@ impl From<StudyError> for Failure {
             StudyError::Record(error) => error.into(),
             StudyError::Arm { arm, source } => match source.into() {
                 Self::System { what } => Self::System { what: format!("arm \"{arm}\": {what}") },
-                Self::Argument { what, help } => {
-                    Self::Argument { what: format!("arm \"{arm}\": {what}"), help }
-                }
+                Self::Argument { what, help } => Self::argument(format!("arm \"{arm}\": {what}"), help),
                 other => other,
             },
             error => {
                 let help = error.cure().unwrap_or_default();
-                Self::Argument { what: error.to_string(), help }
+                Self::argument(error.to_string(), help)
             }
         }
     }

@@ -6,12 +6,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use carom::recording::Progress;
 use carom_record::Manifest;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
 use crate::exit::{Exit, Failure};
-use crate::simulation::{Outcome, Progress};
+use crate::simulation::Outcome;
 use crate::{console, out};
 
 /// At most ten events per second.
@@ -80,8 +81,8 @@ impl Live {
         if self.warned.is_none() {
             self.warn();
         }
-        self.bar.set_length(progress.steps as u64);
-        self.bar.set_position(progress.step as u64);
+        self.bar.set_length(progress.steps);
+        self.bar.set_position(progress.step);
         if !self.bar.is_hidden() {
             self.bar.set_message(line(progress));
         }
@@ -141,7 +142,7 @@ fn line(p: &Progress) -> String {
         p.newton,
         p.active,
         p.created,
-        duration(p.eta)
+        duration(p.left)
     )
 }
 
@@ -200,7 +201,7 @@ mod tests {
             releases: 2,
             created: 1.2e-6,
             wall: 1.0,
-            eta: 130.0,
+            left: 130.0,
         };
         let expected =
             "t 3.3750e-1  Δt 1.875e-3  Newton 4  contacts 7  energy created 1.2e-6  left 2 min 10 s";

@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use carom::case::{Case, Document};
+use carom::case::{Case, Document, Problem};
 use carom::recording::{self, RunError};
 use carom_record::Warning;
-use carom_report::ReportSummary;
 use serde::Serialize;
 
 use crate::exit::Failure;
@@ -14,43 +13,13 @@ use crate::summary::short;
 
 /// How to run.
 #[derive(Clone, Copy, Debug)]
-#[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Options {
-    /// Number of threads; results do not depend on it.
-    pub(crate) threads: usize,
+    /// How it is computed.
+    pub(crate) run: recording::Options,
     /// Whether figures and page are made at the end.
     pub(crate) report: bool,
     /// Whether a timing profile is printed.
     pub(crate) profile: bool,
-    /// Whether changes are tried that may get a run past the place where it stopped.
-    pub(crate) trials: bool,
-    /// Whether the contact of every step is checked by a second, slow method.
-    pub(crate) audit: bool,
-}
-
-/// State of a simulation after an accepted step.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct Progress {
-    pub(crate) step: usize,
-    pub(crate) steps: usize,
-    pub(crate) time: f64,
-    pub(crate) dt: f64,
-    /// Newton iterations of the step.
-    pub(crate) newton: usize,
-    /// Active contact nodes.
-    pub(crate) active: usize,
-    /// Rejected attempts at the step.
-    pub(crate) rejected: usize,
-    /// Whether the step is still being bisected; time and Δt are those of the last attempt.
-    pub(crate) bisecting: bool,
-    /// Contact nodes that were activated and released in it.
-    pub(crate) activations: usize,
-    pub(crate) releases: usize,
-    /// Energy created so far over the energy scale so far.
-    pub(crate) created: f64,
-    /// Wall seconds so far and left.
-    pub(crate) wall: f64,
-    pub(crate) eta: f64,
 }
 
 /// A finished or interrupted run.
@@ -133,15 +102,13 @@ pub(crate) fn run(
     document: &Document,
     out: &Path,
     options: Options,
-    progress: &mut (dyn FnMut(&Progress) + Send),
+    progress: &mut (dyn FnMut(&recording::Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, Failure> {
     let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
     let folder = std::path::absolute(Path::new(".").join(folder)).ok();
     let source = carom_record::Source { text: document.text().to_owned(), sets: document.sets(), folder };
-    let library =
-        recording::Options { threads: options.threads, trials: options.trials, audit: options.audit };
-    let done = recording::run(case, source, out, library, &mut |p| progress(&seen(p)), stop);
+    let done = recording::run(case, source, out, options.run, progress, stop);
     let done = done.map_err(|error| match error {
         RunError::Case(problems) => Failure::Case(document.diagnose_all(&problems)),
         error => error.into(),
@@ -153,41 +120,52 @@ pub(crate) fn run(
 pub(crate) fn resume(
     directory: &Path,
     options: Options,
-    progress: &mut (dyn FnMut(&Progress) + Send),
+    progress: &mut (dyn FnMut(&recording::Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, Failure> {
-    let library =
-        recording::Options { threads: options.threads, trials: options.trials, audit: options.audit };
-    let done = recording::resume(directory, library, &mut |p| progress(&seen(p)), stop);
+    let done = recording::resume(directory, options.run, progress, stop);
     conclude(done?, options)
 }
 
 /// Builds the model of a case, which also checks what only the model shows.
 pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> {
-    model_facts(case).map_err(|problems| Failure::Case(document.diagnose_all(&problems)))
-}
-
-/// Makes the figures and the page of a run directory from its records.
-pub(crate) fn report(directory: &Path) -> Result<ReportSummary, Failure> {
-    Ok(carom_report::report(directory)?)
-}
-
-pub(crate) fn seen(progress: &recording::Progress) -> Progress {
-    Progress {
-        step: progress.step as usize,
-        steps: progress.steps as usize,
-        time: progress.time,
-        dt: progress.dt,
-        newton: progress.newton as usize,
-        active: progress.active,
-        rejected: progress.rejected as usize,
-        bisecting: progress.bisecting,
-        activations: progress.activations as usize,
-        releases: progress.releases as usize,
-        created: progress.created,
-        wall: progress.wall,
-        eta: progress.left,
+    let wrong = |problems: &[Problem]| Failure::Case(document.diagnose_all(problems));
+    let model = carom::Setup::new(case).build().map_err(|problems| wrong(&problems))?;
+    let d = model.dimension;
+    // A start from another run has no overlaps: its contacts prevented them.
+    let overlaps = if case.initial.is_none() { carom::overlaps(case, &model) } else { Vec::new() };
+    let problems = [overlaps, carom::too_long(case, &model)].concat();
+    if !problems.is_empty() {
+        return Err(wrong(&problems));
     }
+    let explicit = case.time.scheme.is_explicit();
+    let stable_step =
+        explicit.then(|| carom::stability::stable_step(&model)).flatten().map(|stable| stable.power);
+    let mut transit = f64::INFINITY;
+    let mut bodies = Vec::new();
+    for (part, spec) in model.parts.iter().zip(&case.bodies) {
+        let mesh = part.body.mesh();
+        if let Some(m) = case.material(spec).filter(|m| m.density > 0.0) {
+            let speed = m.wave_speed(case.plane);
+            let least = |i: usize| {
+                let at = mesh.nodes.iter().map(|x| x[i]);
+                at.clone().fold(f64::NEG_INFINITY, f64::max) - at.fold(f64::INFINITY, f64::min)
+            };
+            let width = (0..d).map(least).fold(f64::INFINITY, f64::min);
+            transit = transit.min(width / speed / case.time.step);
+        }
+        let free = part.nodes().flat_map(|n| n * d..(n + 1) * d).filter(|&dof| !model.fixed[dof]).count();
+        bodies.push(BodyFacts {
+            name: part.name.clone(),
+            nodes: mesh.nodes.len(),
+            cells: mesh.cell_count(),
+            sides: mesh.sides.keys().filter_map(|s| Some((s.clone(), mesh.side_nodes(s)?.len()))).collect(),
+            dofs: free,
+            scaled_jacobian: mesh.scaled_jacobian(),
+        });
+    }
+    let transit_steps = (transit.is_finite() && !case.time.scheme.is_static()).then_some(transit);
+    Ok(Facts { bodies, transit_steps, stable_step, warnings: carom::warnings(case, &model) })
 }
 
 /// The report, the extremes of the probes and the expectations of a run that ended.
@@ -248,7 +226,7 @@ fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, 
     let made = done.directory.join("report.html");
     let current = done.wall == 0.0 && made.exists();
     if options.report && !current {
-        report(&done.directory).map(|made| Some(made.page))
+        Ok(Some(carom_report::report(&done.directory)?.page))
     } else {
         Ok(current.then_some(made))
     }
@@ -312,45 +290,4 @@ fn extremes(run: &carom_record::Run) -> Vec<Extreme> {
             })
         })
         .collect()
-}
-
-fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
-    let model = carom::Setup::new(case).build()?;
-    let d = model.dimension;
-    // A start from another run has no overlaps: its contacts prevented them.
-    let overlaps = if case.initial.is_none() { carom::overlaps(case, &model) } else { Vec::new() };
-    let problems = [overlaps, carom::too_long(case, &model)].concat();
-    if !problems.is_empty() {
-        return Err(problems.into());
-    }
-    let explicit = case.time.scheme.is_explicit();
-    let stable_step =
-        explicit.then(|| carom::stability::stable_step(&model)).flatten().map(|stable| stable.power);
-    let mut transit = f64::INFINITY;
-    let mut bodies = Vec::new();
-    for (part, spec) in model.parts.iter().zip(&case.bodies) {
-        let mesh = part.body.mesh();
-        if let Some(m) = case.materials.iter().find(|m| m.name == spec.material)
-            && m.density > 0.0
-        {
-            let speed = m.wave_speed(case.plane);
-            let least = |i: usize| {
-                let at = mesh.nodes.iter().map(|x| x[i]);
-                at.clone().fold(f64::NEG_INFINITY, f64::max) - at.fold(f64::INFINITY, f64::min)
-            };
-            let width = (0..d).map(least).fold(f64::INFINITY, f64::min);
-            transit = transit.min(width / speed / case.time.step);
-        }
-        let free = part.nodes().flat_map(|n| n * d..(n + 1) * d).filter(|&dof| !model.fixed[dof]).count();
-        bodies.push(BodyFacts {
-            name: part.name.clone(),
-            nodes: mesh.nodes.len(),
-            cells: mesh.cell_count(),
-            sides: mesh.sides.keys().filter_map(|s| Some((s.clone(), mesh.side_nodes(s)?.len()))).collect(),
-            dofs: free,
-            scaled_jacobian: mesh.scaled_jacobian(),
-        });
-    }
-    let transit_steps = (transit.is_finite() && !case.time.scheme.is_static()).then_some(transit);
-    Ok(Facts { bodies, transit_steps, stable_step, warnings: carom::warnings(case, &model) })
 }

@@ -80,7 +80,7 @@ impl Overlap {
             let stem = if path == Path::new(super::STDIN) { Path::new("stdin") } else { path };
             let stem = stem.file_stem().unwrap_or_default().to_string_lossy();
             let file = PathBuf::from(format!("{stem}-overlap.svg"));
-            let failed = |e| Failure::System { what: format!("cannot write {}: {e}", file.display()) };
+            let failed = |e| Failure::cannot("write", &file, &e);
             std::fs::write(&file, svg).map_err(failed)?;
             picture = Some(file);
         }
@@ -112,11 +112,10 @@ impl Overlap {
 /// The arms of a study, every one resolved.
 fn study(arguments: &Arguments, document: &Document) -> Result<Exit, Failure> {
     if !arguments.sets.is_empty() {
-        return Err(Failure::Argument {
-            what: "--set cannot be used with a study".into(),
-            help: "write changes of all arms in the `set` of the study, and changes of one arm in the `set` of its [[arm]]"
-                .into(),
-        });
+        return Err(Failure::argument(
+            "--set cannot be used with a study",
+            "write changes of all arms in the `set` of the study, and changes of one arm in the `set` of its [[arm]]",
+        ));
     }
     let plan = super::plan(document, &arguments.case)?;
     let Plan { manifest, arms } = &plan;

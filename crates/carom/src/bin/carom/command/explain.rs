@@ -35,15 +35,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     let spec = read_scheme(kind, &arguments.parameters)?;
     if spec.is_static() {
-        return Err(Failure::Argument {
-            what:
-                "the scheme `static` is not a time integrator: every step is a static equilibrium, with t as the load parameter"
-                    .into(),
-            help: "run `carom explain` without arguments to list the time integrators".into(),
-        });
+        return Err(Failure::argument(
+            "the scheme `static` is not a time integrator: every step is a static equilibrium, with t as the load parameter",
+            "run `carom explain` without arguments to list the time integrators",
+        ));
     }
-    let scheme =
-        spec.integrator().map_err(|e| Failure::Argument { what: e.to_string(), help: String::new() })?;
+    let scheme = spec.integrator().map_err(|e| Failure::argument(e.to_string(), ""))?;
     print(&scheme.explain(), arguments.json)
 }
 

@@ -49,14 +49,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         }
     };
     match &arguments.out {
-        Some(path) => std::fs::write(path, text).map_err(|e| cannot_write(path, &e))?,
+        Some(path) => std::fs::write(path, text).map_err(|e| Failure::cannot("write", path, &e))?,
         None => out::line(&text)?,
     }
     Ok(Exit::Done)
-}
-
-fn cannot_write(path: &Path, error: &dyn std::error::Error) -> Failure {
-    Failure::System { what: format!("cannot write {}: {error}", path.display()) }
 }
 
 #[cfg(feature = "parquet")]
@@ -67,10 +63,7 @@ fn write_parquet(run: &Run, path: Option<&Path>) -> Result<(), Failure> {
     use arrow_schema::{DataType, Field, Schema};
     use parquet::arrow::ArrowWriter;
 
-    let path = path.ok_or_else(|| Failure::Argument {
-        what: "a Parquet file needs a name".to_owned(),
-        help: "--out FILE".to_owned(),
-    })?;
+    let path = path.ok_or_else(|| Failure::argument("a Parquet file needs a name", "--out FILE"))?;
     let pair = |key: &str, text: &str| (key.to_owned(), text.to_owned());
     let columns = &run.history.columns;
     let fields = columns.iter().map(|c| {
@@ -80,26 +73,26 @@ fn write_parquet(run: &Run, path: Option<&Path>) -> Result<(), Failure> {
     });
     let schema = Arc::new(Schema::new(fields.collect::<Vec<_>>()));
     let values = run.history.values.iter().map(|v| Arc::new(Float64Array::from(v.clone())) as ArrayRef);
-    let rows = RecordBatch::try_new(schema.clone(), values.collect()).map_err(|e| cannot_write(path, &e))?;
-    let file = std::fs::File::create(path).map_err(|e| cannot_write(path, &e))?;
+    let rows = RecordBatch::try_new(schema.clone(), values.collect())
+        .map_err(|e| Failure::cannot("write", path, &e))?;
+    let file = std::fs::File::create(path).map_err(|e| Failure::cannot("write", path, &e))?;
     ArrowWriter::try_new(file, schema, None)
         .and_then(|mut writer| {
             writer.write(&rows)?;
             writer.close()
         })
-        .map_err(|e| cannot_write(path, &e))?;
+        .map_err(|e| Failure::cannot("write", path, &e))?;
     Ok(())
 }
 
 #[cfg(not(feature = "parquet"))]
 fn write_parquet(_: &Run, _: Option<&Path>) -> Result<(), Failure> {
-    Err(Failure::Argument {
-        what: "this program was built without Parquet".to_owned(),
-        help: "cargo install --path crates/carom --features parquet, in a clone of Carom; or there \
+    Err(Failure::argument(
+        "this program was built without Parquet",
+        "cargo install --path crates/carom --features parquet, in a clone of Carom; or there \
                pip install \"./crates/carom-python[parquet]\", then python -m carom export DIR --format parquet \
-               --out FILE"
-            .to_owned(),
-    })
+               --out FILE",
+    ))
 }
 
 /// A file that exists may be one of the record.
@@ -108,5 +101,5 @@ fn free(path: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let what = format!("{} exists already, and Carom never overwrites a file", path.display());
-    Err(Failure::Argument { what, help: "name another file, or remove it first".to_owned() })
+    Err(Failure::argument(what, "name another file, or remove it first"))
 }

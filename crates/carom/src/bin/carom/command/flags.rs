@@ -2,6 +2,8 @@
 
 use std::num::NonZero;
 
+use carom::recording;
+
 use crate::exit::Failure;
 use crate::simulation::Options;
 
@@ -36,12 +38,8 @@ pub(crate) struct Flags {
 
 impl Flags {
     pub(crate) fn options(&self) -> Result<Options, Failure> {
-        Ok(Options {
-            threads: super::parallel("--threads", self.threads)?,
-            report: !self.no_report,
-            profile: self.profile,
-            trials: !self.no_trials,
-            audit: self.audit,
-        })
+        let threads = super::parallel("--threads", self.threads)?;
+        let run = recording::Options { threads, trials: !self.no_trials, audit: self.audit };
+        Ok(Options { run, report: !self.no_report, profile: self.profile })
     }
 }

@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         out::line(&String::from_utf8_lossy(&page))?;
         return Ok(Exit::Done);
     };
-    let failed = |e| Failure::System { what: format!("cannot write to {}: {e}", folder.display()) };
+    let failed = |e| Failure::cannot("write to", folder, &e);
     std::fs::create_dir_all(folder)
         .and_then(|()| clap_mangen::generate_to(command, folder))
         .map_err(failed)?;

@@ -4,8 +4,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use carom::case::{Case, Document, Problem};
-use carom_record::{Block, Cell, FieldSet};
-use carom_solid::{Element, Mesh, gmsh};
+use carom::recording::block;
+use carom_record::FieldSet;
+use carom_solid::{Mesh, gmsh};
 
 use crate::exit::{Exit, Failure};
 use crate::out;
@@ -30,26 +31,22 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let path = &arguments.out;
-    let argument = |what, help: &str| Err(Failure::Argument { what, help: help.to_owned() });
     let msh = match path.extension().and_then(|e| e.to_str()) {
         Some("msh") => true,
         Some("vtu") => false,
         _ => {
-            return argument(
-                format!("{} is neither .msh nor .vtu", path.display()),
-                "use a name that ends in .msh (for Gmsh) or .vtu (for ParaView)",
-            );
+            let what = format!("{} is neither .msh nor .vtu", path.display());
+            let help = "use a name that ends in .msh (for Gmsh) or .vtu (for ParaView)";
+            return Err(Failure::argument(what, help));
         }
     };
     if path.exists() {
-        return argument(
-            format!("{} exists already and is not overwritten", path.display()),
-            "give another file name",
-        );
+        let what = format!("{} exists already and is not overwritten", path.display());
+        return Err(Failure::argument(what, "give another file name"));
     }
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
     let bytes = match (case.dimension, msh) {
-        (1, true) => return argument("bars cannot be written as .msh".to_owned(), "write them as .vtu"),
+        (1, true) => return Err(Failure::argument("bars cannot be written as .msh", "write them as .vtu")),
         (_, false) => vtu(&case, &meshes(&case, &document)?)?,
         (_, true) => {
             let meshes = meshes(&case, &document)?;
@@ -85,18 +82,7 @@ fn vtu(case: &Case, meshes: &[Mesh]) -> Result<Vec<u8>, Failure> {
         fields
             .points
             .extend(mesh.nodes.iter().map(|x| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))));
-        fields.blocks.push(Block {
-            body: spec.name.clone(),
-            cell: match mesh.element {
-                Element::L2 | Element::L3 | Element::L4 => Cell::Curve,
-                Element::T3 | Element::T6 | Element::T10 => Cell::Triangle,
-                Element::Q4 | Element::Q9 => Cell::Quadrilateral,
-                Element::Tet4 | Element::Tet10 | Element::Tet20 => Cell::Tetrahedron,
-                Element::Hex8 | Element::Hex27 => Cell::Hexahedron,
-            },
-            degree: mesh.element.degree(),
-            connectivity: mesh.cells.iter().map(|n| first + n).collect(),
-        });
+        fields.blocks.push(block(&spec.name, mesh, first));
     }
     fields.to_vtu(0.0).map_err(|e| Failure::System { what: e.to_string() })
 }

@@ -113,7 +113,7 @@ fn parallel(option: &str, requested: Option<NonZero<usize>>) -> Result<usize, Fa
             "{option} {count} is too many: more than the {cores} cores of this machine cost time and memory, \
              and at most {most} are accepted"
         );
-        return Err(Failure::Argument { what, help: format!("omit {option} for one per core") });
+        return Err(Failure::argument(what, format!("omit {option} for one per core")));
     }
     Ok(count)
 }

@@ -1,7 +1,7 @@
 //! `carom new`: a new folder with a commented case.
 
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::exit::{Exit, Failure};
 use crate::out;
@@ -56,22 +56,21 @@ impl Template {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let folder = &arguments.name;
-    let argument = |what: String, help: &str| Failure::Argument { what, help: help.to_owned() };
     let Some(name) = folder.file_name().and_then(|n| n.to_str()) else {
-        return Err(argument(
+        return Err(Failure::argument(
             format!("{} is not a valid folder name", folder.display()),
             "give a name such as `carom new drop`",
         ));
     };
     if let Some(parent) = folder.parent().filter(|p| !p.as_os_str().is_empty()) {
-        std::fs::create_dir_all(parent).map_err(|e| failed("create", parent, &e))?;
+        std::fs::create_dir_all(parent).map_err(|e| Failure::cannot("create", parent, &e))?;
     }
     std::fs::create_dir(folder).map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => argument(
+        ErrorKind::AlreadyExists => Failure::argument(
             format!("{} exists already and is not overwritten", folder.display()),
             "choose another name",
         ),
-        _ => failed("create", folder, &error),
+        _ => Failure::cannot("create", folder, &error),
     })?;
     let schema = serde_json::to_string_pretty(&carom::case::schema()).map_err(std::io::Error::from)?;
     let case = format!("{name}.toml");
@@ -80,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     files.extend(arguments.template.files());
     for (file, bytes) in files {
         let path = folder.join(file);
-        std::fs::write(&path, bytes).map_err(|e| failed("write", &path, &e))?;
+        std::fs::write(&path, bytes).map_err(|e| Failure::cannot("write", &path, &e))?;
     }
     let case = folder.join(case);
     let quoted = if case.to_string_lossy().contains(' ') {
@@ -95,8 +94,4 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         folder.join("schema.json").display()
     ))?;
     Ok(Exit::Done)
-}
-
-fn failed(verb: &str, path: &Path, error: &std::io::Error) -> Failure {
-    Failure::System { what: format!("cannot {verb} {}: {error}", path.display()) }
 }

@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             "the case that was written to {case} does not stop for the same reason at the same place"
         );
         let help = "use it as a start, or report this as a defect of Carom".to_owned();
-        return Err(Failure::Argument { what, help });
+        return Err(Failure::argument(what, help));
     }
     Ok(Exit::Done)
 }
@@ -63,9 +63,9 @@ impl From<ReduceError> for Failure {
             ReduceError::Case(problems) => {
                 let what = ReduceError::Case(problems).to_string();
                 let help = "restore the files that the case names as they were when the run was made";
-                Self::Argument { what, help: help.to_owned() }
+                Self::argument(what, help)
             }
-            ReduceError::Unusable { what, help } => Self::Argument { what, help: help.to_owned() },
+            ReduceError::Unusable { what, help } => Self::argument(what, help),
         }
     }
 }

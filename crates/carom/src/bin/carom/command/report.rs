@@ -9,7 +9,7 @@ use carom_report::ReportSummary;
 use convert::{Converter, Format};
 
 use crate::exit::{Exit, Failure};
-use crate::{out, simulation};
+use crate::out;
 
 /// Rebuild the figures and the report page of a run or a study from its data files alone
 #[derive(clap::Args)]
@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         crate::study_summary::report(directory)?
     } else {
         run_directory(directory)?;
-        simulation::report(directory)?
+        carom_report::report(directory)?
     };
     out::line(&page.display().to_string())?;
     for figure in figures.iter().filter(|_| !format.is_empty()) {
@@ -77,9 +77,8 @@ pub(super) fn run_directory(directory: &Path) -> Result<(), Failure> {
     } else {
         format!("there is no directory {path}")
     };
-    Err(Failure::Argument {
+    Err(Failure::argument(
         what,
-        help: "give a directory that `carom run` or `carom study` created, for example runs/impact"
-            .to_owned(),
-    })
+        "give a directory that `carom run` or `carom study` created, for example runs/impact",
+    ))
 }

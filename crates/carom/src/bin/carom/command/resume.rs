@@ -44,13 +44,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 format!("{option} is an option for runs, but {} is a study", arguments.directory.display());
             let help = "the arms of a study share the cores, without audit and without trials where it stops; \
                 --jobs sets the number of concurrent arms, and the timings of an arm are in its manifest.json";
-            return Err(Failure::Argument { what, help: help.to_owned() });
+            return Err(Failure::argument(what, help));
         }
         return super::study::resume(&arguments.directory, arguments.jobs, !flags.no_report, flags.json);
     }
     if arguments.jobs.is_some() {
         let what = format!("--jobs is an option for studies, but {} is a run", arguments.directory.display());
-        return Err(Failure::Argument { what, help: "use --threads for a run".to_owned() });
+        return Err(Failure::argument(what, "use --threads for a run"));
     }
     super::report::run_directory(&arguments.directory)?;
     if flags.audit && Manifest::read(&arguments.directory)?.status == Status::Finished {
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             arguments.directory.display()
         );
         let help = "run its case again with --audit, into another directory".to_owned();
-        return Err(Failure::Argument { what, help });
+        return Err(Failure::argument(what, help));
     }
     let options = flags.options()?;
     let stop = stop_on_signal()?;

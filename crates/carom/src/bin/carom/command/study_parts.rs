@@ -8,7 +8,6 @@ use serde_json::json;
 
 use crate::exit::{Exit, Failure};
 use crate::live::{Live, stop_on_signal};
-use crate::simulation::seen;
 use crate::{console, directory, out, study_summary};
 
 use super::study_progress::Seen;
@@ -92,7 +91,7 @@ fn plan(study: &Path, directory: &Path, slurm: bool, settle: bool) -> Result<Exi
     let count = plan.manifest.runs().count();
     if slurm {
         let path = directory.join("slurm.sh");
-        let failed = |e| Failure::System { what: format!("cannot write {}: {e}", path.display()) };
+        let failed = |e| Failure::cannot("write", &path, &e);
         let whole = std::path::absolute(&*directory).map_err(failed)?;
         let machine = timed.then(|| plan.manifest.machine.kind());
         std::fs::write(&path, script(&plan.manifest.title, &whole, count, machine.as_deref()))
@@ -138,7 +137,7 @@ fn arm(directory: &Path, number: usize) -> Result<Exit, Failure> {
     let (name, place) = arm.map(|arm| (arm.name.clone(), arm.directory.clone())).unwrap_or_default();
     let stop = stop_on_signal()?;
     let mut live = Live::new(false, &directory.join(place));
-    let ended = carom_study::arm(directory, number, &mut |p| live.show(&seen(p)), &stop);
+    let ended = carom_study::arm(directory, number, &mut |p| live.show(p), &stop);
     drop(live);
     let ended = ended?;
     if !console::is_quiet() {

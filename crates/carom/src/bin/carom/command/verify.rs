@@ -87,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 "give a case or a study that has an [[expect]], or a folder that contains one",
             )
         };
-        return Err(Failure::Argument { what: what.to_owned(), help: help.to_owned() });
+        return Err(Failure::argument(what, help));
     }
     std::fs::create_dir_all(&*directory)?;
     let options = VerifyOptions { jobs, whole: arguments.report, fail_fast: arguments.fail_fast };

@@ -34,9 +34,11 @@ impl Converter {
         let mut options = usvg::Options::default();
         let fonts = options.fontdb_mut();
         let family = if let Some(path) = font {
-            fonts.load_font_file(path).map_err(|error| Failure::Argument {
-                what: format!("the font {} cannot be read: {error}", path.display()),
-                help: "give a TrueType or OpenType file".to_owned(),
+            fonts.load_font_file(path).map_err(|error| {
+                Failure::argument(
+                    format!("the font {} cannot be read: {error}", path.display()),
+                    "give a TrueType or OpenType file",
+                )
             })?;
             fonts.faces().find_map(|face| Some(face.families.first()?.0.clone()))
         } else {
@@ -44,15 +46,14 @@ impl Converter {
             installed(fonts)
         };
         let family = family.ok_or_else(|| match font {
-            Some(path) => Failure::Argument {
-                what: format!("{} contains no font", path.display()),
-                help: "give a TrueType or OpenType file".to_owned(),
-            },
-            None => Failure::Argument {
-                what: format!("no font was found for the text of figures: none of {}", FONTS.join(", ")),
-                help: "install one of them (for example the package fonts-dejavu-core), or give --font FILE"
-                    .to_owned(),
-            },
+            Some(path) => Failure::argument(
+                format!("{} contains no font", path.display()),
+                "give a TrueType or OpenType file",
+            ),
+            None => Failure::argument(
+                format!("no font was found for the text of figures: none of {}", FONTS.join(", ")),
+                "install one of them (for example the package fonts-dejavu-core), or give --font FILE",
+            ),
         })?;
         fonts.set_sans_serif_family(family);
         Ok(Self { options, scale })
@@ -60,9 +61,7 @@ impl Converter {
 
     /// Writes a figure in the given formats beside its SVG; returns the files.
     pub(super) fn write(&self, figure: &Path, formats: &[Format]) -> Result<Vec<PathBuf>, Failure> {
-        let failed = |path: &Path, error: &dyn std::fmt::Display| Failure::System {
-            what: format!("cannot write {}: {error}", path.display()),
-        };
+        let failed = |path: &Path, error: &dyn std::fmt::Display| Failure::cannot("write", path, error);
         let svg = std::fs::read(figure).map_err(|error| failed(figure, &error))?;
         let tree = usvg::Tree::from_data(&svg, &self.options).map_err(|error| failed(figure, &error))?;
         let mut written = Vec::new();
@@ -119,12 +118,11 @@ pub(super) enum Converter {}
 #[cfg(not(feature = "figures"))]
 impl Converter {
     pub(super) fn new(_: f32, _: Option<&Path>) -> Result<Self, Failure> {
-        Err(Failure::Argument {
-            what: "this program was built without PNG and PDF, whose libraries take minutes to compile".to_owned(),
-            help: "cargo install --path crates/carom --features figures, in a clone of Carom; or redraw a figure with its \
-                   script, python3 figures/NAME.py (matplotlib), or print report.html to PDF in a browser"
-                .to_owned(),
-        })
+        Err(Failure::argument(
+            "this program was built without PNG and PDF, whose libraries take minutes to compile",
+            "cargo install --path crates/carom --features figures, in a clone of Carom; or redraw a figure with its \
+                   script, python3 figures/NAME.py (matplotlib), or print report.html to PDF in a browser",
+        ))
     }
 
     pub(super) fn write(&self, _: &Path, _: &[Format]) -> Result<Vec<PathBuf>, Failure> {
