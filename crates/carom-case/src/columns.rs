@@ -10,7 +10,7 @@ use super::{BodySpec, Case, ContactSpec, Fallback, ObstacleMotion, ProbeSpec, Qu
 pub(super) fn exists(of: Quantity, dimension: usize) -> bool {
     let axes = of.name().trim_start_matches("sigma_");
     let lacks = |axis: &str| axes.len() == 2 && axes.contains(axis);
-    !(dimension < 2 && lacks("y") || dimension < 3 && lacks("z"))
+    !(dimension < 2 && (lacks("y") || of == Quantity::VonMises) || dimension < 3 && lacks("z"))
 }
 
 impl Case {

@@ -336,17 +336,6 @@ fn probes(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Problem>) -> V
                 nearest.map_or(String::new(), |x| format!("the nearest node is at {x:?}")),
             ));
         }
-        if let Some(j) = spec.record.iter().position(|q| !exists_in(quantity(*q), case.dimension)) {
-            problems.push(Problem::new(
-                format!("probe[{k}].record[{j}]"),
-                format!(
-                    "probe \"{}\" records a quantity that does not exist in dimension {}",
-                    spec.name, case.dimension
-                ),
-                "a bar has ux, vx, ax, sigma_xx and det_f",
-                "remove it",
-            ));
-        }
         let record = spec.record.iter().map(|q| quantity(*q)).collect();
         probes.push(Probe { name: spec.name.clone(), part, places, record });
     }
@@ -374,15 +363,5 @@ pub(crate) fn quantity(name: carom_case::Quantity) -> Quantity {
         Name::SigmaXz => Quantity::Stress(0, 2),
         Name::VonMises => Quantity::VonMises,
         Name::DetF => Quantity::DetF,
-    }
-}
-
-/// Whether a quantity exists in a dimension: a bar has one axis, and a stress along it.
-fn exists_in(quantity: Quantity, dimension: usize) -> bool {
-    match quantity {
-        Quantity::Displacement(i) | Quantity::Velocity(i) | Quantity::Acceleration(i) => i < dimension,
-        Quantity::Stress(i, j) => i < dimension && j < dimension,
-        Quantity::VonMises => dimension > 1,
-        Quantity::DetF => true,
     }
 }
