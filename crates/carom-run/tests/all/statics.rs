@@ -113,7 +113,7 @@ scheme = {{ kind = "static" }}
     let stopped =
         simulation(&text(axis, 0.6), &[""; 0]).advance(&mut GridReport::default()).unwrap_err().to_string();
     assert!(stopped.contains("body \"disc\" is free to move along y"), "{stopped}");
-    assert!(stopped.contains("`move`"), "{stopped}");
+    assert!(stopped.contains("a support that moves"), "{stopped}");
     // In contact, it rests on the floor with its weight.
     let sim = finish(simulation(&text(axis, 0.5), &[""; 0]));
     let weight: f64 = sim.model().gravity.iter().skip(1).step_by(2).sum();
