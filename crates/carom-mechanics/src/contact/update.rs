@@ -68,26 +68,6 @@ fn each(
     changed
 }
 
-/// Before the first load step, activates initial contacts if supports leave rigid motions free.
-/// Returns whether there are any.
-fn activate_initial(model: &Model, evaluation: &mut Evaluation) -> bool {
-    if model.unconstrained.is_empty() || evaluation.pressing().next().is_some() {
-        return false;
-    }
-    let mut changed = false;
-    // A spring exerts no force before it is compressed.
-    let constraints =
-        model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
-    for (k, _) in constraints {
-        for (pair, row) in evaluation.at.pairings[k].pairs.iter_mut().zip(evaluation.rows[k].iter()) {
-            if row.gap <= INITIAL_GAP * model.scale {
-                (pair.active, changed) = (true, true);
-            }
-        }
-    }
-    changed
-}
-
 /// Contact changes during the solve of a stage.
 pub(crate) struct ContactUpdate<'a> {
     equations: &'a Equations<'a>,
@@ -129,16 +109,41 @@ impl<'a> ContactUpdate<'a> {
         augmented::start(self.equations.model, guess);
     }
 
-    /// Activates the contacts of the first iterate of load steps that supports do not hold; returns
-    /// whether there are any.
+    /// Before the first load step, activates initial contacts if supports leave rigid motions free.
+    /// Returns whether there are any.
     pub(crate) fn activate_initial(&self, now: &mut Evaluation) -> bool {
-        self.equations.stage.is_static() && activate_initial(self.equations.model, now)
+        let Equations { model, stage, .. } = self.equations;
+        if !stage.is_static() || model.unconstrained.is_empty() || now.pressing().next().is_some() {
+            return false;
+        }
+        let mut changed = false;
+        // A spring exerts no force before it is compressed.
+        let constraints =
+            model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
+        for (k, _) in constraints {
+            for (pair, row) in now.at.pairings[k].pairs.iter_mut().zip(now.rows[k].iter()) {
+                if row.gap <= INITIAL_GAP * model.scale {
+                    (pair.active, changed) = (true, true);
+                }
+            }
+        }
+        changed
     }
 
-    /// # Errors
-    /// If supports prevent an active constraint from being satisfied.
+    /// Reports an active constraint without a row: supports prevent it from being satisfied.
     pub(crate) fn check_satisfiable(&self, now: &Evaluation) -> Result<(), Rejected> {
-        check_satisfiable(self.equations, now)
+        let model = self.equations.model;
+        let rows = Constraints::of(self.equations, now);
+        let gaps: BTreeSet<_> =
+            rows.list.iter().filter(|row| row.slip.is_none()).map(|row| row.place).collect();
+        for (k, p) in now.pressing().filter(|place| !gaps.contains(place)) {
+            let (contact, depth) = (&model.contacts[k], -now.rows[k].row(p).gap);
+            if contact.interface.is_constraint() && depth > model.gap_tolerance {
+                let node = contact.node(&now.at.pairings[k].pairs[p]);
+                return Err(Rejected::Overconstrained { contact: contact.name.clone(), node, depth });
+            }
+        }
+        Ok(())
     }
 
     /// Begins another round from a converged iterate, if augmented Lagrangians need one; returns
@@ -295,19 +300,4 @@ impl<'a> ContactUpdate<'a> {
         }
         Ok(changed)
     }
-}
-
-/// Reports an active constraint without a row: supports prevent it from being satisfied.
-fn check_satisfiable(equations: &Equations, evaluation: &Evaluation) -> Result<(), Rejected> {
-    let model = equations.model;
-    let rows = Constraints::of(equations, evaluation);
-    let gaps: BTreeSet<_> = rows.list.iter().filter(|row| row.slip.is_none()).map(|row| row.place).collect();
-    for (k, p) in evaluation.pressing().filter(|place| !gaps.contains(place)) {
-        let (contact, depth) = (&model.contacts[k], -evaluation.rows[k].row(p).gap);
-        if contact.interface.is_constraint() && depth > model.gap_tolerance {
-            let node = contact.node(&evaluation.at.pairings[k].pairs[p]);
-            return Err(Rejected::Overconstrained { contact: contact.name.clone(), node, depth });
-        }
-    }
-    Ok(())
 }

@@ -73,6 +73,7 @@ impl System {
         double: bool,
     ) -> Result<bool, Rejected> {
         if let Some(positive) = self.preconditioner.of(point) {
+            self.scale_at(model, point)?;
             return Ok(positive);
         }
         self.assembled = None;
@@ -96,9 +97,14 @@ impl System {
             self.assembled = None;
             return Ok(());
         };
-        if !renewal.due {
-            self.tangent_at(model, point, renewal.double)?;
+        if renewal.due {
+            return self.scale_at(model, point);
         }
+        self.tangent_at(model, point, renewal.double).map(|_| ())
+    }
+
+    /// Takes the scales from the tangent of a point, which is assembled unless that was done last.
+    fn scale_at(&mut self, model: &Model, point: &Arc<Point>) -> Result<(), Rejected> {
         if self.assembled.as_ref() != Some(point) {
             self.assemble(model, &point.at)?;
             self.assembled = Some(point.clone());

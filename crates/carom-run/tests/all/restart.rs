@@ -99,10 +99,12 @@ fn every_state_alone_determines_the_next_one() {
                 state.step,
                 case.title
             );
-            // A simulation that was elsewhere before.
-            other.restore(state).unwrap();
-            other.step().unwrap();
-            assert!(other.state() == whole.state(), "restored at {}, {sets:?}", whole.state().step);
+            // A simulation that was elsewhere before, and one that has made this step already.
+            for before in ["elsewhere", "here"] {
+                other.restore(state.clone()).unwrap();
+                other.step().unwrap();
+                assert!(other.state() == whole.state(), "{before}, after step {}, {sets:?}", state.step);
+            }
         }
     }
 }
