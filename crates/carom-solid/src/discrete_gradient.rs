@@ -6,18 +6,34 @@
 //! ```
 //!
 //! so that P:ΔF = S:ΔE = W₁ − W₀ exactly, and S is symmetric (angular momentum) and objective.
-//! S(E_m) comes from the law itself, S = F̂⁻¹ P(F̂) with the triangular F̂ᵀF̂ = I + 2E_m, and so
-//! does its derivative: dF̂ = F̂⁻ᵀ dE has sym(F̂ᵀ dF̂) = dE, and dS = F̂⁻¹ (dP − dF̂ S). For small
-//! strains the energy is quadratic in H, and the stress at the midpoint is a discrete gradient
-//! already.
+//! Every term is a function of E₀ and E₁, never of the rotation: W(E) and S(E) come from the law at
+//! the triangular F̂ with F̂ᵀF̂ = I + 2E, S = F̂⁻¹ P(F̂), and so does the derivative: dF̂ = F̂⁻ᵀ dE has
+//! sym(F̂ᵀ dF̂) = dE, and dS = F̂⁻¹ (dP − dF̂ S). For small strains the energy is quadratic in H, and
+//! the stress at the midpoint is a discrete gradient already.
+//!
+//! The numerator of φ is of third order in ΔE. As a difference of energies it would consist of
+//! round-off where ΔE is small: an error ε W of it is one of ε W/‖ΔE‖ in S, which no correction of
+//! the positions removes. It is then the integral of the stresses along the path, by three Gauss
+//! points, in which the terms cancel before they are multiplied by ΔE:
+//!
+//! ```text
+//! W₁ − W₀ − S(E_m):ΔE = 5/18 [S(E₊) + S(E₋) − 2 S(E_m)]:ΔE,   E± = E_m ± √(3/5) ΔE/2
+//! ```
 
 use carom_algebra::Mat;
 
-use crate::material::{Material, NotPositive};
+use crate::material::{Material, NotPositive, excess_det};
 
-/// Below this ΔE:ΔE the correction is omitted: it is of third order in ΔE and would amount to the
-/// round-off of W divided by ‖ΔE‖.
-const NO_STRAIN: f64 = 1e-12;
+/// Largest ΔE:ΔE with which three Gauss points give W₁ − W₀ to round-off: their error is
+/// W⁽⁷⁾ ‖ΔE‖⁷/2 016 000 (M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, 25.4.30),
+/// 2e-23 W″ at this bound for the logarithm of the neo-Hookean law.
+const GAUSS: f64 = 1e-6;
+
+/// Distance of the outer Gauss points from the middle, in ΔE: √(3/5)/2.
+const OUTER: f64 = 0.387_298_334_620_741_7;
+
+/// Weight of an outer Gauss point.
+const WEIGHT: f64 = 5.0 / 18.0;
 
 /// W₁ and P. Not inlined: the cost of a call is small in comparison.
 #[inline(never)]
@@ -26,9 +42,13 @@ pub(crate) fn between<const D: usize, L: Material<D>>(
     h: [&Mat<D>; 2],
 ) -> Result<(f64, Mat<D>), NotPositive> {
     if L::OBJECTIVE {
-        return Middle::new(law, h).map(|middle| (middle.energy, middle.f * middle.s));
+        let path = Path::new(law, h)?;
+        let energy = energy_at(law, &path.ends[1])?;
+        let s = path.middle.stress + path.change * path.phi(law, energy)?;
+        return Ok((energy, path.f * s));
     }
-    let (end, middle) = (law.at(h[1])?, law.at(&((*h[0] + *h[1]) * 0.5))?);
+    let end = law.at(h[1])?;
+    let middle = law.at(&((*h[0] + *h[1]) * 0.5))?;
     Ok((law.energy(&end), law.stress(&middle)))
 }
 
@@ -43,51 +63,140 @@ pub(crate) fn change_between<const D: usize, L: Material<D>>(
         let point = law.at(&((*h[0] + *h[1]) * 0.5))?;
         return Ok(law.change(&point, &(*dh * 0.5)));
     }
-    let Middle { f, point, inverse, of_law, change, square, phi, s, .. } = Middle::new(law, h)?;
+    let path = Path::new(law, h)?;
     let de = symmetric(&((Mat::identity() + *h[1]).transposed() * *dh));
-    let df = inverse.transposed() * (de * 0.5);
-    let mut ds = inverse * (law.change(&point, &df) - df * of_law);
-    if square > NO_STRAIN {
-        let end = law.stress(&law.at(h[1])?);
-        let numerator = end.double_dot(dh) - of_law.double_dot(&de) - ds.double_dot(&change);
-        let dphi = (numerator - 2.0 * phi * change.double_dot(&de)) / square;
-        ds = ds + change * dphi + de * phi;
-    }
-    Ok(*dh * s * 0.5 + f * ds)
+    let [phi, dphi] = path.phi_and_change(law, &de)?;
+    let s = path.middle.stress + path.change * phi;
+    let ds = path.middle.change(law, &(de * 0.5)) + path.change * dphi + de * phi;
+    Ok(*dh * s * 0.5 + path.f * ds)
 }
 
-/// Terms of the formulas above.
-struct Middle<const D: usize, P> {
-    /// W₁.
-    energy: f64,
-    f: Mat<D>,
-    /// The law at F̂, and F̂⁻¹.
+/// W at a strain.
+#[inline(always)]
+fn energy_at<const D: usize, L: Material<D>>(law: &L, strain: &Mat<D>) -> Result<f64, NotPositive> {
+    Ok(law.energy(&law.at(&root(strain)?)?))
+}
+
+/// A law at a strain.
+struct AtStrain<const D: usize, P> {
+    /// The law at F̂.
     point: P,
+    /// F̂⁻¹.
     inverse: Mat<D>,
-    /// S(E_m).
-    of_law: Mat<D>,
-    /// ΔE and ΔE:ΔE.
-    change: Mat<D>,
-    square: f64,
-    phi: f64,
-    s: Mat<D>,
+    /// S.
+    stress: Mat<D>,
 }
 
-impl<const D: usize, P> Middle<D, P> {
+impl<const D: usize, P> AtStrain<D, P> {
     #[inline(always)]
-    fn new<L: Material<D, Point = P>>(law: &L, h: [&Mat<D>; 2]) -> Result<Self, NotPositive> {
-        let [start, energy] = [law.at(h[0])?, law.at(h[1])?].map(|point| law.energy(&point));
-        let f = Mat::identity() + (*h[0] + *h[1]) * 0.5;
-        let change = symmetric(&(f.transposed() * (*h[1] - *h[0])));
-        let [e0, e1] = h.map(strain);
-        let excess = root(&((e0 + e1) * 0.5)).ok_or(NotPositive(0.0))?;
+    fn new<L: Material<D, Point = P>>(law: &L, strain: &Mat<D>) -> Result<Self, NotPositive> {
+        let excess = root(strain)?;
         let point = law.at(&excess)?;
         let inverse = (Mat::identity() + excess).inverse();
-        let of_law = symmetric(&(inverse * law.stress(&point)));
+        let stress = symmetric(&(inverse * law.stress(&point)));
+        Ok(Self { point, inverse, stress })
+    }
+
+    /// ∂S/∂E : dE.
+    #[inline(always)]
+    fn change<L: Material<D, Point = P>>(&self, law: &L, de: &Mat<D>) -> Mat<D> {
+        let df = self.inverse.transposed() * *de;
+        self.inverse * (law.change(&self.point, &df) - df * self.stress)
+    }
+}
+
+/// The straight path between two strains.
+struct Path<const D: usize, P> {
+    /// E₀ and E₁.
+    ends: [Mat<D>; 2],
+    /// The law at E_m.
+    middle: AtStrain<D, P>,
+    /// F_m.
+    f: Mat<D>,
+    /// ΔE.
+    change: Mat<D>,
+    /// ΔE:ΔE.
+    square: f64,
+    /// Whether the correction φ ΔE is above the round-off of S(E_m). It is of the size ‖ΔE‖² W‴,
+    /// S(E_m) of the size ‖E_m‖ W″.
+    corrected: bool,
+}
+
+impl<const D: usize, P> Path<D, P> {
+    #[inline(always)]
+    fn new<L: Material<D, Point = P>>(law: &L, h: [&Mat<D>; 2]) -> Result<Self, NotPositive> {
+        for h in h {
+            // Strains do not tell a reflection.
+            let det_f = 1.0 + excess_det(h);
+            if det_f.is_nan() || det_f <= 0.0 {
+                return Err(NotPositive(det_f));
+            }
+        }
+        let ends = h.map(strain);
+        let middle_strain = (ends[0] + ends[1]) * 0.5;
+        let f = Mat::identity() + (*h[0] + *h[1]) * 0.5;
+        let change = symmetric(&(f.transposed() * (*h[1] - *h[0])));
         let square = change.double_dot(&change);
-        let excess_work = energy - start - of_law.double_dot(&change);
-        let phi = if square > NO_STRAIN { excess_work / square } else { 0.0 };
-        Ok(Self { energy, f, point, inverse, of_law, change, square, phi, s: of_law + change * phi })
+        let corrected = square > f64::EPSILON * middle_strain.double_dot(&middle_strain);
+        Ok(Self { ends, middle: AtStrain::new(law, &middle_strain)?, f, change, square, corrected })
+    }
+
+    /// The law at E₊ and E₋.
+    #[inline(always)]
+    fn outer<L: Material<D, Point = P>>(&self, law: &L) -> Result<[AtStrain<D, P>; 2], NotPositive> {
+        let middle = (self.ends[0] + self.ends[1]) * 0.5;
+        let offset = self.change * OUTER;
+        Ok([AtStrain::new(law, &(middle + offset))?, AtStrain::new(law, &(middle - offset))?])
+    }
+
+    /// S(E₊) + S(E₋) − 2 S(E_m), times the weight.
+    #[inline(always)]
+    fn curvature(&self, outer: &[AtStrain<D, P>; 2]) -> Mat<D> {
+        let above = outer[0].stress - self.middle.stress;
+        let below = outer[1].stress - self.middle.stress;
+        (above + below) * WEIGHT
+    }
+
+    /// φ, with W₁.
+    #[inline(always)]
+    fn phi<L: Material<D, Point = P>>(&self, law: &L, end: f64) -> Result<f64, NotPositive> {
+        if !self.corrected {
+            return Ok(0.0);
+        }
+        let excess_work = if self.square > GAUSS {
+            end - energy_at(law, &self.ends[0])? - self.middle.stress.double_dot(&self.change)
+        } else {
+            self.curvature(&self.outer(law)?).double_dot(&self.change)
+        };
+        Ok(excess_work / self.square)
+    }
+
+    /// φ and its derivative in the direction of a change dE of E₁.
+    #[inline(always)]
+    fn phi_and_change<L: Material<D, Point = P>>(
+        &self,
+        law: &L,
+        de: &Mat<D>,
+    ) -> Result<[f64; 2], NotPositive> {
+        if !self.corrected {
+            return Ok([0.0, 0.0]);
+        }
+        let middle_change = self.middle.change(law, &(*de * 0.5));
+        let [phi, excess_change] = if self.square > GAUSS {
+            let end = AtStrain::new(law, &self.ends[1])?;
+            let phi = self.phi(law, law.energy(&end.point))?;
+            let by_stress = (end.stress - self.middle.stress).double_dot(de);
+            [phi, by_stress - middle_change.double_dot(&self.change)]
+        } else {
+            let outer = self.outer(law)?;
+            let curvature = self.curvature(&outer);
+            let above = outer[0].change(law, &(*de * (0.5 + OUTER))) - middle_change;
+            let below = outer[1].change(law, &(*de * (0.5 - OUTER))) - middle_change;
+            let curvature_change = (above + below) * WEIGHT;
+            let phi = curvature.double_dot(&self.change) / self.square;
+            [phi, curvature_change.double_dot(&self.change) + curvature.double_dot(de)]
+        };
+        Ok([phi, (excess_change - 2.0 * phi * self.change.double_dot(de)) / self.square])
     }
 }
 
@@ -105,7 +214,7 @@ fn strain<const D: usize>(h: &Mat<D>) -> Mat<D> {
 /// F̂ − I with F̂ upper triangular and F̂ᵀF̂ = I + 2E (Cholesky); √(1 + x) − 1 = x/(1 + √(1 + x))
 /// avoids cancellation for small E.
 #[inline(always)]
-fn root<const D: usize>(e: &Mat<D>) -> Option<Mat<D>> {
+fn root<const D: usize>(e: &Mat<D>) -> Result<Mat<D>, NotPositive> {
     let mut h = Mat::ZERO;
     for i in 0..D {
         for j in i..D {
@@ -114,7 +223,7 @@ fn root<const D: usize>(e: &Mat<D>) -> Option<Mat<D>> {
             if i == j {
                 let diagonal = (1.0 + remainder).sqrt();
                 if diagonal.is_nan() || diagonal <= 0.0 {
-                    return None;
+                    return Err(NotPositive(0.0));
                 }
                 h.0[i][i] = remainder / (1.0 + diagonal);
             } else {
@@ -122,7 +231,7 @@ fn root<const D: usize>(e: &Mat<D>) -> Option<Mat<D>> {
             }
         }
     }
-    Some(h)
+    Ok(h)
 }
 
 #[cfg(test)]
@@ -135,6 +244,6 @@ mod tests {
         let f = Mat::identity() + root(&e).unwrap();
         let error = f.transposed() * f - Mat::identity() - e * 2.0;
         assert!(error.double_dot(&error) < 1e-30);
-        assert!(root(&(Mat::<3>::identity() * -0.6)).is_none());
+        assert!(root(&(Mat::<3>::identity() * -0.6)).is_err());
     }
 }

@@ -4,8 +4,12 @@
 //!   P = μ(F − F⁻ᵀ) + Λ ln J F⁻ᵀ,   K(a, b) = μ (a·b) I + (μ − Λ ln J) b̃⊗ã + Λ ã⊗b̃,   ã = F⁻ᵀa.
 //!
 //! Without cancellation, with d = J − 1 and C = cof F − I: F⁻ᵀ = (I + C)/J, F − F⁻ᵀ = (H − C + d
-//! F)/J, tr E − ln J = (tr H − d) + H:H/2 + (d − ln(1 + d)), and tr H − d contains only terms of
-//! second and third order.
+//! F)/J. With det(I + 2E) = J² = 1 + 2 tr E + h(2E), h the terms of second and third order,
+//!
+//!   tr E − ln J = (d − ln(1 + d)) + d²/2 − h(2E)/2,
+//!
+//! whose terms are of second order in the strain: the energy of a body that turns has the round-off
+//! of its strain, not that of its rotation.
 
 use carom_algebra::{Four, Mat, Real, Vector};
 
@@ -55,13 +59,13 @@ impl NeoHookean {
 
     #[inline(always)]
     fn energy_of<const D: usize, T: Real>(&self, p: &Point<D, T>) -> T {
-        // tr H − d without cancellation: the terms of d beyond the trace.
+        let twice_strain = p.h + p.h.transposed() + p.h.transposed() * p.h;
         let higher = match D {
             1 => T::ZERO,
-            2 => p.h.det(),
-            _ => p.h.cofactor().trace() + p.h.det(),
+            2 => twice_strain.det(),
+            _ => twice_strain.cofactor().trace() + twice_strain.det(),
         };
-        let isochoric = T::of(0.5) * p.h.double_dot(&p.h) - higher + p.minus_ln;
+        let isochoric = p.minus_ln + T::of(0.5) * (p.excess * p.excess - higher);
         T::of(self.mu) * isochoric + T::of(0.5 * self.lambda) * p.ln_j * p.ln_j
     }
 
