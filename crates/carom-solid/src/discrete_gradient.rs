@@ -7,9 +7,9 @@
 //!
 //! so that P:ΔF = S:ΔE = W₁ − W₀ exactly, and S is symmetric (angular momentum) and objective.
 //! Every term is a function of E₀ and E₁, never of the rotation: W(E) and S(E) come from the law at
-//! the triangular F̂ with F̂ᵀF̂ = I + 2E, S = F̂⁻¹ P(F̂), and so does the derivative: dF̂ = F̂⁻ᵀ dE has
-//! sym(F̂ᵀ dF̂) = dE, and dS = F̂⁻¹ (dP − dF̂ S). For small strains the energy is quadratic in H, and
-//! the stress at the midpoint is a discrete gradient already.
+//! the triangular F̂ with F̂ᵀF̂ = I + 2E, S = F̂⁻¹ P(F̂), and so does the derivative:
+//! dF̂ = F̂⁻ᵀ dE has sym(F̂ᵀ dF̂) = dE, and dS = F̂⁻¹ (dP − dF̂ S). For small strains the energy is
+//! quadratic in H, and the stress at the midpoint is a discrete gradient already.
 //!
 //! The numerator of φ is of third order in ΔE. As a difference of energies it would consist of
 //! round-off where ΔE is small: an error ε W of it is one of ε W/‖ΔE‖ in S, which no correction of
