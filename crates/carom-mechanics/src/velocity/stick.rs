@@ -8,9 +8,9 @@
 //! M Δv + Gᵀp + Hᵀq = 0,    G Δv = 0,    H (v + Δv) = 0 in stick
 //! ```
 //!
-//! and accelerations follow (`persistency.rs`). The impulse q has no cone: the step has decided that
-//! the pair sticks, and Hv is only what its size leaves, O(Δt). Its work is that of friction, and
-//! where a support carries the other side, of that support.
+//! and accelerations follow (`persistency.rs`). The impulse q has no cone: the step has decided
+//! that the pair sticks, and Hv is only what its size leaves, O(Δt). Its work is that of friction,
+//! and where a support carries the other side, of that support.
 
 use carom_contact::{FrictionState, Pair, inner};
 
