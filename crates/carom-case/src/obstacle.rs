@@ -3,7 +3,7 @@
 use super::load::displacements;
 use super::surface_file;
 use super::view::View;
-use super::{ObstacleMotion, PrimarySpec};
+use super::{FormulaSpec, ObstacleMotion, PrimarySpec};
 
 /// Shapes with the dimension that they need.
 const SHAPES: [(&str, Option<usize>); 6] = [
@@ -88,11 +88,15 @@ fn motion(v: &View, dimension: Option<usize>) -> Option<ObstacleMotion> {
         );
     }
     if v.has("mass") {
-        let vector = |key| if v.has(key) { v.numbers(key) } else { Some(vec![0.0; dimension?]) };
+        let d = dimension?;
         return Some(ObstacleMotion::Free {
             mass: v.number("mass")?,
-            velocity: vector("velocity")?,
-            gravity: vector("gravity")?,
+            velocity: if v.has("velocity") { v.numbers("velocity")? } else { vec![0.0; d] },
+            gravity: if v.has("gravity") {
+                v.formulas("gravity")?
+            } else {
+                vec![FormulaSpec::Number(0.0); d]
+            },
         });
     }
     if !v.has("motion") {

@@ -18,7 +18,7 @@ use super::refine::{self, Counts};
 use super::tables::{body, contact, initial, material, newton, output, probe, support, time};
 use super::tree::{Entry, Node};
 use super::view::View;
-use super::{BodySpec, Case, ContactSpec, Persistency, Preset, Units};
+use super::{BodySpec, Case, ContactSpec, FormulaSpec, Persistency, Preset, Units};
 
 impl Case {
     /// Reads a case from its text, with overrides `key=value` applied in their order. Files that it
@@ -155,7 +155,7 @@ impl<'a> Reader<'a> {
         let units = self.root.at("units")?;
         let mut bodies: Vec<BodySpec> = all(draft.bodies)?;
         for body in &mut bodies {
-            body.gravity.resize(dimension, 0.0);
+            body.gravity.resize(dimension, FormulaSpec::Number(0.0));
         }
         let mut contacts: Vec<ContactSpec> = all(draft.contacts)?;
         let time = draft.time?;

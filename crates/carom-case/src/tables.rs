@@ -57,7 +57,7 @@ pub(super) fn body(v: &View, dimension: usize, refine: f64) -> Option<BodySpec> 
         mesh: mesh.refined(refine),
         place: if v.has("place") { Some(place::read(&v.at("place")?, dimension)?) } else { None },
         position: if v.has("position") { Some(v.formulas("position")?) } else { None },
-        gravity: if v.has("gravity") { v.numbers("gravity")? } else { Vec::new() },
+        gravity: if v.has("gravity") { v.formulas("gravity")? } else { Vec::new() },
         velocity: load::velocity(v, dimension)?,
         mass: v.choice("mass")?,
     })

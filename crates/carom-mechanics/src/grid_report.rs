@@ -64,7 +64,7 @@ pub enum LogEvent {
         /// The smallest relative singular value of the interface, with the sign of its determinant.
         regularity: f64,
     },
-    /// Velocities were projected at activation.
+    /// Velocities were projected where contact or stick began.
     Projection {
         /// Time.
         time: f64,

@@ -248,8 +248,11 @@ impl Setup<'_> {
             write_text(out, x, y, &halo, text(body, "name"));
             let size = self.size(text(body, "name"));
             let length = (0.45 * size).clamp(24.0, 48.0);
-            for (key, symbol, side) in [("gravity", "g", 1.0), ("velocity", "v_{0}", -1.0)] {
-                let [right, up] = flat(body.get(key));
+            let gravity = self.gravity(body);
+            let gravity = [0, 1].map(|i| gravity.get(i).copied().unwrap_or(0.0));
+            for ([right, up], symbol, side) in
+                [(gravity, "g", 1.0), (flat(body.get("velocity")), "v_{0}", -1.0)]
+            {
                 let d = direction([0.0; 2], [right, -up]);
                 if d == [0.0; 2] {
                     continue;

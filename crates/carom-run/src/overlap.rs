@@ -269,7 +269,7 @@ fn quasi_static(case: &Case) -> Case {
     quasi.loads.clear();
     quasi.probes.clear();
     for body in &mut quasi.bodies {
-        body.gravity.fill(0.0);
+        body.gravity.fill(FormulaSpec::Number(0.0));
         body.velocity = vec![FormulaSpec::Number(0.0); case.dimension];
         body.mass = MassKind::Consistent;
     }

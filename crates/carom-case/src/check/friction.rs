@@ -2,7 +2,7 @@
 //! friction that it asks for.
 
 use super::super::{ContactLaw, Detection};
-use super::super::{ContactPoint, ContactSpec, Enforcement, FormulaSpec, FrictionSpec};
+use super::super::{ContactPoint, ContactSpec, Enforcement, FormulaSpec, FrictionSpec, ObstacleMotion};
 use super::Check;
 
 impl Check<'_> {
@@ -45,6 +45,15 @@ impl Check<'_> {
         if contact.xi == ContactPoint::Frozen || contact.detection == Detection::Trajectory {
             let why = "the slip is that of the closest point";
             refuse("with this contact point", why, "leave xi and detection out, or leave mu out");
+        }
+        if draft.dimension != Some(1) && matches!(contact.motion, ObstacleMotion::Free { .. }) {
+            let why = "friction turns an obstacle that moves freely, and rigid obstacles do not rotate yet: its \
+                spin, and the slip that depends on it, would be wrong";
+            refuse(
+                "against an obstacle with a mass",
+                why,
+                "use a stiff deformable body in place of the obstacle, or leave mu out",
+            );
         }
         if light {
             let why = "a node without mass would stick and slip without inertia";

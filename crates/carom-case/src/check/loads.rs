@@ -94,7 +94,7 @@ impl Check<'_> {
         for (i, body) in self.draft.bodies.iter().enumerate() {
             let Some(body) = body else { continue };
             let given = [
-                ("gravity", body.gravity.iter().any(|g| *g != 0.0)),
+                ("gravity", body.gravity.iter().any(|g| !g.is_zero())),
                 ("velocity", body.starts_moving()),
                 ("position", body.position.is_some()),
             ];

@@ -1,7 +1,7 @@
 //! Keys of materials and bodies.
 
 use super::Kind::{Choice, Formulas, FormulasOr, Name, Number, Variant, Vector};
-use super::{ANY, IN_SPACE, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, shapes, table};
+use super::{ANY, IN_SPACE, IN_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, shapes, table};
 
 pub(super) const MATERIAL: Table = table(
     "[[material]]",
@@ -62,7 +62,7 @@ pub(super) const BODY: Table = table(
         key("position", Formulas(IN_SPACE), "Positions at t = 0 as formulas in X, Y, Z, for a body that starts deformed. Default: X, Y, Z.")
             .unit("length")
             .optional("[\"X + 0.1*X*Y\", \"Y\"]"),
-        key("gravity", Vector, "Gravitational acceleration. Default: zero.")
+        key("gravity", Formulas(IN_TIME), "Gravitational acceleration: numbers, or formulas in t. Default: zero.")
             .unit("length/time²")
             .optional("[0.0, -9.81]"),
         key(

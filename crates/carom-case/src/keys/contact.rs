@@ -1,6 +1,6 @@
 //! Keys of contacts and rigid obstacles.
 
-use super::Kind::{Choice, Formula, Name, Number, Side, SideOr, Truth, Vector};
+use super::Kind::{Choice, Formula, Formulas, Name, Number, Side, SideOr, Truth, Vector};
 use super::{IN_SPACE_AND_TIME, IN_TIME, Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, table};
 
 pub(super) const CONTACT: Table = table(
@@ -173,7 +173,7 @@ const RIGID: Table = table(
         key("velocity", Vector, "Initial velocity, with `mass`. Default: zero.")
             .unit("length/time")
             .optional("[0.0, -1.0]"),
-        key("gravity", Vector, "Gravitational acceleration, with `mass`. Default: zero.")
+        key("gravity", Formulas(IN_TIME), "Gravitational acceleration, with `mass`: numbers, or formulas in t. Default: zero.")
             .unit("length/time²")
             .optional("[0.0, -9.81]"),
     ],

@@ -75,8 +75,8 @@ pub struct BodySpec {
     /// Positions at t = 0, formulas in X, Y, Z; none: the reference positions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position: Option<Vec<FormulaSpec>>,
-    /// Gravitational acceleration, one component per dimension.
-    pub gravity: Vec<f64>,
+    /// Gravitational acceleration, one component per dimension: formulas in t.
+    pub gravity: Vec<FormulaSpec>,
     /// Initial velocity, formulas in X, Y, Z.
     pub velocity: Vec<FormulaSpec>,
     /// Mass matrix.

@@ -45,8 +45,8 @@ pub enum ObstacleMotion {
         mass: f64,
         /// Initial velocity.
         velocity: Vec<f64>,
-        /// Gravitational acceleration.
-        gravity: Vec<f64>,
+        /// Gravitational acceleration: formulas in t.
+        gravity: Vec<FormulaSpec>,
     },
 }
 

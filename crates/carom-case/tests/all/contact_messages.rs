@@ -206,6 +206,10 @@ fn friction_is_refused_where_it_is_not_built() {
         ("contact.strike.law=\"predictor\"", "with law = \"predictor\""),
         ("contact.strike.detection=\"trajectory\"", "with this contact point"),
         ("body.cylinder.mass=\"redistributed\"", "with redistributed mass"),
+        (
+            "contact.strike.primary={ circle = { center = [0.0, -1.0], radius = 1.0 }, mass = 1.0 }",
+            "against an obstacle with a mass",
+        ),
     ];
     let text = IMPACT.replacen("[[contact]]", with, 1);
     assert!(resolved(&text, &[]).is_ok());

@@ -100,7 +100,7 @@ fn shipped_cases_are_read() {
     for (text, steps) in [(IMPACT, 400), (REBOUND, 454)] {
         let case = resolved(text, &[]).unwrap();
         assert_eq!(case.time.steps(), steps);
-        assert_eq!(case.bodies[1].gravity, [0.0, 0.0]);
+        assert!(case.bodies[1].gravity.iter().all(FormulaSpec::is_zero) && case.bodies[1].gravity.len() == 2);
         assert!(case.bodies[0].velocity.iter().all(FormulaSpec::is_zero));
         let strike = &case.contacts[0];
         assert_eq!((strike.persistency, strike.active_set), (Persistency::Project, ActiveSetRule::Within));

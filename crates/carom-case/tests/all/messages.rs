@@ -53,7 +53,11 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     ),
     (&["time.end=nan"], &["`end` is NaN", "all numbers of a case must be finite"]),
     (&["body.cylinder.gravity=[0.0, -inf]"], &["`gravity` is -inf"]),
-    (&["body.cylinder.gravity=[0.0]"], &["must be a list of 2 numbers, not a list of 1 values"]),
+    (
+        &["body.cylinder.gravity=[0.0]"],
+        &["must be a list of 2 numbers or formulas in quotes, not a list of 1 values"],
+    ),
+    (&["body.cylinder.gravity=[0.0, \"-9.81*Y\"]"], &["it is a formula in the variables t"]),
     (&["body.cylinder.gravity=[0.0, 0.0, -9.81]"], &["a list of 3 values"]),
     (&["body.cylinder.mesh.radius=0"], &["`radius` must be a number > 0, not 0"]),
     (&["body.cylinder.mesh.size=0.0"], &["`size` must be a number > 0, not 0"]),

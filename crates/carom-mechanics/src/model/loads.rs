@@ -1,6 +1,6 @@
-//! Loads as nodal forces f_ext(y, t) without gravity: dead tractions and body forces, which depend
-//! on time only, and follower pressures, which rotate with the side (`carom_solid::LoadedSide`). A
-//! manufactured motion adds its own load.
+//! Loads as nodal forces f_ext(y, t) without constant gravity: dead tractions, body forces and
+//! weights under a gravity that varies, which depend on time only, and follower pressures, which
+//! rotate with the side (`carom_solid::LoadedSide`). A manufactured motion adds its own load.
 
 use carom_formula::Formula;
 use carom_solid::LoadedSide;
@@ -18,6 +18,7 @@ pub struct Loads {
     tractions: Vec<Load<LoadedSide>>,
     pressures: Vec<Load<LoadedSide>>,
     body_forces: Vec<Load<usize>>,
+    weights: Vec<Load<Weight>>,
     /// The manufactured motion, if any.
     pub manufactured: Option<Manufactured>,
 }
@@ -32,6 +33,14 @@ pub struct Load<On> {
     pub label: String,
     /// Factor over time; none means 1.
     pub amplitude: Option<Amplitude>,
+}
+
+/// The masses that a varying gravity acts on, from a node onwards: row sums of the mass matrix.
+pub struct Weight {
+    /// The first node.
+    pub first_node: usize,
+    /// Its mass, and those of the nodes after it.
+    pub masses: Vec<f64>,
 }
 
 impl<On> Load<On> {
@@ -81,11 +90,17 @@ impl Loads {
         self.body_forces.push(load);
     }
 
+    /// Adds the weight of a body under gravity given by formulas in time alone.
+    pub fn add_weight(&mut self, load: Load<Weight>) {
+        self.weights.push(load);
+    }
+
     /// Whether there are no loads.
     pub fn is_empty(&self) -> bool {
         self.tractions.is_empty()
             && self.pressures.is_empty()
             && self.body_forces.is_empty()
+            && self.weights.is_empty()
             && self.manufactured.is_none()
     }
 
@@ -121,6 +136,14 @@ impl Loads {
                 Ok(())
             };
             part.add_body_force(density, &mut out.dead)?;
+        }
+        for load in &self.weights {
+            let gravity = load.vectors(&std::iter::once(&[][..]), time)?;
+            let first = load.on.first_node * gravity.len();
+            let nodes = out.dead[first..].chunks_exact_mut(gravity.len()).zip(&load.on.masses);
+            for (force, mass) in nodes {
+                force.iter_mut().zip(&gravity).for_each(|(force, g)| *force += mass * g);
+            }
         }
         if let Some(motion) = &self.manufactured {
             motion.add_load(parts, time, &mut out.dead)?;

@@ -47,7 +47,7 @@ pub struct Model {
     pub mass: Mass,
     /// Whether a dof is massless.
     pub massless: Vec<bool>,
-    /// Gravity as nodal forces; constant, with potential −f·y.
+    /// Constant gravity as nodal forces, with potential −f·y; one that varies in time is a load.
     pub gravity: Vec<f64>,
     /// Loads on sides and in bodies.
     pub loads: Loads,
@@ -167,7 +167,7 @@ impl Model {
         Ok(strain)
     }
 
-    /// Loads at a time and positions `y`, overwriting `force`; without gravity.
+    /// Loads at a time and positions `y`, overwriting `force`; without constant gravity.
     ///
     /// # Errors
     /// A formula without a finite value.
@@ -200,7 +200,7 @@ impl Model {
         0.5 * dot(v, &momentum)
     }
 
-    /// Potential of gravity, −f·(y − X): zero in the reference configuration.
+    /// Potential of constant gravity, −f·(y − X): zero in the reference configuration.
     pub fn potential(&self, y: &[f64]) -> f64 {
         -sum([&self.gravity, y, &self.reference], |[f, y, x]| f * (y - x))
     }

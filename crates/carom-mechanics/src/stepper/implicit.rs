@@ -1,6 +1,6 @@
-//! Kernels that are lists of implicit stages: guess, solve, record, and project at activation of
-//! contact. And single steps of backward Euler with contact implicit in velocity (`in_velocity.rs`)
-//! in place of a step that is not accepted.
+//! Kernels that are lists of implicit stages: guess, solve, record, and project where contact or
+//! stick begins. And single steps of backward Euler with contact implicit in velocity
+//! (`in_velocity.rs`) in place of a step that is not accepted.
 
 use carom_algebra::sums::dot;
 use carom_contact::{Pairing, Rows};
@@ -173,20 +173,19 @@ impl Stepper for Implicit {
         report.meetings = meetings(model, &next, &report.activations, &paths(state, &finished, &ends));
         let taken = state.ledger.contact_work - next.ledger.contact_work;
         restitution::take(model, &mut next, taken);
-        if !report.activations.is_empty() {
-            let closed = closed(model, state, &solved.at.pairings, &report.activations);
-            let slope = equations.stage.velocity.slope;
-            let impact = Impact { dt, slope, velocity: &state.v, pairs: &state.pairs, closed };
-            let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;
-            if let Some(jump) = projected {
-                report.projection = jump;
-                carried::project(&mut next, factor);
-            }
+        let closed = closed(model, state, &solved.at.pairings, &report.activations);
+        let slope = equations.stage.velocity.slope;
+        let impact = Impact { dt, slope, start: state, closed };
+        let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;
+        if let Some(jump) = projected {
+            report.projection = jump;
+            carried::project(&mut next, factor);
         }
         if !report.releases.is_empty() {
             report.restitution = separate(model, &mut next, &report.releases, &mut work.system)?;
         }
-        next.previous = (self.kernel.two_step() && report.activations.is_empty()).then(|| Previous {
+        let continues = projected.is_none() && report.activations.is_empty();
+        next.previous = (self.kernel.two_step() && continues).then(|| Previous {
             dt,
             increment: solved.at.increment.clone(),
             velocity: state.v.clone(),

@@ -44,7 +44,7 @@ pub struct StepReport {
     /// Where stick and slip are not unique: the smallest relative singular value of the interface,
     /// with the sign of its determinant.
     pub ambiguity: Option<f64>,
-    /// Jump of kinetic energy at activation.
+    /// Jump of kinetic energy where contact or stick begins.
     pub projection: f64,
     /// Change of kinetic energy where an explicit step with another length is begun.
     pub begun: f64,

@@ -16,7 +16,7 @@
 
 use carom_algebra::sums::max_abs;
 use carom_contact::{
-    Along, FrictionPair, FrictionState, Law, Pair, Row, Rows, StickSlip, Tangential, inner, length,
+    Along, FrictionPair, FrictionState, Law, Row, Rows, StickSlip, Tangential, inner, length,
 };
 
 use crate::contact::constraints::Constraints;
@@ -190,6 +190,24 @@ impl Closed {
         })
     }
 
+    /// Adds Gᵀp + Hᵀq of a motion.
+    pub(crate) fn add_impulses(&self, motion: &Motion, sum: &mut [f64]) {
+        for (i, (row, p)) in self.normals.rows.iter().zip(&motion.normal).enumerate() {
+            row.add_to(*p, sum);
+            self.slip_rows(i).zip(motion.tangential[i]).for_each(|(row, q)| row.add_to(q, sum));
+        }
+    }
+
+    /// Adds an impulse to the velocities of a state, and to what its contacts record.
+    pub(crate) fn strike(&self, model: &Model, state: &mut State, motion: &Motion) {
+        for i in (0..model.dofs()).filter(|&i| !model.massless[i]) {
+            state.v[i] += motion.x[i];
+        }
+        for (k, impulse) in self.impulses(motion) {
+            (0..3).for_each(|i| state.impulses[k][i] += impulse[i]);
+        }
+    }
+
     /// H of a pair, a row per tangent.
     fn slip_rows(&self, pair: usize) -> impl Iterator<Item = Row<'_>> {
         let tangents = self.slips.dimension() - 1;
@@ -212,12 +230,27 @@ impl Closed {
         self.solve(model, state, right, system, (ways, &laws))
     }
 
+    /// The change of velocity with which pairs that stick lose these slip rates, whatever impulse
+    /// that takes, while gaps go on as before.
+    pub(crate) fn stop(
+        &self,
+        model: &Model,
+        state: &State,
+        rates: &[Along],
+        system: &mut System,
+    ) -> Result<Motion, Rejected> {
+        let slips: Vec<Along> = rates.iter().map(|rate| rate.map(|rate| -rate)).collect();
+        let right =
+            Right { forces: &vec![0.0; model.dofs()], gaps: &vec![0.0; self.places.len()], slips: &slips };
+        self.solve_for(model, &right, system, &self.ways(state))
+    }
+
     /// Whether each pair stuck in the step, or in which direction it slipped if it was closed
     /// `before`.
-    pub(crate) fn holds(&self, state: &State, before: &[Vec<Pair>]) -> Vec<Option<FrictionState>> {
+    pub(crate) fn holds(&self, state: &State, before: &State) -> Vec<Option<FrictionState>> {
         let of = |&(k, p): &(usize, usize)| {
             let pair = &state.pairs[k][p];
-            let is_new = !before[k].iter().any(|old| old.active && old.node == pair.node);
+            let is_new = before.closed(k, pair.node).is_none();
             Some(pair.tangential.friction_state)
                 .filter(|friction_state| *friction_state == FrictionState::Stick || !is_new)
         };

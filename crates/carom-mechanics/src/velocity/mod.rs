@@ -4,3 +4,4 @@ pub(crate) mod active_rows;
 pub(crate) mod cone;
 pub(crate) mod persistency;
 pub(crate) mod restitution;
+pub(crate) mod stick;

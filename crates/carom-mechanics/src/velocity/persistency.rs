@@ -1,5 +1,5 @@
-//! Persistency: at activation of a contact, velocities and accelerations are made compatible with
-//! the active constraints (g ġ = 0).
+//! Persistency: where a gap closes or stick begins, velocities and accelerations are made
+//! compatible with the active constraints (g ġ = 0).
 //!
 //! ```text
 //! M Δv + Gᵀp = 0,   G (v + Δv) = 0            then       M a + Gᵀλ = f_ext − f_int,
@@ -11,7 +11,7 @@
 //! multiplier that would pull is zero, and its gap may open; the others keep g̈ = 0. Massless dofs
 //! keep their velocity: they follow the massive side. With friction both systems have its impulses
 //! and forces (`cone.rs`). With a restitution, energy is returned (`restitution.rs`) before the
-//! accelerations are solved for.
+//! accelerations are solved for. Where stick begins, velocities are those of `stick.rs`.
 
 use std::collections::BTreeMap;
 
@@ -28,6 +28,7 @@ use crate::state::State;
 use crate::velocity::active_rows::{measure_all, pressing};
 use crate::velocity::cone::{AT_REST, Closed, Right};
 use crate::velocity::restitution::{Impact, take};
+use crate::velocity::stick::{Works, begins_to_stick, stop_slips};
 
 /// Contact and pair.
 type Place = (usize, usize);
@@ -40,7 +41,8 @@ const ROUNDS: usize = 50;
 const ROUND_OFF: f64 = 1e-12;
 
 /// Projects `state`, the end of the step `impact`, if one of the new contacts (contact, node)
-/// requires it. The jump of kinetic energy is recorded as contact work and returned.
+/// requires it, or a pair that begins to stick. The jump of kinetic energy is recorded as work and
+/// returned.
 pub(crate) fn project(
     model: &Model,
     state: &mut State,
@@ -49,36 +51,32 @@ pub(crate) fn project(
     system: &mut System,
 ) -> Result<Option<f64>, Rejected> {
     let asks = |&(k, _): &(usize, usize)| model.contacts[k].projects;
-    if !activations.iter().any(asks) {
+    let closes = activations.iter().any(asks);
+    let stops = pressing(state).any(|place| asks(&place) && begins_to_stick(state, impact.start, place));
+    if !closes && !stops {
         return Ok(None);
     }
     let gaps = measure_all(model, state)?;
     let mut places = independent_rows(model, pressing(state), &gaps);
     places.retain(asks);
     let closed = Closed::new(model, state, places, &gaps)?;
-    let rows = &closed.normals;
-    let dofs = model.dofs();
+    let slid = closed.holds(state, impact.start);
 
-    let closing: Vec<f64> = rows.rows.iter().map(|row| -row.along(&state.v)).collect();
+    let before = state.ledger.kinetic;
+    let mut works = Works::default();
+    if stops {
+        works = stop_slips(model, state, &closed, system)?;
+        book_kinetic(model, state);
+    }
     let slips = closed.slip_rates(&state.v);
-    let stopping: Vec<Along> = slips.iter().map(|rate| rate.map(|rate| -rate)).collect();
-    let right = Right { forces: &vec![0.0; dofs], gaps: &closing, slips: &stopping };
-    let slid = closed.holds(state, impact.pairs);
-    let jump = closed.impulse(model, state, &right, system)?;
-    for i in (0..dofs).filter(|&i| !model.massless[i]) {
-        state.v[i] += jump.x[i];
+    if closes {
+        works.friction += close_gaps(model, state, &closed, system)?;
     }
-    for (k, impulse) in closed.impulses(&jump) {
-        (0..3).for_each(|i| state.impulses[k][i] += impulse[i]);
-    }
-    let after = closed.slip_rates(&state.v);
-    let mean = |(before, after): (&Along, &Along)| [0, 1].map(|i| 0.5 * (before[i] + after[i]));
-    let rates = slips.iter().zip(&after).map(mean);
-    let mut rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| inner(rate, *q)).sum::<f64>();
 
     // Velocities at the end of a step ring from node to node, its slips do not: a pair slips on in
     // the direction of its slip, unless the impulse turns it round. One that sticks has slip rates
     // of the size that the step's tolerance leaves, which are none.
+    let after = closed.slip_rates(&state.v);
     let still = AT_REST * max_abs(&state.v);
     let left = still.max(model.gap_tolerance * impact.slope);
     let goes_on = slips.iter().zip(&after).map(|(a, b)| [length(*a), length(*b), inner(*a, *b)]);
@@ -93,19 +91,40 @@ pub(crate) fn project(
         .zip(slid)
         .filter_map(|(place, friction_state)| Some((*place, friction_state?)))
         .collect();
-
-    let before = state.ledger.kinetic;
-    take(model, state, before - model.kinetic(&state.v) + rubbed);
-    rubbed += impact.restitute(model, state, &closed, system)?;
+    if closes {
+        works.friction += impact.restitute(model, state, &closed, system)?;
+    }
     accelerate(model, state, &gaps, asks, &slid, system)?;
 
     averaged_contact_into(model, state, &gaps);
     book_contact_forces(model, state);
     book_kinetic(model, state);
     let jump = state.ledger.kinetic - before;
-    state.ledger.contact_work += jump - rubbed;
-    state.ledger.friction_work += rubbed;
+    state.ledger.contact_work += jump - works.friction - works.external;
+    state.ledger.friction_work += works.friction;
+    state.ledger.external_work += works.external;
     Ok(Some(jump))
+}
+
+/// The impact of the nodes on the surface. Returns the work of its friction.
+fn close_gaps(
+    model: &Model,
+    state: &mut State,
+    closed: &Closed,
+    system: &mut System,
+) -> Result<f64, Rejected> {
+    let closing: Vec<f64> = closed.normals.rows.iter().map(|row| -row.along(&state.v)).collect();
+    let slips = closed.slip_rates(&state.v);
+    let stopping: Vec<Along> = slips.iter().map(|rate| rate.map(|rate| -rate)).collect();
+    let right = Right { forces: &vec![0.0; model.dofs()], gaps: &closing, slips: &stopping };
+    let jump = closed.impulse(model, state, &right, system)?;
+    closed.strike(model, state, &jump);
+    let after = closed.slip_rates(&state.v);
+    let mean = |(before, after): (&Along, &Along)| [0, 1].map(|i| 0.5 * (before[i] + after[i]));
+    let rates = slips.iter().zip(&after).map(mean);
+    let rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| inner(rate, *q)).sum::<f64>();
+    take(model, state, state.ledger.kinetic - model.kinetic(&state.v) + rubbed);
+    Ok(rubbed)
 }
 
 /// Accelerations and multipliers of a state with closed pairs, of those that are asked for; `slid`:

@@ -36,10 +36,8 @@ pub(crate) struct Impact<'a> {
     pub dt: f64,
     /// Change of the velocity at its end per change of position.
     pub slope: f64,
-    /// Velocities at its start.
-    pub velocity: &'a [f64],
-    /// Pairs of each contact at its start.
-    pub pairs: &'a [Vec<Pair>],
+    /// The state at its start.
+    pub start: &'a State,
     /// The gaps at its start of pairs that closed in it: (contact, pair), gap.
     pub closed: Vec<((usize, usize), f64)>,
 }
@@ -62,7 +60,7 @@ impl Impact<'_> {
     /// for a pair that was accelerated towards the contact.
     fn approach(&self, place: (usize, usize), row: Row) -> f64 {
         let gap = self.closed.iter().find(|(closed, _)| *closed == place);
-        gap.map_or(0.0, |(_, gap)| (-row.along(self.velocity)).max(gap / self.dt).max(0.0))
+        gap.map_or(0.0, |(_, gap)| (-row.along(&self.start.v)).max(gap / self.dt).max(0.0))
     }
 }
 

@@ -139,9 +139,18 @@ impl Setup<'_> {
 
     /// The components of a load at a place, at the last time when they are not all zero.
     pub(super) fn values_at(&self, load: &Load, place: &[f64]) -> Vec<f64> {
+        self.last_values(&load.components, place)
+    }
+
+    /// The gravity of a body, at the last time when it is not zero.
+    pub(super) fn gravity(&self, body: &Value) -> Vec<f64> {
+        self.last_values(&list(body, "gravity").iter().collect::<Vec<_>>(), &[])
+    }
+
+    fn last_values(&self, components: &[&Value], place: &[f64]) -> Vec<f64> {
         let end = self.case().pointer("/time/end").and_then(Value::as_f64).unwrap_or(0.0);
         let at = |share: f64| -> Vec<f64> {
-            load.components.iter().map(|c| Self::value(c, place, share * end)).collect()
+            components.iter().map(|c| Self::value(c, place, share * end)).collect()
         };
         let times = [1.0, 0.75, 0.5, 0.25, 0.125, 0.03, 0.0];
         times.into_iter().map(at).find(|v| v.iter().any(|x| *x != 0.0 && x.is_finite())).unwrap_or_default()

@@ -242,7 +242,7 @@ impl Solid<'_> {
                 .find(|l| l.kind == "body-force" && text(l.spec, "body") == text(body, "name"));
             let force = force.map(|l| self.setup.values_at(&l, &middle)).unwrap_or_default();
             for (symbol, color, v) in [
-                ("g", "#222", vector(body.get("gravity"))),
+                ("g", "#222", self.setup.gravity(body)),
                 ("v_{0}", "#222", vector(body.get("velocity"))),
                 ("b", COLOR, force),
             ] {

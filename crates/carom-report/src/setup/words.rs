@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
+use super::forces::written;
 use crate::scientific::given;
 use crate::values::{list, text, tuple, unit, vector};
 
@@ -49,7 +50,13 @@ pub(super) fn gravity_and_velocity(body: &Value, length: &str, time: &str) -> Ve
     let kinds =
         [("gravity", "g", format!("{length}/{time}^2")), ("velocity", "v_{0}", format!("{length}/{time}"))];
     let words = |(key, symbol, unit): (&str, &str, String)| {
+        let given = list(body, key);
         let v = vector(body.get(key));
+        if key == "gravity" && v.len() < given.len() {
+            // Formulas in t.
+            let parts: Vec<String> = given.iter().map(written).collect();
+            return Some(format!("{symbol} = ({}) {unit}", parts.join(", ")));
+        }
         v.iter().any(|x| *x != 0.0).then(|| format!("{symbol} = {} {unit}", tuple(&v)))
     };
     kinds.into_iter().filter_map(words).collect()

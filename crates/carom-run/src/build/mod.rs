@@ -11,6 +11,7 @@ mod obstacles;
 mod overlaps;
 pub(crate) mod side;
 mod unsolvable;
+mod weights;
 
 use std::collections::BTreeMap;
 
@@ -22,6 +23,7 @@ use carom_mechanics::model::{
 use carom_solid::{Constitutive, Law, mean_dilatation_body};
 
 use side::side;
+use weights::Weights;
 
 pub use overlaps::overlaps;
 
@@ -56,10 +58,9 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     }
 
     for obstacle in &obstacles {
-        let [velocity, _] = obstacle.start();
         reference.extend(parts[obstacle.part].body.mesh().nodes.flat());
         initial_position.extend(parts[obstacle.part].body.mesh().nodes.flat());
-        initial_velocity.extend(velocity);
+        initial_velocity.extend(obstacle.velocity());
     }
 
     let mut fixed = vec![false; dofs];
@@ -98,7 +99,7 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
 
     let motions = motions::motions(case, &parts, &obstacles, &fixed, &mut problems);
     motions.dofs().for_each(|dof| fixed[dof] = true);
-    let loads = loads::loads(case, &parts, &mut problems);
+    let mut loads = loads::loads(case, &parts, &mut problems);
 
     // For redistributed masses the contact nodes are made massless afterwards.
     let lumped: Vec<bool> = case.bodies.iter().map(|b| b.mass == MassKind::Lumped).collect();
@@ -107,7 +108,9 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let mut massless: Vec<bool> = (0..dofs).map(|dof| mass.is_massless(dof / d)).collect();
     // The force on a prescribed carrier is averaged like that on the nodes that press on it.
     obstacles.iter().flat_map(obstacles::Moving::prescribed).for_each(|(dof, _)| massless[dof] = false);
-    let gravity = gravity(case, &parts, &obstacles, &mass, dofs);
+    let weights = Weights { case, parts: &parts, obstacles: &obstacles, mass: &mass };
+    let gravity = weights.constant();
+    problems.extend(weights.add_varying(&mut loads));
     let contacts = contacts::contacts(case, &parts, &obstacles, [&massless, &fixed], &mut problems);
     let probes = probes(case, &parts, &mut problems);
     let unconstrained = free_motions(&parts, &fixed);
@@ -267,30 +270,6 @@ fn with_skin(case: &Case, body: &str, mut mesh: carom_solid::Mesh) -> carom_soli
         mesh.sides.insert(SKIN.to_owned(), skin);
     }
     mesh
-}
-
-/// Gravity as nodal forces M g with the mass matrix of the case: lumped or not, a free body falls
-/// without deforming.
-fn gravity(
-    case: &Case,
-    parts: &[BodyInstance],
-    obstacles: &[obstacles::Moving],
-    mass: &Mass,
-    dofs: usize,
-) -> Vec<f64> {
-    let mut acceleration = Vec::with_capacity(dofs);
-    for (part, spec) in parts.iter().zip(&case.bodies) {
-        for _ in part.nodes() {
-            acceleration.extend_from_slice(&spec.gravity);
-        }
-    }
-    for obstacle in obstacles {
-        let [_, gravity] = obstacle.start();
-        acceleration.extend(gravity);
-    }
-    let mut force = vec![0.0; dofs];
-    mass.multiply_into(&acceleration, &mut force);
-    force
 }
 
 /// Redistributes the mass of contact nodes in the bodies that request it.

@@ -100,12 +100,19 @@ fn point_of(primary: &PrimarySpec) -> Vec<f64> {
 }
 
 impl Moving<'_> {
-    /// Initial velocity and acceleration of gravity, per node; both are zero if the motion is
-    /// prescribed.
-    pub(super) fn start(&self) -> [Vec<f64>; 2] {
+    /// Initial velocity of its nodes; zero if the motion is prescribed.
+    pub(super) fn velocity(&self) -> Vec<f64> {
         match self.motion {
-            ObstacleMotion::Free { velocity, gravity, .. } => [velocity.clone(), gravity.clone()],
-            motion => [0, 1].map(|_| vec![0.0; motion.nodes() * self.dimension]),
+            ObstacleMotion::Free { velocity, .. } => velocity.clone(),
+            motion => vec![0.0; motion.nodes() * self.dimension],
+        }
+    }
+
+    /// Gravity; none if the motion is prescribed.
+    pub(super) fn gravity(&self) -> &[FormulaSpec] {
+        match self.motion {
+            ObstacleMotion::Free { gravity, .. } => gravity,
+            _ => &[],
         }
     }
 

@@ -91,7 +91,12 @@ impl<'a> Scene<'a> {
             product
         };
         let moved: Vec<usize> = model.motions.dofs().collect();
-        let courses = model.parts.iter().map(|part| course(model, part, &momentum, &moved)).collect();
+        // Under a gravity that varies the course of a body is no parabola.
+        let is_parabola = |k: usize| {
+            case.bodies.get(k).is_none_or(|body| body.gravity.iter().all(|g| g.constant().is_some()))
+        };
+        let course = |(k, part)| course(model, part, &momentum, &moved).filter(|_| is_parabola(k));
+        let courses = model.parts.iter().enumerate().map(course).collect();
         let extents = model.parts.iter().map(|part| extents(model, part, &directions)).collect();
         let (undeclared, contacts) = (Undeclared::new(model), Penetration::of_contacts(model));
         Self { case, model, directions, courses, extents, undeclared, contacts }

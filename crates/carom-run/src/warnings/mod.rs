@@ -11,6 +11,7 @@ mod masses;
 mod meshes;
 mod record;
 mod steps;
+mod stick;
 
 use carom_case::Case;
 use carom_mechanics::model::Model;
@@ -44,7 +45,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 15] = [
+pub const WARNINGS: [Entry; 16] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -90,6 +91,14 @@ pub const WARNINGS: [Entry; 15] = [
             released is lost",
         advice: "mass = \"consistent\", smaller cells at the contact, or a start from a state of equilibrium with [initial]",
         rule: Rule::Model(masses::strained_massless),
+    },
+    Entry {
+        id: "undamped-stick",
+        why: "the traction then vibrates about the one that carries the body, for as long as the stick lasts, and its first \
+              peak beyond mu ends it: stick lasts too short, at any step. A real body damps such vibrations",
+        advice: "a scheme that damps what the step does not resolve, such as bathe, or chung-hulbert with rho_inf = 0.5; \
+                 persistency = \"project\" where it is \"none\"",
+        rule: Rule::Model(stick::undamped_stick),
     },
     Entry {
         id: "one-node",

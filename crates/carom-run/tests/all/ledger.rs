@@ -24,7 +24,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use carom_run::case::{BodySpec, Case};
 use carom_run::model::Model;
 use carom_run::stability::stable_step;
-use carom_run::{GridReport, Setup, Simulation, State};
+use carom_run::{GridReport, LogEvent, Setup, Simulation, State};
 use carom_time::{Impulse, Integrator, Kernel, Memory, Nonsmooth, Scheme, Stage};
 
 use super::common::dot;
@@ -246,6 +246,7 @@ fn judge(case: &Case, steps: u64) -> Option<Judged> {
                 .filter(|pair| pair.active)
                 .any(|pair| !before.iter().any(|old| old.active && old.node == pair.node))
         });
+        let projected = projected || report.events.iter().any(|e| matches!(e, LogEvent::Projection { .. }));
         let predicted = match (&integrator, &alpha, &kernel) {
             _ if is_static => Some(of_statics(model, &before, now)),
             (_, Some(alpha), _) => Some(of_alpha(model, alpha, &before, &now.y, dt)),

@@ -347,3 +347,50 @@ fn a_smooth_press_is_not_shortened() {
         assert!(ledger.created.most() < 1e-4 * ledger.scale(), "{scheme}: {ledger:?}");
     }
 }
+
+/// Gravity that varies is a load without a potential. In each step the force in the balance does
+/// the work g M·Δy, from the masses of the model alone, and with it a bar that vibrates by the
+/// midpoint rule loses no energy.
+#[test]
+fn the_work_of_gravity_that_varies_closes_the_energy_balance() {
+    let g = |t: f64| -0.3 * (3.0 * t).sin();
+    let midpoint = r#"{ kind = "chung-hulbert", rho_inf = 1.0 }"#;
+    let trapezoidal = r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#;
+    for (scheme, end) in
+        [(midpoint, 0.5), (r#"{ kind = "energy-momentum" }"#, 0.5), (trapezoidal, 1.0), (STATIC, 0.5)]
+    {
+        let weight = "gravity = [\"-0.3*sin(3*t)\"]\n";
+        let text = [&body(20, "consistent"), weight, HELD, &time(5.0, 0.02, scheme)].concat();
+        let mut sim = bar(&text);
+        assert_eq!(sim.model().gravity, vec![0.0; sim.model().dofs()]);
+        let mut masses = vec![0.0; sim.model().dofs()];
+        sim.model().mass.multiply_into(&vec![1.0; masses.len()], &mut masses);
+        let mut work = 0.0;
+        while !sim.finished() {
+            let (before, time) = (sim.state().y.clone(), sim.state().time);
+            sim.advance(&mut GridReport::default()).unwrap();
+            let state = sim.state();
+            let mean = end * g(state.time) + (1.0 - end) * g(time);
+            let moved = state.y.iter().zip(&before).zip(&masses).map(|((y, old), m)| m * (y - old));
+            work += mean * moved.sum::<f64>();
+            let ledger = &state.ledger;
+            assert!((ledger.external_work - work).abs() < 1e-14, "{scheme}: {work}");
+            let lost = ledger.dissipation();
+            assert!(lost.abs() < 1e-14 || scheme == trapezoidal, "{scheme}: {lost:e}");
+        }
+    }
+}
+
+const STATIC: &str = r#"{ kind = "static" }"#;
+
+/// A component that is a formula without t is constant, and has a potential.
+#[test]
+fn a_formula_that_is_a_number_is_constant_gravity() {
+    let text = |gravity: &str| {
+        let weight = format!("gravity = [{gravity}]\n");
+        [&body(4, "lumped"), weight.as_str(), &time(0.5, 0.1, r#"{ kind = "hu" }"#)].concat()
+    };
+    let [number, formula] = ["-9.81", "\"-9.81\""].map(|gravity| finish(bar(&text(gravity))));
+    assert_eq!(number.state(), formula.state());
+    assert!(number.state().ledger.potential < -1.0);
+}

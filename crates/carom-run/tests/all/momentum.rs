@@ -88,6 +88,7 @@ impl Balance {
         // A projection replaces all accelerations by those of the balance.
         let projects = |event: &LogEvent| match event {
             LogEvent::ActiveSet { contact, active, .. } => *active && model.contacts[*contact].projects,
+            LogEvent::Projection { .. } => true,
             _ => false,
         };
         if implicit.is_some() && report.events.iter().any(projects) {

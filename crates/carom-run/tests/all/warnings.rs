@@ -472,3 +472,34 @@ fn friction_beyond_the_singular_coefficient_is_said() {
     let stopped = simulation.advance(&mut GridReport::default()).unwrap_err().to_string();
     assert!(stopped.contains("not unique (relative singular value -0.017"), "{stopped}");
 }
+
+/// A mass of one cell that sticks and slips: what vibrates where stick begins, and what damps it.
+#[test]
+fn stick_that_begins_in_vibrations() {
+    const BELT: &str = include_str!("../../../../cases/friction/stick-slip.toml");
+    let undamped = |sets: &[&str]| {
+        let found = found(BELT, sets).into_iter().filter(|(id, _)| id == "undamped-stick");
+        found.map(|(_, what)| what).collect::<Vec<_>>()
+    };
+    // Its only free nodes are those that stick.
+    assert!(undamped(&[]).is_empty());
+    let damped = "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }";
+    let pad = ["body.spring.mesh.cells=[2,1]"];
+    let springs = [
+        "contact.below.enforcement=penalty",
+        "contact.below.stiffness=1e4",
+        "contact.below.persistency=none",
+    ];
+    let unprojected = ["contact.below.persistency=none", "contact.above.persistency=none"];
+    for (sets, count, what) in [
+        (&pad[..], 2, "the bodies begin to vibrate"),
+        (&springs, 1, "the springs of sticking nodes"),
+        (&unprojected, 2, "turned round in every step"),
+    ] {
+        let said = undamped(sets);
+        assert!(said.len() == count && said.iter().all(|said| said.contains(what)), "{sets:?}: {said:?}");
+        assert!(undamped(&[sets, &[damped]].concat()).is_empty(), "{sets:?}");
+        let equal = ["contact.below.mu_dynamic=0.4", "contact.above.mu_dynamic=0.4"];
+        assert!(undamped(&[sets, &equal].concat()).is_empty(), "{sets:?}");
+    }
+}

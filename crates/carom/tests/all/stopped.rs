@@ -63,6 +63,33 @@ step = 0.02
 scheme = { kind = "newmark", beta = 0.25, gamma = 0.45 }
 "#;
 
+/// A strip that starts folded, far from any equilibrium.
+const FOLDED: &str = r#"
+title = "Folded"
+dimension = 2
+material = [{ name = "steel", law = "saint-venant-kirchhoff", density = 1, young = 10000, poisson = 0.3 }]
+[[body]]
+name = "strip"
+material = "steel"
+element = "Q9"
+mesh = { shape = "rectangle", min = [0.0, -0.01], max = [2.2, 0.01], cells = [33, 1] }
+position = [
+    "if(X < pi/4, -0.5 + (0.5 - Y)*cos(2*X), -0.5 - (X - pi/4))",
+    "if(X < pi/4, (0.5 - Y)*sin(2*X), 0.5 - Y)",
+]
+[[support]]
+on = ["strip.left"]
+fix = ["x", "y"]
+[[contact]]
+name = "plate"
+secondary = "strip.bottom"
+primary = { plane = { point = [0.0, 0.51], normal = [0.0, -1.0] } }
+[time]
+end = 1.0
+step = 0.01
+scheme = { kind = "static" }
+"#;
+
 fn stop(place: &Place, run: &str) -> Stop {
     let directory = place.0.join(run);
     Stop::read(&directory, &Manifest::read(&directory).unwrap()).unwrap().unwrap()
@@ -134,6 +161,23 @@ fn what_gets_past_in_a_trial_gets_past_in_a_run() {
         let time: f64 = rows.lines().last().unwrap().split(',').nth(1).unwrap().parse().unwrap();
         assert!(time >= advice.trial.as_ref().unwrap().reached, "{advice:?}: {time}");
     }
+}
+
+/// Load steps that find no equilibrium from a strained start: with inertia there is a motion, which
+/// a trial finds, and a run.
+#[test]
+fn load_steps_from_a_strained_start_are_told_of_inertia() {
+    let place = Place::new("folded");
+    place.file("case.toml", FOLDED);
+    let done = place.carom(&["run", "case.toml", "--out", "run"]);
+    assert_eq!(done.status.code(), Some(3));
+    let said = text(&done.stderr);
+    let option = "time.scheme={ kind = \"backward-euler\" }";
+    assert!(said.contains(&format!("--set '{option}' gets past t = 0 (tried)")), "{said}");
+    let first = stop(&place, "run").advice.swap_remove(0);
+    assert!(first.what.contains("a scheme with inertia") && first.sets == [option], "{first:?}");
+    let on = place.carom(&["run", "case.toml", "--out", "on", "--set", option, "--set", "time.end=0.05"]);
+    assert_eq!(on.status.code(), Some(0), "{}", text(&on.stderr));
 }
 
 /// A contact of `between` has no keys of its own, and the skin of a body has all its nodes.

@@ -36,6 +36,11 @@ const FALLBACK: Remedy = (
      which dissipates energy in them",
 );
 const FINER: Remedy = (None, "a finer mesh there (`refine` of a polygon, or a mesh file), or a smaller load");
+const INERTIA: Remedy = (
+    Some(Kind::Inertia),
+    "a scheme with inertia, here one that damps motion: beyond a limit load, and from a start far from equilibrium, \
+     load steps find no equilibrium; t is then a time, which must be long enough for the motion to settle",
+);
 const OTHER_LAW: Remedy = (
     None,
     "another law, `neo-hookean` for example, where the body is compressed: the stress of `saint-venant-kirchhoff` \
@@ -52,13 +57,14 @@ const GUARD_OFF: Remedy = (
 
 /// The remedies of each reason.
 const TABLE: &[(&str, &[Remedy])] = &[
-    ("inverted-cell", &[OTHER_LAW, SHORTER, DAMPED, BATHE, FALLBACK, FINER, DEGREE]),
-    ("contact-geometry", &[SHORTER, BATHE, PENALTY, FALLBACK, FINER, ROUNDED]),
-    ("no-convergence", &[OTHER_LAW, SHORTER, FULL, PENALTY, MULTIPLIER, BATHE, FALLBACK, FINER]),
-    ("active-set-cycle", &[SHORTER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
+    ("inverted-cell", &[INERTIA, OTHER_LAW, SHORTER, DAMPED, BATHE, FALLBACK, FINER, DEGREE]),
+    ("contact-geometry", &[INERTIA, SHORTER, BATHE, PENALTY, FALLBACK, FINER, ROUNDED]),
+    ("no-convergence", &[INERTIA, OTHER_LAW, SHORTER, FULL, PENALTY, MULTIPLIER, BATHE, FALLBACK, FINER]),
+    ("active-set-cycle", &[INERTIA, SHORTER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
     (
         "linear-solver",
         &[
+            INERTIA,
             SHORTER,
             FULL,
             PENALTY,
@@ -87,19 +93,20 @@ const TABLE: &[(&str, &[Remedy])] = &[
     (
         "unconstrained-body",
         &[
-            (None, "a [[support]] for the body, or its `move` in place of a force; or a scheme with inertia"),
+            (None, "a [[support]] for the body, or its `move` in place of a force"),
+            INERTIA,
             (None, "a larger `mu` or `shear` of a contact that is to hold it"),
         ],
     ),
     ("jump", &[(None, "a `move` that starts at the positions of its nodes")]),
-    ("penetration", &[SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
+    ("penetration", &[INERTIA, SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
     ("unstable-step", &[SHORTER, BATHE, FINER]),
-    ("not-finite", &[SHORTER, BATHE, FALLBACK, FINER]),
+    ("not-finite", &[INERTIA, SHORTER, BATHE, FALLBACK, FINER]),
     (AUDIT, &[SHORTER, (None, "a report of this run to the authors: one of the two methods is wrong")]),
     (GUARD, &[PROJECT, LONGER, SHORTER, BATHE, DAMPED, SOFTER, FALLBACK, FINER, GUARD_OFF]),
 ];
 /// The remedies of any other reason.
-const OTHERWISE: &[Remedy] = &[SHORTER, BATHE, DAMPED, PENALTY, FALLBACK, FINER];
+const OTHERWISE: &[Remedy] = &[INERTIA, SHORTER, BATHE, DAMPED, PENALTY, FALLBACK, FINER];
 
 /// What to try after a stop at a contact or in a body, or anywhere, with the changes of the case.
 pub(super) fn of(

@@ -21,6 +21,8 @@ pub(super) enum Kind {
     Damped,
     /// A dissipative scheme of two stages.
     Bathe,
+    /// Backward Euler in place of load steps.
+    Inertia,
     /// Springs of the default stiffness at the place.
     Penalty,
     /// Springs ten times as stiff, or as soft.
@@ -96,6 +98,9 @@ impl<'a> Original<'a> {
                 let bathe = "time.scheme={ kind = \"bathe\", rho_inf = 0.0 }".to_owned();
                 let laws = self.each(None, predictor, |_| vec!["law=position".to_owned()]);
                 std::iter::once(bathe).chain(laws).collect()
+            }
+            Kind::Inertia if scheme.is_static() => {
+                vec!["time.scheme={ kind = \"backward-euler\" }".to_owned()]
             }
             Kind::Penalty if implicit => self.each(
                 contact,

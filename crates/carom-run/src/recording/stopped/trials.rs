@@ -152,7 +152,7 @@ fn adapted(state: &State, change: &Change) -> Option<State> {
         Kind::Shorter if change.case.time.phase == 0.0 => state.step *= 4,
         Kind::Longer if state.step.is_multiple_of(2) => state.step /= 2,
         Kind::Shorter | Kind::Longer => return None,
-        Kind::Bathe | Kind::Damped => {
+        Kind::Bathe | Kind::Damped | Kind::Inertia => {
             (state.previous, state.half_step) = (None, HalfStepVelocity::default());
         }
         _ => {}

@@ -1,0 +1,63 @@
+//! Where stick begins. A pair that slipped and now sticks does not move in the step, but its slip
+//! rate at the end is what the scheme makes of the one at the start: of the trapezoidal rule and of
+//! the midpoint rule Hv_{s+1} = −Hv_s, for ever, since their spectral radius at infinite frequency
+//! is one. Its traction then alternates about the right one, by as much at any step, and leaves the
+//! cone too early. So
+//!
+//! ```text
+//! M Δv + Gᵀp + Hᵀq = 0,    G Δv = 0,    H (v + Δv) = 0 in stick
+//! ```
+//!
+//! and accelerations follow (`persistency.rs`). The impulse q has no cone: the step has decided
+//! that the pair sticks, and Hv is only what its size leaves, O(Δt). Its work is that of friction,
+//! and where a support carries the other side, of that support.
+
+use carom_contact::{FrictionState, Pair, inner};
+
+use crate::linear::system::System;
+use crate::model::Model;
+use crate::rejected::Rejected;
+use crate::state::State;
+use crate::velocity::cone::{Closed, Motion};
+
+/// Works of an impulse.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Works {
+    /// Of friction.
+    pub friction: f64,
+    /// Of moving supports.
+    pub external: f64,
+}
+
+/// Whether an active pair of a state sticks which slipped before.
+pub(crate) fn begins_to_stick(state: &State, before: &State, (contact, p): (usize, usize)) -> bool {
+    let pair = &state.pairs[contact][p];
+    let sticks = |pair: &Pair| pair.tangential.friction_state == FrictionState::Stick;
+    sticks(pair) && before.closed(contact, pair.node).is_some_and(|old| !sticks(old))
+}
+
+/// Stops the slips of pairs that stick.
+pub(crate) fn stop_slips(
+    model: &Model,
+    state: &mut State,
+    closed: &Closed,
+    system: &mut System,
+) -> Result<Works, Rejected> {
+    let rates = closed.slip_rates(&state.v);
+    let jump = closed.stop(model, state, &rates, system)?;
+    let friction = -0.5 * rates.iter().zip(&jump.tangential).map(|(rate, q)| inner(*rate, *q)).sum::<f64>();
+    let external = work_of_supports(model, state, closed, &jump);
+    closed.strike(model, state, &jump);
+    Ok(Works { friction, external })
+}
+
+/// Work of the reactions J = M Δv + Gᵀp + Hᵀq of moving supports, whose velocities stay.
+fn work_of_supports(model: &Model, state: &State, closed: &Closed, jump: &Motion) -> f64 {
+    if model.motions.is_empty() {
+        return 0.0;
+    }
+    let mut reaction = vec![0.0; model.dofs()];
+    model.mass.multiply_into(&jump.x, &mut reaction);
+    closed.add_impulses(jump, &mut reaction);
+    model.motions.dofs().map(|dof| reaction[dof] * state.v[dof]).sum()
+}
