@@ -38,6 +38,7 @@ pub(super) fn read(v: &View) -> Option<PrimarySpec> {
             hash: blake3::hash(&bytes).to_hex().to_string(),
             triangles: triangles.corners().len(),
             rim: triangles.rim(),
+            inner: triangles.inner(),
         })),
         Err(Fault { key, what, why, help }) => {
             let what = if what.contains(&name) { what } else { format!("{name}: {what}") };

@@ -3,34 +3,22 @@
 //! read, since the order of the corners gives them.
 //!
 //! The file is read to its last byte or not at all: all solids of a text are one list of triangles,
-//! and a binary file has exactly the length that its count of triangles implies.
+//! and a binary file has exactly the length that its count of triangles implies. Solids that touch
+//! along whole faces are one (`united.rs`).
 
+mod error;
 mod text;
+mod united;
 
 use std::collections::HashMap;
 
-use crate::triangles::{Triangles, TrianglesError};
+use crate::triangles::{Corners, Triangles};
+
+pub use error::StlError;
 
 /// Bytes before the first triangle of a binary file, and of every triangle.
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
-
-/// The corners of a triangle.
-type Corners = [[f64; 3]; 3];
-
-/// Why a file in STL gave no surface.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum StlError {
-    /// It does not follow the format, with the place.
-    #[error("{0}")]
-    Format(String),
-    /// It ends before its end.
-    #[error("it ends early: {0}")]
-    Cut(String),
-    /// Its triangles are not a surface.
-    #[error("{0}")]
-    Surface(TrianglesError),
-}
 
 /// Reads a file in STL.
 ///
@@ -52,19 +40,32 @@ pub fn read(bytes: &[u8]) -> Result<Triangles, StlError> {
             return Err(StlError::Format(what));
         }
     };
-    let (mut points, mut corners) = (Vec::new(), Vec::new());
-    let mut number: HashMap<[u64; 3], usize> = HashMap::new();
-    for triangle in triangles {
-        corners.push(triangle.map(|corner| {
-            // −0 is 0.
-            let x = corner.map(|x| x + 0.0);
-            *number.entry(x.map(f64::to_bits)).or_insert_with(|| {
-                points.push(x);
-                points.len() - 1
-            })
-        }));
+    let (points, corners) = vertices(&triangles);
+    let inner = united::inner(&triangles, &corners);
+    if !inner.contains(&true) {
+        return Triangles::new(points, corners).map_err(StlError::Surface);
     }
-    Triangles::new(points, corners).map_err(StlError::Surface)
+    let outer: Vec<Corners> =
+        triangles.iter().zip(&inner).filter(|(_, inner)| !**inner).map(|(triangle, _)| *triangle).collect();
+    let (points, corners) = vertices(&outer);
+    let surface = Triangles::new(points, corners).map_err(StlError::Surface)?;
+    Ok(surface.without(triangles.len() - outer.len()))
+}
+
+/// The vertices of triangles, and their numbers at the corners.
+fn vertices(triangles: &[Corners]) -> (Vec<[f64; 3]>, Vec<[usize; 3]>) {
+    let mut points = Vec::new();
+    let mut number: HashMap<[u64; 3], usize> = HashMap::new();
+    let mut of_corner = |corner: [f64; 3]| {
+        // −0 is 0.
+        let x = corner.map(|x| x + 0.0);
+        *number.entry(x.map(f64::to_bits)).or_insert_with(|| {
+            points.push(x);
+            points.len() - 1
+        })
+    };
+    let corners = triangles.iter().map(|triangle| triangle.map(&mut of_corner)).collect();
+    (points, corners)
 }
 
 /// The number of triangles that a binary file states.

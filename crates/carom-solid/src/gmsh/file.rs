@@ -65,8 +65,8 @@ impl MshFile {
         Self { slits, ..self }
     }
 
-    /// Names of the physical groups of a dimension: 2 surfaces, 1 curves, 0 points; no duplicates. A
-    /// group without a name has its number.
+    /// Names of the physical groups of a dimension: 2 surfaces, 1 curves, 0 points; no duplicates.
+    /// A group without a name has its number.
     pub fn names(&self, dimension: usize) -> Vec<&str> {
         let mut names = Vec::new();
         for group in self.groups.iter().filter(|g| g.dimension == dimension as i64) {

@@ -7,7 +7,8 @@
 //! endsolid NAME
 //! ```
 
-use super::{Corners, StlError};
+use super::error::StlError;
+use crate::triangles::Corners;
 
 /// What editors write before a text in UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";

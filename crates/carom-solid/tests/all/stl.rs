@@ -107,3 +107,56 @@ fn wrong_files_are_named() {
         assert!(error.contains(words), "{error}");
     }
 }
+
+/// The twelve triangles of the box from `low` to `high`, each face cut from its corner number
+/// `turn`.
+fn block(low: [f64; 3], high: [f64; 3], turn: usize) -> String {
+    let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
+    // Counter-clockwise as seen from outside.
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = faces.iter().flat_map(|face| {
+        let at = |k: usize| corner(face[(k + turn) % 4]);
+        [[at(0), at(1), at(2)], [at(0), at(2), at(3)]]
+    });
+    let facet = |triangle: [[f64; 3]; 3]| {
+        let corners: String = triangle.iter().map(|[x, y, z]| format!("vertex {x} {y} {z}\n")).collect();
+        format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
+    };
+    format!("solid\n{}endsolid\n", triangles.map(facet).collect::<String>())
+}
+
+/// Volume by Gauss's theorem.
+fn volume(surface: &carom_solid::Triangles) -> f64 {
+    let corners = surface.corners().iter().map(|nodes| nodes.map(|n| surface.points()[n]));
+    let product = |[a, b, c]: [[f64; 3]; 3]| {
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+            + a[1] * (b[2] * c[0] - b[0] * c[2])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    corners.map(product).sum::<f64>() / 6.0
+}
+
+/// Boxes side by side are one surface without the wall between them; boxes that touch along an edge
+/// are none.
+#[test]
+fn solids_that_touch_are_one() {
+    let one = block([0.0; 3], [1.0, 2.0, 3.0], 0);
+    for turn in 0..4 {
+        let both =
+            read(format!("{one}{}", block([1.0, 0.0, 0.0], [2.5, 2.0, 3.0], turn)).as_bytes()).unwrap();
+        assert_eq!((both.corners().len(), both.inner(), both.rim(), both.points().len()), (20, 4, 0, 12));
+        assert!((volume(&both) - 15.0).abs() < 1e-12, "{}", volume(&both));
+        let apart =
+            read(format!("{one}{}", block([1.5, 0.0, 0.0], [2.5, 2.0, 3.0], turn)).as_bytes()).unwrap();
+        assert_eq!((apart.corners().len(), apart.inner(), apart.rim()), (24, 0, 0));
+        let edge = read(format!("{one}{}", block([1.0, 2.0, 0.0], [2.5, 3.0, 3.0], turn)).as_bytes());
+        assert!(edge.unwrap_err().to_string().contains("meet at one edge"));
+    }
+    let three = [
+        one.as_str(),
+        &block([1.0, 0.0, 0.0], [2.0, 2.0, 3.0], 1),
+        &block([2.0, 0.0, 0.0], [3.0, 2.0, 3.0], 2),
+    ];
+    let three = read(three.concat().as_bytes()).unwrap();
+    assert_eq!((three.inner(), three.corners().len(), volume(&three)), (8, 28, 18.0));
+}
