@@ -11,6 +11,7 @@ mod masses;
 mod meshes;
 mod record;
 mod steps;
+mod unconnected;
 
 use carom_case::Case;
 use carom_mechanics::model::Model;
@@ -44,7 +45,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 15] = [
+pub const WARNINGS: [Entry; 16] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -90,6 +91,12 @@ pub const WARNINGS: [Entry; 15] = [
             released is lost",
         advice: "mass = \"consistent\", smaller cells at the contact, or a start from a state of equilibrium with [initial]",
         rule: Rule::Model(masses::strained_massless),
+    },
+    Entry {
+        id: "unconnected-bodies",
+        why: "every body has nodes of its own: nothing holds the two together there, and nothing keeps one out of the other",
+        advice: "a [[contact]] between the sides that touch; to connect the two, one body with a mesh of both",
+        rule: Rule::Model(unconnected::unconnected_bodies),
     },
     Entry {
         id: "one-node",
