@@ -57,12 +57,24 @@ fn check_and_run_refuse_the_same() {
                 "support.ground.on=[\"low.bottom\", \"low.top\"]",
                 "support.ram.on=[\"high.top\", \"high.bottom\"]",
             ],
-            "overlap",
+            "cannot be relaxed",
         ),
         ("blocks", &["body.high.position=[\"X\", \"-Y\"]"], "the initial position inverts a cell"),
-        ("blocks", &["contact=[]"], "has no equilibrium"),
+        (
+            "blocks",
+            &["contact=[]", "support=[{ on = [\"low.bottom\"], fix = [\"x\", \"y\"] }]"],
+            "has no equilibrium",
+        ),
         ("blocks", &["initial.from=nowhere"], "the final state of the run"),
-        ("impact", &["time.scheme={ kind = \"central-difference\" }"], "is too long for central-difference"),
+        (
+            "impact",
+            &[
+                "time.scheme={ kind = \"central-difference\" }",
+                "body.cylinder.mass=lumped",
+                "body.prism.mass=lumped",
+            ],
+            "is too long for central-difference",
+        ),
         (
             "impact",
             &["body.prism.mesh={ file = \"square.msh\", surface = \"1\" }"],
