@@ -169,6 +169,10 @@ def main():
     gmsh.option.setNumber("Mesh.SaveParametric", 1)
     write(TESTS / "parametric_41_ascii.msh")
     write(TESTS / "parametric_41_binary.msh", binary=True)
+    # In version 2.2 cells have one group only, which SaveAll would make the entity.
+    gmsh.option.setNumber("Mesh.SaveAll", 0)
+    write(TESTS / "parametric_22_ascii.msh", 2.2)
+    write(TESTS / "parametric_22_binary.msh", 2.2, True)
 
     impact(0.3, 0.4, square=True)
     mesh(1)

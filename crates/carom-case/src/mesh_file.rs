@@ -145,6 +145,12 @@ pub(crate) fn mesh(
     gmsh::read(&bytes).and_then(|f| group(f, dimension, surface, slits)).map_err(none)
 }
 
+/// The file of a mesh that was read with its case, once more.
+pub(super) fn again(spec: &MeshSpec) -> Option<gmsh::MshFile> {
+    let MeshSpec::File { file, hash, .. } = spec else { return None };
+    gmsh::read(&unchanged(file, hash).ok()?).ok()
+}
+
 /// The bytes of a file that is still the one with this hash.
 pub(super) fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, NoMesh> {
     let bytes = bytes(file).map_err(NoMesh::Unreadable)?;

@@ -38,6 +38,7 @@ pub(super) fn read(v: &View) -> Option<PrimarySpec> {
             hash: blake3::hash(&bytes).to_hex().to_string(),
             triangles: triangles.corners().len(),
             rim: triangles.rim(),
+            inner: triangles.inner(),
         })),
         Err(Fault { key, what, why, help }) => {
             let what = if what.contains(&name) { what } else { format!("{name}: {what}") };
@@ -66,7 +67,7 @@ fn triangles(bytes: &[u8], group: Option<&str>) -> Result<Triangles, Fault> {
                 why: "the file was cut, perhaps while it was copied or written".to_owned(),
                 help: "copy it again, or save it again where it was made".to_owned(),
             },
-            stl::StlError::Format { .. } => Fault {
+            stl::StlError::Format(_) => Fault {
                 key: "file",
                 what: error.to_string(),
                 why: "the file is read as STL, text or binary, since it does not begin with $MeshFormat as a mesh from Gmsh".to_owned(),

@@ -3,12 +3,16 @@
 
 use std::collections::HashMap;
 
+/// The corners of a triangle.
+pub(crate) type Corners = [[f64; 3]; 3];
+
 /// A triangulated surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangles {
     points: Vec<[f64; 3]>,
     corners: Vec<[usize; 3]>,
     across: Vec<[Option<usize>; 3]>,
+    inner: usize,
 }
 
 /// Why triangles are not a surface; they are numbered from 1.
@@ -75,8 +79,18 @@ impl Triangles {
                 there.push((k, edge));
             }
         }
-        let surface = Self { points, corners, across };
+        let surface = Self { points, corners, across, inner: 0 };
         surface.pinched().map_or(Ok(surface), Err)
+    }
+
+    /// The same surface, from which so many triangles inside were left out.
+    pub(crate) fn without(self, inner: usize) -> Self {
+        Self { inner, ..self }
+    }
+
+    /// Triangles between touching solids, which were left out.
+    pub fn inner(&self) -> usize {
+        self.inner
     }
 
     /// A vertex at which several fans meet.

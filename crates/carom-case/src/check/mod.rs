@@ -4,6 +4,7 @@ mod contact;
 mod expect;
 mod fallback;
 mod friction;
+mod joined;
 mod linear;
 mod loads;
 mod memory;
@@ -21,7 +22,7 @@ use super::problem::Problem;
 use super::spec::SKIN;
 use super::suggest;
 use super::tree::{Node, Table};
-use super::{BodySpec, SchemeSpec};
+use super::{BodySpec, MeshSpec, SchemeSpec};
 
 /// Adds the problems found across tables.
 pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Problem>) {
@@ -37,6 +38,7 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
     check.starts();
     check.manufactured();
     check.contacts();
+    check.joined();
     check.probes();
     check.time();
     check.requirements_of_scheme();
@@ -186,10 +188,8 @@ impl<'a> Check<'a> {
         let bodies = self.names("body")?;
         let Some((name, part)) = side.split_once('.') else {
             let why = "a side is written body.side";
-            let help = self.body(side).map_or_else(
-                || format!("the bodies are: {}", bodies.join(", ")),
-                |b| format!("its sides are: {}", all_sides(b)),
-            );
+            let help =
+                self.body(side).map_or_else(|| format!("the bodies are: {}", bodies.join(", ")), known_sides);
             self.add(path, format!("`{side}` is not a side"), why, help);
             return None;
         };
@@ -205,11 +205,16 @@ impl<'a> Check<'a> {
         let sides = body.mesh.sides();
         let is_skin = part == SKIN && self.draft.dimension != Some(1);
         if !is_skin && !sides.iter().any(|s| s == part) && !self.is_symmetry_misspelt(name) {
-            let why = format!("its mesh has the sides: {}", all_sides(body));
-            let help = suggest::nearest(part, sides.iter().map(String::as_str)).map_or_else(
-                || "use one of these sides".to_owned(),
-                |near| format!("did you mean `{name}.{near}`?"),
-            );
+            let help = match suggest::nearest(part, sides.iter().map(String::as_str)) {
+                Some(near) => format!("did you mean `{name}.{near}`?"),
+                None if sides.is_empty() => no_sides(body, self.draft.dimension.unwrap_or(2)),
+                None => "use one of these sides".to_owned(),
+            };
+            let why = [known_sides(body)]
+                .into_iter()
+                .chain(inside(body, part).cloned())
+                .collect::<Vec<_>>()
+                .join("; ");
             self.add_once(path, format!("body `{name}` has no side `{part}`"), &why, help);
             return None;
         }
@@ -360,7 +365,31 @@ impl<'a> Check<'a> {
     }
 }
 
-fn all_sides(body: &BodySpec) -> String {
+fn known_sides(body: &BodySpec) -> String {
     let sides: Vec<_> = body.mesh.sides().into_iter().map(|side| format!("{}.{side}", body.name)).collect();
-    sides.join(", ")
+    match &sides[..] {
+        [] => "no physical group of its file has a part of its boundary".to_owned(),
+        sides => format!("its mesh has the sides: {}", sides.join(", ")),
+    }
+}
+
+/// What was left out of a side when its mesh was read.
+fn inside<'a>(body: &'a BodySpec, side: &str) -> Option<&'a String> {
+    let MeshSpec::File { repairs, .. } = body.mesh.source() else { return None };
+    repairs.iter().find(|repair| repair.contains(&format!("\"{side}\"")))
+}
+
+/// What to do about a mesh from a file without sides.
+fn no_sides(body: &BodySpec, dimension: usize) -> String {
+    let example = match dimension {
+        1 => "Physical Point(\"left\") = {1};",
+        2 => "Physical Curve(\"bottom\") = {1};",
+        _ => "Physical Surface(\"bottom\") = {1};",
+    };
+    let skin = if dimension > 1 {
+        format!(", or write `{}.{SKIN}`, its whole boundary", body.name)
+    } else {
+        String::new()
+    };
+    format!("add one to the geometry, for example {example} and mesh again{skin}")
 }

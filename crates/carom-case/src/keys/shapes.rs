@@ -213,7 +213,7 @@ const REFINE: Table = table(
 
 const MESH_FILE: Table = table(
     "mesh from a file",
-    "A body from a Gmsh file; its sides are the named physical curves (dimension 1: points, dimension 3: surfaces) on its boundary.",
+    "A body from a Gmsh file; its sides are the physical curves (dimension 1: points, dimension 3: surfaces) on its boundary. A group without a name is called by its number.",
     &[
         FILE,
         key("surface", Text, "Name of the physical surface (dimension 1: curve) that is the body; in dimension 3 give `volume`.")
@@ -227,7 +227,7 @@ const MESH_FILE: Table = table(
 
 const PLANE_FILE: Table = table(
     "plane mesh from a file",
-    "A surface of a Gmsh file; its sides are the named physical curves on its boundary.",
+    "A surface of a Gmsh file; its sides are the physical curves on its boundary.",
     &[
         FILE,
         key("surface", Text, "Name of the physical surface that is extruded.").example("\"profile\""),

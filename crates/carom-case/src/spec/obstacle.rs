@@ -23,6 +23,14 @@ pub struct SurfaceSpec {
     pub triangles: usize,
     /// Number of its edges with a triangle on one side only.
     pub rim: usize,
+    /// Number of triangles between touching solids, which are no part of it.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub inner: usize,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// Motion of a rigid primary.

@@ -192,3 +192,77 @@ fn errors_of_extruded_files_are_reported_at_their_key() {
     let fraction = part(&sets).unwrap_err().remove(0).to_string();
     assert!(fraction.contains("body[0].mesh.of comes from a file"), "{fraction}");
 }
+
+/// Two squares of triangles, conforming along x = 1: the surfaces 8 and 9, the curve 7 there.
+const SQUARES: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n\
+    $Nodes\n6\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 2 0 0\n6 2 1 0\n$EndNodes\n$Elements\n5\n\
+    1 1 2 7 1 2 3\n2 2 2 8 1 1 2 3\n3 2 2 8 1 1 3 4\n4 2 2 9 1 2 5 6\n5 2 2 9 1 2 6 3\n$EndElements\n";
+
+/// Two bodies of a file; `rest`: what follows them.
+fn squares(mesh: &str, rest: &str, sets: &[&str]) -> Result<Case, String> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("squares.msh"), mesh).unwrap();
+    let case = folder.path().join("case.toml").display().to_string();
+    let body = |name: &str, group: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nmaterial = \"m\"\nelement = \"T3\"\nmesh = {{ file = \"squares.msh\", surface = \"{group}\" }}\n"
+        )
+    };
+    let head = "dimension = 2\nmaterial = [{ name = \"m\", law = \"neo-hookean\", density = 1.0, young = 1.0, poisson = 0.3 }]\n\
+        time = { scheme = { kind = \"hu\" }, step = 1e-3, end = 0.1 }\n";
+    let text = [head, &body("left", "8"), &body("right", "9"), rest].concat();
+    resolved_as(&case, &text, sets).map_err(|problems| {
+        assert_eq!(problems.len(), 1, "{problems:#?}");
+        problems[0].to_string()
+    })
+}
+
+/// What holds bodies of one mesh together is said, or they are refused.
+#[test]
+fn bodies_of_one_mesh_are_one_body_or_in_contact() {
+    let problem = squares(SQUARES, "", &[]).unwrap_err();
+    for words in [
+        "bodies `left` and `right` have 2 nodes of squares.msh in common, from [1.0, 0.0] to [1.0, 1.0], and no contact",
+        "every body has nodes of its own",
+        "at the edge between them",
+        "put the cells of both into one physical surface",
+        "secondary = \"left.7\" and primary = \"right.7\"",
+    ] {
+        assert!(problem.contains(words), "{words}: {problem}");
+    }
+    let contact = "[[contact]]\nname = \"joint\"\nsecondary = \"left.7\"\nprimary = \"right.7\"\n";
+    assert!(squares(SQUARES, contact, &[]).is_ok());
+    assert!(squares(SQUARES, "[[contact]]\nname = \"all\"\nbetween = \"all\"\n", &[]).is_ok());
+    assert!(squares(SQUARES, contact, &["contact.joint.primary=left.7"]).is_err());
+    assert!(squares(SQUARES, "", &["body.right.place.shift=[0.5, 0.0]"]).is_ok());
+    // Nodes of their own at the same places.
+    let own = SQUARES.replace("6 2 1 0\n", "6 2 1 0\n7 1 0 0\n8 1 1 0\n").replace("$Nodes\n6", "$Nodes\n8");
+    let own = own.replace("9 1 2 5 6", "9 1 7 5 6").replace("9 1 2 6 3", "9 1 7 6 8");
+    assert!(squares(&own, "", &[]).is_ok());
+    // A corner is no joint.
+    let corner = own.replace("9 1 7 5 6", "9 1 2 5 6").replace("9 1 7 6 8", "9 1 2 6 8");
+    assert!(squares(&corner, "", &[]).is_ok());
+    let without = SQUARES.replace("$Elements\n5\n1 1 2 7 1 2 3\n", "$Elements\n4\n");
+    let problem = squares(&without, "", &[]).unwrap_err();
+    assert!(problem.contains("left.SIDE") && problem.contains("SIDE is a physical curve there"), "{problem}");
+}
+
+/// A mesh without sides, and a side all of whose edges lie inside the body.
+#[test]
+fn sides_that_a_mesh_lacks() {
+    let shift = "body.right.place.shift=[0.5, 0.0]";
+    let support = "[[support]]\non = [\"left.bottom\"]\nfix = [\"x\"]\n";
+    let without = SQUARES.replace("$Elements\n5\n1 1 2 7 1 2 3\n", "$Elements\n4\n");
+    let problem = squares(&without, support, &[shift]).unwrap_err();
+    for words in [
+        "body `left` has no side `bottom`",
+        "no physical group of its file has a part of its boundary",
+        "Physical Curve(\"bottom\") = {1};",
+        "or write `left.skin`, its whole boundary",
+    ] {
+        assert!(problem.contains(words), "{words}: {problem}");
+    }
+    let inner = SQUARES.replace("1 1 2 7 1 2 3", "1 1 2 7 1 1 3");
+    let problem = squares(&inner, &support.replace("bottom", "7"), &[shift]).unwrap_err();
+    assert!(problem.contains("1 of 1 edges of the physical curve \"7\" lie inside the body"), "{problem}");
+}

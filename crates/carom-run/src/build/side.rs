@@ -47,6 +47,12 @@ pub(crate) fn side(parts: &[BodyInstance], name: &str, path: &str) -> Result<Sid
     let first = parts[part].first_node;
     let (Some(facets), Some(nodes)) = (mesh.sides.get(side), mesh.side_nodes(side)) else {
         let sides = mesh.sides.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+        if sides.is_empty() {
+            return Err(missing(
+                format!("the mesh of \"{body}\" has no sides"),
+                "name a part of its boundary".into(),
+            ));
+        }
         return Err(missing(format!("the sides of \"{body}\" are: {sides}"), "use one of them".into()));
     };
     Ok(Side {

@@ -12,6 +12,7 @@ mod meshes;
 mod record;
 mod steps;
 mod stick;
+mod unconnected;
 
 use carom_case::Case;
 use carom_mechanics::model::Model;
@@ -45,7 +46,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 16] = [
+pub const WARNINGS: [Entry; 17] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -99,6 +100,12 @@ pub const WARNINGS: [Entry; 16] = [
         advice: "a scheme that damps what the step does not resolve, such as bathe, or chung-hulbert with rho_inf = 0.5; \
                  persistency = \"project\" where it is \"none\"",
         rule: Rule::Model(stick::undamped_stick),
+    },
+    Entry {
+        id: "unconnected-bodies",
+        why: "every body has nodes of its own: nothing holds the two together there, and nothing keeps one out of the other",
+        advice: "a [[contact]] between the sides that touch; to connect the two, one body with a mesh of both",
+        rule: Rule::Model(unconnected::unconnected_bodies),
     },
     Entry {
         id: "one-node",

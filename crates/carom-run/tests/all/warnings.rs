@@ -503,3 +503,40 @@ fn stick_that_begins_in_vibrations() {
         assert!(undamped(&[sets, &equal].concat()).is_empty(), "{sets:?}");
     }
 }
+
+/// Two squares with a common edge, or a common corner, or apart.
+#[test]
+fn bodies_that_touch_without_a_contact() {
+    let text = r#"
+dimension = 2
+material = [{ name = "rubber", law = "neo-hookean", density = 1.0, lambda = 100.0, mu = 50.0 }]
+[[body]]
+name = "left"
+material = "rubber"
+element = "T6"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [0.1, 0.1], cells = [3, 3] }
+[[body]]
+name = "right"
+material = "rubber"
+element = "Q9"
+mesh = { shape = "rectangle", min = [0.1, 0.0], max = [0.2, 0.1], cells = [3, 3] }
+[time]
+end = 1e-2
+step = 1e-3
+scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
+"#;
+    let [(id, what)] = &found(text, &[])[..] else { panic!() };
+    assert_eq!(id, "unconnected-bodies");
+    assert!(what.contains("bodies \"left\" and \"right\": they have 3 edges in common"), "{what}");
+    let declared = "contact=[{ name = \"joint\", secondary = \"left.right\", primary = \"right.left\" }]";
+    for set in [
+        declared,
+        // They have a corner in common.
+        "body.right.place.shift=[0.0, 0.1]",
+        "body.right.place.shift=[1e-7, 0.0]",
+        "body.right.mesh.cells=[3, 4]",
+    ] {
+        assert!(!ids(text, &[set]).contains(id), "{set}");
+    }
+    assert!(ids(text, &["body.right.place.shift=[1e-11, 0.0]"]).contains(id));
+}

@@ -1,12 +1,12 @@
 //! A physical curve on the x axis as a body of dimension 1, with the physical points at its ends as
 //! sides.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
 use super::checks::orient;
 use super::error::{Fault, MshError};
 use super::file::MshFile;
-use super::group::Group;
+use super::group::{Found, Group};
 use crate::element_shape::of_shape;
 use crate::mesh::{Facet, Mesh};
 
@@ -30,21 +30,19 @@ impl MshFile {
             let fault = Fault::Branching { name: curve.to_owned(), node: node.tag, cells: cells_at[n].len() };
             return Err(self.at(&node, fault));
         }
-        let mut sides: BTreeMap<String, Vec<Facet>> = BTreeMap::new();
-        for name in self.names(0) {
-            for point in self.blocks(0, name).flat_map(|b| &b.nodes) {
-                let Ok(node) = group.used.binary_search(point) else { continue };
-                // Interior nodes belong to one cell as well.
-                let [cell] = cells_at[node][..] else { continue };
-                let facet = Facet { cell, nodes: vec![node] };
-                let side = sides.entry(name.to_owned()).or_default();
-                if group.cells[cell * group.element.nodes()..][..2].contains(&node) && !side.contains(&facet)
-                {
-                    side.push(facet);
-                }
-            }
-        }
-        sides.retain(|_, facets| !facets.is_empty());
+        let corners = group.cells.chunks_exact(group.element.nodes()).enumerate();
+        let corners = corners.flat_map(|(cell, nodes)| nodes[..2].iter().map(move |&node| (node, cell)));
+        let ends: HashMap<usize, Facet> = corners
+            .filter(|(node, _)| cells_at[*node].len() == 1)
+            .map(|(node, cell)| (node, Facet { cell, nodes: vec![node] }))
+            .collect();
+        let sides = group.sides(|_, _, point| {
+            // Interior nodes belong to one cell as well.
+            Ok(match ends.get(&point[0]) {
+                Some(facet) => Found::Boundary(facet),
+                None => Found::Inside,
+            })
+        })?;
         Ok(group.into_mesh(sides))
     }
 }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::checks::orient;
 use super::error::{Fault, MshError};
 use super::file::MshFile;
-use super::group::Group;
+use super::group::{Found, Group};
 use crate::element_shape::of_shape;
 use crate::mesh::{Facet, Mesh};
 
@@ -24,8 +24,8 @@ impl MshFile {
         let mut group = Group::<2>::of(self, surface)?;
         let none = MshError::whole(Fault::NoCells { what: "surface", name: surface.to_owned() });
         of_shape!(2, group.element, orient(&mut group), Err(none))?;
-        let boundary = boundary(&group)?;
-        let sides = curves(&group, &boundary)?;
+        let edges = edges(&group)?;
+        let sides = curves(&mut group, &edges)?;
         Ok(group.into_mesh(sides))
     }
 }
@@ -35,11 +35,13 @@ fn reversed(edge: &[usize]) -> Vec<usize> {
     [edge[1], edge[0]].into_iter().chain(edge[2..].iter().rev().copied()).collect()
 }
 
-/// Edges of only one cell, by start and end.
-fn boundary(group: &Group<2>) -> Result<HashMap<(usize, usize), Facet>, MshError> {
+/// Edges of the cells by start and end, each in the direction in which its cell is on the left.
+type Edges = HashMap<(usize, usize), Facet>;
+
+/// The edges of all cells; one between two cells occurs in both directions.
+fn edges(group: &Group<2>) -> Result<Edges, MshError> {
     let (n, sides) = (group.element.nodes(), group.element.facets());
-    let mut edges: HashMap<(usize, usize), Facet> =
-        HashMap::with_capacity(group.cells.len() / n * sides.len());
+    let mut edges = Edges::with_capacity(group.cells.len() / n * sides.len());
     for (cell, nodes) in group.cells.chunks_exact(n).enumerate() {
         for side in sides {
             let facet = Facet { cell, nodes: side.iter().map(|&a| nodes[a]).collect() };
@@ -51,12 +53,8 @@ fn boundary(group: &Group<2>) -> Result<HashMap<(usize, usize), Facet>, MshError
             }
         }
     }
-    let mut alone = HashMap::new();
     for (&(start, end), facet) in &edges {
-        let Some(other) = edges.get(&(end, start)) else {
-            alone.insert((start, end), facet.clone());
-            continue;
-        };
+        let Some(other) = edges.get(&(end, start)) else { continue };
         if facet.nodes != reversed(&other.nodes) {
             // The map is unordered: name the cells in the order of the file.
             let [a, b] = [facet.cell.min(other.cell), facet.cell.max(other.cell)].map(|c| group.rows[c]);
@@ -66,23 +64,24 @@ fn boundary(group: &Group<2>) -> Result<HashMap<(usize, usize), Facet>, MshError
             return Err(group.file.at(&at, fault));
         }
     }
-    Ok(alone)
+    Ok(edges)
 }
 
-/// Named curves on the boundary.
-fn curves(
-    group: &Group<2>,
-    boundary: &HashMap<(usize, usize), Facet>,
-) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
-    let sides = group.sides(|name, line| {
-        let found = boundary.get(&(line[0], line[1])).or_else(|| boundary.get(&(line[1], line[0])));
-        let Some(facet) = found else { return Ok(None) };
+/// Named curves on the boundary, which consists of the edges of only one cell.
+fn curves(group: &mut Group<2>, edges: &Edges) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
+    let sides = group.sides(|group, name, line| {
+        let ends = [(line[0], line[1]), (line[1], line[0])];
+        let (facet, place) = match ends.map(|ends| edges.get(&ends)) {
+            [None, None] => return Ok(Found::Elsewhere),
+            [Some(facet), None] | [None, Some(facet)] => (facet, Found::Boundary(facet)),
+            [Some(facet), Some(_)] => (facet, Found::Inside),
+        };
         if facet.nodes != line && facet.nodes != reversed(line) {
             let [start, end] = [line[0], line[1]].map(|n| group.node(n).tag);
             let (a, b) = (format!("curve \"{name}\""), format!("cell {}", group.rows[facet.cell].tag));
             return Err(Fault::EdgeNodes { a, b, start, end });
         }
-        Ok(Some(facet))
+        Ok(place)
     })?;
     Ok(sides.into_iter().map(|(name, facets)| (name, walked(&facets))).collect())
 }

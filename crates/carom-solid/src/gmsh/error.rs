@@ -70,11 +70,15 @@ pub enum Fault {
     #[error("cell {cell} refers to node {node}, which is not in the file")]
     NoNode { cell: i64, node: i64 },
     #[error("there is no physical {what} \"{name}\"")]
-    NoName { what: &'static str, name: String, names: Vec<String> },
+    NoName { what: &'static str, name: String, names: Vec<String>, elsewhere: Vec<String> },
     #[error("the physical {what} \"{name}\" has no cells")]
     NoCells { what: &'static str, name: String },
+    #[error("cell {cell} of \"{name}\" is {kind}, an incomplete one of order {order}")]
+    Incomplete { name: String, cell: i64, kind: String, order: usize, complete: usize },
+    #[error("cell {cell} of \"{name}\" is {kind}, of order {order}")]
+    Order { name: String, cell: i64, kind: String, order: usize },
     #[error("cell {cell} of \"{name}\" is {kind}")]
-    Unsupported { name: String, cell: i64, kind: String },
+    Shape { name: String, cell: i64, kind: String },
     #[error("cell {cell} of \"{name}\" has order {order}, but the previous cells have order {before}")]
     MixedOrders { name: String, cell: i64, order: usize, before: usize },
     #[error("node {node} of \"{name}\" is at {axis} = {value:e}, another at {axis} = {other:e}")]
@@ -126,20 +130,29 @@ impl MshError {
                 "the file does not follow the format of its version".into()
             }
             Fault::SectionTwice(_) => "it would be unclear which of them is valid".into(),
-            Fault::NoSection(_) => "bodies need nodes, cells and the names of physical groups".into(),
+            Fault::NoSection("Entities") => "it says which cells are in the groups of $PhysicalNames".into(),
+            Fault::NoSection(_) => "bodies need nodes and cells".into(),
             Fault::Partitioned => "its cells belong to partitions instead of physical groups".into(),
             Fault::TagTwice { .. } => "a reference to it would be ambiguous".into(),
             Fault::NotFinite(_) => "coordinates must be finite numbers".into(),
             Fault::UnknownType { .. } => "the number of its nodes is unknown, so nothing after it can be read".into(),
             Fault::NoNode { .. } => "every cell refers to nodes of $Nodes".into(),
-            Fault::NoName { what, names, .. } if names.is_empty() => {
-                format!("the file contains no physical {what}")
-            }
+            Fault::NoName { what, names, elsewhere, .. } if names.is_empty() => match &elsewhere[..] {
+                [] => format!("the file contains no physical {what}, nor another physical group"),
+                elsewhere => {
+                    format!("the file contains no physical {what}, only the physical {}", elsewhere.join(", "))
+                }
+            },
             Fault::NoName { what, names, .. } => format!("the physical {what}s are: {}", names.join(", ")),
             Fault::NoCells { .. } => "the name is defined, but no cell belongs to it".into(),
-            Fault::Unsupported { .. } => {
-                "bodies consist of triangles or tetrahedra of order 1, 2 or 3, or of quadrilaterals of 4 or 9 or hexahedra of 8 or 27 nodes, bars of lines".into()
-            },
+            Fault::Incomplete { complete, .. } => {
+                format!("the complete one has {complete} nodes, and only complete cells are supported")
+            }
+            Fault::Order { .. } => {
+                "lines, triangles and tetrahedra are supported up to order 3, quadrilaterals and hexahedra up to order 2"
+                    .into()
+            }
+            Fault::Shape { .. } => "bodies in space consist of tetrahedra or of hexahedra".into(),
             Fault::MixedOrders { .. } | Fault::MixedKinds { .. } => "all cells of a body must have the same type".into(),
             Fault::NotFlat { .. } => "a body of dimension 2 lies in a plane z = constant, a bar on the x axis".into(),
             Fault::Folded { .. } => "the Jacobian of a cell must be positive everywhere in it".into(),
@@ -166,12 +179,31 @@ impl MshError {
             Fault::NotMsh | Fault::Version(_) | Fault::Header(_) => {
                 "save the mesh with Gmsh as .msh: gmsh -2 shape.geo -format msh41"
             }
-            Fault::NoName { names, .. } if !names.is_empty() => "use one of them, or name the group in Gmsh",
-            Fault::NoName { .. } | Fault::NoCells { .. } | Fault::NoSection(_) => {
-                "name groups in Gmsh, for example Physical Surface(\"body\") = {1}; and mesh again"
+            Fault::NoName { names, .. } if !names.is_empty() => {
+                "use one of them, or name the group in Gmsh, and mesh again"
             }
-            Fault::Unsupported { .. } => {
-                "mesh with triangles or tetrahedra of order at most 3, or with quadrilaterals or hexahedra of order at most 2 (Mesh.SecondOrderIncomplete = 0)"
+            Fault::NoName { what: "curve", .. } => {
+                "add to the geometry, for example, Physical Curve(\"body\") = {1}; and mesh again"
+            }
+            Fault::NoName { what: "volume", .. } => {
+                "add to the geometry, for example, Physical Volume(\"body\") = {1}; and mesh again with gmsh -3"
+            }
+            Fault::NoName { .. } => {
+                "add to the geometry, for example, Physical Surface(\"body\") = {1}; and mesh again"
+            }
+            Fault::NoCells { what: "volume", .. } => {
+                "mesh in space: gmsh -3; then look which entities Physical Volume lists"
+            }
+            Fault::NoCells { .. } => {
+                "mesh the geometry before it is saved: gmsh -2; then look which entities the group lists"
+            }
+            Fault::NoSection(_) => "mesh the geometry before it is saved: gmsh -2, in space gmsh -3",
+            Fault::Incomplete { .. } => "set Mesh.SecondOrderIncomplete = 0 in Gmsh and mesh again",
+            Fault::Order { .. } => {
+                "set Mesh.ElementOrder in Gmsh to at most 3, for quadrilaterals and hexahedra to at most 2"
+            }
+            Fault::Shape { .. } => {
+                "in Gmsh, leave out Recombine, also in Extrude, and the volume has tetrahedra only; or recombine all its surfaces, and it has hexahedra only"
             }
             Fault::MixedOrders { .. } => "set one Mesh.ElementOrder for the whole mesh",
             Fault::NotFlat { .. } => "draw the geometry in the plane z = 0",

@@ -4,6 +4,9 @@
 use super::cell_type::CellType;
 use super::error::{Fault, MshError, Place};
 
+/// What Gmsh calls physical groups of dimension 0, 1, 2 and 3.
+pub(super) const GROUPS: [&str; 4] = ["point", "curve", "surface", "volume"];
+
 /// Nodes, cells and named groups of a .msh file.
 #[derive(Clone, Debug)]
 pub struct MshFile {
@@ -15,7 +18,7 @@ pub struct MshFile {
     pub(super) blocks: Vec<Block>,
 }
 
-/// A named physical group.
+/// A physical group by its name, or by its number if it has none.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
     pub(super) dimension: i64,
@@ -63,6 +66,7 @@ impl MshFile {
     }
 
     /// Names of the physical groups of a dimension: 2 surfaces, 1 curves, 0 points; no duplicates.
+    /// A group without a name has its number.
     pub fn names(&self, dimension: usize) -> Vec<&str> {
         let mut names = Vec::new();
         for group in self.groups.iter().filter(|g| g.dimension == dimension as i64) {
@@ -71,6 +75,19 @@ impl MshFile {
             }
         }
         names
+    }
+
+    /// That no physical group of a dimension has this name.
+    pub(super) fn no_name(&self, dimension: usize, name: &str) -> Fault {
+        let names = |dimension: usize| self.names(dimension).into_iter().map(str::to_owned);
+        let others = (0..GROUPS.len()).rev().filter(|other| *other != dimension);
+        let elsewhere = others.flat_map(|d| names(d).map(move |name| format!("{} \"{name}\"", GROUPS[d])));
+        Fault::NoName {
+            what: GROUPS[dimension.min(3)],
+            name: name.to_owned(),
+            names: names(dimension).collect(),
+            elsewhere: elsewhere.collect(),
+        }
     }
 
     /// Blocks of cells of a dimension in the groups of a name.

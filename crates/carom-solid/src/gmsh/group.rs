@@ -4,8 +4,17 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::error::{Fault, MshError};
-use super::file::{Block, MshFile, Row};
+use super::file::{Block, GROUPS, MshFile, Row};
 use crate::mesh::{Element, Facet, Mesh};
+
+/// Where a cell of a dimension less is in a body.
+pub(super) enum Found<'f> {
+    Boundary(&'f Facet),
+    /// Between two cells.
+    Inside,
+    /// It is no facet of a cell.
+    Elsewhere,
+}
 
 /// Cells of a group before they are checked. Node numbers are local to the group.
 pub(super) struct Group<'a, const D: usize> {
@@ -22,11 +31,9 @@ pub(super) struct Group<'a, const D: usize> {
 
 impl<'a, const D: usize> Group<'a, D> {
     pub(super) fn of(file: &'a MshFile, name: &'a str) -> Result<Self, MshError> {
-        let what = ["point", "curve", "surface", "volume"][D.min(3)];
-        let names = file.names(D);
-        if !names.contains(&name) {
-            let names = names.into_iter().map(str::to_owned).collect();
-            return Err(MshError::whole(Fault::NoName { what, name: name.to_owned(), names }));
+        let what = GROUPS[D.min(3)];
+        if !file.names(D).contains(&name) {
+            return Err(MshError::whole(file.no_name(D, name)));
         }
         let mut element: Option<Element> = None;
         let (mut rows, mut cells) = (Vec::new(), Vec::new());
@@ -34,8 +41,7 @@ impl<'a, const D: usize> Group<'a, D> {
             let Some(row) = block.rows.first() else { continue };
             let name = || name.to_owned();
             let Some(this) = block.kind.element() else {
-                let fault = Fault::Unsupported { name: name(), cell: row.tag, kind: block.kind.described() };
-                return Err(file.at(row, fault));
+                return Err(file.at(row, block.kind.unsupported(&name(), row.tag)));
             };
             let first = *element.get_or_insert(this);
             if first.facets().len() != this.facets().len() {
@@ -134,27 +140,44 @@ impl<'a, const D: usize> Group<'a, D> {
     }
 
     /// Facets of the boundary that belong to each named group of a dimension less, each once in the
-    /// order of the file, as `find` knows them by that name and their nodes.
+    /// order of the file, as `find` knows them by that name and their nodes. Those inside the body
+    /// are left out, with a note.
     pub(super) fn sides<'f>(
-        &self,
-        find: impl Fn(&str, &[usize]) -> Result<Option<&'f Facet>, Fault>,
+        &mut self,
+        find: impl Fn(&Self, &str, &[usize]) -> Result<Found<'f>, Fault>,
     ) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
         let own: HashMap<usize, usize> = self.used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
         let mut sides = BTreeMap::new();
         for name in self.file.names(D - 1) {
             let (mut facets, mut seen) = (Vec::new(), HashSet::new());
+            let mut inside = 0;
             for (row, nodes) in self.file.blocks(D - 1, name).flat_map(Block::cells) {
                 // A cell that leaves the body is not a facet of it.
                 let nodes: Option<Vec<usize>> = nodes.iter().map(|n| own.get(n).copied()).collect();
                 let Some(nodes) = nodes else { continue };
-                let found = find(name, &nodes).map_err(|fault| self.file.at(row, fault))?;
-                facets.extend(found.filter(|facet| seen.insert(&facet.nodes)).cloned());
+                match find(self, name, &nodes).map_err(|fault| self.file.at(row, fault))? {
+                    Found::Boundary(facet) if seen.insert(&facet.nodes) => facets.push(facet.clone()),
+                    Found::Inside => inside += 1,
+                    Found::Boundary(_) | Found::Elsewhere => {}
+                }
             }
+            self.note_inside(name, inside, facets.len());
             if !facets.is_empty() {
                 sides.insert(name.to_owned(), facets);
             }
         }
         Ok(sides)
+    }
+
+    /// Notes how many facets of a group are not on the boundary.
+    pub(super) fn note_inside(&mut self, name: &str, inside: usize, outside: usize) {
+        if inside > 0 {
+            let (group, facet) = (GROUPS[D - 1], ["points", "edges", "faces"][D - 1]);
+            let all = inside + outside;
+            self.repairs.push(format!(
+                "{inside} of {all} {facet} of the physical {group} \"{name}\" lie inside the body, between two of its cells, and are not in its side"
+            ));
+        }
     }
 
     /// The mesh with these sides, and the repairs, including what was dropped.

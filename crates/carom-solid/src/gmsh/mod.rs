@@ -21,6 +21,7 @@ mod checks;
 mod error;
 mod file;
 mod group;
+mod joint;
 mod order;
 mod raw;
 mod read;
@@ -33,6 +34,7 @@ mod write;
 
 pub use error::{Fault, MshError, Place};
 pub use file::MshFile;
+pub use joint::Joint;
 pub use read::read;
 pub use triangles::SurfaceError;
 pub use write::write_msh41;

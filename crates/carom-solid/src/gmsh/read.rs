@@ -1,6 +1,6 @@
 //! The sections of a .msh file, versions 4.1 and 2.2 (Gmsh reference manual, "Gmsh file formats").
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use super::error::{Fault, MshError, Place};
 use super::file::{Block, Group, MshFile, Row, place};
@@ -53,6 +53,11 @@ pub fn read(bytes: &[u8]) -> Result<MshFile, MshError> {
                 sections.nodes = Some(read(&mut source)?);
                 end(&mut source, "$EndNodes", "$Nodes")?;
             }
+            ("$ParametricNodes", 2) => {
+                twice(sections.nodes.is_some(), "Nodes")?;
+                sections.nodes = Some(version_2::parametric_nodes(&mut source)?);
+                end(&mut source, "$EndParametricNodes", "$ParametricNodes")?;
+            }
             ("$Elements", _) => {
                 twice(sections.blocks.is_some(), "Elements")?;
                 let read = if version == 4 { version_4::elements } else { version_2::elements };
@@ -66,6 +71,12 @@ pub fn read(bytes: &[u8]) -> Result<MshFile, MshError> {
                 source.skip_past(&format!("$End{other}"), "a section that is not read")?;
             }
         }
+    }
+    if version == 4 && sections.entities.is_none() {
+        if sections.groups.as_ref().is_some_and(|groups| !groups.is_empty()) {
+            return Err(MshError::whole(Fault::NoSection("Entities")));
+        }
+        sections.entities = Some(HashMap::new());
     }
     resolved(sections, source.encoding == Encoding::Text)
 }
@@ -140,7 +151,7 @@ fn resolved(sections: Sections, text: bool) -> Result<MshFile, MshError> {
     let missing = |name| MshError::whole(Fault::NoSection(name));
     let raw_nodes = sections.nodes.ok_or_else(|| missing("Nodes"))?;
     let raw_blocks = sections.blocks.ok_or_else(|| missing("Elements"))?;
-    let groups = sections.groups.unwrap_or_default();
+    let mut groups = sections.groups.unwrap_or_default();
     let mut index = HashMap::with_capacity(raw_nodes.len());
     for (i, (row, _)) in raw_nodes.iter().enumerate() {
         if index.insert(row.tag, i).is_some() {
@@ -165,5 +176,22 @@ fn resolved(sections: Sections, text: bool) -> Result<MshFile, MshError> {
         }
         blocks.push(Block { kind: raw.kind, groups, rows: raw.rows, nodes });
     }
+    groups.extend(unnamed(&groups, &blocks));
     Ok(MshFile { text, groups, slits: false, nodes: raw_nodes, blocks })
+}
+
+/// Groups that have cells but no name, named by their number unless another one has that name.
+fn unnamed(groups: &[Group], blocks: &[Block]) -> Vec<Group> {
+    let of_block = |block: &Block| {
+        let dimension = block.kind.dimension();
+        block.groups.iter().map(move |tag| (dimension, *tag)).collect::<Vec<_>>()
+    };
+    // In version 2.2, 0 is no group.
+    let tags: BTreeSet<(i64, i64)> = blocks.iter().flat_map(of_block).filter(|(_, tag)| *tag != 0).collect();
+    let numbered = |(dimension, tag): (i64, i64)| Group { dimension, tag, name: tag.to_string() };
+    let is_new = |group: &Group| {
+        let known = |other: &Group| other.tag == group.tag || other.name == group.name;
+        !groups.iter().any(|other| other.dimension == group.dimension && known(other))
+    };
+    tags.into_iter().map(numbered).filter(is_new).collect()
 }

@@ -24,15 +24,10 @@ impl MshFile {
     /// # Errors
     /// An unknown name, cells other than triangles of order 1, triangles that are not a surface.
     pub fn triangles(&self, name: Option<&str>) -> Result<Triangles, SurfaceError> {
-        let what = "surface";
         let blocks: Vec<&Block> = match name {
             None => self.blocks.iter().filter(|block| block.kind.dimension() == 2).collect(),
             Some(name) if self.names(2).contains(&name) => self.blocks(2, name).collect(),
-            Some(name) => {
-                let names = self.names(2).into_iter().map(str::to_owned).collect();
-                let fault = Fault::NoName { what, name: name.to_owned(), names };
-                return Err(SurfaceError::File(MshError::whole(fault)));
-            }
+            Some(name) => return Err(SurfaceError::File(MshError::whole(self.no_name(2, name)))),
         };
         let (mut points, mut corners) = (Vec::new(), Vec::new());
         let mut number = vec![usize::MAX; self.nodes.len()];

@@ -19,6 +19,28 @@ fn count(source: &mut Source, what: &'static str, bytes: usize) -> Result<usize,
 
 /// Tags and positions.
 pub(super) fn nodes(source: &mut Source) -> Result<Vec<(Row, [f64; 3])>, MshError> {
+    rows(source, |_| Ok(()))
+}
+
+/// Tags and positions of nodes with parameters (`Mesh.SaveParametric`): after its position, a node
+/// has the dimension and the tag of its entity, and a parameter on curves or two on surfaces.
+pub(super) fn parametric_nodes(source: &mut Source) -> Result<Vec<(Row, [f64; 3])>, MshError> {
+    const WITHIN: &str = "$ParametricNodes";
+    rows(source, |source| {
+        let dimension = source.int(WITHIN)?;
+        source.int(WITHIN)?;
+        for _ in 0..if dimension < 3 { dimension } else { 0 } {
+            source.double(WITHIN)?;
+        }
+        Ok(())
+    })
+}
+
+/// Rows of tag and position, and what `rest` reads after these.
+fn rows(
+    source: &mut Source,
+    rest: impl Fn(&mut Source) -> Result<(), MshError>,
+) -> Result<Vec<(Row, [f64; 3])>, MshError> {
     const WITHIN: &str = "$Nodes";
     let count = count(source, "nodes", 28)?;
     let mut nodes = Vec::with_capacity(count);
@@ -26,6 +48,7 @@ pub(super) fn nodes(source: &mut Source) -> Result<Vec<(Row, [f64; 3])>, MshErro
         let place = source.place();
         let row = Row::new(source.int(WITHIN)?, place);
         nodes.push((row, position(source, row.tag)?));
+        rest(source)?;
         source.end_row()?;
     }
     Ok(nodes)

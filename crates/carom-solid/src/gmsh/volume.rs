@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::checks::orient;
 use super::error::{Fault, MshError};
 use super::file::MshFile;
-use super::group::Group;
+use super::group::{Found, Group};
 use super::order;
 use crate::element_shape::of_shape;
 use crate::mesh::{Facet, Mesh};
@@ -27,11 +27,11 @@ impl MshFile {
         group.cells.chunks_exact_mut(element.nodes()).for_each(|cell| order::read(element, cell));
         let none = MshError::whole(Fault::NoCells { what: "volume", name: name.to_owned() });
         of_shape!(3, group.element, orient(&mut group), Err(none))?;
-        let boundary = boundary(&group)?;
+        let facets = facets(&group)?;
         if !self.slits {
-            unpinched(&group, &boundary)?;
+            unpinched(&group, &facets.open)?;
         }
-        let sides = surfaces(&group, &boundary)?;
+        let sides = surfaces(&mut group, &facets)?;
         Ok(group.into_mesh(sides))
     }
 }
@@ -45,8 +45,15 @@ fn key(nodes: &[usize], corners: usize) -> Corners {
     key
 }
 
-/// Facets of only one cell.
-fn boundary(group: &Group<3>) -> Result<BTreeMap<Corners, Facet>, MshError> {
+/// The facets of the cells of a body.
+struct Facets {
+    /// Those of only one cell.
+    open: BTreeMap<Corners, Facet>,
+    /// The two cells of the others.
+    closed: HashMap<Corners, [usize; 2]>,
+}
+
+fn facets(group: &Group<3>) -> Result<Facets, MshError> {
     let (element, ends) = (group.element, group.element.facet_shape().corners());
     let mut open: BTreeMap<Corners, Facet> = BTreeMap::new();
     let mut closed: HashMap<Corners, [usize; 2]> = HashMap::new();
@@ -80,7 +87,7 @@ fn boundary(group: &Group<3>) -> Result<BTreeMap<Corners, Facet>, MshError> {
             closed.insert(key, [other.cell, cell]);
         }
     }
-    Ok(open)
+    Ok(Facets { open, closed })
 }
 
 /// Whether two lists have the same nodes.
@@ -116,22 +123,22 @@ fn unpinched(group: &Group<3>, boundary: &BTreeMap<Corners, Facet>) -> Result<()
 }
 
 /// Named surfaces on the boundary.
-fn surfaces(
-    group: &Group<3>,
-    boundary: &BTreeMap<Corners, Facet>,
-) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
+fn surfaces(group: &mut Group<3>, facets: &Facets) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
     let ends = group.element.facet_shape().corners();
-    group.sides(|name, nodes| {
+    group.sides(|group, name, nodes| {
         if nodes.len() < ends {
-            return Ok(None);
+            return Ok(Found::Elsewhere);
         }
         let key = key(nodes, ends);
-        let Some(facet) = boundary.get(&key) else { return Ok(None) };
+        let Some(facet) = facets.open.get(&key) else {
+            let inside = facets.closed.contains_key(&key);
+            return Ok(if inside { Found::Inside } else { Found::Elsewhere });
+        };
         if !same(&facet.nodes, nodes) {
             let corners = key.iter().map(|&n| group.node(n).tag).collect();
             let (a, b) = (format!("surface \"{name}\""), format!("cell {}", group.rows[facet.cell].tag));
             return Err(Fault::FacetNodes { a, b, corners });
         }
-        Ok(Some(facet))
+        Ok(Found::Boundary(facet))
     })
 }

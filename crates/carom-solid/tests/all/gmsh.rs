@@ -147,6 +147,14 @@ fn parameters_are_read_past() {
         assert!((area(&disc) - PI / 8.0).abs() < 1e-3);
         assert_eq!(disc.repairs, ["nodes of the file that belong to no cell were dropped: 1"]);
     }
+    let [binary, text] = ["parametric_22_binary.msh", "parametric_22_ascii.msh"].map(fixture);
+    let [of_41, plain] = ["parametric_41_binary.msh", "impact_order2_22_binary.msh"].map(fixture);
+    for name in ["cylinder", "prism"] {
+        let [binary, text, of_41, plain] = [&binary, &text, &of_41, &plain].map(|f| f.body(name).unwrap());
+        assert_eq!(geometry(&binary), geometry(&of_41));
+        assert_eq!(binary.sides.keys().collect::<Vec<_>>(), plain.sides.keys().collect::<Vec<_>>());
+        assert_eq!((text.cells, text.sides), (binary.cells, binary.sides));
+    }
 }
 
 /// Quadrangles and triangles in bodies of their own, and a curved quarter of a ring.

@@ -114,11 +114,19 @@ fn faults_say_where_and_what() {
     assert_eq!(fault("3 1 1 0", "3 1 nan 0"), (Line(13), Fault::NotFinite(3)));
     assert_eq!(fault("3 1 1 0", "2 1 1 0"), (Line(13), Fault::TagTwice { what: "node", tag: 2 }));
     assert_eq!(fault("1 1 3 4", "1 1 3 6"), (Line(21), Fault::NoNode { cell: 3, node: 6 }));
-    assert_eq!(fault("3 2 2 8", "3 99 2 8"), (Line(21), Fault::UnknownType { cell: 3, kind: 99 }));
+    assert_eq!(fault("3 2 2 8", "3 34 2 8"), (Line(21), Fault::UnknownType { cell: 3, kind: 34 }));
     let names = vec!["plat".to_owned()];
     assert_eq!(
         fault("plate", "plat"),
-        (File, Fault::NoName { what: "surface", name: "plate".into(), names })
+        (
+            File,
+            Fault::NoName {
+                what: "surface",
+                name: "plate".into(),
+                names,
+                elsewhere: vec!["curve \"low\"".into()]
+            }
+        )
     );
     assert!(with("plate", "plat").unwrap_err().why().contains("the physical surfaces are: plat"));
     assert!(matches!(
@@ -130,9 +138,6 @@ fn faults_say_where_and_what() {
         (Line(21), Fault::MixedOrders { .. })
     ));
     assert!(matches!(fault("3 2 2 8 1 1 3 4", "3 3 2 8 1 1 2 3 4"), (Line(21), Fault::MixedKinds { .. })));
-    let incomplete = "2\n1 1 2 7 1 2 1\n2 16 2 8 1 1 2 3 4 1 2 3 4\n";
-    let rows = "3\n1 1 2 7 1 2 1\n2 2 2 8 1 1 2 3\n3 2 2 8 1 1 3 4\n";
-    assert!(matches!(fault(rows, incomplete), (Line(20), Fault::Unsupported { .. })));
     assert!(matches!(fault("4 0 1 0", "4 0 1 0.5"), (Line(14), Fault::NotFlat { node: 4, axis: 'z', .. })));
     assert!(matches!(fault("4 0 1 0", "4 0.5 0.5 0"), (Line(21), Fault::Folded { cell: 3, .. })));
     assert!(matches!(fault("4 0 1 0", "4 2 0.5 0"), (Line(21), Fault::Overlap { a: 2, b: 3, .. })));
@@ -153,6 +158,110 @@ fn faults_say_where_and_what() {
         (error.place, error.to_string().contains("the file states 9223372036854775807 nodes")),
         (Line(5), true)
     );
+}
+
+/// Types by Gmsh's `getElementProperties`, as `Mesh.SecondOrderIncomplete = 1`, high orders and
+/// `Recombine` make them: the cause is named, and the option that removes it.
+#[test]
+fn unsupported_cells_name_the_option() {
+    let cell = |dimension: i64, kind: i64, nodes: i64| {
+        let rows: String = (1..=nodes).map(|n| format!("{n} {n} 0 0\n")).collect();
+        let tags: Vec<String> = (1..=nodes).map(|n| n.to_string()).collect();
+        let file = format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}\n{rows}$EndNodes\n\
+             $Elements\n1\n7 {kind} 2 8 1 {}\n$EndElements\n",
+            tags.join(" ")
+        );
+        let file = gmsh::read(file.as_bytes()).unwrap();
+        let error = if dimension == 2 { file.body("8") } else { file.volume("8") }.unwrap_err();
+        [error.to_string(), error.why(), error.help().to_owned()].join("; ")
+    };
+    let incomplete = "Mesh.SecondOrderIncomplete = 0";
+    for (dimension, kind, nodes, words) in [
+        (2, 16, 8, ["a quadrangle of 8 nodes, an incomplete one of order 2", "has 9 nodes", incomplete]),
+        (2, 20, 9, ["a triangle of 9 nodes, an incomplete one of order 3", "has 10 nodes", incomplete]),
+        (2, 39, 12, ["a quadrangle of 12 nodes, an incomplete one of order 3", "has 16 nodes", incomplete]),
+        (3, 17, 20, ["a hexahedron of 20 nodes, an incomplete one of order 2", "has 27 nodes", incomplete]),
+        (3, 137, 16, ["a tetrahedron of 16 nodes, an incomplete one of order 3", "has 20 nodes", incomplete]),
+        (3, 32, 22, ["a tetrahedron of 22 nodes, an incomplete one of order 4", "has 35 nodes", incomplete]),
+        (2, 23, 15, ["a triangle of 15 nodes, of order 4", "up to order 3", "Mesh.ElementOrder"]),
+        (3, 92, 64, ["a hexahedron of 64 nodes, of order 3", "up to order 2", "Mesh.ElementOrder"]),
+        (3, 6, 6, ["a prism of 6 nodes", "tetrahedra or of hexahedra", "Recombine"]),
+        (3, 14, 14, ["a pyramid of 14 nodes", "tetrahedra or of hexahedra", "Recombine"]),
+    ] {
+        let text = cell(dimension, kind, nodes);
+        let places = words.map(|word| text.find(word).unwrap_or_else(|| panic!("{word}: {text}")));
+        assert!(places.is_sorted(), "{text}");
+    }
+}
+
+/// Groups without names are called by their numbers, in both versions of the format.
+#[test]
+fn unnamed_groups_have_their_numbers() {
+    let names = "$PhysicalNames\n2\n1 7 \"low\"\n2 8 \"plate\"\n$EndPhysicalNames\n";
+    let file = gmsh::read(SQUARE.replace(names, "").as_bytes()).unwrap();
+    assert_eq!((file.names(1), file.names(2)), (vec!["7"], vec!["8"]));
+    let mesh = file.body("8").unwrap();
+    assert_eq!((mesh.cell_count(), mesh.sides["7"][0].nodes.as_slice()), (2, &[0, 1][..]));
+    // A name that is a number, of another group: the name counts.
+    let file = gmsh::read(SQUARE.replace("1 7 \"low\"", "1 9 \"7\"").as_bytes()).unwrap();
+    assert!(file.body("plate").unwrap().sides.is_empty());
+
+    let named = gmsh::write_msh41(&[("plate", &with("low", "low").unwrap())]);
+    let at = named.find("$PhysicalNames").unwrap()..named.find("$Entities").unwrap();
+    let unnamed = [&named[..at.start], &named[at.end..]].concat();
+    let file = gmsh::read(unnamed.as_bytes()).unwrap();
+    assert_eq!((file.names(1), file.names(2)), (vec!["1"], vec!["1"]));
+    // The numbers of entities are not those of groups.
+    let at = named.find("$Entities").unwrap()..named.find("$Nodes").unwrap();
+    let without = [&named[..at.start], &named[at.end..]].concat();
+    assert_eq!(gmsh::read(without.as_bytes()).unwrap_err().fault, Fault::NoSection("Entities"));
+    let error = gmsh::read(
+        without.replace("$PhysicalNames", "$Else").replace("$EndPhysicalNames", "$EndElse").as_bytes(),
+    );
+    let error = error.unwrap().body("1").unwrap_err();
+    assert_eq!(error.why(), "the file contains no physical surface, nor another physical group");
+}
+
+/// A curve between two cells of the body is no part of its boundary, and is not dropped silently.
+#[test]
+fn facets_inside_a_body_are_noted() {
+    let mesh = with("1 1 2 7 1 2 1\n", "1 1 2 7 1 2 1\n4 1 2 7 1 1 3\n").map(|_| ());
+    assert!(mesh.is_err(), "four cells where three are stated");
+    let both = SQUARE.replace("3\n1 1 2 7 1 2 1\n", "4\n1 1 2 7 1 2 1\n4 1 2 7 1 1 3\n");
+    let mesh = gmsh::read(both.as_bytes()).unwrap().body("plate").unwrap();
+    assert_eq!(mesh.sides["low"].len(), 1);
+    let note = "1 of 2 edges of the physical curve \"low\" lie inside the body, between two of its cells, and are not in its side";
+    assert_eq!(mesh.repairs[0], note);
+    let only = SQUARE.replace("1 1 2 7 1 2 1\n", "1 1 2 7 1 3 1\n");
+    let mesh = gmsh::read(only.as_bytes()).unwrap().body("plate").unwrap();
+    assert_eq!((mesh.sides.len(), mesh.repairs[0].as_str()), (0, note.replace("1 of 2", "1 of 1").as_str()));
+
+    let cube = generate::cuboid(Element::Hex8, [0.0; 3], [2.0, 1.0, 1.0], [2, 1, 1]).unwrap();
+    let mut split = cube.clone();
+    // The face between the two cells joins the left one.
+    let inner = cube.cell(0).iter().copied().filter(|n| cube.cell(1).contains(n)).collect::<Vec<_>>();
+    assert_eq!(inner.len(), 4);
+    split.sides.get_mut("left").unwrap().push(carom_solid::Facet { cell: 0, nodes: inner });
+    let read = gmsh::read(gmsh::write_msh41(&[("cube", &split)]).as_bytes()).unwrap().volume("cube").unwrap();
+    assert_eq!(read.sides, cube.sides);
+    let note = "1 of 2 faces of the physical surface \"left\" lie inside the body, between two of its cells, and are not in its side";
+    assert_eq!(read.repairs, [note]);
+}
+
+/// Two bodies of one file with a common edge; their nodes are connected in neither of them.
+#[test]
+fn joints_of_bodies() {
+    let two = SQUARE.replace("3 2 2 8 1 1 3 4", "3 2 2 9 1 1 3 4").replace("1 1 2 7 1 2 1", "1 1 2 7 1 1 3");
+    let file = gmsh::read(two.as_bytes()).unwrap();
+    let joint = file.joint(2, ["plate", "9"]).unwrap().unwrap();
+    assert_eq!((joint.facets, joint.nodes, joint.sides.as_slice()), (1, 2, &["low".to_owned()][..]));
+    assert_eq!(joint.extent, [[0.0; 3], [1.0, 1.0, 0.0]]);
+    // A common corner is no joint.
+    let apart = two.replace("9 5 5 0", "9 0 -1 0").replace("3 2 2 9 1 1 3 4", "3 2 2 9 1 1 9 2");
+    assert!(gmsh::read(apart.as_bytes()).unwrap().joint(2, ["plate", "9"]).unwrap().is_some());
+    let corner = two.replace("9 5 5 0", "9 -1 0 0").replace("3 2 2 9 1 1 3 4", "3 2 2 9 1 1 4 9");
+    assert_eq!(gmsh::read(corner.as_bytes()).unwrap().joint(2, ["plate", "9"]), Ok(None));
 }
 
 #[test]

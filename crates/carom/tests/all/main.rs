@@ -12,6 +12,7 @@ mod mesh;
 mod misspelt;
 mod mutants;
 mod new;
+mod refused;
 #[cfg(unix)]
 mod report;
 mod resume;

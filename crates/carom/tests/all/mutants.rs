@@ -1,6 +1,7 @@
 //! Shipped cases with random damage: `carom check` accepts or refuses them, with a documented exit
-//! code and without a panic.
+//! code and without a panic, and `carom run` does the same in the same words.
 
+use std::process::Stdio;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::common::{IMPACT, Place, text};
@@ -89,6 +90,25 @@ fn mutant(seed: usize) -> String {
     lines.join("\n")
 }
 
+/// Exit code and words of a run that ends before its first step; none of one that has begun, which
+/// is ended.
+fn started(place: &Place, name: &str) -> Option<(Option<i32>, String)> {
+    let out = format!("run-of-{name}");
+    let mut command = place.command(&["run", name, "--no-report", "--out", &out]);
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let began = || place.0.join(&out).join("manifest.json").is_file();
+    while !began() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    if began() {
+        let _ = child.kill();
+        child.wait().unwrap();
+        return None;
+    }
+    let done = child.wait_with_output().unwrap();
+    Some((done.status.code(), text(&done.stderr)))
+}
+
 #[test]
 fn damaged_cases_are_checked_or_refused() {
     let place = Place::new("mutants");
@@ -106,6 +126,8 @@ fn damaged_cases_are_checked_or_refused() {
             let (code, said) = (done.status.code(), text(&done.stderr));
             assert!(matches!(code, Some(0 | 2)) && !said.contains("panicked"), "{code:?}\n{said}\n{damaged}");
             assert_eq!(code == Some(2), said.contains("error"), "{said}\n{damaged}");
+            let run = started(&place, &name);
+            assert_eq!(run.unwrap_or((Some(0), said.clone())), (code, said), "{damaged}");
             accepted.fetch_add(usize::from(code == Some(0)), Ordering::Relaxed);
         }
     };

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use carom::case::{Case, Document, Problem};
+use carom::case::{Case, Document};
 use carom::recording::{self, RunError};
 use carom_record::Warning;
 use serde::Serialize;
@@ -127,20 +127,15 @@ pub(crate) fn resume(
     conclude(done?, options)
 }
 
-/// Builds the model of a case, which also checks what only the model shows.
+/// Starts a case as `run` does, which finds everything that stops a run before its first step.
 pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> {
-    let wrong = |problems: &[Problem]| Failure::Case(document.diagnose_all(problems));
-    let model = carom::Setup::new(case).build().map_err(|problems| wrong(&problems))?;
+    let started = carom::Setup::new(case).start();
+    let simulation = started.map_err(|problems| Failure::Case(document.diagnose_all(&problems)))?;
+    let model = simulation.model();
     let d = model.dimension;
-    // A start from another run has no overlaps: its contacts prevented them.
-    let overlaps = if case.initial.is_none() { carom::overlaps(case, &model) } else { Vec::new() };
-    let problems = [overlaps, carom::too_long(case, &model)].concat();
-    if !problems.is_empty() {
-        return Err(wrong(&problems));
-    }
     let explicit = case.time.scheme.is_explicit();
     let stable_step =
-        explicit.then(|| carom::stability::stable_step(&model)).flatten().map(|stable| stable.power);
+        explicit.then(|| carom::stability::stable_step(model)).flatten().map(|stable| stable.power);
     let mut transit = f64::INFINITY;
     let mut bodies = Vec::new();
     for (part, spec) in model.parts.iter().zip(&case.bodies) {
@@ -165,7 +160,7 @@ pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> 
         });
     }
     let transit_steps = (transit.is_finite() && !case.time.scheme.is_static()).then_some(transit);
-    Ok(Facts { bodies, transit_steps, stable_step, warnings: carom::warnings(case, &model) })
+    Ok(Facts { bodies, transit_steps, stable_step, warnings: carom::warnings(case, model) })
 }
 
 /// The report, the extremes of the probes and the expectations of a run that ended.

@@ -1,5 +1,5 @@
-//! `carom check`: reads and resolves a case or a study and reports errors with their place; it runs
-//! nothing, and writes nothing but a picture of bodies that overlap at the start.
+//! `carom check`: reads and resolves a case or a study, starts it and reports errors with their
+//! place; it takes no step, and writes nothing but a picture of bodies that overlap at the start.
 
 use std::path::{Path, PathBuf};
 
@@ -163,7 +163,7 @@ fn table(case: &Case, facts: &Facts) -> String {
         }
         if let MeshSpec::File { file, repairs, .. } = body.mesh.source() {
             lines.push(format!("           from {}", file.display()));
-            lines.extend(repairs.iter().map(|repair| format!("           repaired: {repair}")));
+            lines.extend(repairs.iter().map(|repair| format!("           note: {repair}")));
         }
         if let Some(PlaceSpec { rotate, axis, about, shift }) = &body.place {
             let axis = if axis.is_empty() { String::new() } else { format!(" around {axis:?}") };
@@ -226,9 +226,13 @@ fn table(case: &Case, facts: &Facts) -> String {
 }
 
 fn surface_text(surface: &SurfaceSpec) -> String {
-    let SurfaceSpec { triangles, rim, .. } = surface;
+    let SurfaceSpec { triangles, rim, inner, .. } = surface;
     let kind = if *rim == 0 { "closed".to_owned() } else { format!("open, with a rim of {rim} edges") };
-    format!("a rigid surface of {triangles} triangles, {kind}")
+    let without = match inner {
+        0 => String::new(),
+        inner => format!("; {inner} triangles between solids that touch were left out"),
+    };
+    format!("a rigid surface of {triangles} triangles, {kind}{without}")
 }
 
 fn scheme_text(scheme: &SchemeSpec) -> String {

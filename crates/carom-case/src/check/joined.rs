@@ -1,0 +1,95 @@
+//! Bodies of one Gmsh file that have common facets, and no contact: every body has nodes of its
+//! own, so that cells of one conforming mesh come apart where two bodies meet. Whether they are to
+//! be one body or two that touch, the file does not say; a contact between them does.
+
+use carom_solid::gmsh::{Joint, MshFile};
+
+use super::Check;
+use crate::{BodySpec, MeshSpec, mesh_file};
+
+/// The file of a body, and the dimension in which it is read.
+struct Source<'a> {
+    spec: &'a MeshSpec,
+    name: &'a str,
+    hash: &'a str,
+    group: &'a str,
+    dimension: usize,
+}
+
+impl<'a> Source<'a> {
+    fn of(body: &'a BodySpec, dimension: usize) -> Option<Self> {
+        let spec = body.mesh.source();
+        let MeshSpec::File { file, surface, hash, .. } = spec else { return None };
+        let dimension = if *spec == body.mesh { dimension } else { 2 };
+        Some(Self { spec, name: file.file_name()?.to_str()?, hash, group: surface, dimension })
+    }
+}
+
+impl Check<'_> {
+    pub(super) fn joined(&mut self) {
+        // A contact that cannot be read may be the one between them.
+        let Some(dimension) = self.draft.dimension else { return };
+        if self.draft.contacts.iter().any(Option::is_none) {
+            return;
+        }
+        let bodies: Vec<(usize, &BodySpec)> =
+            self.draft.bodies.iter().enumerate().filter_map(|(k, body)| Some((k, body.as_ref()?))).collect();
+        // The file read last: those of a case are mostly one.
+        let mut read: Option<(&str, MshFile)> = None;
+        for (place, &(k, second)) in bodies.iter().enumerate() {
+            for &(_, first) in &bodies[..place] {
+                let sources = [first, second].map(|body| Source::of(body, dimension));
+                let [Some(a), Some(b)] = sources else { continue };
+                let together = first.place == second.place && first.position == second.position;
+                if a.hash != b.hash || !together || self.in_contact(first, second) {
+                    continue;
+                }
+                if read.as_ref().is_none_or(|(hash, _)| *hash != b.hash) {
+                    read = mesh_file::again(b.spec).map(|file| (b.hash, file));
+                }
+                let Some((_, file)) = &read else { continue };
+                if let Ok(Some(joint)) = file.joint(a.dimension, [a.group, b.group]) {
+                    self.report(k, [first, second], b.name, a.dimension, &joint);
+                }
+            }
+        }
+    }
+
+    fn in_contact(&self, a: &BodySpec, b: &BodySpec) -> bool {
+        self.draft.contacts.iter().flatten().any(|contact| {
+            let has = |body: &BodySpec| contact.bodies().any(|name| name == body.name);
+            has(a) && has(b)
+        })
+    }
+
+    fn report(&mut self, k: usize, bodies: [&BodySpec; 2], file: &str, dimension: usize, joint: &Joint) {
+        let [a, b] = bodies.map(|body| body.name.as_str());
+        let [low, high] = joint.extent.map(|x| format!("{:?}", &x[..dimension]));
+        let at = if low == high { format!("at {low}") } else { format!("from {low} to {high}") };
+        let nodes = if joint.nodes == 1 { "a node".to_owned() } else { format!("{} nodes", joint.nodes) };
+        let what = format!("bodies `{a}` and `{b}` have {nodes} of {file} in common, {at}, and no contact");
+        let facets = match (joint.facets, dimension) {
+            (1, 1) => "point".to_owned(),
+            (count, 1) => format!("{count} points"),
+            (1, 2) => "edge".to_owned(),
+            (count, 2) => format!("{count} edges"),
+            (1, _) => "face".to_owned(),
+            (count, _) => format!("{count} faces"),
+        };
+        let why = format!(
+            "every body has nodes of its own: without a contact the two come apart, or pass through each other, at the {facets} between them"
+        );
+        let group = ["point", "curve", "surface", "volume"][dimension.min(3)];
+        let side = joint.sides.first().map_or("SIDE", String::as_str);
+        let unnamed = match (joint.sides.is_empty(), dimension) {
+            (false, _) => "",
+            (true, 1) => ", where SIDE is a physical point there",
+            (true, 2) => ", where SIDE is a physical curve there",
+            (true, _) => ", where SIDE is a physical surface there",
+        };
+        let help = format!(
+            "to connect them, put the cells of both into one physical {group}, which is one body; to let them touch and part, add a [[contact]] with secondary = \"{a}.{side}\" and primary = \"{b}.{side}\"{unnamed}"
+        );
+        self.add(format!("body[{k}].mesh"), what, why, help);
+    }
+}
