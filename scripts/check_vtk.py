@@ -3,8 +3,9 @@
 
     python scripts/check_vtk.py CAROM RUN        (needs: pip install vtk h5py)
 
-CAROM is the binary, RUN the directory of a finished run with VTU fields. Checked are arrays and
-their units, times equal to n·Δt, and values equal to those of the record's tables. The case is then
+CAROM is the binary, RUN the directory of a finished run with VTU fields and contact of two bodies.
+Checked are arrays and their units, times equal to the decimals of n·Δt, and values equal to those of
+the record's tables. The case is then
 run again with `output.format = "vtkhdf"` and killed before it ends. The file must be readable at
 that point, and after `carom resume` it must contain the same fields as RUN.
 """
@@ -17,6 +18,7 @@ import sys
 import tempfile
 import time
 import xml.etree.ElementTree as xml
+from decimal import Decimal
 from pathlib import Path
 
 import h5py
@@ -36,12 +38,12 @@ def values(grid):
 
 
 def vtu(run, step_size):
-    """Times and grids of a run with VTU fields; checks names, units and times."""
-    times, grids = [], []
+    """Steps and grids of a run with VTU fields; checks names, units and times."""
+    steps, grids = [], []
     for entry in xml.parse(run / "fields.pvd").iter("DataSet"):
         file = entry.get("file")
         step = int(Path(file).stem)
-        assert float(entry.get("timestep")) == step * step_size, f"{file}: {entry.get('timestep')} is not {step}·Δt"
+        assert Decimal(entry.get("timestep")) == step * step_size, f"{file}: {entry.get('timestep')} is not {step}·Δt"
         reader = vtk.vtkXMLUnstructuredGridReader()
         reader.SetFileName(str(run / file))
         reader.Update()
@@ -49,9 +51,10 @@ def vtu(run, step_size):
         for name, unit in UNITS.items():
             found = grid.GetPointData().GetArray(name).GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL())
             assert found == unit, f"{file}: {name} in {found}"
-        times.append(float(entry.get("timestep")))
+        assert grid.GetFieldData().GetArray("TimeValue").GetValue(0) == float(step * step_size), file
+        steps.append(step)
         grids.append(grid)
-    return times, grids
+    return steps, grids
 
 
 def vtkhdf(run, step_size):
@@ -64,7 +67,7 @@ def vtkhdf(run, step_size):
         arrays = file["VTKHDF/PointData"].items()
         units = {name: array.attrs["units"].decode() if "units" in array.attrs else None for name, array in arrays}
     assert units == UNITS, units
-    times, grids = list(reader.GetOutputInformation(0).Get(STREAM.TIME_STEPS())), []
+    times, steps, grids = list(reader.GetOutputInformation(0).Get(STREAM.TIME_STEPS())), [], []
     assert len(times) == reader.GetNumberOfSteps()
     for i, instant in enumerate(times):
         reader.SetStep(i)
@@ -72,25 +75,30 @@ def vtkhdf(run, step_size):
         grid = vtk.vtkUnstructuredGrid()
         grid.DeepCopy(reader.GetOutputDataObject(0))
         step = grid.GetFieldData().GetArray("step").GetValue(0)
-        assert instant == step * step_size, f"{instant} is not {step}·Δt"
+        assert instant == float(step * step_size), f"{instant} is not {step}·Δt"
+        steps.append(step)
         grids.append(grid)
-    return times, grids
+    return steps, grids
 
 
-def against_tables(run, times, grids):
-    """Contact pressures must be at the nodes listed in contact.csv, with the same values."""
+def against_tables(run, steps, grids):
+    """Contact pressures must be those of contact.csv, on both bodies, and zero without contact."""
     pressures = {}
     for row in csv.DictReader((run / "contact.csv").open()):
-        pressures.setdefault(float(row["time"]), {})[int(row["node"])] = float(row["pressure"])
+        pressures.setdefault(int(row["step"]), {})[int(row["node"])] = float(row["pressure"])
     in_contact = 0
-    for instant, grid in zip(times, grids):
+    for step, grid in zip(steps, grids):
         array = grid.GetPointData().GetArray("contact_pressure")
-        found = {i: array.GetValue(i) for i in range(array.GetNumberOfValues()) if array.GetValue(i) != 0.0}
-        listed = pressures.get(instant, {})
-        # The shares of a node with two pairs are summed in another order.
-        same = found.keys() == listed.keys() and all(abs(found[k] - p) <= 1e-14 * p for k, p in listed.items())
-        assert same, f"contact pressure at {instant}"
-        in_contact += bool(found)
+        found = [array.GetValue(i) for i in range(array.GetNumberOfValues())]
+        listed = pressures.get(step, {})
+        assert all(found[node] == pressure for node, pressure in listed.items()), f"contact pressure in step {step}"
+        assert min(found) == 0.0 and any(found) == bool(listed), f"contact pressure in step {step}"
+        bodies = set()
+        for cell in range(grid.GetNumberOfCells()):
+            if any(found[grid.GetCell(cell).GetPointId(i)] for i in range(grid.GetCell(cell).GetNumberOfPoints())):
+                bodies.add(grid.GetCellData().GetArray("body").GetValue(cell))
+        assert len(bodies) == (2 if listed else 0), f"contact pressure in step {step} on bodies {bodies}"
+        in_contact += bool(listed)
     assert in_contact > 0, "no instant has contact"
     assert {grids[-1].GetCellType(i) for i in range(grids[-1].GetNumberOfCells())} == {69}
     return in_contact
@@ -108,30 +116,30 @@ def killed_and_resumed(carom, case, step_size, place):
     assert process.poll() is None, "the run ended before it could be killed"
     process.send_signal(signal.SIGKILL)
     process.wait()
-    times, _ = vtkhdf(run, step_size)
+    steps, _ = vtkhdf(run, step_size)
     subprocess.run([carom, "resume", run, "--no-report"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    return run, len(times)
+    return run, len(steps)
 
 
 def main():
     carom, finished = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     manifest = json.loads((finished / "manifest.json").read_text())
-    step_size = manifest["case"]["time"]["step"]
-    times, grids = vtu(finished, step_size)
-    in_contact = against_tables(finished, times, grids)
+    step_size = Decimal(repr(manifest["case"]["time"]["step"]))
+    steps, grids = vtu(finished, step_size)
+    in_contact = against_tables(finished, steps, grids)
     with tempfile.TemporaryDirectory() as place:
         case = Path(place) / "case.toml"
         case.write_text(manifest["source"]["text"])
         run, seen = killed_and_resumed(carom, case, step_size, Path(place))
-        assert 0 < seen < len(times), f"{seen} of {len(times)} instants when killed"
+        assert 0 < seen < len(steps), f"{seen} of {len(steps)} instants when killed"
         again, one_file = vtkhdf(run, step_size)
-        assert again == times
+        assert again == steps
         for a, b in zip(grids, one_file):
             assert values(a) == values(b), "VTU and VTKHDF differ"
         for name in ("history.csv", "contact.csv"):
             assert (run / name).read_bytes() == (finished / name).read_bytes(), f"{name} differs"
         size = (run / "fields.vtkhdf").stat().st_size
-    print(f"{finished}: {len(times)} instants, {in_contact} in contact; one file of {size / 1e6:.2f} MB, readable after a kill at {seen}")
+    print(f"{finished}: {len(steps)} instants, {in_contact} in contact; one file of {size / 1e6:.2f} MB, readable after a kill at {seen}")
 
 
 if __name__ == "__main__":

@@ -58,6 +58,7 @@ them; otherwise contact_impulse contains forces within the body.
 """
 
 import csv
+import html
 import json
 import re
 import xml.etree.ElementTree as xml
@@ -77,12 +78,11 @@ def read_vtu(path):
     raw = Path(path).read_bytes()
     at = raw.index(MARK)
     head, data, arrays = raw[:at].decode(), raw[at + len(MARK) :], {}
-    for tag in re.finditer(r'<DataArray type="(\w+)" ([^>]*?)/?>(?:([\d ]*)</DataArray>)?', head):
-        kind, rest, text = tag.groups()
+    for tag in re.finditer(r'<DataArray type="(\w+)" ([^>]*?)/?>', head):
+        kind, rest = tag.groups()
         attributes = dict(re.findall(r'(\w+)="([^"]*)"', rest))
-        if kind == "String":
-            names = bytes(int(c) for c in text.split()).split(b"\0")
-            arrays["names"] = [n.decode() for n in names[: int(attributes["NumberOfTuples"])]]
+        if attributes["Name"].startswith("body "):
+            arrays.setdefault("names", []).append(html.unescape(attributes["Name"][5:]))
             continue
         start = int(attributes["offset"])
         size = int.from_bytes(data[start : start + 8], "little")

@@ -82,8 +82,8 @@ def write_vtu(path, bodies, displacement, velocity=None):
         head += f'<DataArray type="{kind}" Name="{name}"{parts} format="appended" offset="{len(data)}"/>\n'
         data += len(raw).to_bytes(8, "little") + raw
 
-    names = " ".join(str(c) for name in bodies for c in [*name.encode(), 0])
-    head += f'<DataArray type="String" Name="bodies" NumberOfTuples="{len(bodies)}" format="ascii">{names}</DataArray>\n'
+    for number, name in enumerate(bodies):
+        head += f'<DataArray type="Int32" Name="body {name}" NumberOfTuples="1" format="ascii">{number}</DataArray>\n'
     shift = np.cumsum([0] + [len(p) for p, _ in bodies.values()])
     flat = lambda x: np.concatenate([np.pad(v, ((0, 0), (0, 3 - v.shape[1]))) for v in x])
     array("Float64", "displacement", flat(displacement), 3)

@@ -152,7 +152,7 @@ impl Record {
             let nodes = block.cell.nodes(block.degree);
             let cells = tables::integers(py, block.connectivity.iter().map(|n| *n as i64).collect())?;
             let cells = cells.reshape([block.connectivity.len() / nodes, nodes])?;
-            blocks.append((block.body, block.cell.vtk_type(), block.degree, cells))?;
+            blocks.append((block.body, block.cell.lagrange_type(), block.degree, cells))?;
         }
         dict.set_item("blocks", blocks)?;
         let arrays = PyList::empty(py);

@@ -171,7 +171,7 @@ impl Simulation {
     /// The active contact nodes, by column.
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let inner = self.inner()?;
-        tables::contact(py, &inner.rows.contact(&self.case, &inner.library), inner.axes())
+        tables::contact(py, &inner.rows.contact(&inner.library), inner.axes())
     }
 
     /// Units of these columns.

@@ -14,6 +14,7 @@
 
 mod checkpoint;
 pub mod conversion;
+mod decimal;
 mod error;
 mod expectation;
 mod export;

@@ -6,6 +6,7 @@ use std::path::Path;
 use quick_xml::events::Event;
 use serde::{Deserialize, Serialize};
 
+use crate::decimal::decimal;
 use crate::{RecordError, files};
 
 /// An instant with recorded fields.
@@ -44,8 +45,8 @@ pub(crate) fn write(directory: &Path, entries: &[FieldEntry]) -> Result<(), Reco
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n <Collection>\n",
     );
     for entry in entries {
-        let _ =
-            writeln!(text, "  <DataSet timestep=\"{:?}\" part=\"0\" file=\"{}\"/>", entry.time, entry.file());
+        let time = decimal(entry.time);
+        let _ = writeln!(text, "  <DataSet timestep=\"{time:?}\" part=\"0\" file=\"{}\"/>", entry.file());
     }
     text.push_str(" </Collection>\n</VTKFile>\n");
     files::write_unsynced(&directory.join(FILE), &[text.as_bytes()])

@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use crate::decimal::decimal;
 use crate::rows::{contact_axes, contact_columns};
 use crate::{
     Column, ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, Stop, pvd, vtkhdf,
@@ -71,10 +72,11 @@ impl Run {
         let manifest = Manifest::read(directory)?;
         let lines = |name: &str| Lines::read(directory, name, &manifest);
         let history = history(&lines("history.csv")?, &manifest.columns)?;
-        let (fields, field_format) = match vtkhdf::entries(directory)? {
+        let (mut fields, field_format) = match vtkhdf::entries(directory)? {
             Some(entries) => (entries, FieldFormat::VtkHdf),
             None => (pvd::read(directory)?, FieldFormat::Vtu),
         };
+        restore_times(&mut fields, &history);
         Ok(Self {
             directory: directory.to_path_buf(),
             history,
@@ -119,6 +121,18 @@ impl Run {
         let path = self.directory.join(self.field_file(entry));
         let bytes = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
         FieldSet::from_vtu(&bytes).map_err(|what| RecordError::corrupt(&path, None, what, HINT))
+    }
+}
+
+/// Gives instants with fields the time of the row of their step, which their files have as a
+/// decimal.
+fn restore_times(fields: &mut [FieldEntry], history: &History) {
+    let steps = history.column("step").unwrap_or_default();
+    for entry in fields {
+        let row = steps.partition_point(|step| *step < entry.step as f64);
+        if let Some(time) = history.times().get(row).filter(|time| decimal(**time) == entry.time) {
+            entry.time = *time;
+        }
     }
 }
 

@@ -1,15 +1,16 @@
-"""Reads Carom's fields, VTU and VTKHDF, with VTK.
+"""Reads Carom's fields, VTU and VTKHDF, with VTK, and VTU with meshio.
 
 Checked are cell types, points, a cubic function between the nodes, units, body names and times.
 
     cargo run -p carom-record --example lagrange_fields -- FOLDER
-    python crates/carom-record/tests/vtk_reads.py FOLDER        (needs: pip install vtk h5py)
+    python crates/carom-record/tests/vtk_reads.py FOLDER        (needs: pip install vtk h5py meshio)
 """
 
 import sys
 from pathlib import Path
 
 import h5py
+import meshio
 import vtk
 
 STREAM = vtk.vtkStreamingDemandDrivenPipeline
@@ -41,7 +42,7 @@ def between_nodes(grid, array, factor):
 
 def both(grid):
     assert grid.GetNumberOfPoints() == 3 + 2 + 6 + 3 + 10 + 4, grid.GetNumberOfPoints()
-    assert [grid.GetCellType(i) for i in range(6)] == [69, 68] * 3
+    assert [grid.GetCellType(i) for i in range(6)] == [5, 3, 22, 21, 69, 68]
     assert [grid.GetCellData().GetArray("body").GetValue(i) for i in range(6)] == list(range(6))
     data = grid.GetPointData()
     assert data.GetArray("stress").GetTuple(7)[5] == data.GetArray("cubic").GetValue(7) + 5
@@ -56,9 +57,13 @@ def vtu(path):
     data = grid.GetPointData()
     assert data.GetArray("cubic").GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL()) == "m/s²"
     assert [data.GetArray("stress").GetComponentName(i) for i in range(6)] == "XX YY ZZ XY YZ XZ".split()
-    names = grid.GetFieldData().GetAbstractArray("bodies")
-    assert [names.GetValue(i) for i in range(names.GetNumberOfValues())] == BODIES
+    assert [grid.GetFieldData().GetArray(f"body {name}").GetValue(0) for name in BODIES] == list(range(6))
     assert grid.GetFieldData().GetArray("TimeValue").GetValue(0) == 0.25
+    cells = [(block.type, block.data.shape) for block in meshio.read(path).cells]
+    assert cells == [
+        ("triangle", (1, 3)), ("line", (1, 2)), ("triangle6", (1, 6)), ("line3", (1, 3)),
+        ("VTK_LAGRANGE_TRIANGLE", (1, 10)), ("VTK_LAGRANGE_CURVE", (1, 4)),
+    ], cells
     return between_nodes(grid, data.GetArray("displacement"), 1.0)
 
 
@@ -67,7 +72,7 @@ def vtkhdf(path):
     reader.SetFileName(str(path))
     reader.UpdateInformation()
     times = reader.GetOutputInformation(0).Get(STREAM.TIME_STEPS())
-    assert reader.GetNumberOfSteps() == 20 and list(times) == [i * 0.1 for i in range(20)], times
+    assert reader.GetNumberOfSteps() == 20 and list(times) == [i / 10 for i in range(20)], times
     worst = 0.0
     for i, time in enumerate(times):
         reader.SetStep(i)

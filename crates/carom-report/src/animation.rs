@@ -239,15 +239,19 @@ pub(crate) fn controls() -> Markup {
 pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<Animation> {
     let first = run.field(run.fields.first()?).ok()?;
     let flat = first.blocks.iter().all(|b| b.cell == Cell::Curve);
-    // A node of a bar is two points with a stress; one of the plane has two stresses.
-    let entries = chosen(run, if flat { 6 } else { 4 } * first.points.len());
+    // A node of a bar is two points with a stress; one of the plane has two stresses and a
+    // pressure.
+    let entries = chosen(run, if flat { 6 } else { 5 } * first.points.len());
     let read = |entry: &FieldEntry| {
         let fields = run.field(entry).ok()?;
         let [mises, _] = stresses(&fields)?;
-        Some(((entry.clone(), instant(&fields, String::new())?), mises))
+        let none = || vec![0.0; fields.points.len()];
+        let pressure = fields.array("contact_pressure").map_or_else(none, |array| array.values.clone());
+        Some(((entry.clone(), instant(&fields, String::new())?), (mises, pressure)))
     };
-    let (frames, mises): (Vec<(FieldEntry, Instant)>, Vec<Vec<f64>>) =
+    let (frames, colors): (Vec<(FieldEntry, Instant)>, Vec<_>) =
         entries.iter().filter_map(|e| read(e)).unzip();
+    let (mises, pressure): (Vec<Vec<f64>>, Vec<Vec<f64>>) = colors.into_iter().unzip();
     let of_cell = |(degree, nodes): &(usize, Vec<usize>)| {
         let degree = *degree;
         triangles(nodes).into_iter().map(move |half| (degree, half))
@@ -283,11 +287,20 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         legend: Legend { bands, cut, label, unit },
     };
     let (of_mises, beyond) = positive_bands_of(mises.iter().map(|values| values.iter().copied()));
-    let mises = mises.concat();
-    let legend = Legend { bands: &of_mises, cut: beyond, label: "σ_{vM}", unit };
-    // In a bar it is the absolute value of the axial stress but for a factor.
-    let others = (!flat).then_some(Quantity { name: "von Mises stress", legend });
+    // Few nodes of a body are in contact.
+    let pressed = || pressure.iter().map(|values| values.iter().copied().filter(|p| *p > 0.0));
+    let (of_pressure, above) = positive_bands_of(pressed());
+    let has_contact = pressed().flatten().next().is_some();
+    let others = [
+        ("von Mises stress", Legend { bands: &of_mises, cut: beyond, label: "σ_{vM}", unit }, true),
+        ("contact pressure", Legend { bands: &of_pressure, cut: above, label: "p_{c}", unit }, has_contact),
+    ];
+    // In a bar von Mises is the absolute value of the axial stress but for a factor, and ends are
+    // points.
+    let others = others.into_iter().filter(|(_, _, offered)| *offered && !flat);
+    let others = others.map(|(name, legend, _)| Quantity { name, legend });
     let quantities: Vec<Quantity> = std::iter::once(along).chain(others).collect();
+    let [mises, pressure] = [mises.concat(), pressure.concat()];
     let data_of = |(quantity, values): (&Quantity, &Vec<f64>)| {
         let mut data = quantity.data();
         let range = crate::axis::range(values);
@@ -316,7 +329,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         "degrees": cells.iter().map(|(d, _)| d.to_string()).collect::<String>(),
         "cells": STANDARD.encode(numbers),
         "x": packed(coordinates(0), (x0, x1)), "y": packed(coordinates(1), (y0, y1)),
-        "quantities": quantities.iter().zip([&values, &mises]).map(data_of).collect::<Vec<_>>(),
+        "quantities": quantities.iter().zip([&values, &mises, &pressure]).map(data_of).collect::<Vec<_>>(),
         "largest": largest, "planes": fixed, "walls": walls, "flat": flat,
         "marked": surfaces.iter().map(|obstacle| obstacle.mark(run, 0.0).is_some()).collect::<Vec<_>>(),
     });

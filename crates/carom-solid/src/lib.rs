@@ -8,6 +8,7 @@ mod discrete_gradient;
 mod earliest;
 mod element_shape;
 mod facet;
+mod facet_bernstein;
 mod factory;
 pub mod generate;
 pub mod gmsh;

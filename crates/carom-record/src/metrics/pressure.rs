@@ -10,9 +10,8 @@
 //!
 //! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) If the largest pressure is at
 //! an outermost node, the model is one half of a symmetric problem, and c is the coordinate of that
-//! node. Multipliers are recorded as λ/weight, the mean pressure near a node; a node without
-//! weight, as the corner of a T6 facet, has none. Of several contacts, the one with the largest
-//! load is used. Places along the contact are those of the plane; in space there are none.
+//! node. Of several contacts, the one with the largest load is used. Places along the contact are
+//! those of the plane; in space there are none.
 
 use super::samples::extreme;
 use crate::{ContactRow, Run, contact_axes};
@@ -87,7 +86,7 @@ fn last_rows(run: &Run) -> Vec<&ContactRow<'static>> {
     rows.into_iter().filter(|r| r.contact == most).collect()
 }
 
-/// Rows of nodes with a pressure at the end of a static run; none for a dynamic run, or without
+/// Rows of the contact at the end of a static run; none for a dynamic run, or without
 /// contact.
 fn at_rest(run: &Run) -> Option<Vec<&ContactRow<'static>>> {
     let kind = run.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
@@ -129,8 +128,8 @@ pub(crate) fn largest(run: &Run) -> Option<f64> {
     extreme(&pressures(&at_rest(run)?), f64::gt).map(|x| x.1)
 }
 
-/// Largest tangential traction of a node at the end of a static run, a force over the weight that
-/// the pressure is one over; none without friction.
+/// Largest tangential traction of a node at the end of a static run, the pressure times the ratio
+/// of the tangential to the normal force; none without friction.
 pub(crate) fn largest_traction(run: &Run) -> Option<f64> {
     let rows = at_rest(run)?;
     let tractions = rows.iter().filter(|r| r.friction != "none" && r.multiplier != 0.0);

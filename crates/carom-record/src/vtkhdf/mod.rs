@@ -18,6 +18,7 @@ use hdf5::Kind;
 use layout::{BODIES, COUNT, INTEGER, Layout, STEPS, TIMES, path_of};
 use read::{Contents, bytes_at};
 
+use crate::decimal::decimal;
 use crate::stream::{Hash, altered};
 use crate::{Block, FieldEntry, FieldSet, RecordError, files};
 
@@ -175,7 +176,7 @@ fn create(path: &Path, entry: &FieldEntry, fields: &FieldSet) -> Result<(), Reco
         ("Points", fields.points.iter().flatten().flat_map(|x| x.to_le_bytes()).collect()),
         ("Connectivity", whole(&mut cells().flat_map(|(_, c)| c).map(|&node| node as u64))),
         ("Offsets", whole(&mut std::iter::once(0).chain(ends))),
-        ("Types", cells().map(|(b, _)| b.cell.vtk_type()).collect()),
+        ("Types", cells().map(|(b, _)| b.cell.file_type(b.degree)).collect()),
         ("CellData/body", bodies.flat_map(i32::to_le_bytes).collect()),
     ];
     files::replace(path, |file| {
@@ -356,7 +357,7 @@ impl<F: Read + Write + Seek> Opened<F> {
 
     /// Writes the values of a step, without increasing the number of steps.
     fn write_step(&mut self, place: u64, entry: &FieldEntry, fields: &FieldSet) -> io::Result<()> {
-        self.write_row(TIMES, place, &entry.time.to_le_bytes())?;
+        self.write_row(TIMES, place, &decimal(entry.time).to_le_bytes())?;
         self.write_row(STEPS, place, &entry.step.to_le_bytes())?;
         for array in &fields.arrays {
             let bytes: Vec<u8> = array.values.iter().flat_map(|v| v.to_le_bytes()).collect();

@@ -9,7 +9,7 @@ fn fields(step: u64) -> FieldSet {
 }
 
 fn entry(step: u64) -> FieldEntry {
-    FieldEntry { step, time: 0.1 * step as f64 }
+    FieldEntry { step, time: 0.125 * step as f64 }
 }
 
 fn written(directory: &Path, count: u64) {

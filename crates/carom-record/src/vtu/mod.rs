@@ -1,32 +1,46 @@
-//! Field files: VTK unstructured grids of Lagrange cells, orders 1 to 3, with appended raw binary
-//! data.
+//! Field files: VTK unstructured grids of cells of degree 1 to 3, with appended raw binary data.
 //!
-//! Nodes are in the order of VTK and Gmsh: corners, then the nodes of each edge in the direction of
-//! the edge, then the interior. Points are the REFERENCE positions; `displacement` is a point
-//! array, so that "Warp By Vector" at scale 1 shows the deformed bodies. Units are stored with
-//! VTK's information key `UNITS_LABEL`, body names as a string array of the field data.
+//! Nodes are in the order of VTK: corners, then the nodes of each edge in the direction of the
+//! edge, then the interior. Points are the REFERENCE positions; `displacement` is a point array, so
+//! that "Warp By Vector" at scale 1 shows the deformed bodies. Units are stored with VTK's
+//! information key `UNITS_LABEL`. Each body is a number of the field data, named `body NAME`: the
+//! value of the cell array `body` in its cells.
+//!
+//! The version in the header decides who can read a file. VTK takes a Lagrange hexahedron of a file
+//! older than 2.1 for one of VTK 8, in which the edges at nodes 18 and 19 were exchanged, and
+//! reorders it; meshio 5.3 reads the versions 0.1 and 1.0 only. A file therefore has version 1.0
+//! and, where they exist, the cell types of fixed degree, whose nodes have one order in all
+//! versions and which meshio knows by name; Lagrange cells remain for degree 3, where no hexahedron
+//! exists.
 
 mod read;
 mod write;
 
+/// Beginning of the name of a body's number in the field data.
+const NAMED: &str = "body ";
+
 /// Shape of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cell {
-    /// `VTK_LAGRANGE_CURVE`: ends, then interior.
+    /// Ends, then interior.
     Curve,
-    /// `VTK_LAGRANGE_TRIANGLE`: corners, edges, interior.
+    /// Corners, edges, interior.
     Triangle,
-    /// `VTK_LAGRANGE_QUADRILATERAL` of degree 1 or 2: corners, edges, interior.
+    /// Of degree 1 or 2: corners, edges, interior.
     Quadrilateral,
-    /// `VTK_LAGRANGE_TETRAHEDRON`: corners, edges, faces, interior.
+    /// Corners, edges, faces, interior.
     Tetrahedron,
-    /// `VTK_LAGRANGE_HEXAHEDRON` of degree 1 or 2: corners, edges, faces, interior.
+    /// Of degree 1 or 2: corners, edges, faces, interior.
     Hexahedron,
 }
 
 impl Cell {
-    /// VTK's number of the cell type.
-    pub fn vtk_type(self) -> u8 {
+    const ALL: [Self; 5] =
+        [Self::Curve, Self::Triangle, Self::Quadrilateral, Self::Tetrahedron, Self::Hexahedron];
+
+    /// VTK's number of the Lagrange cell, whose degree follows from its number of nodes. The order
+    /// of nodes is that of VTK 9.
+    pub fn lagrange_type(self) -> u8 {
         match self {
             Self::Curve => 68,
             Self::Triangle => 69,
@@ -34,6 +48,33 @@ impl Cell {
             Self::Tetrahedron => 71,
             Self::Hexahedron => 72,
         }
+    }
+
+    /// VTK's number of the cell type of a degree in a file.
+    pub fn file_type(self, degree: usize) -> u8 {
+        match (self, degree) {
+            (Self::Curve, 1) => 3,
+            (Self::Curve, 2) => 21,
+            (Self::Triangle, 1) => 5,
+            (Self::Triangle, 2) => 22,
+            (Self::Quadrilateral, 1) => 9,
+            (Self::Quadrilateral, 2) => 28,
+            (Self::Tetrahedron, 1) => 10,
+            (Self::Tetrahedron, 2) => 24,
+            (Self::Hexahedron, 1) => 12,
+            (Self::Hexahedron, 2) => 29,
+            _ => self.lagrange_type(),
+        }
+    }
+
+    /// The cell of a type in a file with its degree, from its number of nodes. Files written by
+    /// earlier versions have Lagrange cells of every degree.
+    pub(crate) fn of_type(kind: u8, nodes: usize) -> Option<(Self, usize)> {
+        let of_degree = |degree: usize| Self::ALL.map(|cell| (cell, degree));
+        let fits = |&(cell, degree): &(Self, usize)| {
+            cell.nodes(degree) == nodes && (kind == cell.file_type(degree) || kind == cell.lagrange_type())
+        };
+        (1..=3).flat_map(of_degree).find(fits)
     }
 
     /// Nodes of a cell of the given degree.
@@ -147,6 +188,22 @@ pub(crate) mod tests {
     fn reads_what_it_wrote() {
         let bytes = sample().to_vtu(0.1 + 0.2).unwrap();
         assert_eq!(FieldSet::from_vtu(&bytes).unwrap(), sample());
+    }
+
+    /// Files of earlier versions have Lagrange cells of every degree, and the names of bodies as
+    /// null-terminated character codes in one array of strings.
+    #[test]
+    fn reads_files_of_earlier_versions() {
+        let bytes = sample().to_vtu(1.0).unwrap();
+        let found = |what: &[u8]| bytes.windows(what.len()).position(|w| w == what).unwrap();
+        let (start, end) = (found(b"<DataArray type=\"Int32\" Name=\"body "), found(b"</FieldData>"));
+        let names =
+            b"<DataArray type=\"String\" Name=\"bodies\" NumberOfTuples=\"2\" format=\"ascii\">98 97 114 32 60 49 62 0 100 105 115 99 0</DataArray>";
+        let mut earlier = [&bytes[..start], &names[..], &bytes[end..]].concat();
+        let types = [68, 22, 22];
+        let at = earlier.windows(3).rposition(|w| w == types).unwrap();
+        earlier[at..at + 3].copy_from_slice(&[68, 69, 69]);
+        assert_eq!(FieldSet::from_vtu(&earlier).unwrap(), sample());
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use quick_xml::events::{BytesStart, Event};
 
-use super::{Block, Cell, FieldSet, PointArray};
+use super::{Block, Cell, FieldSet, NAMED, PointArray};
 use crate::Reason;
 
 const APPENDED: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
@@ -101,6 +101,26 @@ fn numbers(data: &[u8], array: &Array, expected: usize) -> Result<Vec<f64>, Reas
     Err(format!("array `{}` has {} values instead of {expected}", array.name, values.len()).into())
 }
 
+/// Names of the bodies by number.
+fn bodies_of(arrays: &[Array]) -> Result<Vec<String>, Reason> {
+    let fields = || arrays.iter().filter(|a| a.section == "FieldData");
+    // Files of earlier versions have one array of null-terminated strings.
+    if let Some(all) = fields().find(|a| a.name == "bodies") {
+        let codes = all.text.split_whitespace().map(str::parse).collect::<Result<Vec<u8>, _>>();
+        let codes = codes.map_err(|e| format!("body names: {e}"))?;
+        return Ok(codes.split(|&c| c == 0).map(|n| String::from_utf8_lossy(n).into_owned()).collect());
+    }
+    let numbered = fields().filter_map(|a| Some((a.name.strip_prefix(NAMED)?, a.text.trim())));
+    let mut names = Vec::new();
+    for (name, number) in numbered {
+        if number.parse() != Ok(names.len()) {
+            return Err(format!("body `{name}` has the number {number} instead of {}", names.len()).into());
+        }
+        names.push(name.to_owned());
+    }
+    Ok(names)
+}
+
 impl Block {
     /// Blocks of successive cells of the same body, type and degree; a cell is given by its body,
     /// its VTK type and its point numbers.
@@ -108,21 +128,13 @@ impl Block {
         let mut blocks: Vec<Self> = Vec::new();
         let mut last = None;
         for (body, kind, nodes) in cells {
-            let cell = match kind {
-                68 => Cell::Curve,
-                69 => Cell::Triangle,
-                70 => Cell::Quadrilateral,
-                71 => Cell::Tetrahedron,
-                72 => Cell::Hexahedron,
-                _ => return Err(format!("cells of VTK type {kind} are not supported").into()),
-            };
-            let degree = (1..=3).find(|&d| cell.nodes(d) == nodes.len());
-            let degree =
-                degree.ok_or_else(|| format!("cells with {} nodes are not supported", nodes.len()))?;
-            if last != Some((body, kind, degree)) {
+            let (cell, degree) = Cell::of_type(kind, nodes.len()).ok_or_else(|| {
+                format!("cells of VTK type {kind} with {} nodes are not supported", nodes.len())
+            })?;
+            if last != Some((body, cell, degree)) {
                 let name = names.get(body).cloned().ok_or("a cell belongs to an unnamed body")?;
                 blocks.push(Self { body: name, cell, degree, connectivity: Vec::new() });
-                last = Some((body, kind, degree));
+                last = Some((body, cell, degree));
             }
             if let Some(block) = blocks.last_mut() {
                 block.connectivity.extend(nodes);
@@ -158,14 +170,7 @@ impl FieldSet {
         }
         let types = values::<1>(data, find("Cells", "types")?)?;
         let bodies = values::<4>(data, find("CellData", "body")?)?;
-        let codes = find("FieldData", "bodies")?
-            .text
-            .split_whitespace()
-            .map(str::parse)
-            .collect::<Result<Vec<u8>, _>>();
-        let codes = codes.map_err(|e| format!("body names: {e}"))?;
-        let names: Vec<String> =
-            codes.split(|&c| c == 0).map(|n| String::from_utf8_lossy(n).into_owned()).collect();
+        let names = bodies_of(&arrays)?;
 
         let mut start = 0;
         let cells = ends.iter().zip(types).zip(bodies).map(|((&end, [kind]), body)| {

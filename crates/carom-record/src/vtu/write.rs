@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 
 use quick_xml::escape::escape;
 
-use super::FieldSet;
+use super::{FieldSet, NAMED};
 use crate::RecordError;
+use crate::decimal::decimal;
 
 /// The XML head and the binary data after it, written together.
 #[derive(Default)]
@@ -81,18 +82,16 @@ impl FieldSet {
             "Float64",
             "Name=\"TimeValue\" NumberOfTuples=\"1\"",
             "",
-            std::iter::once(time.to_le_bytes()),
+            std::iter::once(decimal(time).to_le_bytes()),
         );
-        // VTK strings are null-terminated.
-        let names = self.blocks.iter().map(|b| b.body.as_str()).collect::<Vec<_>>();
-        let codes: Vec<String> =
-            names.iter().flat_map(|n| n.bytes().chain([0])).map(|b| b.to_string()).collect();
-        let _ = writeln!(
-            p.head,
-            "<DataArray type=\"String\" Name=\"bodies\" NumberOfTuples=\"{}\" format=\"ascii\">{}</DataArray>\n</FieldData>",
-            names.len(),
-            codes.join(" ")
-        );
+        for (number, block) in self.blocks.iter().enumerate() {
+            let name = escape(&block.body);
+            let _ = writeln!(
+                p.head,
+                "<DataArray type=\"Int32\" Name=\"{NAMED}{name}\" NumberOfTuples=\"1\" format=\"ascii\">{number}</DataArray>"
+            );
+        }
+        p.head.push_str("</FieldData>\n");
         let _ = writeln!(
             p.head,
             "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\">\n<PointData>",
@@ -131,7 +130,7 @@ impl FieldSet {
             Some(end.to_le_bytes())
         });
         p.array("Int64", "Name=\"offsets\"", "", ends);
-        let types = self.blocks.iter().flat_map(|b| b.cells().map(|_| [b.cell.vtk_type()]));
+        let types = self.blocks.iter().flat_map(|b| b.cells().map(|_| [b.cell.file_type(b.degree)]));
         p.array("UInt8", "Name=\"types\"", "", types);
         p.head.push_str("</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
         let mut bytes = p.head.into_bytes();

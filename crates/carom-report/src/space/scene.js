@@ -20,9 +20,10 @@
     return list;
   };
   const places = [0, 1, 2].map(d => Float32Array.from(numbers(), n => data.low[d] + n * (data.high[d] - data.low[d]) / 65535));
-  const shown = [];
+  // Three of the displacement, the last quantity, and one of each other quantity.
+  const stored = data.quantities.length - 1, channels = 3 + stored, shown = [];
   frames.forEach((_, k) => {
-    shown.push([0, 1, 2, 3, 4].map(channel => {
+    shown.push(Array.from({ length: channels }, (_, channel) => {
       const now = new Int16Array(N), steps = numbers();
       const last = k > 0 ? shown[k - 1][channel] : null, older = k > 1 && channel < 3 ? shown[k - 2][channel] : null;
       let error = 0;
@@ -140,7 +141,7 @@
     for (let i = 0; i < N; i++) {
       const [x, y, z] = [u[0][i] * unit, u[1][i] * unit, u[2][i] * unit];
       position[3 * i] = places[0][i] + x; position[3 * i + 1] = places[1][i] + y; position[3 * i + 2] = places[2][i] + z;
-      value[i] = quantity < 2 ? u[3 + quantity][i] / data.levels : Math.hypot(x, y, z) / range.high;
+      value[i] = quantity < stored ? u[3 + quantity][i] / data.levels : Math.hypot(x, y, z) / range.high;
     }
     [position, value].forEach((list, j) => {
       gl.bindBuffer(gl.ARRAY_BUFFER, buffers[j]);

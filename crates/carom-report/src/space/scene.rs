@@ -1,9 +1,10 @@
 //! The scene of a run in space: its skin, to be turned and played.
 //!
 //! The frames are the field files; nothing is interpolated. Of every node of the skin the scene has
-//! the reference position, and in each frame the displacement, the stress of von Mises and the mean
-//! stress, as integers over their ranges. What is stored is how each number differs from what the
-//! two frames before and the node before let expect, compressed (RFC 1950); `scene.js` draws it.
+//! the reference position, and in each frame the displacement, the stress of von Mises, the mean
+//! stress and, where bodies touch, the contact pressure, as integers over their ranges. What is
+//! stored is how each number differs from what the two frames before and the node before let
+//! expect, compressed (RFC 1950); `scene.js` draws it.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -34,8 +35,6 @@ const NUMBERS: usize = 3_000_000;
 const MOVED: f64 = 32_767.0;
 const PLACED: f64 = 65_535.0;
 const LEVELS: f64 = 500.0;
-/// Numbers per node and frame.
-const CHANNELS: usize = 5;
 
 /// Nodes of a facet row by row, for small triangles between them.
 const ROWS: [&[&[usize]]; 3] =
@@ -83,6 +82,8 @@ struct Frame {
     moved: Vec<Place>,
     mises: Vec<f64>,
     mean: Vec<f64>,
+    /// Contact pressure; empty of a record without it.
+    pressure: Vec<f64>,
 }
 
 /// Everything that is drawn.
@@ -93,20 +94,32 @@ struct Scene {
     frames: Vec<Frame>,
     /// Largest component of a displacement.
     largest: f64,
-    /// Von Mises, mean stress and displacement.
-    bands: [(Bands, [bool; 2]); 3],
+    mises: Colors,
+    mean: Colors,
+    /// None if there is no contact in any frame.
+    pressure: Option<Colors>,
+    displacement: Colors,
 }
+
+/// Bands of a quantity, and whether values lie below or above them.
+type Colors = (Bands, [bool; 2]);
 
 impl Scene {
     fn new(surface: Surface, places: Vec<Place>, frames: Vec<Frame>) -> Self {
         let moved = || frames.iter().flat_map(|f| &f.moved);
         let largest = largest(moved().flatten());
-        let bands = [
-            positive_bands_of(frames.iter().map(|f| f.mises.iter().copied())),
-            color_bands(frames.iter().flat_map(|f| f.mean.iter().copied())),
-            positive_bands_of(frames.iter().map(|f| f.moved.iter().map(|u| length(*u)))),
-        ];
-        Self { surface, places, frames, largest, bands }
+        let mises = positive_bands_of(frames.iter().map(|f| f.mises.iter().copied()));
+        let mean = color_bands(frames.iter().flat_map(|f| f.mean.iter().copied()));
+        // Few nodes of a body are in contact.
+        let pressed = || frames.iter().map(|f| f.pressure.iter().copied().filter(|p| *p > 0.0));
+        let pressure = pressed().flatten().next().map(|_| positive_bands_of(pressed()));
+        let displacement = positive_bands_of(frames.iter().map(|f| f.moved.iter().map(|u| length(*u))));
+        Self { surface, places, frames, largest, mises, mean, pressure, displacement }
+    }
+
+    /// Numbers per node and frame.
+    fn channels(&self) -> usize {
+        5 + usize::from(self.pressure.is_some())
     }
 
     /// Corners of the box of the reference positions.
@@ -137,13 +150,16 @@ impl Scene {
             let share = (x - bands.low) / (bands.high - bands.low);
             if share.is_finite() { (share.clamp(0.0, 1.0) * LEVELS).round() as i16 } else { -1 }
         };
-        let mut before = vec![[vec![0i16; self.places.len()], vec![0i16; self.places.len()]]; CHANNELS];
+        let levels = |values: &[f64], (bands, _): &Colors| values.iter().map(|x| level(*x, bands)).collect();
+        let none = vec![0i16; self.places.len()];
+        let mut before = vec![[none.clone(), none.clone()]; self.channels()];
         for (k, frame) in frames.iter().map(|&k| &self.frames[k]).enumerate() {
-            for channel in 0..CHANNELS {
-                let now: Vec<i16> = match channel {
-                    3 => frame.mises.iter().map(|x| level(*x, &self.bands[0].0)).collect(),
-                    4 => frame.mean.iter().map(|x| level(*x, &self.bands[1].0)).collect(),
-                    d => frame.moved.iter().map(|u| (u[d] * by).round() as i16).collect(),
+            for channel in 0..self.channels() {
+                let now: Vec<i16> = match (channel, &self.pressure) {
+                    (3, _) => levels(&frame.mises, &self.mises),
+                    (4, _) => levels(&frame.mean, &self.mean),
+                    (5, Some(colors)) => levels(&frame.pressure, colors),
+                    (d, _) => frame.moved.iter().map(|u| (u[d] * by).round() as i16).collect(),
                 };
                 let [last, older] = &mut before[channel];
                 let mut left = 0i16;
@@ -193,11 +209,17 @@ fn frame(run: &Run, entry: &FieldEntry, nodes: &[usize], points: usize) -> Optio
     let fields = run.field(entry).ok().filter(|fields| fields.points.len() == points)?;
     let u = fields.array("displacement").filter(|a| a.components == 3)?;
     let [mises, mean] = stresses(&fields)?;
+    let pressure = fields.array("contact_pressure").map_or(&[][..], |array| &array.values);
     Some(Frame {
         moved: nodes.iter().map(|&k| [0, 1, 2].map(|d| u.values[3 * k + d])).collect(),
         mises: nodes.iter().map(|&k| mises[k]).collect(),
         mean: nodes.iter().map(|&k| mean[k]).collect(),
+        pressure: nodes.iter().filter_map(|&k| pressure.get(k).copied()).collect(),
     })
+}
+
+fn quantity<'a>(name: &'static str, label: &'a str, unit: &'a str, (bands, cut): &'a Colors) -> Quantity<'a> {
+    Quantity { name, legend: Legend { bands, cut: *cut, label, unit } }
 }
 
 /// The section of the page, hidden until its script runs; nothing for fewer than two field files.
@@ -220,25 +242,18 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     // The colours of the figure.
     let most = scene.frames.iter().flat_map(|f| &f.mises).copied().fold(0.0, f64::max);
     let Bands { low, high, count } = *bands;
-    scene.bands[0] = (Bands { low, high, count }, [false, most > high]);
+    scene.mises = (Bands { low, high, count }, [false, most > high]);
     let (chosen, packed) = scene.fitted();
     let peak = |k: &usize| scene.frames[*k].mises.iter().copied().fold(0.0, f64::max);
     let start = chosen.iter().max_by(|a, b| peak(a).total_cmp(&peak(b)).then(b.cmp(a))).copied()?;
     let [stress, length] = ["stress", "displacement"].map(|array| first.unit(array));
-    let kinds = [
-        ("von Mises stress", "σ_{vM}", stress),
-        ("pressure, as mean stress", "σ_{m} = −p", stress),
-        ("displacement", "|u|", length),
+    // As their channels are; the displacement has three of its own.
+    let mut quantities = vec![
+        quantity("von Mises stress", "σ_{vM}", stress, &scene.mises),
+        quantity("pressure, as mean stress", "σ_{m} = −p", stress, &scene.mean),
     ];
-    let quantities: Vec<Quantity> = scene
-        .bands
-        .iter()
-        .zip(&kinds)
-        .map(|((bands, cut), (name, label, unit))| Quantity {
-            name,
-            legend: Legend { bands, cut: *cut, label, unit },
-        })
-        .collect();
+    quantities.extend(scene.pressure.iter().map(|of| quantity("contact pressure", "p_{c}", stress, of)));
+    quantities.push(quantity("displacement", "|u|", length, &scene.displacement));
     let entry = |k: &usize| {
         let entry = entries[*k];
         json!({ "time": entry.time, "step": entry.step, "file": run.field_file(entry) })
@@ -292,6 +307,9 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
                 ", without interpolation" (Label(&last)) ". Displacements are not magnified. " (Label("σ_{vM}"))
                 " and the mean stress " (Label("σ_{m}")) " = tr σ/3 = −p, minus the pressure (blue: compression, \
                  red: tension), are those of nodal averages of the Cauchy stress. The inside of a cut body is grey."
+                @if scene.pressure.is_some() {
+                    " The contact pressure " (Label("p_{c}")) " is zero outside of facets in contact."
+                }
                 (explained)
             }
             (help(&html! {
@@ -338,6 +356,7 @@ mod tests {
                 moved: places.iter().map(moved).collect(),
                 mises: places.iter().map(|p| wave(p, 17.0).abs()).collect(),
                 mean: places.iter().map(|p| wave(p, 11.0)).collect(),
+                pressure: places.iter().map(|p| wave(p, 5.0).max(0.0)).collect(),
             }
         };
         let scene = Scene::new(surface, places.clone(), (0..100).map(frame).collect());
@@ -352,14 +371,15 @@ mod tests {
             let at = start + 2 * list * count + i;
             u16::from_le_bytes([bytes[at], bytes[at + count]])
         };
-        assert_eq!(bytes.len(), start + 2 * count * (3 + CHANNELS * frames.len()));
+        let channels = 6;
+        assert_eq!(bytes.len(), start + 2 * count * (3 + channels * frames.len()));
         let back = |z: u16| (z >> 1) as i16 ^ -((z & 1) as i16);
         let mut history = vec![vec![0i16; count]; 2];
         for k in 0..100 {
             let mut error = 0i16;
             let next: Vec<i16> = (0..count)
                 .map(|i| {
-                    error = error.wrapping_add(back(number(3 + CHANNELS * k + 1, i)));
+                    error = error.wrapping_add(back(number(3 + channels * k + 1, i)));
                     let (last, older) = (history[1][i], history[0][i]);
                     error.wrapping_add(if k > 1 { last.wrapping_mul(2).wrapping_sub(older) } else { last })
                 })

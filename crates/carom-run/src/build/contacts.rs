@@ -14,12 +14,12 @@ use carom_contact::{
 use carom_mechanics::model::{AllowedDepths, Augmentation, BodyInstance, Contact, Friction};
 use carom_solid::FacetShape;
 
+use super::areas::consistent_weights;
 use super::between_sides::{Bodies, Which, longest, without};
 use super::branching::branching;
 use super::given::in_space_and_time;
 use super::obstacles::{self, Moving};
 use super::side::{Side, side};
-use crate::recording::consistent_weights;
 
 /// The contacts of a case.
 pub(super) fn contacts(

@@ -1,6 +1,7 @@
 //! Builds a model from a resolved case. Names that the meshes lack are reported as a [`Problem`]
 //! with their key.
 
+mod areas;
 mod between_sides;
 mod branching;
 mod contacts;

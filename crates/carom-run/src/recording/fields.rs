@@ -5,18 +5,19 @@
 //! stretches λᵢ, the same in the reference and the current configuration, of nodal means of the
 //! Green–Lagrange strain, 2E = FᵀF − I, whose principal values are λᵢ² − 1.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::BTreeMap;
 
 use carom_algebra::principal;
 use carom_case::Case;
-use carom_contact::{Pair, Rows};
 use carom_mechanics::State;
-use carom_mechanics::model::{Contact, Model, von_mises};
+use carom_mechanics::model::{Model, von_mises};
 use carom_record::{Block, Cell, FieldSet, PointArray};
-use carom_solid::{Element, FacetShape, Mesh};
+use carom_solid::{Element, Mesh};
+
+use super::pressure::Surfaces;
 
 /// Fields of a state.
-pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
+pub(super) fn field_set(case: &Case, model: &Model, surfaces: &Surfaces, state: &State) -> FieldSet {
     let label = case.labels();
     let array = |name: &str, unit: &str, components: usize, values: Vec<f64>| PointArray {
         name: name.into(),
@@ -40,7 +41,7 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
             array("von_mises", &label.stress, 1, mises),
             array("principal_stress", &label.stress, 3, principal_stress),
             array("principal_log_strain", "", 3, principal_strain),
-            array("contact_pressure", &label.stress, 1, pressures(case, model, state)),
+            array("contact_pressure", &label.stress, 1, pressures(surfaces, model, state)),
         ],
     };
     set.points.truncate(nodes);
@@ -137,88 +138,12 @@ fn nodal_means(model: &Model, state: &State) -> (Vec<Components>, Vec<Components
     means.into()
 }
 
-fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {
-    let mut pressure = vec![0.0; model.mass.nodes()];
-    for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
-        let weights = weights(contact, state, case.thickness);
-        // The force of an edge acts on no area.
-        for pair in pairs.iter().filter(|p| p.active && p.node < contact.kinematics.nodes()) {
-            pressure[contact.kinematics.secondary()[pair.node]] -= pair.lambda / weights[pair.node];
-        }
+fn pressures(surfaces: &Surfaces, model: &Model, state: &State) -> Vec<f64> {
+    let mut at_nodes = vec![0.0; model.mass.nodes()];
+    for (node, pressure) in surfaces.pressures(model, state) {
+        at_nodes[node] = pressure;
     }
-    pressure
-}
-
-/// The area of each multiplier of a contact at a state, one entry per node of its pairs. NaN of
-/// edges, and at the corners of triangles of degree 2, whose functions have no area: they have no
-/// nodal pressure.
-pub(super) fn weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f64> {
-    let facets = contact.facets.iter().map(|(shape, facets)| (*shape, facets));
-    let nodes = contact.kinematics.secondary();
-    let mut weights = consistent_weights(nodes, facets, &state.y, thickness);
-    let quadratic = contact.facets.iter().filter(|(shape, _)| *shape == FacetShape::T6);
-    let corners: HashSet<usize> =
-        quadratic.flat_map(|(_, facets)| facets).flat_map(|facet| facet[..3].iter().copied()).collect();
-    for (weight, _) in weights.iter_mut().zip(nodes).filter(|(_, node)| corners.contains(node)) {
-        *weight = f64::NAN;
-    }
-    weights[contact.kinematics.nodes()..].fill(f64::NAN);
-    weights
-}
-
-/// ∫φᴺ ds over the sides of each node at positions `y`, times the thickness.
-pub(crate) fn consistent_weights<'a>(
-    secondary: &[usize],
-    facets: impl Iterator<Item = (FacetShape, &'a Vec<Vec<usize>>)>,
-    y: &[f64],
-    thickness: f64,
-) -> Vec<f64> {
-    let mut weights: HashMap<usize, f64> = secondary.iter().map(|&node| (node, 0.0)).collect();
-    for (shape, facets) in facets {
-        let d = shape.dimension();
-        // Exact for constant |y'| and φ of degree 3.
-        let rule = shape.rule(5);
-        for facet in facets {
-            for &(xi, w) in &rule {
-                let functions = shape.functions(xi);
-                let tangents = functions.slopes.map(|slopes| {
-                    let mut tangent = [0.0; 3];
-                    for (&n, slope) in facet.iter().zip(slopes) {
-                        (0..d).for_each(|i| tangent[i] += slope * y[n * d + i]);
-                    }
-                    tangent
-                });
-                let [x, y, z] = shape.area_vector(tangents, 1.0);
-                let measure = x.hypot(y).hypot(z);
-                for (n, value) in facet.iter().zip(&functions.values) {
-                    if let Some(weight) = weights.get_mut(n) {
-                        *weight += w * value * measure * thickness;
-                    }
-                }
-            }
-        }
-    }
-    secondary.iter().map(|node| weights[node]).collect()
-}
-
-/// Gap of a pair in a state, the outward unit normal of the primary, and the place of its node or
-/// of the contact point of its edge; NaN if undefined.
-pub(super) fn gap_of(contact: &Contact, pair: &Pair, state: &State) -> (f64, [f64; 3], [f64; 3]) {
-    let d = contact.facets[0].0.dimension();
-    let mut rows = Rows::new(d);
-    let place = |shares: &mut dyn Iterator<Item = (usize, f64)>| {
-        let mut place = [0.0; 3];
-        for (node, share) in shares {
-            (0..d).for_each(|i| place[i] += share * state.y[node * d + i]);
-        }
-        place
-    };
-    if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_err() {
-        let node = contact.kinematics.secondary()[pair.node];
-        return (f64::NAN, [f64::NAN; 3], place(&mut std::iter::once((node, 1.0))));
-    }
-    let row = rows.row(0);
-    (row.gap - contact.kinematics.allowed(pair.node), row.normal(), place(&mut row.shares()))
+    at_nodes
 }
 
 /// Chains of point numbers of every named side, in the order of traversal; in space one for every

@@ -4,6 +4,7 @@ mod columns;
 mod fields;
 mod log;
 mod outcome;
+mod pressure;
 mod rows;
 mod session;
 mod start;
@@ -11,7 +12,6 @@ mod stopped;
 mod tally;
 mod verdicts;
 
-pub(crate) use fields::consistent_weights;
 pub use fields::{block, initial_fields};
 pub use outcome::{End, Options, Outcome, Progress, RunError};
 pub use rows::{ContactStates, Rows};

@@ -1,18 +1,19 @@
 //! The rows of a state, as a run records them.
 
 use carom_case::{Case, history_columns};
-use carom_contact::{FrictionState, Pair, Tangential, length};
+use carom_contact::{self as contact, FrictionState, Pair, Tangential, length};
 use carom_mechanics::model::{Contact, Model};
 use carom_mechanics::{GridReport, Simulation, State, each_slip, penetration};
 use carom_record::{Column, ContactRow};
 
 use super::columns::{Since, center_weights, row};
-use super::fields::{gap_of, weights};
+use super::pressure::Surfaces;
 
 /// Rows of a simulation that is advanced step by step.
 pub struct Rows {
     columns: Vec<Column>,
     weights: Vec<f64>,
+    surfaces: Surfaces,
     since: Since,
 }
 
@@ -23,8 +24,12 @@ impl Rows {
     /// Of a case and its simulation.
     pub fn new(case: &Case, simulation: &Simulation) -> Self {
         let model = simulation.model();
-        let mut rows =
-            Self { columns: history_columns(case), weights: center_weights(model), since: Since::default() };
+        let mut rows = Self {
+            columns: history_columns(case),
+            weights: center_weights(model),
+            surfaces: Surfaces::new(model, case.thickness),
+            since: Since::default(),
+        };
         let penetration = penetration(model, simulation.state());
         rows.advanced(&GridReport { penetration, ..GridReport::default() });
         rows
@@ -52,14 +57,19 @@ impl Rows {
     }
 
     /// The active contact nodes of the current state.
-    pub fn contact<'a>(&self, case: &Case, simulation: &'a Simulation) -> ContactStates<'a> {
-        contact_rows(case, simulation.model(), simulation.state())
+    pub fn contact<'a>(&self, simulation: &'a Simulation) -> ContactStates<'a> {
+        contact_rows(simulation.model(), &self.surfaces, simulation.state())
     }
 }
 
 /// The active contact nodes of a state.
-pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> ContactStates<'a> {
+pub(super) fn contact_rows<'a>(model: &'a Model, surfaces: &Surfaces, state: &State) -> ContactStates<'a> {
     let mut rows = Vec::new();
+    if state.pairs.iter().flatten().all(|pair| !pair.active) {
+        return rows;
+    }
+    let pressures = surfaces.pressures(model, state);
+    let pressure_at = |node: usize| pressures.get(&node).copied().unwrap_or(0.0);
     let in_space = model.dimension == 3;
     // Of each contact with friction in space: friction on the secondary side.
     let count = |(contact, pairs): (&Contact, &Vec<Pair>)| {
@@ -74,29 +84,26 @@ pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> 
         });
     }
     for ((contact, pairs), rubbing) in model.contacts.iter().zip(&state.pairs).zip(rubbing) {
-        if pairs.iter().all(|p| !p.active) {
-            continue;
-        }
-        let weights = weights(contact, state, case.thickness);
-        // In a concave corner, a node has several pairs.
-        let mut of_node = vec![0.0; weights.len()];
-        pairs.iter().filter(|p| p.active).for_each(|pair| of_node[pair.node] += pair.lambda);
         for (p, pair) in pairs.iter().enumerate().filter(|(_, pair)| pair.active) {
             let Tangential { traction, slip, .. } = pair.tangential;
             let node = contact.kinematics.secondary()[pair.node];
-            let (gap, normal, point) = gap_of(contact, pair, state);
+            let Opposed { gap, normal, shares } = opposed(contact, pair, state);
+            let mean = |of: &dyn Fn(usize) -> f64| shares.iter().map(|(node, share)| share * of(*node)).sum();
+            let coordinate = |i: usize| {
+                if i < model.dimension { mean(&|node| state.y[node * model.dimension + i]) } else { 0.0 }
+            };
             rows.push(ContactRow {
                 step: state.step,
                 time: state.time,
                 contact: contact.name.as_str().into(),
                 node: node as u64,
-                point,
+                point: std::array::from_fn(coordinate),
                 facet: pair.facet as u64,
                 xi: pair.xi,
                 eta: pair.eta,
                 gap,
                 multiplier: pair.lambda,
-                pressure: -of_node[pair.node] / weights[pair.node],
+                pressure: mean(&pressure_at),
                 normal,
                 friction: match (&contact.friction, pair.tangential.friction_state) {
                     _ if pair.node >= contact.kinematics.nodes() => "none",
@@ -112,4 +119,25 @@ pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> 
         }
     }
     rows
+}
+
+/// The position of a pair's node, or of the contact point of its edge, relative to the other side.
+struct Opposed {
+    /// NaN without a unique closest point.
+    gap: f64,
+    /// Outward unit normal of the primary; NaN without a unique closest point.
+    normal: [f64; 3],
+    /// The nodes between which the contact point lies on its own side, with their shares in it.
+    shares: Vec<(usize, f64)>,
+}
+
+fn opposed(contact: &Contact, pair: &Pair, state: &State) -> Opposed {
+    let mut rows = contact::Rows::new(contact.facets[0].0.dimension());
+    if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_err() {
+        let node = contact.kinematics.secondary()[pair.node];
+        return Opposed { gap: f64::NAN, normal: [f64::NAN; 3], shares: vec![(node, 1.0)] };
+    }
+    let row = rows.row(0);
+    let gap = row.gap - contact.kinematics.allowed(pair.node);
+    Opposed { gap, normal: row.normal(), shares: row.shares().collect() }
 }

@@ -14,6 +14,7 @@ use super::columns::{Since, center_weights, row};
 use super::fields::field_set;
 use super::log::{entry, relaxed, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
+use super::pressure::Surfaces;
 use super::rows::contact_rows;
 use super::stopped::{FEW, Found, Record};
 use super::tally::{Busy, Tally, checkpoint};
@@ -30,6 +31,7 @@ pub(super) struct Session<'a> {
     pub(super) writer: &'a mut dyn Recorder,
     pub(super) manifest: Manifest,
     weights: Vec<f64>,
+    surfaces: Surfaces,
     field_steps: Vec<u64>,
     /// Whether each probe had its recorded stresses after the last step.
     stressed: Vec<bool>,
@@ -60,6 +62,7 @@ impl<'a> Session<'a> {
         let at = |time: &f64| simulation.grid().nearest(*time);
         let field_steps = case.output.at_times.iter().map(at).collect();
         let weights = center_weights(simulation.model());
+        let surfaces = Surfaces::new(simulation.model(), case.thickness);
         let first_step = simulation.state().step;
         let stressed = stressed(&simulation);
         let rotations = rotations(case, simulation.model());
@@ -70,6 +73,7 @@ impl<'a> Session<'a> {
             writer,
             manifest,
             weights,
+            surfaces,
             field_steps,
             stressed,
             since: Since::default(),
@@ -221,14 +225,14 @@ impl<'a> Session<'a> {
             }
         }
         self.writer.history(&self.values)?;
-        contact_rows(self.case, model, state).iter().try_for_each(|row| self.writer.contact(row))?;
+        contact_rows(model, &self.surfaces, state).iter().try_for_each(|row| self.writer.contact(row))?;
         Ok(())
     }
 
     fn write_fields(&mut self) -> Result<(), RunError> {
         if self.case.output.fields_every > 0 || !self.field_steps.is_empty() {
             let (model, state) = (self.simulation.model(), self.simulation.state());
-            self.writer.fields(state.step, state.time, field_set(self.case, model, state))?;
+            self.writer.fields(state.step, state.time, field_set(self.case, model, &self.surfaces, state))?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 //! start.
 
 use carom_algebra::Vector;
-use carom_case::{Case, PrimarySpec, Quantity};
+use carom_case::{Case, ContactSpec, PrimarySpec, Quantity};
 use carom_mechanics::model::Model;
 
 use super::found::{Found, short};
@@ -150,33 +150,28 @@ pub(super) fn coarse_secondary(case: &Case, model: &Model) -> Vec<Found> {
     (0..case.contacts.len()).filter_map(coarse).collect()
 }
 
-/// Pressures are read where an expectation names one, and at a probe that records a stress within a
-/// facet's length of the contact.
+/// Pressures are written to contact.csv in every run, and to the fields where there are any;
+/// stresses near the contact at a probe that records one within a facet's length of it.
 pub(super) fn unmatched_pressure(case: &Case, model: &Model) -> Vec<Found> {
     let stress = |q: &Quantity| {
         use Quantity::{SigmaXx, SigmaXy, SigmaXz, SigmaYy, SigmaYz, SigmaZz, VonMises};
         matches!(q, SigmaXx | SigmaYy | SigmaZz | SigmaXy | SigmaYz | SigmaXz | VonMises)
     };
-    let probes: Vec<_> = case.probes.iter().filter(|probe| probe.record.iter().any(stress)).collect();
-    let expected = case.expects.iter().any(|expect| expect.what.contains("pressure"));
-    let mut found = Vec::new();
-    // The zone of a contact is searched for only where somebody reads.
-    for (k, contact) in case.contacts.iter().enumerate().filter(|_| expected || !probes.is_empty()) {
-        let Some(zone) = zone(case, model, k).filter(|zone| !zone.matches()) else { continue };
-        let mut readers = Vec::new();
-        if expected {
-            readers.push("an expectation reads a pressure there".to_owned());
-        }
-        for probe in &probes {
+    let has_fields = case.output.fields_every > 0 || !case.output.at_times.is_empty();
+    let unmatched = |(k, contact): (usize, &ContactSpec)| {
+        let zone = zone(case, model, k).filter(|zone| !zone.matches())?;
+        let mut places = vec!["contact.csv".to_owned()];
+        places.extend(has_fields.then(|| "the fields".to_owned()));
+        for probe in case.probes.iter().filter(|probe| probe.record.iter().any(stress)) {
             if zone.reaches(Vector(std::array::from_fn(|i| probe.at.get(i).copied().unwrap_or(0.0)))) {
                 let names: Vec<&str> = probe.record.iter().filter(|q| stress(q)).map(|q| q.name()).collect();
-                readers.push(format!("probe \"{}\" reads {} there", probe.name, names.join(", ")));
+                places.push(format!("probe \"{}\" ({})", probe.name, names.join(", ")));
             }
         }
-        if !readers.is_empty() {
-            let what = format!("the nodes of its sides do not match, and {}", readers.join(" and "));
-            found.push(Found::of_contact(&contact.name, what));
-        }
-    }
-    found
+        let last = places.pop().unwrap_or_default();
+        let listed = if places.is_empty() { last } else { format!("{} and {last}", places.join(", ")) };
+        let what = format!("the nodes of its sides do not match; their pressures are in {listed}");
+        Some(Found::of_contact(&contact.name, what))
+    };
+    case.contacts.iter().enumerate().filter_map(unmatched).collect()
 }

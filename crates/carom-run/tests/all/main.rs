@@ -7,6 +7,7 @@ mod augmented;
 mod bar;
 mod common;
 mod conserving_contact;
+mod contact_pressure;
 mod edges;
 mod energy_momentum;
 mod explicit_energy;

@@ -227,7 +227,7 @@ fn recorded_rows_are_forces_on_the_secondary_side() {
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
         let (mut pressed, mut rubbed) = ([0.0; 3], [0.0; 3]);
-        for row in rows.contact(&case, &sim) {
+        for row in rows.contact(&sim) {
             corners += usize::from(!lower.contains(&(row.node as usize)) && row.traction > 0.0);
             pressed = sum(pressed, -row.multiplier, row.normal);
             rubbed = sum(rubbed, 1.0, row.rubbing);

@@ -48,3 +48,30 @@ fn an_edge_is_a_line() {
         }
     }
 }
+
+/// Bernstein polynomials are positive inside, sum to one and all have the same integral; those of a
+/// line at its nodes by hand.
+#[test]
+fn bernstein_polynomials() {
+    let lines = [FacetShape::Point, FacetShape::L2, FacetShape::L3, FacetShape::L4];
+    for shape in SURFACES.into_iter().chain(lines) {
+        let (at_nodes, n) = (shape.bernstein_at_nodes(), shape.nodes());
+        let mut integrals = vec![0.0; n];
+        let mut whole = 0.0;
+        for (xi, weight) in shape.rule(6) {
+            let phi = shape.functions(xi).values;
+            let value = |i: usize| (0..n).map(|j| at_nodes[j][i] * phi[j]).sum::<f64>();
+            let values: Vec<f64> = (0..n).map(value).collect();
+            assert!(values.iter().all(|value| *value > 0.0), "{shape:?} at {xi:?}: {values:?}");
+            assert!((values.iter().sum::<f64>() - 1.0).abs() < 1e-14, "{shape:?} at {xi:?}");
+            integrals.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+            whole += weight;
+        }
+        for integral in integrals {
+            assert!((integral * n as f64 / whole - 1.0).abs() < 1e-13, "{shape:?}: {integral}");
+        }
+    }
+    let cubic = FacetShape::L4.bernstein_at_nodes();
+    let by_hand = [8.0, 1.0, 12.0, 6.0].map(|x: f64| x / 27.0);
+    assert!(cubic[2].iter().zip(by_hand).all(|(a, b)| (a - b).abs() < 1e-15), "{:?}", cubic[2]);
+}

@@ -14,6 +14,7 @@ use carom_record::{
 };
 
 use super::fields::{displacements, field_set};
+use super::pressure::Surfaces;
 use change::Change;
 use place::place;
 use trials::{Effort, Trials, Tried};
@@ -116,7 +117,7 @@ pub(crate) fn explain(
         active: i.active,
         changed: i.changed,
     });
-    let mut fields = field_set(case, model, state);
+    let mut fields = field_set(case, model, &Surfaces::new(model, case.thickness), state);
     if trace.positions().len() == state.y.len() {
         let mut values = displacements(model, trace.positions());
         values.truncate(3 * fields.points.len());
