@@ -33,6 +33,7 @@ mod placed;
 mod pressing;
 mod prisms;
 mod probe;
+mod rebound;
 mod restart;
 mod reversal;
 mod self_contact;
