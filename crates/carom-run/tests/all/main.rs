@@ -50,3 +50,4 @@ mod substeps;
 mod tangent;
 mod undeclared;
 mod warnings;
+mod waves;
