@@ -36,6 +36,9 @@ impl Names {
         match (key.kind, key.name) {
             (Kind::Side | Kind::SideOr(_), name) => format!("{:?}", self.side(name == "primary")),
             (Kind::Sides, _) => format!("[{:?}]", self.side(false)),
+            (Kind::Choice(..), "element") => {
+                format!("{:?}", ["L3", "T6", "Tet10"][dimension.unwrap_or(2).clamp(1, 3) - 1])
+            }
             (Kind::Name, "body") => one(&self.bodies, "BODY"),
             (Kind::Name, "material") => one(&self.materials, "MATERIAL"),
             (Kind::Angular, _) if dimension == Some(3) => format!("[0.0, 0.0, {}]", key.example),
@@ -55,10 +58,10 @@ impl Names {
         }
     }
 
-    /// `--set body.NAME.element=T6`, with a body of the case.
+    /// `--set material.NAME.density=2.0`, with a material of the case.
     pub(super) fn override_example(&self) -> String {
-        let body = self.bodies.first().map_or("NAME", String::as_str);
-        format!("for example --set time.step=1e-3 or --set body.{body}.element=T6")
+        let material = self.materials.first().map_or("NAME", String::as_str);
+        format!("for example --set time.step=1e-3 or --set material.{material}.density=2.0")
     }
 
     /// A side of the first body, or of the last one.

@@ -176,6 +176,7 @@ impl<'a> Reader<'a> {
                 length: units.text("length")?,
                 time: units.text("time")?,
                 mass: units.text("mass")?,
+                declared: self.root.has("units"),
             },
             preset: self.root.preset,
             materials: all(draft.materials)?,

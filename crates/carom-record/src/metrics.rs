@@ -1,4 +1,4 @@
-//! Metrics of a run, as functions of its history alone.
+//! Metrics of a run, as functions of its record: most of its history alone.
 //!
 //! A contact *episode* is a span of rows with `active` > 0; interruptions shorter than `bridge` (by
 //! default 2 % of the recorded time) do not end it. It starts with the first row in contact and
@@ -22,6 +22,7 @@ mod ledger;
 mod oscillation;
 mod overlay;
 mod pressure;
+mod rebound;
 mod run_table;
 mod samples;
 mod striker;
@@ -34,14 +35,15 @@ pub use compare::{deviation, phase_shift};
 pub use definition::{Definition, Metric, Unit};
 pub use episode::{Episode, default_bridge, episodes, first_episode};
 pub(crate) use evaluated::of_columns;
-pub use evaluated::{all, of_column, of_measured, of_run, of_run_beside, probe_columns};
+pub use evaluated::{all, of_column, of_measured, of_rebound, of_run, of_run_beside, probe_columns};
 pub use facts::{Facts, contact_force};
 pub use force::high_frequency;
 pub use group::{TITLES, group};
 pub use ledger::{MUCH_CREATED, energy_lost_at};
 pub use overlay::{OVERLAY, Overlay, of_overlay, overlays};
 pub use pressure::hertz;
-pub use run_table::{PRESSURE, WORK};
+pub use rebound::{Impact, Party};
+pub use run_table::{PRESSURE, REBOUND, WORK};
 pub(crate) use samples::extreme;
 pub use samples::{at, peak_mean, roughness, total_variation};
 pub use striker::striker;

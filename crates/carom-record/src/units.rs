@@ -92,6 +92,12 @@ impl Labels {
     }
 }
 
+/// The velocity 1 in units of these labels in m/s; none if they are no decimal multiples of metre
+/// and second.
+pub fn metres_per_second(length: &str, time: &str) -> Option<f64> {
+    Some(10.0_f64.powi(power(length, LENGTHS)? - power(time, TIMES)?))
+}
+
 /// The label of stress that belongs to those of force, length and time.
 pub(crate) fn stress(force: &str, length: &str, time: &str) -> String {
     if force.is_empty() {
@@ -125,6 +131,14 @@ mod tests {
         // 1e-5 N has no prefix (it is the dyne); the others are composed too where they have none.
         assert_eq!(of("cm", "s", "g"), ["g cm/s^2", "g/(cm s^2)", "g cm^2/s^2", "g cm/s"]);
         assert_eq!(of("in", "s", "lb")[1], "lb/(in s^2)");
+    }
+
+    #[test]
+    fn velocities_are_told_where_both_labels_are_known() {
+        // 1 mm/ms = 1 m/s; 1 mm/s = 0.001 m/s; 1 km/s = 1000 m/s.
+        let of = |labels: [&str; 2]| metres_per_second(labels[0], labels[1]);
+        assert_eq!([["mm", "ms"], ["mm", "s"], ["km", "s"]].map(of), [Some(1.0), Some(1e-3), Some(1e3)]);
+        assert_eq!([["in", "s"], ["m", "min"], ["", ""]].map(of), [None; 3]);
     }
 
     /// One run has one unit of stress, wherever the label comes from. Where only the force has a

@@ -21,9 +21,10 @@ pub(crate) fn unit(run: &Run, what: &str) -> Option<String> {
     of_metric(what).or_else(|| combined(&Question::parse(what).ok()?, &of_quantity))
 }
 
-/// The metrics of a run, those of its measured data included.
+/// The metrics of a run, those of its rebound and of its measured data included.
 pub(crate) fn metrics_of(run: &Run) -> Vec<Metric> {
     let mut all = metrics::all(&run.history);
+    all.extend(metrics::of_rebound(run));
     all.extend(metrics::overlays(run).iter().flat_map(|data| metrics::of_measured(&run.history, data)));
     all
 }

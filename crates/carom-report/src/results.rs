@@ -10,9 +10,10 @@ use crate::noise::{has_contact, largest};
 use crate::scientific::significant;
 use crate::text::{Label, Prose};
 
-const DATA: &str = "All values are computed from `history.csv` alone: times from `time` and `active`, \
-    forces from `contact_force_…`, impulses from `contact_impulse_…`, energies from `dissipation`, `kinetic` \
-    and `strain`, and motion from `center_…` and `velocity_…` of the striker.";
+const DATA: &str = "Values are computed from `history.csv`: times from `time` and `active`, forces from \
+    `contact_force_…`, impulses from `contact_impulse_…`, energies from `dissipation`, `kinetic` and `strain`, \
+    and motion from `center_…` and `velocity_…`; the direction of `restitution` is that of the normals in \
+    `contact.csv`.";
 /// Significant digits of a value.
 const DIGITS: usize = 4;
 /// A value below this share of the size of its quantity is round-off.
@@ -74,8 +75,8 @@ fn size(run: &Run) -> f64 {
     if most > 0.0 { most } else { 1.0 }
 }
 
-/// Whether a metric says something about this run: those of contact need one, those of a rebound
-/// need a striker that turned back.
+/// Whether a metric says something about this run: those of contact need one, those of the
+/// striker's flight need one that turned back.
 fn is_meaningful(run: &Run, metric: &Metric) -> bool {
     let name: &str = &metric.name;
     let contacts = run.manifest.case.get("contacts").and_then(|list| list.as_array());
@@ -92,11 +93,11 @@ fn is_meaningful(run: &Run, metric: &Metric) -> bool {
     if name == "chatter" && !has_releases {
         return false;
     }
-    let rebound = ["restitution", "turning_time", "apex", "apex_time"].contains(&name);
-    let episode = metrics::first_episode(&run.history);
-    let restitution = metrics::all(&run.history).into_iter().find(|m| m.name == "restitution");
-    let turned = restitution.and_then(|m| m.value).is_none_or(|value| value >= 0.0);
-    !rebound || (turned && episode.is_none_or(|episode| episode.end.is_some()))
+    let has_ended = metrics::first_episode(&run.history).is_none_or(|episode| episode.end.is_some());
+    let of_turning = ["turning_time", "apex", "apex_time"].contains(&name);
+    let has_turned =
+        || metrics::all(&run.history).iter().any(|m| m.name == "turning_time" && m.value.is_some());
+    !of_turning || (has_ended && has_turned())
 }
 
 fn definition(run: &Run, metric: &Metric) -> String {

@@ -225,7 +225,9 @@ fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
             (format!("body[{k}].position"), "the initial position inverts a cell", help)
         }
         Rejected::Linear(LinearError::Memory { .. }) => {
-            let help = "use a coarser mesh or an element of lower degree, or give the process more memory";
+            let is_lowest = case.bodies.iter().all(|body| body.element.degree() == 1);
+            let lower = if is_lowest { "" } else { " or elements of lower degree" };
+            let help = format!("use a coarser mesh{lower}, or give the process more memory");
             let what = "there is not enough memory for the linear system";
             return Problem::new("body", what, rejected.to_string(), help).of_system();
         }

@@ -45,6 +45,7 @@ pub use net::Net;
 pub use point_locator::PointLocator;
 pub use points::LANES;
 pub use positions::Positions;
+pub use quality::WorstCell;
 pub use shape::{Hull, LineShape, line_shape};
 pub use solid::{Solid, SolidError};
 pub use tree::{REBUILT, Tree};

@@ -41,6 +41,15 @@ impl Element {
         }
     }
 
+    /// The element of the same cell shape with another degree, if there is one.
+    pub fn with_degree(self, degree: usize) -> Option<Self> {
+        use Element::{Hex8, Hex27, L2, L3, L4, Q4, Q9, T3, T6, T10, Tet4, Tet10, Tet20};
+        let shapes: [&[Self]; 5] =
+            [&[L2, L3, L4], &[T3, T6, T10], &[Q4, Q9], &[Tet4, Tet10, Tet20], &[Hex8, Hex27]];
+        let same = shapes.into_iter().find(|same| same.contains(&self))?;
+        same.iter().copied().find(|element| element.degree() == degree)
+    }
+
     /// Dimension of the reference cell.
     pub fn dimension(self) -> usize {
         match self {

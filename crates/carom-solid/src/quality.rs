@@ -14,7 +14,7 @@ use crate::reference::gradient;
 use crate::shape::Shape;
 
 impl Mesh {
-    /// The smallest scaled Jacobian of its cells; none for bars.
+    /// The smallest scaled Jacobian of its cells, of [`Self::worst_cell`].
     ///
     /// ```
     /// use carom_solid::{Element, generate};
@@ -23,14 +23,30 @@ impl Mesh {
     /// # Ok::<(), carom_solid::generate::MeshError>(())
     /// ```
     pub fn scaled_jacobian(&self) -> Option<f64> {
-        Some(match self.element.dimension() {
-            2 => of_shape!(2, self.element, smallest(self), return None),
-            _ => of_shape!(3, self.element, smallest(self), return None),
-        })
+        self.worst_cell().map(|worst| worst.scaled_jacobian)
+    }
+
+    /// The cell with the smallest scaled Jacobian, the first of equals; none for bars.
+    pub fn worst_cell(&self) -> Option<WorstCell> {
+        match self.element.dimension() {
+            2 => of_shape!(2, self.element, worst(self), return None),
+            _ => of_shape!(3, self.element, worst(self), return None),
+        }
     }
 }
 
-fn smallest<const D: usize, const N: usize, S: Shape<D, N>>(mesh: &Mesh) -> f64 {
+/// A cell of a mesh with its quality.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorstCell {
+    /// Its number in the mesh.
+    pub cell: usize,
+    /// The mean of its nodes.
+    pub place: Vec<f64>,
+    /// Its smallest scaled Jacobian.
+    pub scaled_jacobian: f64,
+}
+
+fn worst<const D: usize, const N: usize, S: Shape<D, N>>(mesh: &Mesh) -> Option<WorstCell> {
     let simplex = mesh.element.facets().len() == D + 1;
     let equal_edges = match (simplex, D) {
         (false, _) => 1.0,
@@ -41,9 +57,10 @@ fn smallest<const D: usize, const N: usize, S: Shape<D, N>>(mesh: &Mesh) -> f64 
     let points = if simplex && S::DEGREE == 1 { 1 } else { N };
     let slopes: Vec<_> = S::NODES[..points].iter().map(S::gradients).collect();
     let positions = mesh.nodes.of_dimension::<D>();
-    let mut least = f64::INFINITY;
-    for nodes in mesh.cells.as_chunks::<N>().0 {
+    let mut worst: Option<WorstCell> = None;
+    for (cell, nodes) in mesh.cells.as_chunks::<N>().0.iter().enumerate() {
         let x = nodes.map(|n| Vector(positions[n]));
+        let mut least = f64::INFINITY;
         for slope in &slopes {
             let derivative = gradient(&x, slope);
             let edges = derivative.transposed().0.map(Vector);
@@ -54,6 +71,10 @@ fn smallest<const D: usize, const N: usize, S: Shape<D, N>>(mesh: &Mesh) -> f64 
             });
             least = least.min(equal_edges * derivative.det() / at_others.fold(at_first, f64::max));
         }
+        if worst.as_ref().is_none_or(|worst| least < worst.scaled_jacobian) {
+            let mean = |i: usize| x.iter().map(|x| x[i]).sum::<f64>() / N as f64;
+            worst = Some(WorstCell { cell, place: (0..D).map(mean).collect(), scaled_jacobian: least });
+        }
     }
-    least
+    worst
 }

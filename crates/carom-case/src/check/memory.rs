@@ -77,7 +77,8 @@ impl Check<'_> {
         let why =
             format!("the model needs about {}, and {} are available", gibibytes(total), gibibytes(available));
         let path = format!("{mesh}.{key}");
-        let help = "use a coarser mesh or an element of lower degree, or give the process more memory";
+        let lower = if body.element.degree() > 1 { " or an element of lower degree" } else { "" };
+        let help = format!("use a coarser mesh{lower}, or give the process more memory");
         self.problems.push(Problem::new(path, what, why, help).of_system());
     }
 }

@@ -278,23 +278,28 @@ impl<'a> Check<'a> {
 
     fn mean_dilatation(&mut self, element: Element, path: String) {
         use Element::{Hex8, Q4, T3, Tet4};
+        let [taking, next] = if element.dimension() == 3 { ["Hex8", "Tet10"] } else { ["Q4", "T6"] };
         let stress = self.document.root().get("plane").and_then(Node::text) == Some("stress");
         let (what, why, help) = match element {
             Q4 if stress => {
                 let why = "the thickness changes freely in plane stress, and nothing locks";
-                ("volumetric = \"mean\" has no use in plane stress".to_owned(), why, "leave it out")
+                (
+                    "volumetric = \"mean\" has no use in plane stress".to_owned(),
+                    why,
+                    "leave it out".to_owned(),
+                )
             }
             Q4 | Hex8 => return,
             T3 | Tet4 => {
                 let what = format!("volumetric = \"mean\" changes nothing for {element:?}");
                 let why = "the volume ratio of such a cell is constant already";
-                (what, why, "use Q4 or Hex8 with it, or T6 or Tet10 without")
+                (what, why, format!("use {taking} with it, or {next} without"))
             }
             _ => {
                 let what = format!("the element {element:?} has no volumetric = \"mean\"");
                 let why =
                     "one pressure in a cell is too coarse for cells of higher degree, which hardly lock";
-                (what, why, "leave it out, or use Q4 or Hex8")
+                (what, why, format!("leave it out, or use {taking}"))
             }
         };
         self.add(path, what, why, help);

@@ -98,6 +98,9 @@ pub struct Units {
     pub time: String,
     /// Mass, `kg` by default.
     pub mass: String,
+    /// Whether the case has them; otherwise its numbers may have any consistent units.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub declared: bool,
 }
 
 /// Set of default values; keys given explicitly take precedence.

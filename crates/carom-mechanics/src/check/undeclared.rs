@@ -1,12 +1,16 @@
 //! Contact that nobody has declared: bodies that overlap, or lie in a rigid obstacle, with nodes
 //! that no contact between them covers, and bodies that cross themselves. Nothing prevents it, and
 //! no force comes of it: it is warned of.
+//!
+//! Where a boundary touches itself, its chords cross by round-off. A body crosses itself where the
+//! node deepest inside it is as deep as other bodies may not be, at a place that no contact of the
+//! body with itself covers.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use crate::check::overlapping::Overlap;
 use crate::check::penetration::Penetration;
-use crate::check::skins::{BodySkin, part_of, skin, skin_facets};
+use crate::check::skins::{BodySkin, length, part_of, skin, skin_facets};
 use crate::check::valid_cells::Checked;
 use crate::check::watched::{Watched, Way, has_gaps, kept_depths, lengths};
 use crate::model::{BodyInstance, Contact, Model};
@@ -40,7 +44,20 @@ struct Own {
     skin: BodySkin,
     /// The contact of each facet with its own body.
     declared: Vec<Option<usize>>,
+    /// The nodes of the side of each contact with its own body.
+    sides: Vec<HashSet<usize>>,
     checked: Checked,
+}
+
+impl Own {
+    /// Whether the node that is deepest inside the body lies where no contact keeps it out.
+    fn is_inside(&self, model: &Model, y: &[f64]) -> bool {
+        let Some((node, facet, depth)) = self.skin.deepest_in_itself(y) else { return false };
+        let facet = self.skin.facet_nodes(facet);
+        let covers =
+            |side: &HashSet<usize>| side.contains(&node) && facet.iter().any(|other| side.contains(other));
+        depth > UNDECLARED * length(model, facet) && !self.sides.iter().any(covers)
+    }
 }
 
 impl Undeclared {
@@ -116,16 +133,17 @@ impl Undeclared {
 
     fn crossing_themselves(&mut self, model: &Model, y: &[f64]) -> Vec<Overlap> {
         let skins = self.own.get_or_insert_with(|| own(model));
-        let crosses = |Own { body, skin, declared, checked }: &mut Own| {
-            let now = model.parts[*body].of(y);
-            if checked.holds(now, model.dimension) {
+        let crosses = |own: &mut Own| {
+            let now = model.parts[own.body].of(y);
+            if own.checked.holds(now, model.dimension) {
                 return None;
             }
-            skin.update(y);
+            own.skin.update(y);
+            let declared = &own.declared;
             let known = |a: usize, b: usize| declared[a].is_some() && declared[a] == declared[b];
-            let crosses = skin.crosses_itself(y, known);
-            checked.set(now, if crosses { 0.0 } else { skin.clearance_to_itself(y) });
-            crosses.then_some(Overlap::Bodies(*body, *body))
+            let crosses = own.skin.crosses_itself(y, known);
+            own.checked.set(now, if crosses { 0.0 } else { own.skin.clearance_to_itself(y) });
+            (crosses && own.is_inside(model, y)).then_some(Overlap::Bodies(own.body, own.body))
         };
         skins.iter_mut().filter_map(crosses).collect()
     }
@@ -207,7 +225,10 @@ fn own(model: &Model) -> Vec<Own> {
             None
         } else {
             let skin = skin(part).filter(|_| model.dimension == 2)?;
-            Some(Own { body, skin, declared, checked: Checked::default() })
+            let contacts: BTreeSet<usize> = declared.iter().flatten().copied().collect();
+            let nodes = |k: usize| model.contacts[k].facets.iter().flat_map(|(_, facets)| facets).flatten();
+            let sides = contacts.into_iter().map(|k| nodes(k).copied().collect()).collect();
+            Some(Own { body, skin, declared, sides, checked: Checked::default() })
         }
     });
     skins.collect()

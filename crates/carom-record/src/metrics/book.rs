@@ -2,7 +2,7 @@
 
 use super::definition::Definition;
 use super::overlay::OVERLAY;
-use super::run_table::{PRESSURE, WORK};
+use super::run_table::{PRESSURE, REBOUND, WORK};
 use super::table::{COLUMNS, FREE, HISTORY};
 
 /// All definitions as a Markdown table for the book.
@@ -13,7 +13,7 @@ pub fn book_table() -> String {
     let all = history
         .chain(columns)
         .chain(measured)
-        .chain(PRESSURE.iter().chain(&WORK).map(|x| (String::new(), &x.0)));
+        .chain(REBOUND.iter().chain(&PRESSURE).chain(&WORK).map(|x| (String::new(), &x.0)));
     // As Markdown would otherwise end a cell, or set text between two signs in italics.
     let escape = |text: &str| text.replace('|', "\\|").replace('_', "\\_").replace('*', "\\*");
     let row = |(before, d): (String, &Definition)| {

@@ -6,7 +6,7 @@ use super::episode::{default_bridge, episodes};
 use super::facts::Facts;
 use super::ledger::energy_lost_at;
 use super::overlay::{OVERLAY, Overlay, overlays};
-use super::run_table::{PRESSURE, WORK};
+use super::run_table::{PRESSURE, REBOUND, WORK};
 use super::table::{COLUMNS, FREE, HISTORY};
 use crate::{History, Run};
 
@@ -79,9 +79,20 @@ pub fn probe_columns(run: &Run) -> Vec<&str> {
 /// Largest number of impacts whose energy loss a study tabulates one by one.
 const IMPACTS: usize = 9;
 
-/// All metrics that a study tabulates: [`all`], the energy lost in each of the first impacts if
-/// there are several, the pressure at the end of a static run, differences from measured data, the
-/// columns of the probes, and the work.
+/// The metrics of [`REBOUND`].
+pub fn of_rebound(run: &Run) -> Vec<Metric> {
+    let metric = |(definition, value): &(Definition, fn(&Run) -> Option<f64>)| Metric {
+        name: definition.name.into(),
+        value: value(run),
+        unit: definition.unit.label(&run.history),
+        definition: definition.meaning,
+    };
+    REBOUND.iter().map(metric).collect()
+}
+
+/// All metrics that a study tabulates: [`all`], [`of_rebound`], the energy lost in each of the
+/// first impacts if there are several, the pressure at the end of a static run, differences from
+/// measured data, the columns of the probes, and the work.
 pub fn of_run(run: &Run) -> Vec<Metric> {
     of_run_beside(run, &[])
 }
@@ -90,6 +101,7 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
 pub fn of_run_beside(run: &Run, measured: &[Overlay]) -> Vec<Metric> {
     let history = &run.history;
     let mut metrics = all(history);
+    metrics.extend(of_rebound(run));
     let impacts = episodes(history, default_bridge(history)).len().min(IMPACTS);
     for n in 1..=if impacts > 1 { impacts } else { 0 } {
         let definition =

@@ -75,7 +75,7 @@ pub fn group(name: &str) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{HISTORY, OVERLAY};
+    use crate::metrics::{HISTORY, OVERLAY, REBOUND};
 
     /// Every metric of a history has a heading of its own kind; what has none is of a probe.
     #[test]
@@ -89,9 +89,11 @@ mod tests {
         let names = GROUPS.iter().flat_map(|group| group.names);
         let known = |name: &&&str| {
             let history = HISTORY.iter().map(|(definition, _)| definition);
-            history.chain(OVERLAY.iter().map(|(definition, _)| definition)).any(|d| d.name == **name)
+            let of_run = REBOUND.iter().map(|(definition, _)| definition);
+            let measured = OVERLAY.iter().map(|(definition, _)| definition);
+            history.chain(of_run).chain(measured).any(|d| d.name == **name)
         };
         assert!(names.clone().all(|name| known(&name)));
-        assert_eq!(names.count(), HISTORY.len() + OVERLAY.len());
+        assert_eq!(names.count(), HISTORY.len() + REBOUND.len() + OVERLAY.len());
     }
 }

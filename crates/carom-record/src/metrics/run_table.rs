@@ -1,8 +1,22 @@
-//! The table of metrics that need more of a run than its history: contact rows, counters, timings.
+//! The tables of metrics that need more of a run than its history: case, contact rows, counters,
+//! timings.
 
 use super::definition::{Definition, OWN, Unit, d};
 use super::pressure;
+use super::rebound::restitution;
 use crate::Run;
+
+/// Metrics of the bodies of the first episode.
+pub const REBOUND: [(Definition, fn(&Run) -> Option<f64>); 1] = [(
+    d(
+        "restitution",
+        Unit::None,
+        "−(w⁺·n)/(w⁻·n), w = v − v_other, n = Σ −λ n_c",
+        "Newton 1687",
+        "Newton's coefficient of restitution: −(relative velocity after)/(relative velocity before the first episode) of the centres of the striker and of what it strikes, along the normal contact impulse; fixed obstacles are at rest, and a body moves like its supports along an axis in which they hold it",
+    ),
+    restitution,
+)];
 
 /// Metrics of the contact pressure at the end of a static run; not defined for dynamic runs.
 pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 6] = [

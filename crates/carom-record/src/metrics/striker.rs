@@ -2,11 +2,11 @@
 //! rebound.
 //!
 //! ```text
-//! restitution    −(v⁺·n)/(v⁻·n) of its centre; n along v⁺ − v⁻ of the first episode
+//! turning_time   time with v·n = 0 of its centre; n along v⁺ − v⁻ of the first episode
 //! apex           vertex of the parabola through the highest row of its centre and the adjacent rows
 //! ```
 
-use super::episode::{Episode, first_episode};
+use super::episode::first_episode;
 use super::facts::{Facts, norms, vector};
 use super::samples::extreme;
 use crate::History;
@@ -26,14 +26,6 @@ pub fn striker(history: &History) -> Option<&str> {
 /// impulse also has the part that the support takes. It does not depend on which side is secondary.
 fn along(velocity: &[&[f64]], [before, after]: [usize; 2], row: usize) -> f64 {
     velocity.iter().map(|v| v[row] * (v[after] - v[before])).sum()
-}
-
-/// −(v⁺·n)/(v⁻·n) of the striker's centre; n along v⁺ − v⁻.
-pub(super) fn restitution(history: &History, episode: Episode) -> Option<f64> {
-    let ends = [episode.start.checked_sub(1)?, episode.end?];
-    let velocity = vector(history, &format!("{}.velocity", striker(history)?));
-    let value = -along(&velocity, ends, ends[1]) / along(&velocity, ends, ends[0]);
-    value.is_finite().then_some(value)
 }
 
 /// Time and height of the apex: the vertex of the parabola through the highest row and the adjacent

@@ -7,12 +7,12 @@ use super::definition::{Definition, OWN, TABLES, Unit, d};
 use super::episode::first_episode;
 use super::facts::{Facts, vector};
 use super::samples::{extreme, peak_mean, roughness, total_variation};
-use super::striker::{apex, restitution, turning_time};
+use super::striker::{apex, turning_time};
 use super::{force, ledger, oscillation};
 use crate::History;
 
 /// Metrics of a history.
-pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 28] = [
+pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 27] = [
     (
         d(
             "contact_start",
@@ -138,16 +138,6 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 28] = [
             "activations and releases of contact nodes, the first activations included, divided by the time in contact",
         ),
         force::chatter,
-    ),
-    (
-        d(
-            "restitution",
-            Unit::None,
-            "−(v⁺·n)/(v⁻·n), n along v⁺ − v⁻",
-            "Newton's coefficient",
-            "coefficient of restitution: −(velocity after)/(velocity before the first episode) of the striker's centre, along the change of velocity",
-        ),
-        |f| restitution(f.history, f.first()?),
     ),
     (
         d(

@@ -74,7 +74,6 @@ fn a_bounce_by_hand() {
         ("peak_mean_force", 9.0 * 16.0 * (0.5625 * 0.5625 * 1.875 - 0.5), 1e-12),
         ("force_roughness", 0.0, 1e-14),
         ("force_variation", 27.0, 1e-13),
-        ("restitution", 0.75, 0.0),
         // −4 in the row before contact, 3 in the next row.
         ("turning_time", 15.0 / 16.0 + 4.0 / 7.0 / 16.0, 1e-15),
         ("energy_drift", 0.15, 1e-15),

@@ -2,7 +2,7 @@
 
 use super::form::form_names;
 use crate::Reason;
-use crate::metrics::{COLUMNS, FREE, HISTORY, PRESSURE, WORK};
+use crate::metrics::{COLUMNS, FREE, HISTORY, PRESSURE, REBOUND, WORK};
 
 /// Names of the metrics of a column.
 pub fn column_metric_names() -> Vec<&'static str> {
@@ -12,7 +12,8 @@ pub fn column_metric_names() -> Vec<&'static str> {
 /// Names of metrics that need no column.
 pub fn metric_names() -> Vec<&'static str> {
     let history = HISTORY.iter().map(|(d, _)| d.name);
-    history.chain(PRESSURE.iter().chain(&WORK).map(|(d, _)| d.name)).chain(["stopped"]).collect()
+    let of_run = REBOUND.iter().chain(&PRESSURE).chain(&WORK).map(|(d, _)| d.name);
+    history.chain(of_run).chain(["stopped"]).collect()
 }
 
 /// The message about words that are no quantity.

@@ -3,7 +3,7 @@
 use super::names::{column_metric_names, unknown};
 use super::quantity::{Asked, Records, Rows};
 use crate::Reason;
-use crate::metrics::{self, PRESSURE, WORK};
+use crate::metrics::{self, PRESSURE, REBOUND, WORK};
 use crate::{History, Run, Status};
 
 fn no_arms(arm: Option<&str>) -> Result<(), Reason> {
@@ -27,11 +27,13 @@ pub(crate) fn metric(history: &History, name: &str) -> Result<f64, Reason> {
         return value.ok_or_else(|| format!("{what} of `{column}` is not defined for this record").into());
     }
     match metrics::all(history).into_iter().find(|m| m.name == name) {
-        Some(metric) => metric
-            .value
-            .ok_or_else(|| format!("not defined for this record; definition: {}", metric.definition).into()),
+        Some(metric) => metric.value.ok_or_else(|| undefined(metric.definition)),
         None => Err(unknown(name)),
     }
+}
+
+fn undefined(definition: &str) -> Reason {
+    format!("not defined for this record; definition: {definition}").into()
 }
 
 fn no_column(name: &str) -> Reason {
@@ -65,6 +67,9 @@ impl Records for Run {
         }
         if let Some((_, value)) = WORK.iter().find(|(work, _)| work.name == name) {
             return value(self).ok_or_else(|| format!("the manifest has no {name}").into());
+        }
+        if let Some((definition, value)) = REBOUND.iter().find(|(rebound, _)| rebound.name == name) {
+            return value(self).ok_or_else(|| undefined(definition.meaning));
         }
         if let Some((_, value)) = PRESSURE.iter().find(|(pressure, _)| pressure.name == name) {
             return value(self).ok_or_else(|| format!("{name} is defined only for {}", defined(name)).into());

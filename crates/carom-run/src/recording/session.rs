@@ -114,7 +114,8 @@ impl<'a> Session<'a> {
     /// Adds the warnings that only the record of a run shows.
     fn add_warnings(&mut self, run: &Run, finished: bool) -> Result<(), RunError> {
         let known = self.manifest.warnings.len();
-        self.manifest.warnings.extend(warnings_of_record(self.case, run, finished));
+        let found = warnings_of_record(self.case, self.simulation.model(), run, finished);
+        self.manifest.warnings.extend(found);
         self.log_warnings(known)
     }
 

@@ -49,7 +49,7 @@ pub(super) fn undeclared_contact(case: &Case, model: &Model) -> Vec<Found> {
                 let specs: Vec<&ContactSpec> = contacts.iter().map(|&k| &case.contacts[k]).collect();
                 let where_not = covered_by(&specs);
                 let what = format!("as they move at the start, they meet at t = {}{where_not}", short(time));
-                found.push(Found { place, what });
+                found.push(Found::at(place, what));
             }
         }
     }

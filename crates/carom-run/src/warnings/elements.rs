@@ -35,10 +35,8 @@ pub(super) fn locking(case: &Case, _: &Model) -> Vec<Found> {
         // A ratio given as 0.45 and recomputed from Λ and μ differs in its last digits.
         if poisson > LOCKING + 1e-9 {
             let poisson = (poisson * 1e4).round() / 1e4;
-            found.push(Found::of_body(
-                &body.name,
-                format!("{:?}{} with Poisson's ratio {poisson}", body.element, plane(body.element)),
-            ));
+            let what = format!("{:?}{} with Poisson's ratio {poisson}", body.element, plane(body.element));
+            found.push(Found::of_body(&body.name, what).with_advice(unlocked(body.element)));
         }
     }
     found
@@ -61,6 +59,14 @@ pub(super) fn bar_modulus(case: &Case, _: &Model) -> Vec<Found> {
         }
     }
     found
+}
+
+/// What to try in place of an element that locks.
+fn unlocked(element: Element) -> String {
+    let quadratic =
+        element.with_degree(2).map_or_else(String::new, |other| format!("element = \"{other:?}\""));
+    let averages = matches!(element, Element::Q4 | Element::Hex8);
+    if averages { format!("{quadratic}, or volumetric = \"mean\"") } else { quadratic }
 }
 
 fn plane(element: Element) -> &'static str {

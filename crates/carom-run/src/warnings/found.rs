@@ -7,19 +7,33 @@ use carom_case::ContactSpec;
 pub struct Found {
     pub(super) place: String,
     pub(super) what: String,
+    /// What to try there, in place of the advice of the entry.
+    pub(super) advice: Option<String>,
 }
 
 impl Found {
+    pub(super) fn at(place: String, what: String) -> Self {
+        Self { place, what, advice: None }
+    }
+
     pub(super) fn of_body(name: &str, what: String) -> Self {
-        Self { place: format!("body \"{name}\""), what }
+        Self::at(format!("body \"{name}\""), what)
     }
 
     pub(super) fn of_the_run(what: String) -> Self {
-        Self { place: "the run".into(), what }
+        Self::at("the run".into(), what)
     }
 
     pub(super) fn of_contact(name: &str, what: String) -> Self {
-        Self { place: format!("contact \"{name}\""), what }
+        Self::at(format!("contact \"{name}\""), what)
+    }
+
+    pub(super) fn of_material(name: &str, what: String) -> Self {
+        Self::at(format!("material \"{name}\""), what)
+    }
+
+    pub(super) fn with_advice(self, advice: String) -> Self {
+        Self { advice: Some(advice), ..self }
     }
 }
 

@@ -4,8 +4,10 @@
 //!
 //! [`WARNINGS`] is the one table; a rule is a function of the case and its model, or of the record.
 
+mod cells;
 mod courses;
 mod elements;
+mod extent;
 mod found;
 mod masses;
 mod meshes;
@@ -13,6 +15,8 @@ mod record;
 mod steps;
 mod stick;
 mod unconnected;
+mod velocities;
+mod waves;
 
 use carom_case::Case;
 use carom_mechanics::model::Model;
@@ -27,9 +31,9 @@ pub enum Rule {
     /// Before the run.
     Model(fn(&Case, &Model) -> Vec<Found>),
     /// After it.
-    Record(fn(&Case, &Run) -> Vec<Found>),
+    Record(fn(&Case, &Model, &Run) -> Vec<Found>),
     /// Before it, from what is expected, and after it, from what happened.
-    Both(fn(&Case, &Model) -> Vec<Found>, fn(&Case, &Run) -> Vec<Found>),
+    Both(fn(&Case, &Model) -> Vec<Found>, fn(&Case, &Model, &Run) -> Vec<Found>),
 }
 
 /// A warning that may be given.
@@ -46,7 +50,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 17] = [
+pub const WARNINGS: [Entry; 22] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -62,16 +66,42 @@ pub const WARNINGS: [Entry; 17] = [
         rule: Rule::Model(meshes::unmatched_pressure),
     },
     Entry {
-        id: "long-step",
-        why: "the contact force is then the momentum transferred in a step divided by Δt, and depends more on Δt \
-            than on the body",
-        advice: "a shorter step; otherwise evaluate only impulse, contact duration and motion, and only if no energy was created",
-        rule: Rule::Model(steps::long_step),
+        id: "velocity-jump",
+        why: "neither mesh nor step resolves the front of this wave: stresses and contact forces oscillate behind \
+              it, and their peaks depend on both",
+        advice: "an initial velocity of the body that is that of the motion, or a motion that begins with the velocity of the body, as one with t^2",
+        rule: Rule::Model(velocities::velocity_jump),
+    },
+    Entry {
+        id: "fast-impact",
+        why: "the impact strains the softer body by about this ratio, where laws of elasticity do not hold and cells \
+              invert",
+        advice: "a look at the units of velocity, stiffness and density; a slower impact",
+        rule: Rule::Model(velocities::fast_impact),
+    },
+    Entry {
+        id: "wave-speed",
+        why: "in solids it is between 1 and 20 000 m/s: stiffness and density are probably not in the units of the case",
+        advice: "consistent units, as mm, s, t and MPa, or mm, ms, g and MPa",
+        rule: Rule::Model(waves::wave_speed),
+    },
+    Entry {
+        id: "short-run",
+        why: "the far side of the body has not felt anything by then, and the units of time may be wrong",
+        advice: "a later end",
+        rule: Rule::Model(waves::short_run),
+    },
+    Entry {
+        id: "flat-cell",
+        why: "it is 1 for an equilateral cell and 0 for a flat one, which is too stiff, inverts early, and makes linear \
+              systems ill-conditioned and stable steps short",
+        advice: "a better mesh there; in Gmsh, a more even size or an optimised mesh",
+        rule: Rule::Model(cells::flat_cell),
     },
     Entry {
         id: "locking",
         why: "elements of degree 1 lock at nearly constant volume, and the response is too stiff",
-        advice: "an element of degree 2 (T6, Q9, Tet10, Hex27), or volumetric = \"mean\" with Q4 or Hex8",
+        advice: "an element of degree 2",
         rule: Rule::Model(elements::locking),
     },
     Entry {
@@ -106,6 +136,13 @@ pub const WARNINGS: [Entry; 17] = [
         why: "every body has nodes of its own: nothing holds the two together there, and nothing keeps one out of the other",
         advice: "a [[contact]] between the sides that touch; to connect the two, one body with a mesh of both",
         rule: Rule::Model(unconnected::unconnected_bodies),
+    },
+    Entry {
+        id: "long-step",
+        why: "the contact force of this step is an impulse divided by Δt: a shorter step changes the largest one by a \
+              fifth or more",
+        advice: "a shorter step; otherwise evaluate only impulse, contact duration and motion, and only if no energy was created",
+        rule: Rule::Record(steps::long_step),
     },
     Entry {
         id: "one-node",
@@ -162,13 +199,13 @@ pub const WARNINGS: [Entry; 17] = [
 
 impl Entry {
     fn given(&self, found: Vec<Found>) -> impl Iterator<Item = Warning> + use<> {
-        let Self { id, why, advice, .. } = *self;
-        found.into_iter().map(move |Found { place, what }| Warning {
+        let Self { id, why, advice: of_entry, .. } = *self;
+        found.into_iter().map(move |Found { place, what, advice }| Warning {
             id: id.into(),
             place,
             what,
             why: why.into(),
-            advice: advice.into(),
+            advice: advice.unwrap_or_else(|| of_entry.into()),
         })
     }
 }
@@ -184,10 +221,10 @@ pub fn warnings(case: &Case, model: &Model) -> Vec<Warning> {
 
 /// The warnings that the record of a run gives; of one that stopped only the overlaps, which may be
 /// why it stopped.
-pub(crate) fn warnings_of_record(case: &Case, run: &Run, finished: bool) -> Vec<Warning> {
+pub(crate) fn warnings_of_record(case: &Case, model: &Model, run: &Run, finished: bool) -> Vec<Warning> {
     let given = |entry: &Entry| match entry.rule {
         _ if !finished && entry.id != "undeclared-contact" => None,
-        Rule::Record(find) | Rule::Both(_, find) => Some(entry.given(find(case, run))),
+        Rule::Record(find) | Rule::Both(_, find) => Some(entry.given(find(case, model, run))),
         Rule::Model(_) => None,
     };
     WARNINGS.iter().filter_map(given).flatten().collect()

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use carom_case::{Case, ContactSpec};
+use carom_mechanics::model::Model;
 use carom_record::metrics::{self, MUCH_CREATED};
 use carom_record::{Event, Run};
 
@@ -31,7 +32,7 @@ fn of_bodies<'a>(
 
 /// A contact in the plane in which no row has more than one active node, of several. A node in a
 /// concave corner has several pairs; a corner of the primary side is a node, too.
-pub(super) fn one_node(case: &Case, run: &Run) -> Vec<Found> {
+pub(super) fn one_node(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let mut active: BTreeMap<(&str, u64), BTreeSet<u64>> = BTreeMap::new();
     for row in &run.contact {
         active.entry((row.contact.as_ref(), row.step)).or_default().insert(row.node);
@@ -52,7 +53,7 @@ pub(super) fn one_node(case: &Case, run: &Run) -> Vec<Found> {
 }
 
 /// Bodies that overlapped, or lay in a rigid obstacle, where no contact between them acts.
-pub(super) fn undeclared_contact(case: &Case, run: &Run) -> Vec<Found> {
+pub(super) fn undeclared_contact(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let overlaps = events(run, "overlap");
     let found = overlaps.filter_map(|event| {
         let text = |key: &str| event.data.get(key)?.as_str();
@@ -61,7 +62,12 @@ pub(super) fn undeclared_contact(case: &Case, run: &Run) -> Vec<Found> {
             let contact = case.contacts.iter().find(|contact| contact.name == name)?;
             format!("lies in the obstacle of contact \"{name}\" {from}{}", covered_by(&[contact]))
         } else if place.starts_with("body ") {
-            format!("crosses itself {from}")
+            let is_own = |contact: &&ContactSpec| {
+                let bodies: Vec<&str> = contact.bodies().collect();
+                matches!(bodies[..], [first, second] if first == second && place == format!("body \"{first}\""))
+            };
+            let contacts: Vec<&ContactSpec> = case.contacts.iter().filter(is_own).collect();
+            format!("crosses itself {from}{}", covered_by(&contacts))
         } else {
             let is_between = |contact: &&ContactSpec| {
                 let [first, second] = &contact.bodies().collect::<Vec<_>>()[..] else { return false };
@@ -71,13 +77,13 @@ pub(super) fn undeclared_contact(case: &Case, run: &Run) -> Vec<Found> {
             let contacts: Vec<&ContactSpec> = case.contacts.iter().filter(is_between).collect();
             format!("overlap {from}{}", covered_by(&contacts))
         };
-        Some(Found { place, what })
+        Some(Found::at(place, what))
     });
     found.collect()
 }
 
 /// Bodies of linear elasticity that have turned by more than [`LARGE_ROTATION`].
-pub(super) fn large_rotation(_: &Case, run: &Run) -> Vec<Found> {
+pub(super) fn large_rotation(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let found = of_bodies(run, "rotation", "angle").map(|(event, name, angle)| {
         let what = format!(
             "a point turned by {} rad at t = {}, which alone makes strains of cos θ − 1 = {}",
@@ -91,7 +97,7 @@ pub(super) fn large_rotation(_: &Case, run: &Run) -> Vec<Found> {
 }
 
 /// Bodies of linear elasticity that are strained by more than [`LARGE_STRAIN`].
-pub(super) fn large_strain(_: &Case, run: &Run) -> Vec<Found> {
+pub(super) fn large_strain(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let found = of_bodies(run, "strain", "strain").map(|(event, name, strain)| {
         let what = format!("the strain reached {} at t = {}", short(strain), short(event.time));
         Found::of_body(name, what)
@@ -100,7 +106,7 @@ pub(super) fn large_strain(_: &Case, run: &Run) -> Vec<Found> {
 }
 
 /// Friction so large that stick and slip were not unique in some step.
-pub(super) fn ambiguous_friction(_: &Case, run: &Run) -> Vec<Found> {
+pub(super) fn ambiguous_friction(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let mut events = events(run, "ambiguous");
     let Some(first) = events.next() else { return Vec::new() };
     let what = format!(
@@ -112,7 +118,7 @@ pub(super) fn ambiguous_friction(_: &Case, run: &Run) -> Vec<Found> {
 }
 
 /// Grid steps that the fallback took.
-pub(super) fn fallback_steps(_: &Case, run: &Run) -> Vec<Found> {
+pub(super) fn fallback_steps(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let mut events = events(run, "fallback");
     let Some(first) = events.next() else { return Vec::new() };
     let (time, count) = (short(first.time), 1 + events.count());
@@ -125,7 +131,7 @@ pub(super) fn fallback_steps(_: &Case, run: &Run) -> Vec<Found> {
 
 /// More energy created than the default of `time.energy_guard` allows. Load steps create none: the
 /// difference of their works and energies is the error of a sum over few steps.
-pub(super) fn energy_created(case: &Case, run: &Run) -> Vec<Found> {
+pub(super) fn energy_created(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     if case.time.scheme.is_static() {
         return Vec::new();
     }
@@ -141,12 +147,12 @@ pub(super) fn energy_created(case: &Case, run: &Run) -> Vec<Found> {
 /// rise of total − external_work − friction_work above its running minimum, judged against the
 /// energy scale, or friction's work if that is more. Not given where the energy as a whole shows
 /// it.
-pub(super) fn hidden_energy(case: &Case, run: &Run) -> Vec<Found> {
+pub(super) fn hidden_energy(case: &Case, model: &Model, run: &Run) -> Vec<Found> {
     let history = &run.history;
     let columns =
         ["total", "external_work", "friction_work", "energy_scale"].map(|name| history.column(name));
     let [Some(total), Some(work), Some(friction), Some(scale)] = columns else { return Vec::new() };
-    if case.time.scheme.is_static() || !energy_created(case, run).is_empty() {
+    if case.time.scheme.is_static() || !energy_created(case, model, run).is_empty() {
         return Vec::new();
     }
     let (mut lowest, mut most, mut at) = (f64::INFINITY, 0.0, 0);

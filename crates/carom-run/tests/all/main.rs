@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod advice;
 mod audit;
 mod augmented;
 mod bar;
@@ -34,6 +35,7 @@ mod placed;
 mod pressing;
 mod prisms;
 mod probe;
+mod rebound;
 mod restart;
 mod reversal;
 mod self_contact;
@@ -49,3 +51,4 @@ mod substeps;
 mod tangent;
 mod undeclared;
 mod warnings;
+mod waves;

@@ -119,3 +119,52 @@ fn a_body_that_falls_into_an_obstacle_beside_the_side_of_its_contact() {
     // A side that reaches the floor with its corners.
     assert_eq!(floor("left").0, Vec::<String>::new());
 }
+
+/// The right half of a ring of 24 × 1 quadrilaterals, with the radii 0.9 and 1, as a file of Gmsh.
+fn half_ring() -> String {
+    const AROUND: usize = 24;
+    let place = |node: usize| {
+        let angle = std::f64::consts::PI * ((node / 2) as f64 / AROUND as f64 - 0.5);
+        let radius = [0.9, 1.0][node % 2];
+        format!("{} {:?} {:?} 0\n", node + 1, radius * angle.cos(), radius * angle.sin())
+    };
+    let nodes: String = (0..2 * (AROUND + 1)).map(place).collect();
+    // Type, physical group and nodes: `inner`, `outer`, `start`, `end` and the cells.
+    let along = |k: usize| {
+        let [a, b] = [2 * k + 1, 2 * k + 3];
+        let cell = format!("3 2 5 5 {a} {} {} {b}", a + 1, b + 1);
+        [format!("1 2 1 1 {a} {b}"), format!("1 2 2 2 {} {}", a + 1, b + 1), cell]
+    };
+    let ends = ["1 2 3 3 1 2".to_owned(), format!("1 2 4 4 {} {}", 2 * AROUND + 1, 2 * AROUND + 2)];
+    let elements: Vec<String> = (0..AROUND).flat_map(along).chain(ends).collect();
+    let numbered: String = elements.iter().enumerate().map(|(k, of)| format!("{} {of}\n", k + 1)).collect();
+    format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n1 1 \"inner\"\n1 2 \"outer\"\n1 3 \"start\"\n1 4 \"end\"\n2 5 \"ring\"\n$EndPhysicalNames\n$Nodes\n{}\n{nodes}$EndNodes\n$Elements\n{}\n{numbered}$EndElements\n",
+        2 * (AROUND + 1),
+        elements.len()
+    )
+}
+
+/// Half of a ring collapses until its ends touch, on its axis of symmetry and with their corners:
+/// chords of neighbouring facets cross there by round-off. Without its contact they go on.
+#[test]
+fn a_ring_whose_contact_keeps_it_apart_does_not_cross_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = folder.path().join("ring.msh");
+    std::fs::write(&mesh, half_ring()).unwrap();
+    let ring = format!(
+        r#"
+dimension = 2
+material = [{{ name = "m", law = "saint-venant-kirchhoff", density = 1e-3, young = 1e6, poisson = 0.0 }}]
+body = [{{ name = "ring", material = "m", element = "Q4", mesh = {{ file = {:?}, surface = "ring" }} }}]
+support = [{{ on = ["ring.start", "ring.end"], fix = ["x"] }}]
+load = [{{ on = ["ring.outer"], pressure = "4000*t*(1 + 0.3*Y^2)" }}]
+contact = [{{ name = "fold", secondary = "ring.inner", primary = "ring.inner" }}]
+time = {{ end = 0.3, step = 0.01, scheme = {{ kind = "backward-euler" }} }}
+"#,
+        mesh.display().to_string()
+    );
+    let crosses = |sets: &[&str]| recorded(&ring, sets).contains(&"undeclared-contact".to_owned());
+    assert!(!crosses(&[]));
+    assert!(crosses(&["contact=[]"]));
+}

@@ -63,7 +63,7 @@ name = "wall"
 secondary = "bar.right"
 primary = { plane = { point = [2.0], normal = [-1.0] } }
 [time]
-end = 1e-2
+end = 0.2
 step = 1e-3
 scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
 "#;
@@ -203,22 +203,6 @@ time = {{ end = 1.0, step = 1.0, scheme = {{ kind = "static" }} }}
 }
 
 #[test]
-fn a_step_in_which_a_wave_crosses_many_cells() {
-    // √((200 + 2·15)/0.25) = 30.3; the prism's cells are squares of 0.125.
-    let long = found(IMPACT, &["time.step=0.075"]);
-    let prism = long.iter().find(|(id, what)| id == "long-step" && what.contains("\"prism\"")).unwrap();
-    assert!(
-        prism.1.contains("number is 18.2: a pressure wave crosses 18.2 cells of size 0.125"),
-        "{prism:?}"
-    );
-    assert!(!ids(IMPACT, &[]).contains(&"long-step".to_owned()));
-    let long = ["body.bar.mass=consistent", "time.end=1.0", "time.step=1.0"];
-    assert_eq!(ids(STRETCHED, &long), ["long-step"]);
-    let still: Vec<&str> = long.into_iter().chain(["time.scheme={ kind = \"static\" }"]).collect();
-    assert!(ids(STRETCHED, &still).is_empty());
-}
-
-#[test]
 fn nearly_incompressible_t3() {
     let soft = "material.rubber.lambda=135.0"; // ν = 0.45: the bulk modulus is ten times μ
     let locking =
@@ -229,6 +213,14 @@ fn nearly_incompressible_t3() {
     assert_eq!(locking(&["body.prism.element=T3", "plane=stress"]), none);
     let rectangle = ["body.prism.element=Q4", "body.prism.volumetric=mean"];
     assert_eq!(locking(&rectangle[..1]).len(), 1);
+    // What is advised is for the element of the body.
+    let advice = |sets: &[&str]| {
+        let case = case(IMPACT, sets);
+        let given = warnings(&case, &Setup::new(&case).build().unwrap());
+        given.into_iter().find(|warning| warning.id == "locking").unwrap().advice
+    };
+    assert_eq!(advice(&rectangle[..1]), "element = \"Q9\", or volumetric = \"mean\"");
+    assert_eq!(advice(&["body.prism.element=T3"]), "element = \"T6\"");
     assert_eq!(locking(&rectangle), none);
     let found: Vec<(String, String)> = locking(&["body.prism.element=T3"]);
     assert!(
@@ -327,7 +319,7 @@ fn bars_that_cannot_widen() {
     assert!(given.is_empty() && (modulus - 1000.0).abs() < 1e-6, "{given:?} {modulus}");
 }
 
-/// The warnings of a free square of a law, from given positions on.
+/// The warnings of linear elasticity of a free square of a law, from given positions on.
 fn placed(law: &str, [x, y]: [&str; 2]) -> Vec<Warning> {
     let case = format!(
         r#"
@@ -345,7 +337,9 @@ step = 1e-3
 scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }}
 "#
     );
-    recorded_in_full(&case, &[])
+    let mut warnings = recorded_in_full(&case, &[]);
+    warnings.retain(|warning| warning.id.starts_with("large-"));
+    warnings
 }
 
 /// A square that is stretched along x by λ at its start: E₁₁ = (λ² − 1)/2, 0.105 at λ = 1.1.

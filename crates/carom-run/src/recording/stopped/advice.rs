@@ -1,6 +1,10 @@
-//! What to try, by the keyword of the reason: one line per remedy, the most promising first.
+//! What to try, by the keyword of the reason: one line per remedy, the most promising first. A
+//! remedy that does not fit the case is left out, and one that depends on it names what the case
+//! has: its elements, its friction.
 
-use carom_case::{Case, Law};
+use std::collections::BTreeSet;
+
+use carom_case::{BodySpec, Case, ContactSpec, FormulaSpec, Law, MeshSpec};
 use carom_record::{Advice, Source, StopPlace};
 
 use super::change::{Change, Kind, Original};
@@ -35,7 +39,7 @@ const FALLBACK: Remedy = (
     "another scheme for the steps at which the run would stop: backward Euler with contact implicit in velocity, \
      which dissipates energy in them",
 );
-const FINER: Remedy = (None, "a finer mesh there (`refine` of a polygon, or a mesh file), or a smaller load");
+const FINER: Remedy = (None, "a finer mesh there");
 const INERTIA: Remedy = (
     Some(Kind::Inertia),
     "a scheme with inertia, here one that damps motion: beyond a limit load, and from a start far from equilibrium, \
@@ -47,8 +51,10 @@ const OTHER_LAW: Remedy = (
      decreases again beyond a limit load (a bar at 0.58 of its length), which is a loss of stability of the law that \
      neither mesh nor step removes",
 );
-const ROUNDED: Remedy = (None, "a rounded corner there, or the other side as the primary one");
-const DEGREE: Remedy = (None, "an element of lower degree (T3) there: its cells invert later");
+const ROUNDED: Remedy = (None, "a rounded corner there");
+const DEGREE: Remedy = (None, "an element of lower degree there: its cells invert later");
+const FRICTION: Remedy = (None, "friction of a contact that is to hold it");
+const MU: Remedy = (None, "for `mu` a formula that is not negative, as max(…, 0)");
 const GUARD_OFF: Remedy = (
     None,
     "`time.energy_guard = false`, to inspect what the run does beyond this point; its results are then \
@@ -83,19 +89,13 @@ const TABLE: &[(&str, &[Remedy])] = &[
         ],
     ),
     ("negative-mass", &[(None, "`mass = \"consistent\"` or `\"lumped\"`, or more cells behind the contact")]),
-    (
-        "no-value",
-        &[(
-            None,
-            "a formula with a finite value up to the end of the run; for `mu` one that is not negative, as max(…, 0)",
-        )],
-    ),
+    ("no-value", &[(None, "a formula with a finite value up to the end of the run"), MU]),
     (
         "unconstrained-body",
         &[
             (None, "a [[support]] for the body, or its `move` in place of a force"),
             INERTIA,
-            (None, "a larger `mu` or `shear` of a contact that is to hold it"),
+            FRICTION,
         ],
     ),
     ("jump", &[(None, "a `move` that starts at the positions of its nodes")]),
@@ -118,20 +118,9 @@ pub(super) fn of(
     let remedies = TABLE.iter().find(|(of, _)| *of == kind).map_or(OTHERWISE, |(_, remedies)| remedies);
     let original = Original::new(case, source);
     let contact = place.and_then(|place| place.contact.as_deref());
-    let body = place.and_then(|place| place.body.as_deref().or(place.node.as_ref().map(|n| n.body.as_str())));
-    let there = || case.bodies.iter().filter(|b| body.is_none_or(|body| body == b.name));
-    let lowest = || there().all(|body| body.element.degree() == 1);
-    let softens = there()
-        .filter_map(|body| case.material(body))
-        .any(|material| material.law == Law::SaintVenantKirchhoff);
+    let there = There::new(case, place);
     let advice = |&(change, what): &Remedy| {
-        let of_contact = [LONGER.1, PROJECT.1, ROUNDED.1].contains(&what);
-        if what == OTHER_LAW.1 && !softens
-            || what == DEGREE.1 && lowest()
-            || of_contact && case.contacts.is_empty()
-        {
-            return None;
-        }
+        let what = there.words(what)?;
         let change = match change {
             Some(kind) => {
                 original.sets(kind, contact)?;
@@ -140,7 +129,83 @@ pub(super) fn of(
             None => None,
         };
         let sets = change.as_ref().map_or_else(Vec::new, |change| change.sets.clone());
-        Some((Advice { what: what.into(), sets, trial: None }, change))
+        Some((Advice { what, sets, trial: None }, change))
     };
     remedies.iter().filter_map(advice).collect()
+}
+
+/// The bodies and contacts at the place of a stop: all of the case if it has none.
+struct There<'a> {
+    case: &'a Case,
+    bodies: Vec<&'a BodySpec>,
+    contacts: Vec<&'a ContactSpec>,
+}
+
+impl<'a> There<'a> {
+    fn new(case: &'a Case, place: Option<&StopPlace>) -> Self {
+        let contact = place.and_then(|place| place.contact.as_deref());
+        let body =
+            place.and_then(|place| place.body.as_deref().or(place.node.as_ref().map(|n| n.body.as_str())));
+        let is_at = |of: &&ContactSpec| match contact {
+            Some(name) => of.name == name,
+            None => body.is_none_or(|body| of.bodies().any(|name| name == body)),
+        };
+        Self {
+            case,
+            bodies: case.bodies.iter().filter(|b| body.is_none_or(|body| body == b.name)).collect(),
+            contacts: case.contacts.iter().filter(is_at).collect(),
+        }
+    }
+
+    /// A remedy in the words of the case; none if the case has not what it changes.
+    fn words(&self, what: &str) -> Option<String> {
+        let has_contact = !self.case.contacts.is_empty();
+        let more = |words: &str| Some(format!("{what}{words}"));
+        if what == OTHER_LAW.1 {
+            return self.has_law(Law::SaintVenantKirchhoff).then(|| what.to_owned());
+        }
+        if what == LONGER.1 || what == PROJECT.1 {
+            return has_contact.then(|| what.to_owned());
+        }
+        if what == ROUNDED.1 {
+            let may_be_swapped =
+                self.contacts.iter().any(|c| c.primary.side().is_some() && !c.is_of_itself());
+            let other = if may_be_swapped { ", or the other side as the primary one" } else { "" };
+            return has_contact.then(|| format!("{what}{other}"));
+        }
+        if what == FINER.1 {
+            let refines =
+                self.bodies.iter().any(|body| matches!(body.mesh.source(), MeshSpec::Polygon { .. }));
+            let how = if refines { " (`refine` of the polygon)" } else { "" };
+            let less = if self.case.loads.is_empty() { "" } else { ", or a smaller load" };
+            return more(&format!("{how}{less}"));
+        }
+        if what == DEGREE.1 {
+            let lower = self.lower_elements()?;
+            return Some(what.replacen("degree", &format!("degree ({lower})"), 1));
+        }
+        if what == FRICTION.1 {
+            let rubs = self.contacts.iter().any(|contact| contact.friction.exists());
+            let words = if rubs { "larger friction (`mu` or `shear`)" } else { "friction (`mu`)" };
+            return (!self.contacts.is_empty()).then(|| what.replacen("friction", words, 1));
+        }
+        if what == MU.1 {
+            let varies = |c: &&ContactSpec| matches!(c.friction.mu, Some(FormulaSpec::Text(_)));
+            return self.case.contacts.iter().any(|c| varies(&c)).then(|| what.to_owned());
+        }
+        Some(what.to_owned())
+    }
+
+    fn has_law(&self, law: Law) -> bool {
+        let mut materials = self.bodies.iter().filter_map(|body| self.case.material(body));
+        materials.any(|material| material.law == law)
+    }
+
+    /// Elements of degree 1 in place of those of higher degree.
+    fn lower_elements(&self) -> Option<String> {
+        let higher = self.bodies.iter().filter(|body| body.element.degree() > 1);
+        let lower = higher.filter_map(|body| Some(format!("{:?}", body.element.with_degree(1)?)));
+        let lower: BTreeSet<String> = lower.collect();
+        (!lower.is_empty()).then(|| lower.into_iter().collect::<Vec<_>>().join(", "))
+    }
 }

@@ -1,0 +1,160 @@
+//! The impact of the first episode: the striker, what it strikes, and Newton's coefficient of
+//! restitution.
+//!
+//! ```text
+//! e = −(w⁺·n)/(w⁻·n)        w = v − v_other, before the episode and after it
+//! n = Σ −λ n_c / |Σ −λ n_c| over the rows of contact.csv of the striker in the episode
+//! ```
+//!
+//! (I. Newton, *Principia*, 1687, scholium to the laws of motion.) n is the direction of the normal
+//! contact impulse on the striker, without that of friction. A fixed obstacle has no velocity, and
+//! a body has that of its centre of mass, but along an axis in which a support holds or moves it,
+//! that of the support: what its centre does there is vibration.
+
+use carom_formula::Formula;
+use serde_json::Value;
+
+use super::episode::{Episode, first_episode};
+use super::facts::vector;
+use super::striker::striker;
+use crate::{History, Run};
+
+/// Variables of the motion of a support.
+const VARIABLES: [&str; 4] = ["X", "Y", "Z", "t"];
+
+/// A body, or an obstacle that moves; none: an obstacle that is fixed.
+pub type Party<'a> = Option<&'a str>;
+
+/// The first episode of a run as the impact of its striker.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Impact<'a> {
+    /// The striker.
+    pub striker: &'a str,
+    /// What it strikes; none: an obstacle that is fixed.
+    pub others: Vec<Party<'a>>,
+    /// Direction of the normal contact impulse on the striker, of length 1.
+    pub normal: [f64; 3],
+    /// −w⁻·n, > 0: with this velocity the striker approaches.
+    pub approach: f64,
+    /// w⁺·n; none if the episode has not ended.
+    pub separation: Option<f64>,
+}
+
+impl<'a> Impact<'a> {
+    /// None without contact, where the striker did not approach before it, where it strikes nothing
+    /// but itself or several parties of different velocities, and where the velocity of a support
+    /// is not known.
+    pub fn first(run: &'a Run) -> Option<Self> {
+        let (episode, striker) = (first_episode(&run.history)?, striker(&run.history)?);
+        let before = episode.start.checked_sub(1)?;
+        let (others, normal) = struck(striker, run, episode)?;
+        let along = |row: usize| {
+            let of_striker = velocity(run, Some(striker), row)?;
+            let others: Option<Vec<_>> = others.iter().map(|other| velocity(run, *other, row)).collect();
+            let others = others?;
+            let first = others.first()?;
+            let relative = of_striker.iter().zip(first).map(|(v, other)| v - other);
+            let alike = others.iter().all(|other| other == first);
+            alike.then(|| relative.zip(normal).map(|(w, n)| w * n).sum::<f64>())
+        };
+        let approach = -along(before)?;
+        let separation = episode.end.and_then(along);
+        (approach > 0.0).then_some(Self { striker, others, normal, approach, separation })
+    }
+}
+
+/// Newton's coefficient of restitution.
+pub(super) fn restitution(run: &Run) -> Option<f64> {
+    let impact = Impact::first(run)?;
+    Some(impact.separation? / impact.approach)
+}
+
+/// What a striker strikes in an episode, and the direction of the normal contact impulse on it;
+/// none if it strikes nothing but itself.
+fn struck<'a>(striker: &str, run: &'a Run, episode: Episode) -> Option<(Vec<Party<'a>>, [f64; 3])> {
+    let times = run.times();
+    let is_in = |time: f64| times[episode.start] <= time && episode.end.is_none_or(|end| time < times[end]);
+    let (mut others, mut impulse) = (Vec::new(), [0.0; 3]);
+    for row in run.contact.iter().filter(|row| is_in(row.time)) {
+        let Some([secondary, primary]) = parties(run, &row.contact) else { continue };
+        let (other, sign) = match [secondary, primary].map(|party| party == Some(striker)) {
+            [true, false] => (primary, -1.0),
+            [false, true] => (secondary, 1.0),
+            _ => continue,
+        };
+        if !others.contains(&other) {
+            others.push(other);
+        }
+        for (sum, n) in impulse.iter_mut().zip(row.normal) {
+            *sum += sign * row.multiplier * n;
+        }
+    }
+    let length = impulse.iter().fold(0.0, |length, x| f64::hypot(length, *x));
+    (length > 0.0).then(|| (others, impulse.map(|x| x / length)))
+}
+
+/// The parties of a contact, that of the secondary side first.
+fn parties<'a>(run: &'a Run, contact: &str) -> Option<[Party<'a>; 2]> {
+    let contacts = run.manifest.case.get("contacts")?.as_array()?;
+    let spec = contacts.iter().find(|spec| spec["name"] == contact)?;
+    let secondary = spec["secondary"].as_str().map(body_of);
+    let primary = match spec["primary"]["side"].as_str() {
+        Some(side) => Some(body_of(side)),
+        // The columns of an obstacle that moves have the name of its contact.
+        None => spec["name"].as_str().filter(|_| spec.get("motion").is_some()),
+    };
+    Some([secondary, primary])
+}
+
+/// The body of a side `body.side`.
+fn body_of(side: &str) -> &str {
+    side.split_once('.').map_or(side, |(body, _)| body)
+}
+
+fn velocities<'a>(history: &'a History, party: &str) -> Vec<&'a [f64]> {
+    vector(history, &format!("{party}.velocity"))
+}
+
+/// Velocity of a party in a row; none if it is that of supports which is not known.
+fn velocity(run: &Run, party: Party, row: usize) -> Option<Vec<f64>> {
+    let axes = vector(&run.history, "contact_force").len();
+    let Some(name) = party else { return Some(vec![0.0; axes]) };
+    let of_center = velocities(&run.history, name).into_iter().map(|v| v[row]);
+    let prescribed = prescribed(run, name, run.times()[row])?;
+    Some(of_center.zip(prescribed).map(|(v, held)| held.unwrap_or(v)).collect())
+}
+
+/// Velocity that supports give a body along each axis, where they hold it; none if it is not known.
+fn prescribed(run: &Run, body: &str, time: f64) -> Option<[Option<f64>; 3]> {
+    let list = |value: &'static str, of: &Value| of[value].as_array().cloned().unwrap_or_default();
+    let mut held = [None; 3];
+    let mut hold = |axis: &Value, rate: f64| {
+        let held = held.get_mut(usize::try_from(axis.as_u64()?).ok()?)?;
+        (*held.get_or_insert(rate) == rate).then_some(())
+    };
+    for support in list("supports", &run.manifest.case) {
+        if !list("on", &support).iter().filter_map(Value::as_str).any(|side| body_of(side) == body) {
+            continue;
+        }
+        // The axis of a support across its sides is not recorded.
+        if support["normal"] == true {
+            return None;
+        }
+        for axis in list("fix", &support) {
+            hold(&axis, 0.0)?;
+        }
+        for motion in list("move", &support) {
+            hold(&motion[0], rate(&motion[1], time)?)?;
+        }
+    }
+    Some(held)
+}
+
+/// Rate of a displacement, a number or a formula; none if it depends on the place, or is a function
+/// of a program.
+fn rate(displacement: &Value, time: f64) -> Option<f64> {
+    let Some(text) = displacement.as_str() else { return Some(0.0) };
+    let formula = Formula::parse(text, &VARIABLES).ok()?;
+    let is_uniform = !VARIABLES[..3].iter().any(|place| formula.depends_on(place));
+    is_uniform.then(|| formula.with_derivatives(&[0.0, 0.0, 0.0, time], 3)[1])
+}

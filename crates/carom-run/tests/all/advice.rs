@@ -1,0 +1,58 @@
+//! What a run that stops advises to try fits its case: elements of its bodies, friction of its
+//! contacts.
+
+use std::sync::atomic::AtomicBool;
+
+use carom_record::{Manifest, Source, Stop};
+use carom_run::recording::{Options, run};
+
+use super::common::case;
+
+fn advice(text: &str, sets: &[&str]) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let directory = folder.path().join("run");
+    let source = Source { text: text.to_owned(), sets: Vec::new(), folder: None };
+    let options = Options::default();
+    run(&case(text, sets), source, &directory, options, &mut |_| {}, &AtomicBool::new(false)).unwrap();
+    let stop = Stop::read(&directory, &Manifest::read(&directory).unwrap()).unwrap().unwrap();
+    stop.advice.into_iter().map(|advice| advice.what).collect()
+}
+
+/// A block is pressed to less than nothing.
+#[test]
+fn elements_of_the_body_that_is_crushed() {
+    let crushed = r#"
+dimension = 3
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1.0, poisson = 0.3 }]
+body = [{ name = "block", material = "m", element = "Tet10", mesh = { shape = "box", min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 1.0], cells = [1, 1, 1] } }]
+support = [{ on = ["block.bottom"], fix = ["x", "y", "z"] }, { on = ["block.top"], fix = ["x", "y"], move = { z = "-2*t" } }]
+time = { end = 1.0, step = 0.25, scheme = { kind = "static" } }
+"#;
+    let lower = |sets: &[&str]| -> Vec<String> {
+        advice(crushed, sets).into_iter().filter(|what| what.contains("lower degree")).collect()
+    };
+    assert_eq!(lower(&[]), ["an element of lower degree (Tet4) there: its cells invert later"]);
+    assert!(lower(&["body.block.element=Hex27"])[0].contains("(Hex8)"));
+    assert!(lower(&["body.block.element=Tet4"]).is_empty());
+    assert!(!advice(crushed, &[]).iter().any(|what| what.contains("load") || what.contains("polygon")));
+}
+
+/// A disc without contact falls, although statics has no falling: friction can hold it only where
+/// there is some.
+#[test]
+fn friction_where_there_is_some() {
+    let falls = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
+body = [{ name = "disc", material = "m", element = "T3", mesh = { shape = "disc", radius = 0.5, center = [0.0, 0.6], size = 0.25 }, gravity = [0.0, -0.2] }]
+contact = [{ name = "floor", secondary = "disc.arc", primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } } }]
+time = { end = 1.0, step = 0.5, scheme = { kind = "static" } }
+"#;
+    let said = |sets: &[&str]| -> Vec<String> {
+        advice(falls, sets).into_iter().filter(|what| what.contains("friction")).collect()
+    };
+    let to_hold = "of a contact that is to hold it";
+    assert_eq!(said(&[]), [format!("friction (`mu`) {to_hold}")]);
+    assert_eq!(said(&["contact.floor.mu=0.0"]), [format!("friction (`mu`) {to_hold}")]);
+    assert_eq!(said(&["contact.floor.mu=0.2"]), [format!("larger friction (`mu` or `shear`) {to_hold}")]);
+}

@@ -1,0 +1,125 @@
+//! Newton's coefficient of restitution against wave solutions, in moving frames, and along the
+//! normal of a contact with friction.
+
+use std::sync::atomic::AtomicBool;
+
+use carom_record::metrics::of_rebound;
+use carom_record::{Run, Source};
+use carom_run::recording::{Options, run};
+
+use super::common::case;
+
+/// A short bar strikes a long one.
+const BARS: &str = r#"
+dimension = 1
+material = [{ name = "m", law = "linear-elastic", density = 1.0, young = 1.0, poisson = 0.0 }]
+[[body]]
+name = "short"
+material = "m"
+element = "L2"
+mesh = { shape = "interval", min = -1.0, max = 0.0, cells = 50 }
+velocity = [0.01]
+[[body]]
+name = "long"
+material = "m"
+element = "L2"
+mesh = { shape = "interval", min = 0.01, max = 2.01, cells = 100 }
+velocity = [0.0]
+[[contact]]
+name = "hit"
+secondary = "short.right"
+primary = "long.left"
+[time]
+end = 8.0
+step = 0.02
+scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
+[output]
+fields_every = 0
+"#;
+
+pub(super) fn record(text: &str, sets: &[&str]) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    let directory = folder.path().join("run");
+    let source = Source { text: text.to_owned(), sets: Vec::new(), folder: None };
+    let options = Options::default();
+    run(&case(text, sets), source, &directory, options, &mut |_| {}, &AtomicBool::new(false)).unwrap();
+    Run::open(&directory).unwrap()
+}
+
+fn restitution(run: &Run) -> Option<f64> {
+    of_rebound(run).into_iter().find(|metric| metric.name == "restitution").unwrap().value
+}
+
+fn of(text: &str, sets: &[&str]) -> f64 {
+    restitution(&record(text, sets)).unwrap()
+}
+
+/// Of two bars of one impedance the shorter one stops, and the other one gets its momentum: e is
+/// the ratio of their lengths (K. L. Johnson, *Contact Mechanics*, 1985, § 11.1).
+#[test]
+fn the_ratio_of_the_lengths_of_two_bars() {
+    let half = of(BARS, &[]);
+    assert!((half - 0.5).abs() < 0.01, "{half}");
+    let equal = of(BARS, &["body.long.mesh={ shape = \"interval\", min = 0.01, max = 1.01, cells = 50 }"]);
+    assert!((equal - 1.0).abs() < 0.02, "{equal}");
+    // Whichever is the faster one, and whichever the secondary one.
+    let swapped =
+        ["contact.hit.secondary=long.left", "contact.hit.primary=short.right", "body.short.velocity=[0.0]"];
+    let struck = of(BARS, &[&swapped[..], &["body.long.velocity=[-0.01]"]].concat());
+    assert!((struck - half).abs() < 1e-6, "{struck} {half}");
+}
+
+/// A frame in which everything moves with another velocity sees the same impact: two free bars, a
+/// bar whose end is held, and a rigid wall.
+#[test]
+fn the_same_in_every_frame() {
+    let held = |motion: &str| format!("support=[{{ on = [\"long.right\"], {motion} }}]");
+    let end = "time.end=12.0";
+    let free = of(BARS, &[]);
+    let moving = of(BARS, &["body.short.velocity=[-0.02]", "body.long.velocity=[-0.03]"]);
+    assert!((moving - free).abs() < 1e-9, "{moving} {free}");
+    let fixed = of(BARS, &[&held("fix = [\"x\"]"), end]);
+    let motion = held("move = { x = \"-0.03*t\" }");
+    let moving = of(BARS, &[&motion, end, "body.short.velocity=[-0.02]", "body.long.velocity=[-0.03]"]);
+    assert!((moving - fixed).abs() < 1e-9, "{moving} {fixed}");
+    let wall = |velocity: &str| {
+        format!("contact.hit.primary={{ plane = {{ point = [0.01], normal = [-1.0] }}{velocity} }}")
+    };
+    let away = "body.long.mesh={ shape = \"interval\", min = 5.0, max = 7.0, cells = 10 }";
+    let fixed = of(BARS, &[&wall(""), away]);
+    let motion = wall(", motion = { move = { x = \"-0.03*t\" } }");
+    let moving = of(BARS, &[&motion, away, "body.short.velocity=[-0.02]"]);
+    assert!((moving - fixed).abs() < 1e-9 && (fixed - 1.0).abs() < 0.02, "{moving} {fixed}");
+}
+
+/// With a motion that depends on the place, or where the striker strikes two bodies of different
+/// velocities, it is not one number.
+#[test]
+fn not_defined_without_one_relative_velocity() {
+    let twisted = "support=[{ on = [\"long.right\"], move = { x = \"0*X*t\" } }]";
+    assert_eq!(restitution(&record(BARS, &[twisted])), None);
+    assert_eq!(restitution(&record(BARS, &["time.end=0.4"])), None, "no contact");
+    assert_eq!(restitution(&record(BARS, &["time.end=2.0"])), None, "in contact");
+}
+
+/// A disc strikes a rough plane obliquely: the impulse has a part along the plane, the coefficient
+/// is that of the velocities across it.
+#[test]
+fn along_the_normal_in_spite_of_friction() {
+    let disc = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1.0, poisson = 0.3 }]
+body = [{ name = "disc", material = "m", element = "T6", mesh = { shape = "disc", radius = 0.5, center = [0.0, 0.51], size = 0.25 }, velocity = [0.1, -0.1] }]
+contact = [{ name = "floor", secondary = "disc.arc", primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }, mu = 0.3 }]
+time = { end = 4.0, step = 0.02, scheme = { kind = "chung-hulbert", rho_inf = 0.5 } }
+output = { fields_every = 0 }
+"#;
+    let run = record(disc, &[]);
+    let velocity = |axis: &str| run.column(&format!("disc.velocity_{axis}")).unwrap();
+    let (first, last) = (0, run.times().len() - 1);
+    let across = -velocity("y")[last] / velocity("y")[first];
+    let rubbed = (velocity("x")[first] - velocity("x")[last]) / 0.1;
+    assert!(rubbed > 0.1, "{rubbed}");
+    let found = restitution(&run).unwrap();
+    assert!((found - across).abs() < 1e-9, "{found} {across}");
+}
