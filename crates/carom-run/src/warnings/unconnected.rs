@@ -51,13 +51,13 @@ pub(super) fn unconnected_bodies(case: &Case, model: &Model) -> Vec<Found> {
             let facet = ["point", "edge", "face"][model.dimension.clamp(1, 3) - 1];
             let several =
                 if facets.len() == 1 { format!("a {facet}") } else { format!("{} {facet}s", facets.len()) };
-            found.push(Found {
-                place: format!("bodies \"{}\" and \"{}\"", a.name, b.name),
-                what: format!(
+            found.push(Found::at(
+                format!("bodies \"{}\" and \"{}\"", a.name, b.name),
+                format!(
                     "they have {several} in common at the start, the first at {:?}, and no contact",
                     facets[0]
                 ),
-            });
+            ));
         }
     }
     found

@@ -92,11 +92,7 @@ const TABLE: &[(&str, &[Remedy])] = &[
     ("no-value", &[(None, "a formula with a finite value up to the end of the run"), MU]),
     (
         "unconstrained-body",
-        &[
-            (None, "a [[support]] for the body, or its `move` in place of a force"),
-            INERTIA,
-            FRICTION,
-        ],
+        &[(None, "a [[support]] for the body, or its `move` in place of a force"), INERTIA, FRICTION],
     ),
     ("jump", &[(None, "a `move` that starts at the positions of its nodes")]),
     ("penetration", &[INERTIA, SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
