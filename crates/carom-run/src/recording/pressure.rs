@@ -7,11 +7,11 @@
 //! Fᵢ = Σⱼ Bᵢ(xⱼ) fⱼ,    pᵢ = Fᵢ / ∫ Bᵢ da,    p = Σᵢ pᵢ Bᵢ
 //! ```
 //!
-//! where f are the nodal forces. The nodal forces of a uniform pressure, fⱼ = p ∫ φⱼ da, give p; the
-//! resultant is that of the forces, ∫ p da = Σ f, because the Bᵢ sum to one; and a force at a point
-//! of a facet gives a pressure ≥ 0 there and on its neighbours, bounded by the force over a part of
-//! their area. Of degree 1, Bᵢ = φᵢ. ∫ φᵢ da itself is zero at the corners of a triangle of degree
-//! 2.
+//! where f are the nodal forces. The nodal forces of a uniform pressure, fⱼ = p ∫ φⱼ da, give p;
+//! the resultant is that of the forces, ∫ p da = Σ f, because the Bᵢ sum to one; and a force at a
+//! point of a facet gives a pressure ≥ 0 there and on its neighbours, bounded by the force over a
+//! part of their area. Of degree 1, Bᵢ = φᵢ. ∫ φᵢ da itself is zero at the corners of a triangle of
+//! degree 2.
 //!
 //! At a sharp edge only the facets that face the force carry it: facet e counts in ∫ Bᵢ da with
 //! min(1, 2cₑ/max c), cₑ the cosine between Fᵢ and its inner normal. Facets within 60° of the
@@ -100,7 +100,8 @@ impl Surfaces {
         for facet in reached.iter().map(|&facet| &self.facets[facet]) {
             for (node, values) in facet.nodes.iter().zip(facet.shape.bernstein_at_nodes()) {
                 let of = |(i, value): (&usize, &f64)| value * coefficients.get(i).copied().unwrap_or(0.0);
-                // Neighbouring facets agree: at a node of both, no other polynomial differs from zero.
+                // Neighbouring facets agree: at a node of both, no other polynomial differs from
+                // zero.
                 pressures.entry(*node).or_insert_with(|| facet.nodes.iter().zip(values).map(of).sum());
             }
         }

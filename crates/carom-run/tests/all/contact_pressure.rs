@@ -140,8 +140,8 @@ fn resultant(fields: &FieldSet, element: &str, body: usize) -> f64 {
     sum
 }
 
-/// Of a block on a longer and wider one, with nodes that match and that do not: the pressure is that
-/// of a punch, and covers a part of the primary.
+/// Of a block on a longer and wider one, with nodes that match and that do not: the pressure is
+/// that of a punch, and covers a part of the primary.
 #[test]
 fn the_resultant_is_the_force_and_nothing_is_negative() {
     for (element, cells) in [("T6", 4), ("T6", 5), ("Tet10", 2), ("Tet10", 3)] {

@@ -279,7 +279,7 @@ fn the_radius_of_a_contact_is_that_of_hertz() {
     let sim = finish(carom_run::Setup::new(&case).start().unwrap());
     let (a, largest) = (0.1, 69.9582);
     let (mut sums, mut error, mut area) = ([0.0; 5], 0.0, 0.0);
-    for row in Rows::new(&case, &sim).contact(&case, &sim) {
+    for row in Rows::new(&case, &sim).contact(&sim) {
         let (r2, p) = (row.point[0].powi(2) + row.point[1].powi(2), row.pressure);
         if !p.is_finite() || p <= 0.0 {
             continue;
