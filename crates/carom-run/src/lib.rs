@@ -10,7 +10,6 @@ mod saved_state;
 mod setup;
 mod warnings;
 
-pub use build::overlaps;
 pub use carom_case as case;
 pub use carom_mechanics::{
     Accepted, Attempt, AuditFailure, Bisection, Depths, Explicit, FrozenTangent, Grid, GridReport,
@@ -20,5 +19,5 @@ pub use carom_mechanics::{
 };
 pub use overlap::{OverlapNode, overlapping};
 pub use reduce::{ReduceError, Reduced, reduce};
-pub use setup::{Setup, too_long};
+pub use setup::Setup;
 pub use warnings::{Entry, Found, Rule, WARNINGS, warnings};

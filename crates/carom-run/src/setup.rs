@@ -292,7 +292,7 @@ fn settings(case: &Case, model: &Model) -> Settings {
 }
 
 /// The problem of a step longer than the stable one of an explicit scheme.
-pub fn too_long(case: &Case, model: &Model) -> Vec<Problem> {
+fn too_long(case: &Case, model: &Model) -> Vec<Problem> {
     if !case.time.scheme.is_explicit() {
         return Vec::new();
     }

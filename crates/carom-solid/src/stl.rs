@@ -98,9 +98,8 @@ fn binary(bytes: &[u8]) -> Result<Vec<Corners>, StlError> {
 fn of_another_length(bytes: usize, count: u64) -> StlError {
     let whole = length(count);
     if bytes > whole {
-        let surplus = bytes - whole;
         return StlError::Format(format!(
-            "its header states {count} triangles, but {surplus} bytes follow them"
+            "its header states {count} triangles, which end at byte {whole}, but the file has {bytes} bytes"
         ));
     }
     let triangle = (bytes - HEADER) / TRIANGLE + 1;

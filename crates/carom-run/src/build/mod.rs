@@ -26,7 +26,7 @@ use carom_solid::{Constitutive, Law, mean_dilatation_body};
 use side::side;
 use weights::Weights;
 
-pub use overlaps::overlaps;
+pub(crate) use overlaps::overlaps;
 
 /// Laws given in place of those of materials, by the material's name.
 pub(crate) type Materials = BTreeMap<String, Box<dyn Constitutive>>;

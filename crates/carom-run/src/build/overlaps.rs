@@ -9,7 +9,7 @@ use super::side::{coordinates, owner};
 /// deepest point.
 ///
 /// Closing an overlap within one step would drive the bodies apart, so it is an error.
-pub fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
+pub(crate) fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
     let x = &model.initial_position;
     let problem = |(k, node, depth): (usize, usize, f64)| {
         let place = coordinates(&x[node * model.dimension..(node + 1) * model.dimension]);

@@ -70,7 +70,10 @@ fn no_beginning_of_a_file_is_read_in_part() {
         }
         for surplus in [&b"\n"[..], b"end", &file] {
             let error = read(&[&file[..], surplus].concat()).unwrap_err().to_string();
-            let words = format!("its header states 2 triangles, but {} bytes follow them", surplus.len());
+            let bytes = file.len() + surplus.len();
+            let words = format!(
+                "its header states 2 triangles, which end at byte 184, but the file has {bytes} bytes"
+            );
             assert_eq!(error, words);
         }
     }
