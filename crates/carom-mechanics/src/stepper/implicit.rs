@@ -175,8 +175,7 @@ impl Stepper for Implicit {
         restitution::take(model, &mut next, taken);
         if !report.activations.is_empty() {
             let closed = closed(model, state, &solved.at.pairings, &report.activations);
-            let slope = equations.stage.velocity.slope;
-            let impact = Impact { dt, slope, velocity: &state.v, pairs: &state.pairs, closed };
+            let impact = Impact { dt, velocity: &state.v, pairs: &state.pairs, closed };
             let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;
             if let Some(jump) = projected {
                 report.projection = jump;

@@ -16,7 +16,7 @@
 use std::collections::BTreeMap;
 
 use carom_algebra::sums::max_abs;
-use carom_contact::{ActiveSet, Along, Contender, FrictionState, Row, Rows, inner, length};
+use carom_contact::{ActiveSet, Along, Contender, FrictionState, Row, Rows, inner};
 
 use crate::contact::independent::independent_rows;
 use crate::friction_state::each_slip;
@@ -26,7 +26,7 @@ use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
 use crate::velocity::active_rows::{measure_all, pressing};
-use crate::velocity::cone::{AT_REST, Closed, Right};
+use crate::velocity::cone::{Closed, Right};
 use crate::velocity::restitution::{Impact, take};
 
 /// Contact and pair.
@@ -63,7 +63,9 @@ pub(crate) fn project(
     let slips = closed.slip_rates(&state.v);
     let stopping: Vec<Along> = slips.iter().map(|rate| rate.map(|rate| -rate)).collect();
     let right = Right { forces: &vec![0.0; dofs], gaps: &closing, slips: &stopping };
-    let slid = closed.holds(state, impact.pairs);
+    // Velocities at the end of a step ring from node to node, its slips do not: a pair goes on as in
+    // the step.
+    let slid = closed.slid(state, impact.pairs);
     let jump = closed.impulse(model, state, &right, system)?;
     for i in (0..dofs).filter(|&i| !model.massless[i]) {
         state.v[i] += jump.x[i];
@@ -75,24 +77,6 @@ pub(crate) fn project(
     let mean = |(before, after): (&Along, &Along)| [0, 1].map(|i| 0.5 * (before[i] + after[i]));
     let rates = slips.iter().zip(&after).map(mean);
     let mut rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| inner(rate, *q)).sum::<f64>();
-
-    // Velocities at the end of a step ring from node to node, its slips do not: a pair slips on in
-    // the direction of its slip, unless the impulse turns it round. One that sticks has slip rates
-    // of the size that the step's tolerance leaves, which are none.
-    let still = AT_REST * max_abs(&state.v);
-    let left = still.max(model.gap_tolerance * impact.slope);
-    let goes_on = slips.iter().zip(&after).map(|(a, b)| [length(*a), length(*b), inner(*a, *b)]);
-    let slid =
-        slid.into_iter().zip(goes_on).map(|(friction_state, [before, now, along])| match friction_state? {
-            FrictionState::Stick => Some(FrictionState::Stick).filter(|_| now <= left),
-            slip @ FrictionState::Slip(_) => Some(slip).filter(|_| before > still && along > 0.0),
-        });
-    let slid = closed
-        .places
-        .iter()
-        .zip(slid)
-        .filter_map(|(place, friction_state)| Some((*place, friction_state?)))
-        .collect();
 
     let before = state.ledger.kinetic;
     take(model, state, before - model.kinetic(&state.v) + rubbed);

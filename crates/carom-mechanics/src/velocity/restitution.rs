@@ -34,8 +34,6 @@ const ROUND_OFF: f64 = 1e-12;
 pub(crate) struct Impact<'a> {
     /// Its size.
     pub dt: f64,
-    /// Change of the velocity at its end per change of position.
-    pub slope: f64,
     /// Velocities at its start.
     pub velocity: &'a [f64],
     /// Pairs of each contact at its start.
