@@ -174,8 +174,7 @@ impl Stepper for Implicit {
         let taken = state.ledger.contact_work - next.ledger.contact_work;
         restitution::take(model, &mut next, taken);
         let closed = closed(model, state, &solved.at.pairings, &report.activations);
-        let slope = equations.stage.velocity.slope;
-        let impact = Impact { dt, slope, start: state, closed };
+        let impact = Impact { dt, start: state, closed };
         let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;
         if let Some(jump) = projected {
             report.projection = jump;

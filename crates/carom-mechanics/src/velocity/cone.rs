@@ -14,6 +14,8 @@
 //! q = −sμp. So the solution depends continuously on μ, and tangential impulses that slip are μ
 //! times the normal ones. For accelerations `persistency.rs` chooses pairs of which none pulls.
 
+use std::collections::BTreeMap;
+
 use carom_algebra::sums::max_abs;
 use carom_contact::{
     Along, FrictionPair, FrictionState, Law, Row, Rows, StickSlip, Tangential, inner, length,
@@ -245,20 +247,21 @@ impl Closed {
         self.solve_for(model, &right, system, &self.ways(state))
     }
 
-    /// Whether each pair stuck in the step, or in which direction it slipped if it was closed
+    /// Which pairs stuck in the step, and in which direction those slipped that were closed
     /// `before`.
-    pub(crate) fn holds(&self, state: &State, before: &State) -> Vec<Option<FrictionState>> {
+    pub(crate) fn slid(&self, state: &State, before: &State) -> BTreeMap<(usize, usize), FrictionState> {
         let of = |&(k, p): &(usize, usize)| {
             let pair = &state.pairs[k][p];
-            let is_new = before.closed(k, pair.node).is_none();
-            Some(pair.tangential.friction_state)
-                .filter(|friction_state| *friction_state == FrictionState::Stick || !is_new)
+            let friction_state = pair.tangential.friction_state;
+            let goes_on = friction_state == FrictionState::Stick || before.closed(k, pair.node).is_some();
+            goes_on.then_some(((k, p), friction_state))
         };
-        self.places.iter().map(of).collect()
+        self.places.iter().filter_map(of).collect()
     }
 
     /// The accelerations: pairs with a slip rate slip in the direction in which they `slid`, or in
-    /// that of the rate; those that `slid` says stuck have none.
+    /// that of the rate; those that `slid` says stuck begin to slip where their traction would leave
+    /// the cone.
     pub(crate) fn accelerate(
         &self,
         model: &Model,

@@ -16,7 +16,7 @@
 use std::collections::BTreeMap;
 
 use carom_algebra::sums::max_abs;
-use carom_contact::{ActiveSet, Along, Contender, FrictionState, Row, Rows, inner, length};
+use carom_contact::{ActiveSet, Along, Contender, FrictionState, Row, Rows, inner};
 
 use crate::contact::independent::independent_rows;
 use crate::friction_state::each_slip;
@@ -26,7 +26,7 @@ use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
 use crate::velocity::active_rows::{measure_all, pressing};
-use crate::velocity::cone::{AT_REST, Closed, Right};
+use crate::velocity::cone::{Closed, Right};
 use crate::velocity::restitution::{Impact, take};
 use crate::velocity::stick::{Works, begins_to_stick, stop_slips};
 
@@ -60,7 +60,9 @@ pub(crate) fn project(
     let mut places = independent_rows(model, pressing(state), &gaps);
     places.retain(asks);
     let closed = Closed::new(model, state, places, &gaps)?;
-    let slid = closed.holds(state, impact.start);
+    // Velocities at the end of a step ring from node to node, its slips do not: a pair goes on as in
+    // the step.
+    let slid = closed.slid(state, impact.start);
 
     let before = state.ledger.kinetic;
     let mut works = Works::default();
@@ -68,30 +70,8 @@ pub(crate) fn project(
         works = stop_slips(model, state, &closed, system)?;
         book_kinetic(model, state);
     }
-    let slips = closed.slip_rates(&state.v);
     if closes {
         works.friction += close_gaps(model, state, &closed, system)?;
-    }
-
-    // Velocities at the end of a step ring from node to node, its slips do not: a pair slips on in
-    // the direction of its slip, unless the impulse turns it round. One that sticks has slip rates
-    // of the size that the step's tolerance leaves, which are none.
-    let after = closed.slip_rates(&state.v);
-    let still = AT_REST * max_abs(&state.v);
-    let left = still.max(model.gap_tolerance * impact.slope);
-    let goes_on = slips.iter().zip(&after).map(|(a, b)| [length(*a), length(*b), inner(*a, *b)]);
-    let slid =
-        slid.into_iter().zip(goes_on).map(|(friction_state, [before, now, along])| match friction_state? {
-            FrictionState::Stick => Some(FrictionState::Stick).filter(|_| now <= left),
-            slip @ FrictionState::Slip(_) => Some(slip).filter(|_| before > still && along > 0.0),
-        });
-    let slid = closed
-        .places
-        .iter()
-        .zip(slid)
-        .filter_map(|(place, friction_state)| Some((*place, friction_state?)))
-        .collect();
-    if closes {
         works.friction += impact.restitute(model, state, &closed, system)?;
     }
     accelerate(model, state, &gaps, asks, &slid, system)?;

@@ -34,8 +34,6 @@ const ROUND_OFF: f64 = 1e-12;
 pub(crate) struct Impact<'a> {
     /// Its size.
     pub dt: f64,
-    /// Change of the velocity at its end per change of position.
-    pub slope: f64,
     /// The state at its start.
     pub start: &'a State,
     /// The gaps at its start of pairs that closed in it: (contact, pair), gap.
