@@ -87,6 +87,7 @@ impl<'a> Setup<'a> {
     /// Everything wrong with the case that only its meshes show, and laws for materials that it
     /// does not have.
     pub fn build(&self) -> Result<Model, Problems> {
+        self.case.fits_memory().map_err(|problem| vec![problem])?;
         let known = |name: &String| self.case.materials.iter().any(|m| m.name == *name);
         if let Some(name) = self.materials.keys().find(|name| !known(name)) {
             let why = "a law was given for a material that the case does not have";

@@ -1,4 +1,4 @@
-//! Checks across tables: names and references, sides, dimensions, steps, memory.
+//! Checks across tables: names and references, sides, dimensions, steps.
 
 mod contact;
 mod expect;
@@ -6,7 +6,6 @@ mod fallback;
 mod friction;
 mod linear;
 mod loads;
-mod memory;
 mod restitution;
 mod scheme;
 mod time;
@@ -43,7 +42,6 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
     check.fallback();
     check.linear();
     check.expects();
-    check.memory();
 }
 
 struct Check<'a> {
