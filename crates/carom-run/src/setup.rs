@@ -14,6 +14,7 @@ use carom_time::{Integrator, Kernel, Nonsmooth};
 use crate::build::{Materials, build, overlaps};
 use crate::initial::{before, given, on_the_grid, saved};
 use crate::overlap;
+use crate::quantity::{at_most, quantity};
 
 /// A case on its way to a simulation: with how many threads, and with laws and a time integrator of
 /// your own in place of the case's.
@@ -228,11 +229,11 @@ fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
         Rejected::Linear(LinearError::Memory { .. }) => {
             let help = "use a coarser mesh or an element of lower degree, or give the process more memory";
             let what = "there is not enough memory for the linear system";
-            return Problem::new("body", what, rejected.to_string(), help).of_system();
+            return Problem::new("body", what, case.in_units(&rejected.to_string()), help).of_system();
         }
         _ => ("body".into(), "the initial acceleration cannot be computed", "check masses and supports"),
     };
-    Problem::new(path, what, rejected.to_string(), help)
+    Problem::new(path, what, case.in_units(&rejected.to_string()), help)
 }
 
 /// The stepper of a case.
@@ -309,13 +310,16 @@ pub fn too_long(case: &Case, model: &Model) -> Vec<Problem> {
     if step <= longest {
         return Vec::new();
     }
+    let unit = &case.units.time;
     let what = format!(
-        "the step {step} is too long for {}: at most {longest:.4e} is accepted",
-        case.time.scheme.kind
+        "the step of {step} {unit} is too long for {}: at most {} is accepted",
+        case.time.scheme.kind,
+        at_most(longest, unit)
     );
     let why = format!(
-        "the step of an explicit scheme must be less than 2/ω_max = {:.4e} (estimate from single cells: {:.4e}); at most {SAFETY} of it is accepted",
-        stable.power, stable.cell
+        "the step of an explicit scheme must be less than 2/ω_max = {} (estimate from single cells: {}); at most {SAFETY} of it is accepted",
+        quantity(stable.power, unit),
+        quantity(stable.cell, unit)
     );
     let divided = case.time.end / (case.time.end / longest).ceil();
     vec![Problem::new(
