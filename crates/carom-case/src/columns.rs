@@ -18,6 +18,18 @@ impl Case {
     pub fn labels(&self) -> Labels {
         Labels::of(&self.units.length, &self.units.time, &self.units.mass)
     }
+
+    /// A message about quantities with the labels of this case in place of their dimensions, which
+    /// mechanics writes in brackets: `0.1 [length]`.
+    pub fn in_units(&self, message: &str) -> String {
+        let labels = self.labels();
+        let put = |message: String, (dimension, label): (&str, &String)| {
+            let label = if label.is_empty() { String::new() } else { format!(" {label}") };
+            message.replace(&format!(" [{dimension}]"), &label)
+        };
+        let known = [("length", &labels.length), ("time", &labels.time), ("energy", &labels.energy)];
+        known.into_iter().fold(message.to_owned(), put)
+    }
 }
 
 /// The columns of history.csv of a case, in their order.

@@ -117,7 +117,10 @@ impl Excerpt {
             used.extend(body.get("material").and_then(Item::as_str).map(ToOwned::to_owned));
         });
         retain(&mut case, "material", &mut |material| named(material, &used));
-        case["time"]["end"] = value(self.end);
+        let end = &mut case["time"]["end"];
+        if number(end) != Some(self.end) {
+            *end = value(self.end);
+        }
         case["output"]["fields_every"] = value(1);
         case["output"]["history_every"] = value(1);
         if let Some(output) = case["output"].as_table_like_mut() {
@@ -160,12 +163,21 @@ fn retain(case: &mut DocumentMut, list: &str, keep: &mut dyn FnMut(&dyn TableLik
     }
 }
 
+/// A number, whole or not.
+fn number(item: &Item) -> Option<f64> {
+    item.as_float().or_else(|| item.as_integer().map(|whole| whole as f64))
+}
+
 /// Applies an override `key=value`, as [`Document`](crate::Document) does.
 fn apply(case: &mut DocumentMut, set: &str) -> Option<()> {
     let (key, text) = set.split_once('=')?;
     let keys = toml_edit::Key::parse(key).ok()?;
     let parsed = format!("v={text}\n").parse::<DocumentMut>();
-    let new = parsed.ok().and_then(|mut v| v.remove("v")).unwrap_or_else(|| value(text.trim()));
+    let mut new = parsed.ok().and_then(|mut v| v.remove("v")).unwrap_or_else(|| value(text.trim()));
+    if let Some(new) = new.as_value_mut() {
+        // Nothing stands between `=` and the value of an override.
+        new.decor_mut().clear();
+    }
     let mut item = case.as_item_mut();
     for (depth, key) in keys.iter().enumerate() {
         let (key, rest) = (key.get(), &keys[depth + 1..]);

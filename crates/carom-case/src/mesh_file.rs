@@ -7,9 +7,9 @@ use std::path::Path;
 use carom_solid::{Element, Mesh, generate, gmsh};
 
 use super::MeshSpec;
-use super::machine::available_memory;
 use super::no_mesh::NoMesh;
 use super::view::View;
+use carom_record::available_memory;
 
 /// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2,
 /// a volume in space.
@@ -121,8 +121,7 @@ pub(super) fn bytes(file: &Path) -> Result<Vec<u8>, String> {
     if !facts.is_file() {
         return Err(format!("{} is not a regular file", file.display()));
     }
-    let available = available_memory();
-    if facts.len() as f64 > available {
+    if let Some(available) = available_memory().filter(|available| facts.len() as f64 > *available) {
         let length = facts.len();
         return Err(format!("it has {length} bytes, and {available:.0} bytes of memory are available"));
     }

@@ -85,7 +85,7 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
     if !problems.is_empty() {
         return Err(problems.into());
     }
-    reader.case(document, draft).ok_or_else(|| {
+    let case = reader.case(document, draft).ok_or_else(|| {
         let why = "all keys passed the checks, but one of them could not be read";
         vec![Problem::new(
             "",
@@ -93,8 +93,9 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
             why,
             "please report this as a bug, with the file",
         )]
-        .into()
-    })
+    })?;
+    case.fits_memory().map_err(|problem| vec![problem])?;
+    Ok(case)
 }
 
 struct Reader<'a> {

@@ -130,7 +130,7 @@ fn power(model: &Model, system: &mut Direct, mut x: Vec<f64>) -> Option<f64> {
         }
         square = quotient;
         let mut force = vec![0.0; x.len()];
-        system.matrices.stiffness_product(&x, &mut force);
+        system.stiffness_product(&x, &mut force);
         x = solved(model, system, &force)?;
     }
     Some(square)
@@ -149,7 +149,7 @@ fn normalise(model: &Model, system: &Direct, x: &mut [f64]) -> f64 {
     let weight = dot(x, &mass_product(model, x)).sqrt();
     x.iter_mut().for_each(|x| *x /= weight);
     let mut force = vec![0.0; x.len()];
-    system.matrices.stiffness_product(x, &mut force);
+    system.stiffness_product(x, &mut force);
     dot(x, &force)
 }
 

@@ -1,4 +1,7 @@
 //! Reasons for rejecting a step, with names, for the log and its readers.
+//!
+//! A quantity has its dimension in brackets, `0.1 [length]`: whoever knows the units of the case puts
+//! their labels there.
 
 use carom_algebra::LinearError;
 use carom_contact::ContactError;
@@ -113,7 +116,7 @@ pub enum Rejected {
     Linear(#[from] LinearError),
     /// An active constraint cannot be satisfied: its row has no independent free dofs.
     #[error(
-        "contact \"{contact}\": node {node} penetrates by {depth:.3e}, and supports prevent it from moving out"
+        "contact \"{contact}\": node {node} penetrates by {depth:.3e} [length], and supports prevent it from moving out"
     )]
     Overconstrained {
         /// Contact.
@@ -136,7 +139,7 @@ pub enum Rejected {
     Unconstrained(#[from] Unconstrained),
     /// A moving support does not start at the position of its formula.
     #[error(
-        "a moved support would jump: node {node} is {distance:.3e} from its prescribed position at t = 0; let the motion begin where the node is"
+        "a moved support would jump: node {node} is {distance:.3e} [length] from its prescribed position at t = 0; let the motion begin where the node is"
     )]
     Jump {
         /// Global number of the node.
@@ -146,7 +149,7 @@ pub enum Rejected {
     },
     /// The contact forces of an explicit step do not converge.
     #[error(
-        "the contact forces of an explicit step did not converge in {rounds} iterations: the error of a gap is still {gap:.3e}"
+        "the contact forces of an explicit step did not converge in {rounds} iterations: the error of a gap is still {gap:.3e} [length]"
     )]
     Unsettled {
         /// Number of linearisations.
@@ -156,7 +159,7 @@ pub enum Rejected {
     },
     /// Penetration deeper than the scheme's law allows in one step.
     #[error(
-        "a node penetrates by {}, more than the {} that the contact law allows in this step",
+        "a node penetrates by {} [length], more than the {} [length] that the contact law allows in this step",
         apart(*depth, *bound)[0], apart(*depth, *bound)[1]
     )]
     Deep {
@@ -168,7 +171,7 @@ pub enum Rejected {
     /// A node, a point of a sharp edge, or a rigid obstacle lies deeper in a body than the contact
     /// allows.
     #[error(
-        "contact \"{contact}\": {what} {node} lies {} deep in body \"{body}\", more than the allowed {}",
+        "contact \"{contact}\": {what} {node} lies {} [length] deep in body \"{body}\", more than the allowed {} [length]",
         apart(*depth, *limit)[0], apart(*depth, *limit)[1]
     )]
     Penetration {
@@ -187,7 +190,7 @@ pub enum Rejected {
     },
     /// A node, or a sharp edge, enters the other body and leaves it within the step.
     #[error(
-        "contact \"{contact}\": {what} {node} passes through the other body within the step, {} deep, more than the allowed {}",
+        "contact \"{contact}\": {what} {node} passes through the other body within the step, {} [length] deep, more than the allowed {} [length]",
         apart(*depth, *limit)[0], apart(*depth, *limit)[1]
     )]
     Passed {
@@ -204,7 +207,7 @@ pub enum Rejected {
     },
     /// A step created energy.
     #[error(
-        "the step created energy: {created:.3e}, more than the {allowed:.3e} that the energy guard allows one step"
+        "the step created energy: {created:.3e} [energy], more than the {allowed:.3e} [energy] that the energy guard allows one step"
     )]
     Energy {
         /// Rise of total − external work above its running minimum in this step.
@@ -214,7 +217,7 @@ pub enum Rejected {
     },
     /// An explicit step exceeds what is stable for the deformed bodies.
     #[error(
-        "it exceeds the largest stable step of the bodies as they are deformed, which is at most {longest:.3e}"
+        "it exceeds the largest stable step of the bodies as they are deformed, which is at most {longest:.3e} [time]"
     )]
     Unstable {
         /// Bound of the stable step.

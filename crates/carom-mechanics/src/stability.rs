@@ -1,21 +1,24 @@
 //! The critical time step of an explicit scheme: Δt ≤ 2/ω_max, with ω_max² the largest eigenvalue
 //! of M⁻¹K for the initial tangent.
 //!
-//! The power iteration x ← M⁻¹K x approximates it from below, by Rayleigh's quotient (for the
-//! cluster at the end of a mesh's spectrum within a percent in some hundred products). The largest
-//! eigenvalue of any single cell bounds it from above (Irons, Treharne 1971), and ‖M_e^{-½} K_e
-//! M_e^{-½}‖_F bounds that one. [`SAFETY`] covers the first percent and some stiffening. A body
-//! that stiffens much more in compression needs a shorter step; the energy guard detects that.
+//! The power iteration with M^{-½}K M^{-½} approximates it from below, by Rayleigh's quotient (for
+//! the cluster at the end of a mesh's spectrum within a percent in some hundred products). The
+//! largest eigenvalue of any single cell bounds it from above (Irons, Treharne 1971), and ‖M_e^{-½}
+//! K_e M_e^{-½}‖_F bounds that one. Divided by this bound the matrix is stored in single precision:
+//! it is the only matrix of an explicit run, and is freed before the first step. [`SAFETY`] covers
+//! the first percent and some stiffening. A body that stiffens much more in compression needs a
+//! shorter step; the energy guard detects that.
 
+use carom_algebra::NodeMatrix;
 use carom_algebra::sums::dot;
 use carom_solid::cell_lumped_mass;
 
-use crate::linear::matrices::Matrices;
+use crate::linear::tangents::{coupled, each_tangent};
 use crate::model::Model;
 
 /// Fraction of 2/ω_max that is accepted as a step.
 pub const SAFETY: f64 = 0.95;
-/// Maximum number of products with M⁻¹K, and relative change of the quotient at convergence.
+/// Maximum number of products, and relative change of the quotient at convergence.
 const PRODUCTS: usize = 500;
 const SETTLED: f64 = 1e-6;
 
@@ -31,36 +34,60 @@ pub struct StableStep {
 /// Stable step of a model with lumped masses for its initial tangent; `None` if a cell is inverted
 /// or a free node is massless.
 pub fn stable_step(model: &Model) -> Option<StableStep> {
-    let mut system = Matrices::new(model);
-    system.assemble(model, &model.initial_position).ok()?;
-    let mass: Vec<f64> = lumped(model)
-        .into_iter()
-        .zip(&model.fixed)
-        .filter(|(_, constrained)| !**constrained)
-        .map(|(m, _)| m)
-        .collect();
-    if mass.iter().any(|m| *m <= 0.0) {
+    let mass = lumped(model);
+    if model.free.iter().any(|dof| mass[*dof] <= 0.0) {
         return None;
     }
-    let mut x: Vec<f64> = (0..mass.len()).map(|i| (12.9898 * (i as f64 + 1.0)).sin()).collect();
-    let mut force = vec![0.0; x.len()];
-    let mut square = 0.0;
+    let cell = largest_of_cells(model)?.max(f64::MIN_POSITIVE);
+    let mut matrix = scaled_tangent(model, &mass, cell)?;
+    let mut x = vec![0.0; model.dofs()];
+    for (i, &dof) in model.free.iter().enumerate() {
+        x[dof] = mass[dof].sqrt() * (12.9898 * (i as f64 + 1.0)).sin();
+    }
+    let mut product = vec![0.0; x.len()];
+    let mut ratio = 0.0;
     for _ in 0..PRODUCTS {
-        force.fill(0.0);
-        system.stiffness_product(&x, &mut force);
-        let weight: f64 = x.iter().zip(&mass).map(|(x, m)| x * x * m).sum();
-        let quotient = dot(&x, &force) / weight;
-        if (quotient - square).abs() <= SETTLED * quotient.abs() {
-            square = quotient;
+        matrix.multiply_into(&x, &mut product);
+        let weight = dot(&x, &x);
+        let quotient = dot(&x, &product) / weight;
+        let settled = (quotient - ratio).abs() <= SETTLED * quotient.abs();
+        ratio = quotient;
+        if settled {
             break;
         }
-        square = quotient;
         let scale = weight.sqrt().recip() / quotient.abs().max(f64::MIN_POSITIVE);
-        for ((x, f), m) in x.iter_mut().zip(&force).zip(&mass) {
-            *x = scale * f / m;
-        }
+        x.iter_mut().zip(&product).for_each(|(x, product)| *x = scale * product);
     }
-    Some(StableStep { power: 2.0 / square.sqrt(), cell: 2.0 / largest_of_cells(model)?.sqrt() })
+    Some(StableStep { power: 2.0 / (ratio * cell).sqrt(), cell: 2.0 / cell.sqrt() })
+}
+
+/// M^{-½} K M^{-½}/ω² for the initial tangent, with zero rows where a dof is constrained: no entry
+/// is larger than 1 if ω² bounds the eigenvalues, so that single precision suffices.
+fn scaled_tangent(model: &Model, mass: &[f64], square: f64) -> Option<NodeMatrix> {
+    let d = model.dimension;
+    let mut matrix = NodeMatrix::new(d, coupled(model));
+    let weight = |dof: u32| {
+        let dof = dof as usize;
+        if model.fixed[dof] { 0.0 } else { (mass[dof] * square).sqrt().recip() }
+    };
+    each_tangent(model, &model.initial_position, |part, cell, tangent| {
+        let (mesh, dofs) = (part.body.mesh(), part.cell_dofs(cell));
+        let n = dofs.len();
+        let nodes = mesh.cell(cell);
+        for a in 0..nodes.len() {
+            for b in (0..nodes.len()).filter(|b| nodes[a] <= nodes[*b]) {
+                let Some(slot) = matrix.slot(part.first_node + nodes[a], part.first_node + nodes[b]) else {
+                    continue;
+                };
+                for (k, entry) in matrix.block_mut(slot).iter_mut().enumerate() {
+                    let [i, j] = [a * d + k / d, b * d + k % d];
+                    *entry += (weight(dofs[i]) * tangent[i * n + j] * weight(dofs[j])) as f32;
+                }
+            }
+        }
+    })
+    .ok()?;
+    Some(matrix)
 }
 
 /// Diagonal of the lumped mass, per dof.

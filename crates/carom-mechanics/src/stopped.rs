@@ -10,7 +10,7 @@ use crate::rejected::Rejected;
 pub enum Stopped {
     /// No step from here is accepted, however small.
     #[error(
-        "the step at t = {} {} rejected: {rejected}", at(*time, *dt * f64::from(*halvings).exp2()), tried(*halvings, *dt)
+        "the step at t = {} [time] {} rejected: {rejected}", at(*time, *dt * f64::from(*halvings).exp2()), tried(*halvings, *dt)
     )]
     NoStep {
         /// Time of the last accepted state.
@@ -23,7 +23,7 @@ pub enum Stopped {
         rejected: Rejected,
     },
     /// The caller ended it within a grid step.
-    #[error("interrupted in the step that begins at t = {}", at(*time, *dt))]
+    #[error("interrupted in the step that begins at t = {} [time]", at(*time, *dt))]
     Interrupted {
         /// Time of the last grid time.
         time: f64,
@@ -31,7 +31,7 @@ pub enum Stopped {
         dt: f64,
     },
     /// A second method contradicts the contact of a step.
-    #[error("the audit of the step that ends at t = {} contradicts its contact: {doubt}", at(*time, *dt))]
+    #[error("the audit of the step that ends at t = {} [time] contradicts its contact: {doubt}", at(*time, *dt))]
     Audit {
         /// Time.
         time: f64,
@@ -42,7 +42,7 @@ pub enum Stopped {
     },
     /// The scheme created energy.
     #[error(
-        "energy was created at t = {}: {created:.4e}, which is {} % of the energy scale {scale:.4e}; the limit is {} %", at(*time, *dt), percent(created / scale), percent(*share)
+        "energy was created at t = {} [time]: {created:.4e} [energy], which is {} % of the energy scale, {scale:.4e} [energy]; the limit is {} %", at(*time, *dt), percent(created / scale), percent(*share)
     )]
     EnergyGuard {
         /// Time.
@@ -76,8 +76,8 @@ fn at(time: f64, step: f64) -> String {
 
 fn tried(halvings: u32, dt: f64) -> String {
     match halvings {
-        0 => format!("of Δt = {dt:.3e} is"),
-        _ => format!("was bisected {halvings} times, to Δt = {dt:.3e}, and is still"),
+        0 => format!("of Δt = {dt:.3e} [time] is"),
+        _ => format!("was bisected {halvings} times, to Δt = {dt:.3e} [time], and is still"),
     }
 }
 
@@ -95,16 +95,16 @@ mod tests {
     fn percentages_have_three_digits() {
         let stopped =
             Stopped::EnergyGuard { time: 0.5, dt: 0.01, created: 0.0123456, share: 5e-6, scale: 0.1 };
-        let message = "energy was created at t = 0.500000: 1.2346e-2, which is 12.3 % of the energy scale 1.0000e-1; the limit is 0.0005 %";
+        let message = "energy was created at t = 0.500000 [time]: 1.2346e-2 [energy], which is 12.3 % of the energy scale, 1.0000e-1 [energy]; the limit is 0.0005 %";
         assert_eq!(stopped.to_string(), message);
     }
 
     #[test]
     fn times_have_the_digits_of_the_step() {
         let stopped = Stopped::Interrupted { time: 1.02e-6, dt: 2e-8 };
-        assert_eq!(stopped.to_string(), "interrupted in the step that begins at t = 0.00000102");
+        assert_eq!(stopped.to_string(), "interrupted in the step that begins at t = 0.00000102 [time]");
         let rejected = Rejected::NegativeMass;
         let stopped = Stopped::NoStep { time: 1.02e-6, dt: 2e-8 / 8.0, halvings: 3, rejected };
-        assert!(stopped.to_string().starts_with("the step at t = 0.00000102 was bisected 3 times"));
+        assert!(stopped.to_string().starts_with("the step at t = 0.00000102 [time] was bisected 3 times"));
     }
 }

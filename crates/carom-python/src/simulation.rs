@@ -97,7 +97,8 @@ impl Simulation {
         if let Some(error) = raised(&self.failure) {
             return Err(error);
         }
-        let report = advanced.map_err(|stopped| StoppedError::new_err(stopped.to_string()))?;
+        let report =
+            advanced.map_err(|stopped| StoppedError::new_err(self.case.in_units(&stopped.to_string())))?;
         let GridReport { newton, rejected, activations, releases, penetration, .. } = report;
         Ok((newton, rejected, activations, releases, penetration.all))
     }

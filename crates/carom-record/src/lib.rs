@@ -12,6 +12,7 @@
 //! This crate knows no model and no solver. Equal numbers give equal bytes, and a run that is
 //! killed and resumed writes the same bytes as an uninterrupted one.
 
+mod available;
 mod checkpoint;
 pub mod conversion;
 mod decimal;
@@ -41,6 +42,7 @@ mod vtu;
 mod warning;
 mod writer;
 
+pub use available::available_memory;
 pub use checkpoint::Generation;
 pub use error::RecordError;
 pub use expectation::{Bound, Deviation, Expect, Norm, OrderOf, judge};

@@ -6,7 +6,10 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RecordError, Warning, files, json, stream};
+use crate::{RecordError, Warning, available_memory, files, json, stream};
+
+/// Bytes of memory per byte of a table that is read: its text, and its values.
+const PER_BYTE: f64 = 3.0;
 
 /// Status of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -253,6 +256,12 @@ impl Manifest {
     /// does.
     pub(crate) fn file(&self, directory: &Path, name: &str) -> Result<Vec<u8>, RecordError> {
         let path = directory.join(name);
+        let length = path.metadata().map_or(0, |facts| facts.len());
+        if let Some(available) = available_memory().filter(|left| PER_BYTE * length as f64 > *left) {
+            let why = format!("it has {length} bytes, and {available:.0} bytes of memory are available");
+            let error = std::io::Error::new(std::io::ErrorKind::OutOfMemory, why);
+            return Err(RecordError::io("read", &path)(error));
+        }
         let bytes = std::fs::read(&path).map_err(|error| stream::unreadable(&path, error))?;
         match self.hashes.get(name) {
             Some(hash) if blake3::hash(&bytes).to_hex().as_str() != hash => {

@@ -4,6 +4,7 @@
 mod build;
 mod initial;
 mod overlap;
+mod quantity;
 pub mod recording;
 mod reduce;
 mod saved_state;
@@ -18,6 +19,6 @@ pub use carom_mechanics::{
     Workspace, audit, frequencies, model, stability, unaudited,
 };
 pub use overlap::{OverlapNode, overlapping};
-pub use reduce::{ReduceError, Reduced, reduce};
-pub use setup::Setup;
+pub use reduce::{NEEDED, ReduceError, Reduced, reduce};
+pub use setup::{Setup, too_long};
 pub use warnings::{Entry, Found, Rule, WARNINGS, warnings};

@@ -27,6 +27,7 @@ use carom_time::ForceRule;
 
 use crate::build::side::owner;
 use crate::build::{Materials, build, overlaps};
+use crate::quantity::quantity;
 
 /// Stages in which the depths are reduced.
 const STAGES: u32 = 8;
@@ -120,7 +121,7 @@ pub(crate) fn relaxed(
     let fails = |why: String| {
         let what = format!("the overlap of contact \"{}\" cannot be relaxed", case.contacts[first].name);
         let help = "move a body so that the overlap is smaller than a cell, or use a finer mesh there";
-        vec![Problem::new(format!("contact[{first}].overlap"), what, why, help)]
+        vec![Problem::new(format!("contact[{first}].overlap"), what, case.in_units(&why), help)]
     };
     let quasi = quasi_static(case);
     let at = |share: f64| -> Result<Model, Vec<Problem>> {
@@ -181,8 +182,10 @@ fn swells(case: &Case, start: &Model, y: &[f64]) -> Option<String> {
         let stretch = ((1.0 + turn * turn).sqrt() - 1.0) * part.body.mesh().diameter();
         (stretch > SWELLS * deepest).then(|| {
             format!(
-                "body \"{}\" turns by {turn:.2e} rad, and linear elasticity, whose strain is that of small displacements, stretches a body that turns at no energy: here by {stretch:.1e}, with an overlap of {deepest:.1e}",
-                spec.name
+                "body \"{}\" turns by {turn:.2e} rad, and linear elasticity, whose strain is that of small displacements, stretches a body that turns at no energy: here by {}, with an overlap of {}",
+                spec.name,
+                quantity(stretch, &case.units.length),
+                quantity(deepest, &case.units.length)
             )
         })
     })
@@ -234,7 +237,7 @@ fn settle(
         }
         if simulation.finished() {
             return Err(format!(
-                "the strain energy still changes from {old:.6e} to {strain:.6e} after {most} steps"
+                "the strain energy still changes from {old:.6e} [energy] to {strain:.6e} [energy] after {most} steps"
             ));
         }
         (state.v, state.a) = (rest.clone(), rest.clone());

@@ -17,6 +17,8 @@ use crate::setup::Setup;
 const FAR: u64 = 60;
 /// Steps beyond the stop.
 const BEYOND: u64 = 2;
+/// Why nothing is removed.
+pub const NEEDED: &str = "the stop needs every body and every contact";
 /// Name of the state beside the case.
 const STATE: &str = "state.bin";
 
@@ -125,12 +127,17 @@ pub fn reduce(directory: &Path, out: &Path) -> Result<Reduced, ReduceError> {
 fn trimmed(case: &Case, step: u64) -> Case {
     let mut case = case.clone();
     let steps = (step + BEYOND).min(case.time.steps() as u64) - u64::from(case.time.phase > 0.0);
-    case.time.end = steps as f64 * case.time.step;
+    case.time.end = shortest(steps as f64 * case.time.step);
     case.probes.clear();
     case.expects.clear();
     case.exact.clear();
     case.initial = None;
     case
+}
+
+/// A product without the digits of its round-off, as it would be written: 39 × 5e-5 is 0.00195.
+fn shortest(product: f64) -> f64 {
+    format!("{product:.11e}").parse().unwrap_or(product)
 }
 
 /// The reason with which a candidate stops, if it is that of the stop, at the same place.
@@ -302,8 +309,11 @@ fn write(
         put(&name, ("t,value\n".to_owned() + &rows.collect::<String>()).as_bytes())?;
         tables.push(name);
     }
-    let without =
-        if removed.is_empty() { String::new() } else { format!("# Without {}.\n", removed.join(", ")) };
+    let without = if removed.is_empty() {
+        format!("# Nothing was removed: {NEEDED}.\n")
+    } else {
+        format!("# Without {}.\n", removed.join(", "))
+    };
     let comment = format!(
         "# Reduced by `carom reduce` from a run that stopped:\n# {}.\n# It continues at t = {:?}, step {}.\n{without}",
         stop.reason, best.state.time, best.state.step
@@ -353,4 +363,16 @@ fn written(path: &Path, stop: &Stop) -> Option<String> {
     let document = carom_case::Document::open(path, &[]).ok()?;
     let case = carom_case::read(&document).ok()?;
     stops(Setup::new(&case).start().ok()?, &case, stop)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_are_written_without_their_round_off() {
+        assert_eq!(shortest(39.0 * 5e-5).to_string(), "0.00195");
+        assert_eq!(shortest(3.0 * 0.1).to_string(), "0.3");
+        assert_eq!(shortest(7.0 / 3.0), 2.33333333333);
+    }
 }

@@ -14,6 +14,7 @@ use carom_time::{Integrator, Kernel, Nonsmooth};
 use crate::build::{Materials, build, overlaps};
 use crate::initial::{before, given, on_the_grid, saved};
 use crate::overlap;
+use crate::quantity::{at_most, quantity};
 
 /// A case on its way to a simulation: with how many threads, and with laws and a time integrator of
 /// your own in place of the case's.
@@ -87,6 +88,7 @@ impl<'a> Setup<'a> {
     /// Everything wrong with the case that only its meshes show, and laws for materials that it
     /// does not have.
     pub fn build(&self) -> Result<Model, Problems> {
+        self.case.fits_memory().map_err(|problem| vec![problem])?;
         let known = |name: &String| self.case.materials.iter().any(|m| m.name == *name);
         if let Some(name) = self.materials.keys().find(|name| !known(name)) {
             let why = "a law was given for a material that the case does not have";
@@ -229,11 +231,11 @@ fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
             let lower = if is_lowest { "" } else { " or elements of lower degree" };
             let help = format!("use a coarser mesh{lower}, or give the process more memory");
             let what = "there is not enough memory for the linear system";
-            return Problem::new("body", what, rejected.to_string(), help).of_system();
+            return Problem::new("body", what, case.in_units(&rejected.to_string()), help).of_system();
         }
         _ => ("body".into(), "the initial acceleration cannot be computed", "check masses and supports"),
     };
-    Problem::new(path, what, rejected.to_string(), help)
+    Problem::new(path, what, case.in_units(&rejected.to_string()), help)
 }
 
 /// The stepper of a case.
@@ -310,13 +312,16 @@ fn too_long(case: &Case, model: &Model) -> Vec<Problem> {
     if step <= longest {
         return Vec::new();
     }
+    let unit = &case.units.time;
     let what = format!(
-        "the step {step} is too long for {}: at most {longest:.4e} is accepted",
-        case.time.scheme.kind
+        "the step of {step} {unit} is too long for {}: at most {} is accepted",
+        case.time.scheme.kind,
+        at_most(longest, unit)
     );
     let why = format!(
-        "the step of an explicit scheme must be less than 2/ω_max = {:.4e} (estimate from single cells: {:.4e}); at most {SAFETY} of it is accepted",
-        stable.power, stable.cell
+        "the step of an explicit scheme must be less than 2/ω_max = {} (estimate from single cells: {}); at most {SAFETY} of it is accepted",
+        quantity(stable.power, unit),
+        quantity(stable.cell, unit)
     );
     let divided = case.time.end / (case.time.end / longest).ceil();
     vec![Problem::new(

@@ -1,10 +1,11 @@
 //! Arms of a study: first those of [[arm]], then all combinations of the grid. Problems of an arm
 //! are reported at its place in the study file.
 
+use carom_record::available_memory;
 use carom_record::study::design::{Kind, Role};
 use carom_record::study::ensemble::{Ensemble, Member};
 use carom_record::study::sets_step;
-use carom_run::case::{Case, Diagnostic, Document, Problem};
+use carom_run::case::{Case, Diagnostic, Document, Problem, gibibytes};
 use toml_edit::Value;
 
 use crate::file::{FINE_NAME, StudyFile};
@@ -27,6 +28,22 @@ pub(crate) struct Draft {
     pub(crate) expect: (String, String),
     /// Its role in the study.
     pub(crate) role: Role,
+}
+
+/// Bytes of an arm while the study is planned, without the texts of its files: its case, resolved
+/// and as it is stored.
+const PER_ARM: f64 = 1e5;
+
+/// Why the combinations of the grid do not fit into the memory; `text`: bytes of the study file.
+pub(crate) fn too_many(file: &StudyFile, text: usize) -> Option<Problem> {
+    let combinations: f64 = file.grid.iter().map(|(_, values)| values.len() as f64).product();
+    let arms = combinations * file.steps.len().max(1) as f64;
+    let need = arms * (PER_ARM + text as f64);
+    let available = available_memory().filter(|available| need > *available)?;
+    let why = format!("they need about {}, and {} are available", gibibytes(need), gibibytes(available));
+    let help = "leave out keys or values, or give the combinations that matter as [[arm]]";
+    let what = format!("the grid has too many combinations for the memory: {arms:.3e} arms");
+    Some(Problem::new("grid", what, why, help).of_system())
 }
 
 /// All arms in their order. The last key of the grid varies fastest.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use carom_record::RecordError;
 use carom_record::study::Arm;
+use carom_run::case::gibibytes;
 use carom_run::recording::RunError;
 
 /// Why a study cannot continue.
@@ -55,6 +56,18 @@ pub enum StudyError {
         /// This machine.
         here: String,
     },
+    /// What is computed at once does not fit into the memory.
+    #[error("{what} need about {}, and {} are available", gibibytes(*need), gibibytes(*available))]
+    Memory {
+        /// What is computed.
+        what: String,
+        /// Bytes that they need.
+        need: f64,
+        /// Bytes that are available.
+        available: f64,
+        /// How many runs fit.
+        fitting: Option<usize>,
+    },
     /// There is no such run.
     #[error("the study in {} has no run {number}: its runs are 1 to {count}", directory.display())]
     NoRun {
@@ -92,6 +105,10 @@ impl StudyError {
                     .to_owned()
             }
             Self::NoRun { .. } => "give one of these numbers".to_owned(),
+            Self::Memory { fitting: Some(jobs), .. } => format!("use --jobs {jobs}"),
+            Self::Memory { fitting: None, .. } => {
+                "use coarser meshes, or give the process more memory".to_owned()
+            }
             Self::Incompatible { .. } | Self::Exists { .. } => {
                 "run the study again, into another directory".to_owned()
             }

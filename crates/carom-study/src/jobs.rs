@@ -36,7 +36,7 @@ impl Ended {
         let (status, reason) = match outcome.end {
             End::Finished => (Status::Finished, None),
             End::Interrupted => (Status::Stopped, None),
-            End::Stopped(stopped) => (Status::Failed, Some(stopped.to_string())),
+            End::Stopped(_) => (Status::Failed, outcome.reason),
         };
         Self { status, reason, wall: outcome.wall }
     }

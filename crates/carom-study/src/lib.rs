@@ -15,6 +15,7 @@ mod expects;
 mod file;
 mod jobs;
 mod matched;
+mod memory;
 mod names;
 mod plan;
 mod resolved;

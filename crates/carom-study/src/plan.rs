@@ -109,6 +109,9 @@ fn opened(
 ) -> Result<(StudyFile, Vec<Draft>, BTreeMap<String, Base>), CaseError> {
     let mut problems = Vec::new();
     let file = file::read(study, folder, &mut problems);
+    if let Some(problem) = arms::too_many(&file, study.text().len()) {
+        return Err(study.diagnose_all(&[problem]));
+    }
     let drafts = arms::all(&file);
     // Parts that could not be read would give misleading errors about unknown names.
     if problems.is_empty() {

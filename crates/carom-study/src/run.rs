@@ -37,6 +37,7 @@ pub fn start(
     observe: &mut dyn FnMut(&Event),
     stop: &AtomicBool,
 ) -> Result<Outcome, StudyError> {
+    plan.fits_memory(jobs)?;
     create(plan, directory)?;
     resume(directory, jobs, observe, stop)
 }

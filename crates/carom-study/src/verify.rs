@@ -16,6 +16,7 @@ use carom_run::recording::{self, Options, Progress};
 
 use crate::error::StudyError;
 use crate::jobs::{Ended, Event, side_by_side};
+use crate::memory::fit;
 use crate::suite::{Item, Kind, Suite};
 
 /// How a suite is run.
@@ -72,6 +73,7 @@ impl Suite {
         }
         let named: Vec<Named> =
             units.iter().map(|u| Named { name: u.name.clone(), steps: u.case.time.steps() as u64 }).collect();
+        fit(units.iter().map(|unit| &unit.case), options.jobs)?;
         begin(&named);
         let order = order(&units, self.items.len(), options.fail_fast);
         // Set by Ctrl-C, and with `fail_fast` by the first miss.

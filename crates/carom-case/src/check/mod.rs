@@ -1,4 +1,4 @@
-//! Checks across tables: names and references, sides, dimensions, steps, memory.
+//! Checks across tables: names and references, sides, dimensions, steps.
 
 mod contact;
 mod expect;
@@ -7,7 +7,6 @@ mod friction;
 mod joined;
 mod linear;
 mod loads;
-mod memory;
 mod restitution;
 mod scheme;
 mod time;
@@ -45,7 +44,6 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
     check.fallback();
     check.linear();
     check.expects();
-    check.memory();
 }
 
 struct Check<'a> {

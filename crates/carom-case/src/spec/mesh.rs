@@ -7,6 +7,8 @@ use std::path::PathBuf;
 use carom_solid::{Element, generate};
 use serde::{Deserialize, Serialize};
 
+use super::polygon::area_within;
+
 /// Name of the side that is the whole boundary of a body in the plane, unless its mesh has a side
 /// of this name.
 pub const SKIN: &str = "skin";
@@ -308,7 +310,8 @@ impl MeshSpec {
                 let next = points.iter().cycle().skip(1);
                 let twice: f64 = points.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
                 let area = twice.abs() / 2.0;
-                let place = |r: &RefineSpec| filled(area.min(PI * (r.radius + 3.0 * r.size).powi(2)), r.size);
+                let place =
+                    |r: &RefineSpec| filled(area_within(points, r.near, r.radius + 3.0 * r.size), r.size);
                 nodes(filled(area, size) + refine.iter().map(place).sum::<f64>())
             }
             Self::File { nodes, cells, parts, .. } => {
@@ -348,6 +351,29 @@ impl MeshSpec {
                 let n = rings(radius, size);
                 (3.0 * n * n, 1.0 + 1.5 * k * n * (k * n + 1.0) + k * n)
             }
+        }
+    }
+
+    /// Layers of nodes along the longest extent of a shape, which bound the coupling between its
+    /// ends; none where the extents are not known.
+    pub fn layers(&self, element: Element) -> Option<f64> {
+        let k = element.degree() as f64;
+        let along = |cells: f64| k * cells + 1.0;
+        match *self {
+            Self::Interval { cells, .. } => Some(along(cells as f64)),
+            Self::Rectangle { cells, .. } => Some(along(cells.into_iter().max()? as f64)),
+            Self::Box { cells, .. } => Some(along(cells.into_iter().max()? as f64)),
+            Self::Cylinder { height, size, .. } | Self::Tube { height, size, .. } => {
+                Some(along(height / size))
+            }
+            // Each half of a ring couples both ends.
+            Self::Ring { inner, outer, size, .. } => Some(along(PI / 2.0 * (inner + outer) / size)),
+            Self::Extrusion { ref of, layers, .. } => {
+                let plane = generate::plane_of(element).and_then(|element| of.layers(element));
+                Some(plane.unwrap_or(1.0).max(along(layers as f64)))
+            }
+            Self::Ball { .. } | Self::Disc { .. } | Self::HalfDisc { .. } => None,
+            Self::Polygon { .. } | Self::File { .. } => None,
         }
     }
 }

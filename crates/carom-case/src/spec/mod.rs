@@ -8,6 +8,7 @@ mod load;
 mod mesh;
 mod obstacle;
 mod output;
+mod polygon;
 mod time;
 
 pub use body::{BodySpec, Law, MassKind, MaterialSpec, PlaceSpec, Plane, Volumetric};

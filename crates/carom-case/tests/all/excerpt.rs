@@ -101,3 +101,16 @@ fn the_file_of_an_extrusion_is_beside_the_case() {
     let mesh = &case["body"][0]["mesh"];
     assert_eq!((mesh["of"]["file"].as_str(), mesh.get("file").is_none()), (Some("a.msh"), true));
 }
+
+/// A number that does not change remains as it is written, in the file or in an override.
+#[test]
+fn numbers_remain_as_they_are_written() {
+    let text = "[[body]]\nname = \"a\"\n[time]\nend = 1.95e-3\nstep = 1e-4\n[output]\n";
+    let reduced = |end: f64| {
+        let excerpt = Excerpt { bodies: vec!["a".into()], end, ..Excerpt::default() };
+        excerpt.of(text, &["time.step=5e-5".to_owned()]).unwrap()
+    };
+    let whole = reduced(0.00195);
+    assert!(whole.contains("\nend = 1.95e-3\n") && whole.contains("\nstep = 5e-5\n"), "{whole}");
+    assert!(reduced(0.0019).contains("\nend = 0.0019\n"));
+}

@@ -5,6 +5,7 @@
 mod contact_messages;
 mod excerpt;
 mod files;
+mod memory;
 mod mesh_file;
 mod messages;
 mod misspelt;

@@ -29,7 +29,9 @@ const PASSED: f64 = 0.01;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AuditFailure {
     /// A node lies deeper than what was measured.
-    #[error("node {node} lies {depth:.3e} deep in body \"{body}\", while {measured:.3e} was measured")]
+    #[error(
+        "node {node} lies {depth:.3e} [length] deep in body \"{body}\", while {measured:.3e} [length] was measured"
+    )]
     Deeper {
         /// Global number.
         node: usize,
@@ -41,7 +43,7 @@ pub enum AuditFailure {
         measured: f64,
     },
     /// A node has passed through a body within a step.
-    #[error("node {node} passed through body \"{body}\" within a step, {depth:.3e} deep")]
+    #[error("node {node} passed through body \"{body}\" within a step, {depth:.3e} [length] deep")]
     Passed {
         /// Global number.
         node: usize,

@@ -39,7 +39,12 @@ const MARGIN: f64 = 0.3;
 /// The matrices of the bodies, factors of the frozen tangent and of the mass, and buffers of their
 /// solves.
 pub(crate) struct Direct {
-    pub matrices: Matrices,
+    /// Built when they are first needed.
+    matrices: Option<Matrices>,
+    /// The pattern of a lumped mass, which fills nothing when it is factored.
+    lumped: Option<Pattern>,
+    /// Diagonals of the mass and of the last tangent.
+    diagonals: [Vec<f64>; 2],
     /// The point of the tangent's factor.
     point: Option<Arc<Point>>,
     positive: bool,
@@ -59,10 +64,27 @@ pub(crate) struct Direct {
 }
 
 impl Direct {
+    /// out += K x over the free dofs, with the last tangent.
+    pub(crate) fn stiffness_product(&self, x: &[f64], out: &mut [f64]) {
+        if let Some(matrices) = &self.matrices {
+            matrices.stiffness_product(x, out);
+        }
+    }
+
     /// For the bodies of a model.
     pub(crate) fn new(model: &Model) -> Self {
+        let (d, n) = (model.dimension, model.free.len());
+        let is_between_nodes =
+            |node: usize| model.mass.row(node).any(|(other, mass)| other != node && mass != 0.0);
+        let is_lumped = !(0..model.mass.nodes()).any(is_between_nodes);
+        let of_node = |node: usize| -> f64 {
+            model.mass.row(node).filter(|(other, _)| *other == node).map(|(_, mass)| mass).sum()
+        };
+        let mass = model.free.iter().map(|dof| of_node(dof / d)).collect();
         Self {
-            matrices: Matrices::new(model),
+            matrices: None,
+            lumped: is_lumped.then(|| Pattern::from_entries(n, [])),
+            diagonals: [mass, vec![0.0; n]],
             point: None,
             positive: false,
             tangent: None,
@@ -89,7 +111,7 @@ impl Direct {
     ) -> Result<bool, LinearError> {
         self.point = None;
         let Self { matrices, latest, .. } = self;
-        let Matrices { pattern, mass, stiffness, follower, .. } = matrices;
+        let Matrices { pattern, mass, stiffness, follower, .. } = built(matrices, model);
         let elimination = elimination(latest, model, pattern, &point.boundary)?;
         let single = !double && single_is_enough(pattern, point, mass, stiffness);
         let precision = if single { Precision::Single } else { Precision::Double };
@@ -177,11 +199,12 @@ impl Preconditioner for Direct {
     }
 
     fn diagonals(&self) -> &[Vec<f64>; 2] {
-        &self.matrices.diagonals
+        &self.diagonals
     }
 
     fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
-        self.matrices.assemble(model, y)
+        self.diagonals[1] = built(&mut self.matrices, model).assemble(model, y)?;
+        Ok(())
     }
 
     fn of(&self, point: &Arc<Point>) -> Option<bool> {
@@ -189,18 +212,21 @@ impl Preconditioner for Direct {
     }
 
     fn form(&mut self, model: &Model, point: &Arc<Point>, double: bool) -> Result<bool, Rejected> {
-        self.matrices.assemble(model, &point.at)?;
+        self.assemble(model, &point.at)?;
         if point.follower != 0.0 {
-            self.matrices.assemble_loads(model, point.time, &point.at)?;
+            built(&mut self.matrices, model).assemble_loads(model, point.time, &point.at)?;
         }
         Ok(self.factor(model, point, double)?)
     }
 
     fn form_mass(&mut self, model: &Model, rows: &Constraints) -> Result<(), Rejected> {
-        let Self { matrices, latest, .. } = self;
-        let (pattern, mass) = match &matrices.diagonal {
-            Some(diagonal) => (diagonal, &matrices.diagonals[0]),
-            None => (&matrices.pattern, &matrices.mass),
+        let Self { matrices, lumped, diagonals, latest, .. } = self;
+        let (pattern, mass) = match lumped {
+            Some(pattern) => (&*pattern, &diagonals[0]),
+            None => {
+                let Matrices { pattern, mass, .. } = built(matrices, model);
+                (&*pattern, &*mass)
+            }
         };
         let current = self.point.as_ref().filter(|point| spans(&point.boundary, rows));
         let boundary = current.map_or_else(|| rows.nodes(), |point| point.boundary.clone());
@@ -287,6 +313,11 @@ impl Preconditioner for Direct {
         self.solution = x;
         if finite { Ok(()) } else { Err(LinearError::Inaccurate { size: unknowns, residual: f64::NAN }) }
     }
+}
+
+/// The matrices, built unless that was done.
+fn built<'a>(matrices: &'a mut Option<Matrices>, model: &Model) -> &'a mut Matrices {
+    matrices.get_or_insert_with(|| Matrices::new(model))
 }
 
 /// The elimination order of a pattern with these nodes last; `latest`: those of recent ones.

@@ -2,8 +2,9 @@
 //! ∂f_int/∂y at given positions, and the symmetric part of K_ext = ∂f_ext/∂y of follower pressures
 //! (equal to it if the pressure is uniform and the side closed or constrained at its ends).
 //!
-//! The pattern is built once, with the slots of every cell. It excludes contact, whose rows act on
-//! the last unknowns of a factor (`direct.rs`).
+//! The pattern is built once, with the slots of every cell, where a tangent or a mass with entries
+//! between nodes is needed: an explicit run, whose mass is lumped, has none. It excludes contact,
+//! whose rows act on the last unknowns of a factor (`direct.rs`).
 
 use carom_algebra::Pattern;
 
@@ -19,12 +20,8 @@ pub(crate) struct Matrices {
     pub pattern: Pattern,
     pub stiffness: Vec<f64>,
     pub mass: Vec<f64>,
-    /// The pattern of a lumped mass, which fills nothing when it is factored; else that of all.
-    pub diagonal: Option<Pattern>,
     /// Empty without follower loads.
     pub follower: Vec<f64>,
-    /// Diagonals of both, cached.
-    pub diagonals: [Vec<f64>; 2],
     /// Slots of each cell's pairs of dofs, the lower triangle by rows, cell after cell over all
     /// bodies.
     slots: Vec<u32>,
@@ -65,13 +62,8 @@ impl Matrices {
             }
         });
         let follower = vec![0.0; if model.loads.follow_sides() { pattern.len() } else { 0 }];
-        let diagonals = [diagonal_of(&pattern, &mass), vec![0.0; model.free.len()]];
-        let n = pattern.size();
-        let is_diagonal =
-            (0..n).all(|j| mass[pattern.starts[j] + 1..pattern.starts[j + 1]].iter().all(|m| *m == 0.0));
-        let diagonal = is_diagonal.then(|| Pattern::from_entries(n, (0..n).map(|i| (i, i))));
         let stiffness = vec![0.0; pattern.len()];
-        Self { pattern, stiffness, mass, diagonal, follower, diagonals, slots, facet_slots }
+        Self { pattern, stiffness, mass, follower, slots, facet_slots }
     }
 
     /// Assembles the symmetric part of the loads' tangent at a time and positions `y`, which matter
@@ -97,11 +89,11 @@ impl Matrices {
         self.pattern.multiply_add(&self.stiffness, x, out);
     }
 
-    /// Assembles the tangent of the internal forces at positions.
+    /// Assembles the tangent of the internal forces at positions; returns its diagonal.
     ///
     /// # Errors
     /// If a cell is inverted there.
-    pub(crate) fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
+    pub(crate) fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<Vec<f64>, Rejected> {
         self.stiffness.fill(0.0);
         let (mut slots, stiffness) = (self.slots.iter(), &mut self.stiffness);
         each_tangent(model, y, |part, _, tangent| {
@@ -114,14 +106,9 @@ impl Matrices {
                 }
             }
         })?;
-        self.diagonals[1] = diagonal_of(&self.pattern, &self.stiffness);
-        Ok(())
+        // The first entry of each column of the lower triangle.
+        Ok(self.pattern.starts[..self.pattern.size()].iter().map(|&slot| self.stiffness[slot]).collect())
     }
-}
-
-/// The diagonal of a symmetric matrix: the first entry of each column of its lower triangle.
-fn diagonal_of(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
-    pattern.starts[..pattern.size()].iter().map(|&slot| values[slot]).collect()
 }
 
 /// The pattern of the bodies: unknowns of every two nodes that share a cell. Nodes are paired

@@ -21,8 +21,7 @@ pub struct Mass {
 impl Mass {
     /// Assembles the bodies' masses, consistent or lumped: `lumped` has one entry per body.
     pub fn assemble(dimension: usize, parts: &[BodyInstance], lumped: &[bool]) -> Self {
-        let count: usize = parts.iter().map(|p| p.body.mesh().nodes.len()).sum();
-        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
+        let mut mass = Self::zero(dimension, parts, lumped);
         for (part, lumped) in parts.iter().zip(lumped) {
             let mesh = part.body.mesh();
             let n = mesh.element.nodes();
@@ -40,35 +39,78 @@ impl Mass {
                 let nodes = mesh.cell(cell);
                 for p in 0..n {
                     for q in 0..n {
-                        if local[p * n + q] != 0.0 {
-                            rows[part.first_node + nodes[p]]
-                                .push((part.first_node + nodes[q], local[p * n + q]));
-                        }
+                        mass.add(part.first_node + nodes[p], part.first_node + nodes[q], local[p * n + q]);
                     }
                 }
             }
         }
         for part in parts.iter().filter(|part| part.point_mass > 0.0) {
-            rows[part.first_node].push((part.first_node, part.point_mass));
+            mass.add(part.first_node, part.first_node, part.point_mass);
         }
-        let mut mass = Self { starts: vec![0], directions: dimension, ..Self::default() };
-        for row in &mut rows {
-            row.sort_by_key(|e| e.0);
-            for &(column, value) in row.iter() {
-                if mass.columns.len() > mass.starts[mass.starts.len() - 1]
-                    && mass.columns.last() == Some(&(column as u32))
-                {
-                    if let Some(last) = mass.values.last_mut() {
-                        *last += value;
+        mass.without_zeros()
+    }
+
+    /// The structure: the nodes that share a cell with each node, of lumped bodies the node alone.
+    fn zero(dimension: usize, parts: &[BodyInstance], lumped: &[bool]) -> Self {
+        let count: usize = parts.iter().map(|p| p.body.mesh().nodes.len()).sum();
+        let mut rows: Vec<Vec<u32>> = vec![Vec::new(); count];
+        for (part, lumped) in parts.iter().zip(lumped) {
+            let mesh = part.body.mesh();
+            let number = |node: &usize| (part.first_node + node) as u32;
+            if part.point_mass > 0.0 {
+                rows[part.first_node].push(number(&0));
+            }
+            for nodes in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
+                for node in nodes {
+                    let row = &mut rows[part.first_node + node];
+                    if *lumped {
+                        row.clear();
+                        row.push(number(node));
+                    } else {
+                        row.extend(nodes.iter().map(number));
                     }
-                } else {
-                    mass.columns.push(column as u32);
-                    mass.values.push(value);
                 }
             }
+        }
+        let mut mass = Self { starts: vec![0], directions: dimension, ..Self::default() };
+        for mut row in rows {
+            row.sort_unstable();
+            row.dedup();
+            mass.columns.extend(row);
             mass.starts.push(mass.columns.len());
         }
+        mass.columns.shrink_to_fit();
+        mass.values = vec![0.0; mass.columns.len()];
         mass
+    }
+
+    /// Adds to an entry; none that the structure lacks is other than zero.
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        let range = self.starts[row]..self.starts[row + 1];
+        if let Ok(place) = self.columns[range.clone()].binary_search(&(column as u32)) {
+            self.values[range][place] += value;
+        }
+    }
+
+    /// Without the entries that are zero.
+    fn without_zeros(mut self) -> Self {
+        let mut kept = 0;
+        let mut start = 0;
+        for row in 1..self.starts.len() {
+            let end = self.starts[row];
+            for k in start..end {
+                if self.values[k] != 0.0 {
+                    self.columns[kept] = self.columns[k];
+                    self.values[kept] = self.values[k];
+                    kept += 1;
+                }
+            }
+            start = end;
+            self.starts[row] = kept;
+        }
+        self.columns.truncate(kept);
+        self.values.truncate(kept);
+        self
     }
 
     /// Entries (row, column, value) of a node's row, columns ascending.

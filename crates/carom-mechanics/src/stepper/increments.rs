@@ -2,7 +2,7 @@
 //! admissible (`explicit.rs`). With linearised gaps they solve a complementarity problem with
 //! G M⁻¹Gᵀ, with friction one of both forces; the linearisation is repeated.
 
-use carom_algebra::{Kind, complementarity, coulomb, proximal};
+use carom_algebra::{Kind, LinearError, complementarity, coulomb, proximal};
 use carom_contact::{Law, Pair, Pairing, Rows, Tangential, inner};
 
 use super::StepReport;
@@ -175,7 +175,7 @@ impl Increments<'_> {
     fn find_impulses(&self, dependence: &mut Dependence, scratch: &mut Scratch) -> Result<(), Rejected> {
         let (model, dt) = (self.model, self.dt);
         let Scratch { free, at, pairings, rows, impulses, places, acting, kinds, .. } = scratch;
-        let (mut matrix, mut right) = self.matrix(acting, at);
+        let (mut matrix, mut right) = self.matrix(acting, at)?;
         for (i, &(k, p)) in places.iter().enumerate() {
             let leaves = pairings[k].pairs[p].start.is_some();
             let restitution = if leaves { 0.0 } else { model.contacts[k].restitution };
@@ -248,9 +248,14 @@ impl Increments<'_> {
     }
 
     /// G M⁻¹Gᵀ over these rows, and room for a right-hand side. `column` is overwritten by zeros.
-    fn matrix(&self, rows: &Rows, column: &mut [f64]) -> (Vec<f64>, Vec<f64>) {
+    ///
+    /// # Errors
+    /// If there is not enough memory for it: it is dense.
+    fn matrix(&self, rows: &Rows, column: &mut [f64]) -> Result<(Vec<f64>, Vec<f64>), LinearError> {
         let count = rows.len();
-        let mut matrix = vec![0.0; count * count];
+        let mut matrix: Vec<f64> = Vec::new();
+        matrix.try_reserve_exact(count * count).map_err(|_| LinearError::Memory { size: count })?;
+        matrix.resize(count * count, 0.0);
         column.fill(0.0);
         for (j, row) in rows.iter().enumerate() {
             for (dof, slope) in row.entries() {
@@ -261,7 +266,7 @@ impl Increments<'_> {
             }
             row.entries().for_each(|(dof, _)| column[dof] = 0.0);
         }
-        (matrix, vec![0.0; count])
+        Ok((matrix, vec![0.0; count]))
     }
 }
 

@@ -4,6 +4,7 @@ use carom_case::{Case, Overlap, PrimarySpec, Problem};
 use carom_mechanics::model::Model;
 
 use super::side::{coordinates, owner};
+use crate::quantity::{at_least, quantity};
 
 /// Initial overlaps of the bodies of a case deeper than round-off: a problem per contact with the
 /// deepest point.
@@ -11,6 +12,7 @@ use super::side::{coordinates, owner};
 /// Closing an overlap within one step would drive the bodies apart, so it is an error.
 pub(crate) fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
     let x = &model.initial_position;
+    let unit = &case.units.length;
     let problem = |(k, node, depth): (usize, usize, f64)| {
         let place = coordinates(&x[node * model.dimension..(node + 1) * model.dimension]);
         let name = &model.contacts[k].name;
@@ -25,12 +27,13 @@ pub(crate) fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
         };
         Problem::new(
             format!("contact[{}]", case.contacts[k].entry),
-            format!("the bodies of contact \"{name}\" overlap at the start by {depth:.6e}"),
+            format!("the bodies of contact \"{name}\" overlap at the start by {}", quantity(depth, unit)),
             format!(
                 "the node of \"{owner}\" at {place} lies {inside}; closing the overlap within one step would drive the bodies apart"
             ),
             format!(
-                "move a body by at least {depth:.6e}, {turn}or give the contact overlap = \"relax\" or \"keep-gap\""
+                "move a body by at least {}, {turn}or give the contact overlap = \"relax\" or \"keep-gap\"",
+                at_least(depth, unit)
             ),
         )
     };

@@ -7,6 +7,7 @@ use carom_mechanics::{LogEvent, Overlap as Undeclared};
 use carom_record::Event;
 
 use crate::build::side::owner;
+use crate::quantity::quantity;
 
 /// Repairs of meshes that were read from files.
 pub(super) fn repairs(case: &Case) -> Vec<Event> {
@@ -25,33 +26,40 @@ pub(super) fn relaxed(case: &Case, strain: f64) -> Vec<Event> {
     let relaxes = |contact: &&ContactSpec| contact.overlap == Overlap::Relax && case.initial.is_none();
     let event = |contact: &ContactSpec| {
         let message = format!(
-            "contact \"{}\": its overlap was closed before the start; the bodies then store {strain:.6e}",
-            contact.name
+            "contact \"{}\": its overlap was closed before the start; the bodies then store {}",
+            contact.name,
+            quantity(strain, &case.labels().energy)
         );
         Event::new(0, 0.0, "relaxed", message).with("contact", contact.name.as_str()).with("strain", strain)
     };
     case.contacts.iter().filter(relaxes).map(event).collect()
 }
 
-/// An event of the step being computed.
+/// An event with the units of the case.
+pub(super) fn in_units(case: &Case, event: Event) -> Event {
+    Event { message: case.in_units(&event.message), ..event }
+}
+
+/// An event of the step being computed; quantities have their dimension in brackets.
 pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
     let contact_name = |k: usize| model.contacts[k].name.as_str();
     let body_of = |node: usize| owner(&model.parts, node).map_or("?", |part| part.name.as_str());
     match event {
         LogEvent::Rejected { time, dt, rejected } => {
-            Event::new(step, *time, "rejected", format!("step of {dt:.6e} rejected: {rejected}"))
+            Event::new(step, *time, "rejected", format!("step of {dt:.6e} [time] rejected: {rejected}"))
                 .with("dt", *dt)
                 .with("reason", rejected.kind())
         }
         LogEvent::Fallback { time, dt, reason } => {
             let message = format!(
-                "step of {dt:.6e} taken by the fallback, backward Euler with contact implicit in velocity; without it: {reason}"
+                "step of {dt:.6e} [time] taken by the fallback, backward Euler with contact implicit in velocity; without it: {reason}"
             );
             Event::new(step, *time, "fallback", message).with("dt", *dt)
         }
         LogEvent::ActiveSet { time, contact, node, active, met } => {
             let verb = if *active { "becomes active in" } else { "leaves" };
-            let met_at = met.map_or_else(String::new, |met| format!("; paths crossed at t = {met:.9e}"));
+            let met_at =
+                met.map_or_else(String::new, |met| format!("; paths crossed at t = {met:.9e} [time]"));
             let message = format!(
                 "node {node} of \"{}\" {verb} contact \"{}\"{met_at}",
                 body_of(*node),
@@ -109,19 +117,21 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             Event::new(step, *time, "ambiguous", message).with("regularity", *regularity)
         }
         LogEvent::Projection { time, jump } => {
-            let message =
-                format!("velocities projected at contact activation: kinetic energy changes by {jump:.6e}");
+            let message = format!(
+                "velocities projected at contact activation: kinetic energy changes by {jump:.6e} [energy]"
+            );
             Event::new(step, *time, "projection", message).with("kinetic_jump", *jump)
         }
         LogEvent::Begun { time, jump } => {
             let message = format!(
                 "an explicit step of another length is begun in contact: the contact force of the half step before it \
-                 changes the kinetic energy by {jump:.6e}, booked as its work"
+                 changes the kinetic energy by {jump:.6e} [energy], booked as its work"
             );
             Event::new(step, *time, "step-begun", message).with("kinetic_jump", *jump)
         }
         LogEvent::Restitution { time, jump } => {
-            let message = format!("restitution where contact ends: kinetic energy changes by {jump:.6e}");
+            let message =
+                format!("restitution where contact ends: kinetic energy changes by {jump:.6e} [energy]");
             Event::new(step, *time, "restitution", message).with("kinetic_jump", *jump)
         }
     }

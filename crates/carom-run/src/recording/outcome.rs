@@ -74,6 +74,8 @@ pub struct Outcome {
     pub directory: PathBuf,
     /// How it ended.
     pub end: End,
+    /// Why it did not finish, with the units of the case.
+    pub reason: Option<String>,
     /// Steps done.
     pub steps: u64,
     /// Time reached.

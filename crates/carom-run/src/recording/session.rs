@@ -12,7 +12,7 @@ use carom_record::{Event, Manifest, Recorder, Run, Status};
 
 use super::columns::{Since, center_weights, row};
 use super::fields::field_set;
-use super::log::{entry, relaxed, repairs};
+use super::log::{entry, in_units, relaxed, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::pressure::Surfaces;
 use super::rows::contact_rows;
@@ -152,11 +152,16 @@ impl<'a> Session<'a> {
             }
             let step = self.simulation.state().step + u64::from(advanced.is_err());
             for event in &report.events {
-                self.writer.log(&entry(self.simulation.model(), step, event))?;
+                self.writer.log(&in_units(self.case, entry(self.simulation.model(), step, event)))?;
             }
             self.count(&report);
             if let Err(stopped) = advanced {
-                let event = Event::new(step, self.simulation.state().time, "stopped", stopped.to_string());
+                let event = Event::new(
+                    step,
+                    self.simulation.state().time,
+                    "stopped",
+                    self.case.in_units(&stopped.to_string()),
+                );
                 self.writer.log(&event)?;
                 (end, last) = (End::Stopped(stopped), report);
                 break;
@@ -375,7 +380,7 @@ impl<'a> Session<'a> {
         (manifest.status, manifest.reason) = match &end {
             End::Finished => (Status::Finished, None),
             End::Interrupted => (Status::Stopped, Some("stopped by the user".into())),
-            End::Stopped(stopped) => (Status::Failed, Some(stopped.to_string())),
+            End::Stopped(stopped) => (Status::Failed, Some(self.case.in_units(&stopped.to_string()))),
         };
         if let End::Stopped(stopped) = &end {
             self.explain(stopped, last, options, interrupted)?;
@@ -398,6 +403,7 @@ impl<'a> Session<'a> {
             time: state.time,
             wall,
             remarks,
+            reason: self.manifest.reason.clone(),
             end,
         };
         self.writer.finish(&mut self.manifest)?;

@@ -144,6 +144,7 @@ pub fn resume_with(
         return Ok(Outcome {
             directory: directory.to_path_buf(),
             end: End::Finished,
+            reason: None,
             steps: steps as u64,
             time: case.time.end,
             wall: 0.0,

@@ -72,7 +72,7 @@ fn kept_gaps_are_the_same_after_a_resume() {
 fn an_overlap_is_refused_by_default() {
     let refused = Setup::new(&case(BARS, &["contact.fit.overlap=refuse"])).start();
     let problems = refused.err().unwrap();
-    assert!(problems[0].what.contains("overlap at the start by 1.000000e-3"), "{problems:?}");
+    assert!(problems[0].what.contains("overlap at the start by 0.001 m"), "{problems:?}");
 }
 
 /// Of a ring on a rigid core a little larger than its hole. Of linear elasticity, it can turn and

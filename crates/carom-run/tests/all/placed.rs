@@ -87,7 +87,7 @@ fn bodies_must_not_overlap_where_they_start() {
     };
     assert_eq!(
         problems(&[LOWER]),
-        ["contact[0]: the bodies of contact \"strike\" overlap at the start by 3.000000e-2"]
+        ["contact[0]: the bodies of contact \"strike\" overlap at the start by 0.03 m"]
     );
     assert_eq!(
         problems(&["body.tube.position=[\"X\", \"1.04 - Y\"]"]),

@@ -8,6 +8,8 @@ mod common;
 mod export;
 #[cfg(unix)]
 mod input;
+#[cfg(target_os = "linux")]
+mod memory;
 mod mesh;
 mod misspelt;
 mod mutants;

@@ -127,7 +127,7 @@ pub(crate) fn explain(
     let place = place(model, state, stopped, report, trace);
     let stop = Stop {
         kind: kind.into(),
-        reason: stopped.to_string(),
+        reason: case.in_units(&stopped.to_string()),
         step: state.step + 1,
         time,
         dt,

@@ -135,7 +135,7 @@ impl Trials<'_> {
             }
             let mut report = GridReport::default();
             if let Err(stopped) = simulation.advance(&mut report) {
-                break Some(stopped.to_string());
+                break Some(self.case.in_units(&stopped.to_string()));
             }
             let iterations = 1 + u64::from(report.newton) + REJECTED * u64::from(report.rejected);
             spent += iterations * self.effort.unknowns;

@@ -124,6 +124,9 @@ impl From<StudyError> for Failure {
             },
             error => {
                 let help = error.cure().unwrap_or_default();
+                if matches!(error, StudyError::Memory { .. }) {
+                    return Self::System { what: format!("{error}: {help}") };
+                }
                 Self::argument(error.to_string(), help)
             }
         }

@@ -166,10 +166,10 @@ pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> 
 /// The report, the extremes of the probes and the expectations of a run that ended.
 fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failure> {
     let page = page(&done, options)?;
-    if let recording::End::Stopped(reason) = &done.end {
+    if let recording::End::Stopped(_) = &done.end {
         let (tried, help) = help_after(&done.directory)?;
         return Err(Failure::Stopped {
-            reason: reason.to_string(),
+            reason: done.reason.unwrap_or_default(),
             tried,
             help,
             page: page.is_some(),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use carom::case::{
     Case, Document, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
-    SurfaceSpec,
+    SurfaceSpec, gibibytes,
 };
 use carom::stability::SAFETY;
 use carom_study::Plan;
@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let facts = simulation::facts(&case, &document)?;
     if arguments.json {
-        let event = serde_json::json!({ "event": "check", "case": case, "model": facts, "warnings": facts.warnings, "overlap": overlap.nodes });
+        let event = serde_json::json!({ "event": "check", "case": case, "model": facts, "memory": case.memory(), "warnings": facts.warnings, "overlap": overlap.nodes });
         out::event(&event)?;
     } else if !console::is_quiet() {
         out::line(&table(&case, &facts))?;
@@ -119,6 +119,8 @@ fn study(arguments: &Arguments, document: &Document) -> Result<Exit, Failure> {
     }
     let plan = super::plan(document, &arguments.case)?;
     let Plan { manifest, arms } = &plan;
+    let jobs = super::parallel("--jobs", None)?;
+    plan.fits_memory(jobs)?;
     if arguments.json {
         out::event(
             &serde_json::json!({ "event": "check", "study": manifest, "warnings": warnings(&plan.warnings(), manifest) }),
@@ -142,6 +144,8 @@ fn study(arguments: &Arguments, document: &Document) -> Result<Exit, Failure> {
         let runs = arms.len() + manifest.members.len();
         lines.push(format!("  ensemble {}: {runs} runs in all", ensemble.words()));
     }
+    let [one, several] = plan.memory(jobs).map(gibibytes);
+    lines.push(format!("  memory   about {one} for the largest run, {several} for {jobs} at once"));
     lines.extend(
         plan.warnings().iter().map(|(w, arms)| console::warning("  warning  ", &of_arms(arms, manifest), w)),
     );
@@ -221,6 +225,7 @@ fn table(case: &Case, facts: &Facts) -> String {
             SAFETY
         ));
     }
+    lines.push(format!("  memory   about {} for a run", gibibytes(case.memory().total())));
     lines.extend(facts.warnings.iter().map(|warning| console::warning("  warning  ", "", warning)));
     lines.join("\n")
 }

@@ -35,9 +35,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         if reduced.steps == 1 { "" } else { "s" },
         summary::short(reduced.time)
     )];
-    let list = |names: &[String]| if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
-    lines.push(format!("  removed    {}", list(&reduced.removed)));
-    lines.push(format!("  remaining  {}", list(&reduced.remaining)));
+    let removed = match &reduced.removed[..] {
+        [] => format!("nothing: {}", carom::NEEDED),
+        removed => removed.join(", "),
+    };
+    lines.push(format!("  removed    {removed}"));
+    lines.push(format!("  remaining  {}", reduced.remaining.join(", ")));
     if let Some(reason) = &reduced.reason {
         lines.push(format!("  run again: {reason}"));
     }

@@ -1,0 +1,103 @@
+//! The memory that is left for this process.
+
+use std::path::{Path, PathBuf};
+
+/// Bytes of memory that this process may still use: what is free on the machine, what is left of
+/// its limits of address space and data (`ulimit -v`, `-d`), and of the control groups that it
+/// belongs to. None where the system reports nothing of this (it is read from `/proc`).
+pub fn available_memory() -> Option<f64> {
+    let read = |path: &str| std::fs::read_to_string(path).unwrap_or_default();
+    let status = read("/proc/self/status");
+    let limits = read("/proc/self/limits");
+    let kibibytes = |text: &str, name: &str| Some(1024.0 * after(text, name)?);
+    let left =
+        |limit: &str, used: &str| Some(after(&limits, limit)? - kibibytes(&status, used).unwrap_or_default());
+    [
+        kibibytes(&read("/proc/meminfo"), "MemAvailable:"),
+        left("Max address space", "VmSize:"),
+        left("Max data size", "VmData:"),
+    ]
+    .into_iter()
+    .flatten()
+    .chain(groups(&read("/proc/self/cgroup"), Path::new("/sys/fs/cgroup")))
+    .reduce(f64::min)
+    .map(|bytes| bytes.max(0.0))
+}
+
+/// What is left of every limited control group in `/proc/self/cgroup`, and of those that contain
+/// it. In a container the mounted tree begins at the group, and its path there may not exist.
+fn groups(own: &str, mounted: &Path) -> Vec<f64> {
+    let mut left = Vec::new();
+    for line in own.lines() {
+        let mut parts = line.splitn(3, ':').skip(1);
+        let (Some(controllers), Some(path)) = (parts.next(), parts.next()) else { continue };
+        let names = match controllers {
+            "" => ["memory.max", "memory.current", "inactive_file "],
+            list if list.split(',').any(|name| name == "memory") => {
+                ["memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "]
+            }
+            _ => continue,
+        };
+        let root = if controllers.is_empty() { mounted.to_owned() } else { mounted.join("memory") };
+        let path = path.trim_start_matches('/');
+        let folders = Path::new(path).ancestors().map(|folder| root.join(folder));
+        left.extend(folders.filter_map(|folder| left_of_group(&folder, names)));
+    }
+    left
+}
+
+/// The limit of a group minus what cannot be reclaimed: its files that were not read lately make
+/// room for a process.
+fn left_of_group(folder: &PathBuf, [limit, used, cached]: [&str; 3]) -> Option<f64> {
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
+    let number = |name: &str| read(name)?.trim().parse::<f64>().ok();
+    let cached = after(&read("memory.stat").unwrap_or_default(), cached).unwrap_or_default();
+    Some(number(limit)? - (number(used).unwrap_or_default() - cached).max(0.0))
+}
+
+/// The number after a name at the start of a line; none for a word such as `unlimited`.
+fn after(text: &str, name: &str) -> Option<f64> {
+    text.lines().find_map(|line| line.strip_prefix(name))?.split_whitespace().next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_of_the_system() {
+        let limits =
+            "Limit          Soft Limit  Hard Limit  Units\nMax address space   2048  unlimited  bytes\n";
+        assert_eq!(after(limits, "Max address space"), Some(2048.0));
+        assert_eq!(after("Max address space   unlimited  unlimited  bytes", "Max address space"), None);
+        assert_eq!(after("MemTotal: 5 kB\nMemAvailable:  3 kB\n", "MemAvailable:"), Some(3.0));
+    }
+
+    /// Files of the kernel as a group of version 2, in a group with a smaller limit, and as groups
+    /// of version 1 have them.
+    #[test]
+    fn groups_and_those_around_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |path: &str, text: &str| {
+            let path = folder.path().join(path);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        };
+        write("user/job/memory.max", "9000\n");
+        write("user/job/memory.current", "1000\n");
+        write("user/job/memory.stat", "anon 7\ninactive_anon 9\ninactive_file 300\nactive_file 20\n");
+        write("user/memory.max", "5000\n");
+        write("user/memory.current", "1500\n");
+        write("memory.max", "max\n");
+        assert_eq!(groups("0::/user/job\n", folder.path()), [9000.0 - 700.0, 5000.0 - 1500.0]);
+        assert_eq!(groups("0::/\n", folder.path()), [0.0; 0]);
+        // The path of a container's group does not exist inside it.
+        write("memory.max", "4000\n");
+        assert_eq!(groups("0::/elsewhere/x\n", folder.path()), [4000.0]);
+
+        write("memory/batch/memory.limit_in_bytes", "800\n");
+        write("memory/batch/memory.usage_in_bytes", "100\n");
+        write("memory/batch/memory.stat", "inactive_file 1\ntotal_inactive_file 40\n");
+        assert_eq!(groups("3:cpu,cpuacct:/batch\n4:memory:/batch\n", folder.path()), [740.0]);
+    }
+}

@@ -1,0 +1,58 @@
+//! Numbers with their units, for messages.
+
+/// Significant digits.
+const DIGITS: i32 = 4;
+
+/// A number to four digits, with its unit: `12.35 mm`.
+pub(crate) fn quantity(x: f64, unit: &str) -> String {
+    with_unit(rounded(x, f64::round), unit)
+}
+
+/// The same, rounded up: what is needed at least.
+pub(crate) fn at_least(x: f64, unit: &str) -> String {
+    with_unit(rounded(x, f64::ceil), unit)
+}
+
+/// The same, rounded down: what is allowed at most.
+pub(crate) fn at_most(x: f64, unit: &str) -> String {
+    with_unit(rounded(x, f64::floor), unit)
+}
+
+fn with_unit(x: f64, unit: &str) -> String {
+    let is_plain = x == 0.0 || (1e-3..1e6).contains(&x.abs());
+    let number = if is_plain { format!("{x}") } else { format!("{x:e}") };
+    format!("{number} {unit}").trim_end().to_owned()
+}
+
+/// A positive number to four digits by a rule of rounding; ten times that are round-off.
+fn rounded(x: f64, rule: impl Fn(f64) -> f64) -> f64 {
+    if x == 0.0 || !x.is_finite() {
+        return x;
+    }
+    let exponent = x.abs().log10().floor() as i32 - DIGITS + 1;
+    // Read from text: a product with a power of ten would have digits of its own.
+    let scaled: f64 = format!("{:.9}", x / 10f64.powi(exponent)).parse().unwrap_or(x);
+    format!("{}e{exponent}", rule(scaled)).parse().unwrap_or(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn four_digits_and_a_unit() {
+        assert_eq!(quantity(10.0, "mm"), "10 mm");
+        assert_eq!(quantity(0.001, "m"), "0.001 m");
+        assert_eq!(quantity(3.0 * 0.1, ""), "0.3");
+        assert_eq!(quantity(1.23456e-7, "s"), "1.235e-7 s");
+        assert_eq!(quantity(-1234567.0, "N"), "-1.235e6 N");
+        assert_eq!((quantity(0.0, "m"), quantity(f64::NAN, "m")), ("0 m".to_owned(), "NaN m".to_owned()));
+    }
+
+    #[test]
+    fn bounds_are_kept() {
+        assert_eq!(at_least(0.123412, "m"), "0.1235 m");
+        assert_eq!(at_least(0.1234, "m"), "0.1234 m");
+        assert_eq!(at_most(0.00123999, "s"), "0.001239 s");
+    }
+}
