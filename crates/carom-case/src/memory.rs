@@ -136,8 +136,8 @@ impl Case {
             body.name
         );
         let path = format!("body[{i}].mesh.{}", size_key(&body.mesh));
-        let mut help =
-            "use a coarser mesh or an element of lower degree, or give the process more memory".to_owned();
+        let lower = if body.element.degree() > 1 { " or an element of lower degree" } else { "" };
+        let mut help = format!("use a coarser mesh{lower}, or give the process more memory");
         if need.factors > need.total() / 2.0 && self.can_iterate() {
             let other = Self {
                 newton: crate::NewtonSpec { linear: crate::LinearRule::Iterative, ..self.newton.clone() },

@@ -20,5 +20,5 @@ pub use carom_mechanics::{
 };
 pub use overlap::{OverlapNode, overlapping};
 pub use reduce::{NEEDED, ReduceError, Reduced, reduce};
-pub use setup::{Setup, too_long};
+pub use setup::Setup;
 pub use warnings::{Entry, Found, Rule, WARNINGS, warnings};
