@@ -109,8 +109,9 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             Event::new(step, *time, "ambiguous", message).with("regularity", *regularity)
         }
         LogEvent::Projection { time, jump } => {
-            let message =
-                format!("velocities projected at contact activation: kinetic energy changes by {jump:.6e}");
+            let message = format!(
+                "velocities projected where contact or stick begins: kinetic energy changes by {jump:.6e}"
+            );
             Event::new(step, *time, "projection", message).with("kinetic_jump", *jump)
         }
         LogEvent::Begun { time, jump } => {
