@@ -30,7 +30,7 @@ use crate::velocity::cone::{AT_REST, Closed, Right};
 const ROUNDS: usize = 50;
 const ROUND_OFF: f64 = 1e-12;
 
-/// The step in which pairs closed.
+/// The step at whose end a state is projected.
 pub(crate) struct Impact<'a> {
     /// Its size.
     pub dt: f64,

@@ -118,7 +118,7 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
         }
         LogEvent::Projection { time, jump } => {
             let message = format!(
-                "velocities projected at contact activation: kinetic energy changes by {jump:.6e} [energy]"
+                "velocities projected where contact or stick begins: kinetic energy changes by {jump:.6e} [energy]"
             );
             Event::new(step, *time, "projection", message).with("kinetic_jump", *jump)
         }
