@@ -1,6 +1,6 @@
 //! The pressure of contact on both sides of every pair, at the nodes of their surfaces.
 //!
-//! The force λ∇g of a pair acts on its own node and on those of the facet opposite. With the
+//! The force −λ∇g of a pair acts on its own node and on those of the facet opposite. With the
 //! Bernstein polynomials Bᵢ of the facets, which span the shape functions φⱼ and are ≥ 0:
 //!
 //! ```text
@@ -183,9 +183,9 @@ fn forces(model: &Model, state: &State) -> BTreeMap<usize, Load> {
                 row.nodes.iter().zip(row.gradient.chunks_exact(model.dimension)).enumerate()
             {
                 let mut force = Vector::ZERO;
-                slope.iter().enumerate().for_each(|(i, slope)| force[i] = pair.lambda * slope);
+                slope.iter().enumerate().for_each(|(i, slope)| force[i] = -pair.lambda * slope);
                 // The sides are pressed by opposite forces.
-                let sign = if k < row.own { -1.0 } else { 1.0 };
+                let sign = if k < row.own { 1.0 } else { -1.0 };
                 forces
                     .entry(node)
                     .or_insert(Load::NONE)
