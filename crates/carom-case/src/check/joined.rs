@@ -10,7 +10,7 @@ use crate::{BodySpec, MeshSpec, mesh_file};
 /// The file of a body, and the dimension in which it is read.
 struct Source<'a> {
     spec: &'a MeshSpec,
-    name: &'a str,
+    name: std::borrow::Cow<'a, str>,
     hash: &'a str,
     group: &'a str,
     dimension: usize,
@@ -21,7 +21,7 @@ impl<'a> Source<'a> {
         let spec = body.mesh.source();
         let MeshSpec::File { file, surface, hash, .. } = spec else { return None };
         let dimension = if *spec == body.mesh { dimension } else { 2 };
-        Some(Self { spec, name: file.file_name()?.to_str()?, hash, group: surface, dimension })
+        Some(Self { spec, name: file.file_name()?.to_string_lossy(), hash, group: surface, dimension })
     }
 }
 
@@ -49,7 +49,7 @@ impl Check<'_> {
                 }
                 let Some((_, file)) = &read else { continue };
                 if let Ok(Some(joint)) = file.joint(a.dimension, [a.group, b.group]) {
-                    self.report(k, [first, second], b.name, a.dimension, &joint);
+                    self.report(k, [first, second], &b.name, a.dimension, &joint);
                 }
             }
         }

@@ -170,7 +170,7 @@ impl<'a, const D: usize> Group<'a, D> {
     }
 
     /// Notes how many facets of a group are not on the boundary.
-    pub(super) fn note_inside(&mut self, name: &str, inside: usize, outside: usize) {
+    fn note_inside(&mut self, name: &str, inside: usize, outside: usize) {
         if inside > 0 {
             let (group, facet) = (GROUPS[D - 1], ["points", "edges", "faces"][D - 1]);
             let all = inside + outside;

@@ -165,7 +165,7 @@ fn faults_say_where_and_what() {
 #[test]
 fn unsupported_cells_name_the_option() {
     let cell = |dimension: i64, kind: i64, nodes: i64| {
-        let rows: String = (1..=nodes).map(|n| format!("{n} {n} 0 0\n")).collect();
+        let rows = (1..=nodes).map(|n| format!("{n} {n} 0 0\n")).collect::<Vec<_>>().concat();
         let tags: Vec<String> = (1..=nodes).map(|n| n.to_string()).collect();
         let file = format!(
             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}\n{rows}$EndNodes\n\

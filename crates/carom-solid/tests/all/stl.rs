@@ -122,7 +122,7 @@ fn block(low: [f64; 3], high: [f64; 3], turn: usize) -> String {
         [[at(0), at(1), at(2)], [at(0), at(2), at(3)]]
     });
     let facet = |triangle: [[f64; 3]; 3]| {
-        let corners: String = triangle.iter().map(|[x, y, z]| format!("vertex {x} {y} {z}\n")).collect();
+        let corners = triangle.map(|[x, y, z]| format!("vertex {x} {y} {z}\n")).concat();
         format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
     };
     format!("solid\n{}endsolid\n", triangles.map(facet).collect::<String>())
