@@ -44,7 +44,7 @@ def recorded(carom, path, seconds):
             manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
         except (subprocess.TimeoutExpired, OSError):
             return None
-        return manifest["warnings"] if manifest["status"] in ("finished", "failed") else None
+        return manifest.get("warnings", []) if manifest["status"] in ("finished", "failed") else None
 
 
 def main():
@@ -52,7 +52,7 @@ def main():
     parser.add_argument("carom", type=pathlib.Path)
     parser.add_argument("--run", type=float, metavar="SECONDS")
     parser.add_argument("paths", nargs="*", default=[ROOT / "cases", ROOT / "docs/book"])
-    arguments = parser.parse_args()
+    arguments = parser.parse_intermixed_args()
     carom, counts = arguments.carom.resolve(), collections.Counter()
     for path in files(arguments.paths):
         is_study = "case" in tomllib.loads(path.read_text(encoding="utf-8"))

@@ -25,8 +25,8 @@ fn elements_of_the_body_that_is_crushed() {
 dimension = 3
 material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1.0, poisson = 0.3 }]
 body = [{ name = "block", material = "m", element = "Tet10", mesh = { shape = "box", min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 1.0], cells = [1, 1, 1] } }]
-support = [{ on = ["block.bottom"], fix = ["x", "y", "z"] }, { on = ["block.top"], fix = ["x", "y"], move = { z = "-2*t" } }]
-time = { end = 1.0, step = 0.25, scheme = { kind = "static" } }
+support = [{ on = ["block.bottom"], fix = ["x", "y", "z"] }, { on = ["block.top"], fix = ["x", "y"], move = { z = "-t*t" } }]
+time = { end = 2.0, step = 0.1, scheme = { kind = "bathe", rho_inf = 0.0 } }
 "#;
     let lower = |sets: &[&str]| -> Vec<String> {
         advice(crushed, sets).into_iter().filter(|what| what.contains("lower degree")).collect()
