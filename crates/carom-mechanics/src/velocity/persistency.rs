@@ -63,8 +63,8 @@ pub(crate) fn project(
     let slips = closed.slip_rates(&state.v);
     let stopping: Vec<Along> = slips.iter().map(|rate| rate.map(|rate| -rate)).collect();
     let right = Right { forces: &vec![0.0; dofs], gaps: &closing, slips: &stopping };
-    // Velocities at the end of a step ring from node to node, its slips do not: a pair goes on as in
-    // the step.
+    // Velocities at the end of a step ring from node to node, its slips do not: a pair goes on as
+    // in the step.
     let slid = closed.slid(state, impact.pairs);
     let jump = closed.impulse(model, state, &right, system)?;
     for i in (0..dofs).filter(|&i| !model.massless[i]) {
