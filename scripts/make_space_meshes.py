@@ -8,7 +8,8 @@ The gmsh wheel needs libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1.
 
 cases/space/half-ball.msh: the half y > 0 of a ball of radius 1 about the origin, refined at (0, 0, -1)
 for contact within a tenth of its radius. Volume `ball`; surfaces `sphere`, `cap` (the part of the
-sphere above z = 0.9) and `plane_y`.
+sphere above z = 0.9) and `plane_y`. half-ball-fine.msh: with half of the cells' size there, for contact
+within a twentieth of its radius.
 
 cases/space/half-space.msh: the quarter x, y > 0 of the half z < 0 of a ball of radius 0.4 about the
 origin, refined at the circle of radius 0.1 in z = 0, the edge of a contact. Volume `ground`; surfaces
@@ -30,7 +31,7 @@ from pathlib import Path
 import gmsh
 
 ROOT = Path(__file__).resolve().parent.parent
-FINE, RADIUS, GROWTH, COARSE = 0.045, 0.15, 0.4, 0.4
+GROWTH, COARSE = 0.4, 0.4
 
 
 def start(name):
@@ -41,8 +42,8 @@ def start(name):
     gmsh.model.add(name)
 
 
-def half_ball():
-    start("half-ball")
+def half_ball(name, fine, radius):
+    start(name)
     geo, field = gmsh.model.geo, gmsh.model.mesh.field
     center = geo.addPoint(0, 0, 0)
     west, east, back, low, high = (geo.addPoint(*x) for x in ((-1, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1)))
@@ -60,9 +61,9 @@ def half_ball():
     gmsh.model.addPhysicalGroup(2, [plane], name="plane_y")
     gmsh.model.addPhysicalGroup(3, [volume], name="ball")
     size = field.add("MathEval")
-    field.setString(size, "F", f"Min({COARSE}, {FINE} + {GROWTH}*Max(0, Sqrt(x*x + y*y + (z + 1)*(z + 1)) - {RADIUS}))")
+    field.setString(size, "F", f"Min({COARSE}, {fine} + {GROWTH}*Max(0, Sqrt(x*x + y*y + (z + 1)*(z + 1)) - {radius}))")
     mesh(size)
-    write(ROOT / "cases/space/half-ball.msh", lambda name, x: "cap" if name == "sphere" and min(x[2::3]) > 0.9 else name)
+    write(ROOT / f"cases/space/{name}.msh", lambda name, x: "cap" if name == "sphere" and min(x[2::3]) > 0.9 else name)
 
 
 def half_space(edge=0.1, reach=0.4):
@@ -191,7 +192,8 @@ def write(path, name_of=lambda name, _: name):
 
 def main():
     gmsh.initialize()
-    half_ball()
+    half_ball("half-ball", 0.045, 0.15)
+    half_ball("half-ball-fine", 0.0225, 0.075)
     half_space()
     punch()
     bracket()

@@ -260,8 +260,8 @@ impl Closed {
     }
 
     /// The accelerations: pairs with a slip rate slip in the direction in which they `slid`, or in
-    /// that of the rate; those that `slid` says stuck begin to slip where their traction would leave
-    /// the cone.
+    /// that of the rate; those that `slid` says stuck slip where their traction would leave the
+    /// cone.
     pub(crate) fn accelerate(
         &self,
         model: &Model,
