@@ -57,9 +57,6 @@ impl Mass {
         for (part, lumped) in parts.iter().zip(lumped) {
             let mesh = part.body.mesh();
             let number = |node: &usize| (part.first_node + node) as u32;
-            if part.point_mass > 0.0 {
-                rows[part.first_node].push(number(&0));
-            }
             for nodes in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
                 for node in nodes {
                     let row = &mut rows[part.first_node + node];
@@ -71,6 +68,10 @@ impl Mass {
                     }
                 }
             }
+        }
+        // Rigid obstacles come behind the bodies, and only bodies are lumped or not.
+        for part in parts.iter().filter(|part| part.point_mass > 0.0) {
+            rows[part.first_node].push(part.first_node as u32);
         }
         let mut mass = Self { starts: vec![0], directions: dimension, ..Self::default() };
         for mut row in rows {
