@@ -135,7 +135,11 @@ impl Case {
             "the mesh of `{}` is too large for the memory: {nodes:.3e} nodes in {cells:.3e} cells",
             body.name
         );
-        let path = format!("body[{i}].mesh.{}", size_key(&body.mesh));
+        let path = if self.refine > 1.0 {
+            "refine".to_owned()
+        } else {
+            format!("body[{i}].mesh.{}", size_key(&body.mesh))
+        };
         let lower = if body.element.degree() > 1 { " or an element of lower degree" } else { "" };
         let mut help = format!("use a coarser mesh{lower}, or give the process more memory");
         if need.factors > need.total() / 2.0 && self.can_iterate() {
@@ -166,8 +170,7 @@ impl Case {
 
     fn solver(&self) -> Solver {
         let time = &self.time;
-        let has_fallback = time.fallback != crate::Fallback::None;
-        if time.scheme.is_explicit() && !has_fallback {
+        if time.scheme.is_explicit() {
             return Solver::Explicit;
         }
         let unknowns = self.nodes() * self.dimension as f64;
@@ -279,9 +282,9 @@ fn points(element: Element) -> f64 {
     }
 }
 
-/// Cells that store quadrature points of their own: those of constant strain, those of quadrilaterals and hexahedra that are no parallelograms, and
-/// those of higher degree at a circle in the plane. In space the interior edges of a round body are
-/// curved, too.
+/// Cells that store quadrature points of their own: those of constant strain, those of
+/// quadrilaterals and hexahedra that are no parallelograms, and those of higher degree at a circle
+/// in the plane. In space the interior edges of a round body are curved, too.
 fn curved_cells(mesh: &MeshSpec, element: Element, cells: f64) -> f64 {
     let is_straight = match mesh {
         MeshSpec::Interval { .. } | MeshSpec::Rectangle { .. } | MeshSpec::Box { .. } => true,

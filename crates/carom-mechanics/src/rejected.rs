@@ -1,7 +1,7 @@
 //! Reasons for rejecting a step, with names, for the log and its readers.
 //!
-//! A quantity has its dimension in brackets, `0.1 [length]`: whoever knows the units of the case puts
-//! their labels there.
+//! A quantity has its dimension in brackets, `0.1 [length]`: whoever knows the units of the case
+//! puts their labels there.
 
 use carom_algebra::LinearError;
 use carom_contact::ContactError;

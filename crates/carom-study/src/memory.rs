@@ -62,7 +62,7 @@ fn largest_first(needs: impl Iterator<Item = Memory>) -> Vec<Memory> {
     needs
 }
 
-/// Of the largest ones.
+/// The largest ones together.
 fn at_once(needs: &[Memory], jobs: usize) -> f64 {
     let program = needs.first().map_or(0.0, |first| first.program);
     program + needs.iter().take(jobs).map(|need| need.total() - need.program).sum::<f64>()

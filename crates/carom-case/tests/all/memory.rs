@@ -50,16 +50,7 @@ fn a_factor_counts_where_it_is_made() {
     assert!(refused || need.parse().is_ok_and(|need: f64| need > 20.0 * GIB), "{need}");
 }
 
-/// The fallback of an explicit scheme is implicit, and factors.
-#[test]
-fn a_fallback_factors() {
-    let cells = "body.block.mesh.cells=[12, 12, 12]";
-    let explicit = total(SOLID, &[&EXPLICIT[..], &[cells]].concat());
-    let fallback = total(SOLID, &[&EXPLICIT[..], &[cells, "time.fallback=velocity"]].concat());
-    assert!(fallback > 3.0 * explicit, "{explicit:e} {fallback:e}");
-}
-
-/// A bar of a thousand cells along and two across is factored without the fill of a square.
+/// A bar with two cells across is factored without the fill of a square.
 #[test]
 fn a_slender_body_fills_little() {
     let cells = |cells: &str| {
@@ -77,8 +68,13 @@ fn what_is_too_large_is_refused_at_its_key() {
     let refused = |sets: &[&str]| Case::from_text(DISC, sets).unwrap_err().to_string();
     let mesh = refused(&["body.disc.mesh.size=1e-7"]);
     assert!(mesh.contains("the mesh of `disc` is too large for the memory"), "{mesh}");
-    let rows = refused(&["time.end=1e13"]);
-    for part in ["the record is too large for the memory: 5.333e15 rows", "GiB", "output.history_every"] {
+    let refined = refused(&["body.disc.mesh.size=0.5", "refine=1e5"]);
+    assert!(refined.contains("--set:1:8: the mesh of"), "{refined}");
+    let polygon = "body.disc.mesh={ shape = \"polygon\", points = [[0, 0], [1, 0], [1, 1]], size = 1e-9 }";
+    let polygon = refused(&[polygon, "contact.strike.secondary=disc.side1"]);
+    assert!(polygon.contains("the mesh of `disc` is too large"), "{polygon}");
+    let rows = refused(&["time.end=1.5e6"]);
+    for part in ["the record is too large for the memory: 8.000e8 rows", "GiB", "output.history_every"] {
         assert!(rows.contains(part), "{rows}");
     }
 }

@@ -269,10 +269,6 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["side1 and side3 of the polygon cross", "list its corners in order"],
     ),
     (
-        &["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 0], [1, 1]], size = 1e-9 }"],
-        &["the mesh of `prism` is too large"],
-    ),
-    (
         &["body.cylinder.mesh.refine=[{ near = [0.0, 0.0], size = 0.1 }]"],
         &["unknown key `refine`", "is a key of the case, mesh of shape \"polygon\""],
     ),
