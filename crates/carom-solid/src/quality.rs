@@ -29,8 +29,8 @@ impl Mesh {
     /// The cell with the smallest scaled Jacobian, the first of equals; none for bars.
     pub fn worst_cell(&self) -> Option<WorstCell> {
         match self.element.dimension() {
-            2 => of_shape!(2, self.element, worst(self), return None),
-            _ => of_shape!(3, self.element, worst(self), return None),
+            2 => of_shape!(2, self.element, worst(self), None),
+            _ => of_shape!(3, self.element, worst(self), None),
         }
     }
 }

@@ -11,9 +11,8 @@ pub(super) fn along(model: &Model, part: &BodyInstance, direction: &[f64; 3]) ->
     ends[1] - ends[0]
 }
 
-/// Twice the volume over the surface: the thickness of a plate, a strip, a ring or a tube, less than
-/// the smallest extent of a compact body. Facets are those of their corners; `volume` has the
-/// thickness of the plane, 1 in space.
+/// Twice the volume over the surface: the thickness of a plate, a ring or a tube, and less than the
+/// smallest extent of a compact body. Facets are those of their corners.
 pub(super) fn thickness(part: &BodyInstance, volume: f64) -> f64 {
     let mesh = part.body.mesh();
     2.0 * volume / mesh.skin().iter().map(|facet| size(mesh, facet)).sum::<f64>()

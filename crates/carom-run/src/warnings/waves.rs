@@ -31,7 +31,8 @@ pub(super) fn wave_speed(case: &Case, _: &Model) -> Vec<Found> {
     found
 }
 
-/// The way across is the thickness of the body. A start from another run may be in the middle of an event.
+/// The way across is the thickness of the body. A start from another run may be in the middle of an
+/// event.
 pub(super) fn short_run(case: &Case, model: &Model) -> Vec<Found> {
     let is_free = case.initial.is_none() && case.manufactured.is_none();
     if case.time.scheme.is_static() || !is_free {

@@ -137,7 +137,9 @@ fn half_ring() -> String {
     };
     let ends = ["1 2 3 3 1 2".to_owned(), format!("1 2 4 4 {} {}", 2 * AROUND + 1, 2 * AROUND + 2)];
     let elements: Vec<String> = (0..AROUND).flat_map(along).chain(ends).collect();
-    let numbered: String = elements.iter().enumerate().map(|(k, of)| format!("{} {of}\n", k + 1)).collect();
+    let numbered: Vec<String> =
+        elements.iter().enumerate().map(|(k, of)| format!("{} {of}\n", k + 1)).collect();
+    let numbered = numbered.concat();
     format!(
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n1 1 \"inner\"\n1 2 \"outer\"\n1 3 \"start\"\n1 4 \"end\"\n2 5 \"ring\"\n$EndPhysicalNames\n$Nodes\n{}\n{nodes}$EndNodes\n$Elements\n{}\n{numbered}$EndElements\n",
         2 * (AROUND + 1),

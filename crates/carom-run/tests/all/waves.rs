@@ -15,8 +15,8 @@ output = { fields_every = 0 }
 time = { end = 8.0, step = 0.02, scheme = { kind = "chung-hulbert", rho_inf = 0.8 } }
 "#;
 
-/// A stiff and heavy bar, which waves cross in 0.006, strikes a soft one with c = 1 and L = 1, which
-/// is held.
+/// A stiff and heavy bar, which waves cross in 0.006, strikes a soft one that is held, with c = 1
+/// and L = 1.
 const ON_SOFT: &str = r#"
 dimension = 1
 material = [
@@ -41,8 +41,8 @@ fn long_steps(run: &Run) -> Vec<String> {
     warnings.map(|warning| format!("{}: {}", warning.place, warning.what)).collect()
 }
 
-/// What the warning claims, by runs with a tenth of the step: the largest mean force changes by more
-/// than a fifth where it is given, and by less where it is not.
+/// Its claim, by runs with a tenth of the step: the largest mean force changes by more than a fifth
+/// where the warning is given, and by less where it is not.
 #[test]
 fn a_step_in_which_a_wave_crosses_the_softer_body() {
     let cases = [
