@@ -124,8 +124,8 @@ fn pressures_on_meshes_that_do_not_match() {
     };
     assert_eq!(written(&["probe.B.record=[\"uy\"]"]), "contact.csv and the fields");
     assert_eq!(written(&["probe.B.at=[0.0, -0.3]"]), "contact.csv and the fields");
-    assert_eq!(written(&["probe=[]", "output.fields_every=0"]), "contact.csv");
-    assert_eq!(written(&["probe=[]", "output.at_times=[0.1]"]), "contact.csv and the fields");
+    assert_eq!(written(&["expect=[]", "probe=[]", "output.fields_every=0"]), "contact.csv");
+    assert_eq!(written(&["expect=[]", "probe=[]", "output.at_times=[0.1]"]), "contact.csv and the fields");
     let blocks = |other: usize| {
         format!(
             r#"
