@@ -147,8 +147,8 @@ impl Case {
                 newton: crate::NewtonSpec { linear: crate::LinearRule::Iterative, ..self.newton.clone() },
                 ..self.clone()
             };
-            help +=
-                &format!("; newton.linear = \"iterative\" needs about {}", gibibytes(other.memory().total()));
+            let iterative = gibibytes(other.memory().total());
+            help = format!("{help}; newton.linear = \"iterative\" needs about {iterative}");
         }
         Err(Problem::new(path, what, why, help).of_system())
     }
@@ -270,13 +270,10 @@ fn coupled(element: Element) -> f64 {
 fn points(element: Element) -> f64 {
     match element {
         Element::T3 | Element::Tet4 => 1.0,
-        Element::L2 | Element::L3 | Element::L4 => 4.0,
-        Element::Q4 => 4.0,
-        Element::T6 => 8.0,
+        Element::L2 | Element::L3 | Element::L4 | Element::Q4 => 4.0,
+        Element::T6 | Element::Hex8 => 8.0,
         Element::Q9 => 12.0,
-        Element::T10 => 16.0,
-        Element::Hex8 => 8.0,
-        Element::Tet10 => 16.0,
+        Element::T10 | Element::Tet10 => 16.0,
         Element::Hex27 => 28.0,
         Element::Tet20 => 48.0,
     }

@@ -1,6 +1,6 @@
 //! The memory that is left for this process.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Bytes of memory that this process may still use: what is free on the machine, what is left of
 /// its limits of address space and data (`ulimit -v`, `-d`), and of the control groups that it
@@ -48,7 +48,7 @@ fn groups(own: &str, mounted: &Path) -> Vec<f64> {
 
 /// The limit of a group minus what cannot be reclaimed: its files that were not read lately make
 /// room for a process.
-fn left_of_group(folder: &PathBuf, [limit, used, cached]: [&str; 3]) -> Option<f64> {
+fn left_of_group(folder: &Path, [limit, used, cached]: [&str; 3]) -> Option<f64> {
     let read = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<f64>().ok();
     let cached = after(&read("memory.stat").unwrap_or_default(), cached).unwrap_or_default();

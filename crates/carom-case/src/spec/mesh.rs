@@ -372,8 +372,11 @@ impl MeshSpec {
                 let plane = generate::plane_of(element).and_then(|element| of.layers(element));
                 Some(plane.unwrap_or(1.0).max(along(layers as f64)))
             }
-            Self::Ball { .. } | Self::Disc { .. } | Self::HalfDisc { .. } => None,
-            Self::Polygon { .. } | Self::File { .. } => None,
+            Self::Ball { .. }
+            | Self::Disc { .. }
+            | Self::HalfDisc { .. }
+            | Self::Polygon { .. }
+            | Self::File { .. } => None,
         }
     }
 }

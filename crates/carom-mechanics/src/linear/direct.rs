@@ -221,12 +221,11 @@ impl Preconditioner for Direct {
 
     fn form_mass(&mut self, model: &Model, rows: &Constraints) -> Result<(), Rejected> {
         let Self { matrices, lumped, diagonals, latest, .. } = self;
-        let (pattern, mass) = match lumped {
-            Some(pattern) => (&*pattern, &diagonals[0]),
-            None => {
-                let Matrices { pattern, mass, .. } = built(matrices, model);
-                (&*pattern, &*mass)
-            }
+        let (pattern, mass) = if let Some(pattern) = lumped {
+            (&*pattern, &diagonals[0])
+        } else {
+            let Matrices { pattern, mass, .. } = built(matrices, model);
+            (&*pattern, &*mass)
         };
         let current = self.point.as_ref().filter(|point| spans(&point.boundary, rows));
         let boundary = current.map_or_else(|| rows.nodes(), |point| point.boundary.clone());

@@ -60,8 +60,8 @@ pub(crate) fn project(
     let mut places = independent_rows(model, pressing(state), &gaps);
     places.retain(asks);
     let closed = Closed::new(model, state, places, &gaps)?;
-    // Velocities at the end of a step ring from node to node, its slips do not: a pair goes on as in
-    // the step.
+    // Velocities at the end of a step ring from node to node, its slips do not: a pair goes on as
+    // in the step.
     let slid = closed.slid(state, impact.start);
 
     let before = state.ledger.kinetic;

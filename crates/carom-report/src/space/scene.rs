@@ -356,7 +356,11 @@ mod tests {
                 moved: places.iter().map(moved).collect(),
                 mises: places.iter().map(|p| wave(p, 17.0).abs()).collect(),
                 mean: places.iter().map(|p| wave(p, 11.0)).collect(),
-                pressure: places.iter().map(|p| wave(p, 5.0).max(0.0)).collect(),
+                // It presses with one side.
+                pressure: places
+                    .iter()
+                    .map(|p| if p[2] == 0.0 { wave(p, 5.0).max(0.0) } else { 0.0 })
+                    .collect(),
             }
         };
         let scene = Scene::new(surface, places.clone(), (0..100).map(frame).collect());

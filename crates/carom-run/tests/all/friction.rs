@@ -388,8 +388,7 @@ fn a_negative_coefficient_stops_the_run_by_its_name() {
         }
     };
     // 0.3 − 10 t is −5.6e-17 at t = 0.03, which is zero.
-    let expected =
-        "the step at t = 0.030000 of Δt = 5.000e-3 is rejected: mu of contact \"floor\" is negative at X = ";
+    let expected = "the step at t = 0.030000 [time] of Δt = 5.000e-3 [time] is rejected: mu of contact \"floor\" is negative at X = ";
     assert!(stopped.starts_with(expected), "{stopped}");
 }
 
