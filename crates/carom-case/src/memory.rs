@@ -43,7 +43,7 @@ const PER_NUMBER: f64 = 40.0;
 /// Unknowns from which factors of tangents are in single precision.
 const SINGLE: f64 = 1e4;
 
-/// What a run needs, in bytes.
+/// Memory of a run by purpose, in bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Memory {
     /// The process before it allocates anything.
@@ -107,7 +107,8 @@ impl Case {
     /// # Errors
     /// This problem.
     pub fn fits_memory(&self) -> Result<(), Problem> {
-        let (need, available) = (self.memory(), available_memory().unwrap_or(f64::INFINITY));
+        let need = self.memory();
+        let available = available_memory().unwrap_or(f64::INFINITY);
         if need.total() <= available {
             return Ok(());
         }
@@ -126,7 +127,8 @@ impl Case {
             let help = "give output.history_every, the steps between two rows, or a longer step";
             return Err(Problem::new(key, what, why, help).of_system());
         }
-        let (solver, unknowns) = (self.solver(), self.nodes() * self.dimension as f64);
+        let solver = self.solver();
+        let unknowns = self.nodes() * self.dimension as f64;
         let bytes = |body: &BodySpec| of_body(body, self, solver, unknowns).total();
         let largest = self.bodies.iter().enumerate().max_by(|(_, a), (_, b)| bytes(a).total_cmp(&bytes(b)));
         let Some((i, body)) = largest else { return Ok(()) };
@@ -186,7 +188,8 @@ impl Case {
 fn of_body(body: &BodySpec, case: &Case, solver: Solver, unknowns: f64) -> Memory {
     let element = body.element;
     let (cells, nodes) = body.mesh.estimate(element);
-    let (per_cell, d) = (element.nodes() as f64, case.dimension as f64);
+    let per_cell = element.nodes() as f64;
+    let d = case.dimension as f64;
     let c = coupled(element);
     let is_lumped = body.mass == MassKind::Lumped;
 
@@ -211,7 +214,8 @@ fn of_body(body: &BodySpec, case: &Case, solver: Solver, unknowns: f64) -> Memor
             ..Memory::default()
         },
         Solver::Direct { is_static, has_impulses } => {
-            let (of_node, n) = (per_cell * d, nodes * d);
+            let of_node = per_cell * d;
+            let n = nodes * d;
             let fill = n * fill(body, case.dimension, nodes);
             let tangent = if unknowns >= SINGLE && !is_static { 4.0 } else { 8.0 };
             let of_mass = if is_lumped || is_static { 0.0 } else { 8.0 };
@@ -237,7 +241,8 @@ const MOST_MIXED: usize = 30;
 
 /// Entries of a column of the factor.
 fn fill(body: &BodySpec, dimension: usize, nodes: f64) -> f64 {
-    let (c, d) = (coupled(body.element), dimension as f64);
+    let c = coupled(body.element);
+    let d = dimension as f64;
     let free = match dimension {
         1 => return 0.5 * c,
         2 => c * d * nodes.max(2.0).log2() / 3.0,

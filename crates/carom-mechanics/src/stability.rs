@@ -71,7 +71,8 @@ fn scaled_tangent(model: &Model, mass: &[f64], square: f64) -> Option<NodeMatrix
         if model.fixed[dof] { 0.0 } else { (mass[dof] * square).sqrt().recip() }
     };
     each_tangent(model, &model.initial_position, |part, cell, tangent| {
-        let (mesh, dofs) = (part.body.mesh(), part.cell_dofs(cell));
+        let mesh = part.body.mesh();
+        let dofs = part.cell_dofs(cell);
         let n = dofs.len();
         let nodes = mesh.cell(cell);
         for a in 0..nodes.len() {

@@ -38,11 +38,11 @@ impl Mesh {
 /// A cell of a mesh with its quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorstCell {
-    /// Its number in the mesh.
+    /// Number of the cell in the mesh.
     pub cell: usize,
     /// The mean of its nodes.
     pub place: Vec<f64>,
-    /// Its smallest scaled Jacobian.
+    /// Smallest scaled Jacobian of the cell.
     pub scaled_jacobian: f64,
 }
 

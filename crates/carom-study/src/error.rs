@@ -56,10 +56,10 @@ pub enum StudyError {
         /// This machine.
         here: String,
     },
-    /// What is computed at once does not fit into the memory.
+    /// The concurrent runs do not fit into the memory together.
     #[error("{what} need about {}, and {} are available", gibibytes(*need), gibibytes(*available))]
     Memory {
-        /// What is computed.
+        /// Runs that were to be computed at once.
         what: String,
         /// Bytes that they need.
         need: f64,

@@ -376,13 +376,13 @@ fn known_sides(body: &BodySpec) -> String {
     }
 }
 
-/// What was left out of a side when its mesh was read.
+/// A side of which something was left out when its mesh was read.
 fn inside<'a>(body: &'a BodySpec, side: &str) -> Option<&'a String> {
     let MeshSpec::File { repairs, .. } = body.mesh.source() else { return None };
     repairs.iter().find(|repair| repair.contains(&format!("\"{side}\"")))
 }
 
-/// What to do about a mesh from a file without sides.
+/// Advice for a mesh from a file without sides.
 fn no_sides(body: &BodySpec, dimension: usize) -> String {
     let example = match dimension {
         1 => "Physical Point(\"left\") = {1};",

@@ -58,7 +58,8 @@ fn a_slender_body_fills_little() {
         let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
         Case::from_text(SOLID, &sets).unwrap().memory()
     };
-    let (slender, cube) = (cells("[250, 2, 2]"), cells("[10, 10, 10]"));
+    let slender = cells("[250, 2, 2]");
+    let cube = cells("[10, 10, 10]");
     assert!(slender.factors < 0.3 * cube.factors, "{slender:?} {cube:?}");
 }
 

@@ -73,7 +73,8 @@ impl Direct {
 
     /// For the bodies of a model.
     pub(crate) fn new(model: &Model) -> Self {
-        let (d, n) = (model.dimension, model.free.len());
+        let d = model.dimension;
+        let n = model.free.len();
         let is_between_nodes =
             |node: usize| model.mass.row(node).any(|(other, mass)| other != node && mass != 0.0);
         let is_lumped = !(0..model.mass.nodes()).any(is_between_nodes);

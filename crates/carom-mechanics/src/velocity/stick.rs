@@ -23,9 +23,9 @@ use crate::velocity::cone::{Closed, Motion};
 /// Works of an impulse.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Works {
-    /// Of friction.
+    /// Work of friction.
     pub friction: f64,
-    /// Of moving supports.
+    /// Work of moving supports.
     pub external: f64,
 }
 

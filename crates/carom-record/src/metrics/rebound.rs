@@ -30,7 +30,7 @@ pub type Party<'a> = Option<&'a str>;
 pub struct Impact<'a> {
     /// The striker.
     pub striker: &'a str,
-    /// What it strikes; none: an obstacle that is fixed.
+    /// The body or obstacle that is struck; none: a fixed obstacle.
     pub others: Vec<Party<'a>>,
     /// Direction of the normal contact impulse on the striker, of length 1.
     pub normal: [f64; 3],
@@ -45,7 +45,8 @@ impl<'a> Impact<'a> {
     /// but itself or several parties of different velocities, and where the velocity of a support
     /// is not known.
     pub fn first(run: &'a Run) -> Option<Self> {
-        let (episode, striker) = (first_episode(&run.history)?, striker(&run.history)?);
+        let episode = first_episode(&run.history)?;
+        let striker = striker(&run.history)?;
         let before = episode.start.checked_sub(1)?;
         let (others, normal) = struck(striker, run, episode)?;
         let along = |row: usize| {
@@ -74,7 +75,8 @@ pub(super) fn restitution(run: &Run) -> Option<f64> {
 fn struck<'a>(striker: &str, run: &'a Run, episode: Episode) -> Option<(Vec<Party<'a>>, [f64; 3])> {
     let times = run.times();
     let is_in = |time: f64| times[episode.start] <= time && episode.end.is_none_or(|end| time < times[end]);
-    let (mut others, mut impulse) = (Vec::new(), [0.0; 3]);
+    let mut others = Vec::new();
+    let mut impulse = [0.0; 3];
     for row in run.contact.iter().filter(|row| is_in(row.time)) {
         let Some([secondary, primary]) = parties(run, &row.contact) else { continue };
         let (other, sign) = match [secondary, primary].map(|party| party == Some(striker)) {

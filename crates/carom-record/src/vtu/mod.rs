@@ -196,7 +196,8 @@ pub(crate) mod tests {
     fn reads_files_of_earlier_versions() {
         let bytes = sample().to_vtu(1.0).unwrap();
         let found = |what: &[u8]| bytes.windows(what.len()).position(|w| w == what).unwrap();
-        let (start, end) = (found(b"<DataArray type=\"Int32\" Name=\"body "), found(b"</FieldData>"));
+        let start = found(b"<DataArray type=\"Int32\" Name=\"body ");
+        let end = found(b"</FieldData>");
         let names =
             b"<DataArray type=\"String\" Name=\"bodies\" NumberOfTuples=\"2\" format=\"ascii\">98 97 114 32 60 49 62 0 100 105 115 99 0</DataArray>";
         let mut earlier = [&bytes[..start], &names[..], &bytes[end..]].concat();

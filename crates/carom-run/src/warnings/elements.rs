@@ -61,7 +61,7 @@ pub(super) fn bar_modulus(case: &Case, _: &Model) -> Vec<Found> {
     found
 }
 
-/// What to try in place of an element that locks.
+/// Advice in place of an element that locks.
 fn unlocked(element: Element) -> String {
     let quadratic =
         element.with_degree(2).map_or_else(String::new, |other| format!("element = \"{other:?}\""));

@@ -7,7 +7,7 @@ use carom_case::ContactSpec;
 pub struct Found {
     pub(super) place: String,
     pub(super) what: String,
-    /// What to try there, in place of the advice of the entry.
+    /// Advice for this place, instead of that of the entry.
     pub(super) advice: Option<String>,
 }
 

@@ -10,7 +10,7 @@ use carom_time::Explained;
 
 use super::found::Found;
 
-/// What a root of the amplification at infinite frequency lacks of 1 by round-off.
+/// Round-off of a spectral radius of 1 at infinite frequency.
 const ROUND_OFF: f64 = 1e-9;
 
 pub(super) fn undamped_stick(case: &Case, model: &Model) -> Vec<Found> {
@@ -44,7 +44,7 @@ fn damps(scheme: &SchemeSpec) -> bool {
     rho.is_some_and(|rho| rho < 1.0 - ROUND_OFF)
 }
 
-/// What vibrates where stick begins; none if the contact holds everything that may move.
+/// The vibrating part where stick begins; none if the contact holds everything that may move.
 fn cause(case: &Case, model: &Model, spec: &ContactSpec) -> Option<&'static str> {
     if spec.enforcement == Enforcement::Penalty {
         return Some("the springs of sticking nodes begin to vibrate");

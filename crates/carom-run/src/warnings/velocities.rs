@@ -21,7 +21,8 @@ struct Start {
 
 impl Start {
     fn new(model: &Model) -> Option<Self> {
-        let (mut velocity, mut moved) = (model.initial_velocity.clone(), Vec::new());
+        let mut velocity = model.initial_velocity.clone();
+        let mut moved = Vec::new();
         model.motions.at(0.0, &mut moved).ok()?;
         moved.iter().for_each(|prescribed| velocity[prescribed.dof] = prescribed.motion[1]);
         Some(Self { velocity, moved })
@@ -152,6 +153,7 @@ fn too_fast(case: &Case, model: &Model, start: &Start, contact: &ContactSpec) ->
 }
 
 fn young(material: &MaterialSpec) -> f64 {
-    let (lambda, mu) = (material.lambda, material.mu);
+    let lambda = material.lambda;
+    let mu = material.mu;
     mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu)
 }

@@ -49,7 +49,8 @@ pub(super) fn short_run(case: &Case, model: &Model) -> Vec<Found> {
         let crossing = across / material.wave_speed(case.plane);
         if case.time.end < crossing {
             let [end, crossing, across] = [case.time.end, crossing, across].map(short);
-            let (time, length) = (&units.time, &units.length);
+            let time = &units.time;
+            let length = &units.length;
             let what = format!(
                 "the run ends at {end} {time}, and a pressure wave needs {crossing} {time} to cross its {across} {length}"
             );

@@ -39,7 +39,9 @@ fn every_step_is_that_of_multipliers() {
         for mu in ["0.0", "0.2"] {
             let run = |enforcement: &str| simulation(DISCS, &discs(scheme, enforcement, mu));
             let (mut exact, mut augmented) = (run("multiplier"), run("augmented"));
-            let (mut closed, mut rubbed, mut bisected) = (0, 0.0, 0);
+            let mut closed = 0;
+            let mut rubbed = 0.0;
+            let mut bisected = 0;
             while !exact.finished() {
                 augmented.restore(exact.state().clone()).unwrap();
                 let mut report = GridReport::default();

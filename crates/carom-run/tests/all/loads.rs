@@ -371,7 +371,8 @@ fn the_work_of_gravity_that_varies_closes_the_energy_balance() {
         sim.model().mass.multiply_into(&vec![1.0; masses.len()], &mut masses);
         let mut work = 0.0;
         while !sim.finished() {
-            let (before, time) = (sim.state().y.clone(), sim.state().time);
+            let before = sim.state().y.clone();
+            let time = sim.state().time;
             sim.advance(&mut GridReport::default()).unwrap();
             let state = sim.state();
             let moved = state.y.iter().zip(&before).zip(&masses).map(|((y, old), m)| m * (y - old));

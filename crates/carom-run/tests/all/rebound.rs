@@ -116,7 +116,8 @@ output = { fields_every = 0 }
 "#;
     let run = record(disc, &[]);
     let velocity = |axis: &str| run.column(&format!("disc.velocity_{axis}")).unwrap();
-    let (first, last) = (0, run.times().len() - 1);
+    let first = 0;
+    let last = run.times().len() - 1;
     let across = -velocity("y")[last] / velocity("y")[first];
     let rubbed = (velocity("x")[first] - velocity("x")[last]) / 0.1;
     assert!(rubbed > 0.1, "{rubbed}");

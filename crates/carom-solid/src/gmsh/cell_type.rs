@@ -115,7 +115,9 @@ impl CellType {
 
     /// Why bodies cannot consist of it, as cell number `cell` of the group `name`.
     pub(super) fn unsupported(self, name: &str, cell: i64) -> Fault {
-        let (name, kind, order) = (name.to_owned(), self.described(), self.order);
+        let name = name.to_owned();
+        let kind = self.described();
+        let order = self.order;
         match self.complete() {
             _ if ["prism", "pyramid"].contains(&self.name) => Fault::Shape { name, cell, kind },
             complete if complete != self.nodes => Fault::Incomplete { name, cell, kind, order, complete },

@@ -4,7 +4,7 @@
 use super::cell_type::CellType;
 use super::error::{Fault, MshError, Place};
 
-/// What Gmsh calls physical groups of dimension 0, 1, 2 and 3.
+/// Gmsh's names of physical groups of dimension 0, 1, 2 and 3.
 pub(super) const GROUPS: [&str; 4] = ["point", "curve", "surface", "volume"];
 
 /// Nodes, cells and named groups of a .msh file.
@@ -77,7 +77,7 @@ impl MshFile {
         names
     }
 
-    /// That no physical group of a dimension has this name.
+    /// An error: no physical group of a dimension has this name.
     pub(super) fn no_name(&self, dimension: usize, name: &str) -> Fault {
         let names = |dimension: usize| self.names(dimension).into_iter().map(str::to_owned);
         let others = (0..GROUPS.len()).rev().filter(|other| *other != dimension);

@@ -12,7 +12,7 @@ pub(super) enum Found<'f> {
     Boundary(&'f Facet),
     /// Between two cells.
     Inside,
-    /// It is no facet of a cell.
+    /// A facet that belongs to no cell.
     Elsewhere,
 }
 
@@ -172,7 +172,8 @@ impl<'a, const D: usize> Group<'a, D> {
     /// Notes how many facets of a group are not on the boundary.
     fn note_inside(&mut self, name: &str, inside: usize, outside: usize) {
         if inside > 0 {
-            let (group, facet) = (GROUPS[D - 1], ["points", "edges", "faces"][D - 1]);
+            let group = GROUPS[D - 1];
+            let facet = ["points", "edges", "faces"][D - 1];
             let all = inside + outside;
             self.repairs.push(format!(
                 "{inside} of {all} {facet} of the physical {group} \"{name}\" lie inside the body, between two of its cells, and are not in its side"

@@ -10,7 +10,7 @@ pub enum SurfaceError {
     /// It has no such cells.
     #[error("{0}")]
     File(MshError),
-    /// Its triangles are not a surface.
+    /// The triangles are not a surface.
     #[error("{0}")]
     Surface(TrianglesError),
 }

@@ -47,7 +47,7 @@ fn key(nodes: &[usize], corners: usize) -> Corners {
 
 /// The facets of the cells of a body.
 struct Facets {
-    /// Those of only one cell.
+    /// Facets of only one cell.
     open: BTreeMap<Corners, Facet>,
     /// The two cells of the others.
     closed: HashMap<Corners, [usize; 2]>,

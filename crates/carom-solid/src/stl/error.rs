@@ -5,10 +5,10 @@ use crate::triangles::TrianglesError;
 /// Why a file in STL gave no surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StlError {
-    /// It does not follow the format, with the place.
+    /// The file does not follow the format, with the place.
     #[error("{0}")]
     Format(String),
-    /// It ends before its end.
+    /// The file is cut short.
     #[error("it ends early: {0}")]
     Cut(String),
     /// Its triangles are not a surface.

@@ -10,7 +10,7 @@
 use super::error::StlError;
 use crate::triangles::Corners;
 
-/// What editors write before a text in UTF-8.
+/// The byte order mark that editors write before a text in UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Whether a file begins like a text.

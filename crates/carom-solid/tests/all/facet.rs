@@ -55,7 +55,8 @@ fn an_edge_is_a_line() {
 fn bernstein_polynomials() {
     let lines = [FacetShape::Point, FacetShape::L2, FacetShape::L3, FacetShape::L4];
     for shape in SURFACES.into_iter().chain(lines) {
-        let (at_nodes, n) = (shape.bernstein_at_nodes(), shape.nodes());
+        let at_nodes = shape.bernstein_at_nodes();
+        let n = shape.nodes();
         let mut integrals = vec![0.0; n];
         let mut whole = 0.0;
         for (xi, weight) in shape.rule(6) {
