@@ -24,7 +24,7 @@ pub fn available_memory() -> Option<f64> {
     .map(|bytes| bytes.max(0.0))
 }
 
-/// What is left of every limited control group in `/proc/self/cgroup`, and of those that contain
+/// Memory left to every limited control group in `/proc/self/cgroup`, and to those that contain
 /// it. In a container the mounted tree begins at the group, and its path there may not exist.
 fn groups(own: &str, mounted: &Path) -> Vec<f64> {
     let mut left = Vec::new();

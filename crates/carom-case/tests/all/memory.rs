@@ -63,7 +63,7 @@ fn a_slender_body_fills_little() {
     assert!(slender.factors < 0.3 * cube.factors, "{slender:?} {cube:?}");
 }
 
-/// What is refused names the key that makes it large, what it needs, and what there is.
+/// A refusal names the key that makes the run large, the memory it needs, and what there is.
 #[test]
 fn what_is_too_large_is_refused_at_its_key() {
     let refused = |sets: &[&str]| Case::from_text(DISC, sets).unwrap_err().to_string();

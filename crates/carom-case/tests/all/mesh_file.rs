@@ -217,7 +217,7 @@ fn squares(mesh: &str, rest: &str, sets: &[&str]) -> Result<Case, String> {
     })
 }
 
-/// What holds bodies of one mesh together is said, or they are refused.
+/// Bodies of one mesh with a common facet and no contact are refused, with the remedy.
 #[test]
 fn bodies_of_one_mesh_are_one_body_or_in_contact() {
     let problem = squares(SQUARES, "", &[]).unwrap_err();

@@ -39,7 +39,7 @@ pub struct Load<On> {
 pub struct Weight {
     /// The first node.
     pub first_node: usize,
-    /// Its mass, and those of the nodes after it.
+    /// Mass of this node, and of those after it.
     pub masses: Vec<f64>,
 }
 

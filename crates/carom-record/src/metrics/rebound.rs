@@ -70,7 +70,7 @@ pub(super) fn restitution(run: &Run) -> Option<f64> {
     Some(impact.separation? / impact.approach)
 }
 
-/// What a striker strikes in an episode, and the direction of the normal contact impulse on it;
+/// Parties struck by a striker in an episode, and the direction of the normal impulse on it;
 /// none if it strikes nothing but itself.
 fn struck<'a>(striker: &str, run: &'a Run, episode: Episode) -> Option<(Vec<Party<'a>>, [f64; 3])> {
     let times = run.times();
