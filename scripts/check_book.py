@@ -15,7 +15,8 @@ A comment before a paragraph or table names the numbers in it, one a line:
 The number must stand in the next paragraph as it is written here. After `=`, the computed value of
 the set-up, FAMILY/NAME, must round to it; after `≥`, its magnitude must not exceed it. Quantities are
 those of the rows of `carom verify --verbose`, or metrics of arms in the set-up's study.csv, as
-`METRIC of "ARM"`. With `--fast` some are not computed; they are counted and left to the nightly run.
+`METRIC of "ARM"`. With `--fast` some are not computed; they are counted and left to the nightly run. The page on the
+suite says that every expected value states its source: that is checked, too.
 """
 
 import csv
@@ -54,6 +55,17 @@ def computed(path):
     return values, verified["fast"]
 
 
+def without_source(path):
+    """Expected values that state no source."""
+    set_ups = json.loads(path.read_text(encoding="utf-8"))["set_ups"]
+    return [
+        f"{set_up['file']}: {row['what']}: no source"
+        for set_up in set_ups
+        for row in set_up["rows"]
+        if not row["source"]
+    ]
+
+
 def problem(line, paragraph, values, fast):
     """What is wrong with a line; nothing if it is right, None if it cannot be decided."""
     if not (parts := LINE.fullmatch(line)):
@@ -74,7 +86,8 @@ def problem(line, paragraph, values, fast):
 def main():
     values, fast = computed(Path(sys.argv[1]))
     paths = [Path(name) for name in sys.argv[2:]] or sorted((ROOT / "docs/book/src").rglob("*.md"))
-    wrong, right, left = [], 0, 0
+    wrong = without_source(Path(sys.argv[1]))
+    right, left = 0, 0
     for path in paths:
         text = path.read_text(encoding="utf-8")
         for comment in COMMENT.finditer(text):
