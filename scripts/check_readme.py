@@ -60,7 +60,7 @@ def main():
     def plain(lines):
         return [re.sub(r"in [\d.]+ s of wall time", "", line) for line in lines]
 
-    said, found = plain(block_after(readme, "The first one computes")), plain(printed(carom))
+    said, found = plain(block_after(readme, "The first one prints")), plain(printed(carom))
     wrong += [f"README.md prints `{a}`, the run `{b}`" for a, b in zip(said, found) if a != b]
     if len(said) != len(found):
         wrong.append(f"README.md prints {len(said)} lines, the run {len(found)}")
