@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks numbers in the prose and tables of the book against what `carom verify` computed.
 
-    scripts/check_book.py VERIFY.JSON [FILE.md...]
+    scripts/check_book.py [VERIFY.JSON] [--claims DIR [--write]]
 
 A comment before a paragraph or table names the numbers in it, one a line:
 
@@ -15,10 +15,14 @@ A comment before a paragraph or table names the numbers in it, one a line:
 The number must stand in the next paragraph as it is written here. After `=`, the computed value of
 the set-up, FAMILY/NAME, must round to it; after `≥`, its magnitude must not exceed it. Quantities are
 those of the rows of `carom verify --verbose`, or metrics of arms in the set-up's study.csv, as
-`METRIC of "ARM"`. With `--fast` some are not computed; they are counted and left to the nightly run. The page on the
-suite says that every expected value states its source: that is checked, too.
+`METRIC of "ARM"`. With `--fast` some are not computed; they are counted and left to the nightly run.
+The page on the suite says that every expected value states its source: that is checked, too.
+
+--claims compares the table of the paper's statements, in the order of the study's claims, with the
+output of `carom study cases/paper/claims.toml --out DIR`; --write puts the study's numbers into it.
 """
 
+import argparse
 import csv
 import json
 import re
@@ -83,13 +87,14 @@ def problem(line, paragraph, values, fast):
     return "" if right else f"carom verify computes {got:.6g}"
 
 
-def main():
-    values, fast = computed(Path(sys.argv[1]))
-    paths = [Path(name) for name in sys.argv[2:]] or sorted((ROOT / "docs/book/src").rglob("*.md"))
-    wrong = without_source(Path(sys.argv[1]))
-    right, left = 0, 0
-    for path in paths:
-        text = path.read_text(encoding="utf-8")
+def numbers_in_prose(path):
+    """What is wrong with the numbers named in comments, and how many are right, and left out."""
+    values, fast = computed(path)
+    wrong = without_source(path)
+    right = 0
+    left = 0
+    for page in sorted((ROOT / "docs/book/src").rglob("*.md")):
+        text = page.read_text(encoding="utf-8")
         for comment in COMMENT.finditer(text):
             first = text.count("\n", 0, comment.start(1)) + 1
             # A line that begins with a space continues the one before.
@@ -98,14 +103,52 @@ def main():
                 found = problem(words, comment[2], values, fast)
                 if found:
                     row = first + comment[1].count("\n", 0, line.start())
-                    wrong.append(f"{path}:{row}: {words}: {found}")
+                    wrong.append(f"{page}:{row}: {words}: {found}")
                 right += found == ""
                 left += found is None
         if text.count("<!-- carom verify:") != len(COMMENT.findall(text)):
-            wrong.append(f"{path}: a comment `carom verify:` without an end or a paragraph")
+            wrong.append(f"{page}: a comment `carom verify:` without an end or a paragraph")
+    print(f"the book: {right} numbers are those of carom verify" + (f", {left} are slow" if left else ""))
+    return wrong
+
+
+def ratio(claim):
+    """Median, least and largest ratio, with two digits, or as many as tell them apart."""
+    values = [float(claim[key]) for key in ("ratio", "ratio_low", "ratio_high")]
+    digits = 5 if max(values) - min(values) < 0.01 * max(values) else 2
+    median, low, high = (f"{value:#.{digits}g}".rstrip(".") for value in values)
+    return f"{median} ({low} to {high})"
+
+
+def table_of_claims(study, write):
+    """The rows that differ from the study; with `write`, they are replaced."""
+    page = ROOT / "docs/book/src/verification/paper.md"
+    head = "| Statement | Members that confirm it | Ratio |\n| --- | --- | --- |\n"
+    with open(study / "claims.csv", newline="", encoding="utf-8") as file:
+        claims = list(csv.DictReader(file))
+    before, after = page.read_text(encoding="utf-8").split(head)
+    table, rest = after.split("\n\n", 1)
+    rows = table.split("\n")
+    if len(rows) != len(claims):
+        return [f"{len(rows)} rows of the table for {len(claims)} claims"]
+    statements = [row.split("|")[1] for row in rows]
+    found = [f"|{said}| {claim['held']} of {claim['of']} | {ratio(claim)} |" for said, claim in zip(statements, claims)]
+    if write:
+        page.write_text(before + head + "\n".join(found) + "\n\n" + rest, encoding="utf-8")
+        return []
+    return [f"book:  {row}\nstudy: {new}" for row, new in zip(rows, found) if row != new]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("verify", type=Path, nargs="?", metavar="VERIFY.JSON")
+    parser.add_argument("--claims", type=Path, metavar="DIR")
+    parser.add_argument("--write", action="store_true")
+    given = parser.parse_args()
+    wrong = numbers_in_prose(given.verify) if given.verify else []
+    wrong += table_of_claims(given.claims, given.write) if given.claims else []
     if wrong:
         sys.exit("\n".join(wrong))
-    print(f"the book: {right} numbers are those of carom verify" + (f", {left} are slow" if left else ""))
 
 
 if __name__ == "__main__":

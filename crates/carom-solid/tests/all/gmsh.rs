@@ -1,4 +1,4 @@
-//! Meshes of Gmsh (made by `scripts/make_gmsh_fixtures.py`): every version, encoding and order
+//! Meshes of Gmsh (made by `scripts/make_meshes.py`): every version, encoding and order
 //! gives the same bodies.
 
 use std::f64::consts::PI;
