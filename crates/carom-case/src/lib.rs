@@ -11,6 +11,7 @@ mod draft;
 mod example;
 mod excerpt;
 mod expect;
+mod facts;
 pub mod keys;
 mod load;
 mod load_table;

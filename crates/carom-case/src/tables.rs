@@ -169,9 +169,16 @@ pub(super) fn newton(v: &View) -> Option<NewtonSpec> {
 
 pub(super) fn output(v: &View) -> Option<OutputSpec> {
     let every = if v.has("at_times") { 0 } else { 20 };
+    if v.text("format")? != "vtu" {
+        return v.wrong(
+            "format",
+            "fields are written as VTU, the only format",
+            "one file per output remains readable if the run is killed; a single file for viewers is made after it",
+            "leave format out; after the run, carom.open(DIRECTORY).to_vtkhdf(FILE) in Python makes one VTKHDF file",
+        );
+    }
     Some(OutputSpec {
         fields_every: if v.has("fields_every") { v.count("fields_every")? } else { every },
-        format: v.choice("format")?,
         at_times: v.numbers("at_times")?,
         history_every: v.count("history_every")?,
         checkpoint_every: v.count("checkpoint_every")?,

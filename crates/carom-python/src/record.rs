@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use carom::record::{Column, FieldSet, History, MemoryRecord, Run, contact_axes, metrics};
+use carom::record::{Column, FieldSet, History, MemoryRecord, Run, metrics};
 use carom::recording::{self, Options, Progress};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyOSError};
@@ -83,12 +83,12 @@ impl Record {
 
     /// The active contact nodes of all rows, by column.
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        tables::contact(py, &self.run.contact, contact_axes(&self.run.manifest.case))
+        tables::contact(py, &self.run.contact, self.run.manifest.facts.contact_axes())
     }
 
     /// Units of these columns.
     fn contact_units(&self) -> PyResult<HashMap<&'static str, String>> {
-        tables::contact_units(&self.run.history, contact_axes(&self.run.manifest.case))
+        tables::contact_units(&self.run.history, self.run.manifest.facts.contact_axes())
     }
 
     /// The events.

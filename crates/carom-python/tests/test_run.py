@@ -136,6 +136,37 @@ def test_principal_values_are_eigenvalues(disc_run: carom.Run) -> None:
     assert np.abs(disc_run.fields.at(0.0).arrays["principal_log_strain"]).max() < 1e-12
 
 
+def test_vtk_reads_the_fields_in_one_file(disc_run: carom.Run, tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    hdf = pytest.importorskip("vtkmodules.vtkIOHDF")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    path = disc_run.to_vtkhdf(tmp_path / "disc.vtkhdf")
+    with pytest.raises(FileExistsError, match="never overwrites"):
+        disc_run.to_vtkhdf(path)
+    reader = hdf.vtkHDFReader()
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    assert reader.GetNumberOfSteps() == len(disc_run.fields)
+    for step in range(len(disc_run.fields)):
+        fields = disc_run.fields.number(step)
+        reader.SetStep(step)
+        reader.Update()
+        grid = reader.GetOutputDataObject(0)
+        assert np.array_equal(vtk_to_numpy(grid.GetPoints().GetData()), fields.points)
+        bodies = vtk_to_numpy(grid.GetCellData().GetArray("body"))
+        assert [int(np.sum(bodies == i)) for i in range(2)] == [len(block.cells) for block in fields.blocks]
+        cells = np.concatenate([block.cells.ravel() for block in fields.blocks])
+        assert np.array_equal(vtk_to_numpy(grid.GetCells().GetConnectivityArray()), cells)
+        for name, values in fields.arrays.items():
+            read = vtk_to_numpy(grid.GetPointData().GetArray(name)).reshape(values.shape)
+            assert np.array_equal(read, values, equal_nan=True), name
+    with h5py.File(path) as file:
+        assert file["VTKHDF/PointData/stress"].attrs["units"] == disc_run.fields.number(0).units["stress"]
+        assert list(file["VTKHDF/CellData/body"].attrs["bodies"]) == ["disc", "block"]
+        assert np.allclose(file["VTKHDF/Steps/Values"], disc_run.fields.times, rtol=1e-15)
+
+
 def test_a_run_without_fields_says_what_to_do(bar: carom.Case) -> None:
     run = bar.set("output.fields_every", 0).run(progress=False)
     with pytest.raises(KeyError, match="output.fields_every"):

@@ -15,10 +15,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::stream::{Extent, Hash};
-use crate::{FieldEntry, FieldFormat, RecordError, files};
+use crate::{FieldEntry, RecordError, files};
 
 const MAGIC: &[u8; 8] = b"CAROMCKP";
-const VERSION: u32 = 11;
+const VERSION: u32 = 12;
 const HASH_LENGTH: usize = blake3::OUT_LEN;
 
 /// The record at a checkpoint.
@@ -31,9 +31,8 @@ pub(crate) struct Header {
     pub(crate) rows: u64,
     /// Of `history.csv`, `contact.csv`, `log.jsonl`.
     pub(crate) streams: [Extent; 3],
-    pub(crate) format: FieldFormat,
     pub(crate) fields: Vec<FieldEntry>,
-    /// Checksum of each entry's file, or of its values in the one file.
+    /// Checksum of each entry's file.
     pub(crate) field_hashes: Vec<Hash>,
     pub(crate) payload: u64,
 }

@@ -47,6 +47,12 @@ pub enum RecordError {
         /// What to try.
         hint: &'static str,
     },
+    /// Fields of an earlier version in one file.
+    #[error("{} is of an earlier version, whose fields are no longer read; open it in ParaView, and move it out of the run directory to read the rest of the record", path.display())]
+    OneFile {
+        /// The file.
+        path: PathBuf,
+    },
     /// A row does not match the columns of the manifest.
     #[error("a history row has {got} values, but the manifest has {expected} columns")]
     Width {
@@ -96,7 +102,11 @@ impl RecordError {
     /// What to try; none if the message says it, or if it depends on the system.
     pub fn cure(&self) -> Option<String> {
         Some(match self {
-            Self::Io { .. } | Self::Corrupt { .. } | Self::Busy { .. } | Self::Exists { .. } => return None,
+            Self::Io { .. }
+            | Self::Corrupt { .. }
+            | Self::Busy { .. }
+            | Self::Exists { .. }
+            | Self::OneFile { .. } => return None,
             // A study's.
             Self::NotARun { path } if path.join("study.json").is_file() => {
                 format!("give that of one of its runs: they are in {}", path.join("arms").display())

@@ -34,8 +34,7 @@ impl Run {
         });
         let columns: Vec<_> = columns.collect();
         let Self { manifest, .. } = self;
-        json!({ "title": manifest.case["title"], "version": manifest.version, "columns": columns })
-            .to_string()
+        json!({ "title": manifest.facts.title, "version": manifest.version, "columns": columns }).to_string()
     }
 }
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::checkpoint::{self, Generation, Header};
-use crate::{FieldEntry, FieldFormat, RecordError, stream, vtkhdf};
+use crate::{RecordError, stream};
 
 /// Files of rows, whose lengths and checksums a checkpoint records.
 pub(crate) const ROW_FILES: [&str; 3] = ["history.csv", "contact.csv", "log.jsonl"];
@@ -62,28 +62,12 @@ pub(crate) fn verified(directory: &Path, (header, payload): Checkpoint) -> Resul
     for (name, extent) in ROW_FILES.iter().zip(&header.streams) {
         hashers.push(stream::verified(&directory.join(name), extent, header.step)?);
     }
-    let changed = |path: &Path, entry: &FieldEntry| {
-        stream::altered(
-            path,
-            format!("the fields of step {} have changed since they were written", entry.step),
-        )
-    };
-    match header.format {
-        FieldFormat::Vtu => {
-            for (entry, hash) in header.fields.iter().zip(&header.field_hashes) {
-                let path = directory.join(entry.file());
-                let bytes = fs::read(&path).map_err(|error| stream::unreadable(&path, error))?;
-                if blake3::hash(&bytes) != *hash {
-                    return Err(changed(&path, entry));
-                }
-            }
-        }
-        FieldFormat::VtkHdf => {
-            let found = vtkhdf::hashes(directory, header.fields.len())?;
-            let mut pairs = header.fields.iter().zip(header.field_hashes.iter().zip(&found));
-            if let Some((entry, _)) = pairs.find(|(_, (hash, found))| hash != found) {
-                return Err(changed(&vtkhdf::path(directory), entry));
-            }
+    for (entry, hash) in header.fields.iter().zip(&header.field_hashes) {
+        let path = directory.join(entry.file());
+        let bytes = fs::read(&path).map_err(|error| stream::unreadable(&path, error))?;
+        if blake3::hash(&bytes) != *hash {
+            let what = format!("the fields of step {} have changed since they were written", entry.step);
+            return Err(stream::altered(&path, what));
         }
     }
     Ok(Intact { header, payload, hashers })

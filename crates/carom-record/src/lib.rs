@@ -5,7 +5,7 @@
 //!             history.csv            one row per recorded step
 //!             contact.csv            one row per active contact node of a recorded step
 //!             log.jsonl              one event per line
-//!             fields.pvd fields/     VTK files of the bodies, or all of them in fields.vtkhdf
+//!             fields.pvd fields/     VTK files of the bodies
 //!             checkpoint/            two generations of the state needed to resume
 //! ```
 //!
@@ -20,6 +20,7 @@ mod error;
 mod expectation;
 mod export;
 mod expression;
+mod facts;
 mod files;
 mod intact;
 mod json;
@@ -37,7 +38,6 @@ mod stream;
 pub mod study;
 pub mod units;
 pub mod verification;
-mod vtkhdf;
 mod vtu;
 mod warning;
 mod writer;
@@ -47,13 +47,14 @@ pub use checkpoint::Generation;
 pub use error::RecordError;
 pub use expectation::{Bound, Deviation, Expect, Norm, OrderOf, judge};
 pub use expression::{Expression, Sign};
+pub use facts::{ContactFacts, Facts, Held, body_of};
 pub use files::is_free;
 pub use intact::{checkpoints, last_checkpoint};
 pub use manifest::{Column, Expectation, Machine, Manifest, PHASES, Source, Status, now};
-pub use pvd::{FieldEntry, FieldFormat};
+pub use pvd::FieldEntry;
 pub use reason::Reason;
 pub use recorder::{MemoryRecord, Recorder};
-pub use rows::{ContactRow, Event, contact_axes, contact_columns};
+pub use rows::{ContactRow, Event, contact_columns};
 pub use run::{History, Run};
 pub use stop::{Advice, Stop, StopIteration, StopNode, StopPlace, Trial};
 pub use vtu::{Block, Cell, FieldSet, PointArray};

@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RecordError, Warning, available_memory, files, json, stream};
+use crate::{Facts, RecordError, Warning, available_memory, files, json, stream};
 
 /// Bytes of memory per byte of a table that is read: its text, and its values.
 const PER_BYTE: f64 = 3.0;
@@ -187,6 +187,8 @@ pub struct Manifest {
     pub hashes: BTreeMap<String, String>,
     /// Outcomes of the expectations, once the run has finished.
     pub expectations: Vec<Expectation>,
+    /// What metrics and studies need to know of the case.
+    pub facts: Facts,
     /// The case as resolved.
     pub case: serde_json::Value,
     /// The case as given.
@@ -206,6 +208,7 @@ impl Manifest {
     /// The manifest of a run that starts now on this machine.
     pub fn new(
         version: &str,
+        facts: Facts,
         case: serde_json::Value,
         source: Source,
         columns: Vec<Column>,
@@ -229,6 +232,7 @@ impl Manifest {
             counters: BTreeMap::new(),
             hashes: BTreeMap::new(),
             expectations: Vec::new(),
+            facts,
             case,
             source,
         }

@@ -18,17 +18,6 @@ pub struct FieldEntry {
     pub time: f64,
 }
 
-/// Format of the fields.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum FieldFormat {
-    /// A VTU file per entry and `fields.pvd`.
-    #[default]
-    Vtu,
-    /// One file, `fields.vtkhdf`.
-    VtkHdf,
-}
-
 impl FieldEntry {
     /// Path of its VTU file relative to the run directory, with `/`.
     pub fn file(&self) -> String {

@@ -2,10 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{
-    ContactRow, Event, FieldEntry, FieldFormat, FieldSet, History, Manifest, RecordError, Run, RunWriter,
-    Stop,
-};
+use crate::{ContactRow, Event, FieldEntry, FieldSet, History, Manifest, RecordError, Run, RunWriter, Stop};
 
 /// The record of a run being computed.
 pub trait Recorder: Send {
@@ -104,7 +101,6 @@ impl MemoryRecord {
             log: Vec::new(),
             stop: None,
             fields: Vec::new(),
-            field_format: FieldFormat::default(),
             manifest,
         };
         Self { run, fields: Vec::new() }

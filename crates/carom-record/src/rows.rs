@@ -68,11 +68,6 @@ pub fn contact_columns(axes: usize) -> Vec<&'static str> {
     .concat()
 }
 
-/// Number of axes in the rows of `contact.csv`: 3 in dimension 3, otherwise 2.
-pub fn contact_axes(case: &serde_json::Value) -> usize {
-    if case["dimension"] == 3 { 3 } else { 2 }
-}
-
 /// An event of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {

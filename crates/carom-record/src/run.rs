@@ -5,10 +5,8 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::decimal::decimal;
-use crate::rows::{contact_axes, contact_columns};
-use crate::{
-    Column, ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, Stop, pvd, vtkhdf,
-};
+use crate::rows::contact_columns;
+use crate::{Column, ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, Stop, pvd};
 
 const HINT: &str = "resume from the last checkpoint with `carom resume`, or run the case again";
 
@@ -62,29 +60,26 @@ pub struct Run {
     pub stop: Option<Stop>,
     /// Instants with recorded fields, in the order of time.
     pub fields: Vec<FieldEntry>,
-    /// Format of the fields.
-    pub field_format: FieldFormat,
 }
 
 impl Run {
     /// Reads everything but the field files.
     pub fn open(directory: &Path) -> Result<Self, RecordError> {
         let manifest = Manifest::read(directory)?;
+        if directory.join("fields.vtkhdf").exists() {
+            return Err(RecordError::OneFile { path: directory.join("fields.vtkhdf") });
+        }
         let lines = |name: &str| Lines::read(directory, name, &manifest);
         let history = history(&lines("history.csv")?, &manifest.columns)?;
-        let (mut fields, field_format) = match vtkhdf::entries(directory)? {
-            Some(entries) => (entries, FieldFormat::VtkHdf),
-            None => (pvd::read(directory)?, FieldFormat::Vtu),
-        };
+        let mut fields = pvd::read(directory)?;
         restore_times(&mut fields, &history);
         Ok(Self {
             directory: directory.to_path_buf(),
             history,
-            contact: contact(&lines("contact.csv")?, contact_axes(&manifest.case))?,
+            contact: contact(&lines("contact.csv")?, manifest.facts.contact_axes())?,
             log: log(&lines("log.jsonl")?)?,
             stop: Stop::read(directory, &manifest)?,
             fields,
-            field_format,
             manifest,
         })
     }
@@ -101,24 +96,13 @@ impl Run {
 
     /// Whether a contact was active in a dynamic run; false for static runs.
     pub fn had_dynamic_contact(&self) -> bool {
-        let kind = self.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
-        kind != Some("static") && self.column("active").is_some_and(|active| active.iter().any(|n| *n > 0.0))
-    }
-
-    /// File with the fields of an instant, relative to the run directory, with `/`.
-    pub fn field_file(&self, entry: &FieldEntry) -> String {
-        match self.field_format {
-            FieldFormat::Vtu => entry.file(),
-            FieldFormat::VtkHdf => "fields.vtkhdf".into(),
-        }
+        !self.manifest.facts.is_static
+            && self.column("active").is_some_and(|active| active.iter().any(|n| *n > 0.0))
     }
 
     /// Reads the fields of one instant.
     pub fn field(&self, entry: &FieldEntry) -> Result<FieldSet, RecordError> {
-        if self.field_format == FieldFormat::VtkHdf {
-            return vtkhdf::read(&self.directory, entry);
-        }
-        let path = self.directory.join(self.field_file(entry));
+        let path = self.directory.join(entry.file());
         let bytes = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
         FieldSet::from_vtu(&bytes).map_err(|what| RecordError::corrupt(&path, None, what, HINT))
     }

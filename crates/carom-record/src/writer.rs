@@ -17,11 +17,9 @@ use std::time::{Duration, Instant};
 
 use crate::checkpoint::{self, Generation, Header};
 use crate::intact::{Intact, ROW_FILES, missing, newest_first, no_checkpoint, verified};
-use crate::rows::{Table, contact_axes, contact_columns};
+use crate::rows::{Table, contact_columns};
 use crate::stream::Stream;
-use crate::{
-    ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, Status, files, pvd, vtkhdf,
-};
+use crate::{ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, Status, files, pvd};
 
 /// The least time between two flushes. Only checkpoints flush: a power failure costs what was
 /// computed since the last one that did.
@@ -112,7 +110,7 @@ impl RunWriter {
         manifest.write(partial)?;
         let mut header = Header { payload: payload.len() as u64, ..Header::default() };
         let columns: Vec<&str> = manifest.columns.iter().map(|c| c.name.as_str()).collect();
-        let of_contact = contact_columns(contact_axes(&manifest.case));
+        let of_contact = contact_columns(manifest.facts.contact_axes());
         for (i, names) in [&columns[..], &of_contact, &[]].into_iter().enumerate() {
             let path = partial.join(ROW_FILES[i]);
             let failed = |e| RecordError::io("create", &path)(e);
@@ -170,21 +168,16 @@ impl RunWriter {
         }
         let [history, contact, log] = rows.try_into().unwrap_or_else(|_| unreachable!("three row files"));
         drop_fields(directory, &header.fields)?;
-        vtkhdf::keep(directory, &header.fields)?;
         let writer = Self {
             directory: directory.to_path_buf(),
             integer: manifest.columns.iter().map(|c| c.integer).collect(),
-            axes: contact_axes(&manifest.case),
+            axes: manifest.facts.contact_axes(),
             history: Table::new(history),
             contact: Table::new(contact),
             log: BufWriter::new(log),
             newest: generation,
             // The killed process may not have flushed what the checkpoint describes.
-            unsynced: match header.format {
-                FieldFormat::Vtu => header.fields.iter().map(|e| directory.join(e.file())).collect(),
-                FieldFormat::VtkHdf if header.fields.is_empty() => Vec::new(),
-                FieldFormat::VtkHdf => vec![vtkhdf::path(directory)],
-            },
+            unsynced: header.fields.iter().map(|e| directory.join(e.file())).collect(),
             header,
             flushed: None,
             flush_interval: FLUSH_INTERVAL,
@@ -192,11 +185,6 @@ impl RunWriter {
         };
         let (step, rows) = (writer.header.step, writer.header.rows);
         Ok(Reopened { writer, manifest, payload, step, rows, fallback: None })
-    }
-
-    /// Sets the format of the fields; the default is VTU. A run has one format.
-    pub fn field_format(&mut self, format: FieldFormat) {
-        self.header.format = format;
     }
 
     /// Sets the least time between two flushes to the disk; the default is [`FLUSH_INTERVAL`].
@@ -246,19 +234,13 @@ impl RunWriter {
             .map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[2]))(e))
     }
 
-    /// Writes fields as VTU, or into the run's VTKHDF file.
+    /// Writes fields as VTU, and lists them in `fields.pvd`.
     pub fn fields(&mut self, step: u64, time: f64, fields: &FieldSet) -> Result<(), RecordError> {
         let entry = FieldEntry { step, time };
-        let Header { format, fields: entries, field_hashes: hashes, .. } = &mut self.header;
+        let Header { fields: entries, field_hashes: hashes, .. } = &mut self.header;
         if let Some(same) = entries.iter().position(|e| e.step == step) {
             entries.remove(same);
             hashes.remove(same);
-        }
-        if *format == FieldFormat::VtkHdf {
-            self.unsynced = vec![vtkhdf::path(&self.directory)];
-            hashes.push(vtkhdf::put(&self.directory, entries.len(), &entry, fields)?);
-            entries.push(entry);
-            return Ok(());
         }
         let folder = self.directory.join("fields");
         fs::create_dir_all(&folder).map_err(RecordError::io("create", &folder))?;
@@ -299,7 +281,6 @@ impl RunWriter {
     /// and the log.
     pub fn finish(&mut self, manifest: &mut Manifest) -> Result<(), RecordError> {
         self.write_rows()?;
-        vtkhdf::finish(&self.directory)?;
         if manifest.status != Status::Finished {
             self.sync_fields()?;
         }
@@ -337,10 +318,8 @@ impl RunWriter {
     fn sync_fields(&mut self) -> Result<(), RecordError> {
         if !self.unsynced.is_empty() {
             self.unsynced.drain(..).try_for_each(|path| files::sync(&path))?;
-            if self.header.format == FieldFormat::Vtu {
-                files::sync_directory(&self.directory.join("fields"))?;
-                files::sync(&self.directory.join(pvd::FILE))?;
-            }
+            files::sync_directory(&self.directory.join("fields"))?;
+            files::sync(&self.directory.join(pvd::FILE))?;
             files::sync_directory(&self.directory)?;
         }
         Ok(())

@@ -316,7 +316,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let frame_of = |(k, (entry, _)): (usize, &(FieldEntry, Instant))| {
         let list: Vec<f64> = forces.get(&entry.step).into_iter().flatten().flatten().copied().collect();
         let rounded: Vec<f64> = list.iter().map(|x| format!("{x:.5e}").parse().unwrap_or(0.0)).collect();
-        json!({ "time": entry.time, "step": entry.step, "file": run.field_file(entry), "forces": rounded,
+        json!({ "time": entry.time, "step": entry.step, "file": entry.file(), "forces": rounded,
                 "pressure": pressures.get(k),
                 "planes": if flat { planes(run, flat, entry.time) } else { Vec::new() },
                 "poses": surfaces.iter().map(|obstacle| obstacle.pose(run, entry.time)).collect::<Vec<_>>() })

@@ -1,6 +1,6 @@
 //! The figures of a run, and the columns and files from which they are drawn.
 
-use carom_record::{Run, contact_axes};
+use carom_record::Run;
 
 use crate::animation::Animation;
 use crate::energy::{ENERGIES, WORKS};
@@ -35,7 +35,7 @@ pub(crate) fn all(run: &Run) -> Shown {
     let place = shown.figures.len() + 1;
     if let Some((bodies, bands)) = instants(run, &mut shown.notes) {
         shown.figures.push(bodies);
-        let is_solid = contact_axes(&run.manifest.case) == 3;
+        let is_solid = run.manifest.facts.dimension == 3;
         let section = if is_solid { space::section } else { animation::section };
         shown.animation = section(run, &bands, shades(run), place);
     }

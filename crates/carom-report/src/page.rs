@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_record::{FieldFormat, Run, Status, Warning};
+use carom_record::{Run, Status, Warning};
 use maud::{Markup, Render, html};
 use serde_json::Value;
 
@@ -234,11 +234,7 @@ fn reproduce(run: &Run) -> Markup {
     let source = &run.manifest.source;
     // Inside single quotes a shell has no escape: the quote is closed, written and opened again.
     let sets: Vec<String> = source.sets.iter().map(|s| s.replace('\'', r"'\''")).collect();
-    let fields = match run.field_format {
-        _ if run.fields.is_empty() => None,
-        FieldFormat::Vtu => Some("fields.pvd"),
-        FieldFormat::VtkHdf => Some("fields.vtkhdf"),
-    };
+    let fields = (!run.fields.is_empty()).then_some("fields.pvd");
     let files = ["manifest.json", "history.csv", "contact.csv", "log.jsonl"].into_iter().chain(fields);
     html! {
         h2 { "How to reproduce" }

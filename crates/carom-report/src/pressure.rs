@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use carom_record::{ContactRow, FieldEntry, Run, contact_axes};
+use carom_record::{ContactRow, FieldEntry, Run};
 use serde_json::{Value, json};
 
 use crate::arc::{Place, places};
@@ -50,7 +50,7 @@ impl Side<'_> {
 /// The sides of all contacts of the plane that have had pressure.
 fn sides<'a>(run: &'a Run) -> Vec<Side<'a>> {
     // Without field files there are neither positions nor units.
-    if contact_axes(&run.manifest.case) != 2 || run.fields.is_empty() {
+    if run.manifest.facts.dimension == 3 || run.fields.is_empty() {
         return Vec::new();
     }
     let side = |(name, rows): (&'a str, Vec<&'a ContactRow<'static>>)| {

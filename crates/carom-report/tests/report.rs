@@ -8,7 +8,9 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use carom_record::{Block, Cell, Column, ContactRow, FieldSet, Manifest, PointArray, RunWriter, Source};
+use carom_record::{
+    Block, Cell, Column, ContactRow, Facts, FieldSet, Manifest, PointArray, RunWriter, Source,
+};
 use carom_report::report;
 
 /// Number of elements of an XML text, which must be well-formed.
@@ -100,8 +102,14 @@ fn bar(directory: &Path, rows: usize, with_fields: bool) {
         description: String::new(),
         integer: false,
     });
-    let mut manifest =
-        Manifest::new("0.1.0", serde_json::json!({"dimension": 1}), Source::default(), columns.to_vec(), 1);
+    let mut manifest = Manifest::new(
+        "0.1.0",
+        Facts::default(),
+        serde_json::json!({"dimension": 1}),
+        Source::default(),
+        columns.to_vec(),
+        1,
+    );
     let mut writer = RunWriter::create(directory, &manifest, b"").unwrap();
     for i in 0..rows {
         let t = i as f64 * 0.1;
@@ -167,7 +175,8 @@ fn cube(directory: &Path) {
         "probes": [{"name": "A", "body": "cube", "at": [1.0, 1.0, 1.0]}],
         "time": {"end": 1.0},
     });
-    let mut manifest = Manifest::new("0.1.0", case, Source::default(), columns.to_vec(), 1);
+    let cube = Facts { dimension: 3, probes: vec!["A".into()], ..Facts::default() };
+    let mut manifest = Manifest::new("0.1.0", cube, case, Source::default(), columns.to_vec(), 1);
     // Corner k is at the bits of k.
     manifest.sides.insert("cube.bottom".into(), vec![vec![0, 3, 1], vec![0, 2, 3]]);
     manifest.sides.insert("cube.top".into(), vec![vec![4, 5, 7], vec![4, 7, 6]]);
@@ -234,7 +243,7 @@ fn pressed(directory: &Path) {
     });
     let contacts = serde_json::json!([{"name": "c", "secondary": "block.top", "primary": {"plane": {"point": [0.0, 1.0], "normal": [0.0, -1.0]}}}]);
     let case = serde_json::json!({"dimension": 2, "title": "Pressed", "contacts": contacts});
-    let mut manifest = Manifest::new("0.1.0", case, Source::default(), columns.to_vec(), 1);
+    let mut manifest = Manifest::new("0.1.0", Facts::default(), case, Source::default(), columns.to_vec(), 1);
     manifest.sides.insert("block.top".into(), vec![vec![3, 2]]);
     let mut writer = RunWriter::create(directory, &manifest, b"").unwrap();
     for i in 0..4_u32 {

@@ -246,7 +246,8 @@ fn place(manifest: &mut StudyManifest, i: usize, step: f64) -> Result<(), StudyE
     arm.sets.retain(|set| !sets_step(set));
     arm.sets.push(format!("time.step={step:?}"));
     arm.steps = case.time.steps() as u64;
-    arm.case = serde_json::to_value(&case).unwrap_or_default();
+    arm.facts = case.facts();
+    arm.case = case.to_json().unwrap_or_default();
     Ok(())
 }
 
@@ -381,7 +382,14 @@ mod tests {
     #[test]
     fn weights_by_hand() {
         let source = carom_record::Source { text: String::new(), sets: Vec::new(), folder: None };
-        let mut run = Manifest::new("0", serde_json::Value::Null, source, Vec::new(), 1);
+        let mut run = Manifest::new(
+            "0",
+            carom_record::Facts::default(),
+            serde_json::Value::Null,
+            source,
+            Vec::new(),
+            1,
+        );
         run.counters =
             [("newton", 8), ("factorisations", 4), ("steps", 5)].map(|(n, c)| (n.to_owned(), c)).into();
         run.timings =

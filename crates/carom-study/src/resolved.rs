@@ -183,7 +183,8 @@ pub(crate) fn stored(draft: &Draft, directory: String, sets: Vec<String>, case: 
         steps: case.time.steps() as u64,
         role: draft.role.clone(),
         case_path: draft.case.clone(),
-        case: serde_json::to_value(case).unwrap_or_default(),
+        facts: case.facts(),
+        case: case.to_json().unwrap_or_default(),
     }
 }
 

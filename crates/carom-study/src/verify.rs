@@ -242,7 +242,7 @@ impl Item {
                 set_up.contact = study.rows.iter().any(|r| r.contact);
                 for (arm, found) in manifest.arms.iter().zip(&study.rows) {
                     if found.status == Some(Status::Failed)
-                        && !stop_expected(&manifest, &arm.name, &arm.expects())
+                        && !stop_expected(&manifest, &arm.name, &arm.facts.expects)
                     {
                         let reason = found.reason.as_deref().unwrap_or_default();
                         set_up.stopped.push(format!("\"{}\": {reason}", arm.name));

@@ -212,8 +212,8 @@ const OUTPUT: Table = table(
         .optional("20"),
         key(
             "format",
-            Choice(&["vtu", "vtkhdf"], &[]),
-            "Field format: one VTU file per output, listed in fields.pvd, or a single file, fields.vtkhdf.",
+            Text,
+            "Field format: one VTU file per output, listed in fields.pvd; Run.to_vtkhdf in Python makes one file of them.",
         )
         .default("\"vtu\""),
         key("at_times", Numbers, "Fields are also written at the steps nearest to these times.")

@@ -1,6 +1,5 @@
 //! What a run records: probes, rows of history.csv, fields, checkpoints.
 
-use carom_record::FieldFormat;
 use serde::{Deserialize, Serialize};
 
 /// A material point whose quantities are recorded as columns.
@@ -91,9 +90,6 @@ impl Quantity {
 pub struct OutputSpec {
     /// Steps between two outputs of the fields; 0: none.
     pub fields_every: usize,
-    /// Format of the fields.
-    #[serde(default)]
-    pub format: FieldFormat,
     /// Fields are also written at the steps nearest to these times.
     pub at_times: Vec<f64>,
     /// Steps between two rows of history.csv.

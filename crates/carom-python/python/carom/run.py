@@ -214,6 +214,25 @@ class Run:
         """
         return self.history.to_xarray()
 
+    def to_vtkhdf(self, path: str | PathLike[str]) -> Path:
+        """The fields of all recorded instants in one VTKHDF file, for ParaView and VTK.
+
+        Parameters
+        ----------
+        path : str or PathLike
+            The file, which must not exist yet: ``impact.vtkhdf``.
+
+        Returns
+        -------
+        Path
+            The file. Points are the reference positions; the filter "Warp By Vector" of
+            ``displacement`` shows the deformed bodies. The attribute ``units`` of an array is its
+            unit, and ``bodies`` of the cell array ``body`` are the names of the bodies.
+        """
+        from . import vtkhdf
+
+        return vtkhdf.write(self.fields, path)
+
     def page(self) -> Path:
         """Make figures and report page of a run directory.
 

@@ -56,12 +56,12 @@ fn averaged(history: &History, window: f64, of: impl Fn(&str) -> bool) -> Histor
 mod tests {
     use super::*;
     use crate::Column;
-    use crate::metrics::{COLUMNS, HISTORY};
+    use crate::metrics::table::{COLUMNS, HISTORY};
 
     #[test]
     fn the_metrics_of_single_rows_exist() {
-        assert!(OF_FORCE.iter().all(|name| HISTORY.iter().any(|(d, _)| d.name == *name)));
-        assert!(OF_COLUMN.iter().all(|name| COLUMNS.iter().any(|(d, _)| d.name == *name)));
+        assert!(OF_FORCE.iter().all(|name| HISTORY.iter().any(|d| d.name == *name)));
+        assert!(OF_COLUMN.iter().all(|name| COLUMNS.iter().any(|d| d.name == *name)));
     }
 
     /// By hand: the mean of t over any window inside is t, at the ends it is that of half a window;

@@ -1,33 +1,22 @@
 //! The table of metrics for the book.
 
 use super::definition::Definition;
+use super::evaluated::{of_any_column, of_no_column};
 use super::overlay::OVERLAY;
-use super::run_table::{PRESSURE, REBOUND, WORK};
-use super::table::{COLUMNS, FREE, HISTORY};
 
 /// All definitions as a Markdown table for the book.
 pub fn book_table() -> String {
-    let history = HISTORY.iter().map(|x| (String::new(), &x.0));
-    let columns = COLUMNS.iter().chain(&FREE).map(|x| ("COLUMN:".to_owned(), &x.0));
-    let measured = OVERLAY.iter().map(|x| (String::new(), &x.0));
-    let all = history
-        .chain(columns)
-        .chain(measured)
-        .chain(REBOUND.iter().chain(&PRESSURE).chain(&WORK).map(|x| (String::new(), &x.0)));
+    let head = "| Metric | Definition | Formula | Unit | Source |\n| --- | --- | --- | --- | --- |\n";
+    let rows = of_no_column().chain(&OVERLAY).map(|definition| row("", definition));
+    rows.chain(of_any_column().map(|definition| row("COLUMN:", definition)))
+        .fold(head.to_owned(), |text, row| text + &row)
+}
+
+fn row(before: &str, Definition { name, unit, formula, source, meaning, .. }: &Definition) -> String {
     // As Markdown would otherwise end a cell, or set text between two signs in italics.
     let escape = |text: &str| text.replace('|', "\\|").replace('_', "\\_").replace('*', "\\*");
-    let row = |(before, d): (String, &Definition)| {
-        format!(
-            "| `{before}{}` | {} | {} | {} | {} |\n",
-            d.name,
-            escape(d.meaning),
-            escape(d.formula),
-            d.unit.word(),
-            escape(d.source)
-        )
-    };
-    let head = "| Metric | Definition | Formula | Unit | Source |\n| --- | --- | --- | --- | --- |\n";
-    all.fold(head.to_owned(), |text, one| text + &row(one))
+    let [meaning, formula, source] = [meaning, formula, source].map(|text| escape(text));
+    format!("| `{before}{name}` | {meaning} | {formula} | {} | {source} |\n", unit.word())
 }
 
 #[cfg(test)]

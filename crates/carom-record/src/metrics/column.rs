@@ -6,39 +6,27 @@
 //! passes k times up and down through its whole range. It is computed from rows, so variation
 //! between the rows of a coarse `history_every` is not included.
 
-use super::episode::{Episode, first_episode};
+use super::given::Given;
 use super::samples::{extreme, integral, peak_mean, total_variation};
-use crate::History;
 
 /// Roughness of a column in the first contact episode; none without an episode or for a constant.
-pub fn column_roughness(history: &History, column: &str) -> Option<f64> {
-    let episode = first_episode(history)?;
-    let values = history.column(column)?;
-    let values =
-        values.get(episode.start.saturating_sub(1)..episode.end.map_or(values.len(), |end| end + 1))?;
+pub(super) fn column_roughness(given: &Given) -> Option<f64> {
+    let values = given.values()?.get(given.rows()?)?;
     let range = extreme(values, f64::gt)?.1 - extreme(values, f64::lt)?.1;
     (range > 0.0).then(|| total_variation(values) / (2.0 * range) - 1.0)
 }
 
 /// Largest absolute mean of a column over a window of 1/16 of the first episode, with the
 /// trapezoidal rule between rows.
-pub(super) fn peak_of_means(history: &History, column: &str) -> Option<f64> {
-    let (times, values) = (history.times(), history.column(column)?);
-    let window = first_episode(history)?.window(times)?;
-    peak_mean(times, &[&integral(times, values)], window)
-}
-
-/// Values in the rows of the first episode.
-pub(super) fn in_contact<'a>(history: &'a History, column: &str) -> Option<&'a [f64]> {
-    let Episode { start, end } = first_episode(history)?;
-    let values = history.column(column)?;
-    values.get(start..end.unwrap_or(values.len()))
+pub(super) fn peak_of_means(given: &Given) -> Option<f64> {
+    let times = given.history.times();
+    peak_mean(times, &[&integral(times, given.values()?)], given.window()?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Column;
+    use crate::{Column, History};
 
     fn history(probe: Vec<f64>) -> History {
         let rows = probe.len();
@@ -60,18 +48,17 @@ mod tests {
         let mut values = vec![-32.0; 34];
         values[17] = 32.0;
         let history = history(values);
-        let (_, value) = crate::metrics::of_column(&history, "B.s", "peak_mean").unwrap();
-        assert_eq!(value, Some(32.0));
+        assert_eq!(peak_of_means(&Given::of(&history).with_column("B.s")), Some(32.0));
     }
 
     /// By hand: one hump, a ramp, and three humps through the whole range.
     #[test]
     fn roughness_counts_humps() {
-        let of = |values: &[f64]| column_roughness(&history(values.to_vec()), "B.s");
+        let of = |values: &[f64]| column_roughness(&Given::of(&history(values.to_vec())).with_column("B.s"));
         assert_eq!(of(&[0.0, -1.0, -4.0, -2.0, 0.0]), Some(0.0));
         assert_eq!(of(&[0.0, 1.0, 2.0, 5.0]), Some(-0.5));
         assert_eq!(of(&[0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0]), Some(2.0));
         assert_eq!(of(&[1.0; 5]), None);
-        assert_eq!(column_roughness(&history(vec![0.0; 5]), "C"), None);
+        assert_eq!(column_roughness(&Given::of(&history(vec![0.0; 5])).with_column("C")), None);
     }
 }

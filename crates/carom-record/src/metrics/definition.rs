@@ -2,21 +2,24 @@
 
 use std::borrow::Cow;
 
+use super::given::Given;
 use crate::{History, units};
 
 /// Definition of a metric.
 #[derive(Clone, Copy, Debug)]
-pub struct Definition {
+pub(crate) struct Definition {
     /// Name in expectations and studies.
     pub name: &'static str,
-    /// Formula in columns of the history.
-    pub formula: &'static str,
     /// Unit.
     pub unit: Unit,
+    /// Formula in columns of the history.
+    pub formula: &'static str,
     /// Source of the definition.
     pub source: &'static str,
     /// Meaning, in one line.
     pub meaning: &'static str,
+    /// Its value; none if it is not defined for the record.
+    pub(crate) value: fn(&Given) -> Option<f64>,
 }
 
 /// Unit of a metric, in terms of the units of the case.
@@ -48,8 +51,8 @@ impl Unit {
             Self::Impulse => history.unit("contact_impulse_x").to_owned(),
             Self::Length => history.unit("penetration").to_owned(),
             Self::Stress => {
-                let stress = |name: &str| name.contains(".sigma_") || name.ends_with(".von_mises");
-                let recorded = history.columns.iter().find(|c| stress(&c.name)).map(|c| c.unit.clone());
+                let is_stress = |name: &str| name.contains(".sigma_") || name.ends_with(".von_mises");
+                let recorded = history.columns.iter().find(|c| is_stress(&c.name)).map(|c| c.unit.clone());
                 let derived =
                     || units::stress(history.unit("contact_force_x"), history.unit("penetration"), time);
                 recorded.unwrap_or_else(derived)
@@ -94,11 +97,14 @@ pub(super) const fn d(
     formula: &'static str,
     source: &'static str,
     meaning: &'static str,
+    value: fn(&Given) -> Option<f64>,
 ) -> Definition {
-    Definition { name, formula, unit, source, meaning }
+    Definition { name, unit, formula, source, meaning, value }
 }
 
 /// Source of what is defined here.
 pub(super) const OWN: &str = "this project";
 /// Source of what published tables of impacts list.
 pub(super) const TABLES: &str = "used by Doyen, Ern, Piperno 2011";
+/// Source of total variations.
+pub(super) const VARIATION: &str = "total variation: Harten 1983";

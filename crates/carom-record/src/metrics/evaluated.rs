@@ -2,92 +2,71 @@
 //! tabulates for a run.
 
 use super::definition::{Definition, Metric, Unit};
-use super::episode::{default_bridge, episodes};
-use super::facts::Facts;
+use super::given::Given;
 use super::ledger::energy_lost_at;
-use super::overlay::{OVERLAY, Overlay, overlays};
+use super::overlay::{OVERLAY, Overlay};
 use super::run_table::{PRESSURE, REBOUND, WORK};
 use super::table::{COLUMNS, FREE, HISTORY};
 use crate::{History, Run};
 
-/// Every named metric of a history, in the order of [`HISTORY`].
+/// Metrics that need neither a column nor measured data.
+pub(crate) fn of_no_column() -> impl Iterator<Item = &'static Definition> {
+    HISTORY.iter().chain(&REBOUND).chain(&PRESSURE).chain(&WORK)
+}
+
+/// Metrics of a column.
+pub(crate) fn of_any_column() -> impl Iterator<Item = &'static Definition> {
+    COLUMNS.iter().chain(&FREE)
+}
+
+fn evaluated(table: &'static [Definition], given: &Given) -> impl Iterator<Item = Metric> {
+    table.iter().map(|definition| given.metric(definition))
+}
+
+/// Every named metric of a history.
 pub fn all(history: &History) -> Vec<Metric> {
-    let facts = Facts::of(history);
-    let metric = |(definition, value): &(Definition, fn(&Facts) -> Option<f64>)| Metric {
-        name: definition.name.into(),
-        value: value(&facts),
-        unit: definition.unit.label(history),
-        definition: definition.meaning,
-    };
-    HISTORY.iter().map(metric).collect()
+    evaluated(&HISTORY, &Given::of(history)).collect()
 }
 
 impl Metric {
+    fn work(&self) -> Option<&'static Definition> {
+        WORK.iter().find(|definition| definition.name == self.name)
+    }
+
     /// Whether it is one of the computational work, which says nothing about the solution.
     pub fn is_work(&self) -> bool {
-        WORK.iter().any(|(definition, _)| definition.name == self.name)
+        self.work().is_some()
     }
 
     /// Whether it is a measured time, which differs from run to run.
     pub fn is_measured(&self) -> bool {
-        WORK.iter().any(|(definition, _)| definition.name == self.name && definition.unit == Unit::Second)
+        self.work().is_some_and(|definition| definition.unit == Unit::Second)
     }
 }
 
-/// Definition and value of a metric of a column; none if there is no such metric.
-pub fn of_column(history: &History, column: &str, what: &str) -> Option<(&'static Definition, Option<f64>)> {
-    let (definition, value) = COLUMNS.iter().chain(&FREE).find(|(d, _)| d.name == what)?;
-    Some((definition, value(history, column)))
-}
-
-/// The metrics of [`COLUMNS`] of a column, named `COLUMN:METRIC`.
+/// The metrics of a column, named `COLUMN:METRIC`.
 pub(crate) fn of_columns(history: &History, column: &str) -> Vec<Metric> {
-    let metric = |(definition, value): &(Definition, fn(&History, &str) -> Option<f64>)| Metric {
-        name: format!("{column}:{}", definition.name).into(),
-        value: value(history, column),
-        unit: match definition.unit {
-            Unit::Column => history.unit(column).to_owned(),
-            _ => String::new(),
-        },
-        definition: definition.meaning,
-    };
-    COLUMNS.iter().map(metric).collect()
+    evaluated(&COLUMNS, &Given::of(history).with_column(column)).collect()
 }
 
 /// The metrics of measured data, named `METRIC:NAME`.
 pub fn of_measured(history: &History, overlay: &Overlay) -> Vec<Metric> {
-    let metric = |(definition, value): &(Definition, fn(&History, &Overlay) -> Option<f64>)| Metric {
-        name: format!("{}:{}", definition.name, overlay.name).into(),
-        value: value(history, overlay),
-        unit: match definition.unit {
-            Unit::Column => history.unit(&overlay.column).to_owned(),
-            other => other.label(history),
-        },
-        definition: definition.meaning,
-    };
-    OVERLAY.iter().map(metric).collect()
+    evaluated(&OVERLAY, &Given::of(history).beside(overlay)).collect()
 }
 
 /// Names of the columns of the probes, in the order of the history.
 pub fn probe_columns(run: &Run) -> Vec<&str> {
-    let probes = run.manifest.case.get("probes").and_then(|p| p.as_array());
-    let names: Vec<&str> = probes.into_iter().flatten().filter_map(|p| p.get("name")?.as_str()).collect();
+    let is_probe = |name: &str| run.manifest.facts.probes.iter().any(|probe| probe == name);
     let columns = run.history.columns.iter().map(|c| c.name.as_str());
-    columns.filter(|c| c.rsplit_once('.').is_some_and(|(probe, _)| names.contains(&probe))).collect()
+    columns.filter(|c| c.rsplit_once('.').is_some_and(|(probe, _)| is_probe(probe))).collect()
 }
 
 /// Largest number of impacts whose energy loss a study tabulates one by one.
 const IMPACTS: usize = 9;
 
-/// The metrics of [`REBOUND`].
+/// The metrics of the bodies of the first episode.
 pub fn of_rebound(run: &Run) -> Vec<Metric> {
-    let metric = |(definition, value): &(Definition, fn(&Run) -> Option<f64>)| Metric {
-        name: definition.name.into(),
-        value: value(run),
-        unit: definition.unit.label(&run.history),
-        definition: definition.meaning,
-    };
-    REBOUND.iter().map(metric).collect()
+    evaluated(&REBOUND, &Given::of_run(run)).collect()
 }
 
 /// All metrics that a study tabulates: [`all`], [`of_rebound`], the energy lost in each of the
@@ -99,39 +78,29 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
 
 /// [`of_run`] with differences from these measured data too, of columns that the run has.
 pub fn of_run_beside(run: &Run, measured: &[Overlay]) -> Vec<Metric> {
-    let history = &run.history;
-    let mut metrics = all(history);
-    metrics.extend(of_rebound(run));
-    let impacts = episodes(history, default_bridge(history)).len().min(IMPACTS);
-    for n in 1..=if impacts > 1 { impacts } else { 0 } {
-        let definition =
-            "energy lost over the N-th contact episode, divided by the largest kinetic + strain energy";
-        let value = energy_lost_at(history, n);
-        metrics.push(Metric {
+    let given = Given::of_run(run);
+    let is_defined = |metric: &Metric| metric.value.is_some();
+    let mut metrics: Vec<Metric> = evaluated(&HISTORY, &given).chain(evaluated(&REBOUND, &given)).collect();
+    let impacts = given.episodes.len().min(IMPACTS);
+    if impacts > 1 {
+        metrics.extend((1..=impacts).map(|n| Metric {
             name: format!("energy_lost:{n}").into(),
-            value,
+            value: energy_lost_at(&run.history, n),
             unit: String::new(),
-            definition,
-        });
+            definition: "energy lost over the N-th contact episode, divided by the largest kinetic + strain energy",
+        }));
     }
-    for (definition, value) in PRESSURE.iter().filter_map(|(d, value)| Some((d, value(run)?))) {
-        let (name, unit) = (definition.name.into(), definition.unit.label(history));
-        metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
+    metrics.extend(evaluated(&PRESSURE, &given).filter(is_defined));
+    let measured = measured.iter().filter(|overlay| run.column(&overlay.column).is_some());
+    for overlay in run.manifest.facts.overlays.iter().chain(measured) {
+        metrics.extend(evaluated(&OVERLAY, &given.beside(overlay)));
     }
-    let measured = measured.iter().filter(|overlay| history.column(&overlay.column).is_some());
-    metrics.extend(overlays(run).iter().chain(measured).flat_map(|overlay| of_measured(history, overlay)));
     for column in probe_columns(run) {
-        metrics.extend(of_columns(history, column));
-        for (definition, value) in FREE.iter().filter_map(|(d, value)| Some((d, value(history, column)?))) {
-            let (name, unit) =
-                (format!("{column}:{}", definition.name).into(), definition.unit.label(history));
-            metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
-        }
+        let of_column = given.with_column(column);
+        metrics.extend(evaluated(&COLUMNS, &of_column));
+        metrics.extend(evaluated(&FREE, &of_column).filter(is_defined));
     }
-    for (definition, value) in &WORK {
-        let (unit, value) = (definition.unit.label(history), value(run));
-        metrics.push(Metric { name: definition.name.into(), value, unit, definition: definition.meaning });
-    }
+    metrics.extend(evaluated(&WORK, &given));
     metrics
 }
 

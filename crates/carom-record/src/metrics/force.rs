@@ -10,7 +10,7 @@
 //! The N rows of the episode are assumed to be equally spaced in time. A force that is constant
 //! during contact has no power at high frequency, and a smooth pulse almost none.
 
-use super::facts::Facts;
+use super::given::Given;
 use super::samples::total_variation;
 
 /// Largest number of cycles per episode that counts as a low frequency.
@@ -18,7 +18,7 @@ const CYCLES: usize = 16;
 
 /// Fraction of the power of equally spaced samples above 16 cycles in their span; none for too few
 /// samples, or if all are zero.
-pub fn high_frequency(samples: &[f64]) -> Option<f64> {
+pub(super) fn high_frequency(samples: &[f64]) -> Option<f64> {
     let n = samples.len();
     let power = samples.iter().map(|x| x * x).sum::<f64>();
     if n < 4 * CYCLES || power == 0.0 || !power.is_finite() {
@@ -38,31 +38,30 @@ pub fn high_frequency(samples: &[f64]) -> Option<f64> {
     Some(f64::max(0.0, 1.0 - low / (n as f64 * power)))
 }
 
-pub(super) fn variation(facts: &Facts) -> Option<f64> {
-    Some(total_variation(facts.force.get(facts.rows.clone()?)?))
+pub(super) fn variation(given: &Given) -> Option<f64> {
+    Some(total_variation(given.force().get(given.rows()?)?))
 }
 
-pub(super) fn high(facts: &Facts) -> Option<f64> {
-    let first = facts.first()?;
-    high_frequency(facts.force.get(first.start..first.end.unwrap_or(facts.force.len()))?)
+pub(super) fn high(given: &Given) -> Option<f64> {
+    high_frequency(given.force().get(given.rows_in_contact()?)?)
 }
 
-pub(super) fn chatter(facts: &Facts) -> Option<f64> {
-    let [activations, releases] = ["activations", "releases"].map(|name| facts.history.column(name));
+pub(super) fn chatter(given: &Given) -> Option<f64> {
+    let [activations, releases] = ["activations", "releases"].map(|name| given.history.column(name));
     let switches = activations?.iter().chain(releases?).sum::<f64>();
-    let last = facts.history.times().len().checked_sub(1)?;
+    let last = given.history.times().len().checked_sub(1)?;
     let duration =
-        facts.episodes.iter().map(|e| facts.time(e.end.unwrap_or(last)) - facts.time(e.start)).sum::<f64>();
+        given.episodes.iter().map(|e| given.time(e.end.unwrap_or(last)) - given.time(e.start)).sum::<f64>();
     (duration > 0.0).then(|| switches / duration)
 }
 
 /// None if a row stands for several steps: it has the largest penetration of all of them.
-pub(super) fn mean_penetration(facts: &Facts) -> Option<f64> {
-    let steps = facts.history.column("step").unwrap_or_default();
+pub(super) fn mean_penetration(given: &Given) -> Option<f64> {
+    let steps = given.history.column("step").unwrap_or_default();
     if steps.windows(2).any(|two| two[1] - two[0] > 1.0) {
         return None;
     }
-    let (depth, active) = (facts.history.column("penetration")?, facts.history.column("active")?);
+    let (depth, active) = (given.history.column("penetration")?, given.history.column("active")?);
     let (sum, rows) =
         depth.iter().zip(active).filter(|(_, n)| **n > 0.0).fold((0.0, 0), |(s, n), (d, _)| (s + d, n + 1));
     (rows > 0).then(|| sum / f64::from(rows))

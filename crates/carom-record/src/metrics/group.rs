@@ -66,33 +66,30 @@ pub fn group(name: &str) -> &'static str {
     if let Some(group) = GROUPS.iter().find(|group| group.names.contains(&base)) {
         return group.title;
     }
-    if PRESSURE.iter().any(|(definition, _)| definition.name == name) {
+    if PRESSURE.iter().any(|definition| definition.name == name) {
         return TITLES[7];
     }
-    if WORK.iter().any(|(definition, _)| definition.name == name) { TITLES[9] } else { TITLES[8] }
+    if WORK.iter().any(|definition| definition.name == name) { TITLES[9] } else { TITLES[8] }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{HISTORY, OVERLAY, REBOUND};
+    use crate::metrics::OVERLAY;
+    use crate::metrics::run_table::REBOUND;
+    use crate::metrics::table::HISTORY;
 
     /// Every metric of a history has a heading of its own kind; what has none is of a probe.
     #[test]
     fn every_metric_has_a_heading() {
-        for (definition, _) in &HISTORY {
+        for definition in &HISTORY {
             assert_ne!(group(definition.name), "Probes", "{}", definition.name);
         }
         assert_eq!(group("energy_lost:3"), "Energy");
         assert_eq!(group("A.sigma_yy:peak_mean"), "Probes");
         assert_eq!(group("cpu_time"), "Computational work");
         let names = GROUPS.iter().flat_map(|group| group.names);
-        let known = |name: &&&str| {
-            let history = HISTORY.iter().map(|(definition, _)| definition);
-            let of_run = REBOUND.iter().map(|(definition, _)| definition);
-            let measured = OVERLAY.iter().map(|(definition, _)| definition);
-            history.chain(of_run).chain(measured).any(|d| d.name == **name)
-        };
+        let known = |name: &&&str| HISTORY.iter().chain(&REBOUND).chain(&OVERLAY).any(|d| d.name == **name);
         assert!(names.clone().all(|name| known(&name)));
         assert_eq!(names.count(), HISTORY.len() + REBOUND.len() + OVERLAY.len());
     }

@@ -10,7 +10,7 @@
 //! All metrics are divided by the largest kinetic + strain energy of any row.
 
 use super::episode::Episode;
-use super::facts::Facts;
+use super::given::Given;
 use crate::History;
 
 /// Share of created energy from which a run is not to be trusted: the default of
@@ -26,40 +26,39 @@ fn changes(history: &History) -> Option<(Vec<f64>, f64)> {
     Some((total.iter().zip(work).map(|(e, w)| e - total[0] - w).collect(), scale))
 }
 
-pub(super) fn lost(facts: &Facts) -> Option<f64> {
-    let (changes, scale) = changes(facts.history)?;
+pub(super) fn lost(given: &Given) -> Option<f64> {
+    let (changes, scale) = changes(given.history)?;
     Some(-changes.last()? / scale)
 }
 
 /// The columns have the running values of the run, between rows too.
-pub(super) fn created(facts: &Facts) -> Option<f64> {
-    let last = |name: &str| facts.history.column(name)?.last().copied();
-    let scale = last("energy_scale").filter(|&scale| scale > 0.0)?;
-    Some(last("energy_created")? / scale)
+pub(super) fn created(given: &Given) -> Option<f64> {
+    let scale = given.last("energy_scale").filter(|&scale| scale > 0.0)?;
+    Some(given.last("energy_created")? / scale)
 }
 
-pub(super) fn drift(facts: &Facts) -> Option<f64> {
-    let (changes, scale) = changes(facts.history)?;
+pub(super) fn drift(given: &Given) -> Option<f64> {
+    let (changes, scale) = changes(given.history)?;
     Some(changes.iter().fold(0.0, |most, x| f64::max(most, x.abs())) / scale)
 }
 
 /// Last value of a cumulative column, divided by the scale.
-fn share(history: &History, column: &str) -> Option<f64> {
-    Some(history.column(column)?.last()? / changes(history)?.1)
+fn share(given: &Given, column: &str) -> Option<f64> {
+    Some(given.last(column)? / changes(given.history)?.1)
 }
 
-pub(super) fn by_integrator(facts: &Facts) -> Option<f64> {
-    share(facts.history, "dissipation")
+pub(super) fn by_integrator(given: &Given) -> Option<f64> {
+    share(given, "dissipation")
 }
 
 /// None without friction.
-pub(super) fn by_friction(facts: &Facts) -> Option<f64> {
-    facts.history.column("slip")?;
-    share(facts.history, "friction_work").map(|work| 0.0 - work)
+pub(super) fn by_friction(given: &Given) -> Option<f64> {
+    given.history.column("slip")?;
+    share(given, "friction_work").map(|work| 0.0 - work)
 }
 
-pub(super) fn by_contact(facts: &Facts) -> Option<f64> {
-    share(facts.history, "contact_work").map(|work| 0.0 - work)
+pub(super) fn by_contact(given: &Given) -> Option<f64> {
+    share(given, "contact_work").map(|work| 0.0 - work)
 }
 
 fn over(history: &History, episode: Episode) -> Option<f64> {
@@ -68,14 +67,14 @@ fn over(history: &History, episode: Episode) -> Option<f64> {
     episode.end.map(|_| (changes[rows.start] - changes[rows.end - 1]) / scale)
 }
 
-pub(super) fn at_worst_impact(facts: &Facts) -> Option<f64> {
-    let losses = facts.episodes.iter().filter_map(|e| over(facts.history, *e));
+pub(super) fn at_worst_impact(given: &Given) -> Option<f64> {
+    let losses = given.episodes.iter().filter_map(|e| over(given.history, *e));
     losses.reduce(|worst, next| if next.abs() > worst.abs() { next } else { worst })
 }
 
 /// Energy lost over the n-th contact episode, counted from 1; none if it did not end.
 pub fn energy_lost_at(history: &History, n: usize) -> Option<f64> {
-    Facts::of(history).episodes.get(n.checked_sub(1)?).and_then(|e| over(history, *e))
+    Given::of(history).episodes.get(n.checked_sub(1)?).and_then(|e| over(history, *e))
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::History;
+use super::given::Given;
 
 /// Smallest number of rows in the second half.
 const LEAST: usize = 8;
@@ -21,10 +21,10 @@ const LEAST: usize = 8;
 const RESIDUAL: f64 = 1e-2;
 
 /// ln|z|, arg z and the step between rows.
-fn principal(history: &History, column: &str) -> Option<(f64, f64, f64)> {
-    let (times, values) = (history.times(), history.column(column)?);
+fn principal(given: &Given) -> Option<(f64, f64, f64)> {
+    let values = given.values()?;
     let half = values.len() / 2;
-    let (times, values) = (times.get(half..)?, values.get(half..)?);
+    let (times, values) = (given.history.times().get(half..)?, values.get(half..)?);
     if values.len() < LEAST {
         return None;
     }
@@ -47,19 +47,19 @@ fn principal(history: &History, column: &str) -> Option<(f64, f64, f64)> {
 }
 
 /// ξ.
-pub(super) fn damping_ratio(history: &History, column: &str) -> Option<f64> {
-    principal(history, column).map(|(log, angle, _)| -log / angle)
+pub(super) fn damping_ratio(given: &Given) -> Option<f64> {
+    principal(given).map(|(log, angle, _)| -log / angle)
 }
 
 /// T.
-pub(super) fn period(history: &History, column: &str) -> Option<f64> {
-    principal(history, column).map(|(_, angle, step)| TAU * step / angle)
+pub(super) fn period(given: &Given) -> Option<f64> {
+    principal(given).map(|(_, angle, step)| TAU * step / angle)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Column;
+    use crate::{Column, History};
 
     fn history(of: fn(f64) -> f64) -> History {
         let times: Vec<f64> = (0..=90).map(|n| 0.1 * f64::from(n)).collect();
@@ -79,15 +79,19 @@ mod tests {
     /// half. Columns with a parabola or a second frequency have neither.
     #[test]
     fn damping_of_a_decaying_cosine() {
-        let decaying = history(|t| (-0.6 * t).exp() * (2.0 * t).cos() + 5.0 * (-15.0 * t).exp());
-        assert!((damping_ratio(&decaying, "c").unwrap() - 0.3).abs() < 1e-9);
-        assert!((period(&decaying, "c").unwrap() - std::f64::consts::PI).abs() < 1e-9);
-        let steady = history(|t| (2.0 * t).cos());
-        assert!(damping_ratio(&steady, "c").unwrap().abs() < 1e-12);
+        let of = |history: &History| {
+            let given = Given::of(history).with_column("c");
+            (damping_ratio(&given), period(&given))
+        };
+        let (damping, period) =
+            of(&history(|t| (-0.6 * t).exp() * (2.0 * t).cos() + 5.0 * (-15.0 * t).exp()));
+        assert!((damping.unwrap() - 0.3).abs() < 1e-9);
+        assert!((period.unwrap() - std::f64::consts::PI).abs() < 1e-9);
+        assert!(of(&history(|t| (2.0 * t).cos())).0.unwrap().abs() < 1e-12);
         for other in
             [history(|t| 1.0 + t * t), history(|t| t.sin() + 0.1 * (7.0 * t).sin()), history(|_| 0.0)]
         {
-            assert_eq!((damping_ratio(&other, "c"), period(&other, "c")), (None, None));
+            assert_eq!(of(&other), (None, None));
         }
     }
 }

@@ -11,8 +11,9 @@ use serde::{Deserialize, Serialize};
 
 use super::compare::phase_shift;
 use super::definition::{Definition, OWN, Unit, d};
+use super::given::Given;
 use super::samples::at;
-use crate::{History, Run};
+use crate::Run;
 
 /// Measured data, in the units of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,84 +41,68 @@ impl Overlay {
 
 /// The measured data of a run, from its manifest.
 pub fn overlays(run: &Run) -> Vec<Overlay> {
-    let list = run.manifest.case.get("overlays").cloned();
-    list.and_then(|list| serde_json::from_value(list).ok()).unwrap_or_default()
+    run.manifest.facts.overlays.clone()
 }
 
 /// Metrics of measured data, named `overlay_rms:NAME` and so on.
-pub const OVERLAY: [(Definition, fn(&History, &Overlay) -> Option<f64>); 3] = [
-    (
-        d(
-            "overlay_rms",
-            Unit::Column,
-            "√(mean (c(t_i) − m_i)²)",
-            OWN,
-            "root mean square difference between the column and the measured data",
-        ),
+pub(crate) const OVERLAY: [Definition; 3] = [
+    d(
+        "overlay_rms",
+        Unit::Column,
+        "√(mean (c(t_i) − m_i)²)",
+        OWN,
+        "root mean square difference between the column and the measured data",
         rms,
     ),
-    (
-        d(
-            "overlay_peak",
-            Unit::None,
-            "max |c(t_i)|/max |m_i| − 1",
-            OWN,
-            "relative error of the largest absolute value of a column at the measured times",
-        ),
+    d(
+        "overlay_peak",
+        Unit::None,
+        "max |c(t_i)|/max |m_i| − 1",
+        OWN,
+        "relative error of the largest absolute value of a column at the measured times",
         peak,
     ),
-    (
-        d(
-            "overlay_shift",
-            Unit::Time,
-            "τ that minimises Σ (c(t_i + τ) − m_i)²",
-            OWN,
-            "time by which a column is later than the measured data",
-        ),
+    d(
+        "overlay_shift",
+        Unit::Time,
+        "τ that minimises Σ (c(t_i + τ) − m_i)²",
+        OWN,
+        "time by which a column is later than the measured data",
         shift,
     ),
 ];
 
-/// Pairs of computed and measured values.
-fn pairs<'a>(
-    history: &'a History,
-    overlay: &'a Overlay,
-) -> Option<impl Iterator<Item = (f64, f64)> + Clone + 'a> {
-    let column = history.column(&overlay.column)?;
-    let computed = move |(t, m): (&f64, &f64)| at(history.times(), column, *t).map(|c| (c, *m));
-    Some(overlay.times.iter().zip(&overlay.values).filter_map(computed))
+/// Computed and measured values at the measured times within the run.
+fn pairs(given: &Given) -> Option<Vec<(f64, f64)>> {
+    let measured = given.measured?;
+    let column = given.values()?;
+    let computed = |(t, m): (&f64, &f64)| at(given.history.times(), column, *t).map(|c| (c, *m));
+    Some(measured.times.iter().zip(&measured.values).filter_map(computed).collect())
 }
 
-fn rms(history: &History, overlay: &Overlay) -> Option<f64> {
-    let (sum, count) =
-        pairs(history, overlay)?.fold((0.0, 0_u32), |(sum, n), (c, m)| (sum + (c - m).powi(2), n + 1));
-    Some((sum / f64::from(count)).sqrt()).filter(|x| x.is_finite())
+fn rms(given: &Given) -> Option<f64> {
+    let pairs = pairs(given)?;
+    let sum = pairs.iter().fold(0.0, |sum, (c, m)| sum + (c - m).powi(2));
+    Some((sum / pairs.len() as f64).sqrt()).filter(|x| x.is_finite())
 }
 
-fn peak(history: &History, overlay: &Overlay) -> Option<f64> {
-    let pairs = pairs(history, overlay)?;
-    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most: f64, x| most.max(x.abs()));
-    let (c, m) = (largest(&mut pairs.clone().map(|p| p.0)), largest(&mut pairs.map(|p| p.1)));
-    (m > 0.0).then(|| c / m - 1.0)
+fn peak(given: &Given) -> Option<f64> {
+    let pairs = pairs(given)?;
+    let computed = pairs.iter().fold(0.0, |most: f64, (c, _)| most.max(c.abs()));
+    let measured = pairs.iter().fold(0.0, |most: f64, (_, m)| most.max(m.abs()));
+    (measured > 0.0).then(|| computed / measured - 1.0)
 }
 
-fn shift(history: &History, overlay: &Overlay) -> Option<f64> {
-    let column = history.column(&overlay.column)?;
-    phase_shift(&overlay.times, &overlay.values, (history.times(), column)).map(|late| -late)
-}
-
-/// Definition and value of `overlay_rms:NAME` and the like; none if there is no such metric.
-pub fn of_overlay(run: &Run, name: &str) -> Option<(&'static Definition, Option<f64>)> {
-    let (metric, name) = name.split_once(':')?;
-    let (definition, value) = OVERLAY.iter().find(|(d, _)| d.name == metric)?;
-    let overlay = overlays(run).into_iter().find(|overlay| overlay.name == name)?;
-    Some((definition, value(&run.history, &overlay)))
+fn shift(given: &Given) -> Option<f64> {
+    let measured = given.measured?;
+    let column = (given.history.times(), given.values()?);
+    phase_shift(&measured.times, &measured.values, column).map(|late| -late)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Column;
+    use crate::{Column, History};
 
     fn history(f: impl Fn(f64) -> f64) -> History {
         let column = |name: &str| Column {
@@ -142,16 +127,19 @@ mod tests {
     fn differences_by_hand() {
         let (line, data) =
             (history(|t| 2.0 * t), overlay(&[(1.0, 2.0), (2.0, 5.0), (3.0, 8.0), (20.0, 0.0)]));
-        assert!((rms(&line, &data).unwrap() - (5.0_f64 / 3.0).sqrt()).abs() < 1e-12);
-        assert!((peak(&line, &data).unwrap() + 0.25).abs() < 1e-12);
+        assert!((rms(&Given::of(&line).beside(&data)).unwrap() - (5.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert!((peak(&Given::of(&line).beside(&data)).unwrap() + 0.25).abs() < 1e-12);
     }
 
     /// A sine that is 0.3 late.
     #[test]
     fn a_late_column_has_a_positive_shift() {
         let points: Vec<(f64, f64)> = (1..60).map(|i| 0.15 * f64::from(i)).map(|t| (t, t.sin())).collect();
-        let found = shift(&history(|t| (t - 0.3).sin()), &overlay(&points)).unwrap();
+        let late = history(|t| (t - 0.3).sin());
+        let data = overlay(&points);
+        let found = shift(&Given::of(&late).beside(&data)).unwrap();
         assert!((found - 0.3).abs() < 1e-4, "{found}");
-        assert_eq!(rms(&history(|t| t), &Overlay { column: "v".into(), ..overlay(&points) }), None);
+        let other = Overlay { column: "v".into(), ..data.clone() };
+        assert_eq!(rms(&Given::of(&late).beside(&other)), None);
     }
 }

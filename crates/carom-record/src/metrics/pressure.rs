@@ -14,13 +14,13 @@
 //! those of the plane; in space there are none.
 
 use super::samples::extreme;
-use crate::{ContactRow, Run, contact_axes};
+use crate::{ContactRow, Run};
 
 /// Peak and half-width of the ellipse fitted to pressures at given coordinates.
 ///
 /// Needs three different coordinates (two in a half model); none if the fitted parabola has no
 /// maximum.
-pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
+pub(super) fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
     let (first, last) = (places.iter().copied().reduce(f64::min)?, places.iter().copied().reduce(f64::max)?);
     let top = extreme(pressures, f64::gt).map(|(i, _)| places[i])?;
     let half = top == first || top == last;
@@ -89,15 +89,14 @@ fn last_rows(run: &Run) -> Vec<&ContactRow<'static>> {
 /// Rows of the contact at the end of a static run; none for a dynamic run, or without
 /// contact.
 fn at_rest(run: &Run) -> Option<Vec<&ContactRow<'static>>> {
-    let kind = run.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
-    let mut rows = if kind == Some("static") { last_rows(run) } else { Vec::new() };
+    let mut rows = if run.manifest.facts.is_static { last_rows(run) } else { Vec::new() };
     rows.retain(|row| row.pressure.is_finite());
     (!rows.is_empty()).then_some(rows)
 }
 
 /// Coordinates of rows of the plane along the tangent that is orthogonal to the mean normal.
 fn places(run: &Run, rows: &[&ContactRow]) -> Option<Vec<f64>> {
-    if contact_axes(&run.manifest.case) == 3 {
+    if run.manifest.facts.dimension == 3 {
         return None;
     }
     let [x, y] = rows.iter().fold([0.0, 0.0], |n, r| std::array::from_fn(|i| n[i] + r.normal[i]));

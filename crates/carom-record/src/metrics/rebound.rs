@@ -12,18 +12,17 @@
 //! that of the support: what its centre does there is vibration.
 
 use carom_formula::Formula;
-use serde_json::Value;
 
 use super::episode::{Episode, first_episode};
-use super::facts::vector;
+use super::given::vector;
 use super::striker::striker;
-use crate::{History, Run};
+use crate::{History, Run, body_of};
 
 /// Variables of the motion of a support.
 const VARIABLES: [&str; 4] = ["X", "Y", "Z", "t"];
 
 /// A body, or an obstacle that moves; none: an obstacle that is fixed.
-pub type Party<'a> = Option<&'a str>;
+pub(super) type Party<'a> = Option<&'a str>;
 
 /// The first episode of a run as the impact of its striker.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,20 +96,10 @@ fn struck<'a>(striker: &str, run: &'a Run, episode: Episode) -> Option<(Vec<Part
 
 /// The parties of a contact, that of the secondary side first.
 fn parties<'a>(run: &'a Run, contact: &str) -> Option<[Party<'a>; 2]> {
-    let contacts = run.manifest.case.get("contacts")?.as_array()?;
-    let spec = contacts.iter().find(|spec| spec["name"] == contact)?;
-    let secondary = spec["secondary"].as_str().map(body_of);
-    let primary = match spec["primary"]["side"].as_str() {
-        Some(side) => Some(body_of(side)),
-        // The columns of an obstacle that moves have the name of its contact.
-        None => spec["name"].as_str().filter(|_| spec.get("motion").is_some()),
-    };
-    Some([secondary, primary])
-}
-
-/// The body of a side `body.side`.
-fn body_of(side: &str) -> &str {
-    side.split_once('.').map_or(side, |(body, _)| body)
+    let spec = run.manifest.facts.contacts.iter().find(|spec| spec.name == contact)?;
+    let obstacle = spec.moves.then_some(spec.name.as_str());
+    let primary = spec.primary.as_deref().map_or(obstacle, |side| Some(body_of(side)));
+    Some([Some(body_of(&spec.secondary)), primary])
 }
 
 fn velocities<'a>(history: &'a History, party: &str) -> Vec<&'a [f64]> {
@@ -128,35 +117,20 @@ fn velocity(run: &Run, party: Party, row: usize) -> Option<Vec<f64>> {
 
 /// Velocity that supports give a body along each axis, where they hold it; none if it is not known.
 fn prescribed(run: &Run, body: &str, time: f64) -> Option<[Option<f64>; 3]> {
-    let list = |value: &'static str, of: &Value| of[value].as_array().cloned().unwrap_or_default();
-    let mut held = [None; 3];
-    let mut hold = |axis: &Value, rate: f64| {
-        let held = held.get_mut(usize::try_from(axis.as_u64()?).ok()?)?;
-        (*held.get_or_insert(rate) == rate).then_some(())
-    };
-    for support in list("supports", &run.manifest.case) {
-        if !list("on", &support).iter().filter_map(Value::as_str).any(|side| body_of(side) == body) {
-            continue;
-        }
-        // The axis of a support across its sides is not recorded.
-        if support["normal"] == true {
+    let mut rates = [None; 3];
+    for held in run.manifest.facts.held.iter().filter(|held| held.body == body) {
+        let rate = held.displacement.as_ref().map_or(Some(0.0), |text| rate(text, time))?;
+        let known = rates.get_mut(held.axis?)?;
+        if *known.get_or_insert(rate) != rate {
             return None;
         }
-        for axis in list("fix", &support) {
-            hold(&axis, 0.0)?;
-        }
-        for motion in list("move", &support) {
-            hold(&motion[0], rate(&motion[1], time)?)?;
-        }
     }
-    Some(held)
+    Some(rates)
 }
 
-/// Rate of a displacement, a number or a formula; none if it depends on the place, or is a function
-/// of a program.
-fn rate(displacement: &Value, time: f64) -> Option<f64> {
-    let Some(text) = displacement.as_str() else { return Some(0.0) };
-    let formula = Formula::parse(text, &VARIABLES).ok()?;
+/// Rate of a displacement; none if it depends on the place, or is a function of a program.
+fn rate(displacement: &str, time: f64) -> Option<f64> {
+    let formula = Formula::parse(displacement, &VARIABLES).ok()?;
     let is_uniform = !VARIABLES[..3].iter().any(|place| formula.depends_on(place));
     is_uniform.then(|| formula.with_derivatives(&[0.0, 0.0, 0.0, time], 3)[1])
 }

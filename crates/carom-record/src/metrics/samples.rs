@@ -7,7 +7,7 @@
 //! ```
 
 /// Value of a column at a time, linearly interpolated between rows.
-pub fn at(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
+pub(crate) fn at(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
     let i = times.partition_point(|&t| t < time);
     if times.get(i) == Some(&time) {
         return values.get(i).copied();
@@ -18,13 +18,13 @@ pub fn at(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
 }
 
 /// Σ |xᵢ₊₁ − xᵢ|.
-pub fn total_variation(values: &[f64]) -> f64 {
+pub(super) fn total_variation(values: &[f64]) -> f64 {
     values.windows(2).map(|w| (w[1] - w[0]).abs()).sum()
 }
 
 /// Total variation, divided by that of a single rise to the largest value and fall, minus 1: 0 for
 /// a single hump. None for a constant.
-pub fn roughness(values: &[f64]) -> Option<f64> {
+pub(super) fn roughness(values: &[f64]) -> Option<f64> {
     let top = extreme(values, f64::gt)?.1;
     let least = 2.0 * top - values.first()? - values.last()?;
     (least > 0.0).then(|| total_variation(values) / least - 1.0)
@@ -43,7 +43,7 @@ pub(super) fn integral(times: &[f64], values: &[f64]) -> Vec<f64> {
 
 /// Largest mean over a time window of the quantity whose integrals are given, one per component:
 /// max |P(t + w) − P(t)|/w over the recorded t.
-pub fn peak_mean(times: &[f64], integrals: &[&[f64]], window: f64) -> Option<f64> {
+pub(super) fn peak_mean(times: &[f64], integrals: &[&[f64]], window: f64) -> Option<f64> {
     let mean = |t: f64| {
         let change = |p: &&[f64]| Some((at(times, p, t + window)? - at(times, p, t)?) / window);
         integrals.iter().map(change).try_fold(0.0, |sum, f| Some(f64::hypot(sum, f?)))

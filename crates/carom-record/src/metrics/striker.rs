@@ -7,7 +7,7 @@
 //! ```
 
 use super::episode::first_episode;
-use super::facts::{Facts, norms, vector};
+use super::given::{Given, norms, vector};
 use super::samples::extreme;
 use crate::History;
 
@@ -30,10 +30,10 @@ fn along(velocity: &[&[f64]], [before, after]: [usize; 2], row: usize) -> f64 {
 
 /// Time and height of the apex: the vertex of the parabola through the highest row and the adjacent
 /// rows.
-pub(super) fn apex(facts: &Facts) -> Option<(f64, f64)> {
-    let history = facts.history;
+pub(super) fn apex(given: &Given) -> Option<(f64, f64)> {
+    let history = given.history;
     let center = *vector(history, &format!("{}.center", striker(history)?)).last()?;
-    let after = facts.first()?.end?;
+    let after = given.first()?.end?;
     let (i, top) = extreme(&center[after..], f64::gt).map(|(i, x)| (i + after, x))?;
     let (t, y) = (history.times(), center);
     // The striker still rises when the record ends: the apex was not reached.
@@ -55,11 +55,11 @@ pub(super) fn apex(facts: &Facts) -> Option<(f64, f64)> {
 
 /// Time at which the velocity of the striker's centre along its change over the first episode
 /// changes sign, linearly interpolated between rows.
-pub(super) fn turning_time(facts: &Facts) -> Option<f64> {
-    let (history, rows) = (facts.history, facts.rows.clone()?);
+pub(super) fn turning_time(given: &Given) -> Option<f64> {
+    let (history, rows) = (given.history, given.rows()?);
     let velocity = vector(history, &format!("{}.velocity", striker(history)?));
     let along = |row: usize| along(&velocity, [rows.start, rows.end - 1], row);
     let before = (rows.start..rows.end - 1).find(|&i| along(i) < 0.0 && along(i + 1) >= 0.0)?;
     let (a, b) = (along(before), along(before + 1));
-    Some(facts.time(before) + (facts.time(before + 1) - facts.time(before)) * a / (a - b))
+    Some(given.time(before) + (given.time(before + 1) - given.time(before)) * a / (a - b))
 }

@@ -1,6 +1,7 @@
 //! A record whose metrics are calculated by hand: free flight, a parabolic pulse of the contact
 //! force, free flight.
 
+use super::samples::{peak_mean, roughness};
 use super::*;
 use crate::question::{Question, Window};
 use crate::{Column, History};

@@ -2,18 +2,16 @@
 
 use super::form::form_names;
 use crate::Reason;
-use crate::metrics::{COLUMNS, FREE, HISTORY, PRESSURE, REBOUND, WORK};
+use crate::metrics::{of_any_column, of_no_column};
 
 /// Names of the metrics of a column.
 pub fn column_metric_names() -> Vec<&'static str> {
-    COLUMNS.iter().chain(&FREE).map(|(d, _)| d.name).collect()
+    of_any_column().map(|d| d.name).collect()
 }
 
 /// Names of metrics that need no column.
 pub fn metric_names() -> Vec<&'static str> {
-    let history = HISTORY.iter().map(|(d, _)| d.name);
-    let of_run = REBOUND.iter().chain(&PRESSURE).chain(&WORK).map(|(d, _)| d.name);
-    history.chain(of_run).chain(["stopped"]).collect()
+    of_no_column().map(|d| d.name).chain(["stopped"]).collect()
 }
 
 /// The message about words that are no quantity.

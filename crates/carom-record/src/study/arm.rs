@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::design::Role;
-use crate::Expect;
+use crate::Facts;
 
 /// One simulation of a study.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Arm {
     /// Name in tables and figures.
     pub name: String,
@@ -22,6 +22,8 @@ pub struct Arm {
     /// Its case file, if it is not that of the study.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case_path: Option<String>,
+    /// What metrics and rankings need to know of its case.
+    pub facts: Facts,
     /// The case as resolved.
     pub case: serde_json::Value,
 }
@@ -35,11 +37,6 @@ impl Arm {
     /// Its changes to the case, except for the step.
     pub fn sets_without_step(&self) -> impl Iterator<Item = &String> {
         self.sets.iter().filter(|set| !sets_step(set))
-    }
-
-    /// Its expectations.
-    pub fn expects(&self) -> Vec<Expect> {
-        self.case.get("expects").and_then(|e| serde_json::from_value(e.clone()).ok()).unwrap_or_default()
     }
 }
 
@@ -100,13 +97,9 @@ mod tests {
     #[test]
     fn numbers_have_any_sign_and_are_no_arrays() {
         let arm = |set: &str| Arm {
-            name: String::new(),
-            directory: String::new(),
             sets: vec![set.to_owned()],
-            steps: 1,
-            role: Role::default(),
-            case_path: None,
             case: serde_json::json!({ "friction": -0.5 }),
+            ..Arm::default()
         };
         assert_eq!(scalar(&arm("a.v=-2"), "a.v"), Some(-2.0));
         assert_eq!(scalar(&arm("a.v = 0"), "a.v"), Some(0.0));

@@ -170,7 +170,7 @@ impl StudyManifest {
         let mut run = path.join("manifest.json").is_file().then(|| Run::open(&path)).transpose()?;
         let swapped = arm.role.member.filter(|of| of.member.swapped);
         if let (Some(run), Some(base)) = (&mut run, swapped.and_then(|of| self.arms.get(of.arm))) {
-            as_in_arm(&mut run.history, [&base.case, &arm.case]);
+            as_in_arm(&mut run.history, [&base.facts, &arm.facts]);
         }
         Ok(run)
     }

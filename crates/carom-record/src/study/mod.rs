@@ -151,7 +151,7 @@ impl Study {
                 if let Some(kind) = kind {
                     records[kind].gather(name, &run, &metrics, &questions, &series);
                 }
-                expectations = judge(&run, &arm.expects());
+                expectations = judge(&run, &arm.facts.expects);
                 had_contact = run.had_dynamic_contact();
                 warnings = run.manifest.warnings;
             }

@@ -169,9 +169,9 @@ fn deviation(
         Expression::Quantity(asked) => &asked.column,
         _ => return Err("only a single column can have an exact formula".into()),
     };
-    let found = manifest.arms[arm].case.get("exact").and_then(|e| e.get(column)).and_then(|f| f.as_str());
-    let formula = found.ok_or_else(|| format!("the case has no [exact] formula for `{column}`"))?;
-    Ok(Some(Deviation { exact: Some(formula.to_owned()), ..deviation }))
+    let formula = manifest.arms[arm].facts.exact.get(column);
+    let formula = formula.ok_or_else(|| format!("the case has no [exact] formula for `{column}`"))?;
+    Ok(Some(Deviation { exact: Some(formula.clone()), ..deviation }))
 }
 
 fn observed(
@@ -269,17 +269,13 @@ fn keys(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::design::Role;
 
     fn arm(sets: &[&str]) -> Arm {
         Arm {
             name: sets.join(", "),
-            directory: String::new(),
             sets: sets.iter().map(ToString::to_string).collect(),
-            steps: 1,
-            role: Role::default(),
-            case_path: None,
             case: serde_json::json!({ "time": { "step": 0.5 } }),
+            ..Arm::default()
         }
     }
 

@@ -324,8 +324,7 @@ fn ensemble_refines(manifest: &StudyManifest) -> bool {
 
 /// Whether contact of an arm is enforced by a penalty.
 fn is_penalty(manifest: &StudyManifest, arm: usize) -> bool {
-    let contacts = manifest.arms[arm].case.get("contacts").and_then(|contacts| contacts.as_array());
-    contacts.into_iter().flatten().any(|c| c.get("enforcement").is_some_and(|e| e == "penalty"))
+    manifest.arms[arm].facts.contacts.iter().any(|contact| contact.is_penalty)
 }
 
 /// Penetration of an arm whose contact is enforced by a penalty. Nodes that are not constrained

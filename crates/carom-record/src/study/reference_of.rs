@@ -12,14 +12,12 @@ use crate::{RecordError, Status};
 /// What happens where contact begins, which is a part of the mathematical problem as long as
 /// contact nodes have mass.
 fn begins(arm: &Arm) -> &'static str {
-    let contacts = arm.case.get("contacts").and_then(serde_json::Value::as_array);
-    let all = |value: &str| {
-        contacts.is_some_and(|c| !c.is_empty() && c.iter().all(|c| c["persistency"].as_str() == Some(value)))
-    };
-    match (all("project"), all("none")) {
-        (true, _) => "; impacts of nodes are inelastic (velocities are projected)",
-        (_, true) => "; velocities of nodes are not changed where contact begins",
-        _ => "",
+    let mut projects = arm.facts.contacts.iter().map(|contact| contact.projects);
+    match projects.next() {
+        Some(first) if projects.any(|other| other != first) => "",
+        Some(true) => "; impacts of nodes are inelastic (velocities are projected)",
+        Some(false) => "; velocities of nodes are not changed where contact begins",
+        None => "",
     }
 }
 
@@ -53,11 +51,8 @@ impl StudyManifest {
     /// Input/output or system error.
     pub(super) fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
         if self.reference.as_deref() == Some("exact") {
-            let Some(case) = self.arms.first().map(|a| &a.case) else { return Ok(None) };
-            let formulas =
-                case.get("exact").and_then(|e| serde_json::from_value(e.clone()).ok()).unwrap_or_default();
-            let end = case.pointer("/time/end").and_then(serde_json::Value::as_f64).unwrap_or_default();
-            return Ok(Reference::of_formulas(&formulas, end, 8000));
+            let Some(facts) = self.arms.first().map(|arm| &arm.facts) else { return Ok(None) };
+            return Ok(Reference::of_formulas(&facts.exact, facts.end, 8000));
         }
         let arms = self.reference_arms();
         let (mut levels, mut averaged) = (Vec::new(), Vec::new());
@@ -79,9 +74,8 @@ impl StudyManifest {
                 }
             }
             let arm = &self.arms[i];
-            let mesh = arm.case.get("refine").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
             let step = step(arm, "time.step").unwrap_or_default();
-            levels.push(Level { step, mesh, phases: phases.len(), members });
+            levels.push(Level { step, mesh: arm.facts.refine, phases: phases.len(), members });
         }
         let Some(last) = arms.last() else { return Ok(None) };
         let reference = Reference::of_levels(String::new(), levels);

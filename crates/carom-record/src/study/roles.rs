@@ -1,22 +1,17 @@
 //! Records of runs in which secondary and primary sides are swapped. Force and impulse of contact
 //! are those on the secondary sides, so that they have the other sign.
 
-use serde_json::Value;
-
-use crate::History;
+use crate::{Facts, History};
 
 /// Columns of forces and impulses on the secondary sides, without their axes.
 const OF_SECONDARY: [&str; 3] = ["contact_force_", "contact_impulse_", "algorithmic_impulse_"];
 
-/// Gives the columns of a swapped member the signs of its arm; `cases`: those of arm and member. If
+/// Gives the columns of a swapped member the signs of its arm; `facts`: those of arm and member. If
 /// only some contacts are swapped, the sums over all of them have no counterpart in the arm, and
 /// the columns are removed.
-pub(super) fn as_in_arm(history: &mut History, cases: [&Value; 2]) {
-    fn secondary(case: &Value) -> impl Iterator<Item = Option<&Value>> {
-        let contacts = case.get("contacts").and_then(Value::as_array);
-        contacts.into_iter().flatten().map(|contact| contact.get("secondary"))
-    }
-    let all_swapped = secondary(cases[0]).zip(secondary(cases[1])).all(|(a, b)| a != b);
+pub(super) fn as_in_arm(history: &mut History, facts: [&Facts; 2]) {
+    let [arm, member] = facts.map(|facts| facts.contacts.iter().map(|contact| &contact.secondary));
+    let all_swapped = arm.zip(member).all(|(a, b)| a != b);
     let is_of_secondary = |name: &str| OF_SECONDARY.iter().any(|column| name.starts_with(column));
     let columns = std::mem::take(&mut history.columns).into_iter();
     let kept = columns.zip(std::mem::take(&mut history.values)).filter_map(|(column, mut values)| {
@@ -34,10 +29,8 @@ pub(super) fn as_in_arm(history: &mut History, cases: [&Value; 2]) {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
-
     use super::*;
-    use crate::Column;
+    use crate::{Column, ContactFacts};
 
     /// With sides a, b and c, d swapped both, signs change; with only one of the two, nothing can
     /// be said of the sums.
@@ -52,7 +45,10 @@ mod tests {
             };
             History::new(names.map(column).to_vec(), vec![vec![1.0, -2.0], vec![3.0, 4.0]])
         };
-        let case = |sides: [&str; 2]| json!({ "contacts": sides.map(|side| json!({ "secondary": side })) });
+        let case = |sides: [&str; 2]| {
+            let contact = |side: &str| ContactFacts { secondary: side.into(), ..ContactFacts::default() };
+            Facts { contacts: sides.map(contact).into(), ..Facts::default() }
+        };
         let arm = case(["a", "c"]);
         let mut all = history(["contact_force_x", "momentum_x"]);
         as_in_arm(&mut all, [&arm, &case(["b", "d"])]);

@@ -67,8 +67,8 @@ impl Cell {
         }
     }
 
-    /// The cell of a type in a file with its degree, from its number of nodes. Files written by
-    /// earlier versions have Lagrange cells of every degree.
+    /// The cell of a type in a file with its degree, from its number of nodes; of every degree it may
+    /// be the Lagrange cell.
     pub(crate) fn of_type(kind: u8, nodes: usize) -> Option<(Self, usize)> {
         let of_degree = |degree: usize| Self::ALL.map(|cell| (cell, degree));
         let fits = |&(cell, degree): &(Self, usize)| {
@@ -188,23 +188,6 @@ pub(crate) mod tests {
     fn reads_what_it_wrote() {
         let bytes = sample().to_vtu(0.1 + 0.2).unwrap();
         assert_eq!(FieldSet::from_vtu(&bytes).unwrap(), sample());
-    }
-
-    /// Files of earlier versions have Lagrange cells of every degree, and the names of bodies as
-    /// null-terminated character codes in one array of strings.
-    #[test]
-    fn reads_files_of_earlier_versions() {
-        let bytes = sample().to_vtu(1.0).unwrap();
-        let found = |what: &[u8]| bytes.windows(what.len()).position(|w| w == what).unwrap();
-        let start = found(b"<DataArray type=\"Int32\" Name=\"body ");
-        let end = found(b"</FieldData>");
-        let names =
-            b"<DataArray type=\"String\" Name=\"bodies\" NumberOfTuples=\"2\" format=\"ascii\">98 97 114 32 60 49 62 0 100 105 115 99 0</DataArray>";
-        let mut earlier = [&bytes[..start], &names[..], &bytes[end..]].concat();
-        let types = [68, 22, 22];
-        let at = earlier.windows(3).rposition(|w| w == types).unwrap();
-        earlier[at..at + 3].copy_from_slice(&[68, 69, 69]);
-        assert_eq!(FieldSet::from_vtu(&earlier).unwrap(), sample());
     }
 
     #[test]

@@ -44,7 +44,7 @@ impl Parts {
 
 impl FieldSet {
     /// Checks that all lengths are consistent.
-    pub(crate) fn check(&self) -> Result<(), RecordError> {
+    fn check(&self) -> Result<(), RecordError> {
         let error = |what| Err(RecordError::Field { what });
         let n = self.points.len();
         for array in &self.arrays {

@@ -1,7 +1,7 @@
 //! How often a run flushes to the disk.
 
 use super::*;
-use crate::{Block, Cell, Column, Source};
+use crate::{Block, Cell, Column, Facts, Source};
 
 /// A short run flushes its start and its end, however many checkpoints and fields it has; one
 /// that may be resumed flushes its fields, too; and one that takes longer, every checkpoint
@@ -17,8 +17,14 @@ fn flushes_do_not_grow_with_fields_and_checkpoints() {
             description: String::new(),
             integer: false,
         };
-        let mut manifest =
-            Manifest::new("0.1.0", serde_json::json!({}), Source::default(), vec![column("time")], 1);
+        let mut manifest = Manifest::new(
+            "0.1.0",
+            Facts::default(),
+            serde_json::json!({}),
+            Source::default(),
+            vec![column("time")],
+            1,
+        );
         let before = files::FLUSHES.get();
         let mut writer = RunWriter::create(&scratch.path().join("run"), &manifest, b"0").unwrap();
         writer.flush_interval(interval);

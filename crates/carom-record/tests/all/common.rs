@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use carom_record::{
-    Block, Cell, Column, ContactRow, Event, FieldFormat, FieldSet, Manifest, PointArray, RecordError,
-    RunWriter, Source,
+    Block, Cell, Column, ContactRow, Event, Facts, FieldSet, Manifest, PointArray, RecordError, RunWriter,
+    Source,
 };
 
 pub(crate) const STEPS: u64 = 40;
@@ -20,7 +20,7 @@ pub(crate) fn manifest() -> Manifest {
         integer,
     };
     let columns = vec![column("step", true), column("time", false), column("A.uy, \"odd\"", false)];
-    Manifest::new("0.1.0", serde_json::json!({"title": "t"}), Source::default(), columns, 1)
+    Manifest::new("0.1.0", Facts::default(), serde_json::json!({"title": "t"}), Source::default(), columns, 1)
 }
 
 pub(crate) fn fields(step: u64) -> FieldSet {
@@ -106,14 +106,13 @@ pub(crate) fn all_bytes(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 }
 
 /// A run at its start, which flushes every checkpoint.
-pub(crate) fn started(directory: &Path, format: FieldFormat) -> RunWriter {
+pub(crate) fn started(directory: &Path) -> RunWriter {
     let mut writer = RunWriter::create(directory, &manifest(), &0u64.to_le_bytes()).unwrap();
-    writer.field_format(format);
     writer.flush_interval(Duration::ZERO);
     writer
 }
 
-pub(crate) fn whole(directory: &Path, format: FieldFormat) -> BTreeMap<PathBuf, Vec<u8>> {
-    advance(started(directory, format), 0, 0, STEPS).finish(&mut manifest()).unwrap();
+pub(crate) fn whole(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    advance(started(directory), 0, 0, STEPS).finish(&mut manifest()).unwrap();
     all_bytes(directory)
 }

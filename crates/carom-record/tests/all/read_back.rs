@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use carom_record::{ContactRow, Event, FieldFormat, Manifest, RecordError, Run, RunWriter, Status};
+use carom_record::{ContactRow, Event, Manifest, RecordError, Run, RunWriter, Status};
 
 use crate::common::{STEPS, advance, fields, manifest, scratch, started};
 
@@ -61,7 +61,7 @@ fn rows_of_contact_in_space_are_read_back() {
     let scratch = scratch();
     let directory = scratch.path().join("run");
     let mut of_space = manifest();
-    of_space.case = serde_json::json!({"dimension": 3});
+    of_space.facts.dimension = 3;
     let mut writer = RunWriter::create(&directory, &of_space, b"").unwrap();
     let row = ContactRow {
         step: 1,
@@ -98,7 +98,7 @@ fn a_record_that_has_changed_since_its_run_ended_is_named() {
     let scratch = scratch();
     let directory = scratch.path().join("run");
     let mut done = Manifest { status: Status::Finished, ..manifest() };
-    let mut writer = advance(started(&directory, FieldFormat::Vtu), 0, 0, STEPS);
+    let mut writer = advance(started(&directory), 0, 0, STEPS);
     writer.manifest(&manifest()).unwrap();
     assert!(Run::open(&directory).is_ok());
     writer.finish(&mut done).unwrap();

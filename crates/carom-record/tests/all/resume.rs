@@ -4,27 +4,18 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use carom_record::{FieldFormat, Generation, RecordError, Run, RunWriter};
+use carom_record::{Generation, RecordError, Run, RunWriter};
 
 use crate::common::{STEPS, advance, all_bytes, fields, manifest, scratch, started, whole};
 
 #[test]
 fn killed_anywhere_ends_in_the_same_bytes() {
-    killed_anywhere(FieldFormat::Vtu);
-}
-
-#[test]
-fn killed_anywhere_with_fields_in_one_file_ends_in_the_same_bytes() {
-    killed_anywhere(FieldFormat::VtkHdf);
-}
-
-fn killed_anywhere(format: FieldFormat) {
     let scratch = scratch();
-    let expected = whole(&scratch.path().join("whole"), format);
+    let expected = whole(&scratch.path().join("whole"));
     for kill in 0..STEPS {
         for generation in [None, Some(Generation::A), Some(Generation::B)] {
             let directory = scratch.path().join(format!("killed-{kill}-{generation:?}"));
-            drop(advance(started(&directory, format), 0, 0, kill));
+            drop(advance(started(&directory), 0, 0, kill));
             // The record can be read at any time, with every instant.
             let run = Run::open(&directory).unwrap();
             assert_eq!(run.fields.len() as u64, kill / 5 + 1);
@@ -33,18 +24,14 @@ fn killed_anywhere(format: FieldFormat) {
             let path = directory.join("history.csv");
             let incomplete = [fs::read(&path).unwrap(), b"17,0.3".to_vec()].concat();
             fs::write(&path, incomplete).unwrap();
-            match format {
-                FieldFormat::Vtu => fs::write(directory.join("fields/.00000099.vtu.partial"), "x").unwrap(),
-                FieldFormat::VtkHdf => fs::write(directory.join(".fields.vtkhdf.partial"), "x").unwrap(),
-            }
-            let mut reopened = match generation {
+            fs::write(directory.join("fields/.00000099.vtu.partial"), "x").unwrap();
+            let reopened = match generation {
                 None => RunWriter::reopen(&directory).unwrap(),
                 Some(generation) => RunWriter::reopen_at(&directory, generation).unwrap(),
             };
             assert!(reopened.fallback.is_none());
             assert_eq!(reopened.payload, reopened.step.to_le_bytes());
             assert!(reopened.step <= kill && (generation.is_some() || reopened.step + 6 > kill));
-            reopened.writer.field_format(format);
             let mut writer = advance(reopened.writer, reopened.step, reopened.rows, STEPS);
             writer.finish(&mut manifest()).unwrap();
             let mut got = all_bytes(&directory);
@@ -64,7 +51,7 @@ fn killed_anywhere(format: FieldFormat) {
 fn a_damaged_checkpoint_falls_back_to_the_one_before() {
     let scratch = scratch();
     let directory = scratch.path().join("run");
-    let expected = whole(&directory, FieldFormat::Vtu);
+    let expected = whole(&directory);
     // 36 is the newest step; find its file and change one byte.
     let newest = RunWriter::reopen(&directory).unwrap();
     assert_eq!(newest.step, 36);
@@ -96,48 +83,40 @@ fn a_damaged_checkpoint_falls_back_to_the_one_before() {
 /// one is refused with the file's name, a later one is computed again.
 #[test]
 fn an_altered_record_is_not_continued() {
-    for format in [FieldFormat::Vtu, FieldFormat::VtkHdf] {
-        let scratch = scratch();
-        let directory = scratch.path().join("run");
-        drop(advance(started(&directory, format), 0, 0, STEPS));
-        let (mut refused, mut repeated) = (0, 0);
-        for (name, good) in all_bytes(&directory) {
-            let row_file = ["csv", "jsonl"].iter().any(|e| name.extension().is_some_and(|x| x == *e));
-            if !row_file && name.extension().is_none_or(|e| e != "vtu") {
-                continue;
-            }
-            let path = directory.join(&name);
-            for at in (0..good.len()).step_by(13) {
-                let mut bad = good.clone();
-                bad[at] ^= 1;
-                fs::write(&path, bad).unwrap();
-                // Reopening for writing would truncate the record.
-                match altered(&directory, scratch.path()) {
-                    Err(error) => {
-                        let text = error.to_string();
-                        assert!(
-                            text.contains(name.to_str().unwrap()) && text.contains("is damaged"),
-                            "{text}"
-                        );
-                        assert!(
-                            text.contains("changed since") && text.contains("run the case again"),
-                            "{text}"
-                        );
-                        assert_eq!(error.exit_code(), 2);
-                        refused += 1;
-                    }
-                    Ok((30, Some(_))) => repeated += 1,
-                    // What follows the last checkpoint is computed again anyway.
-                    Ok((step, fallback)) => {
-                        assert!(step == 36 && fallback.is_none());
-                        assert!(at > good.len() / 2 || name.ends_with("00000040.vtu"), "{name:?} at {at}");
-                    }
+    let scratch = scratch();
+    let directory = scratch.path().join("run");
+    drop(advance(started(&directory), 0, 0, STEPS));
+    let (mut refused, mut repeated) = (0, 0);
+    for (name, good) in all_bytes(&directory) {
+        let row_file = ["csv", "jsonl"].iter().any(|e| name.extension().is_some_and(|x| x == *e));
+        if !row_file && name.extension().is_none_or(|e| e != "vtu") {
+            continue;
+        }
+        let path = directory.join(&name);
+        for at in (0..good.len()).step_by(13) {
+            let mut bad = good.clone();
+            bad[at] ^= 1;
+            fs::write(&path, bad).unwrap();
+            // Reopening for writing would truncate the record.
+            match altered(&directory, scratch.path()) {
+                Err(error) => {
+                    let text = error.to_string();
+                    assert!(text.contains(name.to_str().unwrap()) && text.contains("is damaged"), "{text}");
+                    assert!(text.contains("changed since") && text.contains("run the case again"), "{text}");
+                    assert_eq!(error.exit_code(), 2);
+                    refused += 1;
+                }
+                Ok((30, Some(_))) => repeated += 1,
+                // What follows the last checkpoint is computed again anyway.
+                Ok((step, fallback)) => {
+                    assert!(step == 36 && fallback.is_none());
+                    assert!(at > good.len() / 2 || name.ends_with("00000040.vtu"), "{name:?} at {at}");
                 }
             }
-            fs::write(&path, &good).unwrap();
         }
-        assert!(refused > 100 && repeated > 5, "{refused} {repeated}");
+        fs::write(&path, &good).unwrap();
     }
+    assert!(refused > 100 && repeated > 5, "{refused} {repeated}");
 }
 
 /// Reopens a copy of a run; the step reached and the error that was skipped.
@@ -156,45 +135,29 @@ fn altered(directory: &Path, scratch: &Path) -> Result<(u64, Option<RecordError>
 
 #[test]
 fn cut_and_missing_fields_are_refused_or_computed_again() {
-    for format in [FieldFormat::Vtu, FieldFormat::VtkHdf] {
-        let scratch = scratch();
-        let directory = scratch.path().join("run");
-        drop(advance(started(&directory, format), 0, 0, STEPS));
-        let file = |step: u64| match format {
-            FieldFormat::Vtu => directory.join(format!("fields/{step:08}.vtu")),
-            FieldFormat::VtkHdf => directory.join("fields.vtkhdf"),
-        };
-        // The checkpoints are those of steps 30 and 36.
-        for (step, refused) in [(10, true), (35, format == FieldFormat::VtkHdf)] {
-            let good = fs::read(file(step)).unwrap();
-            for length in [None, Some(0), Some(good.len() / 2)] {
-                match length {
-                    None => fs::remove_file(file(step)).unwrap(),
-                    Some(length) => fs::write(file(step), &good[..length]).unwrap(),
-                }
-                match altered(&directory, scratch.path()) {
-                    Err(error) if refused => {
-                        let text = error.to_string();
-                        assert!(text.contains(file(step).file_name().unwrap().to_str().unwrap()), "{text}");
-                        assert!(length.is_some() || text.contains("it is missing"), "{text}");
-                        assert_eq!(error.exit_code(), 2, "{text}");
-                    }
-                    Ok((30, Some(_))) if !refused => {}
-                    other => panic!("{format:?}, step {step}, {length:?}: {other:?}"),
-                }
-                fs::write(file(step), &good).unwrap();
+    let scratch = scratch();
+    let directory = scratch.path().join("run");
+    drop(advance(started(&directory), 0, 0, STEPS));
+    let file = |step: u64| directory.join(format!("fields/{step:08}.vtu"));
+    // The checkpoints are those of steps 30 and 36.
+    for (step, refused) in [(10, true), (35, false)] {
+        let good = fs::read(file(step)).unwrap();
+        for length in [None, Some(0), Some(good.len() / 2)] {
+            match length {
+                None => fs::remove_file(file(step)).unwrap(),
+                Some(length) => fs::write(file(step), &good[..length]).unwrap(),
             }
-        }
-        // One value of one instant, in the one file.
-        if format == FieldFormat::VtkHdf {
-            let good = fs::read(file(0)).unwrap();
-            let value = 10.0_f64.to_le_bytes();
-            let at = good.windows(16).rposition(|w| w[..8] == value && w[8..] == (-1.0_f64).to_le_bytes());
-            let mut bad = good.clone();
-            bad[at.unwrap()] ^= 1;
-            fs::write(file(0), bad).unwrap();
-            let text = altered(&directory, scratch.path()).unwrap_err().to_string();
-            assert!(text.contains("the fields of step 10 have changed"), "{text}");
+            match altered(&directory, scratch.path()) {
+                Err(error) if refused => {
+                    let text = error.to_string();
+                    assert!(text.contains(file(step).file_name().unwrap().to_str().unwrap()), "{text}");
+                    assert!(length.is_some() || text.contains("it is missing"), "{text}");
+                    assert_eq!(error.exit_code(), 2, "{text}");
+                }
+                Ok((30, Some(_))) if !refused => {}
+                other => panic!("step {step}, {length:?}: {other:?}"),
+            }
+            fs::write(file(step), &good).unwrap();
         }
     }
 }
@@ -203,38 +166,34 @@ fn cut_and_missing_fields_are_refused_or_computed_again() {
 /// The run is resumed from the last flushed checkpoint, to the same record.
 #[test]
 fn a_power_failure_costs_what_was_written_since_the_last_flush() {
-    for format in [FieldFormat::Vtu, FieldFormat::VtkHdf] {
-        let scratch = scratch();
-        let expected = whole(&scratch.path().join("whole"), format);
-        let directory = scratch.path().join("cut");
-        let mut writer = advance(started(&directory, format), 0, 0, 18);
-        let flushed = all_bytes(&directory);
-        writer.flush_interval(Duration::MAX);
-        drop(advance(writer, 18, 19, STEPS));
-        for (name, bytes) in all_bytes(&directory) {
-            let kept = match flushed.get(&name) {
-                Some(kept)
-                    if ["csv", "jsonl", "vtkhdf"].iter().any(|e| name.extension() == Some(e.as_ref())) =>
-                {
-                    kept.clone()
-                }
-                // Neither replaced nor written since.
-                Some(kept) if *kept == bytes => bytes,
-                _ => Vec::new(),
-            };
-            fs::write(directory.join(&name), kept).unwrap();
-        }
-        let reopened = RunWriter::reopen(&directory).unwrap();
-        assert_eq!((reopened.step, reopened.rows), (18, 19));
-        assert!(reopened.fallback.unwrap().to_string().contains("is damaged"));
-        let mut writer = reopened.writer;
-        writer.flush_interval(Duration::MAX);
-        advance(writer, 18, 19, STEPS).finish(&mut manifest()).unwrap();
-        let mut got = all_bytes(&directory);
-        assert!(!got.contains_key(Path::new("checkpoint/flushed.bin")));
-        // Which of the two files has which step depends on where the run was reopened.
-        got.retain(|path, _| !path.starts_with("checkpoint"));
-        let kept = expected.into_iter().filter(|(path, _)| !path.starts_with("checkpoint"));
-        assert!(got == kept.collect(), "{format:?}");
+    let scratch = scratch();
+    let expected = whole(&scratch.path().join("whole"));
+    let directory = scratch.path().join("cut");
+    let mut writer = advance(started(&directory), 0, 0, 18);
+    let flushed = all_bytes(&directory);
+    writer.flush_interval(Duration::MAX);
+    drop(advance(writer, 18, 19, STEPS));
+    for (name, bytes) in all_bytes(&directory) {
+        let kept = match flushed.get(&name) {
+            Some(kept) if ["csv", "jsonl"].iter().any(|e| name.extension() == Some(e.as_ref())) => {
+                kept.clone()
+            }
+            // Neither replaced nor written since.
+            Some(kept) if *kept == bytes => bytes,
+            _ => Vec::new(),
+        };
+        fs::write(directory.join(&name), kept).unwrap();
     }
+    let reopened = RunWriter::reopen(&directory).unwrap();
+    assert_eq!((reopened.step, reopened.rows), (18, 19));
+    assert!(reopened.fallback.unwrap().to_string().contains("is damaged"));
+    let mut writer = reopened.writer;
+    writer.flush_interval(Duration::MAX);
+    advance(writer, 18, 19, STEPS).finish(&mut manifest()).unwrap();
+    let mut got = all_bytes(&directory);
+    assert!(!got.contains_key(Path::new("checkpoint/flushed.bin")));
+    // Which of the two files has which step depends on where the run was reopened.
+    got.retain(|path, _| !path.starts_with("checkpoint"));
+    let kept = expected.into_iter().filter(|(path, _)| !path.starts_with("checkpoint"));
+    assert!(got == kept.collect());
 }

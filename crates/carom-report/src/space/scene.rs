@@ -256,7 +256,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     quantities.push(quantity("displacement", "|u|", length, &scene.displacement));
     let entry = |k: &usize| {
         let entry = entries[*k];
-        json!({ "time": entry.time, "step": entry.step, "file": run.field_file(entry) })
+        json!({ "time": entry.time, "step": entry.step, "file": entry.file() })
     };
     let [low, high] = scene.box_of();
     let rigid = wires(run, scene.moved_box());

@@ -7,8 +7,8 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use carom_record::{
-    Block, Cell, Column, Event, Expectation, FieldSet, Manifest, PointArray, RunWriter, Source, Status,
-    Warning,
+    Block, Cell, Column, ContactFacts, Event, Expectation, Facts, FieldSet, Held, Manifest, PointArray,
+    RunWriter, Source, Status, Warning,
 };
 
 const N: usize = 7;
@@ -125,6 +125,25 @@ const COLUMNS: [(&str, &str); 27] = [
     ("min_det_f", ""),
 ];
 
+/// The facts of the case below.
+fn facts(title: &str) -> Facts {
+    let held = |axis| Held { body: "prism".into(), axis: Some(axis), displacement: None };
+    let strike = ContactFacts {
+        name: "strike".into(),
+        secondary: "cylinder.arc".into(),
+        primary: Some("prism.top".into()),
+        ..ContactFacts::default()
+    };
+    Facts {
+        title: title.into(),
+        dimension: 2,
+        contacts: vec![strike],
+        held: [0, 1].map(held).into(),
+        probes: ["A", "B"].map(String::from).into(),
+        ..Facts::default()
+    }
+}
+
 /// Writes the run; `title` and `reason` are text from the user.
 pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
     let columns = COLUMNS.map(|(name, unit)| Column {
@@ -156,7 +175,7 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
         sets: vec!["time.end=0.75".into(), "title='x'".into()],
         folder: None,
     };
-    let mut manifest = Manifest::new("0.1.0", case, source, columns.to_vec(), 1);
+    let mut manifest = Manifest::new("0.1.0", facts(title), case, source, columns.to_vec(), 1);
     // The points of the prism follow those of the disc; its lattice has 25 × 13 points.
     let first = (3 * N + 1) * (6 * N + 1);
     let sides: [(&str, Vec<usize>); 3] = [

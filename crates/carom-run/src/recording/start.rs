@@ -35,7 +35,6 @@ pub fn run(
         &manifest,
         &checkpoint(simulation.state(), Since::default(), &Tally::at_start(&simulation))?,
     )?;
-    writer.field_format(case.output.format);
     from_start(Session::new(case, simulation, &mut writer, manifest), options, observe, stop)
 }
 
@@ -63,7 +62,8 @@ fn started(case: &Case, source: Source, options: Options) -> Result<(Simulation,
     let simulation = if options.audit { simulation.audited() } else { simulation };
     let resolved = case.to_json().map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
-    let mut manifest = Manifest::new(version, resolved, source, history_columns(case), options.threads);
+    let mut manifest =
+        Manifest::new(version, case.facts(), resolved, source, history_columns(case), options.threads);
     manifest.sides = sides(simulation.model());
     manifest.surfaces = surfaces(case);
     manifest.warnings = warnings(case, simulation.model());
@@ -173,7 +173,6 @@ pub fn resume_with(
     manifest.threads = options.threads;
     let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
     let mut writer = reopened.writer;
-    writer.field_format(case.output.format);
     let mut session = Session::new(case, simulation, &mut writer, manifest);
     session.rotations.clone_from(&tally.rotations);
     (session.since, session.earlier) = (since, tally);

@@ -16,12 +16,9 @@ type Made = (&'static str, usize, f64, f64);
 fn arm(&(method, level, ..): &Made) -> Arm {
     Arm {
         name: format!("{method} {level}"),
-        directory: String::new(),
-        sets: Vec::new(),
-        steps: 1,
         role: Role { method: Some(method.into()), level, ..Role::default() },
-        case_path: None,
         case: serde_json::json!({ "time": { "step": 1.0 / (1.0 + level as f64) } }),
+        ..Arm::default()
     }
 }
 

@@ -1,0 +1,74 @@
+//! What a record states of its case for metrics and studies.
+
+use carom_record::metrics::Overlay;
+use carom_record::{ContactFacts, Facts, Held, body_of};
+
+use super::spec::{
+    Case, ContactSpec, Enforcement, FormulaSpec, ObstacleMotion, OverlaySpec, Persistency, SupportSpec,
+};
+
+impl Case {
+    /// Facts of the case that metrics, expectations and studies use.
+    pub fn facts(&self) -> Facts {
+        Facts {
+            title: self.title.clone(),
+            dimension: self.dimension,
+            is_static: self.time.scheme.is_static(),
+            end: self.time.end,
+            refine: self.refine,
+            contacts: self.contacts.iter().map(contact).collect(),
+            held: self.supports.iter().flat_map(held).collect(),
+            probes: self.probes.iter().map(|probe| probe.name.clone()).collect(),
+            exact: self.exact.clone(),
+            overlays: self.overlays.iter().map(overlay).collect(),
+            expects: self.expects.clone(),
+        }
+    }
+}
+
+fn contact(spec: &ContactSpec) -> ContactFacts {
+    ContactFacts {
+        name: spec.name.clone(),
+        secondary: spec.secondary.clone(),
+        primary: spec.primary.side().map(str::to_owned),
+        moves: !ObstacleMotion::is_fixed(&spec.motion),
+        is_penalty: spec.enforcement == Enforcement::Penalty,
+        projects: spec.persistency == Persistency::Project,
+    }
+}
+
+/// Every axis of every body that a support holds.
+fn held(support: &SupportSpec) -> Vec<Held> {
+    let mut axes = Vec::new();
+    if support.normal {
+        axes.push((None, None));
+    }
+    axes.extend(support.fix.iter().map(|axis| (Some(*axis), None)));
+    for (axis, displacement) in &support.moves {
+        let formula = match displacement {
+            FormulaSpec::Number(_) => None,
+            FormulaSpec::Text(text) => Some(text.clone()),
+        };
+        axes.push((Some(*axis), formula));
+    }
+    let on = |side: &String| {
+        let body = body_of(side).to_owned();
+        let held = axes.iter().map(move |(axis, displacement)| Held {
+            body: body.clone(),
+            axis: *axis,
+            displacement: displacement.clone(),
+        });
+        held.collect::<Vec<_>>()
+    };
+    support.on.iter().flat_map(on).collect()
+}
+
+fn overlay(spec: &OverlaySpec) -> Overlay {
+    Overlay {
+        name: spec.name.clone(),
+        column: spec.column.clone(),
+        times: spec.times.clone(),
+        values: spec.values.clone(),
+        source: spec.source.clone(),
+    }
+}

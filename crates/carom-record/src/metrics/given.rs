@@ -1,0 +1,120 @@
+//! What a metric is computed from.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use super::definition::{Definition, Metric, Unit};
+use super::episode::{Episode, default_bridge, episodes};
+use super::overlay::Overlay;
+use crate::{History, Run};
+
+/// A history with its contact episodes; where a metric needs them, the run, a column or measured
+/// data.
+#[derive(Clone, Debug)]
+pub(crate) struct Given<'a> {
+    pub(crate) history: &'a History,
+    pub(super) episodes: Vec<Episode>,
+    pub(crate) run: Option<&'a Run>,
+    /// The column that a metric of columns is computed of.
+    pub(super) column: Option<&'a str>,
+    pub(super) measured: Option<&'a Overlay>,
+}
+
+impl<'a> Given<'a> {
+    pub(crate) fn of(history: &'a History) -> Self {
+        let episodes = episodes(history, default_bridge(history));
+        Self { history, episodes, run: None, column: None, measured: None }
+    }
+
+    pub(crate) fn of_run(run: &'a Run) -> Self {
+        Self { run: Some(run), ..Self::of(&run.history) }
+    }
+
+    pub(crate) fn with_column(&self, column: &'a str) -> Self {
+        Self { column: Some(column), ..self.clone() }
+    }
+
+    pub(crate) fn beside(&self, measured: &'a Overlay) -> Self {
+        Self { column: Some(&measured.column), measured: Some(measured), ..self.clone() }
+    }
+
+    /// The metric with its value: named `COLUMN:METRIC` of a column, `METRIC:NAME` of measured data.
+    pub(crate) fn metric(&self, definition: &'static Definition) -> Metric {
+        let Definition { name, unit, meaning, value, .. } = definition;
+        let name = match (self.measured, self.column) {
+            (Some(measured), _) => Cow::from(format!("{name}:{}", measured.name)),
+            (None, Some(column)) => Cow::from(format!("{column}:{name}")),
+            (None, None) => Cow::from(*name),
+        };
+        let unit = match (unit, self.column) {
+            (Unit::Column, Some(column)) => self.history.unit(column).to_owned(),
+            (unit, _) => unit.label(self.history),
+        };
+        Metric { name, value: value(self), unit, definition: meaning }
+    }
+
+    /// Values of the column.
+    pub(super) fn values(&self) -> Option<&'a [f64]> {
+        self.history.column(self.column?)
+    }
+
+    pub(super) fn first(&self) -> Option<Episode> {
+        self.episodes.first().copied()
+    }
+
+    /// Rows of the first episode, from the row before it to the row that ends it.
+    pub(super) fn rows(&self) -> Option<Range<usize>> {
+        Some(self.first()?.span(self.history))
+    }
+
+    /// Rows in contact of the first episode.
+    pub(super) fn rows_in_contact(&self) -> Option<Range<usize>> {
+        let Episode { start, end } = self.first()?;
+        Some(start..end.unwrap_or(self.history.times().len()))
+    }
+
+    /// Time over which peaks of the first episode are averaged.
+    pub(super) fn window(&self) -> Option<f64> {
+        self.first()?.window(self.history.times())
+    }
+
+    pub(super) fn time(&self, row: usize) -> f64 {
+        self.history.times()[row]
+    }
+
+    pub(super) fn duration(&self) -> Option<f64> {
+        let first = self.first()?;
+        Some(self.time(first.end?) - self.time(first.start))
+    }
+
+    pub(super) fn force(&self) -> Vec<f64> {
+        contact_force(self.history)
+    }
+
+    /// Change of the impulse along an axis over the first episode.
+    pub(super) fn impulse(&self, axis: usize) -> Option<f64> {
+        let p = *vector(self.history, "contact_impulse").get(axis)?;
+        let rows = self.rows()?;
+        Some(p[rows.end - 1] - p[rows.start])
+    }
+
+    /// Last value of a column.
+    pub(super) fn last(&self, column: &str) -> Option<f64> {
+        self.history.column(column)?.last().copied()
+    }
+}
+
+/// Columns `NAME_x`, `NAME_y` and `NAME_z`, as many as there are dimensions.
+pub(super) fn vector<'a>(history: &'a History, name: &str) -> Vec<&'a [f64]> {
+    ["_x", "_y", "_z"].iter().filter_map(|axis| history.column(&format!("{name}{axis}"))).collect()
+}
+
+pub(super) fn norms(vector: &[&[f64]]) -> Vec<f64> {
+    let rows = vector.first().map_or(0, |v| v.len());
+    (0..rows).map(|i| vector.iter().fold(0.0, |sum, v| f64::hypot(sum, v[i]))).collect()
+}
+
+/// Magnitude of the contact force in every row.
+pub fn contact_force(history: &History) -> Vec<f64> {
+    norms(&vector(history, "contact_force"))
+}
