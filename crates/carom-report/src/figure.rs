@@ -16,8 +16,8 @@ pub(crate) struct Figure {
     pub(crate) svg: String,
     /// The picture for a narrow window, of which the page shows one or the other.
     pub(crate) narrow: String,
-    /// Further files: endings and contents.
-    pub(crate) files: Vec<(&'static str, String)>,
+    /// The drawn numbers, as the text of a `.csv` file.
+    pub(crate) table: Option<String>,
 }
 
 impl Figure {
@@ -26,7 +26,7 @@ impl Figure {
         caption: impl Into<String>,
         [svg, narrow]: [String; 2],
     ) -> Self {
-        Self { name: name.into(), caption: caption.into(), svg, narrow, files: Vec::new() }
+        Self { name: name.into(), caption: caption.into(), svg, narrow, table: None }
     }
 
     /// The pictures on the page.
@@ -36,9 +36,9 @@ impl Figure {
         PreEscaped(named(&self.svg, "broad") + &named(&self.narrow, "narrow"))
     }
 
-    /// With its data as a table, and a script that redraws it.
-    pub(crate) fn with(mut self, table: String, script: String) -> Self {
-        self.files.extend([("csv", table), ("py", script)]);
+    /// The figure with a table of its numbers.
+    pub(crate) fn with_table(mut self, table: String) -> Self {
+        self.table = Some(table);
         self
     }
 }

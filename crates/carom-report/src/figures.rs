@@ -8,11 +8,10 @@ use crate::figure::Figure;
 use crate::instants::instants;
 use crate::labels::{capitalised, listed, symbol, words};
 use crate::measured::{Points, add_points, differences, sources};
-use crate::meshes::Pane;
 use crate::ordered::grouped;
 use crate::over_time::{by_size, chart, curves, of_probes, panel, shaded, shades};
 use crate::values::{is_in_space, list};
-use crate::{animation, bodies, energy, meshes, noise, pressure, setup, space, stick_slip, stopped, unshown};
+use crate::{animation, bodies, energy, noise, pressure, setup, space, stick_slip, stopped, unshown};
 
 /// Everything that can be drawn from a record.
 #[derive(Clone, Debug, Default)]
@@ -90,10 +89,7 @@ fn setup(run: &Run) -> Option<Figure> {
     let caption = format!(
         "Initial configuration: bodies with {parts}.{view} Data: first field file; case and sides in `manifest.json`."
     );
-    let pane = Pane { title: "initial".to_owned(), points: bodies::places(&fields), values: Vec::new() };
-    let length = fields.unit("displacement");
-    let figure = Figure::new("setup", caption, pictures);
-    Some(meshes::with_files(figure, &fields, &[pane], length, String::new()))
+    Some(Figure::new("setup", caption, pictures))
 }
 
 /// Time histories of all probes, one panel per quantity.

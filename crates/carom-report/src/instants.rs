@@ -5,13 +5,11 @@ use carom_record::{Cell, FieldEntry, Run, Stop, metrics};
 use crate::bands::Bands;
 use crate::bodies::{self, Instant};
 use crate::figure::Figure;
-use crate::labels::{instant_label, with_unit};
-use crate::meshes::Pane;
+use crate::labels::instant_label;
 use crate::obstacles;
-use crate::quantity::stresses;
 use crate::sheet::{Legend, arrowheads};
 use crate::text::said_if;
-use crate::{animation, bars, contours, meshes, space};
+use crate::{animation, bars, space};
 
 /// The field files nearest to five equidistant instants of the first contact; of the run if there
 /// is no contact, or only one field file in it. With words for the span.
@@ -62,7 +60,6 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
         files = "the field files and, of the last instant, in `stopped.vtu`";
     }
     let first = &sets.first()?.1;
-    let unit = run.history.unit("time");
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
         let strips: Vec<Instant> =
             sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
@@ -71,16 +68,7 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
     if bodies::fill_space(first) {
         let length = first.unit("displacement");
         let (pictures, caption, bands) = space::instants(run, &sets, length, (during, files))?;
-        let panes: Vec<Pane> = sets
-            .iter()
-            .filter_map(|(time, set)| {
-                let [values, _] = stresses(set)?;
-                Some(Pane { title: instant_label(run, *time), points: bodies::places(set), values })
-            })
-            .collect();
-        let value = with_unit("σ_{vM}", first.unit("stress"));
-        let figure = Figure::new("bodies", caption, pictures);
-        return Some((meshes::with_files(figure, first, &panes, length, value), bands));
+        return Some((Figure::new("bodies", caption, pictures), bands));
     }
     let (stress, length) = (first.array("stress")?.unit.as_str(), first.unit("displacement"));
     let instant = |(time, set): &_| Instant::new(set, "stress", 1, instant_label(run, *time));
@@ -118,7 +106,5 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
          the same scale; displacements are not magnified.{compression}{tension}{mark}{arrow} Data: stress and displacement in {files}."
     );
-    let figure = Figure::new("bodies", caption, pictures);
-    let figure = contours::with_files(figure, &times, &list, [unit, length, stress]);
-    Some((figure, bands))
+    Some((Figure::new("bodies", caption, pictures), bands))
 }

@@ -11,10 +11,9 @@ use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
 use crate::chart::{ground, opened, time_axis, turned, write_text};
 use crate::figure::{Figure, NARROW};
-use crate::labels::{number, scaled, with_unit};
+use crate::labels::{number, scaled};
 use crate::ordered::grouped;
 use crate::pen::{Pen, open_grid};
-use crate::redraw::filled;
 use crate::sheet::{Legend, arrowheads, color_bar};
 use crate::text::said_if;
 use crate::values::list;
@@ -87,7 +86,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     if sides.is_empty() || run.times().len() < 2 {
         return None;
     }
-    let (length, stress) = units(run);
+    let (_, stress) = units(run);
     let mut table = String::from("contact,node,s,time,pressure\n");
     for (side, (row, place)) in sides.iter().flat_map(|side| side.rows.iter().map(move |row| (side, row))) {
         let _ =
@@ -109,13 +108,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
          `contact.csv`, column `pressure`.",
         arrowheads(bars)
     );
-    let labels = [
-        ("@P@", with_unit("p", &stress)),
-        ("@T@", with_unit("time t", run.history.unit("time"))),
-        ("@S@", with_unit("arc length s", &length)),
-    ];
-    let script = filled(include_str!("pressure.py"), &labels);
-    Some(Figure::new("pressure", caption, [out, narrow]).with(table, script))
+    Some(Figure::new("pressure", caption, [out, narrow]).with_table(table))
 }
 
 /// The maps as a picture of a width, whether the colours of each leave values out, and of how many

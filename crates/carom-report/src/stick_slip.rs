@@ -11,10 +11,8 @@ use crate::arc::{self, places};
 use crate::axis::{Axis, range};
 use crate::chart::{ground, opened, time_axis, write_text};
 use crate::figure::{Figure, NARROW};
-use crate::labels::with_unit;
 use crate::ordered::distinct;
 use crate::palette::LINES;
-use crate::redraw::filled;
 use crate::text::said_if;
 use crate::values::{is_in_space, list, text};
 
@@ -74,16 +72,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
          stick and slip, at the recorded steps; one band per node, grey where it is not in contact.{counted} Slip: \
          motion of the secondary side relative to the primary{forward}. Data: `contact.csv`, columns `friction` and `traction`."
     );
-    let unit = length(run);
-    let (words, unit) = arc::label(is_length, &unit);
-    let labels = [
-        ("@T@", with_unit("time t", run.history.unit("time"))),
-        ("@S@", with_unit(words, unit)),
-        ("@AGAINST@", against.to_owned()),
-        ("@ALONG@", along.to_owned()),
-    ];
-    let script = filled(include_str!("stick_slip.py"), &labels);
-    Some(Figure::new("stick-slip", caption, pictures).with(table(run, &contacts), script))
+    Some(Figure::new("stick-slip", caption, pictures).with_table(table(run, &contacts)))
 }
 
 /// The maps as a picture of a width; the other argument is the two directions of slip in words.

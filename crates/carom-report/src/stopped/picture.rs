@@ -11,7 +11,6 @@ use crate::bodies::{Instant, bezier, corners, edges, is_plane, moved, outline, p
 use crate::chart::{open, write_text};
 use crate::figure::{Figure, NARROW};
 use crate::labels::{instant_label, listed};
-use crate::meshes::{self, Pane};
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::{self, NOTHING, Pen, Point, path};
@@ -52,16 +51,7 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
         instant_label(run, stop.last),
         listed(&parts)
     );
-    let pane = |title: &str, array: &str| Pane {
-        title: title.to_owned(),
-        points: moved(&fields, array),
-        values: Vec::new(),
-    };
-    let mut panes = vec![pane("accepted", "displacement")];
-    panes.extend(fields.array("rejected").map(|_| pane("rejected", "rejected")));
-    let length = fields.unit("displacement");
-    let figure = Figure::new("stopped", caption, [svg, narrow]);
-    Some(meshes::with_files(figure, &fields, &panes, length, String::new()))
+    Some(Figure::new("stopped", caption, [svg, narrow]))
 }
 
 /// The picture, and whether the rejected positions differ visibly.
