@@ -8,7 +8,6 @@ runs that case.
 """
 
 import json
-import pathlib
 import re
 import tomllib
 

@@ -57,39 +57,11 @@ last row is without contact. Contacts of a body with itself do not count if cont
 them; otherwise contact_impulse contains forces within the body.
 """
 
-import csv
-import html
-import json
-import re
-import xml.etree.ElementTree as xml
-from pathlib import Path
-
 import numpy as np
 
+from field_judge import CORNER, SELF_LIMIT, Judge, depth_below, obstacle_depths
+
 PARTS = 16
-LIMITS = {"exact": (0.05, 0.1), "soft": (0.25, 0.3)}
-SELF_LIMIT, CREATED_LIMIT, CORNER = 0.1, 0.02, np.radians(35.0)
-TYPES = {"Float64": "<f8", "Int64": "<i8", "Int32": "<i4", "UInt8": "u1"}
-MARK = b'<AppendedData encoding="raw">\n_'
-
-
-def read_vtu(path):
-    """Point arrays, `points`, `connectivity`, `offsets`, cell array `body`, and the names of bodies."""
-    raw = Path(path).read_bytes()
-    at = raw.index(MARK)
-    head, data, arrays = raw[:at].decode(), raw[at + len(MARK) :], {}
-    for tag in re.finditer(r'<DataArray type="(\w+)" ([^>]*?)/?>', head):
-        kind, rest = tag.groups()
-        attributes = dict(re.findall(r'(\w+)="([^"]*)"', rest))
-        if attributes["Name"].startswith("body "):
-            arrays.setdefault("names", []).append(html.unescape(attributes["Name"][5:]))
-            continue
-        start = int(attributes["offset"])
-        size = int.from_bytes(data[start : start + 8], "little")
-        values = np.frombuffer(data, TYPES[kind], size // np.dtype(TYPES[kind]).itemsize, start + 8)
-        n = int(attributes.get("NumberOfComponents", 1))
-        arrays[attributes["Name"]] = values.reshape(-1, n) if n > 1 else values
-    return arrays
 
 
 def shape_matrix(p, t):
@@ -155,6 +127,7 @@ class Outline:
         self.slopes = slopes(self.p)
         self.nodes, first = np.unique(self.facets, return_index=True)
         self.node_facet = first // (self.p + 1)
+        self.thick = np.inf
         self.turns = np.zeros(len(self.facets))
         self.at(reference)
         self.h = np.linalg.norm(np.diff(self.samples, axis=1), axis=2).sum(1)
@@ -203,6 +176,10 @@ class Outline:
         vertex = np.abs(wrapped(self.turns))
         return float((inside + np.where(vertex > CORNER, 0.0, vertex)).max())
 
+    def points_near(self, _low, _high):
+        """Sampled points between the nodes of its facets, and their h."""
+        return self.samples[:, 1:-1].reshape(-1, 2), np.repeat(self.h, PARTS - 1)
+
     def inside(self, x):
         """Whether points are inside, by the parity of crossings of a ray."""
         result = np.zeros(len(x), bool)
@@ -232,7 +209,7 @@ class Outline:
             out[part], facet[part] = np.sqrt(q[np.arange(len(part)), best]), best // self.per
         return out, facet
 
-    def crossings(self, start, end):
+    def meets(self, start, end):
         """How often the segment start–end crosses the outline."""
         cross = lambda u, v: u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
         s = end - start
@@ -272,227 +249,24 @@ class Outline:
         return float((depth / self.h[own[inside]]).max())
 
 
-class Worst:
-    """Largest depth/h of a class for a pair, less that of the first field, and where."""
+class Plane(Judge):
+    AXES = 2
+    PRIMARY = ("side", "plane")
+    outline = Outline
 
-    def __init__(self):
-        self.first, self.depth, self.time, self.what, self.limit = None, 0.0, None, "", 0.0
+    def obstacle(self, a, number, spec, time):
+        """A plane is checked for all bodies that start above it, too."""
+        if self.previous is None:
+            depth_of, _ = depth_below(spec)
+            _, depth = obstacle_depths(self.bodies[a], depth_of, [])
+            if depth <= 0:
+                self.pairs.setdefault((a, number), (set(), "exact"))
+        super().obstacle(a, number, spec, time)
 
-    def add(self, value, time, what, limit):
-        self.limit = limit
-        if self.first is None:
-            self.first = value
-        elif value - self.first > self.depth:
-            self.depth, self.time, self.what = value - self.first, time, what
-
-
-def frames(run):
-    """(time, arrays) of every written field; no arrays where the file is missing."""
-    for entry in xml.parse(run / "fields.pvd").iter("DataSet"):
-        path = run / entry.get("file")
-        yield float(entry.get("timestep")), read_vtu(path) if path.exists() else None
-
-
-def outlines(arrays):
-    """Outline of each body, by name."""
-    ends, conn = arrays["offsets"], arrays["connectivity"]
-    starts = np.concatenate([[0], ends[:-1]])
-    result = {}
-    for i, name in enumerate(arrays["names"]):
-        mine = np.flatnonzero(arrays["body"] == i)
-        cells = np.array([conn[starts[c] : ends[c]] for c in mine])
-        result[name] = Outline(cells, arrays["points"][:, :2])
-    return result
-
-
-def max_or_zero(x):
-    return float(x.max()) if len(x) else 0.0
-
-
-def pair_depths(a, b, secondary):
-    """(nodes, edges): largest depth/h of A's points in B, by class; `secondary`: nodes of A, a mask."""
-    if (a.low > b.high).any() or (b.low > a.high).any():
-        return 0.0, 0.0
-    x = a.position[a.nodes]
-    own = a.h[a.node_facet]
-    inner = a.samples[:, 1:-1].reshape(-1, 2)
-    points = np.concatenate([x, inner])
-    own = np.concatenate([own, np.repeat(a.h, PARTS - 1)])
-    is_secondary = np.concatenate([np.isin(a.nodes, secondary), np.zeros(len(inner), bool)])
-    found = np.flatnonzero(b.inside(points))
-    depth, facet = b.distance(points[found])
-    sec = is_secondary[found]
-    nodes = max_or_zero((depth / b.h[facet])[sec])
-    edges = max_or_zero((depth / np.maximum(b.h[facet], own[found]))[~sec])
-    return nodes, edges
-
-
-def plane_depths(a, point, normal, secondary):
-    depth_of = lambda x: -(x - point) @ normal
-    sec = np.isin(a.nodes, secondary)
-    at_nodes = depth_of(a.position[a.nodes]) / a.h[a.node_facet]
-    at_edges = depth_of(a.samples).max(1) / a.h
-    edges = np.concatenate([at_edges, at_nodes[~sec]]) if len(secondary) < len(a.nodes) else at_edges
-    return max(0.0, max_or_zero(at_nodes[sec])), max(0.0, max_or_zero(edges))
-
-
-def history(run):
-    with (run / "history.csv").open() as file:
-        rows = list(csv.DictReader(file))
-    column = lambda name: np.array([float(r[name]) for r in rows])
-    return rows, column
-
-
-def energy(run):
-    """(created by this formula, energy_created/energy_scale of the record)."""
-    rows, column = history(run)
-    if not rows:
-        return 0.0, 0.0
-    e, work = column("total") - column("external_work"), column("external_work")
-    if not np.isfinite(e).all():
-        return float("nan"), float("nan")
-    rise = (e - np.minimum.accumulate(e)).max()
-    scale = max((column("kinetic") + column("strain")).max(), np.abs(np.diff(work)).sum(), 1e-300)
-    last = rows[-1]
-    return float(rise / scale), float(last["energy_created"]) / max(float(last["energy_scale"]), 1e-300)
-
-
-def touched(run):
-    """Names of the contacts that contact.csv has rows of."""
-    path = run / "contact.csv"
-    if not path.exists():
-        return set()
-    with path.open() as file:
-        return {row["contact"] for row in csv.DictReader(file)}
-
-
-def momentum(run, case):
-    """|change of momentum − contact impulse| over the largest momentum; None if it does not apply."""
-    free = not case["supports"] and not case["loads"] and not any(any(b["gravity"]) for b in case["bodies"])
-    of_itself = lambda c: c["primary"].get("side") == c["secondary"]
-    contacts = [c for c in case["contacts"] if not of_itself(c) or c["name"] in touched(run)]
-    rigid = contacts and all("side" not in c["primary"] for c in contacts)
-    rows, column = history(run)
-    if not (free and rigid and rows and float(rows[-1]["active"]) == 0):
-        return None
-    axes = [i for i in "xyz" if f"momentum_{i}" in rows[0]]
-    p = np.array([column(f"momentum_{i}") for i in axes])
-    error = p[:, -1] - p[:, 0] - [column(f"contact_impulse_{i}")[-1] for i in axes]
-    return float(np.linalg.norm(error) / max(np.linalg.norm(p, axis=0).max(), 1e-300))
-
-
-def declare(pairs, contact, body, other, nodes):
-    """Adds the nodes of a body that another body, or an obstacle by number, keeps out."""
-    soft = contact["enforcement"] == "penalty" or contact.get("law") == "velocity"
-    kind = "soft" if soft else "exact"
-    old = pairs.get((body, other), (set(), kind))
-    pairs[body, other] = (old[0] | nodes, kind)
-    if not isinstance(other, int):
-        pairs.setdefault((other, body), (set(), kind))
-
-
-def declared(manifest):
-    """{(body, other body or plane index): (secondary nodes, kind of limit)}, planes, from the resolved case."""
-    pairs, planes = {}, []
-    for contact in manifest["case"]["contacts"]:
-        body = contact["secondary"].split(".")[0]
-        nodes = {n for path in manifest["sides"][contact["secondary"]] for n in path}
-        if not {"plane", "side"} & set(contact["primary"]) or contact.get("motion", "fixed") != "fixed":
-            raise ValueError(f"contact {contact['name']}: only sides and fixed planes are checked")
-        if "plane" in contact["primary"]:
-            spec = contact["primary"]["plane"]
-            normal = np.array(spec["normal"]) / np.linalg.norm(spec["normal"])
-            key = tuple(np.round([*spec["point"], *normal], 12))
-            if key not in [k for k, *_ in planes]:
-                planes.append((key, np.array(spec["point"]), normal))
-            other = [k for k, *_ in planes].index(key)
-        else:
-            other = contact["primary"]["side"].split(".")[0]
-        declare(pairs, contact, body, other, nodes)
-    return pairs, planes
+    def itself(self, a, time):
+        self.deepest("self", a, self.bodies[a].self_depth(), time, f"{a} in itself", SELF_LIMIT)
 
 
 def check(run):
     """Numbers and verdicts of a record, as a dictionary; `wrong` lists what is wrong."""
-    run = Path(run)
-    manifest = json.loads((run / "manifest.json").read_text())
-    pairs, planes = declared(manifest)
-    nodes, edges, own, passed, bodies, before, count = {}, {}, {}, {}, None, None, 0
-    missing = []
-    for time, arrays in frames(run):
-        if arrays is None:
-            missing.append(f"record: the field of t = {time:.6g} is missing")
-            continue
-        bodies = bodies or outlines(arrays)
-        position = arrays["points"][:, :2] + arrays["displacement"][:, :2]
-        count += 1
-        if not np.isfinite(position).all():
-            passed.setdefault("record: positions that are not finite", time)
-            break
-        for name, body in bodies.items():
-            body.at(position)
-            if body.inverted():
-                passed.setdefault(f"inverted: a cell of {name}", time)
-        for a, one in bodies.items():
-            for b, two in bodies.items():
-                if a == b:
-                    continue
-                secondary, kind = pairs.get((a, b), (set(), "exact"))
-                depths = pair_depths(one, two, sorted(secondary))
-                limit = LIMITS[kind]
-                nodes.setdefault((a, b), Worst()).add(depths[0], time, f"nodes of {a} in {b}", limit[0])
-                edges.setdefault((a, b), Worst()).add(
-                    depths[1], time, f"edges of {a} in {b}", limit[1] + one.sag + two.sag
-                )
-                if one.extent < two.extent or one.extent == two.extent and a < b:
-                    # The centre of a comb or a ring is not in the body itself.
-                    if two.inside(one.center[None])[0] and depths[1] > 0 and one.inside(one.center[None])[0]:
-                        passed.setdefault(f"through: the centre of {a} is in {b}", time)
-                    if before:
-                        # Relative to the centre of the larger body, in its shape of both instants.
-                        start, end = before[a] - before[b], one.center - two.center
-                        now = two.crossings(start + two.center, end + two.center)
-                        two.at(previous)
-                        then = two.crossings(start + before[b], end + before[b])
-                        two.at(position)
-                        if now and then and now % 2 == 0 and then % 2 == 0:
-                            passed.setdefault(f"through: {a} passes through {b}", time)
-            for i, (_, point, normal) in enumerate(planes):
-                secondary, kind = pairs.get((a, i), (set(), "exact"))
-                depths = plane_depths(one, point, normal, sorted(secondary))
-                if not secondary and (a, i) not in nodes and depths[1] > 0:
-                    nodes[a, i] = None  # below the plane from the start: not meant for this body
-                if nodes.get((a, i), 0) is not None:
-                    limit = LIMITS[kind]
-                    nodes.setdefault((a, i), Worst()).add(depths[0], time, f"nodes of {a} in plane {i + 1}", limit[0])
-                    edges.setdefault((a, i), Worst()).add(
-                        depths[1], time, f"edges of {a} in plane {i + 1}", limit[1] + one.sag
-                    )
-            own.setdefault(a, Worst()).add(one.self_depth(), time, f"{a} in itself", SELF_LIMIT)
-        before, previous = {name: body.center for name, body in bodies.items()}, position
-    created, recorded = energy(run)
-    unbalanced = momentum(run, manifest["case"])
-    classes = {"nodes": [w for w in nodes.values() if w], "edges": list(edges.values()), "self": list(own.values())}
-    result = {"fields": count, "created": created, "created_recorded": recorded, "momentum": unbalanced, "wrong": []}
-    result["initial"] = max([w.first for ws in classes.values() for w in ws if w.first] or [0.0])
-    for name, all_of in classes.items():
-        result[name] = max([w.depth for w in all_of] or [0.0])
-        for w in sorted(all_of, key=lambda w: w.limit - w.depth):
-            if w.depth > w.limit:
-                result["wrong"].append(f"{name}: {w.what}: {w.depth:.3g} h at t = {w.time:.6g} (limit {w.limit:.3g})")
-    result["wrong"] += [f"{what} at t = {t:.6g}" for what, t in passed.items()] + missing
-    if count < 2 and manifest["status"] == "finished":
-        result["wrong"].append(f"record: {count} fields, and at least 2 are needed")
-    result["warnings"] = sorted({w["id"] for w in manifest.get("warnings") or []})
-    contact = run / "contact.csv"
-    result["contacts"] = max(0, len(contact.read_text().splitlines()) - 1) if contact.exists() else 0
-    marked = "energy-created" in result["warnings"]
-    result["marked"] = marked or manifest["status"] == "failed" and "energy was created" in (manifest.get("reason") or "")
-    if not np.isfinite(created):
-        result["wrong"].append("energy: not finite")
-    if created > CREATED_LIMIT and not result["marked"]:
-        result["wrong"].append(f"energy: {100 * created:.3g} % created (the record says {100 * recorded:.3g} %)")
-    if unbalanced is not None and unbalanced > 1e-6:
-        result["wrong"].append(f"momentum: change and contact impulse differ by {unbalanced:.3g} of the momentum")
-    result["status"], result["reason"] = manifest["status"], manifest.get("reason") or ""
-    return result
+    return Plane(run).result()

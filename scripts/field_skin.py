@@ -3,12 +3,13 @@ distances to it (Python 3, numpy).
 
 A skin is the set of faces of cells that belong to one cell. A face is the polynomial of degree p
 through its nodes, sampled at the points with coordinates k/6 and along sharp edges at k/24, and
-divided at the former into flat triangles; a flat face of three nodes is one triangle. Cells and their nodes are in the order of VTK.
+divided at the former into flat triangles; a flat face of three nodes is one triangle. Cells and their
+nodes are in the order of VTK.
 """
 
 import numpy as np
 
-from field_check import CORNER, SELF_LIMIT
+from field_judge import CORNER, SELF_LIMIT
 
 PARTS, ALONG = 6, 24
 # A fixed rotation: rays along its rows are along no edge of a mesh that was made by hand.
@@ -139,7 +140,7 @@ class Skin:
         self.faces = np.array([nodes for nodes in found.values() if nodes is not None])
         self.face = Face(self.faces.shape[1], self.p)
         self.nodes, first = np.unique(self.faces, return_index=True)
-        self.node_face = first // self.faces.shape[1]
+        self.node_facet = first // self.faces.shape[1]
         self.slopes = self.cell.slopes(self.cell.lattice(6 if self.cell.tet else 4))
         corners = reference[self.faces[:, : self.face.corners]]
         self.h = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(1)
@@ -196,6 +197,15 @@ class Skin:
                 kink[f], kink[g] = max(kink[f], found), max(kink[g], found)
         self.sharp = np.array(sharp, int).reshape(-1, 2)
         return float((own + kink).max())
+
+    def points_near(self, low, high):
+        """Sampled points of the faces and sharp edges whose boxes meet a box, and their h."""
+        points, own = [], []
+        for samples, h in ((self.samples, self.h), (self.edges, self.h[self.sharp[:, 0]])):
+            hit = ((samples.min(1) <= high) & (samples.max(1) >= low)).all(1)
+            points.append(samples[hit].reshape(-1, 3))
+            own.append(np.repeat(h[hit], samples.shape[1]))
+        return np.concatenate(points), np.concatenate(own)
 
     def winding(self, points, ray=0):
         """How often the skin surrounds points: triangles left through less triangles entered along a ray."""
@@ -315,14 +325,3 @@ def to_triangles(x, t):
     foot = (first >= 0) & (second >= 0) & (first + second <= square)
     best = np.where(foot, np.minimum(best, (r * n).sum(2) ** 2 / square), best)
     return np.sqrt(best.min(1))
-
-
-def skins(arrays):
-    """Skin of each body, by name."""
-    ends, conn = arrays["offsets"], arrays["connectivity"]
-    starts = np.concatenate([[0], ends[:-1]])
-    result = {}
-    for i, name in enumerate(arrays["names"]):
-        mine = np.flatnonzero(arrays["body"] == i)
-        result[name] = Skin(np.array([conn[starts[c] : ends[c]] for c in mine]), arrays["points"])
-    return result

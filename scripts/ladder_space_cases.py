@@ -132,7 +132,7 @@ def ball_edge(r, draw):
 
 def balls(r, draw):
     v, n = between(r, 0.5, 3), r.choice([2, 2, 3])
-    bodies, x = [], 0.0
+    bodies = []
     for i in range(n):
         R = r.uniform(0.2, 0.5)
         b = draw.ball(f"ball{i + 1}", R, r.choice([1, 2, 2]), young=100 * between(r, 1, 30), density=r.choice([1.0, 1.0, 4.0]))

@@ -18,8 +18,10 @@ import random
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from math import cos, dist, pi, sin
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -435,39 +437,47 @@ def add_with_sides(mesh, surface, grid, squares, side):
         mesh.add(1, side(*where), [edge])
 
 
-def rake(mesh, surface, centers, width, length, back, rows, turn=None):
-    """A strip of thickness `back` with a tooth at every centre: half width `width(s)` at s in [0, 1] of its
-    length. `turn` is the point that a half turn brings to the origin."""
-    neck = width(0.0)
-    lines = [x for center in centers for x in (center - neck, center, center + neck)]
-    teeth = [k for k in range(len(lines) - 1) if k % 3 != 2]
-    squares = [(i, 0) for i in range(len(lines) - 1)]
-    squares += [(i, 1 + j) for i in teeth for j in range(rows)]
+class Rake(NamedTuple):
+    """A strip with a tooth at every centre: half width `width(s)` at s in [0, 1] of its length."""
 
-    def place(a, b):
-        k = min(int(a), len(lines) - 2)
-        x = lines[k] + (a - k) * (lines[k + 1] - lines[k])
-        y = back * (b - 1)
-        if b > 1:
-            s = (b - 1) / rows
-            center = min(centers, key=lambda c: abs(c - x))
-            x = center + (x - center) * width(s) / neck
-            y = length * s
-        # A rotation, not a reflection, keeps the orientation of the cells.
-        return (x, y) if turn is None else (turn[0] - x, turn[1] - y)
+    centers: list
+    rows: int
+    width: Callable
+    back: float
+    length: float = 0.6
 
-    side = lambda a, b: f"{surface}_back" if b == 0 else f"{surface}_teeth"
-    add_with_sides(mesh, surface, Grid(mesh, place), squares, side)
+    def add(self, mesh, surface, turn=None):
+        """Adds it to a mesh; `turn` is the point that a half turn brings to the origin."""
+        neck = self.width(0.0)
+        lines = [x for center in self.centers for x in (center - neck, center, center + neck)]
+        teeth = [k for k in range(len(lines) - 1) if k % 3 != 2]
+        squares = [(i, 0) for i in range(len(lines) - 1)]
+        squares += [(i, 1 + j) for i in teeth for j in range(self.rows)]
+
+        def place(a, b):
+            k = min(int(a), len(lines) - 2)
+            x = lines[k] + (a - k) * (lines[k + 1] - lines[k])
+            y = self.back * (b - 1)
+            if b > 1:
+                s = (b - 1) / self.rows
+                center = min(self.centers, key=lambda c: abs(c - x))
+                x = center + (x - center) * self.width(s) / neck
+                y = self.length * s
+            # A rotation, not a reflection, keeps the orientation of the cells.
+            return (x, y) if turn is None else (turn[0] - x, turn[1] - y)
+
+        side = lambda a, b: f"{surface}_back" if b == 0 else f"{surface}_teeth"
+        add_with_sides(mesh, surface, Grid(mesh, place), squares, side)
 
 
 def comb():
     """Two combs whose teeth meet. Surfaces `lower` and `upper`; curves `lower_back`, `lower_teeth`, …"""
     mesh = Mesh()
     width = lambda s: 0.1 - 0.04 * s
-    rake(mesh, "lower", [0.4 * k for k in range(5)], width, 0.6, 0.2, 5)
+    Rake([0.4 * k for k in range(5)], 5, width, back=0.2).add(mesh, "lower")
     # Off the middle by 0.06, so that the teeth bend; the tips are 0.1 above those of the lower
     # comb.
-    rake(mesh, "upper", [0.4 * k for k in range(4)], width, 0.6, 0.2, 4, (1.46, 1.3))
+    Rake([0.4 * k for k in range(4)], 4, width, back=0.2).add(mesh, "upper", (1.46, 1.3))
     return mesh.file(rounded(12))
 
 
@@ -475,9 +485,9 @@ def zip_of_hooks():
     """Two combs whose teeth have thick ends, which snap into each other. Names as in comb.msh."""
     mesh = Mesh()
     width = lambda s: 0.08 + (0.06 * sin(pi * (s - 0.4) / 0.6) ** 2 if s > 0.4 else 0.0)
-    centers = [0.5 * k for k in range(5)]
-    rake(mesh, "lower", centers, width, 0.6, 0.15, 8)
-    rake(mesh, "upper", centers, width, 0.6, 0.15, 8, (2.25, 0.64))
+    rake = Rake([0.5 * k for k in range(5)], 8, width, back=0.15)
+    rake.add(mesh, "lower")
+    rake.add(mesh, "upper", (2.25, 0.64))
     return mesh.file(rounded(12))
 
 

@@ -16,6 +16,7 @@ sys.dont_write_bytecode = True
 import numpy as np
 
 import field_check as fc
+import field_judge
 import ladder_cases
 
 
@@ -77,7 +78,7 @@ def write_vtu(path, bodies, displacement, velocity=None):
 
     def array(kind, name, values, n=1):
         nonlocal data, head
-        raw = np.ascontiguousarray(values, fc.TYPES[kind]).tobytes()
+        raw = np.ascontiguousarray(values, field_judge.TYPES[kind]).tobytes()
         parts = f' NumberOfComponents="{n}"' if n > 1 else ""
         head += f'<DataArray type="{kind}" Name="{name}"{parts} format="appended" offset="{len(data)}"/>\n'
         data += len(raw).to_bytes(8, "little") + raw
@@ -93,7 +94,7 @@ def write_vtu(path, bodies, displacement, velocity=None):
     array("Float64", "points", flat([p for p, _ in bodies.values()]), 3)
     array("Int64", "connectivity", np.concatenate([(c + s).ravel() for (_, c), s in zip(bodies.values(), shift)]))
     array("Int64", "offsets", np.cumsum(np.concatenate([np.full(len(c), c.shape[1]) for _, c in bodies.values()])))
-    path.write_bytes(b"<VTKFile>" + head.encode() + fc.MARK + data + b"\n</AppendedData>")
+    path.write_bytes(b"<VTKFile>" + head.encode() + field_judge.MARK + data + b"\n</AppendedData>")
 
 
 def record(folder, bodies, motion, contacts, energies=(1.0, 1.0), sides=None, supports=(1,), momenta=None, touched=()):
@@ -112,7 +113,8 @@ def record(folder, bodies, motion, contacts, energies=(1.0, 1.0), sides=None, su
     (folder / "contact.csv").write_text("\n".join(["step,contact", *(f"1,{name}" for name in touched)]) + "\n")
     (folder / "history.csv").write_text("\n".join([columns.replace(" ", ","), *rows]) + "\n")
     contacts = [{"name": f"c{i}", **contact} for i, contact in enumerate(contacts)]
-    case = {"contacts": contacts, "supports": list(supports), "loads": [], "bodies": []}
+    time = {"scheme": {"kind": "chung-hulbert"}}
+    case = {"contacts": contacts, "supports": list(supports), "loads": [], "bodies": [], "time": time}
     (folder / "manifest.json").write_text(json.dumps({"status": "finished", "case": case, "sides": sides or {}, "warnings": []}))
 
 
@@ -144,13 +146,13 @@ class Geometry(unittest.TestCase):
             # Its lowest nodes 0.03 below the top, not above the nodes of the other.
             high = outline(*square((0.1, 1.0), 4, 0.2, p), moved=(0.0, -0.03))
             bottom = high.nodes[np.isclose(high.position[high.nodes, 1], 0.97)]
-            nodes, edges = fc.pair_depths(high, low, bottom)
+            nodes, edges = field_judge.pair_depths(high, low, bottom)
             self.assertAlmostEqual(nodes, 0.03 / 0.25)
             self.assertAlmostEqual(edges, 0.03 / 0.25)  # points on its edges; the larger facet
-            nodes, edges = fc.pair_depths(high, low, [])
+            nodes, edges = field_judge.pair_depths(high, low, [])
             self.assertEqual(nodes, 0.0)
             apart = outline(*square((0.1, 1.0), 4, 0.2, p))
-            self.assertEqual(fc.pair_depths(apart, low, bottom), (0.0, 0.0))
+            self.assertEqual(field_judge.pair_depths(apart, low, bottom), (0.0, 0.0))
 
     def test_a_curved_disc_enters_a_square_between_its_nodes(self):
         low = outline(*square((-1, -2), 4, 0.5, 2))
@@ -158,7 +160,7 @@ class Geometry(unittest.TestCase):
         turn = np.pi / 8 + np.pi / 16  # a quarter of a facet beside the lowest point: no node there
         rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
         body = outline(points @ rotation.T, cells, moved=(0.0, 0.498))
-        nodes, edges = fc.pair_depths(body, low, body.nodes)
+        nodes, edges = field_judge.pair_depths(body, low, body.nodes)
         self.assertEqual(nodes, 0.0)
         lowest = -body.samples[..., 1].min()
         self.assertGreater(lowest, 1e-3)
@@ -219,7 +221,8 @@ class Geometry(unittest.TestCase):
 
     def test_plane(self):
         body = outline(*square((0, 0), 2, 0.5, 2), moved=(0.0, -0.1))
-        nodes, edges = fc.plane_depths(body, np.zeros(2), np.array([0.0, 1.0]), body.nodes)
+        depth_of, _ = field_judge.depth_below({"point": [0.0, 0.0], "normal": [0.0, 1.0]})
+        nodes, edges = field_judge.obstacle_depths(body, depth_of, body.nodes)
         self.assertAlmostEqual(nodes, 0.2)
         self.assertAlmostEqual(edges, 0.2)
 

@@ -17,6 +17,7 @@ sys.dont_write_bytecode = True
 import numpy as np
 
 import field_check_space as fc
+import field_judge
 import ladder_space_cases
 from field_skin import Cell, Skin, to_triangles
 from test_ladder import write_vtu
@@ -117,13 +118,13 @@ class Geometry(unittest.TestCase):
             high = body(points, cells, (0, 0, -0.03))
             bottom = high.nodes[np.isclose(high.position[high.nodes, 2], 0.97)]
             h = 0.25 * (2**0.5 if Cell(kind).tet else 1)
-            nodes, edges = fc.pair_depths(high, low, bottom)
+            nodes, edges = field_judge.pair_depths(high, low, bottom)
             self.assertAlmostEqual(nodes, 0.03 / h)
             self.assertAlmostEqual(edges, 0.03 / h)  # the larger face
-            self.assertEqual(fc.pair_depths(high, low, [])[0], 0.0)
+            self.assertEqual(field_judge.pair_depths(high, low, [])[0], 0.0)
             apart = body(points, cells, (0, 0, 1e-9))
-            self.assertEqual(fc.pair_depths(apart, low, bottom), (0.0, 0.0))
-            touching = fc.pair_depths(body(points, cells), low, bottom)
+            self.assertEqual(field_judge.pair_depths(apart, low, bottom), (0.0, 0.0))
+            touching = field_judge.pair_depths(body(points, cells), low, bottom)
             self.assertLess(max(touching), 1e-12)
 
     def test_an_edge_that_enters_an_edge_between_nodes_is_found(self):
@@ -136,7 +137,7 @@ class Geometry(unittest.TestCase):
             # Its edge along x, 0.05 below the ridge along y, and no node of either near the other.
             high = body(points - [0.21, 0.13, points[:, 2].min()], cells, (0, 0, -0.05))
             for one, other in ((high, low), (low, high)):
-                nodes, edges = fc.pair_depths(one, other, one.nodes)
+                nodes, edges = field_judge.pair_depths(one, other, one.nodes)
                 self.assertEqual(nodes, 0.0)
                 h = max(other.h.max(), one.h.max())
                 # On the ridge itself the depth is 0.05/√2; the points are a 24th of a face apart.
@@ -149,7 +150,7 @@ class Geometry(unittest.TestCase):
         points, cells = ball(27, 0.5, 4)
         high = body(turned(points, 0, 11.0), cells, (0, 0, 0.499))
         lowest = -high.samples[..., 2].min()
-        nodes, edges = fc.pair_depths(high, low, [])
+        nodes, edges = field_judge.pair_depths(high, low, [])
         self.assertEqual(nodes, 0.0)
         self.assertAlmostEqual(edges, lowest / 0.5)
 
@@ -170,18 +171,18 @@ class Geometry(unittest.TestCase):
 
     def test_obstacles(self):
         skin = body(*block(10, (-0.5, -0.5, 0), (1, 1, 1), (2, 2, 2)), (0, 0, -0.1))
-        plane, radius = fc.depth_below({"point": [0, 0, 0], "normal": [0, 0, 2]})
+        plane, radius = field_judge.depth_below({"point": [0, 0, 0], "normal": [0, 0, 2]})
         h = 2**0.5 / 2
-        for found in fc.obstacle_depths(skin, plane, skin.nodes):
+        for found in field_judge.obstacle_depths(skin, plane, skin.nodes):
             self.assertAlmostEqual(found, 0.1 / h)
         self.assertEqual(radius, 0.0)
         # The ball touches the plane z = 0.05 from below: the middle of the face is 0.15 inside.
-        sphere, radius = fc.depth_below({"center": [0, 0, -0.95], "radius": 1.0})
-        nodes, edges = fc.obstacle_depths(skin, sphere, skin.nodes)
+        sphere, radius = field_judge.depth_below({"center": [0, 0, -0.95], "radius": 1.0})
+        nodes, edges = field_judge.obstacle_depths(skin, sphere, skin.nodes)
         self.assertAlmostEqual(nodes, 0.15 / h)
         self.assertEqual(radius, 1.0)
-        bowl, radius = fc.depth_below({"center": [0, 0, 0], "radius": 1.0, "inside": True})
-        nodes, edges = fc.obstacle_depths(skin, bowl, skin.nodes)
+        bowl, radius = field_judge.depth_below({"center": [0, 0, 0], "radius": 1.0, "inside": True})
+        nodes, edges = field_judge.obstacle_depths(skin, bowl, skin.nodes)
         self.assertAlmostEqual(nodes, ((0.5 + 0.81) ** 0.5 - 1) / h)
         self.assertEqual(radius, 0.0)
 
