@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)] // the helpers are tests too
 
 mod contact_messages;
+mod corpus;
 mod excerpt;
 mod files;
 mod memory;
