@@ -168,9 +168,13 @@ pub(super) fn newton(v: &View) -> Option<NewtonSpec> {
 }
 
 pub(super) fn output(v: &View) -> Option<OutputSpec> {
-    let every = if v.has("at_times") { 0 } else { 20 };
+    let fields_every = match (v.has("fields_every"), v.has("at_times")) {
+        (true, _) => Some(v.count("fields_every")?),
+        (false, true) => Some(0),
+        (false, false) => None,
+    };
     Some(OutputSpec {
-        fields_every: if v.has("fields_every") { v.count("fields_every")? } else { every },
+        fields_every,
         format: v.choice("format")?,
         at_times: v.numbers("at_times")?,
         history_every: v.count("history_every")?,
