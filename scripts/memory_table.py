@@ -88,7 +88,7 @@ def estimate(carom, case, sets):
 def peak(carom, case, sets):
     """Largest resident size in bytes of a run."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [carom, "run", case, "--out", f"{folder}/run", "--threads", "1", "--no-report", "--no-trials", "-q"]
+        command = [carom, "run", case, "--out", f"{folder}/run", "--threads", "1", "--no-report", "-q"]
         process = subprocess.Popen(command + arguments(sets))
         _, status, usage = os.wait4(process.pid, 0)
         if status != 0:

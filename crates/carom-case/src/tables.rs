@@ -168,7 +168,6 @@ pub(super) fn newton(v: &View) -> Option<NewtonSpec> {
 }
 
 pub(super) fn output(v: &View) -> Option<OutputSpec> {
-    let every = if v.has("at_times") { 0 } else { 20 };
     if v.text("format")? != "vtu" {
         return v.wrong(
             "format",
@@ -177,8 +176,13 @@ pub(super) fn output(v: &View) -> Option<OutputSpec> {
             "leave format out; after the run, carom.open(DIRECTORY).to_vtkhdf(FILE) in Python makes one VTKHDF file",
         );
     }
+    let fields_every = match (v.has("fields_every"), v.has("at_times")) {
+        (true, _) => Some(v.count("fields_every")?),
+        (false, true) => Some(0),
+        (false, false) => None,
+    };
     Some(OutputSpec {
-        fields_every: if v.has("fields_every") { v.count("fields_every")? } else { every },
+        fields_every,
         at_times: v.numbers("at_times")?,
         history_every: v.count("history_every")?,
         checkpoint_every: v.count("checkpoint_every")?,

@@ -33,7 +33,6 @@ mod trace;
 mod velocity;
 mod workspace;
 
-pub use check::audit::{AuditFailure, audit, unaudited};
 pub use check::overlap::depths;
 pub use check::overlapping::Overlap;
 pub use check::penetration::{Depths, Penetration, inside, penetration};

@@ -6,7 +6,6 @@ use std::ops::ControlFlow;
 
 use carom_contact::Passed;
 
-use crate::check::audit::audit;
 use crate::grid::Grid;
 use crate::grid_report::{Attempt, GridReport, LogEvent};
 use crate::model::Model;
@@ -35,7 +34,6 @@ pub struct Simulation {
     work: Workspace,
     /// Bisections of Δt before the run stops.
     bisections: u32,
-    audited: bool,
 }
 
 impl Simulation {
@@ -82,7 +80,7 @@ impl Simulation {
         let model = model.on_threads(threads);
         let mut work = Workspace::new(&model, stepper.linear());
         work.system.restored.clone_from(&state.frozen.point);
-        Self { model, state, grid, stepper, fallback: None, work, bisections: MOST, audited: false }
+        Self { model, state, grid, stepper, fallback: None, work, bisections: MOST }
     }
 
     /// The constant data.
@@ -98,12 +96,6 @@ impl Simulation {
     /// The state at the last grid time, kept alone.
     pub fn into_state(self) -> State {
         self.state
-    }
-
-    /// Checks every step by a second, slow method ([`audit`]) and stops where it contradicts.
-    #[must_use]
-    pub fn audited(self) -> Self {
-        Self { audited: true, ..self }
     }
 
     /// Takes grid steps at which the run would stop with another stepper, from their start.
@@ -263,13 +255,14 @@ impl Simulation {
                 timed(&mut timings.contact, || nothing_passed(&self.model, &from.y, &state.y))?;
                 Ok(step)
             });
-            // A step that is returned to began earlier.
-            let (mut taken, mut returned, mut why) = (None, None, None);
+            let mut taken = None;
+            let mut why = None;
             match decide(stepped, from, limits, &mut stored, &mut progress, report) {
                 Next::Take(step) => taken = Some(step),
                 Next::Bisect(rejected) => why = Some(rejected),
-                Next::Return(rejected, step, start) => {
-                    (taken, returned, why) = (Some(step), Some(start), Some(rejected));
+                Next::Return(rejected, step) => {
+                    taken = Some(step);
+                    why = Some(rejected);
                 }
                 Next::Stop(rejected) => {
                     report.reject(time, dt, rejected.clone());
@@ -290,11 +283,6 @@ impl Simulation {
                 continue;
             };
             let (next, step) = step.into_parts();
-            if self.audited {
-                let from = &reached.as_ref().unwrap_or(&self.state).y;
-                audit(&self.model, returned.as_ref().unwrap_or(from), &next.y, step.penetration)
-                    .map_err(|doubt| Stopped::Audit { time: next.time, dt: length, doubt })?;
-            }
             report.add(next.time, step);
             if let Some(before) = reached.replace(next) {
                 self.work.put(before);

@@ -2,7 +2,6 @@
 
 use carom_formula::instant;
 
-use crate::check::audit::AuditFailure;
 use crate::rejected::Rejected;
 
 /// Why a simulation stopped before its end; the state of the last grid time is preserved.
@@ -30,16 +29,6 @@ pub enum Stopped {
         /// The grid step.
         dt: f64,
     },
-    /// A second method contradicts the contact of a step.
-    #[error("the audit of the step that ends at t = {} [time] contradicts its contact: {doubt}", at(*time, *dt))]
-    Audit {
-        /// Time.
-        time: f64,
-        /// The grid step.
-        dt: f64,
-        /// What it found.
-        doubt: AuditFailure,
-    },
     /// The scheme created energy.
     #[error(
         "energy was created at t = {} [time]: {created:.4e} [energy], which is {} % of the energy scale, {scale:.4e} [energy]; the limit is {} %", at(*time, *dt), percent(created / scale), percent(*share)
@@ -64,7 +53,7 @@ impl Stopped {
         match self {
             Self::NoStep { rejected, .. } => !rejected.is_final(end),
             Self::EnergyGuard { .. } => true,
-            Self::Interrupted { .. } | Self::Audit { .. } => false,
+            Self::Interrupted { .. } => false,
         }
     }
 }

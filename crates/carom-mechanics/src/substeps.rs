@@ -55,8 +55,6 @@ pub(crate) struct StoredStep {
     /// Whether the guard allows it.
     is_within: bool,
     at: Progress,
-    /// Positions at its start.
-    from: Vec<f64>,
     report: GridReport,
 }
 
@@ -66,9 +64,8 @@ pub(crate) enum Next {
     Take(Accepted),
     /// Shorter ones are tried.
     Bisect(Rejected),
-    /// Shorter ones do not help, for this reason: the one that was stored is the next one, from
-    /// these positions.
-    Return(Rejected, Accepted, Vec<f64>),
+    /// Shorter ones do not help, for this reason: the one that was stored is the next one.
+    Return(Rejected, Accepted),
     /// Not even the shortest one is accepted.
     Stop(Rejected),
 }
@@ -115,8 +112,8 @@ pub(crate) fn decide(
             }
             if stored.is_none() {
                 let is_within = created <= allowed / STEP;
-                let (at, from, report) = (*progress, from.y.clone(), report.clone());
-                *stored = Some(StoredStep { step, created, is_within, at, from, report });
+                let report = report.clone();
+                *stored = Some(StoredStep { step, created, is_within, at: *progress, report });
             }
             (Rejected::Energy { created, allowed }, returns)
         }
@@ -126,7 +123,7 @@ pub(crate) fn decide(
         Some(stored) => {
             *progress = stored.at;
             report.return_to(stored.report);
-            Next::Return(rejected, stored.step, stored.from)
+            Next::Return(rejected, stored.step)
         }
         None if last => Next::Stop(rejected),
         None => Next::Bisect(rejected),

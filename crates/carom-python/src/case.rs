@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use carom::Setup;
 use carom::case::{Case as Spec, Document, Functions, merged, read};
 use carom::record::Source;
-use carom::recording::{self, Options, Progress, RunError};
+use carom::recording::{self, Progress, RunError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -34,7 +34,7 @@ impl Case {
     }
 
     fn source(&self) -> Source {
-        Source { text: self.document.text().to_owned(), sets: self.document.sets(), folder: None }
+        Source { text: self.document.text().to_owned(), sets: self.document.sets(), ..Source::default() }
     }
 }
 
@@ -110,26 +110,22 @@ impl Case {
 
     /// Computes the case, in memory or into a directory. Returns the record and the exception of a
     /// signal handler, if there was one.
-    #[allow(clippy::fn_params_excessive_bools)] // keywords in Python
     fn run<'py>(
         &self,
         py: Python<'py>,
         out: Option<PathBuf>,
         threads: usize,
-        trials: bool,
-        audit: bool,
         page: bool,
         given: &Bound<'py, PyDict>,
         report: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Record, Option<PyErr>)> {
         let (functions, failure) = functions(given)?;
         let (case, source) = (self.with(functions), self.source());
-        let options = Options { threads, trials, audit };
         let (done, interrupted) = watched(py, report, |show, stop| {
             let mut observe = |p: &Progress| show((p.step, p.steps, p.time));
             match &out {
-                Some(path) => recording::run(&case, source, path, options, &mut observe, stop).map(|_| None),
-                None => recording::run_in_memory(&case, source, options, &mut observe, stop)
+                Some(path) => recording::run(&case, source, path, threads, &mut observe, stop).map(|_| None),
+                None => recording::run_in_memory(&case, source, threads, &mut observe, stop)
                     .map(|(_, record)| Some(record)),
             }
         })?;

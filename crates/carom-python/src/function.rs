@@ -95,13 +95,20 @@ impl Given {
         match found.len() {
             1 => Ok(vec![found[0]; count]),
             n if n == count => Ok(found.to_vec()),
-            _ => Err(self.wrong(values, expected)),
+            found => Err(self.wrong_count(found, count, expected)),
         }
     }
 
     fn wrong(&self, values: &Bound<'_, PyAny>, expected: &str) -> PyErr {
         let got = values.repr().map_or_else(|_| "?".to_owned(), |text| text.to_string());
         PyValueError::new_err(format!("the function `{}` must return {expected}, not {got}", self.name))
+    }
+
+    fn wrong_count(&self, found: usize, count: usize, expected: &str) -> PyErr {
+        let name = &self.name;
+        PyValueError::new_err(format!(
+            "the function `{name}` must return {expected}: one, or {count} for the {count} points, not {found}"
+        ))
     }
 }
 

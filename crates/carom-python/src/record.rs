@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use carom::record::{Column, FieldSet, History, MemoryRecord, Run, metrics};
-use carom::recording::{self, Options, Progress};
+use carom::recording::{self, Progress};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyOSError};
 use pyo3::prelude::*;
@@ -193,10 +193,9 @@ pub(crate) fn resume<'py>(
     report: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(Record, Option<PyErr>)> {
     let (functions, failure) = functions(given)?;
-    let options = Options { threads, ..Options::default() };
     let (done, interrupted) = watched(py, report, |show, stop| {
         let mut observe = |p: &Progress| show((p.step, p.steps, p.time));
-        recording::resume_with(&path, functions, options, &mut observe, stop)
+        recording::resume_with(&path, functions, threads, &mut observe, stop)
     })?;
     if let Some(error) = raised(&failure) {
         return Err(error);

@@ -165,7 +165,7 @@ def test_damaged_measured_files(tmp_path: Path) -> None:
 
 
 def test_an_animation_shows_recorded_instants(disc_run: carom.Run, tmp_path: Path) -> None:
-    animation = disc_run.animate("von_mises", frames=3)
+    animation = carom.plot.animate(disc_run, "von_mises", frames=3)
     animation.save(tmp_path / "disc.gif", writer="pillow")
     assert (tmp_path / "disc.gif").stat().st_size > 1000
 
@@ -206,7 +206,7 @@ def test_bodies_in_space() -> None:
     assert carom.plot.history(run).get_ylabel() == "contact_force_z (N)"
     assert carom.plot.energy(run).get_ylabel() == "energy (J)"
     plt.close("all")
-    for figure in (lambda: carom.plot.snapshot(run, 0.02), run.animate):
+    for figure in (lambda: carom.plot.snapshot(run, 0.02), lambda: carom.plot.animate(run)):
         with pytest.raises(ValueError, match="warp_by_vector"):
             figure()
     with pytest.raises(ValueError, match="contact_pressure"):
@@ -221,10 +221,10 @@ def test_bodies_in_space() -> None:
 
 def test_what_a_figure_needs(bar: carom.Case, disc: carom.Case) -> None:
     run = bar.set({"output.fields_every": 50, "time.end": 0.2}).run(progress=False)
-    for figure in (lambda: carom.plot.snapshot(run, 0.1), run.animate):
+    for figure in (lambda: carom.plot.snapshot(run, 0.1), lambda: carom.plot.animate(run)):
         with pytest.raises(ValueError, match="of bars, run.fields"):
             figure()
     run = disc.set({"output.fields_every": 0, "time.end": 0.05}).run(progress=False)
-    for figure in (lambda: carom.plot.snapshot(run, 0.1), run.animate, lambda: carom.plot.pressure_map(run)):
+    for figure in (lambda: carom.plot.snapshot(run, 0.1), lambda: carom.plot.animate(run), lambda: carom.plot.pressure_map(run)):
         with pytest.raises(KeyError, match="output.fields_every"):
             figure()

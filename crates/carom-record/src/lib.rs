@@ -56,7 +56,7 @@ pub use reason::Reason;
 pub use recorder::{MemoryRecord, Recorder};
 pub use rows::{ContactRow, Event, contact_columns};
 pub use run::{History, Run};
-pub use stop::{Advice, Stop, StopIteration, StopNode, StopPlace, Trial};
+pub use stop::{Advice, Stop, StopIteration, StopNode, StopPlace};
 pub use vtu::{Block, Cell, FieldSet, PointArray};
 pub use warning::Warning;
 pub use writer::{FLUSH_INTERVAL, Reopened, RunWriter};

@@ -49,6 +49,9 @@ pub struct Source {
     /// Folder to which its paths are relative; the working directory if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub folder: Option<PathBuf>,
+    /// Whether the run was made without a report page; `carom resume` then makes none.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub no_report: bool,
 }
 
 impl Source {
@@ -328,7 +331,7 @@ mod tests {
         let source = |text: &str, sets: &[&str]| Source {
             text: text.into(),
             sets: sets.iter().map(ToString::to_string).collect(),
-            folder: None,
+            ..Source::default()
         };
         assert_ne!(source("a", &["bc"]).hash(), source("ab", &["c"]).hash());
         assert_ne!(source("a", &[]).hash(), source("a", &[""]).hash());

@@ -10,7 +10,7 @@ use crate::{FieldSet, Manifest, RecordError, files, json};
 /// Names of the two files.
 pub(crate) const FILES: [&str; 2] = ["stopped.json", "stopped.vtu"];
 
-/// Why a simulation stopped, and what was tried.
+/// Why a simulation stopped, and what to try.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// Keyword of the reason: `penetration`, `energy-guard`, …
@@ -33,9 +33,6 @@ pub struct Stop {
     /// What to try, the most promising first.
     #[serde(default)]
     pub advice: Vec<Advice>,
-    /// How the trials were made; none if there were none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub trials: Option<String>,
 }
 
 /// The place of a stop. Positions are those of the last accepted state.
@@ -105,23 +102,6 @@ pub struct Advice {
     /// The option that makes this change, as `key=value`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sets: Vec<String>,
-    /// What happened when it was tried.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub trial: Option<Trial>,
-}
-
-/// A trial of an advice.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Trial {
-    /// Time at which it began.
-    pub from: f64,
-    /// Time that it reached.
-    pub reached: f64,
-    /// Whether that is past the place.
-    pub passed: bool,
-    /// Why it ended if it did not get past.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub why: Option<String>,
 }
 
 impl Stop {

@@ -2,7 +2,7 @@
 
 mod picture;
 
-use carom_record::{Advice, Run, Stop, StopIteration, StopNode, StopPlace};
+use carom_record::{Run, Stop, StopIteration, StopNode, StopPlace};
 use maud::{Markup, html};
 
 use crate::document::{file, joined, or_dash};
@@ -29,7 +29,7 @@ pub(crate) fn section(run: &Run, picture: Option<Markup>) -> Markup {
         }
         @if let Some(place) = &stop.place { (where_table(place, values::unit(&run.manifest.case, "length"))) }
         @if let Some(picture) = picture { (picture) }
-        (advice(stop, unit))
+        (advice(stop))
         (iterations(&stop.iterations))
         p.small {
             "To reproduce it with a smaller case: " code { "carom reduce " (run.directory.file_name().unwrap_or_default().to_string_lossy()) } ". Data: "
@@ -78,66 +78,21 @@ fn where_table(place: &StopPlace, unit: &str) -> Markup {
     }
 }
 
-/// How many of the changes that were tried helped.
-fn summary(stop: &Stop) -> Option<String> {
-    let trials: Vec<bool> = stop.advice.iter().filter_map(|a| Some(a.trial.as_ref()?.passed)).collect();
-    let (tried, passed) = (trials.len(), trials.iter().filter(|passed| **passed).count());
-    match (tried, passed) {
-        (0, _) => None,
-        (1, 0) => Some("The change that was tried did not help.".to_owned()),
-        (_, 0) => Some(format!("None of the {tried} changes that were tried helped.")),
-        _ => Some(format!("{passed} of the {tried} changes that were tried got past the stop.")),
-    }
-}
-
-fn advice(stop: &Stop, unit: &str) -> Markup {
-    // Where a trial began is of interest only if it was not the start of the run.
-    let is_late = stop.advice.iter().any(|a| a.trial.as_ref().is_some_and(|trial| trial.from > 0.0));
-    let result = |advice: &Advice| {
-        html! {
-            @match &advice.trial {
-                Some(trial) if trial.passed => {
-                    td.pass { "gets past: t = " (number(trial.reached)) " " (Label(unit)) }
-                }
-                Some(trial) => {
-                    td {
-                        // A trial that fails earlier is inconclusive.
-                        @if trial.reached < stop.last { "stops earlier, at t = " } @else { "stops at t = " }
-                        (number(trial.reached)) " " (Label(unit))
-                        @if let Some(why) = &trial.why {
-                            details { summary { "why" } (Label(&powers(&typeset(why)))) }
-                        }
-                    }
-                }
-                None => { td { "not tried" } }
-            }
-            @if is_late {
-                td.n { (or_dash(advice.trial.as_ref().map(|trial| trial.from), number)) }
-            }
-        }
-    };
+fn advice(stop: &Stop) -> Markup {
     html! {
         @if !stop.advice.is_empty() {
             h3 { "What to try" }
-            @if let Some(words) = summary(stop) { p { (words) } }
             div.scroll {
                 table.advice {
-                    thead {
-                        tr {
-                            th { "Remedy" } th { "Option" } th { "Tried" }
-                            @if is_late { th.n { "From t (" (Label(unit)) ")" } }
-                        }
-                    }
+                    thead { tr { th { "Remedy" } th { "Option" } } }
                     @for advice in &stop.advice {
                         tr {
                             td { (Prose(&advice.what)) }
                             td { @for set in &advice.sets { code { span.option { "--set" } " '" (breakable(set)) "'" } " " } }
-                            (result(advice))
                         }
                     }
                 }
             }
-            @if let Some(trials) = &stop.trials { p.small { (Label(&powers(&typeset(trials)))) } }
         }
     }
 }

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 
 use carom_record::Source;
 use carom_run::case::{Document, read};
-use carom_run::recording::{Options, run_in_memory};
+use carom_run::recording::run_in_memory;
 
 /// Rounds, alternately without and with friction, of which the fastest counts.
 const ROUNDS: usize = 5;
@@ -55,9 +55,8 @@ scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
 /// Processor time per Newton iteration, in microseconds.
 fn cost(sets: &[String]) -> f64 {
     let case = read(&Document::parse("case.toml", CASE, sets).expect("it is TOML")).expect("it is valid");
-    let options = Options { threads: 1, trials: false, audit: false };
     let go = AtomicBool::new(false);
-    let (_, record) = run_in_memory(&case, Source::default(), options, &mut |_| (), &go).expect("it runs");
+    let (_, record) = run_in_memory(&case, Source::default(), 1, &mut |_| (), &go).expect("it runs");
     let manifest = &record.run.manifest;
     1e6 * manifest.timings["cpu"] / manifest.counters["newton"] as f64
 }

@@ -10,15 +10,17 @@ mod reduce;
 mod saved_state;
 mod setup;
 mod warnings;
+mod waves;
 
 pub use carom_case as case;
 pub use carom_mechanics::{
-    Accepted, Attempt, AuditFailure, Bisection, Depths, Explicit, FrozenTangent, Grid, GridReport,
-    HalfStepVelocity, Implicit, Impulsive, InitialState, Ledger, LogEvent, Means, OtherModel, Point,
-    Previous, Rejected, Settings, Simulation, State, StepReport, Stepper, Stopped, Tangent, Timings,
-    Workspace, audit, frequencies, model, stability, unaudited,
+    Accepted, Attempt, Bisection, Depths, Explicit, FrozenTangent, Grid, GridReport, HalfStepVelocity,
+    Implicit, Impulsive, InitialState, Ledger, LogEvent, Means, OtherModel, Point, Previous, Rejected,
+    Settings, Simulation, State, StepReport, Stepper, Stopped, Tangent, Timings, Workspace, frequencies,
+    model, stability,
 };
 pub use overlap::{OverlapNode, overlapping};
 pub use reduce::{NEEDED, ReduceError, Reduced, reduce};
 pub use setup::Setup;
 pub use warnings::{Entry, Found, Rule, WARNINGS, warnings};
+pub use waves::crossing;

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use carom_record::study::checks::{Checks, fingerprint};
 use carom_record::study::{Arm, StudyManifest};
 use carom_record::{RecordError, Status};
-use carom_run::recording::{self, End, Options, Progress};
+use carom_run::recording::{self, End, Progress};
 
 use crate::compute::case_of;
 use crate::error::StudyError;
@@ -59,14 +59,7 @@ fn repeated(
     fs::create_dir_all(folder).map_err(|e| io("create", e))?;
     let (threads, resumed) = (folder.join("threads"), folder.join("resumed"));
     let source = || manifest.source_of(arm);
-    let done = recording::run(
-        &case,
-        source(),
-        &threads,
-        Options { threads: THREADS, ..Options::default() },
-        &mut |_| (),
-        stop,
-    );
+    let done = recording::run(&case, source(), &threads, THREADS, &mut |_| (), stop);
     if done.map_err(failed)?.end == End::Interrupted {
         return Ok(None);
     }
@@ -78,8 +71,8 @@ fn repeated(
             (at, active_pairs) = (p.step, p.active);
         }
     };
-    recording::run(&case, source(), &resumed, Options::default(), &mut watch, &halt).map_err(failed)?;
-    let done = recording::resume(&resumed, Options::default(), &mut |_| (), stop).map_err(failed)?;
+    recording::run(&case, source(), &resumed, 1, &mut watch, &halt).map_err(failed)?;
+    let done = recording::resume(&resumed, 1, &mut |_| (), stop).map_err(failed)?;
     if done.end == End::Interrupted {
         return Ok(None);
     }

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use carom_record::study::{Arm, StudyManifest};
 use carom_run::case::Case;
-use carom_run::recording::{self, Options, Progress, RunError};
+use carom_run::recording::{self, Progress, RunError};
 
 use crate::error::StudyError;
 use crate::jobs::Ended;
@@ -22,13 +22,12 @@ pub(crate) fn compute(
 ) -> Result<Ended, StudyError> {
     let arm = manifest.run(i);
     let path = directory.join(&arm.directory);
-    let options = Options { threads, ..Options::default() };
     let done = if begun {
-        recording::resume(&path, options, observe, stop)
+        recording::resume(&path, threads, observe, stop)
     } else {
         let case = case_of(arm)?;
         let source = manifest.source_of(arm);
-        recording::run(&case, source, &path, options, observe, stop)
+        recording::run(&case, source, &path, threads, observe, stop)
     };
     done.map(Ended::of).map_err(|error| match error {
         RunError::Record(error) => StudyError::of_record(arm, directory, error),

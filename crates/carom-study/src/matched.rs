@@ -26,7 +26,7 @@ use std::sync::{Mutex, PoisonError};
 use carom_record::study::{Arm, StudyManifest, sets_step};
 use carom_record::{Manifest, RecordError, Status};
 use carom_run::case::Case;
-use carom_run::recording::{self, Options, Progress};
+use carom_run::recording::{self, Progress};
 use serde::{Deserialize, Serialize};
 
 use crate::compute::{case_of, compute};
@@ -332,15 +332,14 @@ fn trial(
     progress: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Option<Ended>, StudyError> {
-    let options = Options::default();
     let done = if path.join("manifest.json").is_file() {
-        recording::resume(path, options, progress, stop)
+        recording::resume(path, 1, progress, stop)
     } else {
         let case = case_with(manifest, i, steps)?;
         let mut source = manifest.source_of(&manifest.arms[i]);
         source.sets.retain(|set| !sets_step(set));
         source.sets.push(format!("time.step={:?}", case.time.step));
-        recording::run(&case, source, path, options, progress, stop)
+        recording::run(&case, source, path, 1, progress, stop)
     };
     match done {
         Ok(outcome) => Ok(Some(Ended::of(outcome))),
@@ -381,15 +380,9 @@ mod tests {
     /// 1.5/8 s and 0.5/4 s. Without iterations, seconds per step.
     #[test]
     fn weights_by_hand() {
-        let source = carom_record::Source { text: String::new(), sets: Vec::new(), folder: None };
-        let mut run = Manifest::new(
-            "0",
-            carom_record::Facts::default(),
-            serde_json::Value::Null,
-            source,
-            Vec::new(),
-            1,
-        );
+        let source = carom_record::Source::default();
+        let facts = carom_record::Facts::default();
+        let mut run = Manifest::new("0", facts, serde_json::Value::Null, source, Vec::new(), 1);
         run.counters =
             [("newton", 8), ("factorisations", 4), ("steps", 5)].map(|(n, c)| (n.to_owned(), c)).into();
         run.timings =

@@ -94,7 +94,7 @@ impl Plan {
         let manifest = manifest(study, file, &bases, &planned, members);
         let arm = |p: Planned| PlannedArm {
             case: p.case,
-            source: Source { text: p.base.text.clone(), sets: p.sets, folder: None },
+            source: Source { text: p.base.text.clone(), sets: p.sets, ..Source::default() },
             warnings: p.warnings,
         };
         Ok(Self { manifest, arms: planned.into_iter().map(arm).collect() })
@@ -143,7 +143,7 @@ fn manifest(
         case_path: main,
     };
     let texts = std::iter::once(source.case.clone()).chain(source.others.values().cloned());
-    let input_hash = Source { text: source.study.clone(), sets: texts.collect(), folder: None }.hash();
+    let input_hash = Source { text: source.study.clone(), sets: texts.collect(), ..Source::default() }.hash();
     let arm = |(i, p): (usize, &Planned)| {
         let directory = format!("arms/{:02}-{}", i + 1, arms::slug(&p.draft.name));
         stored(&p.draft, directory, p.sets.clone(), &p.case)

@@ -12,7 +12,7 @@ use carom_record::study::{Study, StudyManifest};
 use carom_record::verification::{Row, SetUp, Verification};
 use carom_record::{Expect, Expectation, Machine, RecordError, Run, Source, Status, judge, now};
 use carom_run::case::Case;
-use carom_run::recording::{self, Options, Progress};
+use carom_run::recording::{self, Progress};
 
 use crate::error::StudyError;
 use crate::jobs::{Ended, Event, side_by_side};
@@ -84,8 +84,7 @@ impl Suite {
                 halt.fetch_or(stop.load(Ordering::Relaxed), Ordering::Relaxed);
                 progress(p);
             };
-            let done =
-                recording::run(case, source.clone(), directory, Options::default(), &mut watched, &halt);
+            let done = recording::run(case, source.clone(), directory, 1, &mut watched, &halt);
             done.map(Ended::of).map_err(|source| StudyError::Arm { arm: name.clone(), source })
         };
         let mut judged: Vec<Option<Result<SetUp, StudyError>>> = self.items.iter().map(|_| None).collect();
@@ -160,7 +159,7 @@ fn order(units: &[Unit], items: usize, shortest_first: bool) -> Vec<usize> {
 /// A case that writes its history only, with the same bits.
 fn bare(mut case: Case, whole: bool) -> Case {
     if !whole {
-        case.output.fields_every = 0;
+        case.output.fields_every = Some(0);
         case.output.at_times.clear();
         case.output.checkpoint_every = usize::MAX;
     }

@@ -74,10 +74,9 @@ pub(super) const BODY: Table = table(
         .optional("[0.0, -1.0]"),
         key(
             "mass",
-            Choice(&["consistent", "lumped", "redistributed", "redistributed-nearest"], &[]),
+            Choice(&["consistent", "lumped", "redistributed"], &[]),
             "Mass matrix. consistent; lumped: diagonal, by HRZ scaling; redistributed: no mass on contact nodes, and the smallest change at the other \
-             nodes that preserves the total mass, the centre of mass and the second moments; redistributed-nearest: no mass on contact nodes, and \
-             their mass is added to the nearest other nodes.",
+             nodes that preserves the total mass, the centre of mass and the second moments.",
         )
         .default("\"consistent\""),
     ],

@@ -207,7 +207,7 @@ const OUTPUT: Table = table(
         key(
             "fields_every",
             Count(0),
-            "Steps between two outputs of the fields; 0: none. Default: 20, or 0 if at_times is given.",
+            "Steps between two outputs of the fields; 0: none. Default: 0 if at_times is given; otherwise about 80 outputs spread over the run, fewer of a large model, and up to 72 more while contact is closed.",
         )
         .optional("20"),
         key(

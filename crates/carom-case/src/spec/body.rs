@@ -133,14 +133,11 @@ pub enum MassKind {
     /// No mass on contact nodes; the smallest change of the other nodes preserves total mass,
     /// centre of mass and second moments.
     Redistributed,
-    /// No mass on contact nodes; their mass is added to the nearest other nodes, which does not
-    /// preserve the centre of mass.
-    RedistributedNearest,
 }
 
 impl MassKind {
     /// Whether contact nodes have no mass.
     pub fn is_redistributed(self) -> bool {
-        matches!(self, Self::Redistributed | Self::RedistributedNearest)
+        self == Self::Redistributed
     }
 }

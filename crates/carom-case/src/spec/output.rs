@@ -88,8 +88,9 @@ impl Quantity {
 /// What is written, and how often.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutputSpec {
-    /// Steps between two outputs of the fields; 0: none.
-    pub fields_every: usize,
+    /// Steps between two outputs of the fields, 0 for none; without a value, frames are spread over
+    /// the run, with more of them while contact is closed.
+    pub fields_every: Option<usize>,
     /// Fields are also written at the steps nearest to these times.
     pub at_times: Vec<f64>,
     /// Steps between two rows of history.csv.

@@ -134,7 +134,7 @@ fn paper_preset_and_explicit_keys() {
     assert_eq!(case.time.energy_guard, Some(0.5));
     assert_eq!(resolved(IMPACT, &["preset=paper"]).unwrap().time.energy_guard, None);
     assert_eq!(resolved(IMPACT, &["time.energy_guard=false"]).unwrap().time.energy_guard, None);
-    assert_eq!((case.output.fields_every, case.output.at_times.as_slice()), (0, &[1e-3][..]));
+    assert_eq!((case.output.fields_every, case.output.at_times.as_slice()), (Some(0), &[1e-3][..]));
     // λ = Eν/((1+ν)(1−2ν)) = 1.2115e11 and μ = E/(2(1+ν)) = 8.0769e10 for steel.
     let steel = &case.materials[0];
     assert!((steel.lambda / 1.211538461538e11 - 1.0).abs() < 1e-12);

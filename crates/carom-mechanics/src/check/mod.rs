@@ -1,7 +1,5 @@
 //! Checks of positions that no equation asks for: depths, overlaps, valid cells.
 
-pub(crate) mod audit;
-pub(crate) mod outline;
 pub(crate) mod overlap;
 pub(crate) mod overlapping;
 pub(crate) mod penetration;

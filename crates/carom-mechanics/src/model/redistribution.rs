@@ -9,9 +9,6 @@
 //! ```text
 //! min Σ δ_n²/M_nn   with   Σ δ_n f(X_n) h(X_n) = fᵀM h − fᵀM'h   for all f, h ∈ {1, X, Y}
 //! ```
-//!
-//! or, with `nearest`, every zeroed entry is moved to its heavy node, an entry between light nodes
-//! to their heavy neighbours: mass is preserved, the centre is not.
 
 use super::mass::Mass;
 
@@ -25,7 +22,6 @@ pub fn redistribute(
     light: &[bool],
     dimension: usize,
     positions: &[f64],
-    nearest: bool,
 ) -> Result<(), String> {
     let count = nodes.len() as f64;
     let at = |n: usize, i: usize| positions[n * dimension + i];
@@ -40,34 +36,20 @@ pub fn redistribute(
         (0..=dimension).flat_map(|i| (i..=dimension).map(move |j| (i, j))).collect();
 
     let mut lost = vec![0.0; products.len()];
-    let mut given = vec![0.0; nodes.end];
     for n in nodes.clone() {
-        let heavy: Vec<usize> = mass.row(n).map(|(m, _)| m).filter(|&m| !light[m]).collect();
         for (m, value) in mass.row_mut(n).filter(|(m, _)| light[n] || light[*m]) {
             for (lost, &(i, j)) in lost.iter_mut().zip(&products) {
                 *lost += *value * function(n, i) * function(m, j);
             }
-            if nearest {
-                match (light[n], light[m]) {
-                    (true, true) if heavy.is_empty() => {
-                        return Err("a contact node has no neighbour that retains its mass".into());
-                    }
-                    (true, true) => heavy.iter().for_each(|&h| given[h] += *value / heavy.len() as f64),
-                    (true, false) => given[m] += *value,
-                    _ => given[n] += *value,
-                }
-            }
             *value = 0.0;
         }
     }
-    if !nearest {
-        least_change(mass, nodes.clone().filter(|&n| !light[n]), &lost, &mut given, |n, k| {
-            function(n, products[k].0) * function(n, products[k].1)
-        })?;
-    }
-    for n in nodes.filter(|&n| !light[n]) {
+    let heavy = nodes.clone().filter(|&n| !light[n]);
+    let given =
+        least_change(mass, heavy, &lost, |n, k| function(n, products[k].0) * function(n, products[k].1))?;
+    for (n, given) in given {
         for (_, value) in mass.row_mut(n).filter(|(m, _)| *m == n) {
-            *value += given[n];
+            *value += given;
             if *value <= 0.0 {
                 return Err(format!(
                     "node {n} would be left with the mass {value:.3e}: the mesh is too coarse at the contact"
@@ -78,14 +60,14 @@ pub fn redistribute(
     Ok(())
 }
 
-/// δ = W Cᵀ (C W Cᵀ)⁻¹ lost, with the moments of the nodes in C and W = M_nn.
+/// The mass that each heavy node receives, δ = W Cᵀ (C W Cᵀ)⁻¹ lost, with the moments of the nodes
+/// in C and W = M_nn.
 fn least_change(
     mass: &Mass,
     heavy: impl Iterator<Item = usize>,
     lost: &[f64],
-    given: &mut [f64],
     moment: impl Fn(usize, usize) -> f64,
-) -> Result<(), String> {
+) -> Result<Vec<(usize, f64)>, String> {
     let size = lost.len();
     let weighted: Vec<(usize, f64)> =
         heavy.map(|n| (n, mass.row(n).find(|(m, _)| *m == n).map_or(0.0, |(_, value)| value))).collect();
@@ -116,8 +98,6 @@ fn least_change(
         let known: f64 = (k + 1..size).map(|l| system[k][l] * multipliers[l]).sum();
         multipliers[k] = (system[k][size] - known) / system[k][k];
     }
-    for (n, w) in weighted {
-        given[n] = w * (0..size).map(|k| multipliers[k] * moment(n, k)).sum::<f64>();
-    }
-    Ok(())
+    let received = |(n, w)| (n, w * (0..size).map(|k| multipliers[k] * moment(n, k)).sum::<f64>());
+    Ok(weighted.into_iter().map(received).collect())
 }

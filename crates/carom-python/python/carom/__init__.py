@@ -56,5 +56,9 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     # Matplotlib is imported only by those who plot.
     if name in ("export", "plot"):
-        return importlib.import_module(".plot", __name__)
+        return importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module 'carom' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -35,8 +35,6 @@ class Case:
         self,
         out: str | PathLike[str] | None,
         threads: int,
-        trials: bool,
-        audit: bool,
         page: bool,
         given: Functions,
         report: Report,

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from os import PathLike
 from typing import Any
 
 from . import _carom
-from .errors import CaseError, StoppedError
+from .errors import CaseError
 from .functions import plain
 from .progress import concurrency, progress_bar
-from .run import Run
+from .run import Run, ended
 
 
 class Case:
@@ -188,8 +187,6 @@ class Case:
         threads: int | None = None,
         progress: bool = True,
         page: bool = True,
-        trials: bool = False,
-        audit: bool = False,
     ) -> Run:
         """Compute the case.
 
@@ -204,10 +201,6 @@ class Case:
             Whether a bar is shown, in a terminal or a notebook, if tqdm is installed.
         page : bool
             Whether figures and report page are made in `out`.
-        trials : bool
-            Where the simulation cannot continue: whether changes that may help are tried.
-        audit : bool
-            Whether the contact of every step is checked by a second, slow method.
 
         Returns
         -------
@@ -229,7 +222,7 @@ class Case:
         """
         with progress_bar(self.title, progress) as report:
             core, raised = self._core.run(
-                out, concurrency("threads", threads), trials, audit, page, self._functions, report
+                out, concurrency("threads", threads), page, self._functions, report
             )
         return ended(Run(core), raised)
 
@@ -239,20 +232,3 @@ class Case:
 
 def _listed(sets: Mapping[str, str]) -> list[str]:
     return [f"{path}={text}" for path, text in sets.items()]
-
-
-def ended(run: Run, raised: BaseException | None) -> Run:
-    """The run, or the exception that ended it."""
-    if isinstance(raised, KeyboardInterrupt):
-        reached = run.history["time"][-1] if run.history.rows else 0.0
-        where = f'continue it with carom.resume("{run.directory}")' if run.directory else "it is in memory"
-        warnings.warn(f"stopped by Ctrl-C at t = {reached:g}; {where}", stacklevel=3)
-        return run
-    if raised is not None:
-        raise raised
-    if run.status == "failed":
-        advice = [f"try: {a['what']}" for a in (run.stop or {}).get("advice", [])][:3]
-        error = StoppedError("\n".join([run.reason or "the simulation stopped", *advice]))
-        error.run = run
-        raise error
-    return run

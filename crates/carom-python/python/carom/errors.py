@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from .run import Run
+from typing import Any
 
 
 class Error(Exception):
@@ -30,4 +27,5 @@ class StoppedError(Error):
         still that of the last accepted step.
     """
 
-    run: Run | None = None
+    # A `Run`, whose module imports this one.
+    run: Any = None

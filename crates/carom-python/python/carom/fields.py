@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _carom
+
+if TYPE_CHECKING:
+    import pyvista
 
 Floats = NDArray[np.float64]
 
@@ -107,7 +110,7 @@ class FieldSet:
             "principal_stress_1, principal_log_strain_1, contact_pressure, ux, uy, vx or vy"
         )
 
-    def grid(self) -> Any:
+    def grid(self) -> pyvista.UnstructuredGrid:
         """The fields for PyVista and VTK.
 
         Returns
@@ -130,7 +133,7 @@ class FieldSet:
         return grid
 
 
-class Fields(Mapping[float, Any]):
+class Fields(Mapping[float, "pyvista.UnstructuredGrid"]):
     """Fields by time: ``run.fields[0.3]`` is the grid of the nearest recorded instant."""
 
     def __init__(self, core: _carom.Record) -> None:
@@ -143,7 +146,7 @@ class Fields(Mapping[float, Any]):
     def __iter__(self) -> Iterator[float]:
         return iter(self.times.tolist())
 
-    def __getitem__(self, time: float) -> Any:
+    def __getitem__(self, time: float) -> pyvista.UnstructuredGrid:
         return self.at(time).grid()
 
     def at(self, time: float) -> FieldSet:

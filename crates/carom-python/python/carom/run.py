@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _carom
+from .errors import StoppedError
 from .fields import Fields
 from .functions import name_of
 from .progress import concurrency, progress_bar
@@ -18,6 +20,9 @@ from .table import Table
 
 if TYPE_CHECKING:
     import pandas as pd
+    import polars as pl
+    import pyarrow as pa
+    import xarray as xr
 
 
 class Metrics(Mapping[str, float]):
@@ -184,7 +189,7 @@ class Run:
         """
         return self.history.to_pandas()
 
-    def to_polars(self) -> Any:
+    def to_polars(self) -> pl.DataFrame:
         """The history for polars, through Arrow's C interface.
 
         Returns
@@ -194,7 +199,7 @@ class Run:
         """
         return self.history.to_polars()
 
-    def to_arrow(self) -> Any:
+    def to_arrow(self) -> pa.Table:
         """The history for Arrow.
 
         Returns
@@ -204,7 +209,7 @@ class Run:
         """
         return self.history.to_arrow()
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xr.Dataset:
         """The history for xarray.
 
         Returns
@@ -244,25 +249,6 @@ class Run:
         if self.directory is None:
             raise ValueError("a run in memory has no page; give case.run a directory: out=…")
         return self._core.page()
-
-    def animate(self, quantity: str = "sigma_yy", **options: Any) -> Any:
-        """An animation of the deformed bodies in the plane.
-
-        Parameters
-        ----------
-        quantity : str
-            As in `FieldSet.quantity`.
-        **options : object
-            ``frames``, ``mesh``, ``size``: see `plot.animate`.
-
-        Returns
-        -------
-        matplotlib.animation.FuncAnimation
-            ``.save("impact.gif")``; notebooks show ``.to_jshtml()``.
-        """
-        from . import plot
-
-        return plot.animate(self, quantity, **options)
 
     def __repr__(self) -> str:
         place = f" in {self.directory}" if self.directory else ""
@@ -310,11 +296,26 @@ def resume(
     Run
         The record.
     """
-    from .case import ended
-
     given: dict[str, Callable[..., Any]] = {}
     for function in functions:
         given[name_of(function, given)] = function
     with progress_bar(str(directory), progress) as report:
         core, raised = _carom.resume(directory, concurrency("threads", threads), page, given, report)
     return ended(Run(core), raised)
+
+
+def ended(run: Run, raised: BaseException | None) -> Run:
+    """The run, or the exception that ended it."""
+    if isinstance(raised, KeyboardInterrupt):
+        reached = run.history["time"][-1] if run.history.rows else 0.0
+        where = f'continue it with carom.resume("{run.directory}")' if run.directory else "it is in memory"
+        warnings.warn(f"stopped by Ctrl-C at t = {reached:g}; {where}", stacklevel=3)
+        return run
+    if raised is not None:
+        raise raised
+    if run.status == "failed":
+        advice = [f"try: {a['what']}" for a in (run.stop or {}).get("advice", [])][:3]
+        error = StoppedError("\n".join([run.reason or "the simulation stopped", *advice]))
+        error.run = run
+        raise error
+    return run

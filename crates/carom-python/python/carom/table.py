@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     import pandas as pd
+    import polars as pl
+    import pyarrow as pa
+    import xarray as xr
 
 
 class Table(Mapping[str, NDArray[Any]]):
@@ -84,7 +87,7 @@ class Table(Mapping[str, NDArray[Any]]):
         frame.attrs["units"] = dict(self.units)
         return frame
 
-    def to_arrow(self) -> Any:
+    def to_arrow(self) -> pa.Table:
         """For Arrow.
 
         Returns
@@ -105,7 +108,7 @@ class Table(Mapping[str, NDArray[Any]]):
         """Arrow's C interface: ``polars.DataFrame(table)`` and others read it."""
         return self.to_arrow().__arrow_c_stream__(requested_schema)
 
-    def to_polars(self) -> Any:
+    def to_polars(self) -> pl.DataFrame:
         """For polars, through Arrow's C interface.
 
         Returns
@@ -117,7 +120,7 @@ class Table(Mapping[str, NDArray[Any]]):
 
         return pl.DataFrame(self)
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xr.Dataset:
         """For xarray.
 
         Returns

@@ -141,7 +141,11 @@ impl StudyManifest {
     /// The case file of an arm and its changes.
     pub fn source_of(&self, arm: &Arm) -> Source {
         let other = arm.case_path.as_ref().and_then(|path| self.source.others.get(path));
-        Source { text: other.unwrap_or(&self.source.case).clone(), sets: arm.sets.clone(), folder: None }
+        Source {
+            text: other.unwrap_or(&self.source.case).clone(),
+            sets: arm.sets.clone(),
+            ..Source::default()
+        }
     }
 
     /// Status of an arm, none if it has not started; and the reason if it did not finish.

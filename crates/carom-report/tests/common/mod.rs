@@ -173,7 +173,7 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
     let source = Source {
         text: format!("title = \"{title}\"\n# …\n"),
         sets: vec!["time.end=0.75".into(), "title='x'".into()],
-        folder: None,
+        ..Source::default()
     };
     let mut manifest = Manifest::new("0.1.0", facts(title), case, source, columns.to_vec(), 1);
     // The points of the prism follow those of the disc; its lattice has 25 × 13 points.

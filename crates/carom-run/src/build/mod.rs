@@ -283,17 +283,16 @@ fn redistributions(case: &Case, parts: &[BodyInstance], reference: &[f64], mass:
         }
     }
     let mut problems = Vec::new();
-    for (k, (part, spec)) in
-        parts.iter().zip(&case.bodies).enumerate().filter(|(_, (_, b))| b.mass.is_redistributed())
-    {
-        let nearest = spec.mass == MassKind::RedistributedNearest;
+    for (k, part) in parts.iter().take(case.bodies.len()).enumerate() {
+        if !case.bodies[k].mass.is_redistributed() {
+            continue;
+        }
         let what = format!("the mass of body \"{}\" cannot be redistributed", part.name);
         let path = format!("body[{k}].mass");
         if !part.nodes().any(|node| light[node]) {
             let why = "none of its sides belongs to a contact";
             problems.push(Problem::new(path, what, why, "use mass = \"consistent\""));
-        } else if let Err(why) = redistribute(mass, part.nodes(), &light, case.dimension, reference, nearest)
-        {
+        } else if let Err(why) = redistribute(mass, part.nodes(), &light, case.dimension, reference) {
             problems.push(Problem::new(path, what, why, "use a finer mesh, or mass = \"consistent\""));
         }
     }

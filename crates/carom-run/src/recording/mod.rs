@@ -2,6 +2,7 @@
 
 mod columns;
 mod fields;
+mod frames;
 mod log;
 mod outcome;
 mod pressure;
@@ -13,7 +14,7 @@ mod tally;
 mod verdicts;
 
 pub use fields::{block, initial_fields};
-pub use outcome::{End, Options, Outcome, Progress, RunError};
+pub use outcome::{End, Outcome, Progress, RunError};
 pub use rows::{ContactStates, Rows};
 pub use start::{resume, resume_with, run, run_in_memory};
 pub(crate) use stopped::explain;

@@ -1,28 +1,10 @@
-//! Options of a run, its progress after each step, and its outcome.
+//! Progress of a run after each step, and its outcome.
 
 use std::path::PathBuf;
 
 use carom_case::Problems;
 use carom_mechanics::Stopped;
 use carom_record::RecordError;
-
-/// Options of a run.
-#[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// Threads; results do not depend on them.
-    pub threads: usize,
-    /// Whether changes that may get past the place where a run stopped are tried.
-    pub trials: bool,
-    /// Whether the contact of every step is checked by a second, slow method.
-    pub audit: bool,
-}
-
-/// One thread, no trials, no audit.
-impl Default for Options {
-    fn default() -> Self {
-        Self { threads: 1, trials: false, audit: false }
-    }
-}
 
 /// Progress of a simulation after an accepted step, and every second while a step is bisected.
 #[derive(Clone, Copy, Debug, serde::Serialize)]

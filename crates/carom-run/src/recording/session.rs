@@ -7,16 +7,17 @@ use std::time::{Duration, Instant};
 
 use carom_case::{BodySpec, Case, Law};
 use carom_mechanics::model::Model;
-use carom_mechanics::{Attempt, GridReport, Simulation, State, Stopped, penetration};
-use carom_record::{Event, Manifest, Recorder, Run, Status};
+use carom_mechanics::{Attempt, GridReport, Simulation, Stopped, penetration};
+use carom_record::{Event, Manifest, Recorder, Run, Status, metrics};
 
 use super::columns::{Since, center_weights, row};
 use super::fields::field_set;
+use super::frames::Frames;
 use super::log::{entry, in_units, relaxed, repairs};
-use super::outcome::{End, Options, Outcome, Progress, RunError};
+use super::outcome::{End, Outcome, Progress, RunError};
 use super::pressure::Surfaces;
 use super::rows::contact_rows;
-use super::stopped::{FEW, Found, Record};
+use super::stopped::{advice, explain};
 use super::tally::{Busy, Tally, checkpoint};
 use super::verdicts::judged;
 use crate::warnings::{LARGE_ROTATION, LARGE_STRAIN, warnings_of_record};
@@ -32,7 +33,7 @@ pub(super) struct Session<'a> {
     pub(super) manifest: Manifest,
     weights: Vec<f64>,
     surfaces: Surfaces,
-    field_steps: Vec<u64>,
+    pub(super) frames: Frames,
     /// Whether each probe had its recorded stresses after the last step.
     stressed: Vec<bool>,
     began: Instant,
@@ -48,8 +49,6 @@ pub(super) struct Session<'a> {
     /// Processor seconds in steps.
     cpu: f64,
     values: Vec<f64>,
-    /// States for trials, the latest first; none of a run that was resumed.
-    pub(super) trials_from: Option<[State; 2]>,
 }
 
 impl<'a> Session<'a> {
@@ -59,8 +58,7 @@ impl<'a> Session<'a> {
         writer: &'a mut dyn Recorder,
         manifest: Manifest,
     ) -> Self {
-        let at = |time: &f64| simulation.grid().nearest(*time);
-        let field_steps = case.output.at_times.iter().map(at).collect();
+        let frames = Frames::new(case, &simulation);
         let weights = center_weights(simulation.model());
         let surfaces = Surfaces::new(simulation.model(), case.thickness);
         let first_step = simulation.state().step;
@@ -74,7 +72,7 @@ impl<'a> Session<'a> {
             manifest,
             weights,
             surfaces,
-            field_steps,
+            frames,
             stressed,
             since: Since::default(),
             earlier: Tally::default(),
@@ -84,7 +82,6 @@ impl<'a> Session<'a> {
             output: 0.0,
             cpu: 0.0,
             values: Vec::new(),
-            trials_from: None,
         }
     }
 
@@ -121,7 +118,6 @@ impl<'a> Session<'a> {
 
     pub(super) fn go(
         mut self,
-        options: Options,
         observe: &mut (dyn FnMut(&Progress) + Send),
         stop: &AtomicBool,
         remarks: Vec<String>,
@@ -172,7 +168,7 @@ impl<'a> Session<'a> {
             self.output += began.elapsed().as_secs_f64();
             observe(&self.progress(&report));
         }
-        self.close(end, &last, options, stop, remarks)
+        self.close(end, &last, remarks)
     }
 
     /// Logs where a probe's stress ceases to exist. This depends on the states before and after the
@@ -201,18 +197,12 @@ impl<'a> Session<'a> {
         if step % output.history_every as u64 == 0 || last {
             self.write_row()?;
         }
-        let every = output.fields_every as u64;
-        if (every > 0 && (step % every == 0 || last)) || self.field_steps.contains(&step) {
+        let in_contact = self.simulation.state().pairs.iter().flatten().any(|pair| pair.active);
+        if self.frames.take(step, last, in_contact) {
             self.write_fields()?;
         }
         if step % output.checkpoint_every as u64 == 0 && !last {
             self.checkpoint()?;
-        }
-        if let Some(states) = &mut self.trials_from
-            && step % FEW.max(output.checkpoint_every as u64) == 0
-        {
-            states.rotate_right(1);
-            states[0].clone_from(self.simulation.state());
         }
         Ok(())
     }
@@ -236,7 +226,7 @@ impl<'a> Session<'a> {
     }
 
     fn write_fields(&mut self) -> Result<(), RunError> {
-        if self.case.output.fields_every > 0 || !self.field_steps.is_empty() {
+        if !self.frames.is_empty() {
             let (model, state) = (self.simulation.model(), self.simulation.state());
             self.writer.fields(state.step, state.time, field_set(self.case, model, &self.surfaces, state))?;
         }
@@ -336,42 +326,20 @@ impl<'a> Session<'a> {
             counters: self.manifest.counters.clone(),
             timings: self.manifest.timings.clone(),
             rotations: self.rotations.clone(),
+            frames: self.frames.written,
         };
         Ok(self.writer.checkpoint(state.step, &checkpoint(state, self.since, &tally)?)?)
     }
 
-    /// Writes why the simulation stopped, before and after the trials: a process that is killed in
-    /// them leaves a run that stopped.
-    fn explain(
-        &mut self,
-        stopped: &Stopped,
-        last: &GridReport,
-        options: Options,
-        interrupted: &AtomicBool,
-    ) -> Result<(), RunError> {
-        let source = self.manifest.source.clone();
-        let (case, simulation, earlier) = (self.case, &self.simulation, self.trials_from.as_ref());
-        let record = Record { case, source: &source, simulation, earlier };
-        let mut found = Found::new(&record, stopped, last);
-        found.write(self.writer, &mut self.manifest)?;
-        if options.trials {
-            self.writer.manifest(&self.manifest)?;
-            found.try_out(&record, options.threads, interrupted);
-            found.write(self.writer, &mut self.manifest)?;
-            self.writer.manifest(&self.manifest)?;
-        }
-        Ok(())
+    /// Writes why the simulation stopped, and what to try.
+    fn explain(&mut self, stopped: &Stopped, last: &GridReport) -> Result<(), RunError> {
+        let (mut stop, fields) = explain(self.case, &self.simulation, stopped, last);
+        stop.advice = advice(&stop.kind, self.case, &self.manifest.source, stop.place.as_ref());
+        Ok(self.writer.stop(&stop, &fields, &mut self.manifest)?)
     }
 
     /// Writes the last checkpoint and manifest, with the warnings and verdicts on the record.
-    fn close(
-        mut self,
-        end: End,
-        last: &GridReport,
-        options: Options,
-        interrupted: &AtomicBool,
-        remarks: Vec<String>,
-    ) -> Result<Outcome, RunError> {
+    fn close(mut self, end: End, last: &GridReport, remarks: Vec<String>) -> Result<Outcome, RunError> {
         if matches!(end, End::Finished) {
             self.log_rotations()?;
         }
@@ -383,15 +351,10 @@ impl<'a> Session<'a> {
             End::Stopped(stopped) => (Status::Failed, Some(self.case.in_units(&stopped.to_string()))),
         };
         if let End::Stopped(stopped) = &end {
-            self.explain(stopped, last, options, interrupted)?;
+            self.explain(stopped, last)?;
         }
         // A record that cannot be read does not make a finished run unfinished.
-        let asked = match end {
-            End::Finished => true,
-            End::Stopped(_) => !self.case.expects.is_empty() || !self.simulation.state().overlaps.is_empty(),
-            End::Interrupted => false,
-        };
-        let read = asked.then(|| self.writer.read());
+        let read = (end != End::Interrupted).then(|| self.writer.read());
         if let Some(Ok(run)) = &read {
             self.add_warnings(run, matches!(end, End::Finished))?;
         }
@@ -407,10 +370,12 @@ impl<'a> Session<'a> {
             end,
         };
         self.writer.finish(&mut self.manifest)?;
-        if let Some(run) = read.transpose()?
-            && let Some(manifest) = judged(Run { manifest: self.manifest, ..run }, &self.case.expects)
-        {
-            self.writer.manifest(&manifest)?;
+        if let Some(run) = read.transpose()? {
+            let run = Run { manifest: self.manifest, ..run };
+            metrics::write(&run)?;
+            if let Some(manifest) = judged(run, &self.case.expects) {
+                self.writer.manifest(&manifest)?;
+            }
         }
         Ok(outcome)
     }

@@ -10,7 +10,7 @@ use carom_record::{Manifest, MemoryRecord, Run, RunWriter, Source, Status, Stop}
 
 use super::columns::Since;
 use super::fields::sides;
-use super::outcome::{End, Options, Outcome, Progress, RunError};
+use super::outcome::{End, Outcome, Progress, RunError};
 use super::session::Session;
 use super::tally::{Tally, checkpoint, from_checkpoint};
 use super::verdicts::judged;
@@ -25,17 +25,17 @@ pub fn run(
     case: &Case,
     source: Source,
     directory: &Path,
-    options: Options,
+    threads: usize,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
-    let (simulation, manifest) = started(case, source, options)?;
+    let (simulation, manifest) = started(case, source, threads)?;
     let mut writer = RunWriter::create(
         directory,
         &manifest,
         &checkpoint(simulation.state(), Since::default(), &Tally::at_start(&simulation))?,
     )?;
-    from_start(Session::new(case, simulation, &mut writer, manifest), options, observe, stop)
+    from_start(Session::new(case, simulation, &mut writer, manifest), observe, stop)
 }
 
 /// Runs a case and records it in memory. Such a run cannot be resumed.
@@ -45,25 +45,24 @@ pub fn run(
 pub fn run_in_memory(
     case: &Case,
     source: Source,
-    options: Options,
+    threads: usize,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<(Outcome, MemoryRecord), RunError> {
-    let (simulation, manifest) = started(case, source, options)?;
+    let (simulation, manifest) = started(case, source, threads)?;
     let mut record = MemoryRecord::new(manifest.clone());
     let session = Session::new(case, simulation, &mut record, manifest);
-    let outcome = from_start(session, options, observe, stop)?;
+    let outcome = from_start(session, observe, stop)?;
     Ok((outcome, record))
 }
 
 /// The simulation of a case at its start, and the manifest of its run.
-fn started(case: &Case, source: Source, options: Options) -> Result<(Simulation, Manifest), RunError> {
-    let simulation = Setup::new(case).threads(options.threads).start().map_err(RunError::Case)?;
-    let simulation = if options.audit { simulation.audited() } else { simulation };
+fn started(case: &Case, source: Source, threads: usize) -> Result<(Simulation, Manifest), RunError> {
+    let simulation = Setup::new(case).threads(threads).start().map_err(RunError::Case)?;
     let resolved = case.to_json().map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
     let mut manifest =
-        Manifest::new(version, case.facts(), resolved, source, history_columns(case), options.threads);
+        Manifest::new(version, case.facts(), resolved, source, history_columns(case), threads);
     manifest.sides = sides(simulation.model());
     manifest.surfaces = surfaces(case);
     manifest.warnings = warnings(case, simulation.model());
@@ -84,18 +83,14 @@ fn surfaces(case: &Case) -> BTreeMap<String, Vec<[[f64; 3]; 2]>> {
     case.contacts.iter().filter_map(one).collect()
 }
 
-/// A run with its first row; it remarks what an audit leaves out.
+/// A run with its first row.
 fn from_start(
     mut session: Session,
-    options: Options,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
-    session.trials_from = options.trials.then(|| [(); 2].map(|()| session.simulation.state().clone()));
     session.write_start()?;
-    let left_out = options.audit.then(|| carom_mechanics::unaudited(session.simulation.model()));
-    let remark = left_out.map(|left_out| format!("the audit did not check: {}", left_out.join("; ")));
-    session.go(options, observe, stop, remark.into_iter().collect())
+    session.go(observe, stop, Vec::new())
 }
 
 /// Resumes a run that was stopped or killed; a finished one is returned as it is.
@@ -104,11 +99,11 @@ fn from_start(
 /// As [`run`], and if the record does not fit this version.
 pub fn resume(
     directory: &Path,
-    options: Options,
+    threads: usize,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
-    resume_with(directory, Functions::default(), options, observe, stop)
+    resume_with(directory, Functions::default(), threads, observe, stop)
 }
 
 /// As [`resume`], of a case with functions of a program, which must be the same.
@@ -118,7 +113,7 @@ pub fn resume(
 pub fn resume_with(
     directory: &Path,
     functions: Functions,
-    options: Options,
+    threads: usize,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
@@ -159,8 +154,7 @@ pub fn resume_with(
                 directory.display()
             ),
         })?;
-    let simulation = Setup::new(case).threads(options.threads).resume(state).map_err(RunError::Case)?;
-    let simulation = if options.audit { simulation.audited() } else { simulation };
+    let simulation = Setup::new(case).threads(threads).resume(state).map_err(RunError::Case)?;
     let mut manifest = reopened.manifest;
     manifest.status = Status::Running;
     // Those of a killed process are older in the manifest.
@@ -170,15 +164,16 @@ pub fn resume_with(
     // The tables will be longer.
     manifest.hashes.clear();
     manifest.started = carom_record::now();
-    manifest.threads = options.threads;
+    manifest.threads = threads;
     let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
     let mut writer = reopened.writer;
     let mut session = Session::new(case, simulation, &mut writer, manifest);
     session.rotations.clone_from(&tally.rotations);
+    session.frames.written = tally.frames;
     (session.since, session.earlier) = (since, tally);
     session.writer.manifest(&session.manifest)?;
     if reopened.rows == 0 {
         session.write_start()?;
     }
-    session.go(options, observe, stop, remarks)
+    session.go(observe, stop, remarks)
 }

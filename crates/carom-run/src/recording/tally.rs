@@ -8,6 +8,7 @@ use cpu_time::{ProcessTime, ThreadTime};
 use serde::{Deserialize, Serialize};
 
 use super::columns::Since;
+use super::frames::Written;
 use super::outcome::RunError;
 
 /// What a run has counted, and where its time went, up to a checkpoint.
@@ -17,6 +18,8 @@ pub(super) struct Tally {
     pub(super) timings: BTreeMap<String, f64>,
     /// Largest rotation and strain of each linear-elastic body in a row, with their times.
     pub(super) rotations: BTreeMap<usize, [[f64; 2]; 2]>,
+    /// The frames that were written.
+    pub(super) frames: Written,
 }
 
 impl Tally {

@@ -150,25 +150,26 @@ pub(super) fn coarse_secondary(case: &Case, model: &Model) -> Vec<Found> {
     (0..case.contacts.len()).filter_map(coarse).collect()
 }
 
-/// Pressures are written to contact.csv in every run, and to the fields where there are any;
-/// stresses near the contact at a probe that records one within a facet's length of it.
+/// Given where the case asks for a pressure, in an expectation, or for a stress near the contact, at
+/// a probe within a facet's length of it. Bodies of which one is curved never match: a warning to
+/// every one of them would not be read.
 pub(super) fn unmatched_pressure(case: &Case, model: &Model) -> Vec<Found> {
     let stress = |q: &Quantity| {
         use Quantity::{SigmaXx, SigmaXy, SigmaXz, SigmaYy, SigmaYz, SigmaZz, VonMises};
         matches!(q, SigmaXx | SigmaYy | SigmaZz | SigmaXy | SigmaYz | SigmaXz | VonMises)
     };
-    let has_fields = case.output.fields_every > 0 || !case.output.at_times.is_empty();
     let unmatched = |(k, contact): (usize, &ContactSpec)| {
         let zone = zone(case, model, k).filter(|zone| !zone.matches())?;
-        let mut places = vec!["contact.csv".to_owned()];
-        places.extend(has_fields.then(|| "the fields".to_owned()));
+        let pressures = case.expects.iter().filter(|expect| expect.what.contains("pressure"));
+        let mut places: Vec<String> =
+            pressures.map(|expect| format!("the expected {}", expect.what)).collect();
         for probe in case.probes.iter().filter(|probe| probe.record.iter().any(stress)) {
             if zone.reaches(Vector(std::array::from_fn(|i| probe.at.get(i).copied().unwrap_or(0.0)))) {
                 let names: Vec<&str> = probe.record.iter().filter(|q| stress(q)).map(|q| q.name()).collect();
                 places.push(format!("probe \"{}\" ({})", probe.name, names.join(", ")));
             }
         }
-        let last = places.pop().unwrap_or_default();
+        let last = places.pop()?;
         let listed = if places.is_empty() { last } else { format!("{} and {last}", places.join(", ")) };
         let what = format!("the nodes of its sides do not match; their pressures are in {listed}");
         Some(Found::of_contact(&contact.name, what))

@@ -4,16 +4,15 @@
 use std::sync::atomic::AtomicBool;
 
 use carom_record::{Manifest, Source, Stop};
-use carom_run::recording::{Options, run};
+use carom_run::recording::run;
 
 use super::common::case;
 
 fn advice(text: &str, sets: &[&str]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let directory = folder.path().join("run");
-    let source = Source { text: text.to_owned(), sets: Vec::new(), folder: None };
-    let options = Options::default();
-    run(&case(text, sets), source, &directory, options, &mut |_| {}, &AtomicBool::new(false)).unwrap();
+    let source = Source { text: text.to_owned(), sets: Vec::new(), ..Source::default() };
+    run(&case(text, sets), source, &directory, 1, &mut |_| {}, &AtomicBool::new(false)).unwrap();
     let stop = Stop::read(&directory, &Manifest::read(&directory).unwrap()).unwrap().unwrap();
     stop.advice.into_iter().map(|advice| advice.what).collect()
 }

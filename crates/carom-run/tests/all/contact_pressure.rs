@@ -4,7 +4,7 @@
 use std::sync::atomic::AtomicBool;
 
 use carom_record::{FieldSet, MemoryRecord, Source};
-use carom_run::recording::{Options, run_in_memory};
+use carom_run::recording::run_in_memory;
 
 use super::common::case;
 
@@ -55,9 +55,8 @@ fn pressed(element: &str, young: f64, bodies: &[String], contact: &str) -> Memor
         bodies.concat(),
         on("left"),
     );
-    let options = Options { threads: 1, trials: false, audit: false };
     let case = case(&text, &[""; 0]);
-    run_in_memory(&case, Source::default(), options, &mut |_| (), &AtomicBool::new(false)).unwrap().1
+    run_in_memory(&case, Source::default(), 1, &mut |_| (), &AtomicBool::new(false)).unwrap().1
 }
 
 const SIDES: &str = "secondary = \"upper.bottom\"\nprimary = \"lower.top\"";

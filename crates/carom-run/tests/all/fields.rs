@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use carom_record::Source;
-use carom_run::recording::{Options, run_in_memory};
+use carom_run::recording::run_in_memory;
 
 use super::common::case;
 
@@ -19,10 +19,9 @@ fn strains(dimension: &str, law: &str, element: &str, mesh: &str, motion: &str) 
          [time]\nend = 1.0\nstep = 0.25\nscheme = {{ kind = \"static\" }}\n\
          [newton]\ntolerance = 1e-12\n[output]\nfields_every = 1\n"
     );
-    let options = Options { threads: 1, trials: false, audit: false };
     let go = AtomicBool::new(false);
     let case = case(&text, &[""; 0]);
-    let (_, record) = run_in_memory(&case, Source::default(), options, &mut |_| (), &go).unwrap();
+    let (_, record) = run_in_memory(&case, Source::default(), 1, &mut |_| (), &go).unwrap();
     let fields = record.fields.last().unwrap();
     let array = fields.array("principal_log_strain").unwrap();
     assert_eq!((array.components, array.unit.as_str()), (3, ""));

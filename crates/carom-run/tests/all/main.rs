@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used)]
 
 mod advice;
-mod audit;
 mod augmented;
 mod bar;
 mod common;

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use carom_record::{Run, Source};
 use carom_run::case::Function;
-use carom_run::recording::{Options, run, run_in_memory};
+use carom_run::recording::{run, run_in_memory};
 
 use super::common::case;
 
@@ -30,16 +30,14 @@ scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
 fields_every = 10
 "#;
 
-const OPTIONS: Options = Options { threads: 1, trials: false, audit: false };
-
 #[test]
 fn a_record_in_memory_is_that_of_a_directory() {
     let case = case(DISC, &[""; 0]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run");
     let go = AtomicBool::new(false);
-    run(&case, Source::default(), &path, OPTIONS, &mut |_| (), &go).unwrap();
-    let (_, record) = run_in_memory(&case, Source::default(), OPTIONS, &mut |_| (), &go).unwrap();
+    run(&case, Source::default(), &path, 1, &mut |_| (), &go).unwrap();
+    let (_, record) = run_in_memory(&case, Source::default(), 1, &mut |_| (), &go).unwrap();
     let read = Run::open(&path).unwrap();
     let memory = &record.run;
     assert_eq!(memory.history.columns, read.history.columns);
@@ -102,12 +100,10 @@ fn functions_of_a_program_are_formulas() {
     };
     let go = AtomicBool::new(false);
     let mut given = block("@ramp");
-    let refused =
-        run_in_memory(&given, Source::default(), OPTIONS, &mut |_| (), &go).unwrap_err().to_string();
+    let refused = run_in_memory(&given, Source::default(), 1, &mut |_| (), &go).unwrap_err().to_string();
     assert!(refused.contains("the function `ramp` is not given"), "{refused}");
     given.functions.0.insert("ramp".to_owned(), Arc::new(Ramp));
-    let history =
-        |case| run_in_memory(case, Source::default(), OPTIONS, &mut |_| (), &go).unwrap().1.run.history;
+    let history = |case| run_in_memory(case, Source::default(), 1, &mut |_| (), &go).unwrap().1.run.history;
     let (function, formula) = (history(&given), history(&block("3*t")));
     assert!(formula.column("strain").unwrap().last().unwrap() > &1e-6);
     assert_eq!(function.values, formula.values);

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use carom_record::metrics::of_rebound;
 use carom_record::{Run, Source};
-use carom_run::recording::{Options, run};
+use carom_run::recording::run;
 
 use super::common::case;
 
@@ -40,9 +40,8 @@ fields_every = 0
 pub(super) fn record(text: &str, sets: &[&str]) -> Run {
     let folder = tempfile::tempdir().unwrap();
     let directory = folder.path().join("run");
-    let source = Source { text: text.to_owned(), sets: Vec::new(), folder: None };
-    let options = Options::default();
-    run(&case(text, sets), source, &directory, options, &mut |_| {}, &AtomicBool::new(false)).unwrap();
+    let source = Source { text: text.to_owned(), sets: Vec::new(), ..Source::default() };
+    run(&case(text, sets), source, &directory, 1, &mut |_| {}, &AtomicBool::new(false)).unwrap();
     Run::open(&directory).unwrap()
 }
 

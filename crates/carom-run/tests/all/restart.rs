@@ -14,9 +14,9 @@ const TOOL: &str = include_str!("../../../../cases/loads/tool.toml");
 
 /// Records the run of a case; returns the table of a case that begins where it ends.
 fn initial_state(text: &str, directory: &Path) -> String {
-    let source = Source { text: text.to_owned(), sets: Vec::new(), folder: None };
-    let (options, stop) = (recording::Options::default(), AtomicBool::new(false));
-    recording::run(&case_of(text, &[""; 0]), source, directory, options, &mut |_| {}, &stop).unwrap();
+    let source = Source { text: text.to_owned(), sets: Vec::new(), ..Source::default() };
+    let stop = AtomicBool::new(false);
+    recording::run(&case_of(text, &[""; 0]), source, directory, 1, &mut |_| {}, &stop).unwrap();
     format!("[initial]\nfrom = {:?}\n", directory.display().to_string())
 }
 
@@ -331,8 +331,7 @@ fn states_of_other_models() {
 fn a_run_is_finished_even_if_its_record_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let directory = folder.path().join("run");
-    let source = Source { text: DISCS.to_owned(), sets: Vec::new(), folder: None };
-    let options = recording::Options::default();
+    let source = Source { text: DISCS.to_owned(), sets: Vec::new(), ..Source::default() };
     let stop = AtomicBool::new(false);
     let damage = &mut |progress: &recording::Progress| {
         if progress.step == progress.steps {
@@ -340,7 +339,7 @@ fn a_run_is_finished_even_if_its_record_cannot_be_read() {
         }
     };
     let case = case_of(DISCS, &["time.end=0.01"]);
-    let run = recording::run(&case, source, &directory, options, damage, &stop);
+    let run = recording::run(&case, source, &directory, 1, damage, &stop);
     assert!(matches!(run, Err(recording::RunError::Record(_))), "{run:?}");
     let manifest = carom_record::Manifest::read(&directory).unwrap();
     assert_eq!(manifest.status, carom_record::Status::Finished);

@@ -13,6 +13,10 @@ from ._style import CONTACT, Size, axes, labelled, style
 _MARKS = {"rejected": ("v", "rejected step"), "overlap": ("X", "overlap"), "stopped": ("s", "stop")}
 
 
+#: What a probe records along an axis, by the first letter of the column.
+_VECTORS = {"u": "displacement", "v": "velocity", "a": "acceleration"}
+
+
 def history(
     run: Run,
     *columns: str,
@@ -154,10 +158,26 @@ def _mark_events(run: Run, ax: Axes) -> None:
 def _finish(run: Run, ax: Axes, names: Sequence[str]) -> None:
     unit = run.history.units[names[0]]
     ax.set_xlabel(labelled("time", run.history.units["time"]))
-    ax.set_ylabel(labelled(names[0] if len(names) == 1 else "value", unit))
+    ax.set_ylabel(labelled(names[0] if len(names) == 1 else _kind(names), unit))
     ax.margins(x=0)
     if len(ax.get_legend_handles_labels()[0]) > 1:
         ax.legend()
+
+
+def _kind(names: Sequence[str]) -> str:
+    """What several columns are: displacement, stress, …"""
+    kinds = {_kind_of(name) for name in names}
+    return kinds.pop() if len(kinds) == 1 else "value"
+
+
+def _kind_of(name: str) -> str:
+    quantity = name.rpartition(".")[2]
+    if len(quantity) == 2 and quantity[0] in _VECTORS and quantity[1] in "xyz":
+        return _VECTORS[quantity[0]]
+    if quantity.startswith("sigma_") or quantity == "von_mises":
+        return "stress"
+    without_axis = quantity[:-2] if quantity[-2:] in ("_x", "_y", "_z") else quantity
+    return without_axis.replace("_", " ")
 
 
 def _force(run: Run) -> str:

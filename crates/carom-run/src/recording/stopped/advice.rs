@@ -7,13 +7,10 @@ use std::collections::BTreeSet;
 use carom_case::{BodySpec, Case, ContactSpec, FormulaSpec, Law, MeshSpec};
 use carom_record::{Advice, Source, StopPlace};
 
-use super::change::{Change, Kind, Original};
+use super::change::{Kind, Original};
 
 /// Keyword of the energy guard, beside those of rejected steps.
 pub(super) const GUARD: &str = "energy-guard";
-
-/// Keyword of the audit.
-pub(super) const AUDIT: &str = "audit";
 
 /// A remedy: the change that makes it, if the program can make it, and in words.
 type Remedy = (Option<Kind>, &'static str);
@@ -63,7 +60,7 @@ const GUARD_OFF: Remedy = (
 
 /// The remedies of each reason.
 const TABLE: &[(&str, &[Remedy])] = &[
-    ("inverted-cell", &[INERTIA, OTHER_LAW, SHORTER, DAMPED, BATHE, FALLBACK, FINER, DEGREE]),
+    ("inverted-cell", &[INERTIA, OTHER_LAW, DAMPED, BATHE, FALLBACK, FINER, DEGREE, SHORTER]),
     ("contact-geometry", &[INERTIA, SHORTER, BATHE, PENALTY, FALLBACK, FINER, ROUNDED]),
     ("no-convergence", &[INERTIA, OTHER_LAW, SHORTER, FULL, PENALTY, MULTIPLIER, BATHE, FALLBACK, FINER]),
     ("active-set-cycle", &[INERTIA, SHORTER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
@@ -95,37 +92,32 @@ const TABLE: &[(&str, &[Remedy])] = &[
         &[(None, "a [[support]] for the body, or its `move` in place of a force"), INERTIA, FRICTION],
     ),
     ("jump", &[(None, "a `move` that starts at the positions of its nodes")]),
-    ("penetration", &[INERTIA, SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
+    ("penetration", &[INERTIA, PENALTY, MULTIPLIER, BATHE, FALLBACK, FINER, ROUNDED, STIFFER, SHORTER]),
     ("unstable-step", &[SHORTER, BATHE, FINER]),
     ("not-finite", &[INERTIA, SHORTER, BATHE, FALLBACK, FINER]),
-    (AUDIT, &[SHORTER, (None, "a report of this run to the authors: one of the two methods is wrong")]),
-    (GUARD, &[PROJECT, LONGER, SHORTER, BATHE, DAMPED, SOFTER, FALLBACK, FINER, GUARD_OFF]),
+    (GUARD, &[PROJECT, BATHE, DAMPED, LONGER, SOFTER, FALLBACK, FINER, SHORTER, GUARD_OFF]),
 ];
 /// The remedies of any other reason.
 const OTHERWISE: &[Remedy] = &[INERTIA, SHORTER, BATHE, DAMPED, PENALTY, FALLBACK, FINER];
 
-/// What to try after a stop at a contact or in a body, or anywhere, with the changes of the case.
-pub(super) fn of(
+/// What to try after a stop, for the reason `kind` at a contact or in a body, or anywhere.
+pub(in crate::recording) fn advice(
     kind: &str,
     case: &Case,
     source: &Source,
     place: Option<&StopPlace>,
-) -> Vec<(Advice, Option<Change>)> {
+) -> Vec<Advice> {
     let remedies = TABLE.iter().find(|(of, _)| *of == kind).map_or(OTHERWISE, |(_, remedies)| remedies);
     let original = Original::new(case, source);
     let contact = place.and_then(|place| place.contact.as_deref());
     let there = There::new(case, place);
     let advice = |&(change, what): &Remedy| {
         let what = there.words(what)?;
-        let change = match change {
-            Some(kind) => {
-                original.sets(kind, contact)?;
-                original.changed(kind, contact)
-            }
-            None => None,
+        let sets = match change {
+            Some(kind) => original.sets(kind, contact).map(|sets| original.accepted(sets))?,
+            None => Vec::new(),
         };
-        let sets = change.as_ref().map_or_else(Vec::new, |change| change.sets.clone());
-        Some((Advice { what, sets, trial: None }, change))
+        Some(Advice { what, sets })
     };
     remedies.iter().filter_map(advice).collect()
 }

@@ -9,6 +9,7 @@ use carom_case::{
 use carom_record::Source;
 
 use crate::initial::continues;
+use crate::setup::Setup;
 
 /// A kind of change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,14 +39,6 @@ pub(super) enum Kind {
     Fallback,
 }
 
-/// A changed case.
-pub(super) struct Change {
-    pub kind: Kind,
-    pub case: Case,
-    /// `key=value` of every changed key.
-    pub sets: Vec<String>,
-}
-
 /// A case with the text from which it was read.
 pub(super) struct Original<'a> {
     case: &'a Case,
@@ -63,15 +56,16 @@ impl<'a> Original<'a> {
         Self { case, source: same.then_some(source), tables }
     }
 
-    /// A change of the case, at one contact or at all; none if it has no options, or these give no
-    /// case: a key that is given may contradict them.
-    pub(super) fn changed(&self, kind: Kind, contact: Option<&str>) -> Option<Change> {
-        let sets = self.sets(kind, contact)?;
-        let case = read(&document(self.source?, &sets)?).ok()?;
-        (case != *self.case).then_some(Change { kind, case, sets })
+    /// These options if the case can be read and built with them, and none otherwise: a key that is
+    /// given may contradict them.
+    pub(super) fn accepted(&self, sets: Vec<String>) -> Vec<String> {
+        let changed = self.source.and_then(|source| read(&document(source, &sets)?).ok());
+        let accepted = changed.filter(|case| case != self.case && Setup::new(case).build().is_ok());
+        accepted.map_or_else(Vec::new, |_| sets)
     }
 
-    /// The options of a change; none if the case has nothing that it changes.
+    /// The options of a change, `key=value`, at one contact or at all; none if the case has nothing
+    /// that it changes.
     pub(super) fn sets(&self, kind: Kind, contact: Option<&str>) -> Option<Vec<String>> {
         let case = self.case;
         let (scheme, step) = (&case.time.scheme, case.time.step);

@@ -3,7 +3,7 @@
 use carom_contact::PairEvent;
 use carom_contact::Rows;
 use carom_mechanics::model::Model;
-use carom_mechanics::{AuditFailure, GridReport, LogEvent, Place, State, Stopped, Trace};
+use carom_mechanics::{GridReport, LogEvent, Place, State, Stopped, Trace};
 use carom_record::{StopNode, StopPlace};
 
 use crate::build::side::owner;
@@ -19,10 +19,6 @@ pub(super) fn place(
     let named = match stopped {
         Stopped::NoStep { rejected, .. } => rejected.place(),
         Stopped::EnergyGuard { .. } | Stopped::Interrupted { .. } => Place::default(),
-        Stopped::Audit {
-            doubt: AuditFailure::Deeper { node, .. } | AuditFailure::Passed { node, .. },
-            ..
-        } => Place { node: Some(*node), ..Place::default() },
     };
     let mut place = StopPlace { contact: named.contact.map(Into::into), ..StopPlace::default() };
     let mut node = named.node;

@@ -68,9 +68,14 @@ pub(crate) fn is_quiet() -> bool {
     VERBOSITY.get() == Some(&Verbosity::Quiet)
 }
 
-/// Whether remarks on what a command is doing are unwanted.
+/// Whether standard output is JSON.
+pub(crate) fn is_json() -> bool {
+    JSON.get() == Some(&true)
+}
+
+/// Whether text for people is unwanted.
 pub(crate) fn is_silent() -> bool {
-    is_quiet() || JSON.get() == Some(&true)
+    is_quiet() || is_json()
 }
 
 pub(crate) fn is_verbose() -> bool {

@@ -7,13 +7,13 @@ use serde_json::json;
 use crate::exit::{Exit, Failure};
 use crate::{console, out};
 
-/// Prints a failure, with `json` also as an event on standard output; returns its exit code.
-pub(crate) fn print(failure: &Failure, json: bool) -> Exit {
+/// Prints a failure, also as an event on standard output; returns its exit code.
+pub(crate) fn print(failure: &Failure) -> Exit {
     let coloured = console::in_colour();
     let text = match failure {
         Failure::Case(error) => text(error, coloured),
         Failure::Argument { help, .. } => plain(&failure.to_string(), &[("try", help)], coloured),
-        Failure::Stopped { tried, help, directory, page, .. } => {
+        Failure::Stopped { help, directory, page, .. } => {
             let place = directory.display();
             let note = if *page {
                 format!(
@@ -22,13 +22,13 @@ pub(crate) fn print(failure: &Failure, json: bool) -> Exit {
             } else {
                 format!("the last valid state is saved in {place}")
             };
-            plain(&failure.to_string(), &[("note", &note), ("note", tried), ("try", help)], coloured)
+            plain(&failure.to_string(), &[("note", &note), ("try", help)], coloured)
         }
         Failure::System { .. } => plain(&failure.to_string(), &[], coloured),
     };
     console::say(text);
     // The event of a run that stopped has been printed already.
-    if json && !matches!(failure, Failure::Stopped { .. }) {
+    if !matches!(failure, Failure::Stopped { .. }) {
         let _ = out::event(&event(failure));
     }
     failure.exit()

@@ -38,7 +38,7 @@ pub(crate) enum Failure {
     Argument { what: String, help: String },
     /// The simulation stopped.
     #[error("{reason}")]
-    Stopped { reason: String, tried: String, help: String, directory: PathBuf, page: bool },
+    Stopped { reason: String, help: String, directory: PathBuf, page: bool },
     /// Input/output or system error.
     #[error("{what}")]
     System { what: String },

@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use crate::exit::{Exit, Failure};
 use crate::simulation::Outcome;
+use crate::text::duration;
 use crate::{console, out};
 
 /// At most ten events per second.
@@ -23,7 +24,6 @@ const LOGGED: Duration = Duration::from_secs(10);
 
 /// Shows progress. Dropping it erases the bar.
 pub(crate) struct Live {
-    json: bool,
     bar: ProgressBar,
     last: Option<Instant>,
     /// The run, whose manifest has the warnings.
@@ -42,15 +42,8 @@ struct Event<'a> {
 }
 
 impl Live {
-    pub(crate) fn new(json: bool, directory: &Path) -> Self {
-        Self {
-            json,
-            bar: console::bar(1),
-            last: None,
-            directory: directory.to_owned(),
-            warned: None,
-            heard: None,
-        }
+    pub(crate) fn new(directory: &Path) -> Self {
+        Self { bar: console::bar(1), last: None, directory: directory.to_owned(), warned: None, heard: None }
     }
 
     /// Shows the warnings of the run that have not been shown yet.
@@ -58,10 +51,10 @@ impl Live {
         // Without a manifest nothing was run.
         let warnings = Manifest::read(&self.directory).map_or_else(|_| Vec::new(), |m| m.warnings);
         for warning in warnings.iter().skip(self.warned.unwrap_or(0)) {
-            if self.json {
-                let event = serde_json::json!({ "event": "warning", "message": warning.to_string(), "warning": warning });
-                let _ = out::event(&event);
-            } else if !console::is_quiet() {
+            let event =
+                serde_json::json!({ "event": "warning", "message": warning.to_string(), "warning": warning });
+            let _ = out::event(&event);
+            if !console::is_silent() {
                 self.bar.suspend(|| console::say(console::warning("warning: ", "", warning)));
             }
         }
@@ -95,7 +88,7 @@ impl Live {
             self.bar.suspend(|| console::say(changes));
         }
         let last = progress.step == progress.steps;
-        if !self.json || !last && self.last.is_some_and(|then| then.elapsed() < PAUSE) {
+        if !last && self.last.is_some_and(|then| then.elapsed() < PAUSE) {
             return;
         }
         self.last = Some(Instant::now());
@@ -108,9 +101,8 @@ impl Live {
     /// Shows that a step is still being bisected: in a log once in a while, on a terminal in the
     /// bar.
     fn bisecting(&mut self, progress: &Progress) {
-        if self.json {
-            let _ = out::event(&Event { event: "bisecting", progress });
-        } else if self.bar.is_hidden() && !console::is_quiet() {
+        let _ = out::event(&Event { event: "bisecting", progress });
+        if self.bar.is_hidden() && !console::is_silent() {
             let since = self.heard.get_or_insert_with(Instant::now);
             if since.elapsed() >= LOGGED {
                 *since = Instant::now();
@@ -155,20 +147,6 @@ fn changes(p: &Progress) -> Option<String> {
     (!counts.is_empty()).then(|| format!("step {step}  t {time:.6e}  Newton {newton}  {}", counts.join(", ")))
 }
 
-/// A duration for people: `2 min 10 s`.
-pub(crate) fn duration(seconds: f64) -> String {
-    if !seconds.is_finite() {
-        return "?".to_owned();
-    }
-    let whole = seconds.max(0.0).round() as u64;
-    match whole {
-        0..10 => format!("{seconds:.1} s"),
-        10..120 => format!("{whole} s"),
-        120..7200 => format!("{} min {} s", whole / 60, whole % 60),
-        _ => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
-    }
-}
-
 /// A flag that is set by the first Ctrl-C; the second one ends the process immediately.
 pub(crate) fn stop_on_signal() -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
@@ -210,6 +188,5 @@ mod tests {
         assert_eq!(changes(&p).as_deref(), Some(expected));
         let expected = "step 181 is being bisected: t 3.375000e-1  Δt 1.9e-3  1 rejected";
         assert_eq!(line(&Progress { bisecting: true, ..p }), expected);
-        assert_eq!([0.26, 61.0, 7300.0, f64::NAN].map(duration), ["0.3 s", "61 s", "2 h 1 min", "?"]);
     }
 }

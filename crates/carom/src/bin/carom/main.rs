@@ -11,6 +11,8 @@ mod shared;
 mod simulation;
 mod study_summary;
 mod summary;
+mod table;
+mod text;
 
 use clap::{Parser, Subcommand};
 use command::{
@@ -95,6 +97,6 @@ fn main() -> std::process::ExitCode {
         Command::Completions(arguments) => completions::run(arguments),
         Command::Man(arguments) => man::run(arguments),
     };
-    let exit = done.unwrap_or_else(|failure| diagnostics::print(&failure, command.json()));
+    let exit = done.unwrap_or_else(|failure| diagnostics::print(&failure));
     std::process::ExitCode::from(exit as u8)
 }

@@ -4,15 +4,15 @@ use std::path::Path;
 
 use carom_record::Status;
 use carom_record::study::ranking::Ranking;
-use carom_record::study::{Row, Study, StudyManifest};
+use carom_record::study::{Row, Study, StudyManifest, Verdict};
 use carom_report::{ReportError, ReportSummary};
 use carom_study::Outcome;
 use serde_json::json;
 
 use crate::exit::Failure;
 use crate::shared::{of_arms, warnings};
-use crate::summary::{missed, short};
-use crate::{console, out};
+use crate::text::{missed, short, short_or_dash};
+use crate::{console, out, table};
 
 /// Metrics of the table that is printed; all are in study.csv.
 const SHOWN: [&str; 6] =
@@ -35,85 +35,33 @@ pub(crate) fn report(directory: &Path) -> Result<ReportSummary, Failure> {
 }
 
 /// Prints the tables of a study, and makes its page.
-pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool, json: bool) -> Result<(), Failure> {
+pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool) -> Result<(), Failure> {
     let page = if page { Some(report(directory)?.page) } else { None };
-    if json {
-        let study = &outcome.study;
-        let claims = study
-            .verdicts
-            .iter()
-            .map(|v| {
-                let ensemble = v.ensemble.as_ref().map(|confirmed| json!({ "held": confirmed.count, "of": confirmed.of }));
-                json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word(), "ensemble": ensemble })
-            });
-        let claims: Vec<_> = claims.collect();
-        let event = if outcome.interrupted { "interrupted" } else { "done" };
-        out::event(
-            &json!({ "event": event, "directory": directory, "report": page, "claims": claims, "warnings": warnings(&study.warnings(), &study.manifest) }),
-        )?;
-    } else if !console::is_quiet() {
-        let study = &outcome.study;
-        out::line(&text(study))?;
+    let study = &outcome.study;
+    let claim = |v: &Verdict| {
+        let ensemble =
+            v.ensemble.as_ref().map(|confirmed| json!({ "held": confirmed.count, "of": confirmed.of }));
+        json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word(), "ensemble": ensemble })
+    };
+    out::event(&json!({
+        "event": if outcome.interrupted { "interrupted" } else { "done" },
+        "directory": directory,
+        "report": page,
+        "claims": study.verdicts.iter().map(claim).collect::<Vec<_>>(),
+        "warnings": warnings(&study.warnings(), &study.manifest),
+    }))?;
+    out::summary(&text(study))?;
+    if !console::is_silent() {
         for (warning, arms) in study.warnings() {
             console::say(console::warning("warning: ", &of_arms(&arms, &study.manifest), warning));
         }
-        out::line(&page.as_deref().unwrap_or(directory).display().to_string())?;
     }
-    Ok(())
+    Ok(out::summary(&page.as_deref().unwrap_or(directory).display().to_string())?)
 }
 
 fn text(study: &Study) -> String {
-    let width = study.rows.iter().map(|r| r.name.chars().count()).max().unwrap_or(0);
-    let head = |name: &str| match study.rows.iter().find_map(|row| unit(row, name)) {
-        Some(unit) => format!("{name} [{unit}]"),
-        None => name.to_owned(),
-    };
-    // Bars have no impulse along y.
-    let has = |name: &str| study.rows.iter().any(|row| row.value(name).is_some());
-    let impulse = if has("impulse_y") || !has("impulse_x") { "impulse_y" } else { "impulse_x" };
-    let columns = SHOWN.map(|name| if name == "impulse_y" { impulse } else { name });
-    let columns = columns.map(|name| (name, head(name)));
-    let heads = columns.iter().fold(String::new(), |row, (_, head)| row + &format!("  {head:>17}"));
-    let mut lines = vec![format!("{:width$}{heads}", "")];
-    for (arm, row) in study.rows.iter().enumerate() {
-        let cells: String = match row.status {
-            Some(Status::Finished) => columns.iter().fold(String::new(), |line, (name, head)| {
-                let width = head.chars().count().max(17);
-                line + &format!("  {:>width$}", row.value(name).map_or("–".into(), short))
-            }),
-            Some(Status::Failed) => {
-                let alike =
-                    study.finished_alike(arm).map_or_else(String::new, |others| format!(" ({others})"));
-                format!("  failed: {}{alike}", row.reason.as_deref().unwrap_or("?"))
-            }
-            Some(_) => "  not finished".to_owned(),
-            None if row.is_damaged() => format!("  damaged: {}", row.reason.as_deref().unwrap_or("?")),
-            None => "  not started".to_owned(),
-        };
-        lines.push(format!("{:width$}{cells}", row.name));
-    }
-    for v in &study.verdicts {
-        let value = |x: Option<f64>| x.map_or("–".into(), short);
-        let word = v.ensemble.as_ref().map_or_else(
-            || format!("{:9}", v.word()),
-            |confirmed| format!("confirmed in {} of {}", confirmed.count, confirmed.of),
-        );
-        let bound =
-            v.bound.map_or_else(String::new, |(sign, bound)| format!(", claimed {sign} {}", short(bound)));
-        let ratio = v.ensemble.as_ref().and_then(|confirmed| confirmed.ratio.as_ref()).map_or_else(
-            String::new,
-            |ratio| {
-                let (low, high) = ratio.range();
-                format!("; ratio {}, {} to {}{bound}", short(ratio.median()), short(low), short(high))
-            },
-        );
-        lines.push(format!(
-            "{word}  {}  ({} against {}{ratio})",
-            v.claim.text,
-            value(v.left),
-            value(v.right)
-        ));
-    }
+    let mut lines = metrics(study);
+    lines.extend(study.verdicts.iter().map(claim));
     let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (Some(&row.name), e)));
     for (arm, e) in arms.chain(study.expectations.iter().map(|e| (None, e))) {
         let word = if e.pass { "met" } else { "MISSED" };
@@ -124,6 +72,53 @@ fn text(study: &Study) -> String {
     }
     lines.extend(study.ranking.iter().flat_map(|ranking| recommendation(study, ranking)));
     lines.join("\n")
+}
+
+/// The metrics of the arms as a table.
+fn metrics(study: &Study) -> Vec<String> {
+    // Bars have no impulse along y.
+    let has = |name: &str| study.rows.iter().any(|row| row.value(name).is_some());
+    let impulse = if has("impulse_y") || !has("impulse_x") { "impulse_y" } else { "impulse_x" };
+    let columns = SHOWN.map(|name| if name == "impulse_y" { impulse } else { name });
+    let head = |name: &str| match study.rows.iter().find_map(|row| unit(row, name)) {
+        Some(unit) => format!("{name} [{unit}]"),
+        None => name.to_owned(),
+    };
+    let mut rows = vec![std::iter::once(String::new()).chain(columns.map(head)).collect::<Vec<_>>()];
+    for (arm, row) in study.rows.iter().enumerate() {
+        let reason = || row.reason.as_deref().unwrap_or("?");
+        let cells = match row.status {
+            Some(Status::Finished) => columns.map(|name| short_or_dash(row.value(name))).to_vec(),
+            Some(Status::Failed) => {
+                let alike =
+                    study.finished_alike(arm).map_or_else(String::new, |others| format!(" ({others})"));
+                vec![format!("failed: {}{alike}", reason())]
+            }
+            Some(_) => vec!["not finished".to_owned()],
+            None if row.is_damaged() => vec![format!("damaged: {}", reason())],
+            None => vec!["not started".to_owned()],
+        };
+        rows.push(std::iter::once(row.name.clone()).chain(cells).collect());
+    }
+    table::lines(&rows, &[1, 2, 3, 4, 5, 6])
+}
+
+fn claim(v: &Verdict) -> String {
+    let word = v.ensemble.as_ref().map_or_else(
+        || format!("{:9}", v.word()),
+        |confirmed| format!("confirmed in {} of {}", confirmed.count, confirmed.of),
+    );
+    let bound =
+        v.bound.map_or_else(String::new, |(sign, bound)| format!(", claimed {sign} {}", short(bound)));
+    let ratio = v.ensemble.as_ref().and_then(|confirmed| confirmed.ratio.as_ref()).map_or_else(
+        String::new,
+        |ratio| {
+            let (low, high) = ratio.range();
+            format!("; ratio {}, {} to {}{bound}", short(ratio.median()), short(low), short(high))
+        },
+    );
+    let [left, right] = [v.left, v.right].map(short_or_dash);
+    format!("{word}  {}  ({left} against {right}{ratio})", v.claim.text)
 }
 
 /// The unit of a metric; none if it is a number alone.

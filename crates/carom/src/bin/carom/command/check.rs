@@ -5,20 +5,23 @@ use std::path::{Path, PathBuf};
 
 use carom::case::{
     Case, Document, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
-    SurfaceSpec, gibibytes,
+    SupportSpec, SurfaceSpec, gibibytes,
 };
-use carom::stability::SAFETY;
+use carom::model::Model;
+use carom::stability::{SAFETY, stable_step};
+use carom_record::Warning;
 use carom_study::Plan;
 use carom_time::Explained;
+use serde::Serialize;
 
 use crate::exit::{Exit, Failure};
 use crate::shared::{of_arms, warnings};
-use crate::simulation::{self, BodyFacts, Facts};
-use crate::summary::short;
+use crate::text::{several, short};
 use crate::{console, out};
 
 /// Nodes listed without `--verbose`.
 const LISTED: usize = 10;
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Report the errors of a case or study without running it, and draw bodies that overlap (SVG)
 #[derive(clap::Args)]
@@ -44,17 +47,68 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let document = Document::parse(document.name(), document.text(), &arguments.sets)?;
     let case = super::resolved(&document)?;
     let overlap = Overlap::of(&case, &arguments.case)?;
-    if !arguments.json && !console::is_quiet() && !overlap.nodes.is_empty() {
-        out::line(&overlap.lines())?;
+    if !overlap.nodes.is_empty() {
+        out::summary(&overlap.lines())?;
     }
-    let facts = simulation::facts(&case, &document)?;
-    if arguments.json {
-        let event = serde_json::json!({ "event": "check", "case": case, "model": facts, "memory": case.memory(), "warnings": facts.warnings, "overlap": overlap.nodes });
-        out::event(&event)?;
-    } else if !console::is_quiet() {
-        out::line(&table(&case, &facts))?;
-    }
+    // Started as `run` does, which finds everything that stops a run before its first step.
+    let started = carom::Setup::new(&case).start();
+    let simulation = started.map_err(|problems| Failure::Case(document.diagnose_all(&problems)))?;
+    let facts = Facts::of(&case, simulation.model());
+    let warnings = carom::warnings(&case, simulation.model());
+    out::event(&serde_json::json!({
+        "event": "check", "case": case, "model": facts, "memory": case.memory(), "warnings": warnings,
+        "overlap": overlap.nodes
+    }))?;
+    out::summary(&table(&case, &facts, &warnings))?;
     Ok(Exit::Done)
+}
+
+/// Facts about the model of a case.
+#[derive(Serialize)]
+struct Facts {
+    bodies: Vec<BodyFacts>,
+    /// Steps in which a pressure wave crosses the smallest body; none in statics.
+    transit_steps: Option<f64>,
+    /// 2/ω_max, for explicit schemes.
+    stable_step: Option<f64>,
+}
+
+/// A body's mesh.
+#[derive(Serialize)]
+struct BodyFacts {
+    name: String,
+    nodes: usize,
+    cells: usize,
+    /// Sides, with their numbers of nodes.
+    sides: Vec<(String, usize)>,
+    /// Free degrees of freedom.
+    dofs: usize,
+    /// Smallest scaled Jacobian; none for bars.
+    scaled_jacobian: Option<f64>,
+}
+
+impl Facts {
+    fn of(case: &Case, model: &Model) -> Self {
+        let d = model.dimension;
+        let body = |part: &carom::model::BodyInstance| {
+            let mesh = part.body.mesh();
+            let sides = mesh.sides.keys().filter_map(|s| Some((s.clone(), mesh.side_nodes(s)?.len())));
+            BodyFacts {
+                name: part.name.clone(),
+                nodes: mesh.nodes.len(),
+                cells: mesh.cell_count(),
+                sides: sides.collect(),
+                dofs: part.nodes().flat_map(|n| n * d..(n + 1) * d).filter(|&dof| !model.fixed[dof]).count(),
+                scaled_jacobian: mesh.scaled_jacobian(),
+            }
+        };
+        let stable = case.time.scheme.is_explicit().then(|| stable_step(model)).flatten();
+        Self {
+            bodies: model.parts.iter().take(case.bodies.len()).map(body).collect(),
+            transit_steps: carom::crossing(case, model).map(|time| time / case.time.step),
+            stable_step: stable.map(|stable| stable.power),
+        }
+    }
 }
 
 /// The overlap of the bodies at the start.
@@ -121,12 +175,10 @@ fn study(arguments: &Arguments, document: &Document) -> Result<Exit, Failure> {
     let Plan { manifest, arms } = &plan;
     let jobs = super::parallel("--jobs", None)?;
     plan.fits_memory(jobs)?;
-    if arguments.json {
-        out::event(
-            &serde_json::json!({ "event": "check", "study": manifest, "warnings": warnings(&plan.warnings(), manifest) }),
-        )?;
-        return Ok(Exit::Done);
-    }
+    let found = plan.warnings();
+    out::event(
+        &serde_json::json!({ "event": "check", "study": manifest, "warnings": warnings(&found, manifest) }),
+    )?;
     let mut lines =
         vec![format!("{} ({} runs of {})", manifest.title, arms.len(), manifest.source.case_path)];
     for (arm, planned) in manifest.arms.iter().zip(arms) {
@@ -146,88 +198,101 @@ fn study(arguments: &Arguments, document: &Document) -> Result<Exit, Failure> {
     }
     let [one, several] = plan.memory(jobs).map(gibibytes);
     lines.push(format!("  memory   about {one} for the largest run, {several} for {jobs} at once"));
-    lines.extend(
-        plan.warnings().iter().map(|(w, arms)| console::warning("  warning  ", &of_arms(arms, manifest), w)),
-    );
-    if !console::is_quiet() {
-        out::line(&lines.join("\n"))?;
-    }
+    lines.extend(found.iter().map(|(w, arms)| console::warning("  warning  ", &of_arms(arms, manifest), w)));
+    out::summary(&lines.join("\n"))?;
     Ok(Exit::Done)
 }
 
-fn table(case: &Case, facts: &Facts) -> String {
+fn table(case: &Case, facts: &Facts, warnings: &[Warning]) -> String {
     let mut lines = vec![format!("{} (dimension {})", case.title, case.dimension)];
-    for body in &case.bodies {
-        let size = facts.bodies.iter().find(|b| b.name == body.name).map_or_else(String::new, counted);
-        lines.push(format!("  body     {:12} {:?} of {}: {size}", body.name, body.element, body.material));
-        let facts = facts.bodies.iter().find(|b| b.name == body.name);
+    lines.extend(bodies(case, facts));
+    for support in &case.supports {
+        lines.push(named("support", support.name.as_deref(), &support_text(support)));
+    }
+    for load in &case.loads {
+        lines.push(named("load", load.name.as_deref(), &load_text(load)));
+    }
+    for contact in &case.contacts {
+        let primary = primary_text(case, &contact.primary);
+        lines.push(named(
+            "contact",
+            Some(&contact.name),
+            &format!("{} against {primary}", contact.secondary),
+        ));
+    }
+    for probe in &case.probes {
+        lines.push(named("probe", Some(&probe.name), &format!("at {:?} in {}", probe.at, probe.body)));
+    }
+    lines.push(format!("  scheme   {}", scheme_text(&case.time.scheme)));
+    lines.extend(times(case, facts));
+    lines.push(format!("  memory   about {} for a run", gibibytes(case.memory().total())));
+    lines.extend(warnings.iter().map(|warning| console::warning("  warning  ", "", warning)));
+    lines.join("\n")
+}
+
+/// A line about a named thing of the case.
+fn named(kind: &str, name: Option<&str>, text: &str) -> String {
+    format!("  {kind:9}{:12} {text}", name.unwrap_or_default())
+}
+
+/// A line that continues the one before it.
+fn more(text: &str) -> String {
+    format!("{:11}{text}", "")
+}
+
+fn bodies(case: &Case, facts: &Facts) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (body, facts) in case.bodies.iter().zip(&facts.bodies) {
+        let what = format!("{:?} of {}: {}", body.element, body.material, counted(facts));
+        lines.push(named("body", Some(&body.name), &what));
         // In the plane every built-in cell is well shaped.
-        if let Some(quality) = facts.and_then(|b| b.scaled_jacobian).filter(|_| case.dimension == 3) {
-            lines.push(format!("           smallest scaled Jacobian {quality:.2}"));
+        if let Some(quality) = facts.scaled_jacobian.filter(|_| case.dimension == 3) {
+            lines.push(more(&format!("smallest scaled Jacobian {quality:.2}")));
         }
         if let MeshSpec::File { file, repairs, .. } = body.mesh.source() {
-            lines.push(format!("           from {}", file.display()));
-            lines.extend(repairs.iter().map(|repair| format!("           note: {repair}")));
+            lines.push(more(&format!("from {}", file.display())));
+            lines.extend(repairs.iter().map(|repair| more(&format!("note: {repair}"))));
         }
         if let Some(PlaceSpec { rotate, axis, about, shift }) = &body.place {
             let axis = if axis.is_empty() { String::new() } else { format!(" around {axis:?}") };
-            lines.push(format!(
-                "           rotated by {rotate}°{axis} about {about:?}, translated by {shift:?}"
-            ));
+            lines.push(more(&format!("rotated by {rotate}°{axis} about {about:?}, translated by {shift:?}")));
         }
     }
-    for support in &case.supports {
-        let axes = support.fix.iter().map(|axis| ["x", "y", "z"][*axis]);
-        let fixed = axes.chain(support.normal.then_some("their normals")).collect::<Vec<_>>().join(", ");
-        let moved =
-            support.moves.iter().map(|(axis, u)| format!("moved along {} by {u}", ["x", "y", "z"][*axis]));
-        let fixed = (!fixed.is_empty()).then(|| format!("fixed in {fixed}"));
-        lines.push(format!(
-            "  support  {:12} {} {}",
-            support.name.as_deref().unwrap_or(""),
-            support.on.join(", "),
-            fixed.into_iter().chain(moved).collect::<Vec<_>>().join(", ")
-        ));
+    lines
+}
+
+fn support_text(support: &SupportSpec) -> String {
+    let axes = support.fix.iter().map(|axis| AXES[*axis]);
+    let fixed = axes.chain(support.normal.then_some("their normals")).collect::<Vec<_>>().join(", ");
+    let fixed = (!fixed.is_empty()).then(|| format!("fixed in {fixed}"));
+    let moved = support.moves.iter().map(|(axis, u)| format!("moved along {} by {u}", AXES[*axis]));
+    let how = fixed.into_iter().chain(moved).collect::<Vec<_>>().join(", ");
+    format!("{} {how}", support.on.join(", "))
+}
+
+fn primary_text(case: &Case, primary: &PrimarySpec) -> String {
+    match primary {
+        PrimarySpec::Side(side) => side.clone(),
+        PrimarySpec::Plane { .. } => "a rigid plane".to_owned(),
+        PrimarySpec::Circle { .. } if case.dimension == 3 => "a rigid sphere".to_owned(),
+        PrimarySpec::Circle { .. } => "a rigid circle".to_owned(),
+        PrimarySpec::Cylinder { .. } => "a rigid cylinder".to_owned(),
+        PrimarySpec::Polyline { .. } => "a rigid polyline".to_owned(),
+        PrimarySpec::Surface(surface) => surface_text(surface),
     }
-    for load in &case.loads {
-        lines.push(format!("  load     {:12} {}", load.name.as_deref().unwrap_or(""), load_text(load)));
-    }
-    for contact in &case.contacts {
-        let primary = match &contact.primary {
-            PrimarySpec::Side(side) => side.clone(),
-            PrimarySpec::Plane { .. } => "a rigid plane".to_owned(),
-            PrimarySpec::Circle { .. } if case.dimension == 3 => "a rigid sphere".to_owned(),
-            PrimarySpec::Circle { .. } => "a rigid circle".to_owned(),
-            PrimarySpec::Cylinder { .. } => "a rigid cylinder".to_owned(),
-            PrimarySpec::Polyline { .. } => "a rigid polyline".to_owned(),
-            PrimarySpec::Surface(surface) => surface_text(surface),
-        };
-        lines.push(format!("  contact  {:12} {} against {primary}", contact.name, contact.secondary));
-    }
-    for probe in &case.probes {
-        lines.push(format!("  probe    {:12} at {:?} in {}", probe.name, probe.at, probe.body));
-    }
-    lines.push(format!("  scheme   {}", scheme_text(&case.time.scheme)));
-    let steps = case.time.steps();
-    lines.push(format!(
-        "  time     {}, Δt = {}, to t = {}",
-        several(steps, "step"),
-        short(case.time.step),
-        short(case.time.end)
-    ));
+}
+
+fn times(case: &Case, facts: &Facts) -> Vec<String> {
+    let [step, end] = [case.time.step, case.time.end].map(short);
+    let mut lines =
+        vec![format!("  time     {}, Δt = {step}, to t = {end}", several(case.time.steps(), "step"))];
     if let Some(transit) = facts.transit_steps.map(short) {
-        lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
+        lines.push(more(&format!("a pressure wave crosses the smallest body in {transit} steps")));
     }
-    if let Some(stable) = facts.stable_step {
-        lines.push(format!(
-            "           the longest stable step is {}; at most {} of it is accepted",
-            short(stable),
-            SAFETY
-        ));
+    if let Some(stable) = facts.stable_step.map(short) {
+        lines.push(more(&format!("the longest stable step is {stable}; at most {SAFETY} of it is accepted")));
     }
-    lines.push(format!("  memory   about {} for a run", gibibytes(case.memory().total())));
-    lines.extend(facts.warnings.iter().map(|warning| console::warning("  warning  ", "", warning)));
-    lines.join("\n")
+    lines
 }
 
 fn surface_text(surface: &SurfaceSpec) -> String {
@@ -264,11 +329,6 @@ fn counted(body: &BodyFacts) -> String {
     let BodyFacts { nodes, cells, dofs, .. } = body;
     let (nodes, cells) = (several(*nodes, "node"), several(*cells, "cell"));
     format!("{nodes}, {cells}, {dofs} free dofs; nodes per side: {}", sides.join(", "))
-}
-
-/// `1 cell`, `2 cells`.
-fn several(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// What the scheme's parameters imply.

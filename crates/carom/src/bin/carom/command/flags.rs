@@ -2,8 +2,6 @@
 
 use std::num::NonZero;
 
-use carom::recording;
-
 use crate::exit::Failure;
 use crate::simulation::Options;
 
@@ -18,13 +16,6 @@ pub(crate) struct Flags {
     /// Do not write the figures or the report page
     #[arg(long)]
     pub(crate) no_report: bool,
-    /// If a run stops, do not test which changes of the case would let it continue
-    #[arg(long)]
-    pub(crate) no_trials: bool,
-    /// Check the contact of every step by a second, independent method, which compares every node
-    /// with the entire boundary of the other body, and stop if the two methods disagree; slow
-    #[arg(long)]
-    pub(crate) audit: bool,
     /// Print a timing profile of a run
     #[arg(long)]
     pub(crate) profile: bool,
@@ -37,9 +28,11 @@ pub(crate) struct Flags {
 }
 
 impl Flags {
-    pub(crate) fn options(&self) -> Result<Options, Failure> {
-        let threads = super::parallel("--threads", self.threads)?;
-        let run = recording::Options { threads, trials: !self.no_trials, audit: self.audit };
-        Ok(Options { run, report: !self.no_report, profile: self.profile })
+    pub(crate) fn threads(&self) -> Result<usize, Failure> {
+        super::parallel("--threads", self.threads)
+    }
+
+    pub(crate) fn options(&self, report: bool) -> Options {
+        Options { report, profile: self.profile }
     }
 }

@@ -8,6 +8,7 @@ mod flags;
 pub(crate) mod man;
 pub(crate) mod mesh;
 pub(crate) mod new;
+mod progress;
 pub(crate) mod reduce;
 pub(crate) mod report;
 pub(crate) mod resume;
@@ -15,7 +16,6 @@ pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod study;
 mod study_parts;
-mod study_progress;
 pub(crate) mod verify;
 
 use std::io::IsTerminal;

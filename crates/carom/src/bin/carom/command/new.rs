@@ -11,6 +11,7 @@ use crate::out;
 #[command(after_help = "\
 Examples:
   carom new drop
+  carom new fall --template impact-3d
   carom new drop --template gmsh
   carom new studies/bar --template bar-1d")]
 pub(crate) struct Arguments {
@@ -29,6 +30,9 @@ enum Template {
     /// A bar strikes a rigid wall, with its exact solution
     #[value(name = "bar-1d")]
     Bar1d,
+    /// A box tumbles over a floor, in space
+    #[value(name = "impact-3d")]
+    Impact3d,
     /// Bodies and sides from a Gmsh mesh
     Gmsh,
 }
@@ -38,6 +42,7 @@ impl Template {
         match self {
             Self::Impact2d => include_str!("../../../../templates/impact-2d.toml"),
             Self::Bar1d => include_str!("../../../../templates/bar-1d.toml"),
+            Self::Impact3d => include_str!("../../../../templates/impact-3d.toml"),
             Self::Gmsh => include_str!("../../../../templates/gmsh.toml"),
         }
     }

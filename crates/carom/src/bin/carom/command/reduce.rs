@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use carom::ReduceError;
 
 use crate::exit::{Exit, Failure};
-use crate::{console, directory, out, summary};
+use crate::text::{several, short};
+use crate::{directory, out};
 
 /// From a run that stopped (exit code 3), make a smaller case that stops in the same way
 #[derive(clap::Args)]
@@ -30,10 +31,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let to = directory::beside(&arguments.directory, "reduced", arguments.out.as_deref())?;
     let reduced = carom::reduce(&arguments.directory, &to)?;
     let mut lines = vec![format!(
-        "{} step{} to the stop, from t = {}",
-        reduced.steps,
-        if reduced.steps == 1 { "" } else { "s" },
-        summary::short(reduced.time)
+        "{} to the stop, from t = {}",
+        several(reduced.steps as usize, "step"),
+        short(reduced.time)
     )];
     let removed = match &reduced.removed[..] {
         [] => format!("nothing: {}", carom::NEEDED),
@@ -45,9 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         lines.push(format!("  run again: {reason}"));
     }
     lines.push(reduced.case.display().to_string());
-    if !console::is_quiet() {
-        out::line(&lines.join("\n"))?;
-    }
+    out::summary(&lines.join("\n"))?;
     if reduced.reason.is_none() {
         let case = reduced.case.display();
         let what = format!(

@@ -3,8 +3,9 @@
 use std::num::NonZero;
 use std::path::PathBuf;
 
+use carom::recording;
+use carom_record::Manifest;
 use carom_record::study::StudyManifest;
-use carom_record::{Manifest, Status};
 use serde_json::json;
 
 use super::flags::Flags;
@@ -30,44 +31,33 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let flags = &arguments.flags;
-    if StudyManifest::is_in(&arguments.directory) {
+    let Arguments { directory, jobs, flags } = arguments;
+    if StudyManifest::is_in(directory) {
         let of_a_run = [
             (flags.threads.is_some(), "--threads"),
             (flags.profile, "--profile"),
             (flags.strict, "--strict"),
-            (flags.audit, "--audit"),
-            (flags.no_trials, "--no-trials"),
         ];
         if let Some((_, option)) = of_a_run.iter().find(|(given, _)| *given) {
-            let what =
-                format!("{option} is an option for runs, but {} is a study", arguments.directory.display());
-            let help = "the arms of a study share the cores, without audit and without trials where it stops; \
-                --jobs sets the number of concurrent arms, and the timings of an arm are in its manifest.json";
+            let what = format!("{option} is an option for runs, but {} is a study", directory.display());
+            let help = "the arms of a study share the cores; --jobs sets the number of concurrent arms, and the \
+                timings of an arm are in its manifest.json";
             return Err(Failure::argument(what, help));
         }
-        return super::study::resume(&arguments.directory, arguments.jobs, !flags.no_report, flags.json);
+        return super::study::resume(directory, *jobs, !flags.no_report);
     }
-    if arguments.jobs.is_some() {
-        let what = format!("--jobs is an option for studies, but {} is a run", arguments.directory.display());
+    if jobs.is_some() {
+        let what = format!("--jobs is an option for studies, but {} is a run", directory.display());
         return Err(Failure::argument(what, "use --threads for a run"));
     }
-    super::report::run_directory(&arguments.directory)?;
-    if flags.audit && Manifest::read(&arguments.directory)?.status == Status::Finished {
-        let what = format!(
-            "{} has finished, and --audit checks the steps that are computed",
-            arguments.directory.display()
-        );
-        let help = "run its case again with --audit, into another directory".to_owned();
-        return Err(Failure::argument(what, help));
-    }
-    let options = flags.options()?;
+    super::report::run_directory(directory)?;
+    let report = !flags.no_report && !Manifest::read(directory)?.source.no_report;
+    let threads = flags.threads()?;
     let stop = stop_on_signal()?;
-    if flags.json {
-        out::event(&json!({ "event": "resume", "directory": arguments.directory }))?;
-    }
-    let mut live = Live::new(flags.json, &arguments.directory);
-    let done = simulation::resume(&arguments.directory, options, &mut |p| live.show(p), &stop);
+    out::event(&json!({ "event": "resume", "directory": directory }))?;
+    let mut live = Live::new(directory);
+    let done = recording::resume(directory, threads, &mut |p| live.show(p), &stop);
+    let done = simulation::conclude(done.map_err(Failure::from), flags.options(report));
     live.end(&done);
-    summary::print(done, flags.json, flags.strict)
+    summary::print(done, flags.strict)
 }

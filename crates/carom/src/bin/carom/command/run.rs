@@ -1,7 +1,9 @@
 //! `carom run`: one simulation, recorded in a run directory with its report.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use carom::recording::{self, RunError};
+use carom_record::Source;
 use serde_json::json;
 
 use super::flags::Flags;
@@ -34,17 +36,27 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
-    let options = arguments.flags.options()?;
+    let flags = &arguments.flags;
+    let threads = flags.threads()?;
     let directory = directory::of_run(&arguments.case, arguments.out.as_deref())?;
     let stop = stop_on_signal()?;
-    if arguments.flags.json {
-        let steps = case.time.steps();
-        out::event(
-            &json!({ "event": "start", "title": case.title, "directory": &*directory, "steps": steps }),
-        )?;
-    }
-    let mut live = Live::new(arguments.flags.json, &directory);
-    let done = simulation::run(&case, &document, &directory, options, &mut |p| live.show(p), &stop);
+    let steps = case.time.steps();
+    out::event(&json!({ "event": "start", "title": case.title, "directory": &*directory, "steps": steps }))?;
+    let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
+    let folder = std::path::absolute(Path::new(".").join(folder)).ok();
+    let source = Source {
+        text: document.text().to_owned(),
+        sets: document.sets(),
+        folder,
+        no_report: flags.no_report,
+    };
+    let mut live = Live::new(&directory);
+    let done = recording::run(&case, source, &directory, threads, &mut |p| live.show(p), &stop);
+    let done = done.map_err(|error| match error {
+        RunError::Case(problems) => Failure::Case(document.diagnose_all(&problems)),
+        error => error.into(),
+    });
+    let done = simulation::conclude(done, flags.options(!flags.no_report));
     live.end(&done);
-    summary::print(done, arguments.flags.json, arguments.flags.strict)
+    summary::print(done, flags.strict)
 }

@@ -9,10 +9,10 @@ use serde_json::json;
 
 use crate::exit::{Exit, Failure};
 use crate::live::stop_on_signal;
-use crate::{console, directory, out, study_summary};
+use crate::{directory, out, study_summary};
 
+use super::progress::Runs;
 use super::study_parts::StudyCommand;
-use super::study_progress::Seen;
 
 /// Run a case many times with some of its values replaced, and compare the runs
 #[derive(clap::Args)]
@@ -54,15 +54,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let jobs = super::parallel("--jobs", arguments.jobs)?;
     let plan = super::plan(&super::document(path, &[])?, path)?;
     let directory = directory::of_run(path, arguments.out.as_deref())?;
-    let mut seen = Seen::new(&plan.manifest, arguments.json);
+    let mut runs = Runs::of_study(&plan.manifest);
     let stop = stop_on_signal()?;
-    if arguments.json {
-        out::event(
-            &json!({ "event": "start", "title": plan.manifest.title, "directory": &*directory, "arms": seen.names }),
-        )?;
-    }
-    let done = carom_study::start(&plan, &directory, jobs, &mut |e| seen.event(e), &stop);
-    conclude(done, seen, &directory, !arguments.no_report)
+    let title = &plan.manifest.title;
+    out::event(&json!({ "event": "start", "title": title, "directory": &*directory, "arms": runs.names }))?;
+    let done = carom_study::start(&plan, &directory, jobs, &mut |e| runs.event(e), &stop);
+    conclude(done, runs, &directory, !arguments.no_report)
 }
 
 /// Resumes a study that was stopped; `page`: with figures and page at the end.
@@ -70,33 +67,29 @@ pub(crate) fn resume(
     directory: &Path,
     requested: Option<NonZero<usize>>,
     page: bool,
-    json: bool,
 ) -> Result<Exit, Failure> {
     let jobs = super::parallel("--jobs", requested)?;
     let manifest = StudyManifest::read(directory)?;
-    let mut seen = Seen::new(&manifest, json);
+    let mut runs = Runs::of_study(&manifest);
     let stop = stop_on_signal()?;
-    if json {
-        out::event(&json!({ "event": "resume", "directory": directory, "arms": seen.names }))?;
-    }
-    let done = carom_study::resume(directory, jobs, &mut |e| seen.event(e), &stop);
-    conclude(done, seen, directory, page)
+    out::event(&json!({ "event": "resume", "directory": directory, "arms": runs.names }))?;
+    let done = carom_study::resume(directory, jobs, &mut |e| runs.event(e), &stop);
+    conclude(done, runs, directory, page)
 }
 
 fn conclude(
     done: Result<Outcome, StudyError>,
-    seen: Seen,
+    runs: Runs,
     directory: &Path,
     page: bool,
 ) -> Result<Exit, Failure> {
-    let json = seen.json;
-    drop(seen);
+    drop(runs);
     let outcome = done?;
     let interrupted = outcome.interrupted;
     let damaged = outcome.study.rows.iter().chain(&outcome.study.members).any(Row::is_damaged);
-    study_summary::print(&outcome, directory, page, json)?;
-    if interrupted && !json && !console::is_quiet() {
-        out::line(&format!("stopped by Ctrl-C; continue with: carom resume {}", directory.display()))?;
+    study_summary::print(&outcome, directory, page)?;
+    if interrupted {
+        out::summary(&format!("stopped by Ctrl-C; continue with: carom resume {}", directory.display()))?;
     }
     Ok(match (interrupted, damaged) {
         (true, _) => Exit::Interrupted,

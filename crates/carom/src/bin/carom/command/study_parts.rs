@@ -10,7 +10,7 @@ use crate::exit::{Exit, Failure};
 use crate::live::{Live, stop_on_signal};
 use crate::{console, directory, out, study_summary};
 
-use super::study_progress::Seen;
+use super::progress::Runs;
 
 /// Steps of a study that is computed by separate processes, also on several machines
 #[derive(clap::Subcommand)]
@@ -74,9 +74,9 @@ fn plan(study: &Path, directory: &Path, slurm: bool, settle: bool) -> Result<Exi
     let timed = plan.manifest.arms.iter().any(|arm| plan.manifest.by_cost(arm));
     if settle && timed {
         let stop = stop_on_signal()?;
-        let mut seen = Seen::new(&plan.manifest, false);
-        let settled = carom_study::plan_timed(&plan, &directory, &mut |e| seen.event(e), &stop);
-        drop(seen);
+        let mut runs = Runs::of_study(&plan.manifest);
+        let settled = carom_study::plan_timed(&plan, &directory, &mut |e| runs.event(e), &stop);
+        drop(runs);
         if !settled? {
             let place = directory.display();
             console::say(format_args!(
@@ -97,12 +97,11 @@ fn plan(study: &Path, directory: &Path, slurm: bool, settle: bool) -> Result<Exi
         std::fs::write(&path, script(&plan.manifest.title, &whole, count, machine.as_deref()))
             .map_err(failed)?;
     }
-    if !console::is_quiet() {
-        out::line(&format!("{count} runs in {}; each is computed by:", directory.display()))?;
-        out::line(&format!("  carom study arm {} N        with N from 1 to {count}", directory.display()))?;
-        if slurm {
-            out::line(&format!("  sbatch {}/slurm.sh          computes all", directory.display()))?;
-        }
+    let place = directory.display();
+    out::summary(&format!("{count} runs in {place}; each is computed by:"))?;
+    out::summary(&format!("  carom study arm {place} N        with N from 1 to {count}"))?;
+    if slurm {
+        out::summary(&format!("  sbatch {place}/slurm.sh          computes all"))?;
     }
     Ok(Exit::Done)
 }
@@ -136,14 +135,12 @@ fn arm(directory: &Path, number: usize) -> Result<Exit, Failure> {
     let arm = manifest.runs().nth(number.saturating_sub(1));
     let (name, place) = arm.map(|arm| (arm.name.clone(), arm.directory.clone())).unwrap_or_default();
     let stop = stop_on_signal()?;
-    let mut live = Live::new(false, &directory.join(place));
+    let mut live = Live::new(&directory.join(place));
     let ended = carom_study::arm(directory, number, &mut |p| live.show(p), &stop);
     drop(live);
     let ended = ended?;
-    if !console::is_quiet() {
-        let reason = ended.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
-        out::line(&format!("{name}: {}{reason}", json!(ended.status).as_str().unwrap_or_default()))?;
-    }
+    let reason = ended.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
+    out::summary(&format!("{name}: {}{reason}", json!(ended.status).as_str().unwrap_or_default()))?;
     // A failed arm is a row of the table.
     Ok(if ended.status == Status::Stopped { Exit::Interrupted } else { Exit::Done })
 }
@@ -151,7 +148,7 @@ fn arm(directory: &Path, number: usize) -> Result<Exit, Failure> {
 fn collect(directory: &Path, page: bool) -> Result<Exit, Failure> {
     let stop = stop_on_signal()?;
     let outcome = carom_study::collect(directory, &stop)?;
-    study_summary::print(&outcome, directory, page, false)?;
+    study_summary::print(&outcome, directory, page)?;
     let rows = || outcome.study.rows.iter().chain(&outcome.study.members).enumerate();
     let listed = |of: fn(&Row) -> bool| {
         let found = rows().filter(|(_, row)| of(row)).map(|(i, row)| format!("{} ({})", i + 1, row.name));

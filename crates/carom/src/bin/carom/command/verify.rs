@@ -1,22 +1,21 @@
 //! `carom verify`: runs every case with expectations and compares the results with them.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
-use carom_record::Status;
 use carom_record::verification::{Row, SetUp, Verification};
-use carom_study::{Event, Kind, Named, Suite, VerifyOptions};
+use carom_study::{Kind, Named, Suite, VerifyOptions};
 use include_dir::{Dir, include_dir};
-use indicatif::ProgressBar;
 use serde_json::json;
 
+use super::progress::Runs;
 use crate::exit::{Exit, Failure};
-use crate::live::{duration, stop_on_signal};
+use crate::live::stop_on_signal;
 use crate::study_summary::report as study_report;
-use crate::summary::{missed, short};
-use crate::{console, directory, out};
+use crate::text::{duration, missed, several, short_or_dash};
+use crate::{console, directory, out, table};
 
 /// The cases as they were when the program was built.
 static CASES: Dir = include_dir!("$CAROM_CASES");
@@ -92,15 +91,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     std::fs::create_dir_all(&*directory)?;
     let options = VerifyOptions { jobs, whole: arguments.report, fail_fast: arguments.fail_fast };
     let stop = stop_on_signal()?;
-    let seen = std::cell::RefCell::new(Seen::new(arguments.json));
-    let mut begin = |runs: &[Named]| seen.borrow_mut().begin(runs);
-    let done = suite.verify(&directory, options, &mut begin, &mut |e| seen.borrow_mut().event(e), &stop);
-    drop(seen);
+    let runs = RefCell::new(Runs::new("run"));
+    let mut begin = |named: &[Named]| {
+        named.iter().for_each(|run| runs.borrow_mut().add(&run.name, run.steps));
+        // A closed standard output must not stop the suite.
+        let _ = out::event(&json!({ "event": "start", "runs": runs.borrow().names }));
+    };
+    let done = suite.verify(&directory, options, &mut begin, &mut |e| runs.borrow_mut().event(e), &stop);
+    drop(runs);
     let Some(verification) = done? else {
-        if arguments.json {
-            out::event(&json!({ "event": "interrupted", "directory": &*directory }))?;
-        } else if !console::is_quiet() && !arguments.csv {
-            out::line("interrupted by Ctrl-C: no expectation was evaluated")?;
+        out::event(&json!({ "event": "interrupted", "directory": &*directory }))?;
+        if !arguments.csv {
+            out::summary("interrupted by Ctrl-C: no expectation was evaluated")?;
         }
         return Ok(Exit::Interrupted);
     };
@@ -111,10 +113,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if let Some(folder) = &arguments.markdown {
         carom_report::verify_markdown(&directory, folder)?;
     }
-    print(&verification, arguments, &page)?;
+    print(&verification, arguments.csv, &page)?;
     let unjudged = suite.items.len() - verification.set_ups.len();
-    if unjudged > 0 && !arguments.json && !arguments.csv && !console::is_quiet() {
-        out::line(&format!(
+    if unjudged > 0 && !arguments.csv {
+        out::summary(&format!(
             "stopped at the first miss: {unjudged} of {} set-ups were not evaluated",
             suite.items.len()
         ))?;
@@ -138,26 +140,21 @@ fn pages(suite: &Suite, verification: &Verification, directory: &Path) -> Result
     Ok(())
 }
 
-fn print(v: &Verification, arguments: &Arguments, page: &Path) -> Result<(), Failure> {
-    if arguments.json {
-        for (set_up, row) in v.rows() {
-            out::event(
-                &json!({ "event": "row", "family": set_up.family, "case": set_up.name, "row": row, "error": row.error() }),
-            )?;
-        }
-        let counts = json!({ "event": "done", "set_ups": v.set_ups.len(), "with_contact": v.with_contact(), "rows": v.rows().count(),
-            "missed": v.missed(), "stopped": v.stopped(), "wall": v.wall, "report": page });
-        return Ok(out::event(&counts)?);
+fn print(v: &Verification, csv: bool, page: &Path) -> Result<(), Failure> {
+    for (set_up, row) in v.rows() {
+        out::event(
+            &json!({ "event": "row", "family": set_up.family, "case": set_up.name, "row": row, "error": row.error() }),
+        )?;
     }
-    if arguments.csv {
-        let text = v.csv()?;
-        return Ok(out::line(&String::from_utf8_lossy(&text))?);
+    out::event(&json!({
+        "event": "done", "set_ups": v.set_ups.len(), "with_contact": v.with_contact(), "rows": v.rows().count(),
+        "missed": v.missed(), "stopped": v.stopped(), "wall": v.wall, "report": page
+    }))?;
+    if csv {
+        return Ok(out::line(&String::from_utf8_lossy(&v.csv()?))?);
     }
-    if console::is_quiet() {
-        return Ok(());
-    }
-    out::line(&summary(v, console::is_verbose()))?;
-    Ok(out::line(&page.display().to_string())?)
+    out::summary(&summary(v, console::is_verbose()))?;
+    Ok(out::summary(&page.display().to_string())?)
 }
 
 /// Missed expectations (with `all`, every row) as a table; runs that stopped; one line per family;
@@ -170,6 +167,20 @@ fn summary(v: &Verification, all: bool) -> String {
             set_up.stopped.iter().map(|why| format!("{}/{} stopped: {why}", set_up.family, set_up.name)),
         );
     }
+    lines.extend(table::lines(&families(v), &[1, 2, 3]).into_iter().map(|line| format!("  {line}")));
+    lines.push(format!(
+        "{}, {} with dynamic contact; {}, {} missed; {}",
+        several(v.set_ups.len(), "set-up"),
+        v.with_contact(),
+        several(v.rows().count(), "expected value"),
+        v.missed(),
+        duration(v.wall)
+    ));
+    lines.join("\n")
+}
+
+/// Set-ups, values and misses of each family.
+fn families(v: &Verification) -> Vec<Vec<String>> {
     let mut families: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
     for set_up in &v.set_ups {
         families.entry(&set_up.family).or_default()[0] += 1;
@@ -179,115 +190,35 @@ fn summary(v: &Verification, all: bool) -> String {
         counts[1] += 1;
         counts[2] += usize::from(!row.verdict.pass);
     }
-    for (family, [set_ups, values, missed]) in &families {
-        let s = if *set_ups == 1 { " " } else { "s" };
-        lines.push(format!("  {family:14}{set_ups:4} set-up{s} {values:6} values {missed:4} missed"));
-    }
-    lines.push(format!(
-        "{} set-up{}, {} with dynamic contact; {} expected values, {} missed; {}",
-        v.set_ups.len(),
-        if v.set_ups.len() == 1 { "" } else { "s" },
-        v.with_contact(),
-        v.rows().count(),
-        v.missed(),
-        duration(v.wall)
-    ));
-    lines.join("\n")
+    let row = |(family, [set_ups, values, missed]): (&str, [usize; 3])| {
+        vec![
+            family.to_owned(),
+            several(set_ups, "set-up"),
+            several(values, "value"),
+            format!("{missed} missed"),
+        ]
+    };
+    families.into_iter().map(row).collect()
 }
 
 fn table(rows: &[(&SetUp, &Row)]) -> Vec<String> {
     const HEADS: [&str; 8] = ["case", "quantity", "expected", "got", "error", "tolerance", "", "source"];
-    let shown = |x: Option<f64>| x.map_or("–".to_owned(), short);
     let line = |(set_up, row): &(&SetUp, &Row)| {
-        [
+        vec![
             format!("{}/{}", set_up.family, set_up.name),
             row.quantity(),
             row.verdict.expected.clone(),
             match row.verdict.got {
                 Some(got) if !row.verdict.pass => missed(got, row.verdict.value),
-                got => shown(got),
+                got => short_or_dash(got),
             },
-            shown(row.error()),
-            shown(row.verdict.tolerance),
+            short_or_dash(row.error()),
+            short_or_dash(row.verdict.tolerance),
             if row.verdict.pass { "met" } else { "MISSED" }.to_owned(),
             row.verdict.why.clone().or_else(|| row.verdict.source.clone()).unwrap_or_default(),
         ]
     };
-    let mut cells = vec![HEADS.map(str::to_owned)];
+    let mut cells = vec![HEADS.map(str::to_owned).to_vec()];
     cells.extend(rows.iter().map(line));
-    let widths: [usize; 8] =
-        std::array::from_fn(|i| cells.iter().map(|row| row[i].chars().count()).max().unwrap_or(0));
-    let padded = |row: &[String; 8]| {
-        let padded = row.iter().zip(widths).enumerate().map(|(i, (cell, width))| match i {
-            3..=5 => format!("{cell:>width$}"),
-            7 => cell.clone(),
-            _ => format!("{cell:width$}"),
-        });
-        padded.collect::<Vec<_>>().join("  ").trim_end().to_owned()
-    };
-    cells.iter().map(padded).collect()
-}
-
-/// Progress of a suite: a bar on a terminal; with `--verbose`, a line on standard error for every
-/// run that ended.
-struct Seen {
-    runs: Vec<Named>,
-    done: Vec<u64>,
-    ended: usize,
-    json: bool,
-    bar: ProgressBar,
-    last: Option<Instant>,
-}
-
-impl Seen {
-    fn new(json: bool) -> Self {
-        Self { runs: Vec::new(), done: Vec::new(), ended: 0, json, bar: console::bar(1), last: None }
-    }
-
-    fn begin(&mut self, runs: &[Named]) {
-        self.runs = runs.to_vec();
-        self.done = vec![0; runs.len()];
-        self.bar.set_length(runs.iter().map(|r| r.steps).sum::<u64>().max(1));
-        if self.json {
-            let names: Vec<_> = runs.iter().map(|r| &r.name).collect();
-            // A closed standard output must not stop the suite.
-            let _ = out::event(&json!({ "event": "start", "runs": names }));
-        }
-    }
-
-    fn event(&mut self, event: &Event) {
-        let line = match event {
-            Event::Began(i) => json!({ "event": "began", "run": self.runs[*i].name }),
-            Event::Ended(i, ended) => {
-                (self.done[*i], self.ended) = (self.runs[*i].steps, self.ended + 1);
-                if console::is_verbose() {
-                    let how = if ended.status == Status::Finished { "done" } else { "stopped" };
-                    let count = format!("{}/{}", self.ended, self.runs.len());
-                    let (wall, name) = (duration(ended.wall), &self.runs[*i].name);
-                    self.bar.suspend(|| console::say(format_args!("{count:>9}  {how} in {wall}  {name}")));
-                }
-                json!({ "event": "ended", "run": self.runs[*i].name, "status": ended.status, "reason": ended.reason, "wall": ended.wall })
-            }
-            Event::Progress(i, p) => {
-                self.done[*i] = p.step;
-                if self.last.is_some_and(|then| then.elapsed() < Duration::from_millis(200)) {
-                    return;
-                }
-                self.last = Some(Instant::now());
-                json!({ "event": "progress", "run": self.runs[*i].name, "step": p.step, "steps": p.steps, "left": p.left })
-            }
-            Event::AlreadyDone(_) => return,
-        };
-        if self.json {
-            let _ = out::event(&line);
-        }
-        self.bar.set_position(self.done.iter().sum());
-        self.bar.set_message(format!("{} of {} runs", self.ended, self.runs.len()));
-    }
-}
-
-impl Drop for Seen {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
+    table::lines(&cells, &[3, 4, 5])
 }
