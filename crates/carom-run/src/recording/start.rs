@@ -61,8 +61,7 @@ fn started(case: &Case, source: Source, threads: usize) -> Result<(Simulation, M
     let simulation = Setup::new(case).threads(threads).start().map_err(RunError::Case)?;
     let resolved = case.to_json().map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
-    let mut manifest =
-        Manifest::new(version, case.facts(), resolved, source, history_columns(case), threads);
+    let mut manifest = Manifest::new(version, case.facts(), resolved, source, history_columns(case), threads);
     manifest.sides = sides(simulation.model());
     manifest.surfaces = surfaces(case);
     manifest.warnings = warnings(case, simulation.model());

@@ -291,7 +291,7 @@ fn sensitivity(name: &str) -> Sensitivity {
         | ("A.uy" | "B.uy", "min" | "max" | "variation") => Sensitivity::Value,
         ("", "force_roughness" | "force_variation" | "force_high_frequency" | "penetration_mean")
         | (_, "roughness" | "high_frequency")
-        | ("B.sigma_yy", "min" | "max" | "variation") => Sensitivity::Shape,
+        | ("C.sigma_yy", "min" | "max" | "variation") => Sensitivity::Shape,
         ("", "cpu_time" | "wall_time") => Sensitivity::Machine,
         _ => panic!("how does `{name}` depend on the rows?"),
     }
