@@ -32,35 +32,9 @@ pub(crate) fn three(x: f64) -> String {
     five((x * scale).round() / scale)
 }
 
-/// A number with three digits, also where the last ones are zeros, for columns of tables.
-pub(crate) fn three_digits(x: f64) -> String {
-    let plain = three(x);
-    let digits = plain.trim_start_matches(['−', '0', '.']).chars().filter(char::is_ascii_digit).count();
-    if x == 0.0 || !x.is_finite() || plain.contains('e') || digits >= 3 {
-        return plain;
-    }
-    let point = if plain.contains('.') { "" } else { "." };
-    format!("{plain}{point}{}", "0".repeat(3 - digits))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn columns_keep_their_zeros() {
-        let cases = [
-            (0.01, "0.0100"),
-            (3.0, "3.00"),
-            (-0.57, "−0.570"),
-            (45.5, "45.5"),
-            (1234.0, "1230"),
-            (0.0, "0"),
-        ];
-        for (x, text) in cases {
-            assert_eq!(three_digits(x), text);
-        }
-    }
 
     /// Only zeros of a fraction are left out.
     #[test]

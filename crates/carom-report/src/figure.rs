@@ -18,6 +18,8 @@ pub(crate) struct Figure {
     pub(crate) narrow: String,
     /// The drawn numbers, as the text of a `.csv` file.
     pub(crate) table: Option<String>,
+    /// What the page shows below the picture.
+    pub(crate) key: Markup,
 }
 
 impl Figure {
@@ -26,7 +28,7 @@ impl Figure {
         caption: impl Into<String>,
         [svg, narrow]: [String; 2],
     ) -> Self {
-        Self { name: name.into(), caption: caption.into(), svg, narrow, table: None }
+        Self { name: name.into(), caption: caption.into(), svg, narrow, table: None, key: Markup::default() }
     }
 
     /// The pictures on the page.

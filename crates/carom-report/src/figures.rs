@@ -10,8 +10,9 @@ use crate::labels::{capitalised, listed, symbol, words};
 use crate::measured::{Points, add_points, differences, sources};
 use crate::ordered::grouped;
 use crate::over_time::{by_size, chart, curves, of_probes, panel, shaded, shades};
-use crate::values::{is_in_space, list};
-use crate::{animation, bodies, energy, noise, pressure, setup, space, stick_slip, stopped, unshown};
+use crate::recorded::Recorded;
+use crate::values::is_in_space;
+use crate::{animation, energy, noise, pressure, setup, space, stick_slip, stopped, unshown};
 
 /// Everything that can be drawn from a record.
 #[derive(Clone, Debug, Default)]
@@ -56,40 +57,7 @@ pub(crate) fn all(run: &Run) -> Shown {
 /// The initial configuration.
 fn setup(run: &Run) -> Option<Figure> {
     let fields = run.field(run.fields.first()?).ok()?;
-    let pictures = setup::figure(run, &fields)?;
-    let case = &run.manifest.case;
-    let has = |key: &str| !list(case, key).is_empty();
-    let view = if bodies::fill_space(&fields) {
-        let is_rigid = |contact: &serde_json::Value| contact.pointer("/primary/side").is_none();
-        let rigid = list(case, "contacts").iter().any(is_rigid);
-        let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
-        let outlined = match (has("supports"), has("loads")) {
-            (true, true) => " Coloured outlines: supported and loaded faces",
-            (true, false) => " Coloured outlines: supported faces",
-            (false, true) => " Coloured outlines: loaded faces",
-            (false, false) => "",
-        };
-        let dashed = match (pictures[0].contains("stroke-dasharray"), outlined.is_empty()) {
-            (true, true) => " Dashed: what is hidden.",
-            (true, false) => "; dashed where hidden.",
-            (false, true) => "",
-            (false, false) => ".",
-        };
-        format!(" View: {}.{outlined}{dashed}{rigid}", space::View::words())
-    } else {
-        String::new()
-    };
-    let there = |(key, words): &(&'static str, &'static str)| has(key).then_some(*words);
-    // The sides of contacts are not coloured in space.
-    let contacts = if bodies::fill_space(&fields) { "" } else { "contacts" };
-    let parts =
-        [("supports", "supports"), ("loads", "loads"), (contacts, "contact sides"), ("probes", "probes")];
-    let parts: Vec<&str> = std::iter::once("mesh").chain(parts.iter().filter_map(there)).collect();
-    let parts = listed(&parts);
-    let caption = format!(
-        "Initial configuration: bodies with {parts}.{view} Data: first field file; case and sides in `manifest.json`."
-    );
-    Some(Figure::new("setup", caption, pictures))
+    setup::figure(&Recorded::new(run.clone()).ok()?, &fields)
 }
 
 /// Time histories of all probes, one panel per quantity.

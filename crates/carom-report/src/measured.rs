@@ -8,9 +8,13 @@ use carom_record::{Expectation, Expression, Run, metrics};
 
 use crate::axis::range;
 use crate::chart::{Panel, Series};
-use crate::collected::measured_label;
 use crate::ordered::grouped;
 use crate::palette::LINES;
+
+/// The label of measured data beside curves.
+pub(crate) fn measured_label(overlay: &metrics::Overlay) -> String {
+    format!("measured: {}", overlay.name)
+}
 
 /// Height of a panel of differences in pixels.
 const LOW: f64 = 84.0;

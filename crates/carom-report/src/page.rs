@@ -11,9 +11,10 @@ use crate::document::{document, figure, file, joined};
 use crate::expectations::expectations;
 use crate::figure::Figure;
 use crate::labels::{capitalised, instant_label, is_static, number};
+use crate::recorded::Recorded;
 use crate::results::results;
 use crate::scientific::powers;
-use crate::setup::{in_words, model_in_words};
+use crate::setup::table;
 use crate::stopped;
 use crate::text::{Label, Prose, typeset};
 use crate::timing::{three, timing};
@@ -94,9 +95,8 @@ fn header(run: &Run) -> Markup {
             @if let Some(name) = run.directory.file_name() { (row("Run", name.to_string_lossy())) }
             @if run.fields.is_empty() {
                 // Nothing is drawn of the model.
-                @for (name, lines) in in_words(&m.case).into_iter().chain(model_in_words(&m.case)) {
-                    (row(name, html! { @for (i, line) in lines.iter().enumerate() { @if i > 0 { br; } (Label(line)) } }))
-                }
+                @let recorded = Recorded::new(run.clone()).ok();
+                @if let Some(recorded) = recorded { (row("Model", table(&recorded.case, None))) }
             } @else if !bodies.is_empty() { (row("Bodies", bodies.join(", "))) }
             @if !m.source.sets.is_empty() {
                 (row("Changed options", html! {

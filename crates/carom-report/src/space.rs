@@ -2,16 +2,17 @@
 //! scene to turn.
 
 mod figure;
-mod painter;
+mod pieces;
 mod raster;
 mod scene;
 mod skin;
 mod view;
 mod wires;
 
-pub(crate) use figure::{DRAWN, box_of, draw, frame, instants, underlay};
-pub(crate) use painter::{Paint, pieces};
+pub(crate) use figure::{box_around, instants, underlay};
+pub(crate) use pieces::{Paint, pieces};
+pub(crate) use raster::image;
 pub(crate) use scene::section;
 pub(crate) use skin::{Facet, Place, corners, skin};
-pub(crate) use view::{View, cross, length, minus};
+pub(crate) use view::{View, cross, dot, length, minus};
 pub(crate) use wires::wires;

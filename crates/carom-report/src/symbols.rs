@@ -76,46 +76,6 @@ pub(crate) fn mark(out: &mut String, p: Point, n: Point) {
     let _ = writeln!(out, "<path d=\"{}z\" fill=\"#222\"/>", polyline(&[p, a, b]));
 }
 
-/// Double-headed arrows across or along a side that is moved.
-pub(crate) fn motion(out: &mut String, line: &[(Point, Point)], axis: Point) {
-    for (p, _) in along(line, 30.0) {
-        let [a, b] = [-9.0, 9.0].map(|s| plus(p, s, axis));
-        let side = [-axis[1], axis[0]];
-        let mut d = polyline(&[a, b]);
-        for (end, sign) in [(a, 1.0), (b, -1.0)] {
-            let [left, right] = [3.5, -3.5].map(|s| plus(plus(end, 5.0 * sign, axis), s, side));
-            d += &polyline(&[left, end, right]);
-        }
-        for (stroke, width) in [("#fff", 4.0), ("#44607c", 1.6)] {
-            let _ =
-                writeln!(out, "<path d=\"{d}\" fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{width}\"/>");
-        }
-    }
-}
-
-/// Rollers between a side and a wall: the side can move along the wall.
-pub(crate) fn rollers(out: &mut String, line: &[(Point, Point)]) {
-    wall(out, line, 9.0);
-    for (p, n) in along(line, 22.0) {
-        let c = plus(p, 4.5, n);
-        let _ = writeln!(
-            out,
-            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"3.8\" fill=\"#fff\" stroke=\"#222\" \
-             stroke-width=\"1.1\"/>",
-            c[0], c[1]
-        );
-    }
-}
-
-/// Bars along the constrained direction, for a side that is free along its normal.
-pub(crate) fn guides(out: &mut String, line: &[(Point, Point)], constrained: Point) {
-    for (p, n) in along(line, 22.0) {
-        let c = plus(p, 5.0, n);
-        let bar = polyline(&[-6.0, 6.0].map(|s| plus(c, s, constrained)));
-        let _ = writeln!(out, "<path d=\"{bar}\" stroke=\"#222\" stroke-width=\"2\"/>");
-    }
-}
-
 /// A probe: a diamond, which is not taken for a roller.
 pub(crate) fn probe_mark([x, y]: Point) -> String {
     format!(

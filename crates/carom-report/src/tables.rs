@@ -29,7 +29,7 @@ impl Chart<'_> {
 impl Plot {
     /// The figure, broad and narrow, with its table.
     pub(crate) fn figure(&self) -> Figure {
-        let pictures = [self.svg(), self.narrow()];
+        let pictures = [WIDTH, NARROW].map(|width| self.drawn(width));
         Figure::new(&self.name, &self.caption, pictures).with_table(self.csv())
     }
 

@@ -141,6 +141,5 @@ fn formula(run: &Run, what: &str) -> Option<(String, String, Vec<f64>)> {
     let (column, text) = what.split_once(" − (")?;
     let (column, text) = (column.rsplit_once('|')?.1, text.rsplit_once(")|")?.0);
     let formula = Formula::parse(text, &["t"]).ok()?;
-    let text = crate::setup::formula_in_words(text);
-    Some((column.to_owned(), text, run.times().iter().map(|t| formula.value(&[*t])).collect()))
+    Some((column.to_owned(), text.to_owned(), run.times().iter().map(|t| formula.value(&[*t])).collect()))
 }

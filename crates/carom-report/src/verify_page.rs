@@ -87,28 +87,21 @@ fn summary(v: &Verification) -> Markup {
             ("failed", format!("{missed} of {rows} expectations missed, {stopped} runs stopped unexpectedly"))
         }
     };
-    let lines = [
-        ("Set-ups", format!("{} (a study counts as one)", v.set_ups.len())),
-        ("With dynamic contact", v.with_contact().to_string()),
-        ("Simulations", v.set_ups.iter().map(|s| s.runs).sum::<usize>().to_string()),
-        ("Expected values", format!("{rows}, {sourced} with a stated source")),
-        ("Missed", missed.to_string()),
-        ("Unexpected stops", stopped.to_string()),
-        ("Wall time", format!("{} s, {} concurrent runs", three(v.wall), v.jobs)),
-        ("Machine", format!("{} cores, {}, {}", v.machine.cpus, v.machine.os, v.machine.arch)),
-        ("Date", v.started.clone()),
-        ("Selection", if v.fast { "all but those marked slow (--fast)" } else { "all" }.to_owned()),
-    ];
+    let runs = v.set_ups.iter().map(|set_up| set_up.runs).sum::<usize>();
     html! {
-        p { span.status.(class) { (word) } }
-        table.summary { @for (name, value) in lines { tr { th { (name) } td { (value) } } } }
+        p { span.status.(class) { (word) } " " (sourced) " of them with a stated source." }
+        p.small {
+            (v.set_ups.len()) " set-ups (a study counts as one), " (v.with_contact()) " with dynamic contact; " (runs)
+            " simulations in " (three(v.wall)) " s, " (v.jobs) " at once, on " (v.machine.cpus) " cores, " (v.machine.os)
+            " " (v.machine.arch) "; " (v.started) "."
+            @if v.fast { " Without cases marked slow (" code { "--fast" } ")." }
+        }
     }
 }
 
 /// What the tables of families show.
-const WORDS: &str = "Error: result − expected value; for a bound, the amount beyond it. An empty source: the \
-    case file states none beside the value; its comments may. Every value is computed from the run directory \
-    that its row links to. The hash after a title is the BLAKE3 hash of the files and options of its runs.";
+const WORDS: &str = "Error: result − expected value; for a bound, the amount beyond it. Every value is computed from \
+    the run directory that its row links to. After each title: BLAKE3 hash of the files and options of its runs.";
 
 /// Numbers of values of a family, and of those that are missed.
 fn counts(v: &Verification, name: &str) -> (usize, usize) {
@@ -171,18 +164,9 @@ fn row(row: &Row) -> Markup {
 
 fn foot(v: &Verification) -> Markup {
     html! {
-        h2 { "How to reproduce" }
-        p { "Run Carom " (v.version) " in a folder with the cases:" }
-        pre { "carom verify" @if v.fast { " --fast" } }
         p.small {
-            "Results do not depend on the number of concurrent runs; wall times do. Data in full \
-             precision: "
-            (file("verify.csv")) "."
-        }
-        p.small {
-            "Cite as: Carom " (v.version) ", verification of "
-            (v.started.split('T').next().unwrap_or_default()) " (" (v.set_ups.len()) " set-ups, "
-            (v.rows().count()) " expected values, " (v.missed()) " missed)."
+            "To reproduce: " code { "carom verify" @if v.fast { " --fast" } } " of Carom " (v.version)
+            " in a directory with the cases. Values with all digits: " (file("verify.csv")) "."
         }
     }
 }

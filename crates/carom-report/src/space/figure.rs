@@ -2,12 +2,11 @@
 
 use carom_record::{FieldSet, Run};
 
-use super::painter::{Paint, Piece, paint, pieces};
+use super::pieces::{Paint, pieces};
 use super::raster::image;
 use super::skin::{Facet, Place, skin};
 use super::view::View;
 use super::wires::wires;
-use crate::again::Rectangle;
 use crate::bands::{Bands, positive_bands};
 use crate::bodies::places;
 use crate::labels::instant_label;
@@ -15,8 +14,6 @@ use crate::pen::{GRID, NOTHING, Pen, Point, around, path};
 use crate::quantity::stresses;
 use crate::sheet::{Legend, Sheet};
 
-/// Largest number of triangles of a figure that are drawn one by one.
-pub(crate) const DRAWN: usize = 6000;
 /// Room for the axes below the pictures.
 const FOOT: f64 = 84.0;
 /// Colour and width of the lines on rigid obstacles.
@@ -24,17 +21,8 @@ const RIGID: &str = "#b9b4ab";
 const THIN: f64 = 0.7;
 
 /// Bounding box of facets on the page in units of length: left, right, bottom, top.
-pub(crate) fn frame(skin: &[Facet], places: &[Place], view: &View) -> [f64; 4] {
+fn frame(skin: &[Facet], places: &[Place], view: &View) -> [f64; 4] {
     around(NOTHING, skin.iter().flat_map(|f| &f.nodes).map(|&k| view.on_page(places[k])))
-}
-
-/// Draws pieces one by one or, if there are too many, as an image.
-pub(crate) fn draw(out: &mut String, pieces: &[Piece], colors: &Paint, place: Rectangle, drawn: bool) {
-    if drawn {
-        paint(out, pieces, colors);
-    } else {
-        out.push_str(&image(pieces, colors, place));
-    }
 }
 
 /// The figure, also for a narrow window, with its caption, and the bands of its colours; nothing
@@ -70,13 +58,11 @@ pub(crate) fn instants(
         let (_, places, mises) = &list[k];
         pieces(&skin, places, &|_, node| mises[node], &view, to, scale)
     };
-    // How many there are does not depend on their size.
-    let count: usize = (0..list.len()).map(|k| seen(k, &|p| p, 1.0).len()).sum();
     let picture = |sheet: &mut Sheet, k: usize| {
         let (place, to) = (sheet.picture(k), sheet.map(k));
         underlay(&mut sheet.out, &lines[k], &view, &to);
         let pieces = seen(k, &to, sheet.scale);
-        draw(&mut sheet.out, &pieces, &Paint::Bands(&bands), place, count <= DRAWN);
+        sheet.out.push_str(&image(&pieces, &Paint::Bands(&bands), place));
     };
     let finish = |mut sheet: Sheet| {
         let triad = [36.0, sheet.pictures + 36.0];
@@ -96,7 +82,7 @@ pub(crate) fn box_of(skin: &[Facet], places: &[Place]) -> [Place; 2] {
 }
 
 /// Corners of the box of these places.
-pub(super) fn box_around(places: impl Iterator<Item = Place>) -> [Place; 2] {
+pub(crate) fn box_around(places: impl Iterator<Item = Place>) -> [Place; 2] {
     let nothing = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     places.fold(nothing, |[low, high], place| {
         [[0, 1, 2].map(|d| low[d].min(place[d])), [0, 1, 2].map(|d| high[d].max(place[d]))]

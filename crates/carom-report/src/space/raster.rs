@@ -1,10 +1,9 @@
-//! Pieces as an image with a depth for each pixel, for skins of more triangles than a drawing can
-//! hold.
+//! Pieces as an image with a depth for each pixel.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::painter::{EDGE, LINE, Paint, Piece};
+use super::pieces::{EDGE, LINE, Paint, Piece};
 use super::skin::Place;
 use crate::again::Rectangle;
 use crate::palette::rgb;

@@ -68,6 +68,10 @@ impl View {
             let to = [0, 1].map(|i| self.axes[i][d] * length);
             let to = [from[0] + to[0], from[1] - to[1]];
             let along = direction(from, to);
+            // An axis along the line of sight.
+            if along == [0.0; 2] {
+                continue;
+            }
             let neck = plus(to, -6.0, along);
             let [a, b] = [2.6, -2.6].map(|s| plus(neck, s, [-along[1], along[0]]));
             let (shaft, head) = (polyline(&[from, neck]), polyline(&[to, a, b]));

@@ -28,10 +28,10 @@ fn student(degrees: usize) -> f64 {
 
 /// A fitted line.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fit {
-    pub(crate) slope: f64,
+pub(super) struct Fit {
+    pub(super) slope: f64,
     /// Half-width of the interval of the slope.
-    pub(crate) uncertainty: f64,
+    pub(super) uncertainty: f64,
     middle: (f64, f64),
     count: f64,
     width: f64,
@@ -41,7 +41,7 @@ pub(crate) struct Fit {
 
 impl Fit {
     /// Through at least three points with different x.
-    pub(crate) fn of(x: &[f64], y: &[f64]) -> Option<Self> {
+    pub(super) fn of(x: &[f64], y: &[f64]) -> Option<Self> {
         let n = x.len().min(y.len());
         if n < 3 || x.iter().chain(y).any(|v| !v.is_finite()) {
             return None;
@@ -62,7 +62,7 @@ impl Fit {
     }
 
     /// Value of the line and half-width of its interval.
-    pub(crate) fn at(&self, x: f64) -> (f64, f64) {
+    pub(super) fn at(&self, x: f64) -> (f64, f64) {
         let d = x - self.middle.0;
         (self.middle.1 + self.slope * d, self.spread * (1.0 / self.count + d * d / self.width).sqrt())
     }

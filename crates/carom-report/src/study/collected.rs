@@ -7,12 +7,13 @@ use carom_record::study::Study;
 use carom_record::study::checks::fingerprint;
 use carom_record::study::reference::FORCE;
 
+use super::systems::Systems;
 use crate::digits::five;
 use crate::labels::{is_stress, symbol, words};
+use crate::measured::measured_label;
 use crate::noise;
 use crate::ordered::distinct;
-use crate::plot::Curve;
-use crate::systems::Systems;
+use crate::plot::{Curve, Drawn};
 use crate::trace::ends_and_extremes;
 
 /// Columns shown besides those of the probes: name, label, caption.
@@ -25,29 +26,29 @@ const OTHERS: [(&str, &str, &str); 5] = [
 ];
 
 /// A column of all arms, thinned.
-pub(crate) struct Column {
-    pub(crate) name: String,
-    pub(crate) unit: String,
-    pub(crate) curves: Vec<(usize, Vec<f64>, Vec<f64>)>,
+pub(super) struct Column {
+    pub(super) name: String,
+    pub(super) unit: String,
+    pub(super) curves: Vec<(usize, Vec<f64>, Vec<f64>)>,
 }
 
 /// The origin of the record of an arm.
-pub(crate) struct Origin {
+pub(super) struct Origin {
     /// Number of the arm.
-    pub(crate) arm: usize,
+    pub(super) arm: usize,
     /// Hash of its input.
-    pub(crate) input: String,
+    pub(super) input: String,
     /// Hash of its tables.
-    pub(crate) record: String,
+    pub(super) record: String,
     /// Rejected steps.
-    pub(crate) rejected: u64,
+    pub(super) rejected: u64,
     /// Number of fallbacks and cycles of the solver.
-    pub(crate) fallbacks: usize,
+    pub(super) fallbacks: usize,
 }
 
 impl Origin {
     /// From the record of an arm.
-    pub(crate) fn of(arm: usize, run: &Run) -> Self {
+    pub(super) fn of(arm: usize, run: &Run) -> Self {
         let fallback = |kind: &str| ["fallback", "cycle", "no-stress"].contains(&kind);
         let fallbacks = run.log.iter().filter(|e| fallback(&e.kind)).count();
         let rejected = run.manifest.counters.get("rejected").copied().unwrap_or_default();
@@ -57,18 +58,18 @@ impl Origin {
 }
 
 /// The first arm whose record is bitwise that of an arm, if it is another one.
-pub(crate) fn twin(origins: &[Origin], arm: usize) -> Option<usize> {
+pub(super) fn twin(origins: &[Origin], arm: usize) -> Option<usize> {
     let own = origins.iter().find(|origin| origin.arm == arm && !origin.record.is_empty())?;
     let first = origins.iter().find(|origin| origin.record == own.record)?.arm;
     (first != arm).then_some(first)
 }
 
 /// The measured data of a study and of the cases of its arms.
-pub(crate) struct Measured(pub(crate) Vec<Overlay>);
+pub(super) struct Measured(pub(super) Vec<Overlay>);
 
 impl Measured {
     /// Adds the data that are not known yet.
-    pub(crate) fn add(&mut self, found: Vec<Overlay>) {
+    pub(super) fn add(&mut self, found: Vec<Overlay>) {
         for overlay in found {
             if !self.0.contains(&overlay) {
                 self.0.push(overlay);
@@ -80,19 +81,19 @@ impl Measured {
         self.0.iter().filter(move |overlay| overlay.column == column)
     }
 
-    /// The points of a column up to the end of the arms; `unlisted` as of the curves.
-    pub(crate) fn points(&self, column: &str, end: f64, unlisted: bool) -> Vec<Curve> {
+    /// The points of a column up to the end of the arms.
+    pub(super) fn points(&self, column: &str, end: f64) -> Vec<Curve> {
         let points = |(k, overlay): (usize, &Overlay)| {
             let (x, y) = overlay.within(0.0, end);
             // Colours that are far from those of most arms, of which the first is black.
             let style = [4, 5, 6][k % 3];
-            Curve { label: measured_label(overlay), style, x, y, points: true, unlisted, ..Curve::default() }
+            Curve { label: measured_label(overlay), style, x, y, drawn: Drawn::Dots, ..Curve::default() }
         };
         self.of(column).enumerate().map(points).filter(|curve| !curve.x.is_empty()).collect()
     }
 
     /// What the caption of a column says about them.
-    pub(crate) fn words(&self, column: &str) -> String {
+    pub(super) fn words(&self, column: &str) -> String {
         let one = |overlay: &Overlay| {
             let source = overlay.source.as_ref().map_or_else(String::new, |source| format!(" ({source})"));
             format!("\u{201c}{}\u{201d}{source}", overlay.name)
@@ -108,13 +109,8 @@ impl Measured {
     }
 }
 
-/// The label of measured data beside curves.
-pub(crate) fn measured_label(overlay: &Overlay) -> String {
-    format!("measured: {}", overlay.name)
-}
-
 /// Adds the columns of an arm, measured ones included.
-pub(crate) fn collect(
+pub(super) fn collect(
     columns: &mut Vec<Column>,
     measured: &Measured,
     systems: &mut Systems,
@@ -164,24 +160,24 @@ fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// The unit of times, from the metrics of the arms; empty before any has finished.
-pub(crate) fn time_unit(study: &Study) -> &str {
+pub(super) fn time_unit(study: &Study) -> &str {
     let times = ["contact_start", "contact_duration", "apex_time"];
     let metrics = study.rows.iter().flat_map(|row| &row.metrics);
     metrics.filter(|m| times.contains(&&*m.name)).map(|m| m.unit.as_str()).next().unwrap_or_default()
 }
 
 /// The unit of time of all arms; empty if they have several.
-pub(crate) fn common_time(study: &Study) -> &str {
+pub(super) fn common_time(study: &Study) -> &str {
     if Systems::of(&study.manifest).is_one() { time_unit(study) } else { "" }
 }
 
 /// A time with its unit.
-pub(crate) fn in_time(study: &Study, value: f64) -> String {
+pub(super) fn in_time(study: &Study, value: f64) -> String {
     format!("{} {}", five(value), time_unit(study)).trim_end().to_owned()
 }
 
 /// Symbol and description of a column.
-pub(crate) fn named(column: &str) -> (String, String) {
+pub(super) fn named(column: &str) -> (String, String) {
     match (OTHERS.iter().find(|o| o.0 == column), column.rsplit_once('.')) {
         (Some((_, label, caption)), _) => ((*label).to_string(), (*caption).to_string()),
         (None, Some((probe, quantity))) => {

@@ -45,7 +45,7 @@ fn factored(v: &Verdict, right: f64) -> String {
 }
 
 /// The section of the page; nothing for a study without claims.
-pub(crate) fn section(study: &Study) -> Markup {
+pub(super) fn section(study: &Study) -> Markup {
     if study.verdicts.is_empty() {
         return Markup::default();
     }
@@ -59,7 +59,6 @@ pub(crate) fn section(study: &Study) -> Markup {
         None => v.word().to_owned(),
     };
     html! {
-        h2 { "Claims" }
         p { (confirmed) " of " (study.verdicts.len()) " confirmed" @if all { " in all members of the ensemble" } "." }
         div.scroll {
             table.claims {

@@ -3,20 +3,20 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use carom_case::Units;
 use carom_record::Run;
 use carom_record::conversion;
 use carom_record::study::{Arm, Study, StudyManifest};
 
-use crate::values::unit;
-
 /// Labels of length, time and mass of an arm.
-fn system(arm: &Arm) -> [&str; 3] {
-    ["length", "time", "mass"].map(|of| unit(&arm.case, of))
+fn system(arm: &Arm) -> [String; 3] {
+    let units = arm.case.get("units").and_then(|units| serde_json::from_value::<Units>(units.clone()).ok());
+    units.map(|Units { length, time, mass, .. }| [length, time, mass]).unwrap_or_default()
 }
 
 /// What the arms are converted to.
 #[derive(Default)]
-pub(crate) struct Systems {
+pub(super) struct Systems {
     /// Whether each run is in the system of the first arm.
     own: Vec<bool>,
     first: [String; 3],
@@ -25,24 +25,24 @@ pub(crate) struct Systems {
 }
 
 impl Systems {
-    pub(crate) fn of(manifest: &StudyManifest) -> Self {
+    pub(super) fn of(manifest: &StudyManifest) -> Self {
         let first = manifest.arms.first().map(system).unwrap_or_default();
         let own = manifest.runs().map(|arm| system(arm) == first).collect();
-        Self { own, first: first.map(str::to_owned), unknown: BTreeSet::new() }
+        Self { own, first, unknown: BTreeSet::new() }
     }
 
     /// Whether a run is in the system of the first arm.
-    pub(crate) fn is_own(&self, run: usize) -> bool {
+    pub(super) fn is_own(&self, run: usize) -> bool {
         self.own.get(run).is_none_or(|own| *own)
     }
 
     /// Whether all runs are.
-    pub(crate) fn is_one(&self) -> bool {
+    pub(super) fn is_one(&self) -> bool {
         self.own.iter().all(|own| *own)
     }
 
     /// What the values of a run are multiplied by.
-    pub(crate) fn factor(&mut self, run: usize, from: &str, to: &str) -> Option<f64> {
+    pub(super) fn factor(&mut self, run: usize, from: &str, to: &str) -> Option<f64> {
         if self.is_own(run) {
             return Some(1.0);
         }
@@ -54,13 +54,13 @@ impl Systems {
     }
 
     /// What the times of a run are multiplied by.
-    pub(crate) fn of_times(&mut self, arm: usize, run: &Run) -> Option<f64> {
+    pub(super) fn of_times(&mut self, arm: usize, run: &Run) -> Option<f64> {
         let to = self.first[1].clone();
         self.factor(arm, run.history.unit("time"), &to)
     }
 
     /// Converts the metrics of all runs; one in an unknown unit has no value.
-    pub(crate) fn convert(&mut self, study: &mut Study) {
+    pub(super) fn convert(&mut self, study: &mut Study) {
         if self.is_one() {
             return;
         }
@@ -85,7 +85,7 @@ impl Systems {
     }
 
     /// What the page says about it; nothing where all arms have one system.
-    pub(crate) fn words(&self) -> Option<String> {
+    pub(super) fn words(&self) -> Option<String> {
         if self.is_one() {
             return None;
         }
@@ -105,7 +105,7 @@ impl Systems {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trend::tests::study;
+    use crate::study::trend::tests::study;
     use serde_json::json;
 
     /// 1 in = 25.4 mm and 1 lbf = 4.448 222 N (NIST SP 811): the metrics of all arms are those of

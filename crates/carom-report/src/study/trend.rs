@@ -6,13 +6,13 @@ use carom_record::metrics::Metric;
 use carom_record::study::{Refinement, Study, varied_keys};
 use maud::{Markup, html};
 
-use crate::collected::{common_time, time_unit};
-use crate::curves::Keys;
+use super::collected::{common_time, time_unit};
+use super::curves::Keys;
+use super::fit::Fit;
+use super::settings::own_settings;
 use crate::digits::three;
-use crate::fit::Fit;
 use crate::labels::{file_name, with_unit};
-use crate::plot::{Band, Curve, Pane, Plot};
-use crate::settings::own_settings;
+use crate::plot::{Band, Curve, Drawn, Pane, Plot};
 use crate::text::{Label, said_if};
 
 /// Fewest values of a key.
@@ -20,8 +20,6 @@ const LEAST: usize = 3;
 /// Fewest values from which a line is fitted: through three, the interval of its slope is twelve
 /// times the standard error.
 const FITTED: usize = 4;
-/// What is said where there are fewer.
-const NOT_FITTED: &str = " No line is fitted to fewer than four values.";
 /// Panes of a figure.
 const MOST: usize = 9;
 /// Factor between the largest and the smallest number from which logarithms are used.
@@ -63,7 +61,7 @@ fn points(study: &Study, group: &Refinement, metric: &str) -> (Vec<f64>, Vec<f64
 }
 
 /// Whether values differ by round-off only.
-fn is_constant(values: &[f64]) -> bool {
+pub(super) fn is_constant(values: &[f64]) -> bool {
     let (low, high) = crate::axis::range(values);
     high - low <= 1e-9 * high.abs().max(low.abs())
 }
@@ -133,16 +131,18 @@ impl Trend {
     }
 }
 
+/// The place of a metric among those that are shown first.
+pub(super) fn rank(name: &str) -> usize {
+    let base = name.split_once(':').map_or(name, |(base, _)| base);
+    FIRST.iter().position(|first| *first == base).unwrap_or(FIRST.len())
+}
+
 /// Metrics that vary, those of [`FIRST`] first.
 fn metrics<'a>(study: &'a Study, key: &str, groups: &[Refinement]) -> Vec<&'a Metric> {
     let known = |name: &str| {
         let values: Vec<Vec<f64>> = groups.iter().map(|group| points(study, group, name).1).collect();
         // What differs between groups only does not vary against the key.
         values.iter().map(Vec::len).sum::<usize>() >= LEAST && values.iter().any(|own| !is_constant(own))
-    };
-    let rank = |name: &str| {
-        let base = name.split_once(':').map_or(name, |(base, _)| base);
-        FIRST.iter().position(|first| *first == base).unwrap_or(FIRST.len())
     };
     let is_shown = |m: &&Metric| !m.is_work() && known(&m.name) && !is_whole_steps(study, key, m);
     let mut found: Vec<_> = study.metrics().into_iter().filter(is_shown).collect();
@@ -169,7 +169,7 @@ fn axis(study: &Study, key: &str) -> String {
 }
 
 /// A figure for every key.
-pub(crate) fn plots(study: &Study) -> Vec<Plot> {
+pub(super) fn plots(study: &Study) -> Vec<Plot> {
     varied_keys(&study.manifest, LEAST).iter().filter_map(|(key, groups)| plot(study, key, groups)).collect()
 }
 
@@ -195,13 +195,13 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
                 pane.curves.push(Curve { label, style, x, y, unlisted: true, ..Curve::default() });
                 pane.band = single.then_some(band);
             }
+            let drawn = Drawn::Markers;
             pane.curves.push(Curve {
                 label,
                 style,
                 x: trend.x,
                 y: trend.y,
-                marked: true,
-                points: true,
+                drawn,
                 unlisted: single,
                 ..Curve::default()
             });
@@ -210,60 +210,30 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
     };
     let metrics = metrics(study, key, groups);
     let panes: Vec<Pane> = metrics.iter().take(MOST).map(pane).collect();
+    if panes.is_empty() {
+        return None;
+    }
     let which = if metrics.len() > MOST {
         format!("{MOST} of the {} metrics that vary", metrics.len())
     } else {
         "Metrics".to_owned()
     };
-    let arms: usize = groups.iter().map(|group| group.arms.len()).sum();
-    let of = match study.rows.len() {
-        all if all > arms => format!(", of the {arms} of {all} arms that differ in nothing else"),
-        _ => String::new(),
-    };
-    let fitted = panes.iter().flat_map(|pane| &pane.curves).any(|curve| !curve.marked);
-    let lines = match (fitted, wide) {
-        (false, _) => NOT_FITTED,
-        (true, false) => " Lines: least squares.",
-        (true, true) => {
-            " Lines: least squares, of the logarithms of both where the metric also spans a factor of three."
-        }
-    };
-    let few = |curve: &Curve| curve.marked && curve.x.len() < FITTED;
-    let short = fitted && panes.iter().flat_map(|pane| &pane.curves).any(few);
-    let short = said_if(short, NOT_FITTED);
-    let unsound = |arm: &usize| study.rows[*arm].is_unsound();
-    let left_out = said_if(
-        groups.iter().flat_map(|group| &group.arms).any(unsound),
-        " Arms that failed or created energy are left out.",
-    );
-    let mut plot = Plot {
+    let curves = || panes.iter().flat_map(|pane| &pane.curves);
+    let is_fitted = curves().any(|curve| curve.drawn == Drawn::Line);
+    let lines =
+        said_if(is_fitted, " Lines: least squares, through four values or more; the title says of what.");
+    let grey = said_if(single && is_fitted, " Grey: 95 % confidence interval of the line.");
+    let is_left_out = groups.iter().flat_map(|group| &group.arms).any(|arm| study.rows[*arm].is_unsound());
+    let left_out = said_if(is_left_out, " Arms that failed or created energy are left out.");
+    Some(Plot {
         name: format!("trend-{}", file_name(key)),
+        caption: format!("{which} against `{key}`.{lines}{grey}{left_out}"),
         x_label: axis(study, key),
         log: [wide, false],
         across: 3,
         panes,
         ..Plot::default()
-    };
-    if plot.panes.is_empty() {
-        return None;
-    }
-    let grey = if single && fitted { interval(&plot) } else { String::new() };
-    let scale = match (wide, fitted) {
-        (false, _) => "",
-        (true, false) => " on a logarithmic axis",
-        (true, true) => " on a logarithmic axis, where straight lines look curved",
-    };
-    plot.caption = format!("{which} against `{key}`{scale}{of}.{lines}{short}{grey}{left_out}");
-    Some(plot)
-}
-
-/// What is said of the intervals, of which no part higher than the pane is drawn.
-fn interval(plot: &Plot) -> String {
-    let all = plot.panes.iter().all(|pane| plot.shown_band(pane).iter().all(|shown| *shown));
-    format!(
-        " Grey: 95 % confidence interval of the line{}.",
-        said_if(!all, ", where it does not exceed the axis")
-    )
+    })
 }
 
 /// The labels of groups, without the settings that all of them have.
@@ -281,18 +251,17 @@ fn labels(study: &Study, groups: &[Refinement]) -> Vec<String> {
 }
 
 /// Slopes and exponents with their intervals.
-pub(crate) fn section(study: &Study) -> Markup {
+pub(super) fn section(study: &Study) -> Markup {
     let mut found = varied_keys(&study.manifest, LEAST);
     found.retain(|_, groups| groups.iter().any(|group| group.arms.len() >= FITTED));
     html! {
         @if !found.is_empty() {
-            h2 { "Trends" }
             @for (key, groups) in &found {
                 @let labels = labels(study, groups);
                 details {
                     summary { "Slopes and exponents in " code { (key) } }
                     table.metrics {
-                        thead { tr { th { "Metric" } th { "Unit" } th { "Arms" } th { "95 % interval" } } }
+                        thead { tr { th { "Metric" } th { "Unit" } th { "Arms" } th { "Slope or exponent" } } }
                         @for metric in metrics(study, key, groups) {
                             @let power = power(study, groups, &metric.name);
                             @for (group, label) in groups.iter().zip(&labels) {
@@ -308,9 +277,8 @@ pub(crate) fn section(study: &Study) -> Markup {
                 }
             }
             p.small {
-                "Exponent: of the power of the key that fits best, where metric and key are positive and span a \
-                 factor of three in all groups of arms; slope: of a straight line, in the unit of the metric per \
-                 unit of the key. Interval: that of least squares, as if the deviations were random."
+                "Exponent: of the power of the key, where metric and key are positive and span a factor of three in all \
+                 groups of arms; slope: of a straight line. With the 95 % interval of least squares."
             }
         }
     }
@@ -478,7 +446,7 @@ pub(crate) mod tests {
         let three = self::study(&arms[..3]);
         assert!(section(&three).into_string().is_empty());
         let plot = plots(&three).swap_remove(0);
-        assert!(plot.caption.contains("No line") && plot.panes[0].curves.len() == 1, "{}", plot.caption);
+        assert_eq!(plot.panes[0].curves.len(), 1);
         let study = study(&arms);
         let plot = plots(&study).swap_remove(0);
         assert_eq!(plot.panes.len(), 9);

@@ -1,12 +1,10 @@
-//! Facets as small flat triangles, and their drawing by the painter: the farthest first.
-
-use std::fmt::Write as _;
+//! Facets as small flat triangles, and their colours.
 
 use super::skin::{Facet, Place};
 use super::view::View;
-use crate::bands::{Bands, divided, parts, shape, small_triangles};
+use crate::bands::{Bands, divided, shape, small_triangles};
 use crate::palette::rgb;
-use crate::pen::{GRID, Pen, Point, open_grid};
+use crate::pen::Point;
 
 /// A triangle of the page that faces the eye.
 pub(crate) struct Piece {
@@ -59,15 +57,6 @@ impl Paint<'_> {
             Self::Parts(_) => lit(color, brightness),
         }
     }
-
-    /// The parts of a piece by colour.
-    fn parts(&self, piece: &Piece) -> Vec<(usize, Vec<Point>)> {
-        let flat = piece.corners.map(|[x, y, _]| [x, y]);
-        match self {
-            Self::Bands(bands) => parts(&[0, 1, 2].map(|k| (flat[k], piece.values[k])), bands),
-            Self::Parts(_) => vec![(self.of(piece.values[0]), flat.to_vec())],
-        }
-    }
 }
 
 /// A colour in the light of a brightness.
@@ -115,42 +104,6 @@ pub(crate) fn pieces(
         }
     }
     pieces
-}
-
-/// Draws pieces, the farthest first.
-pub(crate) fn paint(out: &mut String, pieces: &[Piece], paint: &Paint) {
-    let depth = |p: &Piece| p.corners[0][2] + p.corners[1][2] + p.corners[2][2];
-    let mut order: Vec<&Piece> = pieces.iter().collect();
-    order.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-    out.push_str(&open_grid());
-    out.push_str("<g stroke-linejoin=\"round\" stroke-width=\"8\">\n");
-    for piece in order {
-        for (number, polygon) in paint.parts(piece) {
-            let mut pen = Pen::default();
-            pen.polygon(&polygon);
-            let [r, g, b] = paint.lit(paint.rgb(number), piece.brightness);
-            // A stroke in the colour of the fill closes the hairlines between neighbours.
-            let color = format!("#{r:02x}{g:02x}{b:02x}");
-            let _ = writeln!(out, "<path d=\"{}\" fill=\"{color}\" stroke=\"{color}\"/>", pen.data());
-        }
-        let mut pen = Pen::default();
-        for side in (0..3).filter(|&side| piece.edges[side]) {
-            let [a, b] = [side, (side + 1) % 3].map(|k| [piece.corners[k][0], piece.corners[k][1]]);
-            pen.go(a);
-            pen.draw(&[b]);
-        }
-        if !pen.is_empty() {
-            let width = EDGE * GRID;
-            // Small pictures have more lines than colour.
-            let faint = if matches!(paint, Paint::Bands(_)) { " stroke-opacity=\"0.45\"" } else { "" };
-            let _ = writeln!(
-                out,
-                "<path d=\"{}\" fill=\"none\" stroke=\"{LINE}\" stroke-width=\"{width}\"{faint}/>",
-                pen.data()
-            );
-        }
-    }
-    out.push_str("</g>\n</g>\n");
 }
 
 /// Width in pixels and colour of an edge of a cell.

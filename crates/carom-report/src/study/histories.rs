@@ -1,0 +1,165 @@
+//! Histories of the arms of a study, a figure for each column: the curves of a few arms over each
+//! other, and enlarged for the first contact; of more arms, and with a reference, a pane for each.
+
+use carom_record::study::Study;
+use carom_record::study::reference::{FORCE, Reference};
+
+use super::collected::{Column, Measured, common_time, named};
+use super::comparison::{methods, style_of};
+use super::curves::{Keys, contact, is_rough};
+use crate::labels::{capitalised, file_name, with_unit};
+use crate::plot::{Band, Curve, Pane, Plot};
+use crate::text::said_if;
+
+/// Most curves over each other.
+const TOGETHER: usize = 8;
+/// Most panes.
+const PANES: usize = 24;
+/// Figures that are shown; the others are folded away.
+const OPEN: usize = 4;
+/// Most points of the reference in a pane.
+const POINTS: usize = 1200;
+
+/// The figures of all columns.
+pub(super) fn plots(study: &Study, columns: &[Column], measured: &Measured, time: &str) -> Vec<Plot> {
+    let all = columns.iter().filter_map(|column| plot(study, column, measured));
+    let folded =
+        |(k, plot): (usize, Plot)| Plot { folded: k >= OPEN, x_label: with_unit("time t", time), ..plot };
+    all.enumerate().map(folded).collect()
+}
+
+/// The reference of a column as a line, and where its value is established, the band of its
+/// uncertainty.
+fn reference_of(reference: &Reference, column: &str) -> Option<(Curve, Option<Band>)> {
+    let (x, y) = reference.column(column).filter(|(x, _)| !x.is_empty())?;
+    let off = reference.band(column);
+    let piece = (2 * x.len()).div_ceil(POINTS).max(1);
+    let rows = extremes(y, piece);
+    let around = |i: usize| i / piece * piece..(i / piece * piece + piece).min(y.len());
+    let low = |i: &usize| around(*i).map(|k| y[k] - off[k]).fold(f64::INFINITY, f64::min);
+    let high = |i: &usize| around(*i).map(|k| y[k] + off[k]).fold(f64::NEG_INFINITY, f64::max);
+    let x: Vec<f64> = rows.iter().map(|i| x[*i]).collect();
+    let is_known = reference.uncertainty(column).established().is_some();
+    let band = is_known.then(|| Band {
+        name: "uncertainty",
+        x: x.clone(),
+        low: rows.iter().map(low).collect(),
+        high: rows.iter().map(high).collect(),
+    });
+    let y = rows.iter().map(|i| y[*i]).collect();
+    Some((Curve { label: "reference".to_owned(), thin: true, x, y, ..Curve::default() }, band))
+}
+
+/// The rows with the least and the largest value of every piece, and both ends: no peak is lost.
+fn extremes(y: &[f64], piece: usize) -> Vec<usize> {
+    let mut found = vec![0];
+    for from in (0..y.len()).step_by(piece.max(1)) {
+        let rows = || from..(from + piece).min(y.len());
+        let least = rows().min_by(|a, b| y[*a].total_cmp(&y[*b]));
+        let largest = rows().max_by(|a, b| y[*a].total_cmp(&y[*b]));
+        found.extend(least.into_iter().chain(largest));
+    }
+    found.push(y.len() - 1);
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// The curves of a column: with a goal of every method at its finest level, else of every arm.
+fn curves(study: &Study, column: &Column) -> Vec<Curve> {
+    let keys = Keys::of(study.rows.iter().map(|row| row.name.as_str()), common_time(study));
+    let chosen = study.recommended();
+    let shown: Vec<(String, Vec<usize>)> = if study.manifest.goal.is_some() {
+        methods(study).into_iter().map(|(name, arms)| (name.to_owned(), arms)).collect()
+    } else {
+        (0..study.rows.len()).map(|arm| (keys.label(&study.rows[arm].name), vec![arm])).collect()
+    };
+    let curve = |(label, arms): (String, Vec<usize>)| {
+        let finest = *arms.last()?;
+        let (_, x, y) = column.curves.iter().find(|(arm, ..)| *arm == finest)?;
+        Some(Curve {
+            label,
+            style: style_of(study, finest),
+            x: x.clone(),
+            y: y.clone(),
+            apart: study.rows[finest].is_unsound(),
+            chosen: arms.iter().any(|arm| chosen == Some(*arm)),
+            ..Curve::default()
+        })
+    };
+    shown.into_iter().filter_map(curve).collect()
+}
+
+fn plot(study: &Study, column: &Column, measured: &Measured) -> Option<Plot> {
+    let (label, what) = named(&column.name);
+    let y_label = with_unit(&label, &column.unit);
+    let found = curves(study, column);
+    let end = found.iter().filter_map(|curve| curve.x.last()).copied().fold(0.0, f64::max);
+    let contact = contact(study, end);
+    let points = measured.points(&column.name, end);
+    let reference = study.reference.as_ref().and_then(|reference| reference_of(reference, &column.name));
+    let is_apart = found.iter().any(|curve| curve.apart);
+    let rough = found.iter().filter(|curve| is_rough(curve)).count();
+    let is_each = found.len() > TOGETHER || found.len() > 1 && (reference.is_some() || rough > 1);
+    let hidden = found.len().saturating_sub(PANES);
+    let panes: Vec<Pane> = if is_each {
+        let (line, band) = reference.clone().map_or((None, None), |(line, band)| (Some(line), band));
+        let pane = |curve: Curve| {
+            let mark = if curve.chosen { "▸ " } else { "" };
+            let curve = Curve { unlisted: true, ..curve };
+            Pane {
+                name: curve.label.clone(),
+                title: format!("{mark}{}", curve.label),
+                y_label: y_label.clone(),
+                curves: line.iter().cloned().chain([curve]).chain(points.iter().cloned()).collect(),
+                band: band.clone(),
+                span: contact,
+                ..Pane::default()
+            }
+        };
+        found.into_iter().take(PANES).map(pane).collect()
+    } else {
+        let curves: Vec<Curve> = found.into_iter().chain(points).collect();
+        let whole = Pane { name: "whole time".into(), y_label, curves, ..Pane::default() };
+        let title = "during the first contact".to_owned();
+        let part = contact.map(|span| Pane { title, span: Some(span), ..whole.clone() });
+        std::iter::once(whole).chain(part.map(|part| Pane { name: String::new(), ..part })).collect()
+    };
+    if panes.iter().all(|pane| pane.curves.is_empty()) {
+        return None;
+    }
+    let band = reference.as_ref().is_some_and(|(_, band)| band.is_some());
+    let notes = [
+        said_if(is_each && contact.is_some(), " during the first contact"),
+        said_if(is_each && study.manifest.goal.is_some(), ", for each method at its finest level"),
+        said_if(is_each, "; all panes have the same axes"),
+        ".",
+        said_if(is_each && reference.is_some(), " Dashed: the reference"),
+        said_if(is_each && band, ", with the band of its uncertainty"),
+        said_if(is_each && reference.is_some(), "."),
+        said_if(is_each && study.recommended().is_some(), " ▸: recommended."),
+        said_if(is_apart, " Grey: failed or created energy; no influence on the axes."),
+    ];
+    let hidden = if is_each && hidden > 0 { format!(" {hidden} more are not drawn.") } else { String::new() };
+    let caption = format!("{}{}{hidden}{}", capitalised(&what), notes.concat(), measured.words(&column.name));
+    let name = if column.name == FORCE { "contact-force" } else { &column.name };
+    let across = if is_each { 3 } else { 1 };
+    Some(Plot { name: file_name(name), caption, across, same: is_each, panes, ..Plot::default() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::extremes;
+
+    /// A peak of one row is drawn, wherever it lies in its piece.
+    #[test]
+    fn no_peak_is_lost() {
+        for at in 0..40 {
+            let mut y = vec![1.0; 40];
+            y[at] = 7.0;
+            let rows = extremes(&y, 9);
+            assert!(rows.contains(&at) && rows.contains(&0) && rows.contains(&39), "{at}: {rows:?}");
+            assert!(rows.len() <= 12);
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! The ranking of the arms of a study and what it rests on: reference values, the other goals, and
+//! the comparison at equal steps or equal cost.
+
+use carom_record::metrics::Metric;
+use carom_record::study::design::{Goal, Kind};
+use carom_record::study::ranking::{Crosscheck, Ranking, standing};
+use carom_record::study::reference::{Reference, Standing};
+use carom_record::study::{Study, step};
+use maud::{Markup, html};
+
+use super::collected::{Origin, in_time, time_unit, twin};
+use super::comparison::methods;
+use super::settings::is_off_budget;
+use crate::digits::{count, five, three};
+use crate::document::{file, or_dash};
+use crate::labels::with_unit;
+use crate::text::{Label, typeset};
+
+/// How places are given.
+const PLACES: &str = "The place of an arm is one plus the number of arms that are distinguishably better: by more \
+    than the uncertainty of the reference, than the spreads of both over the ensemble added, and than 5 %; identical \
+    arms count once. Within a place arms are in the order of their cost.";
+
+/// Orders above it are not those of a scheme.
+const HIGHEST: f64 = 4.0;
+
+/// The ranking; nothing for a study without a goal.
+pub(super) fn section(study: &Study, origins: &[Origin]) -> Markup {
+    let Some(ranking) = &study.ranking else { return Markup::default() };
+    html! {
+        @if let Ok(measure) = &ranking.measure {
+            p {
+                "Ranked by " (Label(&measure.words)) " (uncertainty of the errors: " (three(measure.uncertainty)) ")."
+            }
+            (table(study, ranking, origins))
+            p.small { (PLACES) " With all digits: " (file("ranking.csv")) "." }
+            (crosschecks(study, ranking))
+        }
+        (other_goals(study))
+        @match &study.reference {
+            Some(reference) => (reference_values(study, reference)),
+            None => p {
+                "No finished reference: only quantities whose exact value is known, such as the energy, can be ranked."
+            },
+        }
+    }
+}
+
+/// A heading, and the cell of an arm.
+type Column<'a> = (String, Box<dyn Fn(usize) -> Option<String> + 'a>);
+
+/// The columns that have a value in any of the arms.
+fn columns<'a>(study: &'a Study, ranking: &'a Ranking) -> Vec<Column<'a>> {
+    let value = |arm: usize, metric: &str| study.rows[arm].value(metric);
+    let unit = |metric: &str| study.metrics().into_iter().find(|m| m.name == metric).map(|m| m.unit.clone());
+    let variation = standing(study.reference.as_ref(), "force_variation").established();
+    let ranked = ranking.levels.iter().flatten();
+    let error = move |arm: usize| {
+        let ranked = ranked.clone().find(|ranked| ranked.arm == arm)?;
+        Some(match ranked.uncertainty {
+            0.0 => three(ranked.error),
+            range => format!("{} ± {}", three(ranked.error), three(range)),
+        })
+    };
+    let step_of = |arm: usize| {
+        let arm = &study.manifest.arms[arm];
+        let budget = if is_off_budget(study, arm) { " !" } else { "" };
+        Some(step(arm, "time.step").map(five)? + budget)
+    };
+    let late = |arm: usize| Some(three(study.compared.get(arm)?.as_ref()?.late.as_ref()?.1));
+    let excess = move |arm: usize| {
+        let (right, _) = variation.filter(|known| known.0 > 0.0)?;
+        Some(three(value(arm, "force_variation")? / right - 1.0))
+    };
+    let mut all: Vec<Column> = vec![
+        (with_unit("Δt", time_unit(study)), Box::new(step_of)),
+        ("Error".to_owned(), Box::new(error)),
+        (with_unit("Delay", time_unit(study)), Box::new(late)),
+    ];
+    for (head, metric) in [("CPU", "cpu_time"), ("Newton iterations", "newton_iterations")] {
+        let head = with_unit(head, &unit(metric).unwrap_or_default());
+        all.push((head, Box::new(move |arm| value(arm, metric).map(count))));
+    }
+    for (head, metric) in
+        [("Energy drift", "energy_drift"), ("Energy lost", "energy_lost"), ("Penetration", "penetration")]
+    {
+        let head = with_unit(head, &unit(metric).unwrap_or_default());
+        all.push((head, Box::new(move |arm| value(arm, metric).map(three))));
+    }
+    all.push(("Excess variation of force".to_owned(), Box::new(excess)));
+    let arms: Vec<usize> = ranking.levels.iter().flatten().map(|ranked| ranked.arm).collect();
+    all.retain(|(_, cell)| arms.iter().any(|arm| cell(*arm).is_some()));
+    all
+}
+
+fn table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
+    let columns = columns(study, ranking);
+    let chosen = ranking.verdict.as_ref().ok().map(|verdict| verdict.arm);
+    let steps = study.manifest.design.as_ref().map_or(&[][..], |design| &design.steps);
+    let level_words = |level: usize| match steps.get(level) {
+        Some(h) => format!("Level {}: Δt = {}", level + 1, in_time(study, *h)),
+        None => format!("Level {}", level + 1),
+    };
+    let ranked = || ranking.levels.iter().flatten();
+    let is_ranked = |arm: usize| ranked().any(|ranked| ranked.arm == arm);
+    let same = |arm: usize| twin(origins, arm).filter(|first| is_ranked(*first));
+    let all = methods(study).into_iter().flat_map(|(_, arms)| arms);
+    let without: Vec<&str> =
+        all.filter(|arm| !is_ranked(*arm)).map(|arm| study.rows[arm].name.as_str()).collect();
+    let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "metric not available" };
+    let is_any_off = study.manifest.arms.iter().any(|arm| is_off_budget(study, arm));
+    html! {
+        div.scroll {
+            table.metrics.ranking {
+                thead {
+                    tr { th.n { "Place" } th { "Method" } @for (head, _) in &columns { th.n { (Label(head)) } } }
+                }
+                @for (level, ranked) in ranking.levels.iter().enumerate() {
+                    @if ranking.levels.len() > 1 {
+                        tr { td colspan=(columns.len() + 2) { b { (Label(&level_words(level))) } } }
+                    }
+                    @for r in ranked {
+                        @let arm = &study.manifest.arms[r.arm];
+                        tr {
+                            td.n { (r.place) }
+                            td.method {
+                                @if chosen == Some(r.arm) { b { "▸ " (Label(arm.method())) } } @else { (Label(arm.method())) }
+                                @if study.manifest.by_cost(arm) { span.small { " (matched by cost)" } }
+                                @if let Some(first) = same(r.arm) {
+                                    span.small { " (identical to " (Label(study.manifest.arms[first].method())) ")" }
+                                }
+                                @if !r.sound { span.small { " (created energy)" } }
+                            }
+                            @for (_, cell) in &columns { td.n { (cell(r.arm).as_deref().unwrap_or("–")) } }
+                        }
+                    }
+                }
+            }
+        }
+        p.small {
+            "▸: recommended. Errors are relative; energies are fractions of the largest kinetic + strain energy. "
+            @if study.manifest.ensemble.is_some() { "Error: median of the ensemble ± the largest distance from it. " }
+            @if is_any_off { "!: more than 10 % off the budget. " }
+            @if ranked().any(|ranked| !ranked.sound) { "Arms that created energy are behind the others of their level. " }
+            @if !without.is_empty() { "Not ranked (" (why) "): " (without.join("; ")) "." }
+        }
+    }
+}
+
+/// Which conclusions change between equal steps and equal cost.
+fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
+    let kind = study.manifest.design.as_ref().map(|design| design.kind);
+    let other = if kind == Some(Kind::MatchedCost) { "equal steps" } else { "equal cost" };
+    let value = |check: &Crosscheck| match check.at {
+        "step" => format!("Δt = {}", in_time(study, check.value)),
+        _ => format!("{} s of processor time", three(check.value)),
+    };
+    let best = |check: &Crosscheck| {
+        let shown = check.errors.iter().take(5).map(|(method, error)| format!("{method}: {}", three(*error)));
+        shown.collect::<Vec<_>>().join("; ")
+    };
+    let conclusion = |check: &Crosscheck| match &check.better {
+        Some(method) => format!("changes: {method} is better"),
+        None => "does not change".to_owned(),
+    };
+    html! {
+        @if !ranking.crosschecks.is_empty() {
+            details {
+                summary { "The same at " (other) }
+                table.stack {
+                    thead {
+                        tr {
+                            th { "Level" } th { "First in the table" } th { "Compared at" } th { "Smallest errors there" }
+                            th { "Conclusion" }
+                        }
+                    }
+                    @for check in &ranking.crosschecks {
+                        tr {
+                            td { (check.level + 1) } td { (Label(&check.first)) } td { (value(check)) }
+                            td { (Label(&best(check))) } td { (Label(&conclusion(check))) }
+                        }
+                    }
+                }
+                p.small {
+                    "Errors interpolated between the levels of a method, linearly in logarithms. Methods and levels that \
+                     do not reach the value are left out; differences within the uncertainties change nothing."
+                }
+            }
+        }
+    }
+}
+
+/// What is recommended for the other goals.
+fn other_goals(study: &Study) -> Markup {
+    html! {
+        details {
+            summary { "Recommendations for the other goals" }
+            table.stack {
+                thead { tr { th { "Goal" } th { "Recommended" } th { "Confidence" } th { "Ranked by" } } }
+                @for ranking in &study.other_rankings {
+                    tr {
+                        td { (ranking.goal.word()) }
+                        @match (&ranking.verdict, &ranking.measure) {
+                            (Ok(verdict), Ok(measure)) => {
+                                @let arm = &study.manifest.arms[verdict.arm];
+                                td {
+                                    (Label(arm.method()))
+                                    @if let Some(h) = step(arm, "time.step") { ", Δt = " (in_time(study, h)) }
+                                    @if !verdict.alike.is_empty() {
+                                        br; span.small { "tied with " (Label(&verdict.alike.join("; "))) }
+                                    }
+                                    @if let Some(depth) = &verdict.penetration {
+                                        br; span.small { "a penalty: " (depth) }
+                                    }
+                                }
+                                td { (verdict.confidence.word()) } td { (Label(&measure.words)) }
+                            }
+                            (_, Err(why)) => td colspan="3" { "no ranking: " (why) },
+                            (Err(reasons), Ok(_)) => td colspan="3" { "none: " (Label(&reasons.join("; "))) },
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What the reference establishes, and what it does not.
+fn reference_values(study: &Study, reference: &Reference) -> Markup {
+    let is_known = |m: &&Metric| study.rows.iter().any(|row| row.value(&m.name).is_some()) && !m.is_work();
+    let metrics: Vec<&Metric> = study.metrics().into_iter().filter(is_known).collect();
+    let columns = reference.columns().into_iter();
+    let unknown = columns.filter_map(|column| match reference.uncertainty(column) {
+        Standing::Not(why) => Some((format!("deviation of {column}"), why)),
+        Standing::Established { .. } => None,
+    });
+    let unknown: Vec<_> = unknown.collect();
+    html! {
+        details {
+            summary { "Reference values and their uncertainties" }
+            p { "Reference: " (typeset(&reference.what)) "." }
+            table.metrics {
+                thead {
+                    tr { th { "Metric" } th { "Unit" } th.n { "Value" } th.n { "Uncertainty" } th.n { "Order" } th.n { "Spread" } }
+                }
+                @for metric in metrics {
+                    tr {
+                        td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
+                        @match standing(Some(reference), &metric.name) {
+                            Standing::Established { value, uncertainty } => {
+                                @let estimate = reference.estimate(&metric.name).ok();
+                                @let order = estimate.and_then(|estimate| estimate.order).filter(|_| uncertainty > 0.0);
+                                td.n { (three(value)) }
+                                td.n { @if uncertainty == 0.0 { "exact" } @else { (three(uncertainty)) } }
+                                td.n { (or_dash(order, |p| if p > HIGHEST { format!("({p:.2})") } else { format!("{p:.2}") })) }
+                                td.n { (or_dash(estimate.map(|estimate| estimate.spread).filter(|s| *s > 0.0), three)) }
+                            }
+                            Standing::Not(why) => td colspan="4" { "not established: " (typeset(&why.to_string())) },
+                        }
+                    }
+                }
+                @for (name, why) in unknown {
+                    tr { td { code { (name) } } td {} td colspan="4" { "not established: " (typeset(&why.to_string())) } }
+                }
+            }
+            p.small {
+                "Uncertainty: that of the refinement (grid convergence index; of an ensemble its median), plus the \
+                 largest distance of a member from the median, plus a step for instants, plus 5/4 of what averaging over \
+                 1/16 of the contact changes, for extremes and variations. An order in brackets, above " (HIGHEST)
+                ", shows that values do not converge regularly yet. "
+                @if !reference.refines_mesh() {
+                    "The mesh was not refined, so its error is not included; " code { "mesh = [1, 2, 4]" } " in "
+                    code { "[fine]" } " refines it."
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! The set-up of a study: the drawing of the case, the settings of the arms, and the design.
+
+use carom_record::study::design::Kind;
+use carom_record::study::{Arm, Study};
+use maud::{Markup, html};
+
+use super::collected::in_time;
+use crate::digits::three;
+use crate::document::{codes, figure};
+use crate::figure::Figure;
+use crate::ordered::distinct;
+use crate::setup;
+use crate::text::Label;
+
+/// A cost is matched when it is within this fraction of the budget.
+const OFF_BUDGET: f64 = 0.1;
+
+/// Arms other than those of a computed reference, with their numbers.
+fn arms(study: &Study) -> impl Iterator<Item = (usize, &Arm)> {
+    study.manifest.arms.iter().enumerate().filter(|(_, arm)| !arm.role.fine)
+}
+
+/// Settings that all arms have.
+fn shared(study: &Study) -> Vec<&String> {
+    let is_shared = |set: &&String| arms(study).all(|(_, arm)| arm.sets.contains(set));
+    let first = arms(study).next().filter(|_| study.manifest.arms.len() > 1);
+    first.into_iter().flat_map(|(_, arm)| &arm.sets).filter(is_shared).collect()
+}
+
+/// Settings joined by commas, without those that all arms have.
+pub(super) fn own_settings(study: &Study, joined: &str) -> String {
+    // A value may contain a comma: shared settings are removed as a whole.
+    let mut own = joined.to_owned();
+    for set in shared(study) {
+        for (from, to) in [(format!(", {set}, "), ", "), (format!("{set}, "), ""), (format!(", {set}"), "")] {
+            own = own.replace(&from, to);
+        }
+        if own == *set {
+            own.clear();
+        }
+    }
+    own
+}
+
+/// Key and value of a setting.
+fn parts(set: &str) -> (&str, &str) {
+    set.split_once('=').map_or((set, ""), |(key, value)| (key.trim(), value.trim()))
+}
+
+/// The section of the page.
+pub(super) fn section(study: &Study, picture: Option<&Figure>) -> Markup {
+    let manifest = &study.manifest;
+    let case = manifest.arms.first().and_then(|arm| carom_case::Case::from_json(arm.case.clone()).ok());
+    let shared = shared(study);
+    html! {
+        details {
+            summary { "The case " code { (manifest.source.case_path) } }
+            @match (picture, case) {
+                (Some(picture), _) => (figure((0, picture))),
+                (None, Some(case)) => (setup::table(&case, None)),
+                (None, None) => {}
+            }
+        }
+        details {
+            summary { "Settings of the arms" }
+            @if !shared.is_empty() { p { "In all arms: " (codes(&shared, ", ")) } }
+            (table(study, &shared))
+            p.small { "–: as in the case file." }
+        }
+        (design(study))
+    }
+}
+
+/// A row for each arm with its own settings, a column for each key.
+fn table(study: &Study, shared: &[&String]) -> Markup {
+    let own = |arm: &Arm| -> Vec<(String, String)> {
+        let own = arm.sets.iter().filter(|set| !shared.contains(set)).map(|set| parts(set));
+        own.map(|(key, value)| (key.to_owned(), value.to_owned())).collect()
+    };
+    let keys = distinct(arms(study).flat_map(|(_, arm)| own(arm)).map(|(key, _)| key));
+    let has_cases = arms(study).any(|(_, arm)| arm.case_path.is_some());
+    html! {
+        div.scroll {
+            table.metrics {
+                thead {
+                    tr {
+                        th.n { "No." } th { "Arm" } @if has_cases { th { "Case" } }
+                        @for key in &keys { th { code { (key) } } }
+                    }
+                }
+                @for (i, arm) in arms(study) {
+                    @let own = own(arm);
+                    tr {
+                        td.n { (i + 1) } td { (arm.name) }
+                        @if has_cases { td { code { (arm.case_path.as_deref().unwrap_or(&study.manifest.source.case_path)) } } }
+                        @for key in &keys {
+                            @match own.iter().find(|(known, _)| known == key) {
+                                Some((_, value)) => td { code { (value) } },
+                                None => td { "–" },
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What makes the arms comparable: equal time steps or equal costs.
+fn design(study: &Study) -> Markup {
+    let manifest = &study.manifest;
+    let Some(design) = &manifest.design else {
+        return html! {
+            @if study.ranking.is_some() { p { "Neither time steps nor costs of the arms were matched." } }
+        };
+    };
+    let levels = design.steps.iter().enumerate();
+    let levels: Vec<String> =
+        levels.map(|(i, h)| format!("level {}: Δt = {}", i + 1, in_time(study, *h))).collect();
+    let missed: Vec<String> = manifest
+        .arms
+        .iter()
+        .filter(|arm| is_off_budget(study, arm))
+        .map(|arm| {
+            let share = arm.role.cost.map_or_else(|| "unknown".to_owned(), three);
+            format!("{} ({share})", arm.name)
+        })
+        .collect();
+    let is_cost = design.kind == Kind::MatchedCost;
+    html! {
+        p {
+            @if is_cost { "Matched cost" } @else { "Matched step" } " (" (Label(&levels.join(", "))) "). "
+            @if is_cost || manifest.arms.iter().any(|arm| manifest.by_cost(arm)) {
+                "An arm matched by cost has the time step at which its cost equals that of " b { (design.cost_of) }
+                " at its level: Newton iterations and factorisations, or steps, weighted by their processor time in a \
+                 pilot run (" code { "pilots/" } ")."
+            }
+        }
+        @if !missed.is_empty() {
+            p {
+                span.miss { "More than 10 % off the budget" } " (share of it in brackets), and not compared at equal cost: "
+                (missed.join("; ")) "."
+            }
+        }
+    }
+}
+
+/// Whether the cost of an arm, where it is matched, is more than 10 % off its budget.
+pub(super) fn is_off_budget(study: &Study, arm: &Arm) -> bool {
+    study.manifest.by_cost(arm) && arm.role.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET)
+}
