@@ -242,7 +242,8 @@ impl<'a> Drawing<'a> {
         if x.hypot(y) < 0.2 * length(vector) { [0.0; 2] } else { direction([0.0; 2], [x, -y]) }
     }
 
-    /// The drawing; the image of bodies in space is that of the broad picture if its place is given.
+    /// The drawing; the image of bodies in space is that of the broad picture if its place is
+    /// given.
     fn drawn(&self, width: f64, broad: Option<[f64; 4]>) -> String {
         let case = &self.run.case;
         let place = self.rectangle();
@@ -461,8 +462,8 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Draws an arrow from a place along a vector, moved aside by some pixels, and returns the place
-    /// of its label; nothing for zero.
+    /// Draws an arrow from a place along a vector, moved aside by some pixels, and returns the
+    /// place of its label; nothing for zero.
     fn vector(&self, out: &mut String, [from, vector]: [Place; 2], aside: f64, color: &str) -> Option<Point> {
         let along = self.along(vector);
         let from = plus(plus(self.to(from), 8.0, along), aside, [-along[1], along[0]]);

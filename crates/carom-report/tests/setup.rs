@@ -10,14 +10,16 @@ use carom_record::{Block, Cell, Column, FieldSet, Manifest, PointArray, RunWrite
 
 /// Writes a run of one row whose body `block` is a cell with these corners.
 fn write(directory: &Path, case: &str, sides: &[(&str, Vec<usize>)], kind: Cell, points: &[[f64; 3]]) {
-    let case = read(&Document::parse("case", case, &[]).unwrap()).unwrap().to_json().unwrap();
+    let case = read(&Document::parse("case", case, &[]).unwrap()).unwrap();
+    let facts = case.facts();
+    let case = case.to_json().unwrap();
     let columns = ["step", "time"].map(|name| Column {
         name: name.into(),
         unit: String::new(),
         description: String::new(),
         integer: false,
     });
-    let mut manifest = Manifest::new("0.1.0", case, Source::default(), columns.to_vec(), 1);
+    let mut manifest = Manifest::new("0.1.0", facts, case, Source::default(), columns.to_vec(), 1);
     for (name, nodes) in sides {
         manifest.sides.insert((*name).into(), vec![nodes.clone()]);
     }

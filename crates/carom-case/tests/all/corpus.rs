@@ -80,8 +80,8 @@ fn mistakes_give_the_messages_of_the_corpus() {
     assert!(count >= 500, "{count} mistakes");
 }
 
-/// Every case of the repository is stored in a manifest as it is in `stored.txt`, which has a hash of
-/// it.
+/// Every case of the repository is stored in a manifest as it is in `stored.txt`, which has a hash
+/// of it.
 #[test]
 fn cases_are_stored_as_before() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap();

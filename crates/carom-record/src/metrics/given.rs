@@ -38,7 +38,8 @@ impl<'a> Given<'a> {
         Self { column: Some(&measured.column), measured: Some(measured), ..self.clone() }
     }
 
-    /// The metric with its value: named `COLUMN:METRIC` of a column, `METRIC:NAME` of measured data.
+    /// The metric with its value: named `COLUMN:METRIC` of a column, `METRIC:NAME` of measured
+    /// data.
     pub(crate) fn metric(&self, definition: &'static Definition) -> Metric {
         let Definition { name, unit, meaning, value, .. } = definition;
         let name = match (self.measured, self.column) {

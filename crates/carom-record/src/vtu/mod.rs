@@ -67,8 +67,8 @@ impl Cell {
         }
     }
 
-    /// The cell of a type in a file with its degree, from its number of nodes; of every degree it may
-    /// be the Lagrange cell.
+    /// The cell of a type in a file with its degree, from its number of nodes; of every degree it
+    /// may be the Lagrange cell.
     pub(crate) fn of_type(kind: u8, nodes: usize) -> Option<(Self, usize)> {
         let of_degree = |degree: usize| Self::ALL.map(|cell| (cell, degree));
         let fits = |&(cell, degree): &(Self, usize)| {

@@ -1,5 +1,5 @@
-//! VTU → `FieldSet`. Of the files of other programs only those are read that have the same structure:
-//! one piece, and all values appended as raw binary data.
+//! VTU → `FieldSet`. Of the files of other programs only those are read that have the same
+//! structure: one piece, and all values appended as raw binary data.
 
 use serde::Deserialize;
 

@@ -1,4 +1,5 @@
-//! How to reproduce and cite a study: input, hashes of the records, and the arm that was recomputed.
+//! How to reproduce and cite a study: input, hashes of the records, and the arm that was
+//! recomputed.
 
 use carom_record::Status;
 use carom_record::study::Study;

@@ -150,9 +150,9 @@ pub(super) fn coarse_secondary(case: &Case, model: &Model) -> Vec<Found> {
     (0..case.contacts.len()).filter_map(coarse).collect()
 }
 
-/// Given where the case asks for a pressure, in an expectation, or for a stress near the contact, at
-/// a probe within a facet's length of it. Bodies of which one is curved never match: a warning to
-/// every one of them would not be read.
+/// Given where the case asks for a pressure, in an expectation, or for a stress near the contact,
+/// at a probe within a facet's length of it. Bodies of which one is curved never match: a warning
+/// to every one of them would not be read.
 pub(super) fn unmatched_pressure(case: &Case, model: &Model) -> Vec<Found> {
     let stress = |q: &Quantity| {
         use Quantity::{SigmaXx, SigmaXy, SigmaXz, SigmaYy, SigmaYz, SigmaZz, VonMises};

@@ -90,6 +90,10 @@ impl From<ReportError> for Failure {
         match error {
             ReportError::Record(error) => error.into(),
             error @ ReportError::Write { .. } => Self::System { what: error.to_string() },
+            error @ ReportError::Case { .. } => {
+                let help = "run the case again with this version".to_owned();
+                Self::Argument { what: error.to_string(), help }
+            }
         }
     }
 }
