@@ -46,6 +46,8 @@ fn an_impact_in_the_plane_has_the_same_history() {
         "body.prism.mesh.cells=[4,2]",
         "probe.A.at=[0.0, 1.01]",
         "time.end=0.075",
+        // Springs chatter, which magnifies what a solver leaves.
+        "newton.tolerance=1e-12",
     ];
     for more in [
         &[][..],

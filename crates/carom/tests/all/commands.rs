@@ -106,7 +106,8 @@ fn warnings_of_a_study_are_listed_once_with_their_arms() {
         "[[arm]]\nname = \"as it is\"\nset = {{ {short} }}\n[[arm]]\nname = \"Hu\"\nset = {{ \"time.scheme\" = {{ kind = \"hu\" }}, {short} }}\n\
          [[arm]]\nname = \"coarse\"\nset = {{ \"body.cylinder.mesh.size\" = 0.25, {short} }}\n"
     );
-    place.file("case.toml", IMPACT).file("study.toml", format!("case = \"case.toml\"\n{arms}"));
+    let impact = IMPACT.replace("record = [\"uy\"]", "record = [\"uy\", \"sigma_yy\"]");
+    place.file("case.toml", impact).file("study.toml", format!("case = \"case.toml\"\n{arms}"));
     let check = place.carom(&["check", "study.toml"]);
     let study = place.carom(&["study", "study.toml", "--out", "s", "--no-report"]);
     for (output, start) in [(text(&check.stdout), "  warning  "), (text(&study.stderr), "warning: ")] {
@@ -226,7 +227,7 @@ fn check_prints_the_case() {
     let done = place.carom(&["check", "case.toml", "--json", "--set", "preset=paper"]);
     let output: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
     assert_eq!(output["case"]["contacts"][0]["persistency"], "none");
-    assert_eq!(output["case"]["time"]["scheme"]["rho_inf"], 0.1);
+    assert_eq!(output["case"]["time"]["scheme"]["rho_inf"], 0.6);
     assert_eq!(place.entries(), ["case.toml"]);
 }
 

@@ -48,7 +48,11 @@ fn the_impact_with_every_scheme() {
         near(lowest, -0.7827, if scheme.contains("hu\"") { 0.012 } else { 0.004 }, scheme);
         near(end, 0.555, 0.003, scheme);
     }
-    let swapped = ["contact.strike.secondary=prism.top", "contact.strike.primary=cylinder.arc"];
+    let swapped = [
+        "contact.strike.secondary=prism.top",
+        "contact.strike.primary=cylinder.arc",
+        "time.scheme.rho_inf=0.1",
+    ];
     let (lowest, end) = rebound(&outcome(&place, &[&coarse[..], &swapped].concat()));
     near(lowest, -0.7827, 0.004, "swapped");
     near(end, 0.555, 0.003, "swapped");
