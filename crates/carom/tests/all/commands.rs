@@ -26,7 +26,7 @@ fn wrong_cases_report_the_place_and_write_nothing() {
         ("negative", IMPACT.replace("density = ", "density = -").into(), &["not -0.25", "case.toml:11:11"]),
         (
             "radius",
-            IMPACT.replace("rho_inf = 0.1", "rho_inf = 1.2").into(),
+            IMPACT.replace("rho_inf = 0.6", "rho_inf = 1.2").into(),
             &["in [0, 1], not 1.2", "case.toml:44:46"],
         ),
         ("nan", IMPACT.replace("1.875e-3", "nan").into(), &["`step` is NaN", "case.toml:43:8"]),
