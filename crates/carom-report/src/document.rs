@@ -8,6 +8,11 @@ use crate::text::Prose;
 
 /// A self-contained page; `style` is added to the style sheet of all pages.
 pub(crate) fn document(title: &str, style: &str, body: &Markup) -> String {
+    framed(title, style, "", &html! { h1 { (title) } (body) })
+}
+
+/// A self-contained page of a class, whose body has its heading.
+pub(crate) fn framed(title: &str, style: &str, class: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -17,7 +22,7 @@ pub(crate) fn document(title: &str, style: &str, body: &Markup) -> String {
                 title { (title) }
                 style { (PreEscaped(include_str!("page.css"))) (PreEscaped(style)) }
             }
-            body { h1 { (title) } (body) }
+            body class=(class) { (body) }
         }
     };
     with_headings(&page.into_string())

@@ -16,6 +16,10 @@ pub(crate) struct Figure {
     pub(crate) svg: String,
     /// The picture for a narrow window, of which the page shows one or the other.
     pub(crate) narrow: String,
+    /// Heading on the page of a run.
+    pub(crate) title: String,
+    /// Numbers for the script of the page.
+    pub(crate) data: Option<serde_json::Value>,
     /// Further files: endings and contents.
     pub(crate) files: Vec<(&'static str, String)>,
 }
@@ -26,7 +30,7 @@ impl Figure {
         caption: impl Into<String>,
         [svg, narrow]: [String; 2],
     ) -> Self {
-        Self { name: name.into(), caption: caption.into(), svg, narrow, files: Vec::new() }
+        Self { name: name.into(), caption: caption.into(), svg, narrow, title: String::new(), data: None, files: Vec::new() }
     }
 
     /// The pictures on the page.

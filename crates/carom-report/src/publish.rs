@@ -24,6 +24,20 @@ pub enum ReportError {
     /// The record cannot be read.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// The case in the manifest is not one of this version.
+    #[error(
+        "{}: manifest.json: the stored case cannot be read by this version of Carom: {source}; the record was written by \
+         version {version}, whose `carom report` reads it",
+        directory.display()
+    )]
+    Case {
+        /// The run directory.
+        directory: PathBuf,
+        /// Version of Carom that wrote the record.
+        version: String,
+        /// What is missing or unknown.
+        source: serde_json::Error,
+    },
     /// The page or a figure cannot be written.
     #[error("cannot write {}: {source}", path.display())]
     Write {
@@ -39,6 +53,7 @@ impl ReportError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Record(error) => error.exit_code(),
+            Self::Case { .. } => 2,
             Self::Write { .. } => 4,
         }
     }

@@ -14,7 +14,7 @@ mod words;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use carom_record::{Cell, FieldSet, Run};
+use carom_record::{Cell, FieldSet};
 use serde_json::Value;
 
 use crate::axis::Axis;
@@ -22,6 +22,7 @@ use crate::bodies::{self, Instant, bezier, corners, edges, fill_space, places};
 use crate::chart::{opened, turned, write_text};
 use crate::figure::NARROW;
 use crate::obstacles;
+use crate::recorded::Recorded;
 use crate::pen::{NOTHING, Pen, Point, around, open_grid};
 use crate::place::fill;
 use crate::symbols::{arrow, direction, distance, guides, motion, plus, probe_mark, rollers, wall};
@@ -33,11 +34,11 @@ pub(crate) use words::{in_words, model_in_words};
 
 /// The figure, from the initial fields, with the key beside the drawing, and in a narrow window
 /// below it; nothing without cells.
-pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<[String; 2]> {
+pub(crate) fn figure(run: &Recorded, fields: &FieldSet) -> Option<[String; 2]> {
     Some([drawn(run, fields, false)?, drawn(run, fields, true)?])
 }
 
-fn drawn(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
+fn drawn(run: &Recorded, fields: &FieldSet, narrow: bool) -> Option<String> {
     if fill_space(fields) {
         return solid::figure(run, fields, narrow);
     }

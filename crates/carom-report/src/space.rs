@@ -4,14 +4,12 @@
 mod figure;
 mod painter;
 mod raster;
-mod scene;
 mod skin;
 mod view;
 mod wires;
 
 pub(crate) use figure::{DRAWN, box_of, draw, frame, instants, underlay};
 pub(crate) use painter::{Paint, pieces};
-pub(crate) use scene::section;
 pub(crate) use skin::{Facet, Place, corners, skin};
 pub(crate) use view::{View, cross, length, minus};
 pub(crate) use wires::wires;

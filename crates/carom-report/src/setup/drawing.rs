@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
-use carom_record::{Block, FieldSet, Run};
+use carom_record::{Block, FieldSet};
 use serde_json::Value;
 
 use crate::palette::LINES;
+use crate::recorded::Recorded;
 use crate::pen::{Pen, Point, path};
 use crate::symbols::{direction, plus};
 
@@ -32,7 +33,7 @@ pub(super) type Walk = Vec<(Point, Point)>;
 
 /// A case and its mapping to the page.
 pub(super) struct Setup<'a> {
-    pub(super) run: &'a Run,
+    pub(super) run: &'a Recorded,
     pub(super) fields: &'a FieldSet,
     /// Positions of the points of `fields`.
     pub(super) points: Vec<Point>,

@@ -7,7 +7,6 @@ use carom_formula::Formula;
 use serde_json::Value;
 
 use super::drawing::Setup;
-use crate::labels::is_static;
 use crate::pen::Point;
 use crate::scientific::given;
 use crate::symbols::{along, arrow, direction, distance, plus};
@@ -213,7 +212,7 @@ impl Setup<'_> {
 
     /// What t is in a formula: a time or, in a static analysis, a parameter without a unit.
     pub(super) fn with_time(&self) -> String {
-        if is_static(self.run) {
+        if self.run.is_static() {
             return ", with the load parameter t".to_owned();
         }
         format!(", with t in {}", unit(self.case(), "time"))

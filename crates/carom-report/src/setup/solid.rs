@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
-use carom_record::{FieldSet, Run};
+use carom_record::FieldSet;
 
 use super::drawing::{BOLD, ITALIC, ROOM, SUPPORT_LINES, SUPPORTS, Setup};
 use super::forces::{COLOR, Load, load};
@@ -14,6 +14,7 @@ use crate::axis::round_step;
 use crate::bodies::places;
 use crate::chart::{open, write_text};
 use crate::figure::NARROW;
+use crate::recorded::Recorded;
 use crate::pen::{Point, around};
 use crate::place::BODIES;
 use crate::space::{
@@ -40,7 +41,7 @@ struct Solid<'a> {
 }
 
 /// The figure; nothing without extent.
-pub(super) fn figure(run: &Run, fields: &FieldSet, narrow: bool) -> Option<String> {
+pub(super) fn figure(run: &Recorded, fields: &FieldSet, narrow: bool) -> Option<String> {
     let (view, places, skin) = (View::axonometric(), places(fields), skin(fields));
     let rigid: Vec<[Place; 2]> =
         wires(run, box_of(&skin, &places)).iter().flat_map(|wire| wire.at_first().to_vec()).collect();

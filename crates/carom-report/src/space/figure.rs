@@ -1,6 +1,6 @@
 //! Deformed solids at several instants, coloured by the stress of von Mises.
 
-use carom_record::{FieldSet, Run};
+use carom_record::FieldSet;
 
 use super::painter::{Paint, Piece, paint, pieces};
 use super::raster::image;
@@ -8,11 +8,11 @@ use super::skin::{Facet, Place, skin};
 use super::view::View;
 use super::wires::wires;
 use crate::again::Rectangle;
-use crate::bands::{Bands, positive_bands};
+use crate::bands::positive_bands;
 use crate::bodies::places;
 use crate::labels::instant_label;
 use crate::pen::{GRID, NOTHING, Pen, Point, around, path};
-use crate::quantity::stresses;
+use crate::recorded::Recorded;
 use crate::sheet::{Legend, Sheet};
 
 /// Largest number of triangles of a figure that are drawn one by one.
@@ -37,19 +37,13 @@ pub(crate) fn draw(out: &mut String, pieces: &[Piece], colors: &Paint, place: Re
     }
 }
 
-/// The figure, also for a narrow window, with its caption, and the bands of its colours; nothing
-/// without stresses.
-pub(crate) fn instants(
-    run: &Run,
-    sets: &[(f64, FieldSet)],
-    length: &str,
-    words: (&str, &str),
-) -> Option<([String; 2], String, Bands)> {
+/// The figure, broad and narrow; nothing without stresses.
+pub(crate) fn instants(run: &Recorded, sets: &[(f64, FieldSet)]) -> Option<[String; 2]> {
     let view = View::axonometric();
     let skin = skin(&sets.first()?.1);
     let mut list = Vec::new();
     for (t, set) in sets.iter().filter(|(_, set)| set.points.len() == sets[0].1.points.len()) {
-        let [mises, _] = stresses(set)?;
+        let mises = &set.array("von_mises")?.values;
         list.push((instant_label(run, *t), places(set), mises));
     }
     let values = list.iter().flat_map(|(_, _, mises)| {
@@ -66,6 +60,7 @@ pub(crate) fn instants(
         return None;
     }
     let unit = sets[0].1.unit("stress");
+    let length = sets[0].1.unit("displacement");
     let seen = |k: usize, to: &dyn Fn(Point) -> Point, scale: f64| {
         let (_, places, mises) = &list[k];
         pieces(&skin, places, &|_, node| mises[node], &view, to, scale)
@@ -84,10 +79,7 @@ pub(crate) fn instants(
         sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit }, length)
     };
     let headings = list.iter().map(|(heading, ..)| heading.as_str());
-    let pictures =
-        Sheet::pair("Deformed bodies with von Mises stress", headings, wide, FOOT, picture).map(finish);
-    let caption = caption(&bands, cut, unit, words, !rigid.is_empty());
-    Some((pictures, caption, bands))
+    Some(Sheet::pair("Deformed bodies with von Mises stress", headings, wide, FOOT, picture).map(finish))
 }
 
 /// Corners of the box of all places of a skin.
@@ -96,7 +88,7 @@ pub(crate) fn box_of(skin: &[Facet], places: &[Place]) -> [Place; 2] {
 }
 
 /// Corners of the box of these places.
-pub(super) fn box_around(places: impl Iterator<Item = Place>) -> [Place; 2] {
+fn box_around(places: impl Iterator<Item = Place>) -> [Place; 2] {
     let nothing = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     places.fold(nothing, |[low, high], place| {
         [[0, 1, 2].map(|d| low[d].min(place[d])), [0, 1, 2].map(|d| high[d].max(place[d]))]
@@ -119,20 +111,4 @@ pub(crate) fn underlay(out: &mut String, lines: &[[Place; 2]], view: &View, to: 
     }
     let style = format!("fill=\"none\" stroke=\"{RIGID}\" stroke-width=\"{}\"", THIN * GRID);
     path(out, &pen, &style);
-}
-
-fn caption(bands: &Bands, cut: [bool; 2], unit: &str, (during, files): (&str, &str), rigid: bool) -> String {
-    let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
-    let high = format!("{} {unit}", bands.high);
-    let arrow = if cut[1] {
-        format!(" Arrowhead at the colour bar: at most 0.5 % of the values are above {}.", high.trim_end())
-    } else {
-        String::new()
-    };
-    format!(
-        "Deformed bodies with von Mises stress (of nodal averages of the Cauchy stress) at instants \
-         {during}. All at the same scale; displacements are not magnified. View: {}. The scale applies to \
-         lengths parallel to the page.{rigid}{arrow} Data: stress and displacement in {files}.",
-        View::words()
-    )
 }
