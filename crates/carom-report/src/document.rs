@@ -30,7 +30,8 @@ pub(crate) fn framed(title: &str, style: &str, class: &str, body: &Markup) -> St
 
 /// A figure, of which `i` come before, with its caption and links to its files.
 pub(crate) fn figure((i, figure): (usize, &Figure)) -> Markup {
-    let endings = std::iter::once(&"svg").chain(figure.files.iter().map(|(ending, _)| ending));
+    let table = figure.table.as_ref().map(|_| "csv");
+    let endings = std::iter::once("svg").chain(table);
     let links = endings.map(|ending| file(&format!("figures/{}.{ending}", figure.name)));
     html! {
         figure {

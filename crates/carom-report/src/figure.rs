@@ -20,8 +20,8 @@ pub(crate) struct Figure {
     pub(crate) title: String,
     /// Numbers for the script of the page.
     pub(crate) data: Option<serde_json::Value>,
-    /// Further files: endings and contents.
-    pub(crate) files: Vec<(&'static str, String)>,
+    /// The drawn numbers, as the text of a `.csv` file.
+    pub(crate) table: Option<String>,
 }
 
 impl Figure {
@@ -30,7 +30,8 @@ impl Figure {
         caption: impl Into<String>,
         [svg, narrow]: [String; 2],
     ) -> Self {
-        Self { name: name.into(), caption: caption.into(), svg, narrow, title: String::new(), data: None, files: Vec::new() }
+        let title = String::new();
+        Self { name: name.into(), caption: caption.into(), svg, narrow, title, data: None, table: None }
     }
 
     /// The pictures on the page.
@@ -40,9 +41,9 @@ impl Figure {
         PreEscaped(named(&self.svg, "broad") + &named(&self.narrow, "narrow"))
     }
 
-    /// With its data as a table, and a script that redraws it.
-    pub(crate) fn with(mut self, table: String, script: String) -> Self {
-        self.files.extend([("csv", table), ("py", script)]);
+    /// The figure with a table of its numbers.
+    pub(crate) fn with_table(mut self, table: String) -> Self {
+        self.table = Some(table);
         self
     }
 }

@@ -174,7 +174,8 @@ fn others(run: &Recorded, histories: &Histories) -> Option<Figure> {
         let lines = members.iter().map(|column| Line::new(column.as_str(), if members.len() == 1 { "" } else { column.as_str() })).collect();
         for mut panel in histories.vector(&name, 150.0, lines, 0.0) {
             for (_, series) in formulas.iter().filter(|(column, _)| members.contains(&column)) {
-                panel.series.push(Series { label: series.label.clone(), y: series.y.clone(), ..*series });
+                let Series { color, x, .. } = *series;
+                panel.series.push(Series { label: series.label.clone(), color, x, y: series.y.clone(), ..Series::default() });
             }
             panels.push(panel);
         }

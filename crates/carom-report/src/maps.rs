@@ -169,9 +169,9 @@ impl Maps<'_> {
         if self.sides.is_empty() || self.run.times().len() < 2 {
             return None;
         }
-        let mut figure = Figure::new(self.name, caption, [WIDTH, NARROW].map(|width| self.draw(width)));
+        let pictures = [WIDTH, NARROW].map(|width| self.draw(width));
+        let mut figure = Figure::new(self.name, caption, pictures).with_table(table);
         self.title.clone_into(&mut figure.title);
-        figure.files.push(("csv", table));
         Some(figure)
     }
 

@@ -1,4 +1,4 @@
-//! Plots in panels. [`crate::redraw`] writes the table and a script for each of them.
+//! Plots in panels. [`crate::tables`] writes the table beside each of them.
 //!
 //! Axes are linear or logarithmic; values that are not positive are omitted on a logarithmic axis.
 //! Curves with the same label have the same style in all panels and one entry in the common legend.

@@ -79,8 +79,8 @@ pub(crate) fn publish<'a>(
     for figure in figures {
         let beside = |ending: &str| folder.join(format!("{}.{ending}", figure.name));
         written.push(write(beside("svg"), &figure.svg)?);
-        for (ending, text) in &figure.files {
-            write(beside(ending), text)?;
+        if let Some(table) = &figure.table {
+            write(beside("csv"), table)?;
         }
     }
     Ok(ReportSummary { page: write(directory.join(name), page)?, figures: written, notes })

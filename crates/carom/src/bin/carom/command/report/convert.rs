@@ -120,8 +120,8 @@ impl Converter {
     pub(super) fn new(_: f32, _: Option<&Path>) -> Result<Self, Failure> {
         Err(Failure::argument(
             "this program was built without PNG and PDF, whose libraries take minutes to compile",
-            "cargo install --path crates/carom --features figures, in a clone of Carom; or redraw a figure with its \
-                   script, python3 figures/NAME.py (matplotlib), or print report.html to PDF in a browser",
+            "cargo install --path crates/carom --features figures, in a clone of Carom; or draw the figure \
+                   with carom.plot (Python, matplotlib), or print report.html to PDF in a browser",
         ))
     }
 
