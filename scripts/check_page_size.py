@@ -16,7 +16,6 @@ scene = re.search(r'<script id="animation-data" type="application/json">(.*?)</s
 if scene is None:
     sys.exit(f"{page}: no scene")
 data = json.loads(scene.group(1))
-# Three nodes each.
-triangles, frames, size = data["triangles"] // 3, len(data["frames"]), page.stat().st_size
+triangles, frames, size = sum(data["facets"]), len(data["frames"]), page.stat().st_size
 print(f"{page}: {triangles} triangles, {frames} frames, {size / 1e6:.1f} MB")
 sys.exit(0 if triangles >= 20_000 and frames >= 100 and size < 8e6 else f"{page}: expected more, or a smaller page")

@@ -23,7 +23,10 @@ pub(crate) struct Place {
 /// closed side is cut where no node is in contact for longest.
 pub(crate) fn places(run: &Recorded, name: &str, rows: &[&ContactRow]) -> (BTreeMap<u64, Place>, bool) {
     let contact = run.case.contacts.iter().find(|contact| contact.name == name);
-    let chains = contact.map(|contact| &contact.secondary).and_then(|side| run.manifest.sides.get(side)).map_or(&[][..], Vec::as_slice);
+    let chains = contact
+        .map(|contact| &contact.secondary)
+        .and_then(|side| run.manifest.sides.get(side))
+        .map_or(&[][..], Vec::as_slice);
     let first = run.fields.first().and_then(|entry| run.field(entry).ok());
     let rubbing: BTreeSet<u64> = rows.iter().map(|row| row.node).collect();
     let (mut found, mut end) = (BTreeMap::new(), 0.0);

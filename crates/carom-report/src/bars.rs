@@ -50,8 +50,6 @@ pub(crate) fn figure(run: &Recorded, sets: &[(f64, FieldSet)], (during, files): 
     let x_label = with_unit("reference position X", unit("displacement"));
     let chart =
         Chart { title: "Displacement and stress along the bars", x_label, shades: Vec::new(), panels };
-    let caption = format!(
-"Displacement and stress along the bars {during}. Data: {files}."
-    );
+    let caption = format!("Displacement and stress along the bars {during}. Data: {files}.");
     chart.figure("bodies", caption, &Options::default())
 }

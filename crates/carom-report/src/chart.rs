@@ -269,7 +269,7 @@ impl Chart<'_> {
         let times = lines().map(|series| series.x).next().unwrap_or_default();
         let mut kept = vec![times.len() <= ROWS; times.len()];
         let block = times.len().div_ceil(ROWS / 8).max(1);
-        for series in lines().filter(|series| series.y.len() == kept.len()) {
+        for series in lines().filter(|series| series.y.len() == times.len()) {
             for from in (0..times.len()).step_by(block) {
                 let rows = from..(from + block).min(times.len());
                 ends_and_extremes(rows, |row| series.y[row]).into_iter().for_each(|row| kept[row] = true);
@@ -429,7 +429,8 @@ fn entries(panel: &Panel, axis: &Axis, is_over_time: bool) -> Vec<String> {
     let entry = |series: &Series| {
         let name = if series.unlisted { "" } else { &series.label };
         let (low, high) = range(&series.y);
-        let is_ranged = is_over_time && !series.dotted && low <= high && (!name.is_empty() || panel.series.len() == 1);
+        let is_ranged =
+            is_over_time && !series.dotted && low <= high && (!name.is_empty() || panel.series.len() == 1);
         if !is_ranged {
             return name.to_owned();
         }
@@ -477,7 +478,10 @@ fn write_legend(out: &mut String, panel: &Panel, entries: &[String], rows: &[Vec
                 dots(out, [4.0, 11.0, 18.0].map(|by| (x + by, y)).into_iter(), color);
             } else {
                 let dashes = dashes[i];
-                let _ = writeln!(out, "<path d=\"M{x:.1} {y:.1}h22\" stroke=\"{color}\" stroke-width=\"2\"{dashes}/>");
+                let _ = writeln!(
+                    out,
+                    "<path d=\"M{x:.1} {y:.1}h22\" stroke=\"{color}\" stroke-width=\"2\"{dashes}/>"
+                );
             }
             write_text(out, x + 27.0, y + 4.3, "", &entries[i]);
             x += entry_width(&entries[i]);

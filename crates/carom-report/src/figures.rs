@@ -50,14 +50,19 @@ pub(crate) fn all(run: &Recorded) -> Shown {
 fn setup(run: &Recorded) -> Option<Figure> {
     let fields = run.field(run.fields.first()?).ok()?;
     let pictures = setup::figure(run, &fields)?;
-    let mut figure = Figure::new("setup", "Initial configuration. Data: first field file, `manifest.json`.", pictures);
+    let mut figure =
+        Figure::new("setup", "Initial configuration. Data: first field file, `manifest.json`.", pictures);
     "Set-up".clone_into(&mut figure.title);
     Some(figure)
 }
 
 fn probes(run: &Recorded, histories: &Histories) -> Option<Figure> {
     let columns: Vec<&str> = run.history.columns.iter().map(|column| column.name.as_str()).collect();
-    let of_probe = |column: &&str| column.rsplit_once('.').is_some_and(|(name, _)| run.case.probes.iter().any(|probe| probe.name == name));
+    let of_probe = |column: &&str| {
+        column
+            .rsplit_once('.')
+            .is_some_and(|(name, _)| run.case.probes.iter().any(|probe| probe.name == name))
+    };
     let columns: Vec<&str> = columns.into_iter().filter(of_probe).collect();
     let caption = format!(
         "Quantities at the probes.{}{} Data: `history.csv`, columns `PROBE.QUANTITY`.",
@@ -71,7 +76,9 @@ fn probes(run: &Recorded, histories: &Histories) -> Option<Figure> {
 fn reactions(run: &Recorded, histories: &Histories) -> Option<Figure> {
     let mut panels = Vec::new();
     let columns = run.history.columns.iter().map(|column| column.name.as_str());
-    let stems = columns.filter_map(|name| name.strip_suffix("_x").filter(|stem| stem.ends_with(".reaction") || stem.ends_with(".moment")));
+    let stems = columns.filter_map(|name| {
+        name.strip_suffix("_x").filter(|stem| stem.ends_with(".reaction") || stem.ends_with(".moment"))
+    });
     for stem in distinct(stems) {
         let (name, what) = stem.rsplit_once('.').unwrap_or((stem, ""));
         let lines = Line::vector(run, stem, if what == "moment" { "M" } else { "R" });
@@ -98,7 +105,14 @@ fn force(run: &Recorded, histories: &Histories) -> Option<Figure> {
     let most = impulses.iter().filter_map(|line| run.column(&line.column)).flatten();
     let least = 1e-9 * largest(most).max(f64::MIN_POSITIVE);
     panels.extend(histories.vector("impulse", LOW, impulses, least));
-    let shown = ["contact_force_x", "contact_force_y", "contact_force_z", "contact_impulse_x", "contact_impulse_y", "contact_impulse_z"];
+    let shown = [
+        "contact_force_x",
+        "contact_force_y",
+        "contact_force_z",
+        "contact_impulse_x",
+        "contact_impulse_y",
+        "contact_impulse_z",
+    ];
     let caption = format!(
         "Contact force on the secondary sides at the ends of the steps, and its impulse.{}{} Data: `history.csv`, \
          columns `contact_force_…`, `CONTACT.force_…`, `contact_impulse_…`.",
@@ -120,11 +134,20 @@ fn rotation(histories: &Histories, scene: &Scene) -> Option<Figure> {
             y.push(degree + 360.0 * ((last - degree) / 360.0).round());
         }
         if largest(&y) > LEAST {
-            series.push(Series { label: body.clone(), color: LINES[k % LINES.len()], x: &scene.times, y, ..Series::default() });
+            series.push(Series {
+                label: body.clone(),
+                color: LINES[k % LINES.len()],
+                x: &scene.times,
+                y,
+                ..Series::default()
+            });
         }
     }
     let panel = Panel { label: "rotation".to_owned(), unit: "°".to_owned(), height: HIGH, series };
-    let caption = format!("Rotation of the nodes of each body about their mean, by least squares.{} Data: field files.", histories.shaded());
+    let caption = format!(
+        "Rotation of the nodes of each body about their mean, by least squares.{} Data: field files.",
+        histories.shaded()
+    );
     histories.figure("rotation", "Rotation of the bodies", caption, vec![panel], &[])
 }
 
@@ -132,8 +155,15 @@ fn rotation(histories: &Histories, scene: &Scene) -> Option<Figure> {
 fn energy(run: &Recorded, histories: &Histories) -> Option<Figure> {
     const SHARE: f64 = 1e-6;
     let energies = ["total", "kinetic", "strain", "potential"].map(|name| Line::new(name, name));
-    let works = ["dissipation", "external_work", "contact_work", "friction_work"].map(|name| Line::new(name, name.replace('_', " ")));
-    let peak = |lines: &[Line]| lines.iter().filter_map(|line| run.column(&line.column)).flatten().fold(0.0_f64, |most, x| if x.is_finite() { most.max(x.abs()) } else { most });
+    let works = ["dissipation", "external_work", "contact_work", "friction_work"]
+        .map(|name| Line::new(name, name.replace('_', " ")));
+    let peak = |lines: &[Line]| {
+        lines
+            .iter()
+            .filter_map(|line| run.column(&line.column))
+            .flatten()
+            .fold(0.0_f64, |most, x| if x.is_finite() { most.max(x.abs()) } else { most })
+    };
     let size = peak(&energies);
     let panels = vec![
         histories.panel("energy", HIGH, &energies, SHARE * size),
@@ -156,10 +186,32 @@ fn others(run: &Recorded, histories: &Histories) -> Option<Figure> {
     let is_probe = |name: &str| run.case.probes.iter().any(|probe| probe.name == name);
     let is_shown = |column: &str| {
         let shown = ["contact_force", "contact_impulse"].iter().any(|stem| column.starts_with(stem))
-            || ["time", "step", "active", "newton", "rejected", "total", "kinetic", "strain", "potential", "dissipation", "external_work", "contact_work", "friction_work"].contains(&column);
-        shown || column.rsplit_once('.').is_some_and(|(name, rest)| is_probe(name) || rest.starts_with("reaction") || rest.starts_with("moment") || rest.starts_with("force"))
+            || [
+                "time",
+                "step",
+                "active",
+                "newton",
+                "rejected",
+                "total",
+                "kinetic",
+                "strain",
+                "potential",
+                "dissipation",
+                "external_work",
+                "contact_work",
+                "friction_work",
+            ]
+            .contains(&column);
+        shown
+            || column.rsplit_once('.').is_some_and(|(name, rest)| {
+                is_probe(name)
+                    || rest.starts_with("reaction")
+                    || rest.starts_with("moment")
+                    || rest.starts_with("force")
+            })
     };
-    let measured: Vec<String> = carom_record::metrics::overlays(run).into_iter().map(|data| data.column).collect();
+    let measured: Vec<String> =
+        carom_record::metrics::overlays(run).into_iter().map(|data| data.column).collect();
     let asked = run.manifest.expectations.iter().flat_map(|e| columns_in(run, &e.what));
     let asked = asked.filter(|column| run.column(column).is_some_and(|values| largest(values) > ROUND_OFF));
     let mut columns = distinct(measured.iter().cloned().chain(asked).filter(|column| !is_shown(column)));
@@ -168,21 +220,34 @@ fn others(run: &Recorded, histories: &Histories) -> Option<Figure> {
         let stem = column.strip_suffix(['x', 'y', 'z']).filter(|stem| stem.ends_with('_'));
         stem.map_or(column, |stem| stem.trim_end_matches('_')).to_owned()
     };
-    let formulas: Vec<(String, Series)> = run.manifest.expectations.iter().filter_map(|e| formula(run, &e.what)).collect();
+    let formulas: Vec<(String, Series)> =
+        run.manifest.expectations.iter().filter_map(|e| formula(run, &e.what)).collect();
     let mut panels = Vec::new();
     for (name, members) in grouped(columns.iter().map(|column| (stem(column), column))) {
-        let lines = members.iter().map(|column| Line::new(column.as_str(), if members.len() == 1 { "" } else { column.as_str() })).collect();
+        let lines = members
+            .iter()
+            .map(|column| Line::new(column.as_str(), if members.len() == 1 { "" } else { column.as_str() }))
+            .collect();
         for mut panel in histories.vector(&name, 150.0, lines, 0.0) {
             for (_, series) in formulas.iter().filter(|(column, _)| members.contains(&column)) {
                 let Series { color, x, .. } = *series;
-                panel.series.push(Series { label: series.label.clone(), color, x, y: series.y.clone(), ..Series::default() });
+                panel.series.push(Series {
+                    label: series.label.clone(),
+                    color,
+                    x,
+                    y: series.y.clone(),
+                    ..Series::default()
+                });
             }
             panels.push(panel);
         }
         panels.extend(members.iter().filter_map(|column| histories.differences(column)));
     }
     let all: Vec<&str> = columns.iter().map(String::as_str).collect();
-    let caption = format!("Columns with measured data or expected values.{} Data: `history.csv`.", histories.sources(&all));
+    let caption = format!(
+        "Columns with measured data or expected values.{} Data: `history.csv`.",
+        histories.sources(&all)
+    );
     histories.figure("columns", "Other columns", caption, panels, &[])
 }
 
@@ -199,7 +264,10 @@ fn formula<'a>(run: &'a Recorded, what: &str) -> Option<(String, Series<'a>)> {
     let column = column.rsplit_once('|')?.1;
     let formula = Formula::parse(text.rsplit_once(")|")?.0, &["t"]).ok()?;
     let y = run.times().iter().map(|t| formula.value(&[*t])).collect();
-    Some((column.to_owned(), Series { label: "expected".to_owned(), color: LINES[2], x: run.times(), y, ..Series::default() }))
+    Some((
+        column.to_owned(),
+        Series { label: "expected".to_owned(), color: LINES[2], x: run.times(), y, ..Series::default() },
+    ))
 }
 
 /// Iterations, active nodes and rejections by step, with the events.
@@ -207,7 +275,8 @@ fn solver(run: &Recorded, histories: &Histories) -> Option<Figure> {
     let all = [("newton", "iterations"), ("active", "active nodes"), ("rejected", "rejected")];
     let occurs = |name: &str| run.column(name).is_some_and(|column| column.iter().any(|x| *x > 0.0));
     let shown = all.into_iter().filter(|(name, _)| occurs(name));
-    let panels = shown.map(|(name, label)| histories.panel(label, 84.0, &[Line::new(name, "")], 0.0)).collect();
+    let panels =
+        shown.map(|(name, label)| histories.panel(label, 84.0, &[Line::new(name, "")], 0.0)).collect();
     let caption = "Iterations per step, contact nodes, rejected attempts; ticks: events. Data: `history.csv`, `log.jsonl`.";
     histories.figure("solver", "Solver", caption.to_owned(), panels, &tracks(run))
 }

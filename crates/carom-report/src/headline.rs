@@ -37,9 +37,11 @@ struct Facts<'a> {
 /// a free motion.
 pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
     let facts = Facts { run, scene, metrics: metrics_of(run) };
-    let impact = || [facts.rebound(), facts.peak_force(), facts.mean_force(), facts.duration(), facts.energy_lost()];
+    let impact =
+        || [facts.rebound(), facts.peak_force(), facts.mean_force(), facts.duration(), facts.energy_lost()];
     let outside = || [facts.largest_stress(), facts.peak_force(), facts.work(), facts.displacement()];
-    let inside = || [facts.peak_force(), facts.work(), facts.friction(), facts.largest_stress(), facts.energy_lost()];
+    let inside =
+        || [facts.peak_force(), facts.work(), facts.friction(), facts.largest_stress(), facts.energy_lost()];
     let free = || [facts.largest_stress(), facts.displacement(), facts.kinetic(), facts.energy_lost()];
     let numbers: Vec<Option<Number>> = if run.is_static() {
         facts.reactions().into_iter().chain(outside()).collect()
@@ -72,7 +74,10 @@ impl Facts<'_> {
     }
 
     fn at(&self, row: usize) -> String {
-        self.run.times().get(row).map_or_else(String::new, |time| format!("at {}", instant_label(self.run, *time)))
+        self.run
+            .times()
+            .get(row)
+            .map_or_else(String::new, |time| format!("at {}", instant_label(self.run, *time)))
     }
 
     fn force(&self, x: f64) -> String {
@@ -86,25 +91,33 @@ impl Facts<'_> {
     fn rebound(&self) -> Option<Number> {
         let value = self.metric("restitution")?;
         let striker = metrics::striker(&self.run.history).unwrap_or_default();
-        Some(Number::new("Rebound", significant(value, 3), format!("coefficient of restitution of {striker}")))
+        Some(Number::new(
+            "Rebound",
+            significant(value, 3),
+            format!("coefficient of restitution of {striker}"),
+        ))
     }
 
     fn peak_force(&self) -> Option<Number> {
         let forces = metrics::contact_force(&self.run.history);
         let row = (0..forces.len()).max_by(|a, b| forces[*a].total_cmp(&forces[*b]))?;
-        (forces[row] > 0.0).then(|| Number::new("Largest contact force", self.force(forces[row]), self.at(row)))
+        (forces[row] > 0.0)
+            .then(|| Number::new("Largest contact force", self.force(forces[row]), self.at(row)))
     }
 
     fn mean_force(&self) -> Option<Number> {
         let duration = self.metric("contact_duration")?;
-        let impulses = ["impulse_x", "impulse_y", "impulse_z"].into_iter().filter_map(|name| self.metric(name));
+        let impulses =
+            ["impulse_x", "impulse_y", "impulse_z"].into_iter().filter_map(|name| self.metric(name));
         let impulse = impulses.fold(0.0, f64::hypot);
         Some(Number::new("Mean contact force", self.force(impulse / duration), "impulse over duration"))
     }
 
     fn duration(&self) -> Option<Number> {
         let value = self.metric("contact_duration")?;
-        let note = self.metric("contact_start").map_or_else(String::new, |t| format!("from {}", instant_label(self.run, t)));
+        let note = self
+            .metric("contact_start")
+            .map_or_else(String::new, |t| format!("from {}", instant_label(self.run, t)));
         Some(Number::new("Contact duration", amount(value, self.run.time_unit()), note))
     }
 
@@ -123,13 +136,16 @@ impl Facts<'_> {
         let mut found: Vec<(f64, usize, &str)> = Vec::new();
         for name in distinct(names) {
             let axes = ["x", "y", "z"].map(|axis| history.column(&format!("{name}.reaction_{axis}")));
-            let size = |row: usize| axes.iter().flatten().fold(0.0, |sum, column| f64::hypot(sum, column[row]));
+            let size =
+                |row: usize| axes.iter().flatten().fold(0.0, |sum, column| f64::hypot(sum, column[row]));
             if let Some(row) = (0..self.run.times().len()).max_by(|a, b| size(*a).total_cmp(&size(*b))) {
                 found.push((size(row), row, name));
             }
         }
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let number = |(value, row, name): (f64, usize, &str)| Some(Number::new(format!("Largest reaction, {name}"), self.force(value), self.at(row)));
+        let number = |(value, row, name): (f64, usize, &str)| {
+            Some(Number::new(format!("Largest reaction, {name}"), self.force(value), self.at(row)))
+        };
         found.into_iter().take(2).map(number).collect()
     }
 
@@ -149,7 +165,9 @@ impl Facts<'_> {
     fn work(&self) -> Option<Number> {
         let work = self.run.column("external_work")?;
         let size = work.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        (size > 0.0).then(|| Number::new("Work of loads and supports", self.energy(*work.last().unwrap_or(&0.0)), "at the end"))
+        (size > 0.0).then(|| {
+            Number::new("Work of loads and supports", self.energy(*work.last().unwrap_or(&0.0)), "at the end")
+        })
     }
 
     fn friction(&self) -> Option<Number> {
@@ -161,6 +179,8 @@ impl Facts<'_> {
         let kinetic = self.run.column("kinetic")?;
         let most = kinetic.iter().copied().filter(|x| x.is_finite()).fold(0.0, f64::max);
         let first = kinetic.first().copied().unwrap_or(0.0);
-        (most > 0.0).then(|| Number::new("Largest kinetic energy", self.energy(most), format!("{} at first", number(first))))
+        (most > 0.0).then(|| {
+            Number::new("Largest kinetic energy", self.energy(most), format!("{} at first", number(first)))
+        })
     }
 }

@@ -87,7 +87,9 @@ impl<'a> Histories<'a> {
         let mut found = Vec::new();
         for column in &self.run.history.columns {
             let Some((probe, quantity)) = column.name.rsplit_once('.') else { continue };
-            let Some(number) = self.run.case.probes.iter().position(|known| known.name == probe) else { continue };
+            let Some(number) = self.run.case.probes.iter().position(|known| known.name == probe) else {
+                continue;
+            };
             let is_idle = is_stress(quantity) && is_noise(self.run, &column.name);
             if let Some(y) = self.run.column(&column.name).filter(|_| !is_idle) {
                 let label = format!("{} at {probe}", symbol(quantity));

@@ -66,7 +66,9 @@ pub(crate) fn instants(run: &Recorded, notes: &mut Vec<String>) -> Option<Figure
         let caption = format!("Deformed bodies with von Mises stress {during}. Data: {files}.");
         Figure::new("bodies", caption, pictures)
     } else {
-        let caption = format!("Deformed bodies with vertical stress {during}; blue: compression, red: tension. Data: {files}.");
+        let caption = format!(
+            "Deformed bodies with vertical stress {during}; blue: compression, red: tension. Data: {files}."
+        );
         Figure::new("bodies", caption, in_plane(run, &sets)?)
     };
     "Instants".clone_into(&mut figure.title);
@@ -86,7 +88,8 @@ fn in_plane(run: &Recorded, sets: &[(f64, FieldSet)]) -> Option<[String; 2]> {
     let times = sets.iter().map(|(time, _)| *time);
     let walks: Vec<Vec<_>> =
         times.clone().map(|time| obstacles.iter().map(|o| o.at(run, time)).collect()).collect();
-    let marks: Vec<Vec<_>> = times.map(|time| obstacles.iter().filter_map(|o| o.mark(run, time)).collect()).collect();
+    let marks: Vec<Vec<_>> =
+        times.map(|time| obstacles.iter().filter_map(|o| o.mark(run, time)).collect()).collect();
     let mut wide = frame;
     for (obstacle, walk) in walks.iter().flat_map(|walks| obstacles.iter().zip(walks)) {
         wide = obstacle.shown_in(walk, wide, frame);

@@ -52,7 +52,11 @@ pub(crate) fn with_unit(label: &str, unit: &str) -> String {
 
 /// The label of the axis of time, which in a static analysis is a parameter of the load.
 pub(crate) fn time_label(run: &Recorded) -> String {
-    if run.is_static() { "load parameter t".to_owned() } else { with_unit("time t", run.history.unit("time")) }
+    if run.is_static() {
+        "load parameter t".to_owned()
+    } else {
+        with_unit("time t", run.history.unit("time"))
+    }
 }
 
 /// `t = 0.315 s`, with the digits that tell the rows of a run apart.

@@ -111,12 +111,18 @@ fn integration(run: &Recorded) -> String {
     let time = &run.case.time;
     let scheme = &time.scheme;
     let mut parts = vec![scheme_name(&scheme.kind).to_owned()];
-    parts.extend(scheme.parameters.iter().map(|(key, value)| format!("{} = {}", symbol_of(key), number(*value))));
+    parts.extend(
+        scheme.parameters.iter().map(|(key, value)| format!("{} = {}", symbol_of(key), number(*value))),
+    );
     if !run.is_static() && scheme.forces != ForceRule::AverageForces {
         parts.push("forces of averaged positions".to_owned());
     }
     let step = number(time.step);
-    let step = if run.is_static() { format!("load step = {step}") } else { format!("Δt = {step} {}", run.time_unit()) };
+    let step = if run.is_static() {
+        format!("load step = {step}")
+    } else {
+        format!("Δt = {step} {}", run.time_unit())
+    };
     format!("{}; {step}", parts.join(", ")).replace(" = ", "\u{a0}=\u{a0}")
 }
 

@@ -102,21 +102,24 @@ pub(crate) fn pressure(run: &Recorded) -> Option<Figure> {
     let sides = sides(run, |row, place| place.is_secondary && row.pressure.is_finite());
     let mut table = String::from("contact,node,s,time,pressure\n");
     for (side, (row, place)) in sides.iter().flat_map(|side| side.rows.iter().map(move |row| (side, row))) {
-        let _ = writeln!(table, "{},{},{:?},{:?},{:?}", side.name, row.node, place.at, row.time, row.pressure);
+        let _ =
+            writeln!(table, "{},{},{:?},{:?},{:?}", side.name, row.node, place.at, row.time, row.pressure);
     }
-    let coloured = |side: Side<'_>| {
+    let mut coloured = Vec::new();
+    for side in sides {
         let (bands, cut) = positive_bands(side.rows.iter().map(|(row, _)| row.pressure));
-        (side, Colours::Pressure(bands, cut))
-    };
+        coloured.push((side, Colours::Pressure(bands, cut)));
+    }
     let maps = Maps {
         run,
         title: "Contact pressure",
         name: "pressure",
         length: fields.unit("displacement").to_owned(),
         stress: fields.unit("contact_pressure").to_owned(),
-        sides: sides.into_iter().map(coloured).collect(),
+        sides: coloured,
     };
-    let caption = "Contact pressure along the secondary side; s is the reference arc length. Data: `contact.csv`.";
+    let caption =
+        "Contact pressure along the secondary side; s is the reference arc length. Data: `contact.csv`.";
     maps.figure(caption, table)
 }
 
@@ -128,7 +131,8 @@ pub(crate) fn stick_slip(run: &Recorded) -> Option<Figure> {
     let mut table = String::from("contact,node,s,time,state,traction\n");
     for (side, (row, place)) in sides.iter().flat_map(|side| side.rows.iter().map(move |row| (side, row))) {
         let (node, state) = (row.node, &row.friction);
-        let _ = writeln!(table, "{},{node},{:?},{:?},{state},{:?}", side.name, place.at, row.time, row.traction);
+        let _ =
+            writeln!(table, "{},{node},{:?},{:?},{state},{:?}", side.name, place.at, row.time, row.traction);
     }
     let fields = run.fields.first().and_then(|entry| run.field(entry).ok()).unwrap_or_default();
     let maps = Maps {
@@ -139,16 +143,21 @@ pub(crate) fn stick_slip(run: &Recorded) -> Option<Figure> {
         stress: String::new(),
         sides: sides.into_iter().map(|side| (side, Colours::States(["sticks", against, along]))).collect(),
     };
-    let forward = if words.is_some() { "" } else { "; forward: along the normal of the primary side turned clockwise" };
-    let caption = format!("State of the nodes in contact; slip is that of the secondary side{forward}. Data: `contact.csv`.");
+    let forward =
+        if words.is_some() { "" } else { "; forward: along the normal of the primary side turned clockwise" };
+    let caption = format!(
+        "State of the nodes in contact; slip is that of the secondary side{forward}. Data: `contact.csv`."
+    );
     maps.figure(&caption, table)
 }
 
 /// The two directions of slip in words: along an axis if all normals have one direction, around a
 /// rigid circle; none where the caption defines them.
 fn directions(run: &Recorded, sides: &[Side]) -> Option<[&'static str; 2]> {
-    let is_round = |contact: &ContactSpec| matches!(contact.primary, PrimarySpec::Circle { inside: false, .. });
-    let mut contacts = run.case.contacts.iter().filter(|contact| sides.iter().any(|side| side.name == contact.name));
+    let is_round =
+        |contact: &ContactSpec| matches!(contact.primary, PrimarySpec::Circle { inside: false, .. });
+    let mut contacts =
+        run.case.contacts.iter().filter(|contact| sides.iter().any(|side| side.name == contact.name));
     if contacts.all(is_round) {
         return Some(["slips counterclockwise", "slips clockwise"]);
     }
@@ -178,7 +187,8 @@ impl Maps<'_> {
     /// The time in contact with a margin, within the run.
     fn span(&self) -> (f64, f64) {
         let (start, end) = range(self.run.times());
-        let (first, last) = range(self.sides.iter().flat_map(|(side, _)| &side.rows).map(|(row, _)| &row.time));
+        let (first, last) =
+            range(self.sides.iter().flat_map(|(side, _)| &side.rows).map(|(row, _)| &row.time));
         let margin = 0.04 * (last - first).max(0.02 * (end - start));
         // A state is drawn up to the next instant.
         let next = self.run.times().iter().copied().find(|t| *t > last).unwrap_or(last);
@@ -215,7 +225,8 @@ impl Maps<'_> {
             }
             for (value, label) in &x_axis.ticks {
                 let x = to_x(*value);
-                let _ = writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v5\" stroke=\"#222\" stroke-width=\"0.8\"/>");
+                let _ =
+                    writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v5\" stroke=\"#222\" stroke-width=\"0.8\"/>");
                 tick_label(&mut out, x, bottom + 19.0, label, width);
             }
             let _ = writeln!(

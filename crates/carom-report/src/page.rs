@@ -36,12 +36,28 @@ pub(crate) fn page(run: &Recorded, shown: &Shown) -> String {
     let is_said = |warning: &&Warning| run.stop.is_some() && stopped::cause(warning).is_some();
     let warnings: Vec<&Warning> = run.manifest.warnings.iter().filter(|warning| !is_said(warning)).collect();
     let sections = [
-        run.stop.as_ref().map(|_| Section { id: "stop", title: "Why it stopped", body: stopped::section(run, place) }),
+        run.stop.as_ref().map(|_| Section {
+            id: "stop",
+            title: "Why it stopped",
+            body: stopped::section(run, place),
+        }),
         Some(Section { id: "picture", title: "", body: picture(run, shown) }),
-        (!warnings.is_empty()).then(|| Section { id: "warnings", title: "Warnings", body: html! { @for warning in &warnings { (warning_line(warning)) } } }),
-        has_expectations.then(|| Section { id: "expectations", title: "Expectations", body: expectations(run) }),
+        (!warnings.is_empty()).then(|| Section {
+            id: "warnings",
+            title: "Warnings",
+            body: html! { @for warning in &warnings { (warning_line(warning)) } },
+        }),
+        has_expectations.then(|| Section {
+            id: "expectations",
+            title: "Expectations",
+            body: expectations(run),
+        }),
         (!others.is_empty()).then(|| Section { id: "figures", title: "Figures", body: figures(&others) }),
-        Some(Section { id: "metrics", title: "All metrics", body: html! { details { summary { "Table" } (results(run)) } } }),
+        Some(Section {
+            id: "metrics",
+            title: "All metrics",
+            body: html! { details { summary { "Table" } (results(run)) } },
+        }),
         Some(Section { id: "made", title: "How the run was made", body: made(run) }),
     ];
     let sections: Vec<Section> = sections.into_iter().flatten().collect();
@@ -76,7 +92,7 @@ fn figures(figures: &[(usize, &Figure)]) -> Markup {
         @for (k, (number, each)) in figures.iter().enumerate() {
             div id=(format_args!("figure-{}", k + 1)) {
                 h3 { (each.title) }
-                (figure((*number, each)))
+                (figure((*number, *each)))
             }
         }
     }
@@ -141,8 +157,11 @@ fn status(run: &Recorded) -> Markup {
 
 /// The numbers of the charts and of the scene, and the script that shows them.
 fn scripts(shown: &Shown) -> Markup {
-    let charts: BTreeMap<&str, &Value> =
-        shown.figures.iter().filter_map(|figure| Some((figure.name.as_str(), figure.data.as_ref()?))).collect();
+    let charts: BTreeMap<&str, &Value> = shown
+        .figures
+        .iter()
+        .filter_map(|figure| Some((figure.name.as_str(), figure.data.as_ref()?)))
+        .collect();
     // Only `<` could end the script element.
     let data = |value: &str| PreEscaped(value.replace('<', "\\u003c"));
     let charts = serde_json::to_string(&charts).unwrap_or_default();

@@ -25,10 +25,14 @@ impl Deref for Recorded {
 impl Recorded {
     /// Reads the record of a directory.
     pub(crate) fn open(directory: &Path) -> Result<Self, ReportError> {
-        let run = Run::open(directory)?;
+        Self::new(Run::open(directory)?)
+    }
+
+    /// Reads the case of a record.
+    pub(crate) fn new(run: Run) -> Result<Self, ReportError> {
         let case = serde_json::from_value(run.manifest.case.clone()).map_err(|source| {
             let version = run.manifest.version.clone();
-            ReportError::Case { directory: directory.to_path_buf(), version, source }
+            ReportError::Case { directory: run.directory.clone(), version, source }
         })?;
         Ok(Self { run, case })
     }

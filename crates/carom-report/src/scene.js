@@ -323,6 +323,7 @@ const scene = async (root, data) => {
   const tone = color => [1, 3, 5].map(k => parseInt(color.slice(k, k + 2), 16) / 255);
   const render = () => {
     queued = false;
+    if (!sizes.skin) return;
     const s = scale(), m = middle(), isDark = matchMedia("(prefers-color-scheme: dark)").matches;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(0, 0, 0, 0); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);

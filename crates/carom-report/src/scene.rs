@@ -26,9 +26,9 @@ use packed::{Frame, packed};
 use quantities::Choice;
 
 /// Largest number of bytes of the scene in the page, in base 64.
-const BUDGET: usize = 5_500_000;
+const BUDGET: usize = 7_000_000;
 /// Largest number of numbers in all frames: one of each node, frame and channel.
-const NUMBERS: usize = 4_000_000;
+const NUMBERS: usize = 6_000_000;
 const FRAMES: usize = 300;
 /// Channels beside the displacement below which frames are left out instead of fields.
 const LEAST: usize = 2;
@@ -116,11 +116,15 @@ fn forces(run: &Recorded, entries: &[&FieldEntry]) -> HashMap<u64, Vec<f64>> {
 fn rigid_in_plane(run: &Recorded, entries: &[&FieldEntry], bodies: [f64; 4]) -> (Value, [f64; 4]) {
     let all = obstacles::all(run, bodies);
     let mut frame = bodies;
-    for (obstacle, entry) in all.iter().flat_map(|obstacle| entries.iter().map(move |entry| (obstacle, entry))) {
+    for (obstacle, entry) in
+        all.iter().flat_map(|obstacle| entries.iter().map(move |entry| (obstacle, entry)))
+    {
         frame = obstacle.shown_in(&obstacle.at(run, entry.time), frame, bodies);
     }
-    let poses: Vec<Vec<[f64; 4]>> =
-        entries.iter().map(|entry| all.iter().map(|obstacle| obstacle.pose(run, entry.time)).collect()).collect();
+    let poses: Vec<Vec<[f64; 4]>> = entries
+        .iter()
+        .map(|entry| all.iter().map(|obstacle| obstacle.pose(run, entry.time)).collect())
+        .collect();
     let walls: Vec<Vec<f64>> = all.iter().map(obstacles::Obstacle::base).collect();
     let marked: Vec<bool> = all.iter().map(|obstacle| obstacle.mark(run, 0.0).is_some()).collect();
     (json!({ "walls": walls, "marked": marked, "poses": poses }), frame)
@@ -129,8 +133,10 @@ fn rigid_in_plane(run: &Recorded, entries: &[&FieldEntry], bodies: [f64; 4]) -> 
 /// What is rigid, in space: lines, and how far they have moved in each frame.
 fn rigid_in_space(run: &Recorded, entries: &[&FieldEntry], bodies: [Place; 2]) -> Value {
     let all = wires(run, bodies);
-    let lines: Vec<Vec<f32>> =
-        all.iter().map(|wire| wire.at_first().iter().flatten().flatten().map(|x| *x as f32).collect()).collect();
+    let lines: Vec<Vec<f32>> = all
+        .iter()
+        .map(|wire| wire.at_first().iter().flatten().flatten().map(|x| *x as f32).collect())
+        .collect();
     let moves: Vec<Vec<Place>> =
         entries.iter().map(|entry| all.iter().map(|wire| wire.moved(run, entry.time)).collect()).collect();
     json!({ "lines": lines, "moves": moves })
@@ -159,7 +165,8 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
     let mut stress = None;
     let mut displacement = None;
     entries.retain(|entry| {
-        let Some(fields) = run.field(entry).ok().filter(|fields| fields.points.len() == first.points.len()) else {
+        let Some(fields) = run.field(entry).ok().filter(|fields| fields.points.len() == first.points.len())
+        else {
             return false;
         };
         let values = choice.channels.iter().map(|channel| channel.values(&fields, &mesh.nodes)).collect();
@@ -173,10 +180,15 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
     if frames.len() < 2 {
         return None;
     }
-    let places: Vec<Place> = mesh.nodes.iter().zip(&mesh.across).map(|(&k, y)| {
-        let [x, v, z] = first.points[k];
-        [x, v + y, z]
-    }).collect();
+    let places: Vec<Place> = mesh
+        .nodes
+        .iter()
+        .zip(&mesh.across)
+        .map(|(&k, y)| {
+            let [x, v, z] = first.points[k];
+            [x, v + y, z]
+        })
+        .collect();
     let mut stride = 1;
     let (chosen, pack) = loop {
         let chosen: Vec<usize> = thinned(frames.len(), stride).collect();
@@ -201,7 +213,8 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
         data["rigid"] = rigid;
         data["view"] = json!([[1, 0, 0], [0, 1, 0], [0, 0, 1]]);
     }
-    let (quantities, bars): (Vec<Value>, Vec<Markup>) = choice.quantities.iter().map(|quantity| quantity.shown(&frames)).unzip();
+    let (quantities, bars): (Vec<Value>, Vec<Markup>) =
+        choice.quantities.iter().map(|quantity| quantity.shown(&frames)).unzip();
     data["quantities"] = json!(quantities);
     let forces = forces(run, &shown);
     let mut largest = 0.0_f64;
@@ -219,7 +232,13 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
     data["mirrors"] = json!(mirrors);
     let names: Vec<&str> = choice.quantities.iter().map(|quantity| quantity.name.as_str()).collect();
     let has_sides = mesh.flags.iter().any(|flag| flag >> 3 != 0);
-    let tools = Tools { names: &names, is_cut: dimension == 3, is_solid: dimension == 3, mirrors: &mirrors, has_sides, has_forces: largest > 0.0 };
+    let tools = Tools {
+        names: &names,
+        is_solid: dimension == 3,
+        mirrors: &mirrors,
+        has_sides,
+        has_forces: largest > 0.0,
+    };
     let figure = html! {
         figure.animation #animation hidden {
             div.stage {
@@ -236,11 +255,12 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
                 @if largest > 0.0 {
                     " Longest arrow: contact force of " (Label(&format!("{} {}", significant(largest, 2), run.history.unit("contact_force_x")))) "."
                 }
-                @if dimension == 3 && !inside { " The inside is not in the page, which would exceed 6 MB." }
+                @if dimension == 3 && !inside { " The inside is not in the page, which would exceed 8 MB." }
             }
         }
     };
-    let names: Vec<&str> = first.blocks.iter().filter(|block| is_plane(block)).map(|block| block.body.as_str()).collect();
+    let names: Vec<&str> =
+        first.blocks.iter().filter(|block| is_plane(block)).map(|block| block.body.as_str()).collect();
     let of_body = |(k, name): (usize, &&str)| ((*name).to_owned(), turned.iter().map(|all| all[k]).collect());
     let rotations = names.iter().enumerate().map(of_body).collect();
     let times = entries.iter().map(|entry| entry.time).collect();
@@ -267,16 +287,17 @@ fn box_of(places: &[Place], frames: &[Frame], dimension: usize) -> [Place; 2] {
 fn frames_in_words(run: &Recorded, shown: &[&FieldEntry]) -> String {
     let last = shown.last().map_or(0.0, |entry| entry.time);
     let ends = run.times().last().is_some_and(|end| end - last > 1e-9 * end.abs());
-    let until = if ends { format!(", up to t = {} {}", number(last), run.time_unit()) } else { String::new() };
+    let until =
+        if ends { format!(", up to t = {} {}", number(last), run.time_unit()) } else { String::new() };
     let all = run.fields.len();
     let frames = if shown.len() < all { format!("{} of {all}", shown.len()) } else { all.to_string() };
-    format!("{frames} recorded instants{until}; displacements are not magnified.").replace(" = ", "\u{a0}=\u{a0}")
+    format!("{frames} recorded instants{until}; displacements are not magnified.")
+        .replace(" = ", "\u{a0}=\u{a0}")
 }
 
 /// What can be chosen below the picture.
 struct Tools<'a> {
     names: &'a [&'a str],
-    is_cut: bool,
     is_solid: bool,
     mirrors: &'a [(usize, f64)],
     has_sides: bool,
@@ -309,7 +330,7 @@ impl Tools<'_> {
                         @for (k, name) in self.names.iter().enumerate() { option value=(k) { (name) } }
                     }
                 }
-                @if self.is_cut {
+                @if self.is_solid {
                     label {
                         "cut "
                         select.cut {

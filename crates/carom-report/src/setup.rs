@@ -22,13 +22,12 @@ use crate::bodies::{self, Instant, bezier, corners, edges, fill_space, places};
 use crate::chart::{opened, turned, write_text};
 use crate::figure::NARROW;
 use crate::obstacles;
-use crate::recorded::Recorded;
 use crate::pen::{NOTHING, Pen, Point, around, open_grid};
 use crate::place::fill;
+use crate::recorded::Recorded;
 use crate::symbols::{arrow, direction, distance, guides, motion, plus, probe_mark, rollers, wall};
 use crate::values::{flat, list, text, texts, unit, vector};
 use drawing::{BAR, BOLD, ITALIC, PRIMARY, ROOM, SECONDARY, Setup, Walk};
-pub(crate) use forces::typeset as formula_in_words;
 use key::placed;
 pub(crate) use words::{in_words, model_in_words};
 

@@ -7,10 +7,10 @@ use maud::{Markup, html};
 
 use crate::document::or_dash;
 use crate::labels::{capitalised, number};
-use crate::scientific::{powers, significant};
-use crate::text::{Label, Prose, typeset};
 use crate::made::command;
 use crate::recorded::Recorded;
+use crate::scientific::{powers, significant};
+use crate::text::{Label, Prose, typeset};
 pub(crate) use picture::figure;
 
 /// Warnings about what can make a run stop, the most likely first.
@@ -57,7 +57,9 @@ pub(crate) fn section(run: &Recorded, picture: Option<Markup>) -> Markup {
 /// first.
 fn causes(run: &Recorded, stop: &Stop) -> Markup {
     let place = stop.place.as_ref();
-    let names = place.into_iter().flat_map(|p| p.contact.iter().chain(&p.body).chain(p.node.as_ref().map(|n| &n.body)));
+    let names = place
+        .into_iter()
+        .flat_map(|p| p.contact.iter().chain(&p.body).chain(p.node.as_ref().map(|n| &n.body)));
     let names: Vec<String> = names.map(|name| format!("\"{name}\"")).collect();
     let is_far = |warning: &&Warning| !names.iter().any(|name| warning.place.contains(name));
     let mut warnings: Vec<&Warning> = run.manifest.warnings.iter().filter(|w| cause(w).is_some()).collect();

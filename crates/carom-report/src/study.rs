@@ -13,6 +13,7 @@ use crate::labels::{capitalised, file_name, listed, with_unit};
 use crate::ordered::grouped;
 use crate::plot::{Curve, Pane, Plot};
 use crate::publish::{ReportError, ReportSummary, publish};
+use crate::recorded::Recorded;
 use crate::systems::Systems;
 use crate::text::said_if;
 use crate::{curves, laboratory, multiples, setup, study_page, theory, trend};
@@ -37,7 +38,8 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     let mut measured = Measured(manifest.overlays);
     let mut study = Study::open(directory, &mut |arm, run| {
         picture = picture.take().or_else(|| {
-            let pictures = setup::figure(run, &run.field(run.fields.first()?).ok()?)?;
+            let fields = run.field(run.fields.first()?).ok()?;
+            let pictures = setup::figure(&Recorded::new(run.clone()).ok()?, &fields)?;
             Some(Figure::new("setup", "", pictures))
         });
         if systems.is_own(arm) {

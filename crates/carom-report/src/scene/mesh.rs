@@ -60,17 +60,31 @@ impl Mesh {
         let (low, high) = range(&xs);
         let half = BAR * (high - low);
         let mut facets = Vec::new();
-        for (block, cell) in fields.blocks.iter().enumerate().flat_map(|(k, b)| b.cells().map(move |c| (k, c))) {
+        for (block, cell) in
+            fields.blocks.iter().enumerate().flat_map(|(k, b)| b.cells().map(move |c| (k, c)))
+        {
             let mut walk = cell.to_vec();
             walk.sort_by(|&a, &b| xs[a].total_cmp(&xs[b]));
             for (k, pair) in walk.windows(2).enumerate() {
                 let [a, b] = [pair[0], pair[1]];
-                let lower = Facet { degree: 1, nodes: vec![a, b, b + count], sides: [true, k + 2 == walk.len(), false], face: vec![], block };
-                let upper = Facet { degree: 1, nodes: vec![a, b + count, a + count], sides: [false, true, k == 0], face: vec![], block };
+                let lower = Facet {
+                    degree: 1,
+                    nodes: vec![a, b, b + count],
+                    sides: [true, k + 2 == walk.len(), false],
+                    face: vec![],
+                    block,
+                };
+                let upper = Facet {
+                    degree: 1,
+                    nodes: vec![a, b + count, a + count],
+                    sides: [false, true, k == 0],
+                    face: vec![],
+                    block,
+                };
                 facets.extend([lower, upper]);
             }
         }
-        let flags = facets.iter().map(|facet| edges(facet)).collect();
+        let flags = facets.iter().map(edges).collect();
         let nodes = (0..count).chain(0..count).collect();
         let across = [-half, half].into_iter().flat_map(|y| vec![y; count]).collect();
         Self { nodes, across, facets, flags, cells: BTreeMap::new() }
@@ -85,7 +99,13 @@ fn of_plane(number: usize, block: &Block) -> Vec<Facet> {
         let sides: &[[bool; 3]] =
             if halves.len() == 1 { &[[true; 3]] } else { &[[true, true, false], [false, true, true]] };
         for (nodes, sides) in halves.into_iter().zip(sides) {
-            facets.push(Facet { degree: block.degree, nodes, sides: *sides, face: Vec::new(), block: number });
+            facets.push(Facet {
+                degree: block.degree,
+                nodes,
+                sides: *sides,
+                face: Vec::new(),
+                block: number,
+            });
         }
     }
     facets
@@ -100,7 +120,8 @@ fn edges(facet: &Facet) -> u16 {
 fn flags(run: &Recorded, facets: &[Facet]) -> Vec<u16> {
     let mut flags: Vec<u16> = facets.iter().map(edges).collect();
     let contacts = run.case.contacts.iter();
-    let named = contacts.flat_map(|c| c.primary.side().map(|side| (2, side)).into_iter().chain([(1, c.secondary.as_str())]));
+    let named = contacts
+        .flat_map(|c| c.primary.side().map(|side| (2, side)).into_iter().chain([(1, c.secondary.as_str())]));
     for (class, side) in named {
         let Some(parts) = run.manifest.sides.get(side) else { continue };
         let chain: HashSet<usize> = parts.iter().flatten().copied().collect();
@@ -113,7 +134,8 @@ fn flags(run: &Recorded, facets: &[Facet]) -> Vec<u16> {
             let is_face = faces.contains(&facet.face);
             for edge in 0..3 {
                 let ends = [facet.nodes[edge], facet.nodes[(edge + 1) % 3]];
-                let is_on = is_face || (run.case.dimension == 2 && ends.iter().all(|node| chain.contains(node)));
+                let is_on =
+                    is_face || (run.case.dimension == 2 && ends.iter().all(|node| chain.contains(node)));
                 if is_on && *flag & 1 << edge != 0 {
                     *flag |= class << (3 + 2 * edge);
                 }
@@ -131,13 +153,22 @@ pub(super) fn symmetries(run: &Recorded, fields: &FieldSet) -> Vec<(usize, f64)>
     let mut found: Vec<(usize, f64)> = Vec::new();
     for side in supports.iter().flat_map(|support| &support.on) {
         let of_side = || supports.iter().filter(|support| support.on.contains(side));
-        let points: Vec<[f64; 3]> = run.manifest.sides.get(side).into_iter().flatten().flatten().filter_map(|&k| fields.points.get(k).copied()).collect();
+        let points: Vec<[f64; 3]> = run
+            .manifest
+            .sides
+            .get(side)
+            .into_iter()
+            .flatten()
+            .flatten()
+            .filter_map(|&k| fields.points.get(k).copied())
+            .collect();
         let Some(first) = points.first().filter(|_| dimension > 1) else { continue };
         for axis in 0..dimension {
             let extent = range(fields.points.iter().map(|point| &point[axis]));
             let near = 1e-9 * (extent.1 - extent.0);
             let is_flat = points.iter().all(|point| (point[axis] - first[axis]).abs() <= near);
-            let is_free = of_side().all(|support| support.moves.is_empty() && (support.normal || support.fix == [axis]));
+            let is_free = of_side()
+                .all(|support| support.moves.is_empty() && (support.normal || support.fix == [axis]));
             let is_end = first[axis] <= extent.0 + near || first[axis] >= extent.1 - near;
             if is_flat && is_free && is_end && found.iter().all(|known| known.0 != axis) {
                 found.push((axis, first[axis]));

@@ -30,7 +30,8 @@ impl Frame {
 /// Range of the numbers of a channel in all frames.
 fn range(frames: &[Frame], channel: usize) -> [f64; 2] {
     let all = frames.iter().flat_map(|frame| &frame.values[channel]).copied().filter(|x| x.is_finite());
-    let [low, high] = all.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    let [low, high] =
+        all.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
     if low <= high { [f64::from(low), f64::from(high)] } else { [0.0, 0.0] }
 }
 
@@ -44,12 +45,23 @@ pub(super) struct Packed {
 
 /// Packs a mesh, the reference positions of its nodes, and the chosen frames; the first channels
 /// are the displacement in so many dimensions.
-pub(super) fn packed(mesh: &Mesh, places: &[Place], frames: &[Frame], chosen: &[usize], dimension: usize) -> Packed {
+pub(super) fn packed(
+    mesh: &Mesh,
+    places: &[Place],
+    frames: &[Frame],
+    chosen: &[usize],
+    dimension: usize,
+) -> Packed {
     let mut bytes = Vec::new();
     let nodes = mesh.facets.iter().flat_map(|facet| &facet.nodes).chain(mesh.cells.values().flatten());
     nodes.for_each(|&node| bytes.extend((node as u32).to_le_bytes()));
     put(&mut bytes, mesh.flags.iter().copied());
-    let ends = |d: usize| places.iter().map(|place| place[d]).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    let ends = |d: usize| {
+        places
+            .iter()
+            .map(|place| place[d])
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+    };
     let box_of = [0, 1, 2].map(ends);
     for (d, [low, high]) in box_of.into_iter().enumerate() {
         let scale = if high > low { PLACED / (high - low) } else { 0.0 };
@@ -78,7 +90,8 @@ pub(super) fn packed(mesh: &Mesh, places: &[Place], frames: &[Frame], chosen: &[
             let differs = (0..now.len()).map(|i| {
                 // From the third frame on, displacements are extrapolated linearly.
                 let is_moved = channel < dimension && k > 1;
-                let expected = if is_moved { last[i].wrapping_mul(2).wrapping_sub(older[i]) } else { last[i] };
+                let expected =
+                    if is_moved { last[i].wrapping_mul(2).wrapping_sub(older[i]) } else { last[i] };
                 let error = now[i].wrapping_sub(expected);
                 let step = error.wrapping_sub(left);
                 left = error;
@@ -90,7 +103,8 @@ pub(super) fn packed(mesh: &Mesh, places: &[Place], frames: &[Frame], chosen: &[
         }
     }
     let degrees = [1, 2, 3].map(|degree| mesh.facets.iter().filter(|facet| facet.degree == degree).count());
-    let cells: Vec<Value> = mesh.cells.iter().map(|((is_cube, degree), list)| json!([is_cube, degree, list.len()])).collect();
+    let cells: Vec<Value> =
+        mesh.cells.iter().map(|((is_cube, degree), list)| json!([is_cube, degree, list.len()])).collect();
     let data = json!({
         "nodes": places.len(), "facets": degrees, "cells": cells, "places": box_of, "ranges": ranges,
         "moved": MOVED, "placed": PLACED, "levels": LEVELS, "dimension": dimension,

@@ -1,7 +1,7 @@
 //! What the bodies can be coloured by: the recorded fields, component by component.
 
 use carom_record::FieldSet;
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped};
 use serde_json::{Value, json};
 
 use super::packed::Frame;
@@ -72,7 +72,9 @@ impl Choice {
         choice.vector(fields, "displacement", "u", &axes, most);
         let pairs: &[usize] = [&[0][..], &[1, 0, 2, 3], &[0, 1, 2, 3, 4, 5]][dimension.clamp(1, 3) - 1];
         if dimension > 1 {
-            choice.add(fields, "von_mises", &[0], most, |_| ("von Mises stress".into(), "σ_{vM}".into(), [false; 3]));
+            choice.add(fields, "von_mises", &[0], most, |_| {
+                ("von Mises stress".into(), "σ_{vM}".into(), [false; 3])
+            });
         }
         choice.add(fields, "stress", pairs, most, |k| {
             let [i, j] = STRESS[k];
@@ -80,12 +82,19 @@ impl Choice {
             (format!("stress {}{}", AXES[i], AXES[j]), format!("σ_{{{}{}}}", AXES[i], AXES[j]), odd)
         });
         if !run.contact.is_empty() && dimension > 1 {
-            choice.add(fields, "contact_pressure", &[0], most, |_| ("contact pressure".into(), "p_{c}".into(), [false; 3]));
+            choice.add(fields, "contact_pressure", &[0], most, |_| {
+                ("contact pressure".into(), "p_{c}".into(), [false; 3])
+            });
         }
         choice.vector(fields, "velocity", "v", &axes, most);
         if dimension > 1 {
-            for (array, name, symbol) in [("principal_log_strain", "logarithmic strain", "ε"), ("principal_stress", "principal stress", "σ")] {
-                choice.add(fields, array, &[0, 1, 2], most, |k| (format!("{name} {}", k + 1), format!("{symbol}_{{{}}}", k + 1), [false; 3]));
+            for (array, name, symbol) in [
+                ("principal_log_strain", "logarithmic strain", "ε"),
+                ("principal_stress", "principal stress", "σ"),
+            ] {
+                choice.add(fields, array, &[0, 1, 2], most, |k| {
+                    (format!("{name} {}", k + 1), format!("{symbol}_{{{}}}", k + 1), [false; 3])
+                });
             }
         }
         choice.derive("mean stress", "σ_{m}", Rule::Mean, "stress", &[0, 1, 2]);
@@ -140,9 +149,21 @@ impl Choice {
         let channel = |k: &usize| self.channels.iter().position(|c| c.array == array && c.component == *k);
         let Some(channels) = components.iter().map(channel).collect::<Option<Vec<_>>>() else { return };
         let like = self.quantities.iter().find(|quantity| quantity.channels == [channels[0]]);
-        let unit = if rule == Rule::Dilation { String::new() } else { like.map_or(String::new(), |q| q.unit.clone()) };
+        let unit = if rule == Rule::Dilation {
+            String::new()
+        } else {
+            like.map_or(String::new(), |q| q.unit.clone())
+        };
         let is_positive = rule == Rule::Length;
-        self.quantities.push(Quantity { name: name.to_owned(), symbol: symbol.to_owned(), unit, rule, channels, odd: [false; 3], is_positive });
+        self.quantities.push(Quantity {
+            name: name.to_owned(),
+            symbol: symbol.to_owned(),
+            unit,
+            rule,
+            channels,
+            odd: [false; 3],
+            is_positive,
+        });
     }
 }
 
@@ -187,6 +208,6 @@ impl Quantity {
         let mut bar = open(&format!("Colour bar: {}", self.name), 106.0, 336.0);
         let legend = Legend { bands: &bands, cut, label: &self.symbol, unit: &self.unit };
         color_bar(&mut bar, &legend, 16.0, (14.0, 318.0));
-        (data, html! { (PreEscaped(bar + "</svg>\n")) })
+        (data, PreEscaped(bar + "</svg>\n"))
     }
 }

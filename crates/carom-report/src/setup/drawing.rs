@@ -6,8 +6,8 @@ use carom_record::{Block, FieldSet};
 use serde_json::Value;
 
 use crate::palette::LINES;
-use crate::recorded::Recorded;
 use crate::pen::{Pen, Point, path};
+use crate::recorded::Recorded;
 use crate::symbols::{direction, plus};
 
 /// Colours of the two sides of a contact.

@@ -14,9 +14,9 @@ use crate::axis::round_step;
 use crate::bodies::places;
 use crate::chart::{open, write_text};
 use crate::figure::NARROW;
-use crate::recorded::Recorded;
 use crate::pen::{Point, around};
 use crate::place::BODIES;
+use crate::recorded::Recorded;
 use crate::space::{
     DRAWN, Facet, Paint, Place, View, box_of, corners, cross, draw, frame, length, minus, pieces, skin,
     underlay, wires,

@@ -13,9 +13,9 @@ use crate::figure::{Figure, NARROW};
 use crate::labels::instant_label;
 use crate::obstacles;
 use crate::palette::LINES;
-use crate::recorded::Recorded;
 use crate::pen::{self, NOTHING, Pen, Point, path};
 use crate::place::{fill, mesh};
+use crate::recorded::Recorded;
 use crate::symbols::{distance, scale_bar, wall};
 
 const WIDTH: f64 = 720.0;
@@ -48,7 +48,13 @@ pub(crate) fn figure(run: &Recorded) -> Option<Figure> {
 }
 
 /// The picture, and whether the rejected positions differ visibly.
-fn draw(run: &Recorded, stop: &Stop, place: &StopPlace, fields: &FieldSet, width: f64) -> Option<(String, bool)> {
+fn draw(
+    run: &Recorded,
+    stop: &Stop,
+    place: &StopPlace,
+    fields: &FieldSet,
+    width: f64,
+) -> Option<(String, bool)> {
     let points: Vec<Point> = places(fields);
     let rejected = fields.array("rejected").map(|_| moved(fields, "rejected"));
     let node = place.node.as_ref()?.number;
