@@ -146,7 +146,7 @@ LOST = f"""(t => [...document.querySelectorAll("g.time")].filter(axis => {{
     const line = axis.querySelector("path.cursor")?.getAttribute("d");
     return line === undefined || (x > x0 && x < x1 && !(Math.abs(parseFloat(line.slice(1)) - x) < 1.5));
 }}).length)({TIME})"""
-FORWARD = "document.querySelector('#animation button').textContent"
+FORWARD = "document.querySelector('#animation .play').textContent"
 
 
 def pick(browser, selector, value):
@@ -178,17 +178,17 @@ def animation(browser):
                 wrong.append(f"{what} does not change the {name}")
 
     at_first = shown()
-    browser.click("#animation button")
+    browser.click("#animation .play")
     started = browser.value(TIME)
     if browser.value(FORWARD) == "▶" or not browser.until(f"{TIME} !== {started}"):
         wrong.append("the play button does not start the animation")
-    browser.click("#animation button")
+    browser.click("#animation .play")
     differs(at_first, played := shown(), "playing")
     if browser.value(FORWARD) != "▶" or shown() != played:
         wrong.append("the pause button does not stop the animation")
 
-    x, y, width, height = browser.place("#animation input")
-    thumb = browser.value("document.querySelector('#animation input').value")
+    x, y, width, height = browser.place("#animation .time")
+    thumb = browser.value("document.querySelector('#animation .time').value")
     grip = 8 + float(thumb) * (width - 16)
     target = 0.2 if float(thumb) > 0.5 else 0.8
     browser.mouse("mousePressed", x + grip, y + height / 2)
@@ -196,7 +196,7 @@ def animation(browser):
         browser.mouse("mouseMoved", x + grip + part * (target * width - grip), y + height / 2)
     browser.mouse("mouseReleased", x + target * width, y + height / 2)
     differs(played, dragged := shown(), "dragging the slider")
-    reached = float(browser.value("document.querySelector('#animation input').value"))
+    reached = float(browser.value("document.querySelector('#animation .time').value"))
     if abs(reached - target) > 0.1:
         wrong.append(f"the slider was dragged to {target} but is at {reached}")
 
@@ -211,7 +211,7 @@ def animation(browser):
             continue
         # The last frame, away from the middle of any history.
         browser.value("""(slider => { slider.value = 1; slider.dispatchEvent(new Event("input")); })(
-            document.querySelector("#animation input"))""")
+            document.querySelector("#animation .time"))""")
         browser.value(f"document.querySelectorAll('g.time')[{k}].ownerSVGElement.id = 'history-{k}'")
         before = shown()
         browser.click(f"#history-{k}", 0.5)
@@ -220,7 +220,7 @@ def animation(browser):
     browser.value("document.querySelector('g.time').ownerSVGElement.id = 'history'")
 
     # Other colours, with their colour bar; those of a scene are tried with it.
-    if browser.value("!!document.querySelector('#animation .quantity') && !document.querySelector('#animation .scene')"):
+    if not browser.value("!!document.querySelector('#animation .cut')"):
         before = shown()
         pick(browser, ".quantity", "1")
         if shown()[1] == before[1]:
@@ -231,7 +231,12 @@ def animation(browser):
     # A drag across a history enlarges it; a double click, or Esc wherever the focus is, shows all
     # of it again.
     ticks = "document.querySelector('#history g.ticks').textContent"
-    whole = browser.value(ticks)
+    levels = "[...document.querySelectorAll('#history .grid')].map(g => g.textContent).join()"
+    whole, heights = browser.value(ticks), browser.value(levels)
+    x, y, width, height = browser.place("#history")
+    browser.mouse("mouseMoved", x + 0.5 * width, y + 0.3 * height)
+    if not browser.value("(tips => !tips.hidden && /\\d/.test(tips.textContent))(document.querySelector('.values'))"):
+        wrong.append("no values are shown under the cursor in a time history")
 
     def escape():
         browser.value("document.activeElement.blur()")
@@ -245,8 +250,10 @@ def animation(browser):
         browser.mouse("mouseReleased", x + 0.6 * width, y + height / 2)
         if browser.value(ticks) == whole:
             wrong.append("a drag across a time history does not enlarge it")
+        if browser.value(levels) == heights:
+            wrong.append("a drag across a time history does not rescale its vertical axes")
         back()
-        if browser.value(ticks) != whole:
+        if browser.value(ticks) != whole or browser.value(levels) != heights:
             wrong.append(f"{name} does not show the whole time again")
     return wrong
 
@@ -260,9 +267,9 @@ SCENE = """JSON.stringify((c => {
     const squares = new Array(3 * across * Math.ceil(c.height / 25)).fill(0);
     let drawn = 0;
     for (let y = 0, i = 0; y < c.height; y++) for (let x = 0; x < c.width; x++, i += 4) {
-        drawn += data[i] < 250 || data[i + 1] < 250 || data[i + 2] < 250;
-        const at = 3 * (Math.floor(y / 25) * across + Math.floor(x / 25));
-        for (let k = 0; k < 3; k++) squares[at + k] += data[i + k] / 625;
+        drawn += data[i + 3] > 5;
+        const at = 3 * (Math.floor(y / 25) * across + Math.floor(x / 25)), paper = 255 - data[i + 3];
+        for (let k = 0; k < 3; k++) squares[at + k] += (data[i + k] * data[i + 3] / 255 + paper) / 625;
     }
     return [400 * drawn / data.length, squares];
 })(document.querySelector("#animation canvas")))"""
@@ -388,15 +395,15 @@ def check(browser, page, options):
         print_data = browser("Page.printToPDF", printBackground=True)["data"]
         Path(f"{to}.pdf").write_bytes(base64.b64decode(print_data))
     if 'id="animation"' in text:
-        solid = browser.value("!!document.querySelector('#animation .scene')")
+        solid = browser.value("!!document.querySelector('#animation .cut')")
         # A scene is unpacked after the page was loaded.
-        if solid and browser.until("!document.getElementById('animation').hidden"):
+        if browser.until("document.querySelector('#animation output').textContent !== ''") and solid:
             wrong += scene(browser, stored, options.store)
         wrong += animation(browser)
         if to:
             picture(browser, f"{to}-playing.png")
     wrong += layout(browser, picture, to)
-    most = 8_000_000 if 'class="scene"' in text else 5_000_000
+    most = 8_000_000
     if page.stat().st_size > most:
         wrong.append(f"{page.stat().st_size} bytes are more than {most / 1e6:.0f} MB")
     return wrong + browser.said

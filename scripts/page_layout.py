@@ -76,6 +76,14 @@ PROBLEMS = r"""(() => {
         say(`“${name(svg)}”: ${short(t)} has a contrast of ${contrast(own, halo).toFixed(1)}`);
       }
     }
+    for (const axis of svg.querySelectorAll("g.ticks, g.grid")) {
+      const labels = [...axis.querySelectorAll("text")];
+      if (labels.length < 2) say(`“${name(svg)}”: an axis has ${labels.length} labels`);
+      for (const t of labels) {
+        const r = t.getBoundingClientRect();
+        if (r.left < box.left + 1 || r.right > box.right - 1) say(`“${name(svg)}”: the label ${short(t)} of a tick is cut off`);
+      }
+    }
     texts.forEach((a, i) => texts.slice(i + 1).forEach(b => {
       const x = Math.min(a.right, b.right) - Math.max(a.left, b.left);
       const y = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);

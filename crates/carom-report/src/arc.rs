@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use carom_record::{ContactRow, Run};
+use carom_record::ContactRow;
 
-use crate::values::{list, text};
+use crate::recorded::Recorded;
 
 /// Where a node of a contact lies.
 #[derive(Clone, Copy)]
@@ -21,11 +21,12 @@ pub(crate) struct Place {
 /// The places of the nodes in contact along the secondary side in the reference configuration, and
 /// whether they are lengths: without field files, which have the positions, nodes are counted. A
 /// closed side is cut where no node is in contact for longest.
-pub(crate) fn places(run: &Run, name: &str, rows: &[&ContactRow]) -> (BTreeMap<u64, Place>, bool) {
-    let mut contacts = list(&run.manifest.case, "contacts").iter();
-    let contact = contacts.find(|contact| text(contact, "name") == name);
-    let side = contact.and_then(|contact| contact.get("secondary")?.as_str());
-    let chains = side.and_then(|side| run.manifest.sides.get(side)).map_or(&[][..], Vec::as_slice);
+pub(crate) fn places(run: &Recorded, name: &str, rows: &[&ContactRow]) -> (BTreeMap<u64, Place>, bool) {
+    let contact = run.case.contacts.iter().find(|contact| contact.name == name);
+    let chains = contact
+        .map(|contact| &contact.secondary)
+        .and_then(|side| run.manifest.sides.get(side))
+        .map_or(&[][..], Vec::as_slice);
     let first = run.fields.first().and_then(|entry| run.field(entry).ok());
     let rubbing: BTreeSet<u64> = rows.iter().map(|row| row.node).collect();
     let (mut found, mut end) = (BTreeMap::new(), 0.0);

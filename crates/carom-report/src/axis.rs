@@ -64,13 +64,19 @@ impl Axis {
             let half = if size < 1e-280 { 1.0 } else { 0.1 * size };
             (low, high) = (low - half, high + half);
         }
-        let step = round_step(high - low, count);
+        let mut step = round_step(high - low, count);
         if !tight {
             // A margin of 2 %, then rounded outwards to half a step.
             let air = 0.02 * (high - low);
             let half = 0.5 * step;
             low = if low == 0.0 { 0.0 } else { ((low - air) / half).floor() * half };
             high = if high == 0.0 { 0.0 } else { ((high + air) / half).ceil() * half };
+        }
+        // One tick alone has no scale.
+        let last_of = |step: f64| (high / step + 1e-9).floor() as i64;
+        let first_of = |step: f64| (low / step - 1e-9).ceil() as i64;
+        while last_of(step) <= first_of(step) {
+            step = round_step(0.7 * step, 1.0);
         }
         let size = low.abs().max(high.abs());
         let offset = if high - low < NARROW * size { round_near(low, high - low) } else { 0.0 };
@@ -84,8 +90,8 @@ impl Axis {
         // are.
         let exponent = if exponent == 0 && order < 0 && decimals(0) > 3 { -3 } else { exponent };
         let (scale, decimals) = (10f64.powi(exponent), decimals(exponent));
-        let first = (low / step - 1e-9).ceil() as i64;
-        let last = (high / step + 1e-9).floor() as i64;
+        let first = first_of(step);
+        let last = last_of(step);
         let ticks = (first..=last.min(first + 50)).map(|i| {
             let value = i as f64 * step;
             let shown = if offset == 0.0 { value } else { (i as f64 - (offset / step).round()) * step };

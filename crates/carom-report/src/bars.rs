@@ -1,14 +1,15 @@
 //! Displacement and stress along the bars of a run in one dimension.
 
-use carom_record::{FieldSet, Run};
+use carom_record::FieldSet;
 
 use crate::chart::{Chart, Options, Panel, Series};
 use crate::figure::Figure;
 use crate::labels::{instant_label, with_unit};
 use crate::palette::sequence;
+use crate::recorded::Recorded;
 
 /// At several instants.
-pub(crate) fn figure(run: &Run, sets: &[(f64, FieldSet)], (during, files): (&str, &str)) -> Figure {
+pub(crate) fn figure(run: &Recorded, sets: &[(f64, FieldSet)], (during, files): (&str, &str)) -> Figure {
     // Positions and values of a component along the bars, with a gap after each bar.
     let along = |set: &FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
         let values = set.array(array).filter(|a| component < a.components)?;
@@ -49,9 +50,6 @@ pub(crate) fn figure(run: &Run, sets: &[(f64, FieldSet)], (during, files): (&str
     let x_label = with_unit("reference position X", unit("displacement"));
     let chart =
         Chart { title: "Displacement and stress along the bars", x_label, shades: Vec::new(), panels };
-    let caption = format!(
-        "Displacement u_{{x}} and Cauchy stress σ_{{xx}} (nodal averages) along the bars at instants \
-         {during}. Data: displacement and stress in {files}."
-    );
+    let caption = format!("Displacement and stress along the bars {during}. Data: {files}.");
     chart.figure("bodies", caption, &Options::default())
 }

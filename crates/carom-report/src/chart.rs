@@ -2,15 +2,19 @@
 
 use std::fmt::{Display, Write as _};
 
+use maud::Render;
+use serde_json::{Value, json};
+
 use crate::axis::{Axis, range};
 use crate::labels::unit_of;
-use crate::text;
-use crate::trace::path;
+use crate::scientific::significant;
+use crate::text::{self, Label};
+use crate::trace::{ends_and_extremes, path};
 
 /// Usual width of a figure.
 pub(crate) const WIDTH: f64 = 720.0;
 const LEFT: f64 = 74.0;
-const RIGHT: f64 = 14.0;
+const RIGHT: f64 = 20.0;
 const FONT: f64 = 13.0;
 
 /// A curve.
@@ -58,11 +62,13 @@ pub(crate) struct Options<'a> {
     pub(crate) tracks: &'a [Track],
     /// Whether x is the time of the run, along which the cursor of the animation moves.
     pub(crate) time: bool,
+    /// The name of the figure, by which the script of the page finds its numbers.
+    pub(crate) name: &'a str,
 }
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { width: WIDTH, tracks: &[], time: false }
+        Self { width: WIDTH, tracks: &[], time: false, name: "" }
     }
 }
 
@@ -94,112 +100,214 @@ pub(crate) fn turned(out: &mut String, (x, y): (impl Display, f64), extra: &str,
     write_text(out, 0.0, 0.0, &at, label);
 }
 
-impl Chart<'_> {
-    /// The picture.
-    pub(crate) fn draw(&self, options: &Options) -> String {
-        const GAP: f64 = 16.0;
-        const ROW: f64 = 15.0;
-        let width = options.width;
-        let plot = width - LEFT - RIGHT;
-        let below = if options.tracks.is_empty() { 0.0 } else { 10.0 + ROW * options.tracks.len() as f64 };
-        let x_axis = Axis::new(self.x_range(), plot / 78.0, true);
-        let rows: Vec<Vec<Vec<usize>>> = self.panels.iter().map(|p| legend_rows(p, plot)).collect();
-        let tops = rows.iter().map(|r| GAP + r.len() as f64 * 18.0);
-        let height = tops.zip(&self.panels).map(|(top, p)| top + p.height).sum::<f64>() + 48.0 + below;
-        let mut out = opened("chart", self.title, width, height);
-        let to_x = |x: f64| LEFT + plot * x_axis.position(x);
-        let y_axes = self.y_axes();
-        let mut y0 = 0.0;
-        let (mut bottoms, mut spans) = (Vec::new(), Vec::new());
-        for ((panel, rows), y_axis) in self.panels.iter().zip(&rows).zip(&y_axes) {
-            y0 += GAP;
-            write_legend(&mut out, panel, rows, y0);
-            y0 += rows.len() as f64 * 18.0;
-            let h = panel.height;
-            let to_y = |y: f64| y0 + h * (1.0 - y_axis.position(y));
-            let window = window(y0 - 2.0, h + 4.0, plot);
-            out.push_str(&window);
-            for (a, b) in &self.shades {
-                let (a, b) = (to_x(a.max(x_axis.low)), to_x(b.min(x_axis.high)));
-                let _ = writeln!(
-                    out,
-                    "<rect x=\"{a:.1}\" y=\"{y0:.1}\" width=\"{:.1}\" height=\"{h:.1}\" fill=\"#ececec\"/>",
-                    (b - a).max(0.6)
-                );
-            }
-            out.push_str("</svg>\n");
-            for (value, label) in &y_axis.ticks {
-                let y = to_y(*value);
-                let colour = if *value == 0.0 { "#999" } else { "#d8d8d8" };
-                let _ = writeln!(
-                    out,
-                    "<path d=\"M{LEFT} {y:.1}h{plot}\" stroke=\"{colour}\" stroke-width=\"0.6\"/>"
-                );
-                write_text(&mut out, LEFT - 8.0, y + 4.3, "text-anchor=\"end\"", label);
-            }
-            let bottom = y0 + h;
-            bottoms.push(bottom);
-            spans.push([y0, bottom]);
+/// Space between panels, and the height of a line of the legend and of a row of events.
+const GAP: f64 = 16.0;
+const LINE: f64 = 18.0;
+const ROW: f64 = 15.0;
+
+/// A picture under construction.
+struct Drawing<'a> {
+    out: String,
+    width: f64,
+    x_axis: &'a Axis,
+    /// Vertical extents of the panels and of the events.
+    spans: Vec<[f64; 2]>,
+}
+
+impl Drawing<'_> {
+    fn plot(&self) -> f64 {
+        self.width - LEFT - RIGHT
+    }
+
+    fn x(&self, value: f64) -> f64 {
+        LEFT + self.plot() * self.x_axis.position(value)
+    }
+
+    /// Shading, axis and curves of a panel below a height.
+    fn panel(&mut self, panel: &Panel, axis: &Axis, top: f64, shades: &[(f64, f64)]) {
+        let height = panel.height;
+        let bottom = top + height;
+        let plot = self.plot();
+        let to_y = |y: f64| top + height * (1.0 - axis.position(y));
+        let Axis { low, high, exponent, offset, .. } = axis;
+        let _ = writeln!(
+            self.out,
+            "<g class=\"panel\" data-axis=\"{top:.1} {bottom:.1} {low:e} {high:e} {exponent} {offset:e}\">"
+        );
+        for (from, to) in shades {
+            let [a, b] = [self.x(from.max(self.x_axis.low)), self.x(to.min(self.x_axis.high))];
             let _ = writeln!(
-                out,
-                "<path d=\"M{LEFT} {y0:.1}v{h:.1}h{plot}\" fill=\"none\" stroke=\"#222\" \
-                 stroke-width=\"0.9\"/>"
+                self.out,
+                "<rect class=\"shade\" data-span=\"{from:e} {to:e}\" x=\"{a:.1}\" y=\"{top:.1}\" width=\"{:.1}\" \
+                 height=\"{height:.1}\" fill=\"#ececec\"/>",
+                (b - a).max(0.6)
             );
-            out.push_str(&window);
-            for (series, dashes) in panel.series.iter().zip(dashes(panel)) {
-                let points = series.x.iter().zip(&series.y).map(|(&x, &y)| (to_x(x), to_y(y)));
-                let color = series.color;
-                if series.dotted {
-                    dots(&mut out, points, color);
-                    continue;
-                }
-                let d = path(points);
-                let _ = writeln!(
-                    out,
-                    "<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\" \
-                     stroke-linejoin=\"round\" vector-effect=\"non-scaling-stroke\"{dashes}/>"
-                );
-            }
-            out.push_str("</svg>\n");
-            let label = y_axis.label(&panel.label, &panel.unit);
-            let widest = y_axis.ticks.iter().map(|tick| text::width(&tick.1)).fold(0.0, f64::max) * FONT;
-            let left = LEFT - 8.0 - widest;
-            write_turned(&mut out, &label, (left, y0 + 0.5 * h), h + 24.0);
-            y0 = bottom;
         }
-        let above = y0;
-        for track in options.tracks {
-            y0 += ROW;
-            // A tick at an end of the axis stays within its window.
-            let at =
-                |t: &f64| format!("M{:.1} {:.1}v9", to_x(*t).clamp(LEFT + 0.6, LEFT + plot - 0.6), y0 - 4.5);
+        self.out.push_str("<g class=\"grid\">\n");
+        for (value, label) in &axis.ticks {
+            let y = to_y(*value);
+            let colour = if *value == 0.0 { "#999" } else { "#d8d8d8" };
+            let line = format!("M{LEFT} {y:.1}h{plot}");
+            let _ = writeln!(self.out, "<path d=\"{line}\" stroke=\"{colour}\" stroke-width=\"0.6\"/>");
+            write_text(&mut self.out, LEFT - 8.0, y + 4.3, "text-anchor=\"end\"", label);
+        }
+        let _ = writeln!(
+            self.out,
+            "</g>\n<path d=\"M{LEFT} {top:.1}v{height:.1}h{plot}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.9\"/>"
+        );
+        for (k, (series, dashes)) in panel.series.iter().zip(dashes(panel)).enumerate() {
+            let points = series.x.iter().zip(&series.y).map(|(&x, &y)| (self.x(x), to_y(y)));
+            let class = format!("class=\"curve\" data-series=\"{k}\"");
+            let color = series.color;
+            if series.dotted {
+                let points: Vec<(f64, f64)> = points.collect();
+                marks(&mut self.out, points.into_iter(), color, &class);
+                continue;
+            }
+            let d = path(points);
+            let _ = writeln!(
+                self.out,
+                "<path {class} d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\" \
+                 stroke-linejoin=\"round\"{dashes}/>"
+            );
+        }
+        self.out.push_str("</g>\n");
+        let label = axis.label(&panel.label, &panel.unit);
+        let widest = axis.ticks.iter().map(|tick| text::width(&tick.1)).fold(0.0, f64::max) * FONT;
+        let middle = top + 0.5 * height;
+        write_turned(&mut self.out, &label, (LEFT - 8.0 - widest, middle), height + 24.0);
+        self.spans.push([top, bottom]);
+    }
+
+    /// Ticks at the times of events, a row for each kind.
+    fn tracks(&mut self, tracks: &[Track], top: f64) -> f64 {
+        let plot = self.plot();
+        let mut y = top;
+        for track in tracks {
+            y += ROW;
+            let at = |t: &f64| format!("M{:.1} {:.1}v9", self.x(*t), y - 4.5);
             let mut d: Vec<String> = track.times.iter().filter(|t| t.is_finite()).map(at).collect();
             d.dedup();
             let _ = writeln!(
-                out,
-                "<path d=\"M{LEFT} {y0:.1}h{plot}\" stroke=\"#d8d8d8\" stroke-width=\"0.6\"/>\n{}<path \
-                 d=\"{}\" stroke=\"#000\" stroke-width=\"0.8\" vector-effect=\"non-scaling-stroke\"/></svg>",
-                window(y0 - 6.0, 12.0, plot),
+                self.out,
+                "<path d=\"M{LEFT} {y:.1}h{plot}\" stroke=\"#d8d8d8\" stroke-width=\"0.6\"/>\n<path class=\"track\" \
+                 data-top=\"{:.1}\" d=\"{}\" stroke=\"#000\" stroke-width=\"0.8\"/>",
+                y - 4.5,
                 d.concat()
             );
-            write_text(&mut out, LEFT - 6.0, y0 + 3.6, "text-anchor=\"end\" font-size=\"11\"", &track.label);
+            let label = "text-anchor=\"end\" font-size=\"11\"";
+            write_text(&mut self.out, LEFT - 6.0, y + 3.6, label, &track.label);
         }
-        if !options.tracks.is_empty() {
-            y0 += 10.0;
-            bottoms.push(y0);
-            spans.push([above + 6.0, y0]);
+        if tracks.is_empty() {
+            return top;
         }
-        ticks(&mut out, &x_axis, &bottoms, &to_x);
-        y0 += 23.0;
+        self.spans.push([top + 6.0, y + 10.0]);
+        y + 10.0
+    }
+
+    /// Ticks at the bottom of every panel, with labels at the last one; zooming replaces them.
+    fn ticks(&mut self) {
+        let bottoms: Vec<String> = self.spans.iter().map(|[_, bottom]| format!("{bottom:.1}")).collect();
+        let last = self.spans.last().map_or(0.0, |span| span[1]);
+        let _ = writeln!(self.out, "<g class=\"ticks\" data-bottoms=\"{}\">", bottoms.join(" "));
+        for (value, label) in &self.x_axis.ticks {
+            let x = self.x(*value);
+            let marks = bottoms.iter().map(|y| format!("M{x:.1} {y}v5")).collect::<Vec<_>>().concat();
+            let _ = writeln!(self.out, "<path d=\"{marks}\" stroke=\"#222\" stroke-width=\"0.8\"/>");
+            tick_label(&mut self.out, x, last + 19.0, label, self.width);
+        }
+        self.out.push_str("</g>\n");
+    }
+}
+
+/// The label of a tick of a horizontal axis, which ends before the right end of the picture.
+pub(crate) fn tick_label(out: &mut String, x: f64, y: f64, label: &str, width: f64) {
+    let half = 0.5 * text::width(label) * FONT;
+    write_text(out, x.min(width - 2.0 - half), y, "text-anchor=\"middle\"", label);
+}
+
+impl Chart<'_> {
+    /// The picture.
+    pub(crate) fn draw(&self, options: &Options) -> String {
+        let width = options.width;
+        let plot = width - LEFT - RIGHT;
+        let x_axis = Axis::new(self.x_range(), plot / 78.0, true);
+        let y_axes = self.y_axes();
+        let entries: Vec<Vec<String>> =
+            self.panels.iter().zip(&y_axes).map(|(panel, axis)| entries(panel, axis, options.time)).collect();
+        let rows: Vec<Vec<Vec<usize>>> = entries.iter().map(|entries| legend_rows(entries, plot)).collect();
+        let below = if options.tracks.is_empty() { 0.0 } else { 10.0 + ROW * options.tracks.len() as f64 };
+        let legends: f64 = rows.iter().map(|rows| GAP + rows.len() as f64 * LINE).sum();
+        let panels: f64 = self.panels.iter().map(|panel| panel.height).sum();
+        let out = opened("chart", self.title, width, legends + panels + 48.0 + below);
+        let mut drawing = Drawing { out, width, x_axis: &x_axis, spans: Vec::new() };
+        let mut y = 0.0;
+        for (k, panel) in self.panels.iter().enumerate() {
+            y += GAP;
+            write_legend(&mut drawing.out, panel, &entries[k], &rows[k], y);
+            y += rows[k].len() as f64 * LINE;
+            drawing.panel(panel, &y_axes[k], y, &self.shades);
+            y += panel.height;
+        }
+        y = drawing.tracks(options.tracks, y);
+        drawing.ticks();
         if options.time {
-            out.push_str(&time_axis((to_x(x_axis.low), to_x(x_axis.high)), &x_axis, &spans));
+            let ends = (drawing.x(x_axis.low), drawing.x(x_axis.high));
+            let axis = time_axis(ends, &x_axis, &drawing.spans, options.name);
+            drawing.out.push_str(&axis);
         }
         let (words, unit) = unit_of(&self.x_label);
-        let x_label = x_axis.label(words, unit);
-        write_text(&mut out, LEFT + 0.5 * plot, y0 + 16.0, "text-anchor=\"middle\"", &x_label);
-        out.push_str("</svg>\n");
-        out
+        let middle = LEFT + 0.5 * plot;
+        let label = x_axis.label(words, unit);
+        write_text(&mut drawing.out, middle, y + 39.0, "text-anchor=\"middle\"", &label);
+        drawing.out + "</svg>\n"
     }
+
+    /// The numbers of a chart over time for the script of the page, thinned to what a screen shows.
+    pub(crate) fn data(&self, tracks: &[Track]) -> Value {
+        let lines = || self.panels.iter().flat_map(|panel| &panel.series).filter(|series| !series.dotted);
+        let times = lines().map(|series| series.x).next().unwrap_or_default();
+        let mut kept = vec![times.len() <= ROWS; times.len()];
+        let block = times.len().div_ceil(ROWS / 8).max(1);
+        for series in lines().filter(|series| series.y.len() == times.len()) {
+            for from in (0..times.len()).step_by(block) {
+                let rows = from..(from + block).min(times.len());
+                ends_and_extremes(rows, |row| series.y[row]).into_iter().for_each(|row| kept[row] = true);
+            }
+        }
+        let chosen = |list: &[f64]| -> Vec<Value> {
+            list.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(x, _)| rounded(*x)).collect()
+        };
+        let all = |list: &[f64]| list.iter().map(|x| rounded(*x)).collect::<Vec<_>>();
+        let series = |panel: &Panel, series: &Series| {
+            let label = if series.label.is_empty() { &panel.label } else { &series.label };
+            let mut data = json!({
+                "label": Label(label).render().0, "unit": Label(&panel.unit).render().0, "color": series.color,
+            });
+            if series.x == times {
+                data["y"] = json!(chosen(&series.y));
+            } else {
+                data["x"] = json!(all(series.x));
+                data["y"] = json!(all(&series.y));
+                data["dots"] = json!(series.dotted);
+            }
+            data
+        };
+        let panel = |panel: &Panel| panel.series.iter().map(|one| series(panel, one)).collect::<Vec<_>>();
+        json!({
+            "x_label": Label(&self.x_label).render().0, "x": times.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(x, _)| *x).collect::<Vec<_>>(),
+            "panels": self.panels.iter().map(panel).collect::<Vec<_>>(),
+            "tracks": tracks.iter().map(|track| &track.times).collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// Largest number of rows of a chart in the page.
+const ROWS: usize = 2400;
+
+/// A number with six digits; null if it is not finite.
+fn rounded(x: f64) -> Value {
+    format!("{x:.5e}").parse::<f64>().map_or(Value::Null, |x| json!(x))
 }
 
 /// Place of the second line of such a label; exponents need room above it.
@@ -237,7 +345,8 @@ impl Chart<'_> {
         let axis = |panel: &Panel| {
             let (low, high) = range(panel.series.iter().flat_map(|s| &s.y));
             let whole = panel.series.iter().flat_map(|s| &s.y).all(|y| y.fract() == 0.0);
-            // Integer quantities have ticks at integers only.
+            // Integer quantities have ticks at integers only, of which an axis has at least two.
+            let (low, high) = if whole && high == low { (low - 1.0, high + 1.0) } else { (low, high) };
             let most = if whole { (high - low).max(1.0) } else { f64::INFINITY };
             Axis::new((low, high), (panel.height / 42.0).max(2.0).min(most), false)
         };
@@ -272,11 +381,11 @@ fn dashes(panel: &Panel) -> Vec<&'static str> {
 
 /// The mark of an axis of time, along which the animation moves a line: left and right end, and top
 /// and bottom of each part of the line.
-pub(crate) fn time_axis((left, right): (f64, f64), axis: &Axis, spans: &[[f64; 2]]) -> String {
+pub(crate) fn time_axis((left, right): (f64, f64), axis: &Axis, spans: &[[f64; 2]], chart: &str) -> String {
     let (low, high, exponent, offset) = (axis.low, axis.high, axis.exponent, axis.offset);
     let spans: Vec<String> = spans.iter().map(|[top, bottom]| format!("{top:.1} {bottom:.1}")).collect();
     format!(
-        "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} {exponent} {offset:e}\" \
+        "<g class=\"time\" data-chart=\"{chart}\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} {exponent} {offset:e}\" \
          data-spans=\"{}\"/>\n",
         spans.join(" ")
     )
@@ -290,31 +399,12 @@ pub(crate) fn ground(out: &mut String, [x, y, width, height]: [f64; 4]) {
     );
 }
 
-/// The opening of the part of a panel that zooming stretches: a window on the same coordinates.
-fn window(y: f64, height: f64, plot: f64) -> String {
-    format!(
-        "<svg class=\"window\" x=\"{LEFT}\" y=\"{y:.1}\" width=\"{plot}\" height=\"{height:.1}\" \
-         viewBox=\"{LEFT} {y:.1} {plot} {height:.1}\" preserveAspectRatio=\"none\">\n"
-    )
-}
-
-/// Ticks at the bottom of every panel, with labels at the last one; zooming replaces them.
-fn ticks(out: &mut String, axis: &Axis, bottoms: &[f64], to_x: &dyn Fn(f64) -> f64) {
-    let places: Vec<String> = bottoms.iter().map(|y| format!("{y:.1}")).collect();
-    let _ = writeln!(out, "<g class=\"ticks\" data-bottoms=\"{}\">", places.join(" "));
-    for (value, label) in &axis.ticks {
-        let x = to_x(*value);
-        let marks = places.iter().map(|y| format!("M{x:.1} {y}v5")).collect::<Vec<_>>().concat();
-        let _ = writeln!(out, "<path d=\"{marks}\" stroke=\"#222\" stroke-width=\"0.8\"/>");
-        if let Some(bottom) = bottoms.last() {
-            write_text(out, x, bottom + 19.0, "text-anchor=\"middle\"", label);
-        }
-    }
-    out.push_str("</g>\n");
-}
-
 /// Points that are at least two pixels apart, as circles with a white edge.
 pub(crate) fn dots(out: &mut String, points: impl Iterator<Item = (f64, f64)>, color: &str) {
+    marks(out, points, color, "");
+}
+
+fn marks(out: &mut String, points: impl Iterator<Item = (f64, f64)>, color: &str, class: &str) {
     let mut d = String::new();
     let mut last = (f64::NEG_INFINITY, 0.0);
     for (x, y) in points.filter(|p| p.0.is_finite() && p.1.is_finite()) {
@@ -326,20 +416,38 @@ pub(crate) fn dots(out: &mut String, points: impl Iterator<Item = (f64, f64)>, c
     for (color, width) in [("#fff", 6.4), (color, 4.4)] {
         let _ = writeln!(
             out,
-            "<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" \
+            "<path {class} d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" \
              stroke-linecap=\"round\" vector-effect=\"non-scaling-stroke\"/>"
         );
     }
 }
 
-fn entry_width(series: &Series) -> f64 {
-    46.0 + text::width(&series.label) * FONT
+/// Entries of the legend of a panel: the names of its curves and, over time, the smallest and the
+/// largest value in the units of the axis. Curves without a name, or with one for tables only, have
+/// none of it; a curve alone without a name has its range.
+fn entries(panel: &Panel, axis: &Axis, is_over_time: bool) -> Vec<String> {
+    let entry = |series: &Series| {
+        let name = if series.unlisted { "" } else { &series.label };
+        let (low, high) = range(&series.y);
+        let is_ranged =
+            is_over_time && !series.dotted && low <= high && (!name.is_empty() || panel.series.len() == 1);
+        if !is_ranged {
+            return name.to_owned();
+        }
+        let [low, high] = [low, high].map(|x| significant(x / 10f64.powi(axis.exponent), 4));
+        format!("{name}  {low} … {high}").trim_start().to_owned()
+    };
+    panel.series.iter().map(entry).collect()
 }
 
-/// Entries of the legend by line; curves without a label, or with one for tables only, have none.
-fn legend_rows(panel: &Panel, width: f64) -> Vec<Vec<usize>> {
-    let listed = panel.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty() && !s.unlisted);
-    in_lines(listed.map(|(i, series)| (i, entry_width(series))), width)
+fn entry_width(entry: &str) -> f64 {
+    46.0 + text::width(entry) * FONT
+}
+
+/// Entries of the legend by line.
+fn legend_rows(entries: &[String], width: f64) -> Vec<Vec<usize>> {
+    let listed = entries.iter().enumerate().filter(|(_, entry)| !entry.is_empty());
+    in_lines(listed.map(|(i, entry)| (i, entry_width(entry))), width)
 }
 
 /// Numbers of entries in lines of a width, from the width of each.
@@ -359,23 +467,24 @@ pub(crate) fn in_lines(entries: impl Iterator<Item = (usize, f64)>, width: f64) 
     lines
 }
 
-fn write_legend(out: &mut String, panel: &Panel, rows: &[Vec<usize>], top: f64) {
+fn write_legend(out: &mut String, panel: &Panel, entries: &[String], rows: &[Vec<usize>], top: f64) {
     let dashes = dashes(panel);
     for (line, row) in rows.iter().enumerate() {
-        let (mut x, y) = (LEFT + 6.0, top + 18.0 * line as f64 + 5.0);
-        for (series, dashes) in row.iter().map(|&i| (&panel.series[i], dashes[i])) {
-            if series.dotted {
-                let places = [4.0, 11.0, 18.0].map(|by| (x + by, y));
-                dots(out, places.into_iter(), series.color);
+        let mut x = LEFT + 6.0;
+        let y = top + LINE * line as f64 + 5.0;
+        for &i in row {
+            let Series { color, dotted, .. } = panel.series[i];
+            if dotted {
+                dots(out, [4.0, 11.0, 18.0].map(|by| (x + by, y)).into_iter(), color);
             } else {
+                let dashes = dashes[i];
                 let _ = writeln!(
                     out,
-                    "<path d=\"M{x:.1} {y:.1}h22\" stroke=\"{}\" stroke-width=\"2\"{dashes}/>",
-                    series.color
+                    "<path d=\"M{x:.1} {y:.1}h22\" stroke=\"{color}\" stroke-width=\"2\"{dashes}/>"
                 );
             }
-            write_text(out, x + 27.0, y + 4.3, "", &series.label);
-            x += entry_width(series);
+            write_text(out, x + 27.0, y + 4.3, "", &entries[i]);
+            x += entry_width(&entries[i]);
         }
     }
 }

@@ -1,17 +1,17 @@
 //! "Expectations": what the case expects of the run, and what came out.
 
-use carom_record::{Expectation, Run};
+use carom_record::Expectation;
 use maud::{Markup, html};
 
 use crate::asked;
 use crate::document::{minus, or_dash};
+use crate::figures::columns_in;
 use crate::noise::largest;
 use crate::ordered::distinct;
+use crate::recorded::Recorded;
 use crate::results::is_round_off;
 use crate::scientific::{powers, significant};
 use crate::text::Label;
-use crate::unshown::columns_in;
-use crate::values;
 
 /// Significant digits of a result beside its tolerance.
 const DIGITS: usize = 6;
@@ -25,7 +25,7 @@ fn expected(text: &str) -> String {
 }
 
 /// Sources of more than one expectation that are too long to be repeated.
-fn repeated_sources(run: &Run) -> Vec<&String> {
+fn repeated_sources(run: &Recorded) -> Vec<&String> {
     let sources = || run.manifest.expectations.iter().filter_map(|e| e.source.as_ref());
     let is_repeated = |source: &&String| sources().filter(|other| other == source).count() > 1;
     distinct(sources().filter(|source| source.chars().count() > 40).filter(is_repeated))
@@ -33,25 +33,24 @@ fn repeated_sources(run: &Run) -> Vec<&String> {
 
 /// Whether a result is round-off of its columns or, as a length, of the model, and its tolerance is
 /// not of that size.
-fn is_zero(run: &Run, e: &Expectation) -> bool {
+fn is_zero(run: &Recorded, e: &Expectation) -> bool {
     let (Some(got), Some(unit)) = (e.got, asked::unit(run, &e.what).filter(|unit| !unit.is_empty())) else {
         return false;
     };
-    let length = values::unit(&run.manifest.case, "length");
+    let length = &run.case.units.length;
     let columns = columns_in(run, &e.what).into_iter().filter(|column| run.history.unit(column) == unit);
     let most = columns.filter_map(|column| run.column(&column).map(largest)).fold(0.0, f64::max);
     let is_tiny = got != 0.0 && got.abs() < ROUND_OFF * most;
-    (is_tiny || length == unit && is_round_off(run, got))
+    (is_tiny || *length == unit && is_round_off(run, got))
         && e.tolerance.is_none_or(|tolerance| tolerance > got.abs())
 }
 
 /// The section of the page; nothing where the case has none.
-pub(crate) fn expectations(run: &Run) -> Markup {
+pub(crate) fn expectations(run: &Recorded) -> Markup {
     let all = &run.manifest.expectations;
     let repeated = repeated_sources(run);
     html! {
         @if !all.is_empty() {
-            h2 { "Expectations" }
             table.expectations {
                 thead {
                     tr {
@@ -81,10 +80,6 @@ pub(crate) fn expectations(run: &Run) -> Markup {
                         }
                     }
                 }
-            }
-            @if all.iter().any(|e| is_zero(run, e)) { p.small { "≈ 0: round-off." } }
-            @if all.iter().any(|e| asked::unit(run, &e.what).is_none()) {
-                p.small { "Without a unit: the numbers in the quantity may have units, which the record does not contain." }
             }
             @for (k, source) in repeated.iter().enumerate() { p.small { "[" (k + 1) "] " (Label(source)) } }
         }

@@ -16,6 +16,10 @@ pub(crate) struct Figure {
     pub(crate) svg: String,
     /// The picture for a narrow window, of which the page shows one or the other.
     pub(crate) narrow: String,
+    /// Heading on the page of a run.
+    pub(crate) title: String,
+    /// Numbers for the script of the page.
+    pub(crate) data: Option<serde_json::Value>,
     /// The drawn numbers, as the text of a `.csv` file.
     pub(crate) table: Option<String>,
     /// What the page shows below the picture.
@@ -28,7 +32,16 @@ impl Figure {
         caption: impl Into<String>,
         [svg, narrow]: [String; 2],
     ) -> Self {
-        Self { name: name.into(), caption: caption.into(), svg, narrow, table: None, key: Markup::default() }
+        Self {
+            name: name.into(),
+            caption: caption.into(),
+            svg,
+            narrow,
+            title: String::new(),
+            data: None,
+            table: None,
+            key: Markup::default(),
+        }
     }
 
     /// The pictures on the page.

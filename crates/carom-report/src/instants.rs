@@ -1,19 +1,18 @@
 //! The figure of the deformed bodies at several instants, coloured by stress.
 
-use carom_record::{Cell, FieldEntry, Run, Stop, metrics};
+use carom_record::{Cell, FieldEntry, FieldSet, Stop, metrics};
 
-use crate::bands::Bands;
 use crate::bodies::{self, Instant};
 use crate::figure::Figure;
 use crate::labels::instant_label;
 use crate::obstacles;
-use crate::sheet::{Legend, arrowheads};
-use crate::text::said_if;
-use crate::{animation, bars, space};
+use crate::recorded::Recorded;
+use crate::sheet::Legend;
+use crate::{bars, space};
 
 /// The field files nearest to five equidistant instants of the first contact; of the run if there
 /// is no contact, or only one field file in it. With words for the span.
-fn five(run: &Run) -> (Vec<&FieldEntry>, &'static str) {
+fn five(run: &Recorded) -> (Vec<&FieldEntry>, &'static str) {
     let t = run.times();
     let contact = metrics::first_episode(&run.history).map(|e| (t[e.start], t[e.end.unwrap_or(t.len()) - 1]));
     let span = |(a, b): (f64, f64)| {
@@ -29,15 +28,15 @@ fn five(run: &Run) -> (Vec<&FieldEntry>, &'static str) {
     let whole = || span((t[0], t[t.len() - 1]));
     match contact.map(span) {
         // A run that failed is shown up to its end.
-        Some(_) if run.stop.is_some() => (whole(), "of the run up to the last accepted state"),
-        Some(list) if list.len() > 1 => (list, "of the first contact"),
+        Some(_) if run.stop.is_some() => (whole(), "up to the stop"),
+        Some(list) if list.len() > 1 => (list, "during the first contact"),
         Some(_) => (whole(), "of the run"),
-        None => (whole(), "of the run (there was no contact)"),
+        None => (whole(), "of the run"),
     }
 }
 
-/// The deformed bodies at several instants, coloured by stress, and its bands in the plane.
-pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
+/// The deformed bodies at several instants, coloured by stress.
+pub(crate) fn instants(run: &Recorded, notes: &mut Vec<String>) -> Option<Figure> {
     let (entries, during) = five(run);
     if entries.is_empty() {
         notes.push("No field files were written (output.fields_every = 0): bodies and contact pressure are not drawn.".into());
@@ -50,38 +49,47 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
         }
     }
     // The state at which a run failed is in a file of its own.
-    let mut files = "the field files";
+    let mut files = "field files";
     if let Some(stop) = &run.stop
         && let Ok(Some(set)) = Stop::fields(&run.directory, &run.manifest)
         && sets.last().is_some_and(|(time, last)| stop.last > *time && last.points.len() == set.points.len())
     {
         sets.truncate(4);
         sets.push((stop.last, set));
-        files = "the field files and, of the last instant, in `stopped.vtu`";
+        files = "field files, `stopped.vtu`";
     }
     let first = &sets.first()?.1;
-    if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
-        let strips: Vec<Instant> =
-            sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
-        return Some((bars::figure(run, &sets, (during, files)), bodies::colors(&strips).0));
-    }
-    if bodies::fill_space(first) {
-        let length = first.unit("displacement");
-        let (pictures, caption, bands) = space::instants(run, &sets, length, (during, files))?;
-        return Some((Figure::new("bodies", caption, pictures), bands));
-    }
-    let (stress, length) = (first.array("stress")?.unit.as_str(), first.unit("displacement"));
+    let mut figure = if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
+        bars::figure(run, &sets, (during, files))
+    } else if bodies::fill_space(first) {
+        let pictures = space::instants(run, &sets)?;
+        let caption = format!("Deformed bodies with von Mises stress {during}. Data: {files}.");
+        Figure::new("bodies", caption, pictures)
+    } else {
+        let caption = format!(
+            "Deformed bodies with vertical stress {during}; blue: compression, red: tension. Data: {files}."
+        );
+        Figure::new("bodies", caption, in_plane(run, &sets)?)
+    };
+    "Instants".clone_into(&mut figure.title);
+    Some(figure)
+}
+
+/// Plane bodies with obstacles, all at one scale.
+fn in_plane(run: &Recorded, sets: &[(f64, FieldSet)]) -> Option<[String; 2]> {
+    let first = &sets.first()?.1;
+    let stress = first.unit("stress");
+    let length = first.unit("displacement");
     let instant = |(time, set): &_| Instant::new(set, "stress", 1, instant_label(run, *time));
     let list: Vec<Instant> = sets.iter().filter_map(instant).collect();
     let (bands, cut) = bodies::colors(&list);
-    let title = "Deformed bodies with vertical Cauchy stress";
     let frame = bodies::frame(&list);
     let obstacles = obstacles::all(run, frame);
-    let times: Vec<f64> = sets.iter().map(|(time, _)| *time).collect();
+    let times = sets.iter().map(|(time, _)| *time);
     let walks: Vec<Vec<_>> =
-        times.iter().map(|time| obstacles.iter().map(|o| o.at(run, *time)).collect()).collect();
-    let of_time = |time: &f64| obstacles.iter().filter_map(|o| o.mark(run, *time)).collect();
-    let marks: Vec<Vec<_>> = times.iter().map(of_time).collect();
+        times.clone().map(|time| obstacles.iter().map(|o| o.at(run, time)).collect()).collect();
+    let marks: Vec<Vec<_>> =
+        times.map(|time| obstacles.iter().filter_map(|o| o.mark(run, time)).collect()).collect();
     let mut wide = frame;
     for (obstacle, walk) in walks.iter().flat_map(|walks| obstacles.iter().zip(walks)) {
         wide = obstacle.shown_in(walk, wide, frame);
@@ -89,22 +97,9 @@ pub(crate) fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Ba
     // The hatching of a plane that touches the bodies needs room.
     let room = if obstacles.is_empty() { 0.0 } else { 0.04 * (wide[1] - wide[0]).max(wide[3] - wide[2]) };
     let wide = [wide[0] - room, wide[1] + room, wide[2] - room, wide[3] + room];
-    let walks: Vec<Vec<_>> = walks
-        .iter()
-        .map(|walks| walks.iter().flat_map(|walk| obstacles::clipped(walk, wide)).collect())
-        .collect();
+    let inside = |walks: &Vec<_>| walks.iter().flat_map(|walk| obstacles::clipped(walk, wide)).collect();
+    let walks: Vec<Vec<_>> = walks.iter().map(inside).collect();
     let legend = Legend { bands: &bands, cut, label: "σ_{yy}", unit: stress };
-    let pictures = bodies::figure(&list, (&walks, &marks, wide), title, &legend, length);
-    let arrow = arrowheads([(cut, String::new())]);
-    let mark =
-        said_if(marks.iter().any(|marks| !marks.is_empty()), " Triangle: a point of the plane that moves.");
-    // Without either sign the outer half of the band around zero ends the bar.
-    let step = (bands.high - bands.low) / bands.count as f64;
-    let compression = said_if(bands.low < -0.75 * step, " Blue: compression.");
-    let tension = said_if(bands.high > 0.75 * step, " Red: tension.");
-    let caption = format!(
-        "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
-         the same scale; displacements are not magnified.{compression}{tension}{mark}{arrow} Data: stress and displacement in {files}."
-    );
-    Some((Figure::new("bodies", caption, pictures), bands))
+    let title = "Deformed bodies with vertical Cauchy stress";
+    Some(bodies::figure(&list, (&walks, &marks, wide), title, &legend, length))
 }

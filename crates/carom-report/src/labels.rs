@@ -3,8 +3,8 @@
 use std::borrow::Borrow;
 
 use carom_formula::instant;
-use carom_record::Run;
 
+use crate::recorded::Recorded;
 use crate::scientific::{given, significant, without_zeros};
 
 /// Symbol of a probe quantity: `σ_{yy}`.
@@ -50,24 +50,22 @@ pub(crate) fn with_unit(label: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { label.to_string() } else { format!("{label} ({unit})") }
 }
 
-/// Whether a run has load steps in place of time steps.
-pub(crate) fn is_static(run: &Run) -> bool {
-    run.manifest.case.pointer("/time/scheme/kind").is_some_and(|kind| kind == "static")
-}
-
 /// The label of the axis of time, which in a static analysis is a parameter of the load.
-pub(crate) fn time_label(run: &Run) -> String {
-    if is_static(run) { "load parameter t".to_owned() } else { with_unit("time t", run.history.unit("time")) }
+pub(crate) fn time_label(run: &Recorded) -> String {
+    if run.is_static() {
+        "load parameter t".to_owned()
+    } else {
+        with_unit("time t", run.history.unit("time"))
+    }
 }
 
 /// `t = 0.315 s`, with the digits that tell the rows of a run apart.
-pub(crate) fn instant_label(run: &Run, time: f64) -> String {
+pub(crate) fn instant_label(run: &Recorded, time: f64) -> String {
     let apart = run.times().windows(2).map(|pair| pair[1] - pair[0]);
     let step = apart.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
     // Six digits, or more where rows are closer.
     let digits = if step < 1e-5 * time.abs() { instant(time, step, 4) } else { number(time) };
-    let unit = if is_static(run) { "" } else { run.history.unit("time") };
-    let label = format!("t = {digits} {unit}");
+    let label = format!("t = {digits} {}", run.time_unit());
     label.trim_end().to_owned()
 }
 

@@ -16,7 +16,7 @@ pub(crate) fn measured_label(overlay: &metrics::Overlay) -> String {
     format!("measured: {}", overlay.name)
 }
 
-/// Height of a panel of differences in pixels.
+/// Height in pixels of a panel of differences: of the column, linear between its rows, less the data.
 const LOW: f64 = 84.0;
 
 /// Colours of measured data, in turn.
@@ -120,17 +120,12 @@ fn between(times: &[f64], values: &[f64], t: f64) -> f64 {
 pub(crate) fn sources(run: &Run, all: &[Points], columns: &[&str]) -> String {
     let mut out = String::new();
     let of = |name: &str| columns.contains(&name);
-    let mut differ = false;
     for overlay in metrics::overlays(run).into_iter().filter(|overlay| of(&overlay.column)) {
         let source = overlay.source.map_or_else(String::new, |source| format!(" ({source})"));
         let _ = write!(out, " Dots: data “{}”{source}.", overlay.name);
-        differ = true;
-    }
-    if differ {
-        out.push_str(" Differences: the column, linear between its rows, less the data.");
     }
     if all.iter().any(|points| points.measured.is_none() && of(&points.column)) {
-        out.push_str(" Dots “expected”: values of the table of expectations.");
+        out.push_str(" Dots “expected”: values of expectations.");
     }
     out
 }

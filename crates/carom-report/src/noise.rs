@@ -1,10 +1,10 @@
 //! Values that are round-off: they are not drawn, because an axis that fits them shows nothing
 //! else.
 
+use carom_case::MaterialSpec;
 use carom_record::{Run, metrics};
 
 use crate::labels::is_stress;
-use crate::values::list;
 
 /// A value below this share of the size of its quantity is round-off.
 const SHARE: f64 = 1e-10;
@@ -29,16 +29,12 @@ pub(crate) fn is_noise(run: &Run, name: &str) -> bool {
     let most = largest(values);
     let size = match name.rsplit_once('.') {
         Some((_, quantity)) if is_stress(quantity) => {
-            let materials = list(&run.manifest.case, "materials").iter();
-            materials.filter_map(|m| m.get("mu")?.as_f64()).fold(0.0, f64::max)
+            let stored = run.manifest.case.get("materials").cloned().unwrap_or_default();
+            let materials: Vec<MaterialSpec> = serde_json::from_value(stored).unwrap_or_default();
+            materials.iter().map(|material| material.mu).fold(0.0, f64::max)
         }
         None if name.starts_with("contact_force") => force_size(run),
         _ => 0.0,
     };
     most == 0.0 || most < SHARE * size
-}
-
-/// Whether there was contact at any time.
-pub(crate) fn has_contact(run: &Run) -> bool {
-    run.column("active").is_some_and(|column| column.iter().any(|count| *count > 0.0))
 }

@@ -1,12 +1,12 @@
 //! Rigid obstacles in figures: points of their surfaces with normals, at their recorded positions.
 
+use carom_case::{Case, ContactSpec, ObstacleMotion, PrimarySpec};
 use carom_formula::Formula;
 use carom_record::Run;
-use serde_json::Value;
 
 use crate::pen::{NOTHING, Point, around};
+use crate::recorded::Recorded;
 use crate::symbols::{direction, plus};
-use crate::values::{list, place, text};
 
 /// Points with unit normals out of the rigid body.
 pub(crate) type Walk = Vec<(Point, Point)>;
@@ -31,44 +31,50 @@ pub(crate) struct Obstacle {
 }
 
 /// The obstacles of a run in the plane whose bodies fill a frame (left, right, bottom, top).
-pub(crate) fn all(run: &Run, frame: [f64; 4]) -> Vec<Obstacle> {
-    of_case(&run.manifest.case, frame)
+pub(crate) fn all(run: &Recorded, frame: [f64; 4]) -> Vec<Obstacle> {
+    of_case(&run.case, frame)
 }
 
 /// The obstacles of a case, likewise.
-pub(crate) fn of_case(case: &Value, frame: [f64; 4]) -> Vec<Obstacle> {
-    list(case, "contacts").iter().filter_map(|contact| one(contact, frame)).collect()
+pub(crate) fn of_case(case: &Case, frame: [f64; 4]) -> Vec<Obstacle> {
+    case.contacts.iter().filter_map(|contact| one(contact, frame)).collect()
 }
 
-fn one(contact: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Option<Obstacle> {
-    let primary = contact.get("primary")?;
+/// The first two components of a point or vector; those that are missing are zero.
+fn flat(v: &[f64]) -> Point {
+    [0, 1].map(|i| v.get(i).copied().unwrap_or(0.0))
+}
+
+fn one(contact: &ContactSpec, [x0, x1, y0, y1]: [f64; 4]) -> Option<Obstacle> {
     let far = 4.0 * (x1 - x0).hypot(y1 - y0);
-    let plane = primary.get("plane");
-    let (walk, first) = if let Some(plane) = plane {
-        let p = place(plane.get("point"))?;
-        let n = direction([0.0; 2], place(plane.get("normal"))?);
-        let along = [n[1], -n[0]];
-        // Around the point nearest to the bodies.
-        let middle = [0.5 * (x0 + x1), 0.5 * (y0 + y1)];
-        let foot = plus(p, (middle[0] - p[0]) * n[1] - (middle[1] - p[1]) * n[0], along);
-        (straight(plus(foot, -far, along), plus(foot, far, along), n), p)
-    } else if let Some(circle) = primary.get("circle") {
-        let (c, r) = (place(circle.get("center"))?, circle.get("radius")?.as_f64()?);
-        let side = if circle.get("inside").and_then(Value::as_bool) == Some(true) { -1.0 } else { 1.0 };
-        (arc(c, r, [0.0, side * std::f64::consts::TAU], side, ROUND), c)
-    } else {
-        let line = primary.get("polyline")?;
-        let points: Vec<Point> = list(line, "points").iter().filter_map(|p| place(Some(p))).collect();
-        (polyline(&points, line.get("radius").and_then(Value::as_f64).unwrap_or(0.0), far), *points.first()?)
+    let mut is_plane = false;
+    let (walk, first) = match &contact.primary {
+        PrimarySpec::Plane { point, normal } => {
+            is_plane = true;
+            let p = flat(point);
+            let n = direction([0.0; 2], flat(normal));
+            let along = [n[1], -n[0]];
+            // Around the point nearest to the bodies.
+            let middle = [0.5 * (x0 + x1), 0.5 * (y0 + y1)];
+            let foot = plus(p, (middle[0] - p[0]) * n[1] - (middle[1] - p[1]) * n[0], along);
+            (straight(plus(foot, -far, along), plus(foot, far, along), n), p)
+        }
+        PrimarySpec::Circle { center, radius, inside } => {
+            let side = if *inside { -1.0 } else { 1.0 };
+            let around = [0.0, side * std::f64::consts::TAU];
+            (arc(flat(center), *radius, around, side, ROUND), flat(center))
+        }
+        PrimarySpec::Polyline { points, radius } => (polyline(points, *radius, far), *points.first()?),
+        PrimarySpec::Side(_) | PrimarySpec::Cylinder { .. } | PrimarySpec::Surface(_) => return None,
     };
-    let rotate = contact.pointer("/motion/prescribed/rotate").filter(|v| !v.is_null());
-    let angle = rotate.and_then(|rotate| match rotate.get(0)? {
-        Value::String(text) => Formula::parse(text, &["t"]).ok(),
-        number => Some(Formula::constant(number.as_f64()?)),
-    });
-    let about = rotate.and_then(|rotate| place(rotate.get(1))).unwrap_or(first);
-    let center = ["x", "y"].map(|axis| format!("{}.center_{axis}", text(contact, "name")));
-    Some(Obstacle { walk, is_plane: plane.is_some(), center, about, angle })
+    let rotate = match &contact.motion {
+        ObstacleMotion::Prescribed { rotate, .. } => rotate.as_ref(),
+        ObstacleMotion::Fixed | ObstacleMotion::Free { .. } => None,
+    };
+    let angle = rotate.and_then(|(angle, _)| angle.formula(&["t"]).ok());
+    let about = rotate.map_or(first, |(_, about)| flat(about));
+    let center = ["x", "y"].map(|axis| format!("{}.center_{axis}", contact.name));
+    Some(Obstacle { walk, is_plane, center, about, angle })
 }
 
 /// The value of a column at a recorded time.

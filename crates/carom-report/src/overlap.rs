@@ -4,8 +4,8 @@
 
 use std::fmt::Write as _;
 
+use carom_case::Case;
 use carom_record::FieldSet;
-use serde_json::Value;
 
 use crate::axis::round_step;
 use crate::bodies::{Instant, is_plane, places};
@@ -25,7 +25,7 @@ const LARGE: f64 = 12.0;
 const SMALL: f64 = 2.0;
 
 /// The picture of nodes (number, depth) of the bodies of a case in the plane; none without any.
-pub fn overlap(case: &Value, fields: &FieldSet, nodes: &[(usize, f64)]) -> Option<String> {
+pub fn overlap(case: &Case, fields: &FieldSet, nodes: &[(usize, f64)]) -> Option<String> {
     let points = places(fields);
     let nodes: Vec<(usize, f64)> = nodes.iter().copied().filter(|(node, _)| *node < points.len()).collect();
     let &(deepest, depth) = nodes.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;

@@ -4,7 +4,6 @@
 mod figure;
 mod pieces;
 mod raster;
-mod scene;
 mod skin;
 mod view;
 mod wires;
@@ -12,7 +11,6 @@ mod wires;
 pub(crate) use figure::{box_around, instants, underlay};
 pub(crate) use pieces::{Paint, pieces};
 pub(crate) use raster::image;
-pub(crate) use scene::section;
 pub(crate) use skin::{Facet, Place, corners, skin};
 pub(crate) use view::{View, cross, dot, length, minus};
 pub(crate) use wires::wires;

@@ -2,39 +2,80 @@
 
 mod picture;
 
-use carom_record::{Run, Stop, StopIteration, StopNode, StopPlace};
+use carom_record::{Stop, StopIteration, StopNode, StopPlace, Warning};
 use maud::{Markup, html};
 
-use crate::document::{file, joined, or_dash};
+use crate::document::or_dash;
 use crate::labels::{capitalised, number};
+use crate::made::command;
+use crate::recorded::Recorded;
 use crate::scientific::{powers, significant};
 use crate::text::{Label, Prose, typeset};
-use crate::values;
 pub(crate) use picture::figure;
 
-const ITERATIONS: &str = "Newton's iterations of the last attempt, each before its correction. Residual: as \
-    a fraction of the sum of the forces.";
-const DAMPING: &str = " Damping: the fraction of the correction that was applied.";
+/// Warnings about what can make a run stop, the most likely first.
+const CAUSES: [&str; 8] = [
+    "fast-impact",
+    "velocity-jump",
+    "undeclared-contact",
+    "flat-cell",
+    "wave-speed",
+    "unconnected-bodies",
+    "coarse-secondary",
+    "long-step",
+];
 
-/// The section, with its figure.
-pub(crate) fn section(run: &Run, picture: Option<Markup>) -> Markup {
+/// How likely a warning is the cause of a stop: 0 is the most likely; none of other warnings.
+pub(crate) fn cause(warning: &Warning) -> Option<usize> {
+    CAUSES.iter().position(|id| *id == warning.id)
+}
+
+const ITERATIONS: &str = "Iterations of the last attempt. Residual: over the sum of the forces; gap, correction: over \
+    the length of the model; damping: applied fraction of the correction. Data: `stopped.json`.";
+
+/// The section, with its figure: the cause, what to try, the place, the last iterations.
+pub(crate) fn section(run: &Recorded, picture: Option<Markup>) -> Markup {
     let Some(stop) = &run.stop else { return html! {} };
     let unit = run.history.unit("time");
     html! {
-        h2 { "Why it stopped" }
+        (causes(run, stop))
         p.reason { (Label(&powers(&capitalised(&typeset(&stop.reason))))) "." }
-        p.small {
-            "The last accepted state is at t = " (number(stop.last)) "\u{a0}" (Label(unit)) "; the last attempt began at t = "
-            (number(stop.time)) "\u{a0}" (Label(unit)) ". t and Δt are in " (Label(unit)) "; L is the length of the model."
-        }
-        @if let Some(place) = &stop.place { (where_table(place, values::unit(&run.manifest.case, "length"))) }
-        @if let Some(picture) = picture { (picture) }
         (advice(stop))
+        p { "For a smaller case that stops in the same way: " code { "carom reduce " (run.directory.display()) } }
+        h3 { "Where" }
+        p {
+            "Last accepted state: t = " (number(stop.last)) "\u{a0}" (Label(unit)) "; last attempt: from t = "
+            (number(stop.time)) "\u{a0}" (Label(unit)) "."
+        }
+        @if let Some(place) = &stop.place { (where_table(place, &run.case.units.length)) }
+        @if let Some(picture) = picture { (picture) }
         (iterations(&stop.iterations))
-        p.small {
-            "To reproduce it with a smaller case: " code { "carom reduce " (run.directory.file_name().unwrap_or_default().to_string_lossy()) } ". Data: "
-            (joined(["stopped.json", "stopped.vtu"].map(file), ", ")) " (the state at t = " (number(stop.last))
-            " " (Label(unit)) " with the rejected displacements)."
+    }
+}
+
+/// Warnings of a run that stopped are likely causes, those of the body or contact at the place
+/// first.
+fn causes(run: &Recorded, stop: &Stop) -> Markup {
+    let place = stop.place.as_ref();
+    let names = place
+        .into_iter()
+        .flat_map(|p| p.contact.iter().chain(&p.body).chain(p.node.as_ref().map(|n| &n.body)));
+    let names: Vec<String> = names.map(|name| format!("\"{name}\"")).collect();
+    let is_far = |warning: &&Warning| !names.iter().any(|name| warning.place.contains(name));
+    let mut warnings: Vec<&Warning> = run.manifest.warnings.iter().filter(|w| cause(w).is_some()).collect();
+    warnings.sort_by_key(|warning| (is_far(warning), cause(warning)));
+    html! {
+        @if !warnings.is_empty() {
+            h3 { "Likely cause" }
+            ul.causes {
+                @for warning in warnings {
+                    li {
+                        b { (typeset(&warning.place)) } ": " (Label(&powers(&typeset(&warning.what)))) ". Try "
+                        (Label(&typeset(&warning.advice))) "."
+                    }
+                }
+            }
+            h3 { "What happened" }
         }
     }
 }
@@ -84,23 +125,17 @@ fn advice(stop: &Stop) -> Markup {
             h3 { "What to try" }
             div.scroll {
                 table.advice {
-                    thead { tr { th { "Remedy" } th { "Option" } } }
+                    thead { tr { th { "Remedy" } th { "Command" } } }
                     @for advice in &stop.advice {
                         tr {
                             td { (Prose(&advice.what)) }
-                            td { @for set in &advice.sets { code { span.option { "--set" } " '" (breakable(set)) "'" } " " } }
+                            td { @if !advice.sets.is_empty() { code { (command(&advice.sets)) } } }
                         }
                     }
                 }
             }
         }
     }
-}
-
-/// An option that is broken before its value rather than within a word.
-fn breakable(set: &str) -> Markup {
-    let (key, value) = set.split_once('=').unwrap_or((set, ""));
-    html! { (key) @if !value.is_empty() { "=" wbr; (value) } }
 }
 
 /// A fraction of a correction: it is halved, so a power of two.
@@ -139,13 +174,7 @@ fn iterations(iterations: &[StopIteration]) -> Markup {
                     }
                 }
             }
-            p.small {
-                (ITERATIONS)
-                @if gaps { " Gap and correction: as fractions" } @else { " Correction: as a fraction" }
-                " of the length of the model." (DAMPING)
-                @if !pairs { " No pair was in contact." }
-                (Prose(" Data: `stopped.json`."))
-            }
+            p.small { (Prose(ITERATIONS)) }
         }
     }
 }

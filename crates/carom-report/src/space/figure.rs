@@ -1,17 +1,17 @@
 //! Deformed solids at several instants, coloured by the stress of von Mises.
 
-use carom_record::{FieldSet, Run};
+use carom_record::FieldSet;
 
 use super::pieces::{Paint, pieces};
 use super::raster::image;
 use super::skin::{Facet, Place, skin};
 use super::view::View;
 use super::wires::wires;
-use crate::bands::{Bands, positive_bands};
+use crate::bands::positive_bands;
 use crate::bodies::places;
 use crate::labels::instant_label;
 use crate::pen::{GRID, NOTHING, Pen, Point, around, path};
-use crate::quantity::stresses;
+use crate::recorded::Recorded;
 use crate::sheet::{Legend, Sheet};
 
 /// Room for the axes below the pictures.
@@ -25,19 +25,13 @@ fn frame(skin: &[Facet], places: &[Place], view: &View) -> [f64; 4] {
     around(NOTHING, skin.iter().flat_map(|f| &f.nodes).map(|&k| view.on_page(places[k])))
 }
 
-/// The figure, also for a narrow window, with its caption, and the bands of its colours; nothing
-/// without stresses.
-pub(crate) fn instants(
-    run: &Run,
-    sets: &[(f64, FieldSet)],
-    length: &str,
-    words: (&str, &str),
-) -> Option<([String; 2], String, Bands)> {
+/// The figure, broad and narrow; nothing without stresses.
+pub(crate) fn instants(run: &Recorded, sets: &[(f64, FieldSet)]) -> Option<[String; 2]> {
     let view = View::axonometric();
     let skin = skin(&sets.first()?.1);
     let mut list = Vec::new();
     for (t, set) in sets.iter().filter(|(_, set)| set.points.len() == sets[0].1.points.len()) {
-        let [mises, _] = stresses(set)?;
+        let mises = &set.array("von_mises")?.values;
         list.push((instant_label(run, *t), places(set), mises));
     }
     let values = list.iter().flat_map(|(_, _, mises)| {
@@ -54,6 +48,7 @@ pub(crate) fn instants(
         return None;
     }
     let unit = sets[0].1.unit("stress");
+    let length = sets[0].1.unit("displacement");
     let seen = |k: usize, to: &dyn Fn(Point) -> Point, scale: f64| {
         let (_, places, mises) = &list[k];
         pieces(&skin, places, &|_, node| mises[node], &view, to, scale)
@@ -70,10 +65,7 @@ pub(crate) fn instants(
         sheet.finish(&Legend { bands: &bands, cut, label: "σ_{vM}", unit }, length)
     };
     let headings = list.iter().map(|(heading, ..)| heading.as_str());
-    let pictures =
-        Sheet::pair("Deformed bodies with von Mises stress", headings, wide, FOOT, picture).map(finish);
-    let caption = caption(&bands, cut, unit, words, !rigid.is_empty());
-    Some((pictures, caption, bands))
+    Some(Sheet::pair("Deformed bodies with von Mises stress", headings, wide, FOOT, picture).map(finish))
 }
 
 /// Corners of the box of all places of a skin.
@@ -105,20 +97,4 @@ pub(crate) fn underlay(out: &mut String, lines: &[[Place; 2]], view: &View, to: 
     }
     let style = format!("fill=\"none\" stroke=\"{RIGID}\" stroke-width=\"{}\"", THIN * GRID);
     path(out, &pen, &style);
-}
-
-fn caption(bands: &Bands, cut: [bool; 2], unit: &str, (during, files): (&str, &str), rigid: bool) -> String {
-    let rigid = if rigid { " Grey lines, behind the bodies: rigid obstacles." } else { "" };
-    let high = format!("{} {unit}", bands.high);
-    let arrow = if cut[1] {
-        format!(" Arrowhead at the colour bar: at most 0.5 % of the values are above {}.", high.trim_end())
-    } else {
-        String::new()
-    };
-    format!(
-        "Deformed bodies with von Mises stress (of nodal averages of the Cauchy stress) at instants \
-         {during}. All at the same scale; displacements are not magnified. View: {}. The scale applies to \
-         lengths parallel to the page.{rigid}{arrow} Data: stress and displacement in {files}.",
-        View::words()
-    )
 }

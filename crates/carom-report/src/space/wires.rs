@@ -1,13 +1,13 @@
 //! Rigid obstacles in space as lines on their surfaces, near the bodies: a grid on a plane, circles
 //! on a sphere, circles and lines on a cylinder, edges of a triangulated surface.
 
+use carom_case::{ContactSpec, PrimarySpec};
 use carom_record::Run;
-use serde_json::Value;
 
 use super::skin::Place;
 use super::view::{cross, dot, length, minus};
 use crate::obstacles::recorded;
-use crate::values::{list, place, text};
+use crate::recorded::Recorded;
 
 /// Points on a line, and lines in each of both directions.
 const POINTS: usize = 96;
@@ -26,12 +26,17 @@ pub(crate) struct Wire {
 }
 
 /// The obstacles of a run whose bodies fill a box.
-pub(crate) fn wires(run: &Run, [low, high]: [Place; 2]) -> Vec<Wire> {
-    let of = |contact: &Value| {
-        let surface = run.manifest.surfaces.get(text(contact, "name"));
+pub(crate) fn wires(run: &Recorded, [low, high]: [Place; 2]) -> Vec<Wire> {
+    let of = |contact: &ContactSpec| {
+        let surface = run.manifest.surfaces.get(&contact.name);
         one(contact, surface.map_or(&[], Vec::as_slice), [low, high])
     };
-    list(&run.manifest.case, "contacts").iter().filter_map(of).collect()
+    run.case.contacts.iter().filter_map(of).collect()
+}
+
+/// A point or vector in space.
+fn place(v: &[f64]) -> Option<Place> {
+    v.try_into().ok()
 }
 
 fn plus(a: Place, factor: f64, b: Place) -> Place {
@@ -50,53 +55,60 @@ fn across(n: Place) -> [Place; 2] {
     [first, cross(n, first)]
 }
 
-/// `surface`: the edges of a triangulated one.
-fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Option<Wire> {
-    let primary = contact.get("primary")?;
+/// The lines of one obstacle; `surface` is the edges of a triangulated one.
+fn one(contact: &ContactSpec, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Option<Wire> {
     let diagonal = length(minus(high, low));
     let middle = plus(low, 0.5, minus(high, low));
     let reach = (0.5 + MARGIN) * diagonal;
     let share = |k: usize, n: usize| k as f64 / n as f64;
     let angle = |k: usize, n: usize| (std::f64::consts::TAU * share(k, n)).sin_cos();
-    let (lines, origin): (Vec<Vec<Place>>, Place) = if let Some(plane) = primary.get("plane") {
-        let (point, normal) = (place(plane.get("point"))?, unit(place(plane.get("normal"))?));
-        let foot = plus(middle, -dot(minus(middle, point), normal), normal);
-        let line = |[along, beside]: [Place; 2], k: usize| {
-            let start = plus(foot, reach * (2.0 * share(k, LINES) - 1.0), beside);
-            (0..=POINTS).map(|i| plus(start, reach * (2.0 * share(i, POINTS) - 1.0), along)).collect()
-        };
-        let [a, b] = across(normal);
-        ((0..=LINES).flat_map(|k| [line([a, b], k), line([b, a], k)]).collect(), point)
-    } else if let Some(cylinder) = primary.get("cylinder") {
-        let (point, axis) = (place(cylinder.get("point"))?, unit(place(cylinder.get("axis"))?));
-        let radius = cylinder.get("radius")?.as_f64()?;
-        let foot = plus(point, dot(minus(middle, point), axis), axis);
-        let [a, b] = across(axis);
-        let at = |along: f64, (sin, cos): (f64, f64)| {
-            plus(plus(plus(foot, reach * (2.0 * along - 1.0), axis), radius * cos, a), radius * sin, b)
-        };
-        let circle = |k: usize| (0..=POINTS).map(|i| at(share(k, LINES), angle(i, POINTS))).collect();
-        let line = |k: usize| (0..=POINTS).map(|i| at(share(i, POINTS), angle(k, 2 * LINES))).collect();
-        ((0..=LINES).map(circle).chain((0..2 * LINES).map(line)).collect(), point)
-    } else if primary.get("surface").is_some() {
-        // In pieces, of which those that are near are drawn.
-        let pieces = |&[a, b]: &[Place; 2]| -> Vec<Place> {
-            let along = minus(b, a);
-            let count = (20.0 * length(along) / diagonal).ceil().clamp(1.0, POINTS as f64) as usize;
-            (0..=count).map(|k| plus(a, share(k, count), along)).collect()
-        };
-        (surface.iter().map(pieces).collect(), [0.0; 3])
-    } else {
-        let sphere = primary.get("circle")?;
-        let (center, radius) = (place(sphere.get("center"))?, sphere.get("radius")?.as_f64()?);
-        let at =
-            |(sin, cos): (f64, f64), (up, out): (f64, f64)| plus(center, radius, [out * cos, out * sin, up]);
-        let meridian = |k: usize| (0..=POINTS).map(|i| at(angle(k, 2 * LINES), angle(i, POINTS))).collect();
-        let parallel = |k: usize| {
-            let height = std::f64::consts::PI * (share(k, LINES) - 0.5);
-            (0..=POINTS).map(|i| at(angle(i, POINTS), height.sin_cos())).collect()
-        };
-        ((0..LINES).map(meridian).chain((1..LINES).map(parallel)).collect(), center)
+    let (lines, origin): (Vec<Vec<Place>>, Place) = match &contact.primary {
+        PrimarySpec::Plane { point, normal } => {
+            let normal = unit(place(normal)?);
+            let point = place(point)?;
+            let foot = plus(middle, -dot(minus(middle, point), normal), normal);
+            let line = |[along, beside]: [Place; 2], k: usize| {
+                let start = plus(foot, reach * (2.0 * share(k, LINES) - 1.0), beside);
+                (0..=POINTS).map(|i| plus(start, reach * (2.0 * share(i, POINTS) - 1.0), along)).collect()
+            };
+            let [a, b] = across(normal);
+            ((0..=LINES).flat_map(|k| [line([a, b], k), line([b, a], k)]).collect(), point)
+        }
+        PrimarySpec::Cylinder { point, axis, radius, .. } => {
+            let axis = unit(place(axis)?);
+            let point = place(point)?;
+            let foot = plus(point, dot(minus(middle, point), axis), axis);
+            let [a, b] = across(axis);
+            let at = |along: f64, (sin, cos): (f64, f64)| {
+                plus(plus(plus(foot, reach * (2.0 * along - 1.0), axis), radius * cos, a), radius * sin, b)
+            };
+            let circle = |k: usize| (0..=POINTS).map(|i| at(share(k, LINES), angle(i, POINTS))).collect();
+            let line = |k: usize| (0..=POINTS).map(|i| at(share(i, POINTS), angle(k, 2 * LINES))).collect();
+            ((0..=LINES).map(circle).chain((0..2 * LINES).map(line)).collect(), point)
+        }
+        PrimarySpec::Surface(_) => {
+            // In pieces, of which those that are near are drawn.
+            let pieces = |&[a, b]: &[Place; 2]| -> Vec<Place> {
+                let along = minus(b, a);
+                let count = (20.0 * length(along) / diagonal).ceil().clamp(1.0, POINTS as f64) as usize;
+                (0..=count).map(|k| plus(a, share(k, count), along)).collect()
+            };
+            (surface.iter().map(pieces).collect(), [0.0; 3])
+        }
+        PrimarySpec::Circle { center, radius, .. } => {
+            let center = place(center)?;
+            let at = |(sin, cos): (f64, f64), (up, out): (f64, f64)| {
+                plus(center, *radius, [out * cos, out * sin, up])
+            };
+            let meridian =
+                |k: usize| (0..=POINTS).map(|i| at(angle(k, 2 * LINES), angle(i, POINTS))).collect();
+            let parallel = |k: usize| {
+                let height = std::f64::consts::PI * (share(k, LINES) - 0.5);
+                (0..=POINTS).map(|i| at(angle(i, POINTS), height.sin_cos())).collect()
+            };
+            ((0..LINES).map(meridian).chain((1..LINES).map(parallel)).collect(), center)
+        }
+        PrimarySpec::Side(_) | PrimarySpec::Polyline { .. } => return None,
     };
     let is_near =
         |p: &Place| (0..3).all(|i| p[i] >= low[i] - MARGIN * diagonal && p[i] <= high[i] + MARGIN * diagonal);
@@ -107,7 +119,7 @@ fn one(contact: &Value, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Opti
     let is_whole = !surface.is_empty() && (0..3).all(|i| extent(i) <= WHOLE * diagonal);
     let pieces = lines.iter().flat_map(|line: &Vec<Place>| line.windows(2)).map(|w| [w[0], w[1]]);
     let segments: Vec<[Place; 2]> = pieces.filter(|piece| is_whole || piece.iter().all(is_near)).collect();
-    let center = ["x", "y", "z"].map(|axis| format!("{}.center_{axis}", text(contact, "name")));
+    let center = ["x", "y", "z"].map(|axis| format!("{}.center_{axis}", contact.name));
     (!segments.is_empty()).then_some(Wire { segments, center, origin })
 }
 
@@ -131,9 +143,18 @@ impl Wire {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     use super::*;
+
+    fn contact(primary: &Value) -> ContactSpec {
+        serde_json::from_value(json!({
+            "name": "strike", "secondary": "b.top", "primary": primary, "enforcement": "multiplier",
+            "stiffness": 1.0, "force": "end", "persistency": "project", "active_set": "within",
+            "detection": "closest-point", "law": null, "restitution": 0.0,
+        }))
+        .unwrap()
+    }
 
     #[test]
     fn lines_lie_on_their_surface_near_the_bodies() {
@@ -141,13 +162,13 @@ mod tests {
             (json!({ "plane": { "point": [0.0, 0.0, -0.1], "normal": [0.0, 1.0, 2.0] } }), 0.0),
             (json!({ "circle": { "center": [0.0, 0.0, -2.0], "radius": 2.0, "inside": false } }), 2.0),
             (
-                json!({ "cylinder": { "point": [0.0, 9.0, 0.5], "axis": [0.0, 3.0, 0.0], "radius": 0.7 } }),
+                json!({ "cylinder": { "point": [0.0, 9.0, 0.5], "axis": [0.0, 3.0, 0.0], "radius": 0.7, "inside": false } }),
                 0.7,
             ),
         ];
         for (k, (primary, radius)) in primaries.into_iter().enumerate() {
             let box_of = [[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]];
-            let wire = one(&json!({ "name": "strike", "primary": primary }), &[], box_of).unwrap();
+            let wire = one(&contact(&primary), &[], box_of).unwrap();
             assert!(wire.at_first().len() > 100, "{k}");
             for p in wire.at_first().iter().flatten() {
                 let distance = match k {
@@ -159,14 +180,15 @@ mod tests {
                 assert!(p.iter().all(|x| x.abs() < 1.5), "{k}: {p:?}");
             }
         }
-        let of = |primary, surface: &[_]| {
-            one(&json!({ "name": "a", "primary": primary }), surface, [[0.0; 3], [1.0; 3]])
-        };
+        let of = |primary, surface: &[_]| one(&contact(&primary), surface, [[0.0; 3], [1.0; 3]]);
+        let file = json!({ "surface": {
+            "file": "a.stl", "group": null, "scale": 1.0, "reverse": false, "hash": "", "triangles": 2, "rim": 0,
+        } });
         assert!(of(json!({ "side": "b.top" }), &[]).is_none());
-        let wire = of(json!({ "surface": {} }), &[[[0.0; 3], [99.0, 0.0, 0.0]]]).unwrap();
+        let wire = of(file.clone(), &[[[0.0; 3], [99.0, 0.0, 0.0]]]).unwrap();
         let reach = |wire: &Wire| wire.at_first().iter().flatten().map(|p| p[0]).fold(0.0, f64::max);
         assert!(reach(&wire) > 1.0 && reach(&wire) < 1.3, "{}", reach(&wire));
-        let wire = of(json!({ "surface": {} }), &[[[0.0; 3], [9.0, 0.0, 0.0]]]).unwrap();
+        let wire = of(file, &[[[0.0; 3], [9.0, 0.0, 0.0]]]).unwrap();
         assert_eq!(reach(&wire), 9.0);
     }
 }

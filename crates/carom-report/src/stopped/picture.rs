@@ -4,17 +4,18 @@
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
-use carom_record::{FieldSet, Run, Stop, StopPlace};
+use carom_record::{FieldSet, Stop, StopPlace};
 
 use crate::axis::{range, round_step};
 use crate::bodies::{Instant, bezier, corners, edges, is_plane, moved, outline, places};
 use crate::chart::{open, write_text};
 use crate::figure::{Figure, NARROW};
-use crate::labels::{instant_label, listed};
+use crate::labels::instant_label;
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::{self, NOTHING, Pen, Point, path};
 use crate::place::{fill, mesh};
+use crate::recorded::Recorded;
 use crate::symbols::{distance, scale_bar, wall};
 
 const WIDTH: f64 = 720.0;
@@ -29,7 +30,7 @@ const CELL: &str = LINES[5];
 const REJECTED: &str = LINES[4];
 
 /// The figure of a run that stopped; none in dimension 1 and without fields or a place.
-pub(crate) fn figure(run: &Run) -> Option<Figure> {
+pub(crate) fn figure(run: &Recorded) -> Option<Figure> {
     let stop = run.stop.as_ref()?;
     let fields = Stop::fields(&run.directory, &run.manifest).ok()??;
     let place = stop.place.as_ref()?;
@@ -38,24 +39,22 @@ pub(crate) fn figure(run: &Run) -> Option<Figure> {
     }
     let (svg, is_moved) = draw(run, stop, place, &fields, WIDTH)?;
     let (narrow, _) = draw(run, stop, place, &fields, NARROW)?;
-    let rejected = if is_moved { " Dashed: the positions that were rejected." } else { "" };
-    let there = [
-        (true, "the node"),
-        (!place.facet_nodes.is_empty(), "the facet"),
-        (!place.cell_nodes.is_empty(), "the cell"),
-    ];
-    let parts: Vec<&str> = there.iter().filter(|(there, _)| *there).map(|(_, part)| *part).collect();
+    let rejected = if is_moved { "; dashed: rejected positions" } else { "" };
     let caption = format!(
-        "The place of the stop at {}, the last accepted state: deformed mesh with {}, where the next step \
-         failed.{rejected} Data: `stopped.vtu`, `stopped.json`.",
-        instant_label(run, stop.last),
-        listed(&parts)
+        "Deformed mesh around the place of the stop, {}{rejected}. Data: `stopped.vtu`.",
+        instant_label(run, stop.last)
     );
     Some(Figure::new("stopped", caption, [svg, narrow]))
 }
 
 /// The picture, and whether the rejected positions differ visibly.
-fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet, width: f64) -> Option<(String, bool)> {
+fn draw(
+    run: &Recorded,
+    stop: &Stop,
+    place: &StopPlace,
+    fields: &FieldSet,
+    width: f64,
+) -> Option<(String, bool)> {
     let points: Vec<Point> = places(fields);
     let rejected = fields.array("rejected").map(|_| moved(fields, "rejected"));
     let node = place.node.as_ref()?.number;

@@ -295,7 +295,8 @@ pub(crate) mod tests {
     pub(crate) fn study(arms: &[(&str, Vec<(&'static str, f64)>)]) -> Study {
         let arm = |(sets, _): &(&str, _)| {
             let sets: Vec<&str> = sets.split(", ").collect();
-            json!({ "name": sets.join(", "), "directory": "", "sets": sets, "steps": 1, "case": {} })
+            let facts = carom_record::Facts::default();
+            json!({ "name": sets.join(", "), "directory": "", "sets": sets, "steps": 1, "case": {}, "facts": facts })
         };
         let manifest: StudyManifest = serde_json::from_value(json!({
             "status": "finished", "title": "", "version": "", "input_hash": "", "created": "",

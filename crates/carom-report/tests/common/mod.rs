@@ -6,14 +6,65 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
+use carom_case::Case;
 use carom_record::{
     Block, Cell, Column, ContactFacts, Event, Expectation, Facts, FieldSet, Held, Manifest, PointArray,
     RunWriter, Source, Status, Warning,
 };
+use serde_json::{Value, json};
 
 const N: usize = 7;
 const START: f64 = 0.32;
 const END: f64 = 0.56;
+
+/// The manifest of a run of a stored case.
+pub(crate) fn manifest(case: Value, columns: Vec<Column>) -> Manifest {
+    let facts = Case::from_json(case.clone()).unwrap().facts();
+    Manifest::new("0.1.0", facts, case, Source::default(), columns, 1)
+}
+
+/// A case as it is stored, with these parts in place of a small one of dimension 2.
+pub(crate) fn case(parts: &Value) -> Value {
+    let body = json!({
+        "name": "", "material": "rubber", "element": "T3", "gravity": [], "velocity": [], "mass": "consistent",
+        "mesh": {"shape": "rectangle", "min": [0.0, 0.0], "max": [1.0, 1.0], "cells": [1, 1]},
+    });
+    let contact = json!({
+        "name": "", "secondary": "", "primary": {"side": ""}, "enforcement": "multiplier", "stiffness": 1.0,
+        "force": "end", "persistency": "project", "active_set": "within", "detection": "closest-point",
+        "law": null, "restitution": 0.0,
+    });
+    let defaults = [
+        ("bodies", body),
+        ("supports", json!({"name": null, "on": [], "fix": []})),
+        ("contacts", contact),
+        ("loads", json!({"name": null, "table": null})),
+        ("probes", json!({"record": ["uy"]})),
+    ];
+    let mut whole = json!({
+        "title": "", "dimension": 2, "plane": "strain", "thickness": 1.0,
+        "units": {"length": "m", "time": "s", "mass": "kg"}, "preset": "default", "materials": [], "bodies": [],
+        "supports": [], "contacts": [], "newton": {"tolerance": 1e-9, "max_iterations": 20}, "probes": [],
+        "output": {"fields_every": 1, "at_times": [], "history_every": 1, "checkpoint_every": 1}, "expects": [],
+        "time": {
+            "end": 1.0, "step": 0.1, "energy_guard": null,
+            "scheme": {"kind": "chung-hulbert", "rho_inf": 0.1, "forces": "average-forces"},
+        },
+    });
+    for (key, value) in parts.as_object().unwrap() {
+        whole[key] = value.clone();
+    }
+    for (key, default) in defaults {
+        for item in whole[key].as_array_mut().into_iter().flatten() {
+            let mut complete = default.clone();
+            for (key, value) in item.as_object().unwrap() {
+                complete[key] = value.clone();
+            }
+            *item = complete;
+        }
+    }
+    whole
+}
 
 /// T10 cells on a lattice of 3n × 3m intervals, two per square.
 fn lattice(n: usize, m: usize, map: impl Fn(f64, f64) -> [f64; 2]) -> (Vec<[f64; 3]>, Vec<usize>) {
@@ -77,6 +128,7 @@ fn fields(t: f64) -> FieldSet {
         u.extend([dx, dy, 0.0]);
         stress.extend([0.3 * s, s, 0.2 * s, 0.0, 0.0, 0.0]);
     }
+    let mises = stress.chunks_exact(6).map(|s: &[f64]| s[1].abs()).collect();
     let array = |name: &str, unit: &str, components, values| PointArray {
         name: name.into(),
         unit: unit.into(),
@@ -91,7 +143,11 @@ fn fields(t: f64) -> FieldSet {
             block("cylinder", disc_cells),
             block("prism", block_cells.into_iter().map(|k| k + disc_points).collect()),
         ],
-        arrays: vec![array("displacement", "m", 3, u), array("stress", "N/m^2", 6, stress)],
+        arrays: vec![
+            array("displacement", "m", 3, u),
+            array("von_mises", "N/m^2", 1, mises),
+            array("stress", "N/m^2", 6, stress),
+        ],
     }
 }
 
@@ -152,7 +208,7 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
         description: String::new(),
         integer: matches!(name, "step" | "active" | "newton" | "rejected"),
     });
-    let case = serde_json::json!({
+    let case = case(&json!({
         "title": title, "dimension": 2, "units": {"length": "m", "time": "s", "mass": "kg"},
         "materials": [{"name": "rubber", "law": "neo-hookean", "density": 0.25, "lambda": 200.0, "mu": 15.0}],
         "bodies": [
@@ -166,10 +222,10 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
             {"name": "B", "at": [0.0, 0.0], "body": "prism"},
         ],
         "time": {
-            "step": 1.875e-3,
+            "end": 0.75, "step": 1.875e-3, "energy_guard": null,
             "scheme": {"kind": "chung-hulbert", "rho_inf": 0.1, "forces": "average-forces"},
         },
-    });
+    }));
     let source = Source {
         text: format!("title = \"{title}\"\n# …\n"),
         sets: vec!["time.end=0.75".into(), "title='x'".into()],

@@ -129,8 +129,7 @@ impl Overlap {
         let depths: Vec<(usize, f64)> = nodes.iter().map(|node| (node.node, node.depth)).collect();
         let mut picture = None;
         let fields = carom::recording::initial_fields(case, &model);
-        let resolved = serde_json::to_value(case).unwrap_or_default();
-        if let Some(svg) = carom_report::overlap(&resolved, &fields, &depths) {
+        if let Some(svg) = carom_report::overlap(case, &fields, &depths) {
             let stem = if path == Path::new(super::STDIN) { Path::new("stdin") } else { path };
             let stem = stem.file_stem().unwrap_or_default().to_string_lossy();
             let file = PathBuf::from(format!("{stem}-overlap.svg"));

@@ -1,0 +1,186 @@
+//! The five numbers of a run that a reader wants first.
+
+use carom_record::metrics;
+use maud::{Markup, html};
+
+use crate::asked::metrics_of;
+use crate::labels::{amount, instant_label, number};
+use crate::ordered::distinct;
+use crate::recorded::Recorded;
+use crate::scene::{Peak, Scene};
+use crate::scientific::significant;
+use crate::text::Label;
+
+const COUNT: usize = 5;
+
+/// A number with its name, and when or in terms of what it is.
+struct Number {
+    name: String,
+    value: String,
+    note: String,
+}
+
+impl Number {
+    fn new(name: impl Into<String>, value: String, note: impl Into<String>) -> Self {
+        Self { name: name.into(), value, note: note.into() }
+    }
+}
+
+/// What is known of a run.
+struct Facts<'a> {
+    run: &'a Recorded,
+    scene: Option<&'a Scene>,
+    metrics: Vec<metrics::Metric>,
+}
+
+/// The numbers fit for the run: of an impact, of bodies that are driven, of a static analysis, or of
+/// a free motion.
+pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
+    let facts = Facts { run, scene, metrics: metrics_of(run) };
+    let impact =
+        || [facts.rebound(), facts.peak_force(), facts.mean_force(), facts.duration(), facts.energy_lost()];
+    let outside = || [facts.largest_stress(), facts.peak_force(), facts.work(), facts.displacement()];
+    let inside =
+        || [facts.peak_force(), facts.work(), facts.friction(), facts.largest_stress(), facts.energy_lost()];
+    let free = || [facts.largest_stress(), facts.displacement(), facts.kinetic(), facts.energy_lost()];
+    let numbers: Vec<Option<Number>> = if run.is_static() {
+        facts.reactions().into_iter().chain(outside()).collect()
+    } else if run.has_contact() && !run.is_driven() {
+        impact().into_iter().chain([facts.largest_stress(), facts.friction()]).collect()
+    } else if run.is_driven() {
+        facts.reactions().into_iter().chain(inside()).chain([facts.displacement()]).collect()
+    } else {
+        free().into_iter().chain(facts.reactions()).collect()
+    };
+    let numbers: Vec<Number> = numbers.into_iter().flatten().take(COUNT).collect();
+    html! {
+        @if !numbers.is_empty() {
+            dl.numbers {
+                @for number in &numbers {
+                    div {
+                        dt { (Label(&number.name)) }
+                        dd { (Label(&number.value)) }
+                        dd.small { (Label(&number.note)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Facts<'_> {
+    fn metric(&self, name: &str) -> Option<f64> {
+        self.metrics.iter().find(|metric| metric.name == name)?.value
+    }
+
+    fn at(&self, row: usize) -> String {
+        self.run
+            .times()
+            .get(row)
+            .map_or_else(String::new, |time| format!("at {}", instant_label(self.run, *time)))
+    }
+
+    fn force(&self, x: f64) -> String {
+        amount(x, self.run.history.unit("contact_force_x"))
+    }
+
+    fn energy(&self, x: f64) -> String {
+        amount(x, self.run.history.unit("total"))
+    }
+
+    fn rebound(&self) -> Option<Number> {
+        let value = self.metric("restitution")?;
+        let striker = metrics::striker(&self.run.history).unwrap_or_default();
+        Some(Number::new(
+            "Rebound",
+            significant(value, 3),
+            format!("coefficient of restitution of {striker}"),
+        ))
+    }
+
+    fn peak_force(&self) -> Option<Number> {
+        let forces = metrics::contact_force(&self.run.history);
+        let row = (0..forces.len()).max_by(|a, b| forces[*a].total_cmp(&forces[*b]))?;
+        (forces[row] > 0.0)
+            .then(|| Number::new("Largest contact force", self.force(forces[row]), self.at(row)))
+    }
+
+    fn mean_force(&self) -> Option<Number> {
+        let duration = self.metric("contact_duration")?;
+        let impulses =
+            ["impulse_x", "impulse_y", "impulse_z"].into_iter().filter_map(|name| self.metric(name));
+        let impulse = impulses.fold(0.0, f64::hypot);
+        Some(Number::new("Mean contact force", self.force(impulse / duration), "impulse over duration"))
+    }
+
+    fn duration(&self) -> Option<Number> {
+        let value = self.metric("contact_duration")?;
+        let note = self
+            .metric("contact_start")
+            .map_or_else(String::new, |t| format!("from {}", instant_label(self.run, t)));
+        Some(Number::new("Contact duration", amount(value, self.run.time_unit()), note))
+    }
+
+    fn energy_lost(&self) -> Option<Number> {
+        let value = self.metric("energy_lost")?;
+        let name = if value < 0.0 { "Energy created" } else { "Energy lost" };
+        let percent = 100.0 * value.abs();
+        let shown = if percent < 1e-6 { "< 10^{-6}".to_owned() } else { significant(percent, 2) };
+        Some(Number::new(name, format!("{shown} %"), "of the largest kinetic + strain energy"))
+    }
+
+    /// The two largest reactions of supports and obstacles.
+    fn reactions(&self) -> Vec<Option<Number>> {
+        let history = &self.run.history;
+        let names = history.columns.iter().filter_map(|column| column.name.strip_suffix(".reaction_x"));
+        let mut found: Vec<(f64, usize, &str)> = Vec::new();
+        for name in distinct(names) {
+            let axes = ["x", "y", "z"].map(|axis| history.column(&format!("{name}.reaction_{axis}")));
+            let size =
+                |row: usize| axes.iter().flatten().fold(0.0, |sum, column| f64::hypot(sum, column[row]));
+            if let Some(row) = (0..self.run.times().len()).max_by(|a, b| size(*a).total_cmp(&size(*b))) {
+                found.push((size(row), row, name));
+            }
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let number = |(value, row, name): (f64, usize, &str)| {
+            Some(Number::new(format!("Largest reaction, {name}"), self.force(value), self.at(row)))
+        };
+        found.into_iter().take(2).map(number).collect()
+    }
+
+    fn of_fields(&self, name: &str, peak: Option<&Peak>) -> Option<Number> {
+        let Peak { value, time, unit } = peak?;
+        Some(Number::new(name, amount(*value, unit), format!("at {}", instant_label(self.run, *time))))
+    }
+
+    fn largest_stress(&self) -> Option<Number> {
+        self.of_fields("Largest von Mises stress", self.scene?.stress.as_ref())
+    }
+
+    fn displacement(&self) -> Option<Number> {
+        self.of_fields("Largest displacement", self.scene?.displacement.as_ref())
+    }
+
+    fn work(&self) -> Option<Number> {
+        let work = self.run.column("external_work")?;
+        let size = work.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        (size > 0.0).then(|| {
+            Number::new("Work of loads and supports", self.energy(*work.last().unwrap_or(&0.0)), "at the end")
+        })
+    }
+
+    fn friction(&self) -> Option<Number> {
+        let work = *self.run.column("friction_work")?.last()?;
+        (work != 0.0).then(|| Number::new("Work of friction", self.energy(work), "at the end"))
+    }
+
+    fn kinetic(&self) -> Option<Number> {
+        let kinetic = self.run.column("kinetic")?;
+        let most = kinetic.iter().copied().filter(|x| x.is_finite()).fold(0.0, f64::max);
+        let first = kinetic.first().copied().unwrap_or(0.0);
+        (most > 0.0).then(|| {
+            Number::new("Largest kinetic energy", self.energy(most), format!("{} at first", number(first)))
+        })
+    }
+}
