@@ -23,6 +23,7 @@ pub(crate) enum Drawn {
 
 /// A curve.
 #[derive(Clone, Debug, Default)]
+#[allow(clippy::struct_excessive_bools)] // Each is independent of the others.
 pub(crate) struct Curve {
     pub(crate) label: String,
     /// Number of the style.
@@ -65,6 +66,8 @@ impl Curve {
         let (color, dashes, marker) = style(self.style);
         match () {
             () if self.thin => ("#222", "4 2", marker),
+            // A curve that is alone in its pane needs no dashes.
+            () if self.unlisted => (if self.apart { APART } else { color }, "", marker),
             // Grey curves are told apart by their dashes.
             () if self.apart => (APART, style(COLORS * self.style).1, marker),
             () => (color, dashes, marker),

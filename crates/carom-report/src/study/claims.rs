@@ -81,9 +81,8 @@ pub(super) fn section(study: &Study) -> Markup {
             "Ratio: the left quantity divided by the right one, without constant factors, and what is claimed \
              of it; for a comparison with a number, the left quantity itself. "
             @if all {
-                "Median over the members of the ensemble in which the claim can be decided, and range. Left and \
-                 right: of the arms as given."
-            } @else { "Without an ensemble (" code { "[ensemble]" } ") it has no interval." }
+                "Median over the members of the ensemble in which the claim can be decided, and range."
+            }
         }
     }
 }

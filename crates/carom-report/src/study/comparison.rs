@@ -67,7 +67,8 @@ fn scatter(
                 sound_points.extend(points);
             }
             if !x.is_empty() {
-                let (drawn, chosen) = (Drawn::Marked, ring.is_some());
+                let drawn = Drawn::Marked;
+                let chosen = ring.is_some();
                 curves.push(Curve { label, style, x, y, drawn, apart, chosen, ring, ..Curve::default() });
             }
         }
@@ -116,10 +117,8 @@ fn error_cost(study: &Study) -> Option<Plot> {
     let reference = study.reference.as_ref();
     let columns = reference.map(|reference| established(reference, is_trajectory)).unwrap_or_default();
     let ranked = |arm: usize| Some(ranking.levels.iter().flatten().find(|ranked| ranked.arm == arm)?.error);
-    let error = |arm: usize| match is_of_motion {
-        true => study.compared.get(arm)?.as_ref()?.mean(&columns),
-        false => ranked(arm),
-    };
+    let deviation = |arm: usize| study.compared.get(arm)?.as_ref()?.mean(&columns);
+    let error = |arm: usize| if is_of_motion { deviation(arm) } else { ranked(arm) };
     let of_column = |column: &&str| Some(reference?.uncertainty(column).established()?.1.powi(2));
     let squares: f64 = columns.iter().filter_map(of_column).sum();
     let uncertainty = match &ranking.measure {

@@ -92,7 +92,7 @@ fn phases(study: &Study) -> Markup {
     let cell = |order: &Result<f64, Reason>| match order {
         Ok(order) if *order >= 0.0 => html! { td.n { (format_args!("{order:.2}")) } },
         Ok(_) => html! { td { "none " span.small { "(errors grow with a shorter step)" } } },
-        Err(why) => html! { td { "none " span.small { "(" (typeset(&why.to_string())) ")" } } },
+        Err(why) => html! { td { "none " span.small { "(" (typeset(why)) ")" } } },
     };
     html! {
         @if !study.phase_orders.is_empty() {

@@ -90,61 +90,113 @@ fn curves(study: &Study, column: &Column) -> Vec<Curve> {
     shown.into_iter().filter_map(curve).collect()
 }
 
-fn plot(study: &Study, column: &Column, measured: &Measured) -> Option<Plot> {
-    let (label, what) = named(&column.name);
-    let y_label = with_unit(&label, &column.unit);
-    let found = curves(study, column);
-    let end = found.iter().filter_map(|curve| curve.x.last()).copied().fold(0.0, f64::max);
-    let contact = contact(study, end);
-    let points = measured.points(&column.name, end);
-    let reference = study.reference.as_ref().and_then(|reference| reference_of(reference, &column.name));
-    let is_apart = found.iter().any(|curve| curve.apart);
-    let rough = found.iter().filter(|curve| is_rough(curve)).count();
-    let is_each = found.len() > TOGETHER || found.len() > 1 && (reference.is_some() || rough > 1);
-    let hidden = found.len().saturating_sub(PANES);
-    let panes: Vec<Pane> = if is_each {
-        let (line, band) = reference.clone().map_or((None, None), |(line, band)| (Some(line), band));
-        let pane = |curve: Curve| {
+/// The curves of a column, with what is drawn behind and before them.
+struct Found {
+    curves: Vec<Curve>,
+    /// Measured data.
+    points: Vec<Curve>,
+    reference: Option<Curve>,
+    band: Option<Band>,
+    /// The first contact, where it is short.
+    contact: Option<(f64, f64)>,
+}
+
+impl Found {
+    /// Whether each curve has a pane of its own.
+    fn is_each(&self) -> bool {
+        let rough = self.curves.iter().filter(|curve| is_rough(curve)).count();
+        let hide_each_other = self.reference.is_some() || rough > 1;
+        self.curves.len() > TOGETHER || self.curves.len() > 1 && hide_each_other
+    }
+
+    /// A pane for each curve.
+    fn each(&self, y_label: &str) -> Vec<Pane> {
+        let pane = |curve: &Curve| {
             let mark = if curve.chosen { "▸ " } else { "" };
-            let curve = Curve { unlisted: true, ..curve };
+            let own = Curve { unlisted: true, ..curve.clone() };
             Pane {
                 name: curve.label.clone(),
                 title: format!("{mark}{}", curve.label),
-                y_label: y_label.clone(),
-                curves: line.iter().cloned().chain([curve]).chain(points.iter().cloned()).collect(),
-                band: band.clone(),
-                span: contact,
+                y_label: y_label.to_owned(),
+                curves: self
+                    .reference
+                    .iter()
+                    .cloned()
+                    .chain([own])
+                    .chain(self.points.iter().cloned())
+                    .collect(),
+                band: self.band.clone(),
+                span: self.contact,
                 ..Pane::default()
             }
         };
-        found.into_iter().take(PANES).map(pane).collect()
-    } else {
-        let curves: Vec<Curve> = found.into_iter().chain(points).collect();
-        let whole = Pane { name: "whole time".into(), y_label, curves, ..Pane::default() };
+        self.curves.iter().take(PANES).map(pane).collect()
+    }
+
+    /// All curves in a pane, and in another one during the first contact.
+    fn together(&self, y_label: &str) -> Vec<Pane> {
+        let curves = self.curves.iter().chain(&self.points).cloned().collect();
+        let whole =
+            Pane { name: "whole time".into(), y_label: y_label.to_owned(), curves, ..Pane::default() };
         let title = "during the first contact".to_owned();
-        let part = contact.map(|span| Pane { title, span: Some(span), ..whole.clone() });
-        std::iter::once(whole).chain(part.map(|part| Pane { name: String::new(), ..part })).collect()
-    };
+        let part =
+            self.contact.map(|span| Pane { name: String::new(), title, span: Some(span), ..whole.clone() });
+        std::iter::once(whole).chain(part).collect()
+    }
+
+    /// What the caption says after the name of the column.
+    fn words(&self, study: &Study) -> String {
+        let is_apart = self.curves.iter().any(|curve| curve.apart);
+        let grey = said_if(is_apart, " Grey: failed or created energy; no influence on the axes.");
+        if !self.is_each() {
+            return format!(".{grey}");
+        }
+        let hidden = match self.curves.len().saturating_sub(PANES) {
+            0 => String::new(),
+            hidden => format!(" {hidden} more are not drawn."),
+        };
+        let reference = match (&self.reference, &self.band) {
+            (None, _) => "",
+            (_, None) => " Dashed: the reference.",
+            (_, Some(_)) => " Dashed: the reference, with the band of its uncertainty.",
+        };
+        [
+            said_if(self.contact.is_some(), " during the first contact"),
+            said_if(study.manifest.goal.is_some(), ", for each method at its finest level"),
+            "; all panes have the same axes.",
+            reference,
+            said_if(self.curves.iter().any(|curve| curve.chosen), " ▸: recommended."),
+            grey,
+            &hidden,
+        ]
+        .concat()
+    }
+}
+
+fn plot(study: &Study, column: &Column, measured: &Measured) -> Option<Plot> {
+    let (label, what) = named(&column.name);
+    let y_label = with_unit(&label, &column.unit);
+    let curves = curves(study, column);
+    let end = curves.iter().filter_map(|curve| curve.x.last()).copied().fold(0.0, f64::max);
+    let reference = study.reference.as_ref().and_then(|reference| reference_of(reference, &column.name));
+    let (reference, band) = reference.map_or((None, None), |(line, band)| (Some(line), band));
+    let contact = contact(study, end);
+    let points = measured.points(&column.name, end);
+    let found = Found { curves, points, reference, band, contact };
+    let is_each = found.is_each();
+    let panes = if is_each { found.each(&y_label) } else { found.together(&y_label) };
     if panes.iter().all(|pane| pane.curves.is_empty()) {
         return None;
     }
-    let band = reference.as_ref().is_some_and(|(_, band)| band.is_some());
-    let notes = [
-        said_if(is_each && contact.is_some(), " during the first contact"),
-        said_if(is_each && study.manifest.goal.is_some(), ", for each method at its finest level"),
-        said_if(is_each, "; all panes have the same axes"),
-        ".",
-        said_if(is_each && reference.is_some(), " Dashed: the reference"),
-        said_if(is_each && band, ", with the band of its uncertainty"),
-        said_if(is_each && reference.is_some(), "."),
-        said_if(is_each && study.recommended().is_some(), " ▸: recommended."),
-        said_if(is_apart, " Grey: failed or created energy; no influence on the axes."),
-    ];
-    let hidden = if is_each && hidden > 0 { format!(" {hidden} more are not drawn.") } else { String::new() };
-    let caption = format!("{}{}{hidden}{}", capitalised(&what), notes.concat(), measured.words(&column.name));
     let name = if column.name == FORCE { "contact-force" } else { &column.name };
-    let across = if is_each { 3 } else { 1 };
-    Some(Plot { name: file_name(name), caption, across, same: is_each, panes, ..Plot::default() })
+    Some(Plot {
+        name: file_name(name),
+        caption: [capitalised(&what), found.words(study), measured.words(&column.name)].concat(),
+        across: if is_each { 3 } else { 1 },
+        same: is_each,
+        panes,
+        ..Plot::default()
+    })
 }
 
 #[cfg(test)]

@@ -27,8 +27,8 @@ pub(super) fn results(study: &Study, origins: &[Origin]) -> Markup {
     metrics.sort_by_key(|metric| trend::rank(&metric.name));
     metrics.truncate(MAIN);
     html! {
-        div.scroll {
-            table.metrics {
+        div {
+            table.metrics.ranking {
                 thead {
                     tr {
                         th.n { "No." } th { "Line" } th { "Arm" } th { "Ended" }
@@ -42,7 +42,7 @@ pub(super) fn results(study: &Study, origins: &[Origin]) -> Markup {
                     tr {
                         td.n { (i + 1) }
                         td { (line(style_of(study, i), row.is_unsound())) }
-                        td {
+                        td.method {
                             a href={ (arm.directory) "/report.html" } { (row.name) }
                             @if study.manifest.reference.as_ref() == Some(&row.name) { " (reference)" }
                         }

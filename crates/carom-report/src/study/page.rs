@@ -1,7 +1,7 @@
 //! `study.html`: the page of a study, with its verdict and numbers first and its settings folded.
 
 use carom_record::Status;
-use carom_record::study::Study;
+use carom_record::study::{Row, Study};
 use maud::{Markup, html};
 
 use super::collected::Origin;
@@ -59,11 +59,11 @@ pub(super) fn page(content: &Content) -> String {
 
 /// How the study ended, in one line.
 fn status(study: &Study) -> Markup {
-    let count = |is: fn(&carom_record::study::Row) -> bool| study.rows.iter().filter(|row| is(row)).count();
+    let count = |is: fn(&Row) -> bool| study.rows.iter().filter(|row| is(row)).count();
     let all = study.rows.len();
     let finished = count(|row| row.status == Some(Status::Finished));
     let failed = count(|row| row.status == Some(Status::Failed));
-    let unsound = count(|row| row.is_unsound()) - failed;
+    let unsound = count(Row::is_unsound) - failed;
     let expectations = || study.rows.iter().flat_map(|row| &row.expectations).chain(&study.expectations);
     let missed = expectations().filter(|expectation| !expectation.pass).count();
     let (class, word) = match study.manifest.status {

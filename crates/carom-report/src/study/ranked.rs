@@ -110,7 +110,7 @@ fn table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
     let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "metric not available" };
     let is_any_off = study.manifest.arms.iter().any(|arm| is_off_budget(study, arm));
     html! {
-        div.scroll {
+        div {
             table.metrics.ranking {
                 thead {
                     tr { th.n { "Place" } th { "Method" } @for (head, _) in &columns { th.n { (Label(head)) } } }
@@ -255,12 +255,12 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                                 td.n { (or_dash(order, |p| if p > HIGHEST { format!("({p:.2})") } else { format!("{p:.2}") })) }
                                 td.n { (or_dash(estimate.map(|estimate| estimate.spread).filter(|s| *s > 0.0), three)) }
                             }
-                            Standing::Not(why) => td colspan="4" { "not established: " (typeset(&why.to_string())) },
+                            Standing::Not(why) => td colspan="4" { "not established: " (typeset(&why)) },
                         }
                     }
                 }
                 @for (name, why) in unknown {
-                    tr { td { code { (name) } } td {} td colspan="4" { "not established: " (typeset(&why.to_string())) } }
+                    tr { td { code { (name) } } td {} td colspan="4" { "not established: " (typeset(&why)) } }
                 }
             }
             p.small {

@@ -76,8 +76,8 @@ fn hashes(study: &Study, origins: &[Origin]) -> Markup {
         _ => "not finished",
     };
     html! {
-        div.scroll {
-            table.metrics {
+        div {
+            table.metrics.ranking {
                 thead {
                     tr {
                         th { "Arm" } th { "Status" } th.n { "Rejected steps" } th.n { "Cycles and fallbacks" }

@@ -8,7 +8,6 @@ use super::collected::in_time;
 use crate::digits::three;
 use crate::document::{codes, figure};
 use crate::figure::Figure;
-use crate::ordered::distinct;
 use crate::setup;
 use crate::text::Label;
 
@@ -42,11 +41,6 @@ pub(super) fn own_settings(study: &Study, joined: &str) -> String {
     own
 }
 
-/// Key and value of a setting.
-fn parts(set: &str) -> (&str, &str) {
-    set.split_once('=').map_or((set, ""), |(key, value)| (key.trim(), value.trim()))
-}
-
 /// The section of the page.
 pub(super) fn section(study: &Study, picture: Option<&Figure>) -> Markup {
     let manifest = &study.manifest;
@@ -65,40 +59,24 @@ pub(super) fn section(study: &Study, picture: Option<&Figure>) -> Markup {
             summary { "Settings of the arms" }
             @if !shared.is_empty() { p { "In all arms: " (codes(&shared, ", ")) } }
             (table(study, &shared))
-            p.small { "–: as in the case file." }
         }
         (design(study))
     }
 }
 
-/// A row for each arm with its own settings, a column for each key.
+/// A row for each arm with its own settings.
 fn table(study: &Study, shared: &[&String]) -> Markup {
-    let own = |arm: &Arm| -> Vec<(String, String)> {
-        let own = arm.sets.iter().filter(|set| !shared.contains(set)).map(|set| parts(set));
-        own.map(|(key, value)| (key.to_owned(), value.to_owned())).collect()
-    };
-    let keys = distinct(arms(study).flat_map(|(_, arm)| own(arm)).map(|(key, _)| key));
-    let has_cases = arms(study).any(|(_, arm)| arm.case_path.is_some());
+    let own =
+        |arm: &Arm| -> Vec<String> { arm.sets.iter().filter(|set| !shared.contains(set)).cloned().collect() };
     html! {
-        div.scroll {
-            table.metrics {
-                thead {
-                    tr {
-                        th.n { "No." } th { "Arm" } @if has_cases { th { "Case" } }
-                        @for key in &keys { th { code { (key) } } }
-                    }
-                }
-                @for (i, arm) in arms(study) {
-                    @let own = own(arm);
-                    tr {
-                        td.n { (i + 1) } td { (arm.name) }
-                        @if has_cases { td { code { (arm.case_path.as_deref().unwrap_or(&study.manifest.source.case_path)) } } }
-                        @for key in &keys {
-                            @match own.iter().find(|(known, _)| known == key) {
-                                Some((_, value)) => td { code { (value) } },
-                                None => td { "–" },
-                            }
-                        }
+        table.stack {
+            thead { tr { th.n { "No." } th { "Arm" } th { "Settings" } } }
+            @for (i, arm) in arms(study) {
+                tr {
+                    td.n { (i + 1) } td { (arm.name) }
+                    td {
+                        @if let Some(path) = &arm.case_path { "case " code { (path) } br; }
+                        (codes(&own(arm), html! { br; }))
                     }
                 }
             }

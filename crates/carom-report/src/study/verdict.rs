@@ -133,9 +133,10 @@ fn side_effects(study: &Study, arm: usize) -> Vec<String> {
     if let Some((column, late)) = late {
         let known = standing(reference, "contact_start").established().map_or(0.0, |known| known.1);
         let direction = if *late < 0.0 { "leads" } else { "lags" };
-        let amount = match late.abs() < known {
-            true => format!("less than the uncertainty of its instants, {}", three(known)),
-            false => three(late.abs()),
+        let amount = if late.abs() < known {
+            format!("less than the uncertainty of its instants, {}", three(known))
+        } else {
+            three(late.abs())
         };
         let unit = time_unit(study);
         lines.push(format!("the motion ({column}) {direction} the reference by {amount} {unit}"));
