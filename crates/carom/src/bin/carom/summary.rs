@@ -63,20 +63,20 @@ fn text(outcome: &Outcome) -> String {
         .metrics
         .iter()
         .filter_map(|metric| Some(vec![metric.name.to_string(), short(metric.value?), metric.unit.clone()]));
-    let extremes = outcome.extremes.iter().flat_map(|e| {
-        let row = |what: &str, x, t| {
-            let at = format!("{} at {}", e.unit, time(t));
-            vec![format!("{} {what}", e.column), short(x), at.trim_start().to_owned()]
-        };
-        [row("min", e.min, e.min_time), row("max", e.max, e.max_time)]
+    let extremes = outcome.extremes.iter().map(|e| {
+        let at = |t| format!("{} at {}", e.unit, time(t)).trim_start().to_owned();
+        let [min, max] = [short(e.min), short(e.max)];
+        let [min_at, max_at] = [at(e.min_time), at(e.max_time)];
+        vec![e.column.clone(), "min".to_owned(), min, min_at, "max".to_owned(), max, max_at]
     });
     let profile = outcome.profile.iter().map(|(phase, seconds)| {
         let each = 1e3 * seconds / outcome.steps.max(1) as f64;
         vec![phase.clone(), duration(*seconds), format!("{} ms per step", short(each))]
     });
-    let rows: Vec<Vec<String>> = metrics.chain(extremes).chain(profile).collect();
-    let indented = table::lines(&rows, &[1])
+    let indented = table::lines(&metrics.collect::<Vec<_>>(), &[1])
         .into_iter()
+        .chain(table::lines(&extremes.collect::<Vec<_>>(), &[2, 5]))
+        .chain(table::lines(&profile.collect::<Vec<_>>(), &[1]))
         .chain(outcome.expectations.iter().map(expectation))
         .chain(outcome.remarks.iter().cloned())
         .map(|line| format!("  {line}"));
@@ -140,9 +140,8 @@ mod tests {
             summary.lines().collect::<Vec<_>>(),
             [
                 "400 steps to t = 0.75 s in 3.2 s of wall time",
-                "  peak_mean_force      12.5  N",
-                "  A.uy min         -0.78268  m at 0.43125 s",
-                "  A.uy max                0  m at 0 s",
+                "  peak_mean_force  12.5  N",
+                "  A.uy  min  -0.78268  m at 0.43125 s  max  0  m at 0 s",
                 "  min A.uy: -0.78268, as expected (-0.7827 ± 0.004)",
                 "runs/impact-2/report.html",
             ]
