@@ -32,15 +32,14 @@ fn five(run: &Run) -> (Vec<&FieldEntry>, &'static str) {
         let last = times[episode.end.unwrap_or(times.len()) - 1];
         nearest([start, first, 0.5 * (first + last), last, end])
     });
-    match contact.filter(|list| list.len() > 3) {
-        Some(list) => {
-            (list, "from the start of the run to its end, with start, middle and end of the first contact")
-        }
-        None => {
-            let equidistant = std::array::from_fn(|k| start + (end - start) * k as f64 / 4.0);
-            (nearest(equidistant), "of the run")
-        }
+    if let Some(list) = contact.filter(|list| list.len() > 3) {
+        return (
+            list,
+            "from the start of the run to its end, with start, middle and end of the first contact",
+        );
     }
+    let equidistant = std::array::from_fn(|k| start + (end - start) * k as f64 / 4.0);
+    (nearest(equidistant), "of the run")
 }
 
 /// The deformed bodies at several instants, coloured by stress, and its bands in the plane.

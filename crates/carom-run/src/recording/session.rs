@@ -186,14 +186,14 @@ impl<'a> Session<'a> {
         let output = &self.case.output;
         let step = self.simulation.state().step;
         let last = self.simulation.finished();
-        if step % output.history_every as u64 == 0 || last {
+        if step.is_multiple_of(output.history_every as u64) || last {
             self.write_row()?;
         }
         let in_contact = self.simulation.state().pairs.iter().flatten().any(|pair| pair.active);
         if self.frames.take(step, last, in_contact) {
             self.write_fields()?;
         }
-        if step % output.checkpoint_every as u64 == 0 && !last {
+        if step.is_multiple_of(output.checkpoint_every as u64) && !last {
             self.checkpoint()?;
         }
         Ok(())

@@ -313,9 +313,7 @@ fn created_energy_stops_the_run_with_exit_3() {
     let last: serde_json::Value = serde_json::from_str(text(&done.stdout).lines().last().unwrap()).unwrap();
     assert_eq!((&last["event"], &last["directory"]), (&"stopped".into(), &"plain".into()));
     let output = text(&done.stderr);
-    for part in
-        ["energy was created", "the last valid state is saved in plain", "persistency=project': "]
-    {
+    for part in ["energy was created", "the last valid state is saved in plain", "persistency=project': "] {
         assert!(output.contains(part), "{part:?} not in\n{output}");
     }
     let manifest: serde_json::Value =

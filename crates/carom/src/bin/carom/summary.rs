@@ -55,10 +55,11 @@ fn expectation(e: &Expectation) -> String {
 fn text(outcome: &Outcome) -> String {
     let directory = outcome.directory.display();
     let time = |t| quantity(t, &outcome.time_unit);
-    let mut first = format!("{} steps to t = {}", outcome.steps, time(outcome.time));
-    if outcome.wall > 0.0 {
-        first += &format!(" in {} of wall time", duration(outcome.wall));
-    }
+    let wall = match outcome.wall {
+        0.0 => String::new(),
+        wall => format!(" in {} of wall time", duration(wall)),
+    };
+    let first = format!("{} steps to t = {}{wall}", outcome.steps, time(outcome.time));
     let metrics = outcome
         .metrics
         .iter()
