@@ -1,7 +1,7 @@
 //! "Did you mean": the candidate nearest to a misspelt word.
 
 /// The nearest candidate, if at most a third of the letters differ, or the only one that begins
-/// with the word.
+/// with the word, or is its first part: `redistributed` of `redistributed-nearest`.
 pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = |s: &str| s.to_lowercase().replace(['-', ' '], "_");
     let word = plain(word);
@@ -15,8 +15,12 @@ pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
     };
     let candidates: Vec<_> = candidates.into_iter().collect();
     let near = candidates.iter().filter_map(|&c| Some((distance(c)?, c))).min_by_key(|(d, _)| *d);
-    let mut longer = candidates.iter().copied().filter(|c| word.len() > 2 && plain(c).starts_with(&word));
-    near.map(|(_, c)| c).or_else(|| longer.next().filter(|_| longer.next().is_none()))
+    let is_part = |candidate: &&str| {
+        let candidate = plain(candidate);
+        word.len() > 2 && candidate.starts_with(&word) || word.starts_with(&format!("{candidate}_"))
+    };
+    let mut parts = candidates.iter().copied().filter(is_part);
+    near.map(|(_, c)| c).or_else(|| parts.next().filter(|_| parts.next().is_none()))
 }
 
 /// `did you mean …?`, or the list of all candidates.

@@ -52,11 +52,12 @@ impl Case {
 
     /// The case with other overrides.
     fn with_sets(&self, sets: Vec<String>) -> PyResult<Self> {
-        let (name, text) = (self.document.name(), self.document.text());
+        let name = self.document.name();
+        let text = self.document.text();
         Self::parse(name, text, sets)
     }
 
-    /// Its text with other overrides applied; the case is not checked.
+    /// The text of the case with other overrides applied; it is not checked.
     fn text_with(&self, sets: Vec<String>) -> PyResult<String> {
         merged(self.document.text(), &sets).map_err(|error| of_case(&error))
     }
@@ -120,7 +121,8 @@ impl Case {
         report: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Record, Option<PyErr>)> {
         let (functions, failure) = functions(given)?;
-        let (case, source) = (self.with(functions), self.source());
+        let case = self.with(functions);
+        let source = self.source();
         let (done, interrupted) = watched(py, report, |show, stop| {
             let mut observe = |p: &Progress| show((p.step, p.steps, p.time));
             match &out {

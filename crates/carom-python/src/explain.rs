@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::error::{CaseError, of_case};
 use crate::values::from_json;
 
-/// What `carom explain KIND KEY=VALUE … --json` prints.
+/// The output of `carom explain KIND KEY=VALUE … --json`.
 #[pyfunction]
 pub(crate) fn explain<'py>(
     py: Python<'py>,
@@ -22,7 +22,7 @@ pub(crate) fn explain<'py>(
     json(py, &integrator.explain())
 }
 
-/// What `carom explain --json` prints.
+/// The output of `carom explain --json`.
 #[pyfunction]
 pub(crate) fn schemes(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     json(py, &carom::time::explain_all())

@@ -30,7 +30,8 @@ impl fmt::Debug for Given {
 /// Functions by name, and the place of their first exception.
 pub(crate) fn functions(given: &Bound<'_, PyDict>) -> PyResult<(Functions, Failure)> {
     let py = given.py();
-    let (mut functions, failure) = (Functions::default(), Failure::default());
+    let mut functions = Functions::default();
+    let failure = Failure::default();
     for (name, callable) in given {
         let name: String = name.extract()?;
         let of_place = py.import("carom.functions")?.call_method1("takes_place", (&callable,))?.extract()?;
@@ -58,7 +59,8 @@ impl Given {
     }
 
     fn called(&self, py: Python<'_>, points: &[f64], width: usize, parts: usize) -> PyResult<Vec<Vec<f64>>> {
-        let (d, count) = (width - 1, points.len() / width);
+        let d = width - 1;
+        let count = points.len() / width;
         let time = points.first().map_or(0.0, |_| points[d]);
         let callable = self.callable.bind(py);
         let values = if self.of_place {

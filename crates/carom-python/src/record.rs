@@ -125,7 +125,8 @@ impl Record {
     /// after it, none if contact lasts to the end.
     fn episodes(&self, py: Python<'_>) -> PyResult<Vec<(f64, Option<f64>)>> {
         let run = self.whole(py)?;
-        let (history, times) = (&run.history, run.times());
+        let history = &run.history;
+        let times = run.times();
         let found = metrics::episodes(history, metrics::default_bridge(history));
         Ok(found.iter().map(|e| (times[e.start], e.end.map(|end| times[end]))).collect())
     }

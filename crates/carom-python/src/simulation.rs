@@ -199,7 +199,8 @@ impl Simulation {
             return Err(wrong(&format!("{} bytes follow its end", rest.len())));
         }
         if given != self.given {
-            let (was, is) = (given.join(", "), self.given.join(", "));
+            let was = given.join(", ");
+            let is = self.given.join(", ");
             return Err(CaseError::new_err(format!(
                 "the checkpoint was made with other functions: {was}, and this simulation has: {is}\n\
                  try: give the same functions again, or start from the beginning"

@@ -19,7 +19,8 @@ type Row = (String, Option<String>, Option<String>, String, Vec<(String, Option<
 /// The plan of a study of a case that has been read, which the study names by `name`.
 fn planned(text: &str, name: &str, case: &Case) -> PyResult<Plan> {
     let parsed = |name: &str, text: &str| Document::parse(name, text, &[]).map_err(|error| of_case(&error));
-    let (study, case) = (parsed("study", text)?, parsed(name, case.document.text())?);
+    let study = parsed("study", text)?;
+    let case = parsed(name, case.document.text())?;
     Plan::with_case(&study, Path::new(""), Some(&case)).map_err(|error| of_case(&error))
 }
 
@@ -37,7 +38,8 @@ pub(crate) fn study<'py>(
     let plan = py.detach(|| planned(text, name, case))?;
     let steps: Vec<u64> = plan.manifest.runs().map(|run| run.steps).collect();
     let (done, interrupted) = watched(py, report, |show, stop| {
-        let (all, mut done) = (steps.iter().sum::<u64>(), vec![0; steps.len()]);
+        let all = steps.iter().sum::<u64>();
+        let mut done = vec![0; steps.len()];
         let mut observe = |event: &Event| {
             match event {
                 Event::AlreadyDone(i) | Event::Ended(i, _) => done[*i] = steps[*i],
@@ -119,7 +121,7 @@ pub(crate) fn study_table(py: Python<'_>, directory: PathBuf) -> PyResult<Vec<Ro
         .collect())
 }
 
-/// As in `study.csv`.
+/// The word of a status, as in `study.csv`.
 fn word(status: Status) -> String {
     serde_json::to_value(status).ok().and_then(|s| s.as_str().map(str::to_owned)).unwrap_or_default()
 }

@@ -16,7 +16,7 @@ pub(crate) fn array(py: Python<'_>, values: Vec<f64>) -> PyResult<Bound<'_, PyAr
     Ok(array)
 }
 
-/// The same with rows of `width` values.
+/// A read-only array with rows of `width` values.
 pub(crate) fn rows(py: Python<'_>, values: Vec<f64>, width: usize) -> PyResult<Bound<'_, PyArray2<f64>>> {
     let height = values.len() / width.max(1);
     // A view of a read-only array cannot be made writable again.

@@ -22,12 +22,14 @@ pub(crate) fn watched<T: Send>(
     report: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(&(dyn Fn(Done) + Sync), &AtomicBool) -> T + Send,
 ) -> PyResult<(T, Option<PyErr>)> {
-    let (stop, latest) = (AtomicBool::new(false), Mutex::new(None));
+    let stop = AtomicBool::new(false);
+    let latest = Mutex::new(None);
     let (sender, ended) = channel::<()>();
     let ended = Mutex::new(ended);
     let lock = || latest.lock().unwrap_or_else(PoisonError::into_inner);
     std::thread::scope(|scope| {
-        let (stop, latest) = (&stop, &latest);
+        let stop = &stop;
+        let latest = &latest;
         let thread = scope.spawn(move || {
             // Dropped at the end, also of a panic.
             let _sender = sender;

@@ -10,29 +10,33 @@ use crate::recorded::Recorded;
 use crate::sheet::Legend;
 use crate::{bars, space};
 
-/// The field files nearest to five equidistant instants of the first contact; of the run if there
-/// is no contact, or only one field file in it. With words for the span.
+/// The field files nearest to five instants of the whole run: its start and end, and the start,
+/// middle and end of the first contact; equidistant ones without contact or after a stop. With
+/// words for them.
 fn five(run: &Recorded) -> (Vec<&FieldEntry>, &'static str) {
-    let t = run.times();
-    let contact = metrics::first_episode(&run.history).map(|e| (t[e.start], t[e.end.unwrap_or(t.len()) - 1]));
-    let span = |(a, b): (f64, f64)| {
-        let within = || run.fields.iter().filter(|entry| (a..=b).contains(&entry.time));
-        let near = |k: i32| {
-            let at = a + (b - a) * f64::from(k) / 4.0;
-            within().min_by(|p, q| (p.time - at).abs().total_cmp(&(q.time - at).abs()))
-        };
-        let mut list: Vec<&FieldEntry> = (0..5).filter_map(near).collect();
+    let times = run.times();
+    let start = times[0];
+    let end = times[times.len() - 1];
+    let nearest = |instants: [f64; 5]| {
+        let near =
+            |at: f64| run.fields.iter().min_by(|p, q| (p.time - at).abs().total_cmp(&(q.time - at).abs()));
+        let mut list: Vec<&FieldEntry> = instants.into_iter().filter_map(near).collect();
         list.dedup();
         list
     };
-    let whole = || span((t[0], t[t.len() - 1]));
-    match contact.map(span) {
-        // A run that failed is shown up to its end.
-        Some(_) if run.stop.is_some() => (whole(), "up to the stop"),
-        Some(list) if list.len() > 1 => (list, "during the first contact"),
-        Some(_) => (whole(), "of the run"),
-        None => (whole(), "of the run"),
+    let contact = metrics::first_episode(&run.history).filter(|_| run.stop.is_none()).map(|episode| {
+        let first = times[episode.start];
+        let last = times[episode.end.unwrap_or(times.len()) - 1];
+        nearest([start, first, 0.5 * (first + last), last, end])
+    });
+    if let Some(list) = contact.filter(|list| list.len() > 3) {
+        return (
+            list,
+            "from the start of the run to its end, with start, middle and end of the first contact",
+        );
     }
+    let equidistant = std::array::from_fn(|k| start + (end - start) * k as f64 / 4.0);
+    (nearest(equidistant), "of the run")
 }
 
 /// The deformed bodies at several instants, coloured by stress.

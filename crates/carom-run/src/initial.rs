@@ -16,7 +16,8 @@ use crate::saved_state;
 /// # Errors
 /// If a formula has no value at t = 0.
 pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<InitialState, Vec<Problem>> {
-    let (mut y, mut v) = (Vec::new(), Vec::new());
+    let mut y = Vec::new();
+    let mut v = Vec::new();
     for place in model.reference.chunks_exact(model.dimension) {
         let [position, velocity] = motion.motion(place, 0.0).map_err(|error| {
             let help = "change the formula so that it has a finite value in the whole body";
@@ -116,7 +117,8 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
                 "give both cases the same `mesh` and `element`",
             ));
         }
-        let (to, from) = (part.first_node * d, first * d);
+        let to = part.first_node * d;
+        let from = first * d;
         let length = mesh.nodes.len() * d;
         before.y[to..to + length].copy_from_slice(&state.y[from..from + length]);
         if spec.velocities == Velocities::Keep {
@@ -175,12 +177,13 @@ pub(crate) fn continues(case: &Case) -> bool {
     case.initial.as_ref().is_some_and(|initial| initial.from.is_file())
 }
 
-/// That the clock of a case is that of the run which the state continues.
+/// Checks that a case has the clock of the run which the state continues.
 ///
 /// # Errors
 /// The step, phase or end of the case is another one.
 pub(crate) fn on_the_grid(state: &State, grid: &Grid) -> Result<(), Vec<Problem>> {
-    let (step, time) = (state.step, state.time);
+    let step = state.step;
+    let time = state.time;
     let refused = |key: &str, what: String, why: String, help: String| {
         Err(vec![Problem::new(format!("time.{key}"), what, why, help)])
     };

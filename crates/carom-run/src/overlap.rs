@@ -50,19 +50,20 @@ pub struct OverlapNode {
     pub contact: String,
     /// Global number.
     pub node: usize,
-    /// Its body.
+    /// The body of the node.
     pub body: String,
     /// Initial position.
     pub at: Vec<f64>,
     /// Depth below the other side.
     pub depth: f64,
-    /// What the case does about it.
+    /// Treatment of the overlap by the case.
     pub overlap: Overlap,
 }
 
 /// The nodes that overlap at the start, by contact, the deepest first.
 pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
-    let (y, d) = (&model.initial_position, model.dimension);
+    let y = &model.initial_position;
+    let d = model.dimension;
     let mut nodes = Vec::new();
     for (k, depths) in depths(model, y).iter().enumerate() {
         let contact = &model.contacts[k];
@@ -200,10 +201,12 @@ fn rotation(d: usize, reference: &[f64], y: &[f64]) -> f64 {
         let centre: Vec<f64> = (0..d).map(|i| mean(values, i)).collect();
         values.iter().enumerate().map(|(k, value)| value - centre[k % d]).collect()
     };
-    let (x, now) = (from(reference), from(y));
+    let x = from(reference);
+    let now = from(y);
     let mut sum = 0.0;
     for (i, j) in [(0, 1), (1, 2), (2, 0)].into_iter().filter(|(i, j)| *i.max(j) < d) {
-        let (mut moment, mut square) = (0.0, 0.0);
+        let mut moment = 0.0;
+        let mut square = 0.0;
         for (x, now) in x.chunks_exact(d).zip(now.chunks_exact(d)) {
             moment += x[i] * (now[j] - x[j]) - x[j] * (now[i] - x[i]);
             square += x[i] * x[i] + x[j] * x[j];

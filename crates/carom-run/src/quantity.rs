@@ -8,12 +8,12 @@ pub(crate) fn quantity(x: f64, unit: &str) -> String {
     with_unit(rounded(x, f64::round), unit)
 }
 
-/// The same, rounded up: what is needed at least.
+/// A number with its unit, rounded up, for what is needed at least.
 pub(crate) fn at_least(x: f64, unit: &str) -> String {
     with_unit(rounded(x, f64::ceil), unit)
 }
 
-/// The same, rounded down: what is allowed at most.
+/// A number with its unit, rounded down, for what is allowed at most.
 pub(crate) fn at_most(x: f64, unit: &str) -> String {
     with_unit(rounded(x, f64::floor), unit)
 }

@@ -35,7 +35,7 @@ pub struct Reduced {
     pub steps: u64,
     /// Bodies and contacts that were removed.
     pub removed: Vec<String>,
-    /// What remains.
+    /// Bodies and contacts that remain.
     pub remaining: Vec<String>,
     /// The reason with which the reduced case stops; none if it does not stop in the same way.
     pub reason: Option<String>,
@@ -55,7 +55,7 @@ pub enum ReduceError {
     Unusable {
         /// Why.
         what: String,
-        /// What to do.
+        /// A remedy.
         help: &'static str,
     },
 }
@@ -250,7 +250,8 @@ fn without(candidate: &Candidate, what: &Removable) -> Option<Candidate> {
     if case.bodies.is_empty() || old.contacts.iter().any(|c| !kept(c) && shares(c)) {
         return None;
     }
-    let (large, small) = (Setup::new(old).build().ok()?, Setup::new(&case).build().ok()?);
+    let large = Setup::new(old).build().ok()?;
+    let small = Setup::new(&case).build().ok()?;
     let mut dofs = Vec::new();
     for part in &small.parts {
         let from = large.parts.iter().find(|p| p.name == part.name)?;

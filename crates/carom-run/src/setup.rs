@@ -113,7 +113,8 @@ impl<'a> Setup<'a> {
             on_the_grid(&state, &grid(self.case, 0.0))?;
             return self.resume(state);
         }
-        let (case, model) = (self.case, self.build()?);
+        let case = self.case;
+        let model = self.build()?;
         let placed = case.initial.is_some() || case.manufactured.is_some();
         // A body whose cells are inverted has its outside within.
         if let Some(rejected) = inverted(case, &model).filter(|_| !placed) {
@@ -265,7 +266,7 @@ fn stepper(
     })
 }
 
-/// What takes the steps that the stepper of a case cannot take; `kernel`: in place of its scheme.
+/// The stepper for steps that the stepper of a case cannot take; `kernel`: in place of its scheme.
 fn fallback(case: &Case, model: &Model, kernel: Option<&dyn Kernel>) -> Option<Box<dyn Stepper>> {
     if case.time.fallback == Fallback::None {
         return None;

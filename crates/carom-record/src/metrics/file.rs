@@ -22,8 +22,8 @@ struct Entry<'a> {
 }
 
 /// Writes `metrics.json`: every metric that is defined for the run, with value, unit and meaning.
-/// Measured times are left out, so that equal records give equal bytes; the manifest has them. A
-/// record in memory has no such file.
+/// The computational work is left out, so that equal records give equal bytes; the manifest has it.
+/// A record in memory has no such file.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -32,7 +32,7 @@ pub fn write(run: &Run) -> Result<(), RecordError> {
         return Ok(());
     }
     let metrics = of_run(run);
-    let defined = metrics.iter().filter(|metric| !metric.is_measured()).filter_map(|metric| {
+    let defined = metrics.iter().filter(|metric| !metric.is_work()).filter_map(|metric| {
         let value = metric.value.filter(|value| value.is_finite())?;
         Some(Entry { name: &metric.name, value, unit: &metric.unit, meaning: metric.definition })
     });

@@ -134,7 +134,8 @@ impl Bodies<'_> {
             // There may be a contact per pair of bodies: few of them need their nodes.
             if same { side(self.parts, name, "").ok().filter(|side| side.part == part) } else { None }
         };
-        let (earlier, later) = (&self.case.contacts[..k], &self.case.contacts[k + 1..]);
+        let earlier = &self.case.contacts[..k];
+        let later = &self.case.contacts[k + 1..];
         [earlier, later].map(|contacts| contacts.iter().filter_map(of).collect())
     }
 
@@ -144,7 +145,7 @@ impl Bodies<'_> {
         Surface::new(side.shape, &side.facets, &side.orientations).bounded_by(&rest, count)
     }
 
-    /// The same in space.
+    /// A side in space with its siblings and the rest of its body's boundary.
     fn boundary(&self, side: &Side, siblings: &[Side]) -> Boundary {
         let (rest, count) = self.rest(side, siblings);
         Boundary::new(side.shape, &side.facets, &rest, count)

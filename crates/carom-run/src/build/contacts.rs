@@ -8,8 +8,8 @@ use carom_case::{
     ObstacleMotion, Persistency, Problem,
 };
 use carom_contact::{
-    Augmented, ConservingPenalty, ConservingUnilateral, Direction, Kinematics, NodeToObstacle, Obstacle,
-    Penalty, Unilateral,
+    Augmented, ConservingPenalty, ConservingUnilateral, Direction, Interface, Kinematics, NodeToObstacle,
+    Obstacle, Penalty, Unilateral,
 };
 use carom_mechanics::model::{AllowedDepths, Augmentation, BodyInstance, Contact, Friction};
 use carom_solid::FacetShape;
@@ -52,25 +52,10 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
     let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * case.dimension]);
     let primary_has_mass = obstacle.is_some_and(|obstacle| parts[obstacle.part].point_mass > 0.0)
         || primary.is_some_and(|side| has_mass(&side.nodes));
+    let kinematics = kinematics(k, bodies, &secondary, &opposite, obstacle);
     let mut surface = secondary.nodes.clone();
-    let kinematics: Box<dyn Kinematics> = match &opposite {
-        Opposite::Side(primary) => {
-            surface.extend(&primary.nodes);
-            bodies.kinematics(k, &secondary, primary)
-        }
-        Opposite::Obstacle(shape) => {
-            // A node at the joint of two sides has its pair in the first of their contacts.
-            let [earlier, _] = bodies.siblings(k, secondary.part, Which::Secondary);
-            let nodes = without(&secondary.nodes, &earlier);
-            let lengths = longest(&nodes, &secondary.facets, reference, case.dimension);
-            let mut contact = NodeToObstacle::new(nodes, case.dimension, shape.clone()).with_lengths(lengths);
-            if let Some(obstacle) = obstacle {
-                surface.extend(parts[obstacle.part].nodes());
-                contact = contact.carried_by(obstacle.carrier.clone());
-            }
-            Box::new(contact)
-        }
-    };
+    surface.extend(primary.iter().flat_map(|side| &side.nodes));
+    surface.extend(obstacle.iter().flat_map(|obstacle| parts[obstacle.part].nodes()));
     surface.sort_unstable();
     surface.dedup();
     let is_thrown = matches!(spec.motion, ObstacleMotion::Free { .. });
@@ -113,36 +98,10 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
             friction.springs = normal[..rubbing.len()].iter().map(|of| stick * of).collect();
         }
     }
-    let springs = || normal.iter().map(|of| spec.stiffness * of).collect::<Vec<_>>();
-    // With the predictor law y_{n+1} − y_n is not Δt v_½, and no force conserves angular momentum.
-    let conserving = conserves && spec.law == Some(ContactLaw::Position);
     Ok(Contact {
         name: spec.name.clone(),
-        interface: match spec.enforcement {
-            Enforcement::Multiplier if conserving => Box::new(ConservingUnilateral),
-            Enforcement::Multiplier => Box::new(Unilateral),
-            Enforcement::Augmented if conserving => Box::new(Augmented::along(Direction::DiscreteGradient)),
-            Enforcement::Augmented => Box::new(Augmented::default()),
-            Enforcement::Penalty if conserves => Box::new(ConservingPenalty::new(springs())),
-            Enforcement::Penalty => Box::new(Penalty::new(springs())),
-        },
-        // A law on velocities lets positions drift.
-        depths: match (spec.enforcement.is_exact(), spec.law) {
-            (true, Some(ContactLaw::Position | ContactLaw::Predictor)) => AllowedDepths {
-                // A frozen contact point is not the closest one; springs leave a part of the gap;
-                // forward increments know the facet of the start of the step, and a conserving
-                // force acts along a mean of both ends.
-                smooth: match (spec.enforcement, spec.detection) {
-                    (Enforcement::Multiplier, Detection::ClosestPoint) if !conserves => {
-                        if case.time.scheme.is_explicit() { 1e-5 } else { 1e-6 }
-                    }
-                    _ => 0.01,
-                },
-                kinks: 0.01,
-                others: 0.1,
-            },
-            _ => AllowedDepths { smooth: 0.25, kinks: 0.25, others: 0.25 },
-        },
+        interface: interface(spec, conserves, || normal.iter().map(|of| spec.stiffness * of).collect()),
+        depths: allowed_depths(case, spec),
         friction,
         augmentation: (spec.enforcement == Enforcement::Augmented)
             .then(|| Augmentation { factors: [spec.stiffness, stick], stiffness: normal.clone() }),
@@ -162,7 +121,62 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
     })
 }
 
-/// What a secondary side meets.
+fn kinematics(
+    k: usize,
+    bodies: &Bodies,
+    secondary: &Side,
+    opposite: &Opposite,
+    obstacle: Option<&Moving>,
+) -> Box<dyn Kinematics> {
+    let shape = match opposite {
+        Opposite::Side(primary) => return bodies.kinematics(k, secondary, primary),
+        Opposite::Obstacle(shape) => shape.clone(),
+    };
+    // A node at the joint of two sides has its pair in the first of their contacts.
+    let [earlier, _] = bodies.siblings(k, secondary.part, Which::Secondary);
+    let nodes = without(&secondary.nodes, &earlier);
+    let d = bodies.case.dimension;
+    let lengths = longest(&nodes, &secondary.facets, bodies.reference, d);
+    let contact = NodeToObstacle::new(nodes, d, shape).with_lengths(lengths);
+    Box::new(match obstacle {
+        Some(obstacle) => contact.carried_by(obstacle.carrier.clone()),
+        None => contact,
+    })
+}
+
+/// The law of the normal forces; `springs`: the stiffness of each node.
+fn interface(spec: &ContactSpec, conserves: bool, springs: impl Fn() -> Vec<f64>) -> Box<dyn Interface> {
+    // With the predictor law y_{n+1} − y_n is not Δt v_½, and no force conserves angular momentum.
+    let conserving = conserves && spec.law == Some(ContactLaw::Position);
+    match spec.enforcement {
+        Enforcement::Multiplier if conserving => Box::new(ConservingUnilateral),
+        Enforcement::Multiplier => Box::new(Unilateral),
+        Enforcement::Augmented if conserving => Box::new(Augmented::along(Direction::DiscreteGradient)),
+        Enforcement::Augmented => Box::new(Augmented::default()),
+        Enforcement::Penalty if conserves => Box::new(ConservingPenalty::new(springs())),
+        Enforcement::Penalty => Box::new(Penalty::new(springs())),
+    }
+}
+
+/// The depths with which a step is accepted. A law on velocities lets positions drift.
+fn allowed_depths(case: &Case, spec: &ContactSpec) -> AllowedDepths {
+    let is_on_positions = matches!(spec.law, Some(ContactLaw::Position | ContactLaw::Predictor));
+    if !spec.enforcement.is_exact() || !is_on_positions {
+        return AllowedDepths { smooth: 0.25, kinks: 0.25, others: 0.25 };
+    }
+    // A frozen contact point is not the closest one; springs leave a part of the gap; forward
+    // increments know the facet of the start of the step, and a conserving force acts along a mean
+    // of both ends.
+    let smooth = match (spec.enforcement, spec.detection) {
+        (Enforcement::Multiplier, Detection::ClosestPoint) if !case.time.scheme.conserves() => {
+            if case.time.scheme.is_explicit() { 1e-5 } else { 1e-6 }
+        }
+        _ => 0.01,
+    };
+    AllowedDepths { smooth, kinks: 0.01, others: 0.1 }
+}
+
+/// The side or the obstacle opposite to a secondary side.
 enum Opposite {
     Side(Side),
     Obstacle(Obstacle),
@@ -212,8 +226,10 @@ fn stiffnesses(nodes: &[usize], parts: &[BodyInstance]) -> Vec<f64> {
     let mut of: HashMap<usize, f64> = nodes.iter().map(|&node| (node, 0.0)).collect();
     for part in parts.iter().filter(|part| nodes.iter().any(|node| part.nodes().contains(node))) {
         let mesh = part.body.mesh();
-        let (n, d) = (mesh.element.dofs(), mesh.dimension());
-        let (mut force, mut tangent) = (vec![0.0; n], vec![0.0; n * n]);
+        let n = mesh.element.dofs();
+        let d = mesh.dimension();
+        let mut force = vec![0.0; n];
+        let mut tangent = vec![0.0; n * n];
         for cell in 0..mesh.cell_count() {
             let members = || mesh.cell(cell).iter().map(|node| node + part.first_node).enumerate();
             // The reference configuration is never inverted.

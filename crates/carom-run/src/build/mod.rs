@@ -11,6 +11,7 @@ mod motions;
 mod obstacles;
 mod overlaps;
 pub(crate) mod side;
+mod supports;
 mod unsolvable;
 mod weights;
 
@@ -19,11 +20,12 @@ use std::collections::BTreeMap;
 use carom_algebra::Threads;
 use carom_case::{Case, FormulaSpec, MassKind, Problem, SKIN, Volumetric};
 use carom_mechanics::model::{
-    BodyInstance, Mass, Model, Probe, Quantity, Support, free_motions, gap_tolerance, redistribute, value,
+    BodyInstance, Mass, Model, Probe, Quantity, free_motions, gap_tolerance, redistribute, value,
 };
 use carom_solid::{Constitutive, Law, mean_dilatation_body};
 
 use side::side;
+use supports::Supported;
 use weights::Weights;
 
 pub(crate) use overlaps::overlaps;
@@ -43,57 +45,12 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let obstacles = obstacles::carriers(case, &mut parts, scale)?;
     let mut problems = Vec::new();
     let dofs = parts.last().map_or(0, |p| p.nodes().end) * d;
-    let mut reference = Vec::with_capacity(dofs);
-    let (mut initial_position, mut initial_velocity) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
-    for (k, (part, spec)) in parts.iter().zip(&case.bodies).enumerate() {
-        let places = part.body.mesh().nodes.flat();
-        reference.extend(places);
-        match &spec.position {
-            Some(formulas) => nodal(part, k, "position", formulas, &mut initial_position, &mut problems),
-            None => initial_position.extend(places),
-        }
-        nodal(part, k, "velocity", &spec.velocity, &mut initial_velocity, &mut problems);
-        // Without a value the other problems are reported too: every dof needs a number.
-        initial_position.resize(reference.len(), 0.0);
-        initial_velocity.resize(reference.len(), 0.0);
+    let Placed { reference, initial_position, mut initial_velocity } =
+        placed(case, &parts, &obstacles, &mut problems);
+    let Supported { mut fixed, mut supports } = supports::supported(case, &parts, &reference, &mut problems);
+    for (velocity, _) in initial_velocity.iter_mut().zip(&fixed).filter(|(_, fixed)| **fixed) {
+        *velocity = 0.0;
     }
-
-    for obstacle in &obstacles {
-        reference.extend(parts[obstacle.part].body.mesh().nodes.flat());
-        initial_position.extend(parts[obstacle.part].body.mesh().nodes.flat());
-        initial_velocity.extend(obstacle.velocity());
-    }
-
-    let mut fixed = vec![false; dofs];
-    let mut supports = Vec::new();
-    for (k, spec) in case.supports.iter().enumerate() {
-        let mut constrained = Vec::new();
-        for (j, name) in spec.on.iter().enumerate() {
-            match side(&parts, name, &format!("support[{k}].on[{j}]")) {
-                Ok(side) => {
-                    let dofs = |axis: usize| side.nodes.iter().map(move |n| n * d + axis).collect::<Vec<_>>();
-                    let normal = spec.normal.then(|| across(&side.nodes, &reference, d));
-                    if normal == Some(None) {
-                        problems.push(not_plane(name, format!("support[{k}].fix")));
-                    }
-                    for dof in spec.fix.iter().copied().chain(normal.flatten()).flat_map(dofs) {
-                        fixed[dof] = true;
-                        initial_velocity[dof] = 0.0;
-                        constrained.push(dof);
-                    }
-                    constrained.extend(spec.moves.iter().flat_map(|(i, _)| dofs(*i)));
-                }
-                Err(problem) => problems.push(problem),
-            }
-        }
-        constrained.sort_unstable();
-        constrained.dedup();
-        if let Some(name) = &spec.name {
-            let moment_about = spec.moment_about.clone().filter(|_| d > 1);
-            supports.push(Support { name: name.clone(), dofs: constrained, moment_about });
-        }
-    }
-
     supports.extend(obstacles.iter().filter_map(obstacles::Moving::support));
     let prescribed = obstacles.iter().flat_map(obstacles::Moving::prescribed);
     prescribed.filter(|(_, formula)| formula.is_none()).for_each(|(dof, _)| fixed[dof] = true);
@@ -153,32 +110,41 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     }
 }
 
-/// Deviation from a plane, relative to the size of a side, that is round-off of its coordinates.
-const PLANE: f64 = 1e-9;
-
-/// The axis across a side whose nodes are in a plane x, y or z = constant.
-fn across(nodes: &[usize], reference: &[f64], d: usize) -> Option<usize> {
-    let extent = |axis: usize| {
-        let places = nodes.iter().map(|node| reference[node * d + axis]);
-        let ends =
-            places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
-        ends[1] - ends[0]
-    };
-    let extents: Vec<f64> = (0..d).map(extent).collect();
-    let size = extents.iter().copied().fold(0.0, f64::max);
-    let mut flat = (0..d).filter(|&axis| extents[axis] <= PLANE * size);
-    flat.next().filter(|_| flat.next().is_none())
+/// Positions and velocities of all nodes.
+struct Placed {
+    reference: Vec<f64>,
+    initial_position: Vec<f64>,
+    initial_velocity: Vec<f64>,
 }
 
-fn not_plane(side: &str, path: String) -> Problem {
-    let what = format!("the side \"{side}\" is not in a plane x, y or z = constant");
-    let why = "\"normal\" fixes one coordinate of all nodes of a side";
-    Problem::new(
-        path,
-        what,
-        why,
-        "place the body so that the side faces along x, y or z, or fix directions by name",
-    )
+/// The nodes of bodies and obstacles at the start.
+fn placed(
+    case: &Case,
+    parts: &[BodyInstance],
+    obstacles: &[obstacles::Moving],
+    problems: &mut Vec<Problem>,
+) -> Placed {
+    let mut reference = Vec::new();
+    let mut initial_position = Vec::new();
+    let mut initial_velocity = Vec::new();
+    for (k, (part, spec)) in parts.iter().zip(&case.bodies).enumerate() {
+        let places = part.body.mesh().nodes.flat();
+        reference.extend(places);
+        match &spec.position {
+            Some(formulas) => nodal(part, k, "position", formulas, &mut initial_position, problems),
+            None => initial_position.extend(places),
+        }
+        nodal(part, k, "velocity", &spec.velocity, &mut initial_velocity, problems);
+        // Without a value the other problems are reported too: every dof needs a number.
+        initial_position.resize(reference.len(), 0.0);
+        initial_velocity.resize(reference.len(), 0.0);
+    }
+    for obstacle in obstacles {
+        reference.extend(parts[obstacle.part].body.mesh().nodes.flat());
+        initial_position.extend(parts[obstacle.part].body.mesh().nodes.flat());
+        initial_velocity.extend(obstacle.velocity());
+    }
+    Placed { reference, initial_position, initial_velocity }
 }
 
 /// Values of the formulas of a body's `key` at its nodes.
@@ -217,7 +183,8 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
     let mut first_node = 0;
     for (k, spec) in case.bodies.iter().enumerate() {
         let Some(material) = case.material(spec) else { continue };
-        let (lambda, mu) = (material.lambda, material.mu);
+        let lambda = material.lambda;
+        let mu = material.mu;
         let law = match material.law {
             carom_case::Law::NeoHookean => Law::NeoHookean { lambda, mu },
             carom_case::Law::SaintVenantKirchhoff => Law::SaintVenantKirchhoff { lambda, mu },

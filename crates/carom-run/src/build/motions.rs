@@ -28,7 +28,8 @@ pub(super) fn motions(
     fixed: &[bool],
     problems: &mut Vec<Problem>,
 ) -> Motions {
-    let (d, mut moves) = (case.dimension, Moves::default());
+    let d = case.dimension;
+    let mut moves = Moves::default();
     for (k, spec) in case.supports.iter().enumerate() {
         for (axis, formula) in &spec.moves {
             let path = format!("support[{k}].move.{}", AXES[*axis]);

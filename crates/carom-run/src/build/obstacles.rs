@@ -81,7 +81,8 @@ pub(super) fn carriers<'a>(
         })?;
         parts.push(BodyInstance::rigid(spec.name.clone(), node, body, mass));
         let carrier = Carrier { node, origin: padded, turn };
-        let (part, motion) = (parts.len() - 1, &spec.motion);
+        let part = parts.len() - 1;
+        let motion = &spec.motion;
         moving.push(Moving { contact, part, carrier, motion, name: &spec.name, dimension: d });
     }
     Ok(moving)
@@ -119,7 +120,8 @@ impl Moving<'_> {
     /// Prescribed dofs, each with its formula in the unit of the dof; none: it is fixed.
     pub(super) fn prescribed(&self) -> Vec<(usize, Option<FormulaSpec>)> {
         let ObstacleMotion::Prescribed { moves, rotate } = self.motion else { return Vec::new() };
-        let (d, node) = (self.dimension, self.carrier.node);
+        let d = self.dimension;
+        let node = self.carrier.node;
         let along = |axis: usize| moves.iter().find(|(i, _)| *i == axis).map(|(_, formula)| formula.clone());
         let mut dofs: Vec<_> = (0..d).map(|axis| (node * d + axis, along(axis))).collect();
         if let (Some((angle, _)), Some((turn, _, length))) = (rotate, self.carrier.turn) {
@@ -132,7 +134,8 @@ impl Moving<'_> {
 
     /// The support whose reaction is that of the obstacle; none if it is free.
     pub(super) fn support(&self) -> Option<Support> {
-        let (d, node) = (self.dimension, self.carrier.node);
+        let d = self.dimension;
+        let node = self.carrier.node;
         matches!(self.motion, ObstacleMotion::Prescribed { .. }).then(|| Support {
             name: self.name.to_owned(),
             dofs: (node * d..(node + 1) * d).collect(),

@@ -3,7 +3,7 @@
 
 use carom_contact::{FrictionState, Pair, Rows};
 use carom_mechanics::model::{BodyInstance, Model};
-use carom_mechanics::{Depths, GridReport, State, each_slip};
+use carom_mechanics::{Depths, GridReport, Simulation, State, each_slip};
 
 use serde::{Deserialize, Serialize};
 
@@ -40,20 +40,15 @@ pub(super) fn center_weights(model: &Model) -> Vec<f64> {
     weights
 }
 
-/// One row, in the order of [`history_columns`](carom_case::history_columns); `since` with whether
-/// there is a fallback.
-pub(super) fn row(
-    model: &Model,
-    state: &State,
-    dt: f64,
-    (since, falls_back): (&Since, bool),
-    weights: &[f64],
-    row: &mut Vec<f64>,
-) {
+/// The row of the current state, in the order of
+/// [`history_columns`](carom_case::history_columns).
+pub(super) fn row(simulation: &Simulation, since: &Since, weights: &[f64]) -> Vec<f64> {
+    let model = simulation.model();
+    let state = simulation.state();
     let ledger = &state.ledger;
     let d = model.dimension;
-    row.clear();
-    row.extend([state.step as f64, state.time, dt]);
+    let mut row = Vec::new();
+    row.extend([state.step as f64, state.time, simulation.grid().length(state.step)]);
     row.extend([ledger.kinetic, ledger.strain, ledger.potential, ledger.total()]);
     row.extend([ledger.external_work, ledger.contact_work, ledger.friction_work, ledger.dissipation()]);
     row.extend([ledger.created.most(), ledger.scale()]);
@@ -62,7 +57,8 @@ pub(super) fn row(
     model.mass.multiply_into(&state.v, &mut momentum);
     row.extend((0..d).map(|i| momentum.iter().skip(i).step_by(d).sum::<f64>()));
     let about = |i: usize| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let j = (i + 1) % 3;
+        let k = (i + 2) % 3;
         let pairs = state.y.chunks_exact(d).zip(momentum.chunks_exact(d));
         pairs.map(|(y, p)| y[j] * p[k] - y[k] * p[j]).sum::<f64>()
     };
@@ -78,7 +74,7 @@ pub(super) fn row(
     let active = state.pairs.iter().flatten().filter(|p| p.active).count();
     row.push(active as f64);
     row.extend([since.activations, since.releases, since.newton, since.rejected].map(f64::from));
-    row.extend(falls_back.then_some(f64::from(since.fallbacks)));
+    row.extend(simulation.has_fallback().then_some(f64::from(since.fallbacks)));
     row.extend([since.penetration.all, since.penetration.constrained]);
     row.push(model.min_det_f(&state.y));
     if rubs(model) {
@@ -109,11 +105,12 @@ pub(super) fn row(
         }
     }
     for probe in &model.probes {
-        probe.values(&model.parts, &model.reference, [&state.y, &state.v, &state.a], row);
+        probe.values(&model.parts, &model.reference, [&state.y, &state.v, &state.a], &mut row);
     }
     if let Some(motion) = &model.loads.manufactured {
         row.extend(motion.errors(&model.parts, &state.y, state.time));
     }
+    row
 }
 
 /// Moment of the forces at some dofs about a point.
@@ -121,7 +118,8 @@ fn moment(dofs: &[usize], forces: &[f64], y: &[f64], about: &[f64]) -> [f64; 3] 
     let d = about.len();
     let mut moment = [0.0; 3];
     for &dof in dofs {
-        let (axis, node) = (dof % d, dof / d);
+        let axis = dof % d;
+        let node = dof / d;
         // e_i × e_axis = ± e_j.
         for i in (0..d).filter(|&i| i != axis) {
             let arm = y[node * d + i] - about[i];
@@ -137,7 +135,7 @@ fn mean(part: &BodyInstance, field: &[f64], weights: &[f64], i: usize) -> f64 {
     part.nodes().map(|node| weights[node] * field[node * d + i]).sum()
 }
 
-/// What happened since the previous row: counts do not depend on how often rows are written.
+/// Events since the previous row: their sums do not depend on how often rows are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Since {
     newton: u32,

@@ -57,7 +57,8 @@ fn logarithmic(green: [f64; 3]) -> [f64; 3] {
 
 /// The initial positions of a model, without other fields.
 pub fn initial_fields(case: &Case, model: &Model) -> FieldSet {
-    let (unit, values) = (case.labels().length, displacements(model, &model.initial_position));
+    let unit = case.labels().length;
+    let values = displacements(model, &model.initial_position);
     FieldSet {
         points: in_space(model, &model.reference).collect(),
         blocks: blocks(model),

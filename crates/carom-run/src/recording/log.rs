@@ -101,7 +101,8 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             Event::new(step, *time, "overlap", format!("{place} {what}")).with("place", place)
         }
         LogEvent::Overlap { time, overlap: Undeclared::Obstacle { body, contact } } => {
-            let (place, name) = (format!("body \"{}\"", model.parts[*body].name), contact_name(*contact));
+            let place = format!("body \"{}\"", model.parts[*body].name);
+            let name = contact_name(*contact);
             let message = format!(
                 "{place} lies in the obstacle of contact \"{name}\" with nodes beside the side of the contact"
             );

@@ -13,15 +13,16 @@ use super::pressure::Surfaces;
 pub struct Rows {
     columns: Vec<Column>,
     weights: Vec<f64>,
-    surfaces: Surfaces,
-    since: Since,
+    pub(super) surfaces: Surfaces,
+    /// Events since the previous row.
+    pub(super) since: Since,
 }
 
 /// The active contact nodes of a state.
 pub type ContactStates<'a> = Vec<ContactRow<'a>>;
 
 impl Rows {
-    /// Of a case and its simulation.
+    /// Rows that begin with the initial state of a simulation.
     pub fn new(case: &Case, simulation: &Simulation) -> Self {
         let model = simulation.model();
         let mut rows = Self {
@@ -48,12 +49,7 @@ impl Rows {
 
     /// The row of the current state.
     pub fn row(&self, simulation: &Simulation) -> Vec<f64> {
-        let state = simulation.state();
-        let mut values = Vec::new();
-        let dt = simulation.grid().length(state.step);
-        let since = (&self.since, simulation.has_fallback());
-        row(simulation.model(), state, dt, since, &self.weights, &mut values);
-        values
+        row(simulation, &self.since, &self.weights)
     }
 
     /// The active contact nodes of the current state.

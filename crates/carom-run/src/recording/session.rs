@@ -7,16 +7,15 @@ use std::time::{Duration, Instant};
 
 use carom_case::{BodySpec, Case, Law};
 use carom_mechanics::model::Model;
-use carom_mechanics::{Attempt, GridReport, Simulation, Stopped, penetration};
+use carom_mechanics::{Attempt, GridReport, Simulation, Stopped};
 use carom_record::{Event, Manifest, Recorder, Run, Status, metrics};
 
-use super::columns::{Since, center_weights, row};
+use super::columns::Since;
 use super::fields::field_set;
 use super::frames::Frames;
 use super::log::{entry, in_units, relaxed, repairs};
 use super::outcome::{End, Outcome, Progress, RunError};
-use super::pressure::Surfaces;
-use super::rows::contact_rows;
+use super::rows::{Rows, contact_rows};
 use super::stopped::{advice, explain};
 use super::tally::{Busy, Tally, checkpoint};
 use super::verdicts::judged;
@@ -31,16 +30,13 @@ pub(super) struct Session<'a> {
     pub(super) simulation: Simulation,
     pub(super) writer: &'a mut dyn Recorder,
     pub(super) manifest: Manifest,
-    weights: Vec<f64>,
-    surfaces: Surfaces,
+    pub(super) rows: Rows,
     pub(super) frames: Frames,
     /// Whether each probe had its recorded stresses after the last step.
     stressed: Vec<bool>,
     began: Instant,
     first_step: u64,
-    /// What happened since the previous row.
-    pub(super) since: Since,
-    /// What earlier processes counted up to the checkpoint that this one began from.
+    /// Counts of earlier processes, up to the checkpoint from which this one began.
     pub(super) earlier: Tally,
     /// Largest rotation and strain of each linear-elastic body in a row so far, with their times.
     pub(super) rotations: BTreeMap<usize, [[f64; 2]; 2]>,
@@ -48,7 +44,6 @@ pub(super) struct Session<'a> {
     output: f64,
     /// Processor seconds in steps.
     cpu: f64,
-    values: Vec<f64>,
 }
 
 impl<'a> Session<'a> {
@@ -59,8 +54,7 @@ impl<'a> Session<'a> {
         manifest: Manifest,
     ) -> Self {
         let frames = Frames::new(case, &simulation);
-        let weights = center_weights(simulation.model());
-        let surfaces = Surfaces::new(simulation.model(), case.thickness);
+        let rows = Rows::new(case, &simulation);
         let first_step = simulation.state().step;
         let stressed = stressed(&simulation);
         let rotations = rotations(case, simulation.model());
@@ -70,18 +64,15 @@ impl<'a> Session<'a> {
             simulation,
             writer,
             manifest,
-            weights,
-            surfaces,
+            rows,
             frames,
             stressed,
-            since: Since::default(),
             earlier: Tally::default(),
             rotations,
             began,
             first_step,
             output: 0.0,
             cpu: 0.0,
-            values: Vec::new(),
         }
     }
 
@@ -92,8 +83,6 @@ impl<'a> Session<'a> {
             self.writer.log(&event)?;
         }
         self.log_warnings(0)?;
-        let penetration = penetration(self.simulation.model(), self.simulation.state());
-        self.since.add(&GridReport { penetration, ..GridReport::default() });
         self.write_row()?;
         self.write_fields()
     }
@@ -122,7 +111,8 @@ impl<'a> Session<'a> {
         stop: &AtomicBool,
         remarks: Vec<String>,
     ) -> Result<Outcome, RunError> {
-        let (mut end, mut last) = (End::Finished, GridReport::default());
+        let mut end = End::Finished;
+        let mut last = GridReport::default();
         while !self.simulation.finished() {
             if stop.load(Ordering::Relaxed) {
                 end = End::Interrupted;
@@ -175,7 +165,8 @@ impl<'a> Session<'a> {
     /// step only, so that a resumed run logs the same.
     fn log_lost_stress(&mut self) -> Result<(), RunError> {
         let now = stressed(&self.simulation);
-        let (model, state) = (self.simulation.model(), self.simulation.state());
+        let model = self.simulation.model();
+        let state = self.simulation.state();
         let ceased = self.stressed.iter().zip(&now).map(|(before, now)| *before && !now);
         for (probe, _) in model.probes.iter().zip(ceased).filter(|(_, ceased)| *ceased) {
             let message = format!(
@@ -191,28 +182,28 @@ impl<'a> Session<'a> {
 
     /// Writes the record of a grid step.
     fn record(&mut self, report: &GridReport) -> Result<(), RunError> {
-        self.since.add(report);
+        self.rows.since.add(report);
         let output = &self.case.output;
-        let (step, last) = (self.simulation.state().step, self.simulation.finished());
-        if step % output.history_every as u64 == 0 || last {
+        let step = self.simulation.state().step;
+        let last = self.simulation.finished();
+        if step.is_multiple_of(output.history_every as u64) || last {
             self.write_row()?;
         }
         let in_contact = self.simulation.state().pairs.iter().flatten().any(|pair| pair.active);
         if self.frames.take(step, last, in_contact) {
             self.write_fields()?;
         }
-        if step % output.checkpoint_every as u64 == 0 && !last {
+        if step.is_multiple_of(output.checkpoint_every as u64) && !last {
             self.checkpoint()?;
         }
         Ok(())
     }
 
     fn write_row(&mut self) -> Result<(), RunError> {
-        let (model, state) = (self.simulation.model(), self.simulation.state());
-        let dt = self.simulation.grid().length(state.step);
-        let fallbacks = self.simulation.has_fallback();
-        row(model, state, dt, (&self.since, fallbacks), &self.weights, &mut self.values);
-        self.since = Since::default();
+        let model = self.simulation.model();
+        let state = self.simulation.state();
+        let values = self.rows.row(&self.simulation);
+        self.rows.since = Since::default();
         for (body, largest) in &mut self.rotations {
             for (largest, now) in largest.iter_mut().zip(model.turn(*body, &state.y)) {
                 if now > largest[0] {
@@ -220,15 +211,22 @@ impl<'a> Session<'a> {
                 }
             }
         }
-        self.writer.history(&self.values)?;
-        contact_rows(model, &self.surfaces, state).iter().try_for_each(|row| self.writer.contact(row))?;
+        self.writer.history(&values)?;
+        contact_rows(model, &self.rows.surfaces, state)
+            .iter()
+            .try_for_each(|row| self.writer.contact(row))?;
         Ok(())
     }
 
     fn write_fields(&mut self) -> Result<(), RunError> {
         if !self.frames.is_empty() {
-            let (model, state) = (self.simulation.model(), self.simulation.state());
-            self.writer.fields(state.step, state.time, field_set(self.case, model, &self.surfaces, state))?;
+            let model = self.simulation.model();
+            let state = self.simulation.state();
+            self.writer.fields(
+                state.step,
+                state.time,
+                field_set(self.case, model, &self.rows.surfaces, state),
+            )?;
         }
         Ok(())
     }
@@ -267,7 +265,8 @@ impl<'a> Session<'a> {
     }
 
     fn progress(&self, report: &GridReport) -> Progress {
-        let (state, steps) = (self.simulation.state(), self.simulation.steps());
+        let state = self.simulation.state();
+        let steps = self.simulation.steps();
         let wall = self.began.elapsed().as_secs_f64();
         let done = (state.step - self.first_step).max(1);
         let ledger = &state.ledger;
@@ -306,7 +305,8 @@ impl<'a> Session<'a> {
             self.manifest.timings.insert(phase.into(), earlier + seconds);
         }
         let earlier = |name: &str| counters.get(name).copied().unwrap_or_default();
-        let (factorisations, iterations) = (earlier("factorisations"), earlier("linear_iterations"));
+        let factorisations = earlier("factorisations");
+        let iterations = earlier("linear_iterations");
         let counters = &mut self.manifest.counters;
         counters.insert("steps".into(), self.simulation.state().step);
         counters.insert("factorisations".into(), factorisations + self.simulation.factorisations());
@@ -328,7 +328,7 @@ impl<'a> Session<'a> {
             rotations: self.rotations.clone(),
             frames: self.frames.written,
         };
-        Ok(self.writer.checkpoint(state.step, &checkpoint(state, self.since, &tally)?)?)
+        Ok(self.writer.checkpoint(state.step, &checkpoint(state, self.rows.since, &tally)?)?)
     }
 
     /// Writes why the simulation stopped, and what to try.
@@ -395,6 +395,7 @@ fn rotations(case: &Case, model: &Model) -> BTreeMap<usize, [[f64; 2]; 2]> {
 }
 
 fn stressed(simulation: &Simulation) -> Vec<bool> {
-    let (model, state) = (simulation.model(), simulation.state());
+    let model = simulation.model();
+    let state = simulation.state();
     model.probes.iter().map(|probe| probe.has_stress(&model.parts, &state.y)).collect()
 }

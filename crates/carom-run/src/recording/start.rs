@@ -169,10 +169,12 @@ pub fn resume_with(
     let mut session = Session::new(case, simulation, &mut writer, manifest);
     session.rotations.clone_from(&tally.rotations);
     session.frames.written = tally.frames;
-    (session.since, session.earlier) = (since, tally);
+    session.earlier = tally;
     session.writer.manifest(&session.manifest)?;
     if reopened.rows == 0 {
         session.write_start()?;
+    } else {
+        session.rows.since = since;
     }
     session.go(observe, stop, remarks)
 }

@@ -1,5 +1,4 @@
-//! What a run has counted and spent, over all processes that worked on it; a checkpoint
-//! contains it.
+//! Counters and timings of a run, over all processes that worked on it; a checkpoint contains them.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +10,7 @@ use super::columns::Since;
 use super::frames::Written;
 use super::outcome::RunError;
 
-/// What a run has counted, and where its time went, up to a checkpoint.
+/// Counters and timings of a run up to a checkpoint.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Tally {
     pub(super) counters: BTreeMap<String, u64>,
@@ -36,7 +35,7 @@ pub(super) fn checkpoint(state: &State, since: Since, tally: &Tally) -> Result<V
         .map_err(|e| RunError::Incompatible { what: format!("the state cannot be encoded: {e}") })
 }
 
-/// What [`checkpoint`] has written.
+/// Reads the bytes of [`checkpoint`].
 pub(super) fn from_checkpoint(bytes: &[u8]) -> Result<(State, Since, Tally), postcard::Error> {
     postcard::from_bytes(bytes)
 }

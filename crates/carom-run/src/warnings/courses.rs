@@ -10,7 +10,7 @@
 //! nodes come to lie inside first: those of its sides, or others. The same is asked of a body and
 //! the rigid obstacle of its contact.
 //!
-//! Of what comes after a declared contact nothing is known before the run.
+//! After a declared contact, nothing is known before the run.
 
 use carom_case::{Case, ContactSpec, ObstacleMotion, PrimarySpec};
 use carom_mechanics::model::{BodyInstance, Model};
@@ -98,7 +98,8 @@ impl<'a> Scene<'a> {
         let course = |(k, part)| course(model, part, &momentum, &moved).filter(|_| is_parabola(k));
         let courses = model.parts.iter().enumerate().map(course).collect();
         let extents = model.parts.iter().map(|part| extents(model, part, &directions)).collect();
-        let (undeclared, contacts) = (Undeclared::new(model), Penetration::of_contacts(model));
+        let undeclared = Undeclared::new(model);
+        let contacts = Penetration::of_contacts(model);
         Self { case, model, directions, courses, extents, undeclared, contacts }
     }
 

@@ -48,7 +48,8 @@ pub(super) fn bar_modulus(case: &Case, _: &Model) -> Vec<Found> {
     let mut found = Vec::new();
     for body in case.bodies.iter().filter(|_| case.dimension == 1 && case.manufactured.is_none()) {
         let Some(material) = case.material(body) else { continue };
-        let (lambda, mu) = (material.lambda, material.mu);
+        let lambda = material.lambda;
+        let mu = material.mu;
         let young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
         let confined = lambda + 2.0 * mu;
         // Λ computed from a ratio of zero is zero.
@@ -80,7 +81,8 @@ pub(super) fn stiff_bending(_: &Case, model: &Model) -> Vec<Found> {
 
 fn too_stiff(part: &BodyInstance) -> Option<String> {
     let mesh = part.body.mesh();
-    let (area, skin) = (mesh.area(), mesh.skin());
+    let area = mesh.area();
+    let skin = mesh.skin();
     let length = |facet: &Facet| {
         let [a, b] = [0, 1].map(|k| &mesh.nodes[facet.nodes[k]]);
         (b[0] - a[0]).hypot(b[1] - a[1])
@@ -88,7 +90,8 @@ fn too_stiff(part: &BodyInstance) -> Option<String> {
     let half = 0.5 * skin.iter().map(length).sum::<f64>();
     // A disc has no such roots.
     let root = (0.25 * half * half - area).sqrt();
-    let (length, thickness) = (0.5 * half + root, 0.5 * half - root);
+    let length = 0.5 * half + root;
+    let thickness = 0.5 * half - root;
     if root.is_nan() || length < SLENDER * thickness {
         return None;
     }

@@ -1,4 +1,4 @@
-//! What a rule finds.
+//! The finding of a rule.
 
 use carom_case::ContactSpec;
 
@@ -37,7 +37,8 @@ impl Found {
     }
 }
 
-/// What the contacts between bodies that meet elsewhere name, to be appended; nothing without any.
+/// The sides of contacts between bodies that meet elsewhere, as words to be appended; nothing
+/// without any.
 pub(super) fn covered_by(contacts: &[&ContactSpec]) -> String {
     let named = |contact: &&ContactSpec| match contact.primary.side() {
         Some(primary) => format!("\"{}\" acts between {} and {primary}", contact.name, contact.secondary),

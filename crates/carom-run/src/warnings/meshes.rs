@@ -21,7 +21,7 @@ type Place = Vector<3>;
 
 /// The facets of a contact's sides that are near the other side.
 struct Zone {
-    /// Of the secondary and the primary side.
+    /// The facets of the secondary and of the primary side.
     sides: [Vec<Near>; 2],
     /// Unit normal of the surfaces where they are closest.
     normal: Place,
@@ -31,7 +31,7 @@ struct Zone {
 
 /// A facet near the other side.
 struct Near {
-    /// Its corners first.
+    /// Nodes of the facet, its corners first.
     nodes: Vec<Place>,
     corners: usize,
     /// Mean length of its edges.
@@ -53,7 +53,8 @@ fn zone(case: &Case, model: &Model, contact: usize) -> Option<Zone> {
     };
     let facets = |name: &str| -> Option<Vec<Near>> {
         let side = side(&model.parts, name, "").ok()?;
-        let (corners, degree) = (side.shape.corners(), side.shape.degree());
+        let corners = side.shape.corners();
+        let degree = side.shape.degree();
         let near = |nodes: &Vec<usize>| {
             let nodes: Vec<Place> = nodes.iter().map(|&n| at(n)).collect();
             let edges = if corners == 2 { 1 } else { corners };
@@ -77,7 +78,8 @@ fn zone(case: &Case, model: &Model, contact: usize) -> Option<Zone> {
         [0, 1].map(|s| middles[s].iter().map(|&middle| gap(middle, &middles[1 - s])).collect());
     let (closest, least) =
         gaps[1].iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).filter(|g| g.1.is_finite())?;
-    let (normal, closest) = (sides[1][closest].normal(), middles[1][closest]);
+    let normal = sides[1][closest].normal();
+    let closest = middles[1][closest];
     let mut gaps = gaps.into_iter();
     let sides = sides.map(|side| {
         let near = side.into_iter().zip(gaps.next().unwrap_or_default());
@@ -129,7 +131,8 @@ impl Zone {
             let flat = |y: &Place| *y - self.normal * y.dot(&self.normal);
             places.map(flat).collect::<Vec<Place>>()
         };
-        let (near, tolerance) = (along(1), MATCH * self.spacing(1));
+        let near = along(1);
+        let tolerance = MATCH * self.spacing(1);
         along(0).iter().all(|s| near.iter().any(|p| (*p - *s).norm() <= tolerance))
     }
 }
@@ -139,7 +142,8 @@ pub(super) fn coarse_secondary(case: &Case, model: &Model) -> Vec<Found> {
         let zone = zone(case, model, k)?;
         let [secondary, primary] = [0, 1].map(|side| zone.spacing(side));
         (secondary > ALIKE * primary).then(|| {
-            let (secondary, primary) = (short(secondary), short(primary));
+            let secondary = short(secondary);
+            let primary = short(primary);
             let unit = &case.units.length;
             let what = format!(
                 "near the contact the nodes of the secondary side are {secondary} {unit} apart, those of the primary {primary} {unit}"

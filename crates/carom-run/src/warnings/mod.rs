@@ -39,11 +39,11 @@ pub enum Rule {
 /// A warning that may be given.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
-    /// Its name.
+    /// Name of the warning.
     pub id: &'static str,
     /// Why it matters.
     pub why: &'static str,
-    /// What to try.
+    /// A remedy.
     pub advice: &'static str,
     /// When it is given.
     pub rule: Rule,

@@ -57,7 +57,8 @@ pub(super) fn undeclared_contact(case: &Case, _: &Model, run: &Run) -> Vec<Found
     let overlaps = events(run, "overlap");
     let found = overlaps.filter_map(|event| {
         let text = |key: &str| event.data.get(key)?.as_str();
-        let (place, from) = (text("place")?.to_owned(), format!("from t = {} on", short(event.time)));
+        let place = text("place")?.to_owned();
+        let from = format!("from t = {} on", short(event.time));
         let what = if let Some(name) = text("obstacle") {
             let contact = case.contacts.iter().find(|contact| contact.name == name)?;
             format!("lies in the obstacle of contact \"{name}\" {from}{}", covered_by(&[contact]))
@@ -105,28 +106,26 @@ pub(super) fn large_strain(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     found.collect()
 }
 
+/// A finding about the run from the first event of a kind and the number of such events.
+fn first_of(run: &Run, kind: &'static str, words: impl Fn(&str, usize) -> String) -> Vec<Found> {
+    let mut events = events(run, kind);
+    let first = events.next().map(|first| words(&short(first.time), 1 + events.count()));
+    first.map(Found::of_the_run).into_iter().collect()
+}
+
 /// Friction so large that stick and slip were not unique in some step.
 pub(super) fn ambiguous_friction(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
-    let mut events = events(run, "ambiguous");
-    let Some(first) = events.next() else { return Vec::new() };
-    let what = format!(
-        "stick and slip were not unique from t = {} on, {} times",
-        short(first.time),
-        1 + events.count()
-    );
-    vec![Found::of_the_run(what)]
+    first_of(run, "ambiguous", |time, count| {
+        format!("stick and slip were not unique from t = {time} on, {count} times")
+    })
 }
 
 /// Grid steps that the fallback took.
 pub(super) fn fallback_steps(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
-    let mut events = events(run, "fallback");
-    let Some(first) = events.next() else { return Vec::new() };
-    let (time, count) = (short(first.time), 1 + events.count());
-    let what = match count {
+    first_of(run, "fallback", |time, count| match count {
         1 => format!("the fallback took the grid step that begins at t = {time}"),
         _ => format!("the fallback took {count} grid steps, the first at t = {time}"),
-    };
-    vec![Found::of_the_run(what)]
+    })
 }
 
 /// More energy created than the default of `time.energy_guard` allows. Load steps create none: the
@@ -143,7 +142,7 @@ pub(super) fn energy_created(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     share.map(|share| Found::of_the_run(what(share))).into_iter().collect()
 }
 
-/// The same with the work of friction added, which may take what contact and scheme create: the
+/// Energy that is created while friction takes as much: the
 /// rise of total − external_work − friction_work above its running minimum, judged against the
 /// energy scale, or friction's work if that is more. Not given where the energy as a whole shows
 /// it.
@@ -155,7 +154,9 @@ pub(super) fn hidden_energy(case: &Case, model: &Model, run: &Run) -> Vec<Found>
     if case.time.scheme.is_static() || !energy_created(case, model, run).is_empty() {
         return Vec::new();
     }
-    let (mut lowest, mut most, mut at) = (f64::INFINITY, 0.0, 0);
+    let mut lowest = f64::INFINITY;
+    let mut most = 0.0;
+    let mut at = 0;
     for row in 0..total.len() {
         let energy = total[row] - work[row] - friction[row];
         lowest = lowest.min(energy);

@@ -1,6 +1,6 @@
 //! Warning about a step that does not resolve an impact.
 //!
-//! What the softer body (impedance ρc) does in an impact is made of pressure waves that cross it
+//! The motion of the softer body (impedance ρc) in an impact is made of pressure waves that cross it
 //! along the contact's normal and return: the force of a bar that strikes a wall lasts 2L/c, and
 //! that on a soft bar grows by a stair of this length (K. L. Johnson, *Contact Mechanics*, 1985,
 //! § 11.1). A step Δt > L/c mixes such a wave with its return. Where it also takes a large share of

@@ -1,4 +1,4 @@
-//! What to try, by the keyword of the reason: one line per remedy, the most promising first. A
+//! Remedies by the keyword of the reason: one line per remedy, the most promising first. A
 //! remedy that does not fit the case is left out, and one that depends on it names what the case
 //! has: its elements, its friction.
 
@@ -100,7 +100,7 @@ const TABLE: &[(&str, &[Remedy])] = &[
 /// The remedies of any other reason.
 const OTHERWISE: &[Remedy] = &[INERTIA, SHORTER, BATHE, DAMPED, PENALTY, FALLBACK, FINER];
 
-/// What to try after a stop, for the reason `kind` at a contact or in a body, or anywhere.
+/// Remedies for a stop of this `kind`, at a contact or in a body, or anywhere.
 pub(in crate::recording) fn advice(
     kind: &str,
     case: &Case,

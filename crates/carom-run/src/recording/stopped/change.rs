@@ -68,7 +68,8 @@ impl<'a> Original<'a> {
     /// that it changes.
     pub(super) fn sets(&self, kind: Kind, contact: Option<&str>) -> Option<Vec<String>> {
         let case = self.case;
-        let (scheme, step) = (&case.time.scheme, case.time.step);
+        let scheme = &case.time.scheme;
+        let step = case.time.step;
         let implicit = !scheme.is_static() && scheme.nonsmooth().is_none();
         // A saved state keeps its clock.
         let free = !continues(case);

@@ -21,7 +21,9 @@ pub(crate) fn explain(
     stopped: &Stopped,
     report: &GridReport,
 ) -> (Stop, FieldSet) {
-    let (model, state, trace) = (simulation.model(), simulation.state(), simulation.trace());
+    let model = simulation.model();
+    let state = simulation.state();
+    let trace = simulation.trace();
     let (kind, time, dt) = match stopped {
         Stopped::NoStep { time, dt, rejected, .. } => (rejected.kind(), *time, *dt),
         Stopped::EnergyGuard { time, .. } => (advice::GUARD, *time, simulation.dt()),

@@ -50,7 +50,7 @@ impl Failure {
         Self::Argument { what: what.into(), help: help.into() }
     }
 
-    /// What the system refused: `cannot write FILE: …`.
+    /// An action that the system refused: `cannot write FILE: …`.
     pub(crate) fn cannot(verb: &str, path: &Path, error: &dyn Display) -> Self {
         Self::System { what: format!("cannot {verb} {}: {error}", path.display()) }
     }
@@ -98,7 +98,7 @@ impl From<ReportError> for Failure {
     }
 }
 
-/// Of a run whose case file is not at hand: problems are told without their lines.
+/// Problems of a run whose case file is not at hand are reported without their lines.
 impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {

@@ -121,7 +121,8 @@ impl Drop for Live {
 /// `t 0.3375  Δt 1.88e-3  Newton 4  contacts 7  energy created 1.2e-6  left 3 s`
 fn line(p: &Progress) -> String {
     if p.bisecting {
-        let (step, rejected) = (p.step + 1, p.rejected);
+        let step = p.step + 1;
+        let rejected = p.rejected;
         return format!(
             "step {step} is being bisected: t {:.6e}  Δt {:.1e}  {rejected} rejected",
             p.time, p.dt
@@ -143,7 +144,9 @@ fn changes(p: &Progress) -> Option<String> {
     let counts = [(p.rejected, "rejected"), (p.activations, "activated"), (p.releases, "released")];
     let counts: Vec<_> =
         counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
-    let (step, time, newton) = (p.step, p.time, p.newton);
+    let step = p.step;
+    let time = p.time;
+    let newton = p.newton;
     (!counts.is_empty()).then(|| format!("step {step}  t {time:.6e}  Newton {newton}  {}", counts.join(", ")))
 }
 

@@ -16,7 +16,7 @@ pub(crate) fn of_arms(arms: &[usize], manifest: &StudyManifest) -> String {
     }
 }
 
-/// As in the events of a run, with the names of the arms.
+/// Warnings as in the events of a run, with the names of the arms.
 pub(crate) fn warnings(shared: &[(&Warning, Vec<usize>)], manifest: &StudyManifest) -> Value {
     let names = |arms: &[usize]| arms.iter().map(|arm| manifest.arms[*arm].name.clone()).collect::<Vec<_>>();
     shared

@@ -1,4 +1,4 @@
-//! What a run has computed, for the summary on the terminal and the last event of `--json`.
+//! Results of a run, for the summary on the terminal and the last event of `--json`.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ const SHOWN: [&str; 8] = [
 /// Columns of reactions in the summary.
 const REACTIONS: usize = 3;
 
-/// What happens besides the simulation.
+/// Options of the report and the summary of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Options {
     /// Whether figures and page are made at the end.
@@ -44,7 +44,7 @@ pub(crate) struct Outcome {
     pub(crate) wall: f64,
     #[serde(serialize_with = "named")]
     pub(crate) metrics: Vec<Metric>,
-    /// Of the columns of probes, and of the largest reactions.
+    /// Extremes of the columns of probes, and of the largest reactions.
     pub(crate) extremes: Vec<Extreme>,
     pub(crate) expectations: Vec<Expectation>,
     /// Wall seconds by phase, with `--profile`.
@@ -152,7 +152,7 @@ fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, 
     }
 }
 
-/// What to try after a stop: the first advice.
+/// The first advice after a stop.
 fn help_after(directory: &std::path::Path) -> Result<String, Failure> {
     let manifest = Manifest::read(directory)?;
     let advice = Stop::read(directory, &manifest)?.map_or_else(Vec::new, |stop| stop.advice);

@@ -55,28 +55,29 @@ fn expectation(e: &Expectation) -> String {
 fn text(outcome: &Outcome) -> String {
     let directory = outcome.directory.display();
     let time = |t| quantity(t, &outcome.time_unit);
-    let mut first = format!("{} steps to t = {}", outcome.steps, time(outcome.time));
-    if outcome.wall > 0.0 {
-        first += &format!(" in {} of wall time", duration(outcome.wall));
-    }
+    let wall = match outcome.wall {
+        0.0 => String::new(),
+        wall => format!(" in {} of wall time", duration(wall)),
+    };
+    let first = format!("{} steps to t = {}{wall}", outcome.steps, time(outcome.time));
     let metrics = outcome
         .metrics
         .iter()
         .filter_map(|metric| Some(vec![metric.name.to_string(), short(metric.value?), metric.unit.clone()]));
-    let extremes = outcome.extremes.iter().flat_map(|e| {
-        let row = |what: &str, x, t| {
-            let at = format!("{} at {}", e.unit, time(t));
-            vec![format!("{} {what}", e.column), short(x), at.trim_start().to_owned()]
-        };
-        [row("min", e.min, e.min_time), row("max", e.max, e.max_time)]
+    let extremes = outcome.extremes.iter().map(|e| {
+        let at = |t| format!("{} at {}", e.unit, time(t)).trim_start().to_owned();
+        let [min, max] = [short(e.min), short(e.max)];
+        let [min_at, max_at] = [at(e.min_time), at(e.max_time)];
+        vec![e.column.clone(), "min".to_owned(), min, min_at, "max".to_owned(), max, max_at]
     });
     let profile = outcome.profile.iter().map(|(phase, seconds)| {
         let each = 1e3 * seconds / outcome.steps.max(1) as f64;
         vec![phase.clone(), duration(*seconds), format!("{} ms per step", short(each))]
     });
-    let rows: Vec<Vec<String>> = metrics.chain(extremes).chain(profile).collect();
-    let indented = table::lines(&rows, &[1])
+    let indented = table::lines(&metrics.collect::<Vec<_>>(), &[1])
         .into_iter()
+        .chain(table::lines(&extremes.collect::<Vec<_>>(), &[2, 5]))
+        .chain(table::lines(&profile.collect::<Vec<_>>(), &[1]))
         .chain(outcome.expectations.iter().map(expectation))
         .chain(outcome.remarks.iter().cloned())
         .map(|line| format!("  {line}"));
@@ -140,9 +141,8 @@ mod tests {
             summary.lines().collect::<Vec<_>>(),
             [
                 "400 steps to t = 0.75 s in 3.2 s of wall time",
-                "  peak_mean_force      12.5  N",
-                "  A.uy min         -0.78268  m at 0.43125 s",
-                "  A.uy max                0  m at 0 s",
+                "  peak_mean_force  12.5  N",
+                "  A.uy  min  -0.78268  m at 0.43125 s  max  0  m at 0 s",
                 "  min A.uy: -0.78268, as expected (-0.7827 ± 0.004)",
                 "runs/impact-2/report.html",
             ]

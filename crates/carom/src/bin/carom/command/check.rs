@@ -326,11 +326,12 @@ fn load_text(load: &LoadSpec) -> String {
 fn counted(body: &BodyFacts) -> String {
     let sides: Vec<_> = body.sides.iter().map(|(side, n)| format!("{side} {n}")).collect();
     let BodyFacts { nodes, cells, dofs, .. } = body;
-    let (nodes, cells) = (several(*nodes, "node"), several(*cells, "cell"));
+    let nodes = several(*nodes, "node");
+    let cells = several(*cells, "cell");
     format!("{nodes}, {cells}, {dofs} free dofs; nodes per side: {}", sides.join(", "))
 }
 
-/// What the scheme's parameters imply.
+/// Properties that follow from the parameters of a scheme.
 fn derived(spec: &SchemeSpec) -> Option<String> {
     if spec.is_static() {
         return None;

@@ -1,4 +1,4 @@
-//! What `carom run` and `carom resume` have in common: how a simulation is run.
+//! Options that `carom run` and `carom resume` have in common.
 
 use std::num::NonZero;
 

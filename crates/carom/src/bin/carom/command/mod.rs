@@ -1,4 +1,4 @@
-//! One file per command.
+//! The commands, each in a file of its own.
 
 pub(crate) mod check;
 pub(crate) mod completions;
@@ -106,7 +106,8 @@ fn is_pipe(path: &Path) -> bool {
 /// time and memory are refused: more than four per core, and more than 64.
 fn parallel(option: &str, requested: Option<NonZero<usize>>) -> Result<usize, Failure> {
     let machine = Machine::current();
-    let (cores, most) = (machine.cpus, machine.most_concurrent());
+    let cores = machine.cpus;
+    let most = machine.most_concurrent();
     let count = requested.map_or(cores, NonZero::get);
     if count > most {
         let what = format!(

@@ -17,7 +17,7 @@ const PAUSE: Duration = Duration::from_millis(200);
 
 /// The runs of a study or of a verification. Dropping it erases the bar.
 pub(super) struct Runs {
-    /// What events call a run.
+    /// Name of a run in events: `arm` or `run`.
     noun: &'static str,
     pub(super) names: Vec<String>,
     steps: Vec<u64>,
@@ -101,7 +101,7 @@ impl Runs {
         self.bar.set_message(self.line());
     }
 
-    /// With `--verbose`, says that a run has ended.
+    /// Says that a run has ended, with `--verbose`.
     fn say_ended(&self, run: usize, finished: bool, wall: f64) {
         if console::is_verbose() {
             let how = if finished { "done" } else { "stopped" };

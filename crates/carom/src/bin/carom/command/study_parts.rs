@@ -154,7 +154,8 @@ fn collect(directory: &Path, page: bool) -> Result<Exit, Failure> {
         let found = rows().filter(|(_, row)| of(row)).map(|(i, row)| format!("{} ({})", i + 1, row.name));
         found.collect::<Vec<_>>().join(", ")
     };
-    let (missing, damaged) = (listed(|row| !row.has_ended() && !row.is_damaged()), listed(Row::is_damaged));
+    let missing = listed(|row| !row.has_ended() && !row.is_damaged());
+    let damaged = listed(Row::is_damaged);
     if !damaged.is_empty() {
         console::say(format_args!("damaged: {damaged}"));
     }

@@ -28,7 +28,7 @@ pub(super) struct Converter {
 
 #[cfg(feature = "figures")]
 impl Converter {
-    /// With the pixels of a PNG per pixel of a figure, and the only font or those that are
+    /// A converter with the pixels of a PNG per pixel of a figure, and the only font or those that are
     /// installed.
     pub(super) fn new(scale: f32, font: Option<&Path>) -> Result<Self, Failure> {
         let mut options = usvg::Options::default();
