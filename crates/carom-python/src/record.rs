@@ -87,7 +87,7 @@ impl Record {
     }
 
     /// Units of these columns.
-    fn contact_units(&self) -> PyResult<HashMap<&'static str, String>> {
+    fn contact_units(&self) -> HashMap<&'static str, String> {
         tables::contact_units(&self.run.history, self.run.manifest.facts.contact_axes())
     }
 

@@ -2,10 +2,8 @@
 
 use std::collections::HashMap;
 
-use carom::record::metrics::Unit;
-use carom::record::{ContactRow, History, contact_columns};
+use carom::record::{ContactCell, ContactRow, ContactValue, History};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
-use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -30,46 +28,17 @@ pub(crate) fn integers(py: Python<'_>, values: Vec<i64>) -> PyResult<Bound<'_, P
     Ok(array)
 }
 
-/// The values of a column of `contact.csv`.
-enum Values {
-    Integer(fn(&ContactRow) -> u64),
-    Real(fn(&ContactRow) -> f64),
-    Text(for<'a> fn(&'a ContactRow<'_>) -> &'a str),
-}
-
-/// Unit and values of a column of `contact.csv`.
-fn column(name: &str) -> PyResult<(Unit, Values)> {
-    use Values::{Integer, Real, Text};
-    Ok(match name {
-        "step" => (Unit::None, Integer(|row| row.step)),
-        "time" => (Unit::Time, Real(|row| row.time)),
-        "contact" => (Unit::None, Text(|row| &row.contact)),
-        "node" => (Unit::None, Integer(|row| row.node)),
-        "x" => (Unit::Length, Real(|row| row.point[0])),
-        "y" => (Unit::Length, Real(|row| row.point[1])),
-        "z" => (Unit::Length, Real(|row| row.point[2])),
-        "facet" => (Unit::None, Integer(|row| row.facet)),
-        "xi" => (Unit::None, Real(|row| row.xi)),
-        "eta" => (Unit::None, Real(|row| row.eta)),
-        "gap" => (Unit::Length, Real(|row| row.gap)),
-        "multiplier" => (Unit::Force, Real(|row| row.multiplier)),
-        "pressure" => (Unit::Stress, Real(|row| row.pressure)),
-        "normal_x" => (Unit::None, Real(|row| row.normal[0])),
-        "normal_y" => (Unit::None, Real(|row| row.normal[1])),
-        "normal_z" => (Unit::None, Real(|row| row.normal[2])),
-        "friction" => (Unit::None, Text(|row| &row.friction)),
-        "traction" => (Unit::Force, Real(|row| row.traction)),
-        "slip" => (Unit::Length, Real(|row| row.slip)),
-        "friction_x" => (Unit::Force, Real(|row| row.rubbing[0])),
-        "friction_y" => (Unit::Force, Real(|row| row.rubbing[1])),
-        "friction_z" => (Unit::Force, Real(|row| row.rubbing[2])),
-        other => return Err(PyRuntimeError::new_err(format!("the column {other} has no type"))),
-    })
-}
-
 /// Unit labels of the columns of `contact.csv`, in the units of the history.
-pub(crate) fn contact_units(history: &History, axes: usize) -> PyResult<HashMap<&'static str, String>> {
-    contact_columns(axes).into_iter().map(|name| Ok((name, column(name)?.0.label(history)))).collect()
+pub(crate) fn contact_units(history: &History, axes: usize) -> HashMap<&'static str, String> {
+    let mut row = ContactRow::default();
+    row.cells(axes).into_iter().map(|cell| (cell.name, cell.unit.label(history))).collect()
+}
+
+/// Values of a column of `contact.csv`.
+enum Values {
+    Integers(Vec<i64>),
+    Reals(Vec<f64>),
+    Texts(Vec<String>),
 }
 
 /// Rows of `contact.csv` by column.
@@ -78,14 +47,28 @@ pub(crate) fn contact<'py>(
     rows: &[ContactRow],
     axes: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    for name in contact_columns(axes) {
-        match column(name)?.1 {
-            Values::Integer(of) => {
-                dict.set_item(name, integers(py, rows.iter().map(|row| of(row) as i64).collect())?)?;
+    let empty = |cell: ContactCell| match cell.value {
+        ContactValue::Count(_) => Values::Integers(Vec::new()),
+        ContactValue::Real(_) => Values::Reals(Vec::new()),
+        ContactValue::Text(_) => Values::Texts(Vec::new()),
+    };
+    let mut columns: Vec<Values> = ContactRow::default().cells(axes).into_iter().map(empty).collect();
+    for row in rows {
+        for (column, cell) in columns.iter_mut().zip(row.clone().cells(axes)) {
+            match (column, cell.value) {
+                (Values::Integers(column), ContactValue::Count(count)) => column.push(*count as i64),
+                (Values::Reals(column), ContactValue::Real(real)) => column.push(*real),
+                (Values::Texts(column), ContactValue::Text(text)) => column.push(text.to_string()),
+                _ => unreachable!("the type of a column is that of its values"),
             }
-            Values::Real(of) => dict.set_item(name, array(py, rows.iter().map(of).collect())?)?,
-            Values::Text(of) => dict.set_item(name, PyList::new(py, rows.iter().map(of))?)?,
+        }
+    }
+    let dict = PyDict::new(py);
+    for (name, column) in ContactRow::columns(axes).into_iter().zip(columns) {
+        match column {
+            Values::Integers(values) => dict.set_item(name, integers(py, values)?)?,
+            Values::Reals(values) => dict.set_item(name, array(py, values)?)?,
+            Values::Texts(values) => dict.set_item(name, PyList::new(py, values)?)?,
         }
     }
     Ok(dict)

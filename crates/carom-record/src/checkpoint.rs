@@ -39,8 +39,7 @@ pub(crate) struct Header {
 
 /// One of the checkpoints of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum Generation {
+pub(crate) enum Generation {
     A,
     B,
     /// The last one that was flushed to the disk, under a second name until the run ends.
@@ -113,7 +112,8 @@ pub(crate) fn forget_flushed(directory: &Path) -> Result<(), RecordError> {
 
 /// Gives a flushed generation a second name, which the next checkpoints do not replace.
 fn name_flushed(directory: &Path, generation: Generation) -> Result<(), RecordError> {
-    let (from, to) = (path(directory, generation), path(directory, Generation::Flushed));
+    let from = path(directory, generation);
+    let to = path(directory, Generation::Flushed);
     let partial = files::partial(&to);
     // Left behind by a killed process, or by a rename to another name of the same file.
     let _ = fs::remove_file(&partial);

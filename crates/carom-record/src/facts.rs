@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::Expect;
-use crate::metrics::Overlay;
+use crate::expect::Expect;
 
 /// Facts of a case, which whoever resolves the case states.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -60,6 +59,29 @@ pub struct Held {
     pub axis: Option<usize>,
     /// Displacement as a formula in X, Y, Z and t; none where it is constant.
     pub displacement: Option<String>,
+}
+
+/// Measured data, in the units of the case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Overlay {
+    /// Its name in figures and metrics.
+    pub name: String,
+    /// The column of the history that it belongs to.
+    pub column: String,
+    /// Times.
+    pub times: Vec<f64>,
+    /// Values.
+    pub values: Vec<f64>,
+    /// Where they come from.
+    pub source: Option<String>,
+}
+
+impl Overlay {
+    /// The points between two times.
+    pub fn within(&self, first: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
+        let points = self.times.iter().zip(&self.values).filter(|(t, _)| (first..=last).contains(*t));
+        points.map(|(t, y)| (*t, *y)).unzip()
+    }
 }
 
 impl Facts {

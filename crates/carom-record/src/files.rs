@@ -10,30 +10,14 @@ use crate::RecordError;
 /// Replaces `path` by the concatenated parts. After a crash the file is either the old or the new
 /// one.
 pub(crate) fn write_atomically(path: &Path, parts: &[&[u8]]) -> Result<(), RecordError> {
-    replace(path, |file| parts.iter().try_for_each(|part| file.write_all(part)))
-}
-
-/// Replaces `path` by what `write` writes to an empty file, opened for reading and writing.
-pub(crate) fn replace(
-    path: &Path,
-    write: impl FnOnce(&mut File) -> io::Result<()>,
-) -> Result<(), RecordError> {
-    rename_after(path, |file| write(file).and_then(|()| flush(file)))?;
+    rename_after(path, parts, flush)?;
     sync_directory(path.parent().unwrap_or(Path::new(".")))
-}
-
-/// Reads a file; `missing` is the error where there is none.
-pub(crate) fn read_or(path: &Path, missing: RecordError) -> Result<Vec<u8>, RecordError> {
-    fs::read(path).map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => missing,
-        _ => RecordError::io("read", path)(error),
-    })
 }
 
 /// Replaces `path` without flushing it to the disk. A killed process leaves the old or the new
 /// file; until [`sync`] is called, a power failure may leave an empty one.
 pub(crate) fn write_unsynced(path: &Path, parts: &[&[u8]]) -> Result<(), RecordError> {
-    rename_after(path, |file| parts.iter().try_for_each(|part| file.write_all(part)))
+    rename_after(path, parts, |_| Ok(()))
 }
 
 /// Flushes an open file to the disk. Every flush of this crate passes through here.
@@ -64,11 +48,15 @@ pub fn is_free(directory: &Path) -> bool {
         || fs::read_dir(directory).is_ok_and(|mut entries| entries.next().is_none())
 }
 
-fn rename_after(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(), RecordError> {
+fn rename_after(
+    path: &Path,
+    parts: &[&[u8]],
+    finish: impl FnOnce(&File) -> io::Result<()>,
+) -> Result<(), RecordError> {
     let partial = partial(path);
-    let created = File::options().read(true).write(true).create(true).truncate(true).open(&partial);
-    let mut file = created.map_err(RecordError::io("create", &partial))?;
-    write(&mut file).map_err(RecordError::io("write", path))?;
+    let mut file = File::create(&partial).map_err(RecordError::io("create", &partial))?;
+    let written = parts.iter().try_for_each(|part| file.write_all(part)).and_then(|()| finish(&file));
+    written.map_err(RecordError::io("write", path))?;
     drop(file);
     fs::rename(&partial, path).map_err(RecordError::io("replace", path))
 }

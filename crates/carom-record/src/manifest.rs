@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Facts, RecordError, Warning, available_memory, files, json, stream};
+use crate::{Facts, RecordError, Warning, available_memory, json, stream};
 
 /// Bytes of memory per byte of a table that is read: its text, and its values.
 const PER_BYTE: f64 = 3.0;
@@ -35,7 +35,6 @@ pub struct Column {
     /// Short description.
     pub description: String,
     /// Written without a decimal point.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub integer: bool,
 }
 
@@ -47,7 +46,6 @@ pub struct Source {
     /// The `--set key=value` options, in order.
     pub sets: Vec<String>,
     /// Folder to which its paths are relative; the working directory if there is none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub folder: Option<PathBuf>,
     /// Whether the run was made without a report page; `carom resume` then makes none.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -76,7 +74,6 @@ pub struct Machine {
     /// Processor family.
     pub arch: String,
     /// Model of the processor, where the system tells it.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub processor: String,
 }
 
@@ -130,22 +127,18 @@ pub struct Expectation {
     /// The bound in words: `-0.7827 ± 0.004`.
     pub expected: String,
     /// The expected value, or the upper or lower bound.
-    #[serde(default)]
     pub value: Option<f64>,
     /// Absolute tolerance about it; none for an upper or lower bound.
-    #[serde(default)]
     pub tolerance: Option<f64>,
     /// The value in the record; none if it cannot be evaluated.
     pub got: Option<f64>,
     /// Whether the bound is satisfied.
     pub pass: bool,
     /// Why there is no value.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
     /// Where the expected value comes from.
     pub source: Option<String>,
     /// Skipped by `carom verify --fast`.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub slow: bool,
 }
 
@@ -172,13 +165,10 @@ pub struct Manifest {
     pub columns: Vec<Column>,
     /// Named sides, `body.side`: chains of point numbers of the field files in order along the
     /// boundary, facet by facet, with interior points between the end points of a facet.
-    #[serde(default)]
     pub sides: BTreeMap<String, Vec<Vec<usize>>>,
     /// Edges that show the rigid triangulated surfaces, by contact, where they are at first.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub surfaces: BTreeMap<String, Vec<[[f64; 3]; 2]>>,
     /// Doubts about the case, and, once the run has finished, about its results.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,
     /// Wall seconds per phase.
     pub timings: BTreeMap<String, f64>,
@@ -186,7 +176,6 @@ pub struct Manifest {
     pub counters: BTreeMap<String, u64>,
     /// BLAKE3 hashes by the name of the file: of the tables and the log once the run has ended, and
     /// of the files that a stop wrote.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub hashes: BTreeMap<String, String>,
     /// Outcomes of the expectations, once the run has finished.
     pub expectations: Vec<Expectation>,
@@ -217,7 +206,8 @@ impl Manifest {
         columns: Vec<Column>,
         threads: usize,
     ) -> Self {
-        let (input_hash, started) = (source.hash(), now());
+        let input_hash = source.hash();
+        let started = now();
         Self {
             status: Status::Running,
             reason: None,
@@ -254,9 +244,9 @@ impl Manifest {
 
     /// Reads `manifest.json` of a run directory.
     pub fn read(directory: &Path) -> Result<Self, RecordError> {
-        let path = directory.join("manifest.json");
-        let text = files::read_or(&path, RecordError::NotARun { path: directory.to_path_buf() })?;
-        json::value(&path, &text, "run the case again, or use the version of Carom that wrote it")
+        let hint = "run the case again, or use the version of Carom that wrote it";
+        let found = json::read(&directory.join("manifest.json"), hint)?;
+        found.ok_or_else(|| RecordError::NotARun { path: directory.to_path_buf() })
     }
 
     /// Reads a file of the run directory; it must be the one that the manifest describes, if it
@@ -278,18 +268,12 @@ impl Manifest {
         }
     }
 
-    /// Replaces `manifest.json` of a run directory that no writer has open.
+    /// Replaces `manifest.json` of a run directory.
     ///
     /// # Errors
     /// Input/output or system error.
-    pub fn replace(&self, directory: &Path) -> Result<(), RecordError> {
-        self.write(directory)
-    }
-
-    /// Replaces `manifest.json` of a run directory.
-    pub(crate) fn write(&self, directory: &Path) -> Result<(), RecordError> {
-        let path = directory.join("manifest.json");
-        files::write_atomically(&path, &[&json::text(&path, self)?, b"\n"])
+    pub fn write(&self, directory: &Path) -> Result<(), RecordError> {
+        json::write(&directory.join("manifest.json"), self)
     }
 }
 
@@ -301,16 +285,20 @@ pub fn now() -> String {
 
 /// Civil date from days since 1970 (H. Hinnant, "chrono-compatible low-level date algorithms").
 fn timestamp(seconds: i64) -> String {
-    let (days, second) = (seconds.div_euclid(86400), seconds.rem_euclid(86400));
+    let days = seconds.div_euclid(86400);
+    let second = seconds.rem_euclid(86400);
     let z = days + 719_468;
-    let (era, doe) = (z.div_euclid(146_097), z.rem_euclid(146_097));
+    let era = z.div_euclid(146_097);
+    let doe = z.rem_euclid(146_097);
     let yoe = (doe - doe / 1460 + doe / 36_524 - doe / 146_096) / 365;
     let doy = doe - (365 * yoe + yoe / 4 - yoe / 100);
     let mp = (5 * doy + 2) / 153;
     let day = doy - (153 * mp + 2) / 5 + 1;
     let month = if mp < 10 { mp + 3 } else { mp - 9 };
     let year = yoe + era * 400 + i64::from(month <= 2);
-    let (h, m, s) = (second / 3600, second / 60 % 60, second % 60);
+    let h = second / 3600;
+    let m = second / 60 % 60;
+    let s = second % 60;
     format!("{year:04}-{month:02}-{day:02}T{h:02}:{m:02}:{s:02}Z")
 }
 

@@ -57,11 +57,13 @@ pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, R
         .into());
     }
     // (h₁ᵖ − h₂ᵖ)/(h₂ᵖ − h₃ᵖ), divided by h₂ᵖ; it grows with p from 0 to infinity.
-    let (coarse, fine) = ((steps[0] / steps[1]).ln(), (steps[1] / steps[2]).ln());
+    let coarse = (steps[0] / steps[1]).ln();
+    let fine = (steps[1] / steps[2]).ln();
     let ratio = |p: f64| {
         if p.abs() < 1e-9 { coarse / fine } else { (p * coarse).exp_m1() / -(-p * fine).exp_m1() }
     };
-    let (mut low, mut high) = (-20.0, 40.0);
+    let mut low = -20.0;
+    let mut high = 40.0;
     if ratio(low) > quotient || ratio(high) < quotient {
         return Err(format!(
             "no order fits the differences {:.3e} and {:.3e}",
@@ -118,7 +120,8 @@ pub fn extrapolated(steps: &[f64], values: &[f64]) -> Result<Extrapolation, Reas
     let [before, order] = &orders(&steps[last..], &values[last..])[..] else {
         return Err("four values are needed".into());
     };
-    let (before, order) = (before.clone()?, order.clone()?);
+    let before = before.clone()?;
+    let order = order.clone()?;
     if (order - before).abs() > MARGIN {
         return Err(format!(
             "the last two estimates, {before:.2} and {order:.2}, differ by more than {MARGIN}"

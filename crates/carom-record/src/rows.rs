@@ -5,14 +5,16 @@
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
-use std::io;
+use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::stream::Stream;
+use crate::RecordError;
+use crate::stream::{Extent, Stream};
+use crate::units::Unit;
 
 /// State of one active contact node at the end of a step.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactRow<'a> {
     /// Step.
     pub step: u64,
@@ -51,21 +53,62 @@ pub struct ContactRow<'a> {
     pub rubbing: [f64; 3],
 }
 
-/// Header of `contact.csv` for this number of axes.
-pub fn contact_columns(axes: usize) -> Vec<&'static str> {
-    let (places, normals) = (&["x", "y", "z"][..axes], &["normal_x", "normal_y", "normal_z"][..axes]);
-    let rubbing = &["friction_x", "friction_y", "friction_z"][..if axes == 3 { 3 } else { 0 }];
-    [
-        &["step", "time", "contact", "node"][..],
-        places,
-        &["facet", "xi"],
-        &["eta"][..usize::from(axes == 3)],
-        &["gap", "multiplier", "pressure"],
-        normals,
-        &["friction", "traction", "slip"],
-        rubbing,
-    ]
-    .concat()
+/// A value of a row, to be read or written.
+#[derive(Debug)]
+#[allow(missing_docs)]
+pub enum ContactValue<'r, 'a> {
+    Count(&'r mut u64),
+    Real(&'r mut f64),
+    Text(&'r mut Cow<'a, str>),
+}
+
+/// A column of `contact.csv`, and its value in a row.
+#[derive(Debug)]
+pub struct ContactCell<'r, 'a> {
+    /// Header in the file.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: Unit,
+    /// The value.
+    pub value: ContactValue<'r, 'a>,
+}
+
+impl<'a> ContactRow<'a> {
+    /// The cells of the row in the order of the file, in which positions have this number of axes.
+    pub fn cells(&mut self, axes: usize) -> Vec<ContactCell<'_, 'a>> {
+        use ContactValue::{Count, Real, Text};
+        let in_space = if axes == 3 { 3 } else { 0 };
+        let cell = |name, unit, value| ContactCell { name, unit, value };
+        let length = |(name, value)| cell(name, Unit::Length, Real(value));
+        let number = |(name, value)| cell(name, Unit::None, Real(value));
+        let force = |(name, value)| cell(name, Unit::Force, Real(value));
+        let mut cells = vec![
+            cell("step", Unit::None, Count(&mut self.step)),
+            cell("time", Unit::Time, Real(&mut self.time)),
+            cell("contact", Unit::None, Text(&mut self.contact)),
+            cell("node", Unit::None, Count(&mut self.node)),
+        ];
+        cells.extend(["x", "y", "z"].into_iter().zip(&mut self.point).take(axes).map(length));
+        cells.push(cell("facet", Unit::None, Count(&mut self.facet)));
+        cells.push(number(("xi", &mut self.xi)));
+        cells.extend([("eta", &mut self.eta)].into_iter().take(in_space).map(number));
+        cells.push(length(("gap", &mut self.gap)));
+        cells.push(force(("multiplier", &mut self.multiplier)));
+        cells.push(cell("pressure", Unit::Stress, Real(&mut self.pressure)));
+        let normal = ["normal_x", "normal_y", "normal_z"].into_iter().zip(&mut self.normal);
+        cells.extend(normal.take(axes).map(number));
+        cells.push(cell("friction", Unit::None, Text(&mut self.friction)));
+        cells.push(force(("traction", &mut self.traction)));
+        cells.push(length(("slip", &mut self.slip)));
+        let rubbing = ["friction_x", "friction_y", "friction_z"].into_iter().zip(&mut self.rubbing);
+        cells.extend(rubbing.take(in_space).map(force));
+        cells
+    }
+
+    /// Header of `contact.csv` for this number of axes.
+    pub fn columns(axes: usize) -> Vec<&'static str> {
+        ContactRow::default().cells(axes).iter().map(|cell| cell.name).collect()
+    }
 }
 
 /// An event of a run.
@@ -98,71 +141,62 @@ impl Event {
     }
 }
 
-/// A CSV file being written, with one buffer for all numbers.
+/// A value of a cell.
+pub(crate) enum Value<'a> {
+    Count(u64),
+    Real(f64),
+    Text(&'a str),
+}
+
+/// A file of rows being written, with one buffer for all numbers.
 pub(crate) struct Table {
+    path: PathBuf,
     writer: csv::Writer<Stream>,
     text: String,
 }
 
 impl Table {
-    pub(crate) fn new(stream: Stream) -> Self {
-        Self {
-            writer: csv::WriterBuilder::new().terminator(csv::Terminator::Any(b'\n')).from_writer(stream),
-            text: String::new(),
+    pub(crate) fn new(path: PathBuf, stream: Stream) -> Self {
+        // A line of the log is one cell as it is.
+        let is_log = path.extension().is_some_and(|extension| extension == "jsonl");
+        let quotes = if is_log { csv::QuoteStyle::Never } else { csv::QuoteStyle::Necessary };
+        let mut builder = csv::WriterBuilder::new();
+        builder.quote_style(quotes).terminator(csv::Terminator::Any(b'\n'));
+        Self { path, writer: builder.from_writer(stream), text: String::new() }
+    }
+
+    pub(crate) fn row<'a>(&mut self, cells: impl IntoIterator<Item = Value<'a>>) -> Result<(), RecordError> {
+        let failed = |error: csv::Error| RecordError::io("write", &self.path)(error.into());
+        for cell in cells {
+            self.text.clear();
+            // Writing to a text cannot fail.
+            let _ = match cell {
+                Value::Count(count) => write!(self.text, "{count}"),
+                Value::Real(real) => write!(self.text, "{real:?}"),
+                Value::Text(text) => write!(self.text, "{text}"),
+            };
+            self.writer.write_field(&self.text).map_err(failed)?;
         }
+        self.writer.write_record(None::<&[u8]>).map_err(failed)
     }
 
-    pub(crate) fn text(&mut self, field: &str) -> io::Result<()> {
-        Ok(self.writer.write_field(field)?)
+    pub(crate) fn contact(&mut self, row: &ContactRow, axes: usize) -> Result<(), RecordError> {
+        let mut row = row.clone();
+        self.row(row.cells(axes).into_iter().map(|cell| match cell.value {
+            ContactValue::Count(count) => Value::Count(*count),
+            ContactValue::Real(real) => Value::Real(*real),
+            ContactValue::Text(text) => Value::Text(text),
+        }))
     }
 
-    pub(crate) fn integer(&mut self, value: u64) -> io::Result<()> {
-        self.display(format_args!("{value}"))
+    /// Passes all rows to the operating system.
+    pub(crate) fn flush(&mut self) -> Result<Extent, RecordError> {
+        self.writer.flush().map_err(RecordError::io("write", &self.path))?;
+        Ok(self.writer.get_ref().extent())
     }
 
-    pub(crate) fn number(&mut self, value: f64) -> io::Result<()> {
-        self.display(format_args!("{value:?}"))
-    }
-
-    fn display(&mut self, arguments: std::fmt::Arguments) -> io::Result<()> {
-        self.text.clear();
-        self.text.write_fmt(arguments).map_err(io::Error::other)?;
-        Ok(self.writer.write_field(&self.text)?)
-    }
-
-    pub(crate) fn end_row(&mut self) -> io::Result<()> {
-        Ok(self.writer.write_record(None::<&[u8]>)?)
-    }
-
-    pub(crate) fn contact(&mut self, row: &ContactRow, axes: usize) -> io::Result<()> {
-        self.integer(row.step)?;
-        self.number(row.time)?;
-        self.text(&row.contact)?;
-        self.integer(row.node)?;
-        row.point[..axes].iter().try_for_each(|x| self.number(*x))?;
-        self.integer(row.facet)?;
-        self.number(row.xi)?;
-        if axes == 3 {
-            self.number(row.eta)?;
-        }
-        [row.gap, row.multiplier, row.pressure].iter().try_for_each(|x| self.number(*x))?;
-        row.normal[..axes].iter().try_for_each(|x| self.number(*x))?;
-        self.text(&row.friction)?;
-        self.number(row.traction)?;
-        self.number(row.slip)?;
-        if axes == 3 {
-            row.rubbing.iter().try_for_each(|force| self.number(*force))?;
-        }
-        self.end_row()
-    }
-
-    /// Passes all buffered rows to the operating system.
-    pub(crate) fn flush(&mut self) -> io::Result<()> {
-        self.writer.flush()
-    }
-
-    /// The underlying stream, for syncing.
-    pub(crate) fn stream(&self) -> &Stream {
-        self.writer.get_ref()
+    /// Flushes to the disk what was passed to the operating system.
+    pub(crate) fn sync(&self) -> Result<(), RecordError> {
+        self.writer.get_ref().sync().map_err(RecordError::io("write", &self.path))
     }
 }

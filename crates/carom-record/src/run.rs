@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::decimal::decimal;
-use crate::rows::contact_columns;
+use crate::rows::{ContactCell, ContactValue};
 use crate::{Column, ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, Stop, pvd};
 
 const HINT: &str = "resume from the last checkpoint with `carom resume`, or run the case again";
@@ -181,34 +181,16 @@ fn history(lines: &Lines, columns: &[Column]) -> Result<History, RecordError> {
 
 fn contact(lines: &Lines, axes: usize) -> Result<Vec<ContactRow<'static>>, RecordError> {
     let mut list = Vec::new();
-    let columns = contact_columns(axes);
-    rows(lines, &columns, |record| {
-        let real = |i| number::<f64>(record, i, columns[i]);
-        let count = |i| number::<u64>(record, i, columns[i]);
-        let vector = |first: usize| {
-            let mut vector = [0.0; 3];
-            (0..axes).try_for_each(|i| real(first + i).map(|x| vector[i] = x)).map(|()| vector)
-        };
-        let facet = 4 + axes;
-        let after = facet + if axes == 3 { 3 } else { 2 };
-        list.push(ContactRow {
-            step: count(0)?,
-            time: real(1)?,
-            contact: record.get(2).unwrap_or_default().to_string().into(),
-            node: count(3)?,
-            point: vector(4)?,
-            facet: count(facet)?,
-            xi: real(facet + 1)?,
-            eta: if axes == 3 { real(facet + 2)? } else { 0.0 },
-            gap: real(after)?,
-            multiplier: real(after + 1)?,
-            pressure: real(after + 2)?,
-            normal: vector(after + 3)?,
-            friction: record.get(after + 3 + axes).unwrap_or_default().to_string().into(),
-            traction: real(after + 4 + axes)?,
-            slip: real(after + 5 + axes)?,
-            rubbing: if axes == 3 { vector(after + 6 + axes)? } else { [0.0; 3] },
-        });
+    rows(lines, &ContactRow::columns(axes), |record| {
+        let mut row = ContactRow::default();
+        for (i, ContactCell { name, value, .. }) in row.cells(axes).into_iter().enumerate() {
+            match value {
+                ContactValue::Count(count) => *count = number(record, i, name)?,
+                ContactValue::Real(real) => *real = number(record, i, name)?,
+                ContactValue::Text(text) => *text = record[i].to_owned().into(),
+            }
+        }
+        list.push(row);
         Ok(())
     })?;
     Ok(list)

@@ -28,10 +28,8 @@ pub struct Stop {
     /// Where, if it is known.
     pub place: Option<StopPlace>,
     /// The last iterations of Newton's method in the last attempt.
-    #[serde(default)]
     pub iterations: Vec<StopIteration>,
     /// What to try, the most promising first.
-    #[serde(default)]
     pub advice: Vec<Advice>,
 }
 
@@ -39,28 +37,20 @@ pub struct Stop {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StopPlace {
     /// How it was found, if the reason does not name it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found: Option<String>,
     /// The node, or the first one of the cell.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub node: Option<StopNode>,
     /// Contact.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<String>,
     /// Number of the facet that the node faces.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub facet: Option<usize>,
     /// Nodes of that facet, from end to end; none of a rigid obstacle.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub facet_nodes: Vec<StopNode>,
     /// Body of the cell.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// Number of the cell in its body.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cell: Option<usize>,
     /// Point numbers of the cell.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cell_nodes: Vec<usize>,
 }
 
@@ -100,7 +90,6 @@ pub struct Advice {
     /// In words.
     pub what: String,
     /// The option that makes this change, as `key=value`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sets: Vec<String>,
 }
 
@@ -116,8 +105,7 @@ impl Stop {
         manifest: &mut Manifest,
     ) -> Result<(), RecordError> {
         let path = directory.join(FILES[0]);
-        let mut text = json::text(&path, self)?;
-        text.push(b'\n');
+        let text = json::text(&path, self)?;
         let fields = fields.to_vtu(self.last)?;
         for (name, bytes) in FILES.into_iter().zip([text, fields]) {
             files::write_atomically(&directory.join(name), &[&bytes])?;

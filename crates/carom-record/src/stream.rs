@@ -79,7 +79,8 @@ pub(crate) fn verified(path: &Path, extent: &Extent, step: u64) -> Result<blake3
         reader.consume(read);
     }
     if hasher.count() < extent.length {
-        let (got, had) = (hasher.count(), extent.length);
+        let got = hasher.count();
+        let had = extent.length;
         return Err(altered(path, format!("it has {got} bytes, but had {had} bytes at step {step}")));
     }
     if hasher.finalize() != extent.hash {

@@ -1,10 +1,30 @@
-//! Unit labels of derived quantities, from the case's labels of length, time and mass. No values
-//! are converted.
+//! Unit labels: those of derived quantities, from the case's labels of length, time and mass, and
+//! factors between two labels, `lb in/s^2` and `N`, for comparing records in different systems of
+//! units. The values of a record are never converted.
 //!
-//! Where all three labels are decimal multiples of metre, second and kilogram and so is a derived
-//! unit of newton, pascal or joule with a prefix of steps of 1000, it has that name: with mm, ms
-//! and g forces are in N, stresses in MPa and energies in mJ. Otherwise it is composed of the
-//! labels.
+//! Where a derived unit is a multiple of newton, pascal or joule with a prefix of steps of 1000, it
+//! has that name: with mm, ms and g forces are in N, stresses in MPa and energies in mJ. Otherwise it
+//! is composed of the labels.
+//!
+//! A label is a product of units with integer powers; what follows a slash, or stands in brackets
+//! after it, is divided by. Definitions: *The International System of Units*, 9th ed., and NIST SP
+//! 811, appendix B.8 (inch, foot, pound, slug, pound-force).
+
+/// Unit of a column or a metric, in terms of the units of the case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Unit {
+    None,
+    Time,
+    PerTime,
+    Force,
+    Impulse,
+    Length,
+    Stress,
+    Second,
+    /// The unit of the column.
+    Column,
+}
 
 /// Labels of all kinds of columns.
 #[derive(Clone, Debug)]
@@ -33,43 +53,22 @@ pub struct Labels {
     pub none: String,
 }
 
-/// Units with their powers of ten.
-type Powers = &'static [(&'static str, i32)];
-const LENGTHS: Powers = &[
-    ("km", 3),
-    ("m", 0),
-    ("dm", -1),
-    ("cm", -2),
-    ("mm", -3),
-    ("µm", -6),
-    ("μm", -6),
-    ("um", -6),
-    ("nm", -9),
-];
-const TIMES: Powers = &[("s", 0), ("ms", -3), ("µs", -6), ("μs", -6), ("us", -6), ("ns", -9)];
-const MASSES: Powers =
-    &[("t", 3), ("Mg", 3), ("kg", 0), ("g", -3), ("mg", -6), ("µg", -9), ("μg", -9), ("ug", -9)];
-const PREFIXES: Powers =
-    &[("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9), ("T", 12)];
-
-fn power(label: &str, of: Powers) -> Option<i32> {
-    of.iter().find(|(name, _)| *name == label).map(|(_, power)| *power)
-}
-
-/// The name of 10^power times a unit.
-fn named(unit: &str, power: i32) -> Option<String> {
-    let prefix = PREFIXES.iter().find(|(_, p)| *p == power)?.0;
-    Some(format!("{prefix}{unit}"))
+/// The name of a value in kilograms, metres and seconds as a multiple of a unit of the SI.
+fn named(unit: &str, value: f64) -> Option<String> {
+    let steps = PREFIXES.iter().filter(|(prefix, _)| !["c", "d"].contains(prefix));
+    let mut fitting = steps.filter(|(_, factor)| (value / factor - 1.0).abs() < 1e-9);
+    fitting.next().map(|(prefix, _)| format!("{prefix}{unit}"))
 }
 
 impl Labels {
     /// From those of length, time and mass.
     pub fn of(l: &str, t: &str, m: &str) -> Self {
-        let powers = power(l, LENGTHS).zip(power(t, TIMES)).zip(power(m, MASSES));
+        let known = |label: &str, powers: [i32; 3]| Some(unit(label).filter(|known| known.1 == powers)?.0);
         // A product of powers of mass, length and time.
         let name = |unit: &str, [mass, length, time]: [i32; 3]| {
-            let ((l, t), m) = powers?;
-            named(unit, mass * m + length * l + time * t)
+            let masses = known(m, [1, 0, 0])?.powi(mass);
+            let lengths = known(l, [0, 1, 0])?.powi(length);
+            named(unit, masses * lengths * known(t, [0, 0, 1])?.powi(time))
         };
         let force = name("N", [1, 1, -2]);
         let of_force = |by: &str, composed: String| match &force {
@@ -92,10 +91,96 @@ impl Labels {
     }
 }
 
-/// The velocity 1 in units of these labels in m/s; none if they are no decimal multiples of metre
-/// and second.
+/// A unit in kilograms, metres and seconds: its value, and its powers of them.
+type Size = (f64, [i32; 3]);
+
+/// Units without a prefix.
+const WHOLE: [(&str, Size); 9] = [
+    ("1", (1.0, [0, 0, 0])),
+    ("in", (0.0254, [0, 1, 0])),
+    ("ft", (0.3048, [0, 1, 0])),
+    ("min", (60.0, [0, 0, 1])),
+    ("h", (3600.0, [0, 0, 1])),
+    ("t", (1e3, [1, 0, 0])),
+    ("lb", (0.453_592_37, [1, 0, 0])),
+    ("slug", (14.593_902_937_206_364, [1, 0, 0])),
+    ("lbf", (4.448_221_615_260_5, [1, 1, -2])),
+];
+
+/// Units that may have a prefix.
+const PREFIXED: [(&str, Size); 6] = [
+    ("Pa", (1.0, [1, -1, -2])),
+    ("N", (1.0, [1, 1, -2])),
+    ("J", (1.0, [1, 2, -2])),
+    ("g", (1e-3, [1, 0, 0])),
+    ("m", (1.0, [0, 1, 0])),
+    ("s", (1.0, [0, 0, 1])),
+];
+
+/// Prefixes; micro also as it is typed, and as the Greek letter.
+const PREFIXES: [(&str, f64); 13] = [
+    ("", 1.0),
+    ("p", 1e-12),
+    ("n", 1e-9),
+    ("µ", 1e-6),
+    ("μ", 1e-6),
+    ("u", 1e-6),
+    ("m", 1e-3),
+    ("c", 1e-2),
+    ("d", 1e-1),
+    ("k", 1e3),
+    ("M", 1e6),
+    ("G", 1e9),
+    ("T", 1e12),
+];
+
+fn unit(name: &str) -> Option<Size> {
+    if let Some((_, unit)) = WHOLE.iter().find(|(word, _)| *word == name) {
+        return Some(*unit);
+    }
+    let with_prefix = |(base, (value, powers)): &(&str, Size)| {
+        let prefix = name.strip_suffix(base)?;
+        let (_, factor) = PREFIXES.iter().find(|(word, _)| *word == prefix)?;
+        Some((factor * value, *powers))
+    };
+    PREFIXED.iter().find_map(with_prefix)
+}
+
+/// The value of a label in kilograms, metres and seconds.
+fn value(label: &str) -> Option<Size> {
+    let mut value = 1.0;
+    let mut powers = [0; 3];
+    let (above, below) = label.split_once('/').unwrap_or((label, ""));
+    // One slash only: `a/b/c` is ambiguous.
+    if below.contains('/') {
+        return None;
+    }
+    let below = below.strip_prefix('(').and_then(|inner| inner.strip_suffix(')')).unwrap_or(below);
+    for (part, sign) in [(above, 1), (below, -1)] {
+        for word in part.split([' ', '·']).filter(|word| !word.is_empty()) {
+            let (name, power) = word.split_once('^').unwrap_or((word, "1"));
+            let power = sign * power.parse::<i32>().ok()?;
+            let (size, of) = unit(name)?;
+            value *= f64::powi(size, power);
+            powers = [0, 1, 2].map(|k| powers[k] + power * of[k]);
+        }
+    }
+    Some((value, powers))
+}
+
+/// What values in units of `from` are multiplied by to be in units of `to`; none where a unit is
+/// not known, or where the two are units of different quantities.
+pub fn factor(from: &str, to: &str) -> Option<f64> {
+    if from == to {
+        return Some(1.0);
+    }
+    let ((a, one), (b, other)) = (value(from)?, value(to)?);
+    (one == other).then_some(a / b)
+}
+
+/// The velocity 1 in units of these labels in m/s; none if they are not known.
 pub fn metres_per_second(length: &str, time: &str) -> Option<f64> {
-    Some(10.0_f64.powi(power(length, LENGTHS)? - power(time, TIMES)?))
+    factor(&format!("{length}/{time}"), "m/s")
 }
 
 /// The label of stress that belongs to those of force, length and time.
@@ -106,14 +191,53 @@ pub(crate) fn stress(force: &str, length: &str, time: &str) -> String {
     if let Some(mass) = force.strip_suffix(&format!(" {length}/{time}^2")) {
         return Labels::of(length, time, mass).stress;
     }
-    let newtons = force.strip_suffix('N').and_then(|prefix| power(prefix, PREFIXES));
-    let named = newtons.zip(power(length, LENGTHS)).and_then(|(n, l)| named("Pa", n - 2 * l));
-    named.unwrap_or_else(|| format!("{force}/{length}^2"))
+    let label = format!("{force}/{length}^2");
+    factor(&label, "Pa").and_then(|pascals| named("Pa", pascals)).unwrap_or(label)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// NIST SP 811, appendix B.8: 1 lbf = 4.448 222 N, 1 psi = 6.894 757 kPa, 1 ft lbf = 1.355 818
+    /// J, 1 pdl (lb ft/s²) = 0.138 255 0 N; and 1 N/mm² = 1 MPa, 1 km/h = 0.277 777 8 m/s.
+    #[test]
+    fn published_factors() {
+        for (from, to, published) in [
+            ("lbf", "N", 4.448_222),
+            ("lbf/in^2", "kPa", 6.894_757),
+            ("ft lbf", "J", 1.355_818),
+            ("lb ft/s^2", "N", 0.138_255_0),
+            ("N/mm^2", "Pa", 1e6),
+            ("km/h", "m/s", 0.277_777_8),
+            ("1/ms", "1/s", 1e3),
+            ("slug", "lb", 32.174_05),
+        ] {
+            let found = factor(from, to).unwrap();
+            assert!((found / published - 1.0).abs() < 5e-7, "{from}: {found}");
+        }
+    }
+
+    /// Labels that records have; kilograms are not metres.
+    #[test]
+    fn every_label_of_a_system_is_known() {
+        let all = |l: &Labels| {
+            [&l.time, &l.length, &l.velocity, &l.acceleration, &l.force, &l.moment, &l.momentum]
+                .into_iter()
+                .chain([&l.angular_momentum, &l.energy, &l.stress, &l.none])
+                .cloned()
+                .collect::<Vec<_>>()
+        };
+        let si = all(&Labels::of("m", "s", "kg"));
+        for system in
+            [["mm", "ms", "g"], ["in", "s", "lb"], ["mm", "s", "t"], ["cm", "s", "g"], ["µm", "µs", "µg"]]
+        {
+            let own = all(&Labels::of(system[0], system[1], system[2]));
+            assert!(own.iter().zip(&si).all(|(from, to)| factor(from, to).is_some()), "{own:?}");
+        }
+        assert_eq!((factor("kg", "m"), factor("slinch", "kg"), factor("a", "a")), (None, None, Some(1.0)));
+        assert_eq!((factor("m/s/s", "m/s^2"), factor("m^x", "m")), (None, None));
+    }
 
     /// The Brochure of the SI, 9th edition, tables 4 and 7: 1 N = 1 kg m/s², 1 Pa = 1 kg/(m s²),
     /// 1 J = 1 kg m²/s².
@@ -138,17 +262,16 @@ mod tests {
         // 1 mm/ms = 1 m/s; 1 mm/s = 0.001 m/s; 1 km/s = 1000 m/s.
         let of = |labels: [&str; 2]| metres_per_second(labels[0], labels[1]);
         assert_eq!([["mm", "ms"], ["mm", "s"], ["km", "s"]].map(of), [Some(1.0), Some(1e-3), Some(1e3)]);
-        assert_eq!([["in", "s"], ["m", "min"], ["", ""]].map(of), [None; 3]);
+        assert_eq!([["in", "s"], ["cubit", "s"], ["", ""]].map(of), [Some(0.0254), None, None]);
     }
 
     /// One run has one unit of stress, wherever the label comes from. Where only the force has a
     /// name the mass is not known: stresses of 1e15 Pa and more.
     #[test]
     fn stress_belongs_to_force_and_length() {
-        let names = |of: Powers| of.iter().map(|(name, _)| *name).chain(["in"]).collect::<Vec<_>>();
-        for l in names(LENGTHS) {
-            for t in names(TIMES) {
-                for m in names(MASSES) {
+        for l in ["km", "m", "dm", "cm", "mm", "µm", "um", "nm", "in"] {
+            for t in ["s", "ms", "µs", "us", "ns", "min"] {
+                for m in ["t", "Mg", "kg", "g", "mg", "µg", "lb"] {
                     let labels = Labels::of(l, t, m);
                     let found = stress(&labels.force, l, t);
                     assert!(found == labels.stress || found.ends_with(&format!("N/{l}^2")), "{labels:?}");

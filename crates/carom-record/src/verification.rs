@@ -11,7 +11,22 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Expectation, Machine, RecordError, files, json};
+use crate::{Expectation, Machine, RecordError, json, table};
+
+/// Columns of `verify.csv`.
+const COLUMNS: [&str; 11] = [
+    "family",
+    "case",
+    "arm",
+    "quantity",
+    "expected",
+    "got",
+    "error",
+    "tolerance",
+    "source",
+    "pass",
+    "directory",
+];
 
 /// A verification.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -89,7 +104,8 @@ impl Row {
 
     /// got − expected; for an upper or lower bound, the excess over it (0 if it is satisfied).
     pub fn error(&self) -> Option<f64> {
-        let (got, value) = (self.verdict.got?, self.verdict.value?);
+        let got = self.verdict.got?;
+        let value = self.verdict.value?;
         match self.verdict.tolerance {
             None if self.verdict.pass => Some(0.0),
             _ => Some(got - value),
@@ -140,50 +156,18 @@ impl Verification {
     /// # Errors
     /// Input/output or system error.
     pub fn write(&self, directory: &Path) -> Result<(), RecordError> {
-        let path = directory.join("verify.json");
-        files::write_atomically(&path, &[&json::text(&path, self)?, b"\n"])?;
-        let path = directory.join("verify.csv");
-        files::write_atomically(&path, &[&self.csv().map_err(RecordError::io("write", &path))?])
-    }
-
-    /// The table, as CSV; numbers read back to the same bits.
-    ///
-    /// # Errors
-    /// None in practice: it writes to memory.
-    pub fn csv(&self) -> std::io::Result<Vec<u8>> {
-        let number = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:?}"));
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        let header = [
-            "family",
-            "case",
-            "arm",
-            "quantity",
-            "expected",
-            "got",
-            "error",
-            "tolerance",
-            "source",
-            "pass",
-            "directory",
-        ];
-        writer.write_record(header)?;
-        for (set_up, row) in self.rows() {
+        json::write(&directory.join("verify.json"), self)?;
+        let row = |(set_up, row): (&SetUp, &Row)| {
             let verdict = &row.verdict;
-            let pass = if verdict.pass { "pass" } else { "MISSED" };
-            writer.write_record([
-                set_up.family.as_str(),
-                &set_up.name,
-                row.arm.as_deref().unwrap_or_default(),
-                &verdict.what,
-                &verdict.expected,
-                &number(verdict.got),
-                &number(row.error()),
-                &number(verdict.tolerance),
-                verdict.source.as_deref().unwrap_or_default(),
-                pass,
-                &row.directory,
-            ])?;
-        }
-        writer.into_inner().map_err(csv::IntoInnerError::into_error)
+            (
+                (set_up.family.clone(), set_up.name.clone(), row.arm.clone()),
+                (verdict.what.clone(), verdict.expected.clone()),
+                (verdict.got, row.error(), verdict.tolerance),
+                verdict.source.clone(),
+                if verdict.pass { "pass" } else { "MISSED" },
+                row.directory.clone(),
+            )
+        };
+        table::write(&directory.join("verify.csv"), &COLUMNS, self.rows().map(row))
     }
 }

@@ -11,13 +11,12 @@
 //! are left to the system.
 
 use std::fs::{self, File};
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::checkpoint::{self, Generation, Header};
 use crate::intact::{Intact, ROW_FILES, missing, newest_first, no_checkpoint, verified};
-use crate::rows::{Table, contact_columns};
+use crate::rows::{Table, Value};
 use crate::stream::Stream;
 use crate::{ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, Status, files, pvd};
 
@@ -32,9 +31,8 @@ pub struct RunWriter {
     integer: Vec<bool>,
     /// Axes of the positions and normals of contact rows.
     axes: usize,
-    history: Table,
-    contact: Table,
-    log: BufWriter<Stream>,
+    /// Those of [`ROW_FILES`].
+    rows: [Table; 3],
     /// Header of the next checkpoint; its streams are those of the last one.
     header: Header,
     /// Generation of the last checkpoint.
@@ -110,19 +108,16 @@ impl RunWriter {
         manifest.write(partial)?;
         let mut header = Header { payload: payload.len() as u64, ..Header::default() };
         let columns: Vec<&str> = manifest.columns.iter().map(|c| c.name.as_str()).collect();
-        let of_contact = contact_columns(manifest.facts.contact_axes());
+        let of_contact = ContactRow::columns(manifest.facts.contact_axes());
         for (i, names) in [&columns[..], &of_contact, &[]].into_iter().enumerate() {
             let path = partial.join(ROW_FILES[i]);
-            let failed = |e| RecordError::io("create", &path)(e);
-            let mut table = Table::new(Stream::create(&path).map_err(failed)?);
-            for name in names {
-                table.text(name).map_err(failed)?;
-            }
+            let stream = Stream::create(&path).map_err(RecordError::io("create", &path))?;
+            let mut table = Table::new(path, stream);
             if !names.is_empty() {
-                table.end_row().map_err(failed)?;
+                table.row(names.iter().map(|name| Value::Text(name)))?;
             }
-            table.flush().and_then(|()| table.stream().sync()).map_err(failed)?;
-            header.streams[i] = table.stream().extent();
+            header.streams[i] = table.flush()?;
+            table.sync()?;
         }
         checkpoint::write(partial, Generation::A, &header, payload, true)
     }
@@ -146,14 +141,6 @@ impl RunWriter {
         Err(fallback.unwrap_or_else(|| no_checkpoint(directory)))
     }
 
-    /// Reopens the directory at the checkpoint of one generation.
-    pub fn reopen_at(directory: &Path, generation: Generation) -> Result<Reopened, RecordError> {
-        let manifest = Manifest::read(directory)?;
-        let lock = lock(directory)?;
-        let intact = verified(directory, checkpoint::read(directory, generation)?)?;
-        Self::open(directory, manifest, lock, generation, intact)
-    }
-
     fn open(
         directory: &Path,
         manifest: Manifest,
@@ -164,17 +151,15 @@ impl RunWriter {
         let mut rows = Vec::new();
         for (name, hasher) in ROW_FILES.iter().zip(hashers) {
             let path = directory.join(name);
-            rows.push(Stream::reopen(&path, hasher).map_err(RecordError::io("write", &path))?);
+            let stream = Stream::reopen(&path, hasher).map_err(RecordError::io("write", &path))?;
+            rows.push(Table::new(path, stream));
         }
-        let [history, contact, log] = rows.try_into().unwrap_or_else(|_| unreachable!("three row files"));
         drop_fields(directory, &header.fields)?;
         let writer = Self {
             directory: directory.to_path_buf(),
             integer: manifest.columns.iter().map(|c| c.integer).collect(),
             axes: manifest.facts.contact_axes(),
-            history: Table::new(history),
-            contact: Table::new(contact),
-            log: BufWriter::new(log),
+            rows: rows.try_into().unwrap_or_else(|_| unreachable!("three row files")),
             newest: generation,
             // The killed process may not have flushed what the checkpoint describes.
             unsynced: header.fields.iter().map(|e| directory.join(e.file())).collect(),
@@ -183,7 +168,8 @@ impl RunWriter {
             flush_interval: FLUSH_INTERVAL,
             _lock: lock,
         };
-        let (step, rows) = (writer.header.step, writer.header.rows);
+        let step = writer.header.step;
+        let rows = writer.header.rows;
         Ok(Reopened { writer, manifest, payload, step, rows, fallback: None })
     }
 
@@ -202,36 +188,29 @@ impl RunWriter {
         if row.len() != self.integer.len() {
             return Err(RecordError::Width { got: row.len(), expected: self.integer.len() });
         }
-        let table = &mut self.history;
-        let written = row
-            .iter()
-            .zip(&self.integer)
-            .try_for_each(|(&value, &integer)| {
-                // A value that is not a count is written as it is, not rounded.
-                if integer && value >= 0.0 && value.fract() == 0.0 {
-                    table.integer(value as u64)
-                } else {
-                    table.number(value)
-                }
-            })
-            .and_then(|()| table.end_row());
+        let value = |(&value, &integer): (&f64, &bool)| {
+            // A value that is not a count is written as it is, not rounded.
+            if integer && value >= 0.0 && value.fract() == 0.0 {
+                Value::Count(value as u64)
+            } else {
+                Value::Real(value)
+            }
+        };
         self.header.rows += 1;
-        written.map_err(RecordError::io("write", &self.directory.join(ROW_FILES[0])))
+        self.rows[0].row(row.iter().zip(&self.integer).map(value))
     }
 
     /// Appends a row of `contact.csv`.
     pub fn contact(&mut self, row: &ContactRow) -> Result<(), RecordError> {
-        self.contact
-            .contact(row, self.axes)
-            .map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[1]))(e))
+        self.rows[1].contact(row, self.axes)
     }
 
     /// Appends a line of `log.jsonl`.
     pub fn log(&mut self, event: &Event) -> Result<(), RecordError> {
-        serde_json::to_writer(&mut self.log, event)
-            .map_err(Into::into)
-            .and_then(|()| self.log.write_all(b"\n"))
-            .map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[2]))(e))
+        let path = self.directory.join(ROW_FILES[2]);
+        let line =
+            serde_json::to_string(event).map_err(|error| RecordError::io("write", &path)(error.into()))?;
+        self.rows[2].row([Value::Text(&line)])
     }
 
     /// Writes fields as VTU, and lists them in `fields.pvd`.
@@ -260,7 +239,7 @@ impl RunWriter {
         self.write_rows()?;
         if flush {
             self.sync_fields()?;
-            self.sync_rows()?;
+            self.rows.iter().try_for_each(Table::sync)?;
             self.flushed = Some(Instant::now());
         }
         self.header.step = step;
@@ -284,7 +263,7 @@ impl RunWriter {
         if manifest.status != Status::Finished {
             self.sync_fields()?;
         }
-        self.sync_rows()?;
+        self.rows.iter().try_for_each(Table::sync)?;
         checkpoint::sync(&self.directory, self.newest)?;
         if self.newest != Generation::Flushed {
             checkpoint::forget_flushed(&self.directory)?;
@@ -297,22 +276,10 @@ impl RunWriter {
 
     /// Hands all rows to the system, and notes their lengths and checksums.
     fn write_rows(&mut self) -> Result<(), RecordError> {
-        let flushed = [self.history.flush(), self.contact.flush(), self.log.flush()];
-        let streams = [self.history.stream(), self.contact.stream(), self.log.get_ref()];
-        for (i, (flushed, stream)) in flushed.into_iter().zip(streams).enumerate() {
-            flushed.map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[i]))(e))?;
-            self.header.streams[i] = stream.extent();
+        for (table, extent) in self.rows.iter_mut().zip(&mut self.header.streams) {
+            *extent = table.flush()?;
         }
         Ok(())
-    }
-
-    fn sync_rows(&self) -> Result<(), RecordError> {
-        let streams = [self.history.stream(), self.contact.stream(), self.log.get_ref()];
-        let path = |i: usize| self.directory.join(ROW_FILES[i]);
-        streams
-            .into_iter()
-            .enumerate()
-            .try_for_each(|(i, stream)| stream.sync().map_err(RecordError::io("write", &path(i))))
     }
 
     fn sync_fields(&mut self) -> Result<(), RecordError> {

@@ -52,18 +52,20 @@ fn repeated(
     let Some((_, arm)) = arms.min_by_key(|(work, _)| *work) else { return Ok(None) };
     let case = case_of(arm)?;
     let failed = |source| StudyError::Arm { arm: arm.name.clone(), source };
-    let io = |action, source| RecordError::Io { action, path: folder.to_owned(), source };
     if folder.exists() {
-        fs::remove_dir_all(folder).map_err(|e| io("remove", e))?;
+        fs::remove_dir_all(folder).map_err(RecordError::io("remove", folder))?;
     }
-    fs::create_dir_all(folder).map_err(|e| io("create", e))?;
-    let (threads, resumed) = (folder.join("threads"), folder.join("resumed"));
+    fs::create_dir_all(folder).map_err(RecordError::io("create", folder))?;
+    let threads = folder.join("threads");
+    let resumed = folder.join("resumed");
     let source = || manifest.source_of(arm);
     let done = recording::run(&case, source(), &threads, THREADS, &mut |_| (), stop);
     if done.map_err(failed)?.end == End::Interrupted {
         return Ok(None);
     }
-    let (halt, mut at, mut active_pairs) = (AtomicBool::new(false), 0, 0);
+    let halt = AtomicBool::new(false);
+    let mut at = 0;
+    let mut active_pairs = 0;
     let mut watch = |p: &Progress| {
         let reached = p.active > 0 || p.step + 1 >= p.steps;
         if !halt.load(Ordering::Relaxed) && (reached || stop.load(Ordering::Relaxed)) {

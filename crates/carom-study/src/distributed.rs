@@ -93,7 +93,8 @@ fn comparable(manifest: &StudyManifest, directory: &Path) -> Result<(), StudyErr
     if let Some(arm) = timed.iter().find(|arm| !begun(arm)) {
         return Err(StudyError::Timed { arm: arm.name.clone() });
     }
-    let (there, here) = (&manifest.machine, Machine::current());
+    let there = &manifest.machine;
+    let here = Machine::current();
     if there.is_of_type(&here) {
         return Ok(());
     }

@@ -76,7 +76,8 @@ pub(crate) fn side_by_side<E: Send>(
     std::thread::scope(|scope| {
         let (send, events) = mpsc::channel();
         for _ in 0..jobs.max(1) {
-            let (send, work) = (send.clone(), &work);
+            let send = send.clone();
+            let work = &work;
             scope.spawn(move || work(&send));
         }
         drop(send);

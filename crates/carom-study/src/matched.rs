@@ -24,7 +24,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
 use carom_record::study::{Arm, StudyManifest, sets_step};
-use carom_record::{Manifest, RecordError, Status};
+use carom_record::{Manifest, RecordError, Status, json};
 use carom_run::case::Case;
 use carom_run::recording::{self, Progress};
 use serde::{Deserialize, Serialize};
@@ -55,7 +55,8 @@ impl Weights {
     /// From the timings and counters of a run.
     fn of(manifest: &Manifest) -> Self {
         let time = |name: &str| manifest.timings.get(name).copied().unwrap_or(0.0);
-        let (newton, factorisations) = (count(manifest, "newton"), count(manifest, "factorisations"));
+        let newton = count(manifest, "newton");
+        let factorisations = count(manifest, "factorisations");
         let phases: f64 = ["assembly", "contact", "factor", "solve"].map(time).iter().sum();
         let share = if phases > 0.0 && factorisations > 0.0 { time("factor") / phases } else { 0.0 };
         let cpu = time("cpu");
@@ -98,23 +99,12 @@ struct Pilot {
 
 impl Pilot {
     fn read(folder: &Path) -> Result<Self, RecordError> {
-        let path = folder.join("pilot.json");
-        match fs::read(&path) {
-            Ok(bytes) => serde_json::from_slice(&bytes).map_err(|e| RecordError::Io {
-                action: "read",
-                path,
-                source: e.into(),
-            }),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Self::default()),
-            Err(source) => Err(RecordError::Io { action: "read", path, source }),
-        }
+        let found = json::read(&folder.join("pilot.json"), "delete it, and resume the study")?;
+        Ok(found.unwrap_or_default())
     }
 
     fn write(&self, folder: &Path) -> Result<(), RecordError> {
-        let (path, new) = (folder.join("pilot.json"), folder.join("pilot.json.new"));
-        let io = |source| RecordError::Io { action: "write", path: path.clone(), source };
-        let text = serde_json::to_vec_pretty(self).map_err(|e| io(e.into()))?;
-        fs::write(&new, text).and_then(|()| fs::rename(&new, &path)).map_err(io)
+        json::write(&folder.join("pilot.json"), self)
     }
 
     /// Steps of the next trial; none if a trial is accepted or there is nothing left to try.
@@ -136,7 +126,8 @@ impl Pilot {
             let on_side = off.iter().filter(|t| t.1 * side > 0.0);
             on_side.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).copied()
         };
-        let (below, above) = (nearest(-1.0), nearest(1.0));
+        let below = nearest(-1.0);
+        let above = nearest(1.0);
         let (steps, excess) = *off.iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
         if excess.exp_m1().abs() <= CLOSE || self.trials.len() >= TRIALS {
             return None;
@@ -274,8 +265,7 @@ fn pilot(
     let arm = &manifest.arms[i];
     let name = arm.directory.rsplit('/').next().unwrap_or(&arm.directory);
     let folder = directory.join("pilots").join(name);
-    let made = fs::create_dir_all(&folder);
-    made.map_err(|source| RecordError::Io { action: "create", path: folder.clone(), source })?;
+    fs::create_dir_all(&folder).map_err(RecordError::io("create", &folder))?;
     let mut pilot = Pilot::read(&folder)?;
     pilot.budget = pilot.budget.or(budget);
     while pilot.settled.is_none() {
@@ -301,18 +291,15 @@ fn pilot(
         pilot.write(&folder)?;
     }
     let settled = pilot.settled.unwrap_or_default();
-    let (from, to) = (folder.join((settled + 1).to_string()), directory.join(&arm.directory));
+    let from = folder.join((settled + 1).to_string());
+    let to = directory.join(&arm.directory);
     if !to.exists() {
-        fs::rename(&from, &to).map_err(|source| RecordError::Io { action: "move", path: from, source })?;
+        fs::rename(&from, &to).map_err(RecordError::io("move", &from))?;
     }
     // The costs of the other trials are in pilot.json; their records are removed to save space.
     for trial in (1..=pilot.trials.len()).map(|trial| folder.join(trial.to_string())) {
         if trial.is_dir() {
-            fs::remove_dir_all(&trial).map_err(|source| RecordError::Io {
-                action: "remove",
-                path: trial,
-                source,
-            })?;
+            fs::remove_dir_all(&trial).map_err(RecordError::io("remove", &trial))?;
         }
     }
     let run = Manifest::read(&to)?;

@@ -127,7 +127,8 @@ impl<'s> Checked<'s> {
         drafts: Vec<Draft>,
         bases: &'a BTreeMap<String, Base>,
     ) -> Result<Vec<Planned<'a>>, CaseError> {
-        let (computed, count) = (arms::computes_reference(file, &drafts), drafts.len());
+        let computed = arms::computes_reference(file, &drafts);
+        let count = drafts.len();
         let mut planned = Vec::new();
         self.plan(file, drafts, bases, &mut planned)?;
         if computed && planned.len() == count {

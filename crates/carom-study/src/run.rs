@@ -48,11 +48,7 @@ pub(crate) fn create(plan: &Plan, directory: &Path) -> Result<(), StudyError> {
         return Err(StudyError::Exists { path: directory.to_owned() });
     }
     let arms = directory.join("arms");
-    std::fs::create_dir_all(&arms).map_err(|source| RecordError::Io {
-        action: "create",
-        path: arms,
-        source,
-    })?;
+    std::fs::create_dir_all(&arms).map_err(RecordError::io("create", &arms))?;
     plan.manifest.write(directory)?;
     if plan.manifest.goal.is_some() {
         theory::write(plan, directory)?;

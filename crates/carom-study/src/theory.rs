@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use carom_record::RecordError;
+use carom_record::{RecordError, table};
 use carom_run::Setup;
 use carom_run::case::{Case, Enforcement, SchemeSpec};
 use carom_run::frequencies::{Frequencies, frequencies, spring};
@@ -40,7 +40,7 @@ fn at(scheme: &SchemeSpec, omega_dt: f64) -> [Option<f64>; 3] {
 /// # Errors
 /// Input/output or system error.
 pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
-    let mut lines = vec!["method,omega_dt,spectral_radius,damping_ratio,period_error".to_owned()];
+    let mut lines = Vec::new();
     let mut seen: Vec<&SchemeSpec> = Vec::new();
     let arms = plan.manifest.arms.iter().zip(&plan.arms).filter(|(arm, _)| !arm.role.fine);
     for (arm, planned) in arms {
@@ -49,26 +49,18 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
             continue;
         }
         seen.push(scheme);
-        let name = arm.method().replace('"', "\"\"");
         for i in -2 * POINTS..=3 * POINTS {
             let omega_dt = 10f64.powf(f64::from(i) / f64::from(POINTS));
             let [radius, damping, period] = at(scheme, omega_dt);
             // Above Ω ≈ 6 a period is not resolved, so it has no error.
             let period = period.filter(|_| omega_dt <= std::f64::consts::TAU);
-            let cell =
-                |x: Option<f64>| x.filter(|x| x.is_finite()).map_or_else(String::new, |x| format!("{x:?}"));
-            lines.push(format!(
-                "\"{name}\",{omega_dt:?},{},{},{}",
-                cell(radius),
-                cell(damping),
-                cell(period)
-            ));
+            let finite = [radius, damping, period].map(|x| x.filter(|x| x.is_finite()));
+            lines.push((arm.method(), omega_dt, finite));
         }
     }
-    put(directory, "theory.csv", &lines)?;
+    let header = ["method", "omega_dt", "spectral_radius", "damping_ratio", "period_error"];
+    table::write(&directory.join("theory.csv"), &header, lines.iter())?;
     let Some(found) = plan.arms.first().and_then(|arm| of_case(&arm.case)) else { return Ok(()) };
-    let lowest = found.lowest.iter().enumerate().map(|(k, omega)| format!("{},{omega:?}", k + 1));
-    let highest = found.highest.map(|omega| format!("highest,{omega:?}"));
     // Arms that differ only in the step have the same springs, and most arms have none.
     let mut seen = BTreeSet::new();
     let stiff = plan.manifest.arms.iter().zip(&plan.arms).filter(|(arm, planned)| {
@@ -78,10 +70,11 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
     let mut springs: Vec<f64> = stiff.filter_map(|(_, planned)| spring_of(&planned.case)).collect();
     springs.sort_by(f64::total_cmp);
     springs.dedup();
-    let springs = springs.into_iter().map(|omega| format!("spring,{omega:?}"));
-    let lines: Vec<String> =
-        std::iter::once("mode,omega".to_owned()).chain(lowest).chain(highest).chain(springs).collect();
-    put(directory, "frequencies.csv", &lines)
+    let lowest = found.lowest.iter().enumerate().map(|(k, omega)| ((k + 1).to_string(), *omega));
+    let highest = found.highest.map(|omega| ("highest".to_owned(), omega));
+    let springs = springs.into_iter().map(|omega| ("spring".to_owned(), omega));
+    let lines = lowest.chain(highest).chain(springs);
+    table::write(&directory.join("frequencies.csv"), &["mode", "omega"], lines)
 }
 
 fn of_case(case: &Case) -> Option<Frequencies> {
@@ -90,12 +83,6 @@ fn of_case(case: &Case) -> Option<Frequencies> {
 
 fn spring_of(case: &Case) -> Option<f64> {
     spring(Setup::new(case).start().ok()?.model())
-}
-
-fn put(directory: &Path, name: &str, lines: &[String]) -> Result<(), RecordError> {
-    let path = directory.join(name);
-    let text = lines.join("\n") + "\n";
-    std::fs::write(&path, text).map_err(|source| RecordError::Io { action: "write", path, source })
 }
 
 #[cfg(test)]

@@ -65,7 +65,8 @@ impl Suite {
         observe: &mut dyn FnMut(&Event),
         stop: &AtomicBool,
     ) -> Result<Option<Verification>, StudyError> {
-        let (started, began) = (now(), Instant::now());
+        let started = now();
+        let began = Instant::now();
         let places = self.places();
         let mut units = Vec::new();
         for (i, item) in self.items.iter().enumerate() {
@@ -179,8 +180,7 @@ impl Item {
             }]),
             Kind::Study(plan) => {
                 let path = directory.join("arms");
-                let failed = |source| RecordError::Io { action: "create", path: path.clone(), source };
-                std::fs::create_dir_all(&path).map_err(failed)?;
+                std::fs::create_dir_all(&path).map_err(RecordError::io("create", &path))?;
                 of_arms(&plan.manifest).write(directory)?;
                 let arms = plan.arms.iter().zip(&plan.manifest.arms);
                 let unit = |(planned, arm): (&crate::PlannedArm, &carom_record::study::Arm)| Unit {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Column, History};
+use crate::{Bound, Column, History};
 
 fn history(columns: &[(&str, Vec<f64>)]) -> History {
     let column = |name: &str| Column {

@@ -37,11 +37,13 @@ pub fn of_averages(run: &Run) -> Vec<Metric> {
 /// the record, with the trapezoidal rule between rows.
 fn averaged(history: &History, window: f64, of: impl Fn(&str) -> bool) -> History {
     let times = history.times();
-    let (first, last) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
+    let first = times.first().copied().unwrap_or(0.0);
+    let last = times.last().copied().unwrap_or(0.0);
     let mean = |values: &[f64]| -> Vec<f64> {
         let integral = integral(times, values);
         let around = |(&time, &value): (&f64, &f64)| {
-            let (from, to) = ((time - window / 2.0).max(first), (time + window / 2.0).min(last));
+            let from = (time - window / 2.0).max(first);
+            let to = (time + window / 2.0).min(last);
             let change = at(times, &integral, to).zip(at(times, &integral, from)).map(|(b, a)| b - a);
             change.filter(|_| to > from).map_or(value, |change| change / (to - from))
         };

@@ -26,7 +26,8 @@ pub fn phase_shift(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -
     let width = 1e-3 * span;
     let mut shift = 0.0;
     for _ in 0..50 {
-        let (mut along, mut steep) = (0.0, 0.0);
+        let mut along = 0.0;
+        let mut steep = 0.0;
         for (t, c) in times.iter().zip(values) {
             let r = |t: f64| at(reference.0, reference.1, t);
             let Some(((before, here), after)) =

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::given::Given;
+use crate::units::Unit;
 use crate::{History, units};
 
 /// Definition of a metric.
@@ -20,22 +21,6 @@ pub(crate) struct Definition {
     pub meaning: &'static str,
     /// Its value; none if it is not defined for the record.
     pub(crate) value: fn(&Given) -> Option<f64>,
-}
-
-/// Unit of a metric, in terms of the units of the case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum Unit {
-    None,
-    Time,
-    PerTime,
-    Force,
-    Impulse,
-    Length,
-    Stress,
-    Second,
-    /// The unit of the column.
-    Column,
 }
 
 impl Unit {

@@ -30,7 +30,8 @@ impl Episode {
 
 /// Contact episodes; interruptions shorter than `bridge` (in time) do not end them.
 pub fn episodes(history: &History, bridge: f64) -> Vec<Episode> {
-    let (times, active) = (history.times(), history.column("active").unwrap_or_default());
+    let times = history.times();
+    let active = history.column("active").unwrap_or_default();
     let mut found: Vec<Episode> = Vec::new();
     for (i, _) in active.iter().enumerate().filter(|(_, n)| **n > 0.0) {
         match found.last_mut() {

@@ -1,13 +1,16 @@
 //! Metrics of a record: of its history, of one of its columns, and all metrics that a study
 //! tabulates for a run.
 
-use super::definition::{Definition, Metric, Unit};
+use std::borrow::Cow;
+
+use super::definition::{Definition, Metric};
 use super::given::Given;
 use super::ledger::energy_lost_at;
-use super::overlay::{OVERLAY, Overlay};
+use super::overlay::OVERLAY;
 use super::run_table::{PRESSURE, REBOUND, WORK};
 use super::table::{COLUMNS, FREE, HISTORY};
-use crate::{History, Run};
+use crate::units::Unit;
+use crate::{History, Overlay, Run};
 
 /// Metrics that need neither a column nor measured data.
 pub(crate) fn of_no_column() -> impl Iterator<Item = &'static Definition> {
@@ -19,8 +22,25 @@ pub(crate) fn of_any_column() -> impl Iterator<Item = &'static Definition> {
     COLUMNS.iter().chain(&FREE)
 }
 
+impl Definition {
+    /// The metric with its value: named `COLUMN:METRIC` of a column, `METRIC:NAME` of measured data.
+    fn metric(&self, given: &Given) -> Metric {
+        let Definition { name, unit, meaning, value, .. } = self;
+        let name = match (given.measured, given.column) {
+            (Some(measured), _) => Cow::from(format!("{name}:{}", measured.name)),
+            (None, Some(column)) => Cow::from(format!("{column}:{name}")),
+            (None, None) => Cow::from(*name),
+        };
+        let unit = match (unit, given.column) {
+            (Unit::Column, Some(column)) => given.history.unit(column).to_owned(),
+            (unit, _) => unit.label(given.history),
+        };
+        Metric { name, value: value(given), unit, definition: meaning }
+    }
+}
+
 fn evaluated(table: &'static [Definition], given: &Given) -> impl Iterator<Item = Metric> {
-    table.iter().map(|definition| given.metric(definition))
+    table.iter().map(|definition| definition.metric(given))
 }
 
 /// Every named metric of a history.

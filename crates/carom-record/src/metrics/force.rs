@@ -61,7 +61,8 @@ pub(super) fn mean_penetration(given: &Given) -> Option<f64> {
     if steps.windows(2).any(|two| two[1] - two[0] > 1.0) {
         return None;
     }
-    let (depth, active) = (given.history.column("penetration")?, given.history.column("active")?);
+    let depth = given.history.column("penetration")?;
+    let active = given.history.column("active")?;
     let (sum, rows) =
         depth.iter().zip(active).filter(|(_, n)| **n > 0.0).fold((0.0, 0), |(s, n), (d, _)| (s + d, n + 1));
     (rows > 0).then(|| sum / f64::from(rows))

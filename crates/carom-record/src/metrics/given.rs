@@ -1,12 +1,9 @@
 //! What a metric is computed from.
 
-use std::borrow::Cow;
 use std::ops::Range;
 
-use super::definition::{Definition, Metric, Unit};
 use super::episode::{Episode, default_bridge, episodes};
-use super::overlay::Overlay;
-use crate::{History, Run};
+use crate::{History, Overlay, Run};
 
 /// A history with its contact episodes; where a metric needs them, the run, a column or measured
 /// data.
@@ -36,22 +33,6 @@ impl<'a> Given<'a> {
 
     pub(crate) fn beside(&self, measured: &'a Overlay) -> Self {
         Self { column: Some(&measured.column), measured: Some(measured), ..self.clone() }
-    }
-
-    /// The metric with its value: named `COLUMN:METRIC` of a column, `METRIC:NAME` of measured
-    /// data.
-    pub(crate) fn metric(&self, definition: &'static Definition) -> Metric {
-        let Definition { name, unit, meaning, value, .. } = definition;
-        let name = match (self.measured, self.column) {
-            (Some(measured), _) => Cow::from(format!("{name}:{}", measured.name)),
-            (None, Some(column)) => Cow::from(format!("{column}:{name}")),
-            (None, None) => Cow::from(*name),
-        };
-        let unit = match (unit, self.column) {
-            (Unit::Column, Some(column)) => self.history.unit(column).to_owned(),
-            (unit, _) => unit.label(self.history),
-        };
-        Metric { name, value: value(self), unit, definition: meaning }
     }
 
     /// Values of the column.

@@ -21,7 +21,10 @@ pub const MUCH_CREATED: f64 = 0.02;
 fn changes(history: &History) -> Option<(Vec<f64>, f64)> {
     let [kinetic, strain, total, work] =
         ["kinetic", "strain", "total", "external_work"].map(|name| history.column(name));
-    let (kinetic, strain, total, work) = (kinetic?, strain?, total?, work?);
+    let kinetic = kinetic?;
+    let strain = strain?;
+    let total = total?;
+    let work = work?;
     let scale = kinetic.iter().zip(strain).map(|(k, s)| k + s).reduce(f64::max).filter(|&s| s > 0.0)?;
     Some((total.iter().zip(work).map(|(e, w)| e - total[0] - w).collect(), scale))
 }

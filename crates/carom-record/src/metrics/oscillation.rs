@@ -24,7 +24,8 @@ const RESIDUAL: f64 = 1e-2;
 fn principal(given: &Given) -> Option<(f64, f64, f64)> {
     let values = given.values()?;
     let half = values.len() / 2;
-    let (times, values) = (given.history.times().get(half..)?, values.get(half..)?);
+    let times = given.history.times().get(half..)?;
+    let values = values.get(half..)?;
     if values.len() < LEAST {
         return None;
     }
@@ -33,10 +34,14 @@ fn principal(given: &Given) -> Option<(f64, f64, f64)> {
         return None;
     }
     let of = |f: fn(&[f64]) -> f64| values.windows(3).map(f).sum::<f64>();
-    let (aa, bb, ab) = (of(|w| w[0] * w[0]), of(|w| w[1] * w[1]), of(|w| w[0] * w[1]));
-    let (ac, bc) = (of(|w| w[0] * w[2]), of(|w| w[1] * w[2]));
+    let aa = of(|w| w[0] * w[0]);
+    let bb = of(|w| w[1] * w[1]);
+    let ab = of(|w| w[0] * w[1]);
+    let ac = of(|w| w[0] * w[2]);
+    let bc = of(|w| w[1] * w[2]);
     let determinant = aa * bb - ab * ab;
-    let (trace, square) = ((aa * bc - ab * ac) / determinant, (ab * bc - bb * ac) / determinant);
+    let trace = (aa * bc - ab * ac) / determinant;
+    let square = (ab * bc - bb * ac) / determinant;
     let residual = values.windows(3).map(|w| (w[2] - trace * w[1] + square * w[0]).powi(2)).sum::<f64>();
     let curvature = of(|w| (w[2] - 2.0 * w[1] + w[0]).powi(2));
     if !(square > 0.0 && trace * trace < 4.0 * square && residual <= RESIDUAL * RESIDUAL * curvature) {

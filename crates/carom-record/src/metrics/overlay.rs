@@ -7,37 +7,12 @@
 //! overlay_shift      the τ that minimises Σ (c(t_i + τ) − m_i)², by the Gauss–Newton method; positive: c is late
 //! ```
 
-use serde::{Deserialize, Serialize};
-
 use super::compare::phase_shift;
-use super::definition::{Definition, OWN, Unit, d};
+use super::definition::{Definition, OWN, d};
 use super::given::Given;
 use super::samples::at;
-use crate::Run;
-
-/// Measured data, in the units of the case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Overlay {
-    /// Its name in figures and metrics.
-    pub name: String,
-    /// The column of the history that it belongs to.
-    pub column: String,
-    /// Times.
-    pub times: Vec<f64>,
-    /// Values.
-    pub values: Vec<f64>,
-    /// Where they come from.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-}
-
-impl Overlay {
-    /// The points between two times.
-    pub fn within(&self, first: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
-        let points = self.times.iter().zip(&self.values).filter(|(t, _)| (first..=last).contains(*t));
-        points.map(|(t, y)| (*t, *y)).unzip()
-    }
-}
+use crate::units::Unit;
+use crate::{Overlay, Run};
 
 /// The measured data of a run, from its manifest.
 pub fn overlays(run: &Run) -> Vec<Overlay> {
@@ -125,8 +100,8 @@ mod tests {
     /// √(5/3) and 6/8 − 1. The point at 20 is outside the run.
     #[test]
     fn differences_by_hand() {
-        let (line, data) =
-            (history(|t| 2.0 * t), overlay(&[(1.0, 2.0), (2.0, 5.0), (3.0, 8.0), (20.0, 0.0)]));
+        let line = history(|t| 2.0 * t);
+        let data = overlay(&[(1.0, 2.0), (2.0, 5.0), (3.0, 8.0), (20.0, 0.0)]);
         assert!((rms(&Given::of(&line).beside(&data)).unwrap() - (5.0_f64 / 3.0).sqrt()).abs() < 1e-12);
         assert!((peak(&Given::of(&line).beside(&data)).unwrap() + 0.25).abs() < 1e-12);
     }

@@ -21,7 +21,8 @@ use crate::{ContactRow, Run};
 /// Needs three different coordinates (two in a half model); none if the fitted parabola has no
 /// maximum.
 pub(super) fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
-    let (first, last) = (places.iter().copied().reduce(f64::min)?, places.iter().copied().reduce(f64::max)?);
+    let first = places.iter().copied().reduce(f64::min)?;
+    let last = places.iter().copied().reduce(f64::max)?;
     let top = extreme(pressures, f64::gt).map(|(i, _)| places[i])?;
     let half = top == first || top == last;
     // Coordinates scaled to −1 … 1 keep the normal equations well conditioned.
@@ -32,9 +33,11 @@ pub(super) fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
         let x = (s - middle) / scale;
         if half { [1.0, 0.0, x * x] } else { [1.0, x, x * x] }
     };
-    let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+    let mut matrix = [[0.0; 3]; 3];
+    let mut right = [0.0; 3];
     for (s, p) in places.iter().zip(pressures) {
-        let (row, square) = (powers(*s), (p / size).powi(2));
+        let row = powers(*s);
+        let square = (p / size).powi(2);
         for i in 0..3 {
             right[i] += row[i] * square;
             for j in 0..3 {
@@ -148,7 +151,9 @@ mod tests {
     /// Points of an ellipse with any centre give the ellipse, and so does a half of it.
     #[test]
     fn an_ellipse_is_found() {
-        let (p0, a, c) = (0.025, 0.05, 3.0);
+        let p0 = 0.025;
+        let a = 0.05;
+        let c = 3.0;
         let ellipse = |s: f64| p0 * (1.0 - ((s - c) / a).powi(2)).max(0.0).sqrt();
         for range in [-7..=8, 0..=9, -9..=0] {
             let places: Vec<f64> = range.map(|i| c + 0.1 * a * f64::from(i)).collect();

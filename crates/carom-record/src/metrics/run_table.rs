@@ -1,10 +1,11 @@
 //! The tables of metrics that need more of a run than its history: case, contact rows, counters,
 //! timings.
 
-use super::definition::{Definition, OWN, Unit, d};
+use super::definition::{Definition, OWN, d};
 use super::given::Given;
 use super::pressure;
 use super::rebound::restitution;
+use crate::units::Unit;
 
 /// Metrics of the bodies of the first episode.
 pub(super) const REBOUND: [Definition; 1] = [d(

@@ -12,7 +12,8 @@ pub(crate) fn at(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
     if times.get(i) == Some(&time) {
         return values.get(i).copied();
     }
-    let (before, after) = (i.checked_sub(1)?, i);
+    let before = i.checked_sub(1)?;
+    let after = i;
     let s = (time - times[before]) / (times.get(after)? - times[before]);
     Some(values[before] + s * (values.get(after)? - values[before]))
 }

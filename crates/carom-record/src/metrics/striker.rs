@@ -35,7 +35,8 @@ pub(super) fn apex(given: &Given) -> Option<(f64, f64)> {
     let center = *vector(history, &format!("{}.center", striker(history)?)).last()?;
     let after = given.first()?.end?;
     let (i, top) = extreme(&center[after..], f64::gt).map(|(i, x)| (i + after, x))?;
-    let (t, y) = (history.times(), center);
+    let t = history.times();
+    let y = center;
     // The striker still rises when the record ends: the apex was not reached.
     if i + 1 == y.len() {
         return None;
@@ -44,7 +45,8 @@ pub(super) fn apex(given: &Given) -> Option<(f64, f64)> {
         return Some((t[i], top - y[0]));
     }
     let slope = |a: usize, b: usize| (y[b] - y[a]) / (t[b] - t[a]);
-    let (left, right) = (slope(i - 1, i), slope(i, i + 1));
+    let left = slope(i - 1, i);
+    let right = slope(i, i + 1);
     let curvature = (right - left) / (0.5 * (t[i + 1] - t[i - 1]));
     let there = left + 0.5 * curvature * (t[i] - t[i - 1]);
     if curvature == 0.0 {
@@ -56,10 +58,12 @@ pub(super) fn apex(given: &Given) -> Option<(f64, f64)> {
 /// Time at which the velocity of the striker's centre along its change over the first episode
 /// changes sign, linearly interpolated between rows.
 pub(super) fn turning_time(given: &Given) -> Option<f64> {
-    let (history, rows) = (given.history, given.rows()?);
+    let history = given.history;
+    let rows = given.rows()?;
     let velocity = vector(history, &format!("{}.velocity", striker(history)?));
     let along = |row: usize| along(&velocity, [rows.start, rows.end - 1], row);
     let before = (rows.start..rows.end - 1).find(|&i| along(i) < 0.0 && along(i + 1) >= 0.0)?;
-    let (a, b) = (along(before), along(before + 1));
+    let a = along(before);
+    let b = along(before + 1);
     Some(given.time(before) + (given.time(before + 1) - given.time(before)) * a / (a - b))
 }

@@ -3,11 +3,12 @@
 //! and that of whole runs (`run_table.rs`).
 
 use super::column::{column_roughness, peak_of_means};
-use super::definition::{Definition, OWN, TABLES, Unit, VARIATION, d};
+use super::definition::{Definition, OWN, TABLES, VARIATION, d};
 use super::given::vector;
 use super::samples::{extreme, peak_mean, roughness, total_variation};
 use super::striker::{apex, turning_time};
 use super::{force, ledger, oscillation};
+use crate::units::Unit;
 
 /// Metrics of a history.
 pub(super) const HISTORY: [Definition; 27] = [

@@ -126,7 +126,8 @@ fn roughness_counts_additional_humps() {
 #[test]
 fn the_window_may_lie_between_rows() {
     // Force 1 on [0, 1], 3 on [1, 2] and 1 on [2, 3]: impulses 0 1 4 5.
-    let (times, impulse) = ([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 4.0, 5.0]);
+    let times = [0.0, 1.0, 2.0, 3.0];
+    let impulse = [0.0, 1.0, 4.0, 5.0];
     assert_eq!(peak_mean(&times, &[&impulse], 0.5), Some(3.0));
     assert_eq!(peak_mean(&times, &[&impulse], 2.0), Some(2.0));
     assert_eq!(peak_mean(&times, &[&impulse, &impulse], 1.0), Some(f64::hypot(3.0, 3.0)));

@@ -162,7 +162,8 @@ pub fn common(
     let by_step = series.iter().any(|s| s.by_step);
     let keys: Vec<&[f64]> = columns.iter().map(|c| if by_step { &*c.steps } else { &*c.times }).collect();
     let span = keys[0].last().unwrap_or(&0.0) - keys[0].first().unwrap_or(&0.0);
-    let (mut times, mut values) = (Vec::new(), vec![Vec::new(); series.len()]);
+    let mut times = Vec::new();
+    let mut values = vec![Vec::new(); series.len()];
     for (row, (time, here)) in first.times.iter().zip(keys[0]).enumerate() {
         if !window.contains(*time) {
             continue;

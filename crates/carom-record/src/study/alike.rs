@@ -13,7 +13,8 @@ impl Study {
             return None;
         }
         let arms = &self.manifest.arms;
-        let (method, own) = (method(&arms[arm].case), step(&arms[arm], "time.step")?);
+        let method = method(&arms[arm].case);
+        let own = step(&arms[arm], "time.step")?;
         let finished = (0..arms.len()).filter(|&other| self.rows[other].status == Some(Status::Finished));
         let alike: Vec<usize> = finished.filter(|&other| self::method(&arms[other].case) == method).collect();
         let named = |word: &str, meets: &dyn Fn(f64) -> bool| {

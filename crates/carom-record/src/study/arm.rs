@@ -17,10 +17,8 @@ pub struct Arm {
     /// Number of time steps.
     pub steps: u64,
     /// Its role in the study.
-    #[serde(default)]
     pub role: Role,
     /// Its case file, if it is not that of the study.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case_path: Option<String>,
     /// What metrics and rankings need to know of its case.
     pub facts: Facts,

@@ -8,6 +8,14 @@ use crate::metrics::Metric;
 use crate::question::{self, Asked, Quantity, Question, Records, Rows, Series};
 use crate::{Run, Status};
 
+/// What is asked of the arms.
+#[derive(Default)]
+pub(super) struct Needs {
+    pub(super) questions: Vec<Question>,
+    /// Series of which all columns are needed.
+    pub(super) series: Vec<Series>,
+}
+
 /// Numbers and columns of the arms.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmRecords {
@@ -18,15 +26,8 @@ pub struct ArmRecords {
 }
 
 impl ArmRecords {
-    /// Takes the metrics and columns of an arm that are used by questions and series.
-    pub(super) fn gather(
-        &mut self,
-        arm: &str,
-        run: &Run,
-        metrics: &[Metric],
-        questions: &[&Question],
-        series: &[&Series],
-    ) {
+    /// Takes the metrics and columns of an arm that are needed.
+    pub(super) fn gather(&mut self, arm: &str, run: &Run, metrics: &[Metric], needs: &Needs) {
         let stopped = f64::from(u8::from(run.manifest.status == Status::Failed));
         self.put_metric(arm, "stopped", stopped);
         if run.manifest.status != Status::Finished {
@@ -36,8 +37,8 @@ impl ArmRecords {
         }
         let key = |name: &str| (arm.to_owned(), name.to_owned());
         let columns = |series: &Series| series.columns.quantities().into_iter().cloned().collect::<Vec<_>>();
-        let mut used: Vec<Asked> = series.iter().copied().flat_map(columns).collect();
-        for quantity in questions.iter().flat_map(|q| q.quantities()) {
+        let mut used: Vec<Asked> = needs.series.iter().flat_map(columns).collect();
+        for quantity in needs.questions.iter().flat_map(Question::quantities) {
             match quantity {
                 Quantity::Metric(name, of) if of.as_deref() == Some(arm) && name != "stopped" => {
                     let known = metrics.iter().find(|m| m.name == name.as_str()).and_then(|m| m.value);

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RecordError, files, json};
+use crate::{RecordError, json};
 
 /// Files that contain results only; the others contain wall times.
 const TABLES: [&str; 2] = ["history.csv", "contact.csv"];
@@ -51,14 +51,7 @@ impl Checks {
     /// # Errors
     /// Input/output or system error, or a damaged file.
     pub fn read(study: &Path) -> Result<Option<Self>, RecordError> {
-        let path = study.join("checks.json");
-        match fs::read(&path) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(RecordError::io("read", &path)(error)),
-            Ok(text) => {
-                json::value(&path, &text, "delete it; the page then shows no check of restarts").map(Some)
-            }
-        }
+        json::read(&study.join("checks.json"), "delete it; the page then shows no check of restarts")
     }
 
     /// Writes the checks into a study directory.
@@ -66,7 +59,6 @@ impl Checks {
     /// # Errors
     /// Input/output or system error.
     pub fn write(&self, study: &Path) -> Result<(), RecordError> {
-        let path = study.join("checks.json");
-        files::write_atomically(&path, &[&json::text(&path, self)?])
+        json::write(&study.join("checks.json"), self)
     }
 }

@@ -184,7 +184,8 @@ mod tests {
         let arm = |h: f64| {
             Compared::of(&sampled(32, |t| t + if t < 0.5 { h * h } else { h }), &reference, Some((0.5, 0.5)))
         };
-        let (coarse, fine) = (arm(0.1), arm(0.05));
+        let coarse = arm(0.1);
+        let fine = arm(0.05);
         let orders = phase_orders("m", "A.uy", &[(0.1, &coarse), (0.05, &fine)], &reference).unwrap();
         assert!((orders.smooth.unwrap() - 2.0).abs() < 1e-9 && (orders.across.unwrap() - 1.0).abs() < 1e-9);
         assert_eq!(established(&reference, is_trajectory), ["A.uy"]);

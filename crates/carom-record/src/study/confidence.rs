@@ -38,8 +38,13 @@ pub(super) enum DecidedBy {
     Nothing(Vec<String>),
 }
 
-/// What the errors are known to be independent of.
+/// What a recommendation rests on.
 pub(super) struct Evidence {
+    pub decided_by: DecidedBy,
+    /// Number of levels at which no method is distinguishably better.
+    pub first_at: usize,
+    /// Other methods that share the first place with it, and at how many levels.
+    pub sharing: Vec<(String, usize)>,
     /// The reference was computed on finer meshes; without one, the arms were.
     pub mesh: bool,
     /// There is a reference.
@@ -52,13 +57,11 @@ pub(super) fn confidence(
     goal: Goal,
     manifest: &StudyManifest,
     measure: &Measure,
-    levels: &[&Vec<Ranked>],
-    first_at: usize,
-    decided_by: DecidedBy,
-    sharing: &[(&str, usize)],
-    evidence: &Evidence,
+    levels: &[Vec<Ranked>],
+    evidence: Evidence,
 ) -> (Confidence, Vec<String>) {
-    let (mut confidence, mut reasons) = (Confidence::High, Vec::new());
+    let mut confidence = Confidence::High;
+    let mut reasons = Vec::new();
     let mut at_most = |most: Confidence, why: String| {
         confidence = confidence.min(most);
         reasons.push(why);
@@ -66,7 +69,7 @@ pub(super) fn confidence(
     let widths = if evidence.ensemble { " or the half-widths of both ensembles" } else { "" };
     let close =
         format!("differences of at most {} or {} %{widths}", short(measure.uncertainty), 100.0 * ALIKE);
-    match decided_by {
+    match evidence.decided_by {
         DecidedBy::Error => {}
         DecidedBy::Accuracy => at_most(
             Confidence::Low,
@@ -95,12 +98,13 @@ pub(super) fn confidence(
             ),
         ),
     }
-    for (method, count) in sharing {
+    for (method, count) in evidence.sharing {
         at_most(
             Confidence::Medium,
             format!("at {count} of {} levels {method} is not distinguished from it ({close})", levels.len()),
         );
     }
+    let first_at = evidence.first_at;
     if first_at < levels.len() {
         at_most(
             Confidence::Low,
@@ -133,7 +137,7 @@ pub(super) fn confidence(
     }
     // Members that failed or have no such number do not show how far it is spread.
     let all = |r: &&Ranked| manifest.runs_of(r.arm).len();
-    let incomplete = levels.iter().flat_map(|l| l.iter()).filter(|r| r.members < all(r));
+    let incomplete = levels.iter().flatten().filter(|r| r.members < all(r));
     if let Some(worst) = incomplete.min_by_key(|r| r.members) {
         at_most(
             Confidence::Medium,

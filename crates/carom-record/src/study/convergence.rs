@@ -41,7 +41,9 @@ pub(super) fn converged(sizes: &[f64], values: &[f64]) -> Option<Converged> {
     if n < 2 {
         return None;
     }
-    let (f1, f2, r21) = (values[n - 1], values[n - 2], sizes[n - 2] / sizes[n - 1]);
+    let f1 = values[n - 1];
+    let f2 = values[n - 2];
+    let r21 = sizes[n - 2] / sizes[n - 1];
     if n == 2 {
         return Some(Converged { uncertainty: UNSAFE * (f1 - f2).abs() / (r21 - 1.0), order: None });
     }

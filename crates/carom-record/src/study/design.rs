@@ -87,23 +87,17 @@ impl Goal {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Role {
     /// Its method, in a design.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub method: Option<String>,
     /// Number of its level.
-    #[serde(default)]
     pub level: usize,
     /// Whether its cost is matched to that of `cost_of`, while the other arms have the step of the
     /// level.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub by_cost: bool,
     /// Its counted cost divided by the budget of its level, if its cost is matched.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost: Option<f64>,
     /// Whether it is one of the runs of the computed reference.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub fine: bool,
     /// The arm that it is a member of, in an ensemble.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub member: Option<MemberOf>,
 }
 

@@ -27,7 +27,6 @@ pub struct Ensemble {
     /// Factors of mesh refinement; the first one is 1.
     pub mesh: Vec<f64>,
     /// Changes of the case, `key=value`, besides none.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sets: Vec<Vec<String>>,
 }
 
@@ -41,7 +40,6 @@ pub struct Member {
     /// Factor of mesh refinement.
     pub mesh: f64,
     /// Number of its changes of the case, from one; zero: none.
-    #[serde(default)]
     pub set: usize,
 }
 

@@ -11,7 +11,7 @@ use super::design::{Design, Goal, Kind};
 use super::ensemble::Ensemble;
 use super::roles::as_in_arm;
 use crate::metrics::Overlay;
-use crate::{Expect, Machine, Manifest, RecordError, Run, Source, Status, files, json};
+use crate::{Expect, Machine, Manifest, RecordError, Run, Source, Status, json};
 
 /// The files a study was made from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,7 +23,6 @@ pub struct StudySource {
     /// Text of the case file.
     pub case: String,
     /// Texts of the case files of arms, by their path as given.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub others: BTreeMap<String, String>,
 }
 
@@ -45,29 +44,22 @@ pub struct StudyManifest {
     /// Arm that the others are compared with, if any.
     pub reference: Option<String>,
     /// How the arms are made comparable.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub design: Option<Design>,
     /// The goal of the ranking.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub goal: Option<Goal>,
     /// The required accuracy, if given: see [`Self::accuracy`].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<f64>,
     /// The simulations.
     pub arms: Vec<Arm>,
     /// What the members of an arm differ in, if arms are run several times.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ensemble: Option<Ensemble>,
     /// The members of all arms, except for the arms themselves.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub members: Vec<Arm>,
     /// Measured data with which all arms are compared.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub overlays: Vec<Overlay>,
     /// Claims to be decided.
     pub claims: Vec<Claim>,
     /// Expected values.
-    #[serde(default)]
     pub expects: Vec<Expect>,
     /// The files as given.
     pub source: StudySource,
@@ -84,9 +76,8 @@ impl StudyManifest {
     /// # Errors
     /// Input/output or system error, no study, or a damaged file.
     pub fn read(directory: &Path) -> Result<Self, RecordError> {
-        let path = directory.join("study.json");
-        let text = files::read_or(&path, RecordError::NotAStudy { path: directory.to_path_buf() })?;
-        json::value(&path, &text, "run the study again")
+        let found = json::read(&directory.join("study.json"), "run the study again")?;
+        found.ok_or_else(|| RecordError::NotAStudy { path: directory.to_path_buf() })
     }
 
     /// Writes or replaces `study.json`.
@@ -94,8 +85,7 @@ impl StudyManifest {
     /// # Errors
     /// Input/output or system error.
     pub fn write(&self, directory: &Path) -> Result<(), RecordError> {
-        let path = directory.join("study.json");
-        files::write_atomically(&path, &[&json::text(&path, self)?, b"\n"])
+        json::write(&directory.join("study.json"), self)
     }
 
     /// The arms, and after them the members of their ensembles.

@@ -21,6 +21,15 @@ pub struct Measure {
     pub passed_over: Vec<(String, String)>,
 }
 
+impl Measure {
+    fn new(name: &str, words: String, uncertainty: f64, left_out: Vec<String>) -> Self {
+        Self { name: name.to_owned(), words, uncertainty, left_out, passed_over: Vec::new() }
+    }
+}
+
+/// Why there is no measure.
+const NO_REFERENCE: &str = "the study has no reference";
+
 /// A possible measure of a goal.
 pub(super) enum Candidate {
     Metric(&'static str),
@@ -65,7 +74,7 @@ pub fn standing(reference: Option<&Reference>, metric: &str) -> Standing {
     if IDEAL.contains(&metric) {
         return Standing::Established { value: 0.0, uncertainty: 0.0 };
     }
-    reference.map_or_else(|| Standing::Not("the study has no reference".to_owned()), |r| r.metric(metric))
+    reference.map_or_else(|| Standing::Not(NO_REFERENCE.to_owned()), |r| r.metric(metric))
 }
 
 /// |m − r|, relative if r is not 0.
@@ -80,107 +89,106 @@ pub(super) struct Judge<'a> {
     pub(super) reference: Option<&'a Reference>,
 }
 
+/// A metric with its established reference value.
+struct Known {
+    name: String,
+    right: f64,
+    /// Uncertainty of its error.
+    uncertainty: f64,
+}
+
+impl Known {
+    fn of(name: &str, right: f64, uncertainty: f64) -> Self {
+        let relative = if right == 0.0 { uncertainty } else { (uncertainty / right).abs() };
+        Self { name: name.to_owned(), right, uncertainty: relative }
+    }
+}
+
+/// A measure with the errors of all runs.
+type Measured = (Measure, Vec<Option<f64>>);
+
 impl Judge<'_> {
-    /// The measure of a candidate with the errors of all runs, or the reason why there is none.
-    pub(super) fn measured(
-        &self,
-        candidate: &Candidate,
-    ) -> Result<(Measure, Vec<Option<f64>>), (String, String)> {
-        let measure = |name: &str, words: String, uncertainty: f64| Measure {
-            name: name.into(),
-            words,
-            uncertainty,
-            left_out: Vec::new(),
-            passed_over: Vec::new(),
-        };
+    /// The measure of a candidate, or its name and the reason why there is none.
+    pub(super) fn measured(&self, candidate: &Candidate) -> Result<Measured, (String, String)> {
         match candidate {
-            Candidate::Metric(name) => match standing(self.reference, name) {
-                Standing::Not(why) => Err(((*name).to_owned(), why)),
-                Standing::Established { value, uncertainty } => {
-                    let errors =
-                        self.rows.iter().map(|row| row.value(name).map(|x| error(x, value))).collect();
-                    let words = if value == 0.0 {
-                        format!("{name}, which should be 0")
-                    } else {
-                        format!("error of {name}")
-                    };
-                    Ok((
-                        measure(
-                            name,
-                            words,
-                            if value == 0.0 { uncertainty } else { (uncertainty / value).abs() },
-                        ),
-                        errors,
-                    ))
-                }
-            },
-            Candidate::Mean(names) => {
-                let parts: Result<Vec<_>, _> =
-                    names.iter().map(|name| self.measured(&Candidate::Metric(name))).collect();
-                let parts = parts?;
-                let mean = |run: usize| {
-                    let each: Option<Vec<f64>> = parts.iter().map(|(_, errors)| errors[run]).collect();
-                    each.map(|errors| errors.iter().sum::<f64>() / parts.len() as f64)
+            Candidate::Metric(name) => {
+                let known = self.known(name)?;
+                let words = if known.right == 0.0 {
+                    format!("{name}, which should be 0")
+                } else {
+                    format!("error of {name}")
                 };
-                let uncertainty = parts.iter().map(|(part, _)| part.uncertainty).fold(0.0, f64::max);
-                let words = format!("mean error of {}", names.join(" and "));
-                Ok((
-                    measure(&names.join(" and "), words, uncertainty),
-                    (0..self.rows.len()).map(mean).collect(),
-                ))
+                Ok(self.mean(name, words, &[known]))
+            }
+            Candidate::Mean(names) => {
+                let known: Result<Vec<Known>, _> = names.iter().map(|name| self.known(name)).collect();
+                let name = names.join(" and ");
+                Ok(self.mean(&name, format!("mean error of {name}"), &known?))
             }
             Candidate::Columns(name, kind) => {
-                let Some(reference) = self.reference else {
-                    return Err(((*name).to_owned(), "the study has no reference".to_owned()));
-                };
-                let columns = established(reference, *kind);
-                if columns.is_empty() {
-                    return Err((
-                        (*name).to_owned(),
-                        "the reference has no established column of this kind".to_owned(),
-                    ));
-                }
-                let squares =
-                    columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
-                let uncertainty = (squares.sum::<f64>() / columns.len() as f64).sqrt();
-                let errors =
-                    self.compared.iter().map(|c| c.as_ref().and_then(|c| c.mean(&columns))).collect();
-                let words =
-                    format!("deviation of {} from the reference, relative to the range", columns.join(", "));
-                let all = reference.columns().into_iter().filter(|c| kind(c));
-                let left_out = all.filter(|c| reference.uncertainty(c).established().is_none());
-                let left_out = left_out.map(str::to_owned).collect();
-                let measure = measure(&format!("deviation of {name}"), words, uncertainty);
-                Ok((Measure { left_out, ..measure }, errors))
+                self.deviations(name, *kind).map_err(|why| ((*name).to_owned(), why.to_owned()))
             }
             Candidate::OfColumns(what, kind) => {
-                let none = |why: &str| Err((format!("{what} of stresses"), why.to_owned()));
-                let Some(reference) = self.reference else { return none("the study has no reference") };
-                let columns = reference.columns().into_iter().filter(|c| kind(c));
-                let names: Vec<String> = columns.map(|c| format!("{c}:{what}")).collect();
-                let known: Vec<(String, f64, f64)> = names
-                    .iter()
-                    .filter_map(|n| {
-                        let (value, off) = reference.metric(n).established().filter(|(v, _)| *v > 0.0)?;
-                        Some((n.clone(), value, off / value))
-                    })
-                    .collect();
-                if known.is_empty() {
-                    return none("the reference does not establish it for any stress");
-                }
-                let mean = |row: &Row| {
-                    let each: Option<Vec<f64>> =
-                        known.iter().map(|(n, right, _)| row.value(n).map(|x| error(x, *right))).collect();
-                    each.map(|e| e.iter().sum::<f64>() / e.len() as f64)
-                };
-                let uncertainty = known.iter().map(|k| k.2).fold(0.0, f64::max);
-                let words =
-                    format!("error of {}", known.iter().map(|k| k.0.as_str()).collect::<Vec<_>>().join(", "));
-                let left_out = names.into_iter().filter(|n| known.iter().all(|k| k.0 != *n)).collect();
-                let measure = measure(&format!("{what} of stresses"), words, uncertainty);
-                Ok((Measure { left_out, ..measure }, self.rows.iter().map(mean).collect()))
+                let name = format!("{what} of stresses");
+                self.of_columns(&name, what, *kind).map_err(|why| (name, why.to_owned()))
             }
         }
+    }
+
+    fn known(&self, name: &str) -> Result<Known, (String, String)> {
+        match standing(self.reference, name) {
+            Standing::Not(why) => Err((name.to_owned(), why)),
+            Standing::Established { value, uncertainty } => Ok(Known::of(name, value, uncertainty)),
+        }
+    }
+
+    /// The mean error of metrics.
+    fn mean(&self, name: &str, words: String, known: &[Known]) -> Measured {
+        let mean = |row: &Row| {
+            let each = known.iter().map(|known| Some(error(row.value(&known.name)?, known.right)));
+            let each: Option<Vec<f64>> = each.collect();
+            each.map(|errors| errors.iter().sum::<f64>() / errors.len() as f64)
+        };
+        let uncertainty = known.iter().map(|known| known.uncertainty).fold(0.0, f64::max);
+        (Measure::new(name, words, uncertainty, Vec::new()), self.rows.iter().map(mean).collect())
+    }
+
+    /// The deviation of columns from those of the reference.
+    fn deviations(&self, name: &str, kind: fn(&str) -> bool) -> Result<Measured, &'static str> {
+        let reference = self.reference.ok_or(NO_REFERENCE)?;
+        let columns = established(reference, kind);
+        if columns.is_empty() {
+            return Err("the reference has no established column of this kind");
+        }
+        let squares =
+            columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
+        let uncertainty = (squares.sum::<f64>() / columns.len() as f64).sqrt();
+        let errors = self.compared.iter().map(|c| c.as_ref().and_then(|c| c.mean(&columns))).collect();
+        let words = format!("deviation of {} from the reference, relative to the range", columns.join(", "));
+        let all = reference.columns().into_iter().filter(|c| kind(c));
+        let left_out = all.filter(|c| reference.uncertainty(c).established().is_none());
+        let left_out = left_out.map(str::to_owned).collect();
+        Ok((Measure::new(&format!("deviation of {name}"), words, uncertainty, left_out), errors))
+    }
+
+    /// The mean error of a metric of columns.
+    fn of_columns(&self, name: &str, what: &str, kind: fn(&str) -> bool) -> Result<Measured, &'static str> {
+        let reference = self.reference.ok_or(NO_REFERENCE)?;
+        let mut known = Vec::new();
+        let mut left_out = Vec::new();
+        for column in reference.columns().into_iter().filter(|c| kind(c)) {
+            let metric = format!("{column}:{what}");
+            match reference.metric(&metric).established().filter(|(value, _)| *value > 0.0) {
+                Some((value, off)) => known.push(Known::of(&metric, value, off)),
+                None => left_out.push(metric),
+            }
+        }
+        if known.is_empty() {
+            return Err("the reference does not establish it for any stress");
+        }
+        let names: Vec<&str> = known.iter().map(|known| known.name.as_str()).collect();
+        let (measure, errors) = self.mean(name, format!("error of {}", names.join(", ")), &known);
+        Ok((Measure { left_out, ..measure }, errors))
     }
 }
 

@@ -37,15 +37,14 @@ mod trajectory;
 
 use std::path::{Path, PathBuf};
 
-use crate::metrics::{self, Metric};
-use crate::question::{Question, Series};
-use crate::{Expectation, RecordError, Run, Status, Warning, judge};
+use crate::metrics::Metric;
+use crate::{Expectation, RecordError, Run, Status, Warning};
 pub use arm::{Arm, sets_step, step};
 pub use arms::ArmRecords;
 use checks::Checks;
 pub use claim::{Claim, Comparison, Confirmed, Verdict};
 use compared::{Compared, PhaseOrders, orders_by_phase};
-use design::Goal;
+use design::{Goal, MemberOf};
 use ensemble::{Ensemble, Spread};
 pub use manifest::{StudyManifest, StudySource};
 pub use orders::{Refinement, numeric_keys, refinements, varied_keys};
@@ -104,11 +103,8 @@ impl Study {
         let manifest = StudyManifest::read(directory)?;
         let comparisons: Vec<_> =
             manifest.claims.iter().map(|c| Comparison::parse(&c.compare).ok()).collect();
-        let (expected, series): (Vec<_>, Vec<_>) =
-            manifest.expects.iter().map(|e| orders::needs(e, &manifest)).unzip();
-        let claimed = comparisons.iter().flatten().flat_map(Comparison::questions);
-        let questions: Vec<&Question> = claimed.chain(expected.iter().flatten()).collect();
-        let series: Vec<&Series> = series.iter().flatten().collect();
+        let mut needs = orders::needs(&manifest);
+        needs.questions.extend(comparisons.iter().flatten().flat_map(Comparison::questions).cloned());
         // Of the arms, and of each member of the ensemble, the arms being the first.
         let kinds = manifest.ensemble.as_ref().map_or_else(Vec::new, Ensemble::members);
         let mut records = vec![ArmRecords::default(); kinds.len().max(1)];
@@ -117,54 +113,36 @@ impl Study {
             let time = |name: &str| r.metric(name).established().map(|x| x.0);
             time("contact_start").zip(time("contact_end"))
         });
-        let (mut rows, mut compared) = (Vec::new(), Vec::new());
+        let mut rows = Vec::new();
+        let mut compared = Vec::new();
         for (i, arm) in manifest.runs().enumerate() {
-            let (mut status, mut reason) = (None, None);
-            let (mut metrics, mut expectations, mut had_contact) = (Vec::new(), Vec::new(), false);
-            let mut warnings = Vec::new();
-            let mut comparison = None;
             let record = match manifest.record(directory, arm) {
                 Err(error) if !error.is_system() => {
-                    let place = directory.join(&arm.directory);
-                    let cure = format!("remove {} and compute the arm again", place.display());
-                    reason = Some(format!("{}; {cure}", error.what()));
-                    None
+                    rows.push(Row::damaged(arm, &error, directory));
+                    compared.push(None);
+                    continue;
                 }
                 record => record?,
             };
-            if let Some(run) = record {
-                (status, reason) = (Some(run.manifest.status), run.manifest.reason.clone());
-                if i < manifest.arms.len() {
-                    visit(i, &run);
-                }
-                if status == Some(Status::Finished) {
-                    metrics = metrics::of_run_beside(&run, &manifest.overlays);
-                    comparison =
-                        reference.as_ref().map(|r| Compared::of(&Trajectory::of(&run, &[]), r, contact));
-                }
-                let (kind, name) = match &arm.role.member {
-                    None => (Some(0), &arm.name),
-                    Some(of) => {
-                        (kinds.iter().position(|kind| *kind == of.member), &manifest.arms[of.arm].name)
-                    }
-                };
-                if let Some(kind) = kind {
-                    records[kind].gather(name, &run, &metrics, &questions, &series);
-                }
-                expectations = judge(&run, &arm.facts.expects);
-                had_contact = run.had_dynamic_contact();
-                warnings = run.manifest.warnings;
+            let Some(run) = record else {
+                rows.push(Row { name: arm.name.clone(), ..Row::default() });
+                compared.push(None);
+                continue;
+            };
+            if i < manifest.arms.len() {
+                visit(i, &run);
             }
-            compared.push(comparison);
-            rows.push(Row {
-                name: arm.name.clone(),
-                status,
-                reason,
-                metrics,
-                expectations,
-                contact: had_contact,
-                warnings,
-            });
+            let row = Row::of(arm, &run, &manifest.overlays);
+            let other = reference.as_ref().filter(|_| row.status == Some(Status::Finished));
+            compared.push(other.map(|r| Compared::of(&Trajectory::of(&run, &[]), r, contact)));
+            let of_kind = |of: MemberOf| {
+                let kind = kinds.iter().position(|kind| *kind == of.member)?;
+                Some((kind, &manifest.arms[of.arm].name))
+            };
+            if let Some((kind, name)) = arm.role.member.map_or(Some((0, &arm.name)), of_kind) {
+                records[kind].gather(name, &run, &row.metrics, &needs);
+            }
+            rows.push(row);
         }
         let verdicts = manifest
             .claims
@@ -175,15 +153,15 @@ impl Study {
             Some(order) => orders::judge(expect, order, &manifest, &records[0]),
             None => vec![expect.verdict(expect.got(&records[0]))],
         });
-        let (expectations, verdicts) = (judged.collect(), verdicts.collect());
-        let ranking =
-            manifest.goal.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref()));
+        let expectations = judged.collect();
+        let verdicts = verdicts.collect();
+        let ranking_of = |goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref());
+        let ranking = manifest.goal.map(ranking_of);
         let rubs = rows.iter().any(|row| row.value("friction_lost").is_some());
         let others = Goal::all().filter(|goal| {
             manifest.goal.is_some_and(|own| own != *goal) && (rubs || *goal != Goal::Friction)
         });
-        let other_rankings: Vec<Ranking> =
-            others.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref())).collect();
+        let other_rankings: Vec<Ranking> = others.map(ranking_of).collect();
         let members = rows.split_off(manifest.arms.len());
         compared.truncate(manifest.arms.len());
         let phase_orders =

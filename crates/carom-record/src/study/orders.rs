@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use super::arm::{Arm, scalar, step};
-use super::arms::ArmRecords;
+use super::arms::{ArmRecords, Needs};
 use super::manifest::StudyManifest;
 use crate::Reason;
 use crate::order::{from_differences, from_errors};
@@ -33,7 +33,8 @@ fn has_words(name: &str, text: &str) -> bool {
         a.zip(b).is_some_and(|(a, b)| a.is_alphanumeric() && b.is_alphanumeric())
     };
     name.match_indices(text).any(|(at, _)| {
-        let (before, after) = (&name[..at], &name[at + text.len()..]);
+        let before = &name[..at];
+        let after = &name[at + text.len()..];
         !inside(before.chars().last(), text.chars().next())
             && !inside(text.chars().last(), after.chars().next())
     })
@@ -102,17 +103,19 @@ fn of(order: &OrderOf) -> Result<Of, Reason> {
     }
 }
 
-/// The questions and columns of arms that an expectation needs.
-pub(super) fn needs(expect: &Expect, manifest: &StudyManifest) -> (Vec<Question>, Vec<Series>) {
-    let Some(order) = &expect.order else {
-        return (Question::parse(&expect.what).into_iter().collect(), Vec::new());
-    };
-    let arms = manifest.arms.iter().map(|a| a.name.as_str());
-    match of(order) {
-        Ok(Of::Number(question)) => (arms.map(|arm| question.of_arm(arm)).collect(), Vec::new()),
-        Ok(Of::Column(series)) => (Vec::new(), arms.map(|arm| series.of_arm(arm)).collect()),
-        Err(_) => (Vec::new(), Vec::new()),
+/// The questions and columns of arms that the expectations of a study need.
+pub(super) fn needs(manifest: &StudyManifest) -> Needs {
+    let mut needs = Needs::default();
+    for expect in &manifest.expects {
+        let arms = manifest.arms.iter().map(|a| a.name.as_str());
+        match expect.order.as_ref().map(of) {
+            None => needs.questions.extend(Question::parse(&expect.what)),
+            Some(Ok(Of::Number(question))) => needs.questions.extend(arms.map(|arm| question.of_arm(arm))),
+            Some(Ok(Of::Column(series))) => needs.series.extend(arms.map(|arm| series.of_arm(arm))),
+            Some(Err(_)) => {}
+        }
     }
+    needs
 }
 
 /// Outcomes of an expected order: one per group of arms.
@@ -202,7 +205,8 @@ fn observed(
                 (None, Some(arm)) => Some(value(arm)?),
                 (None, None) => None,
             };
-            let (second, last) = (value(name(two))?, value(name(three))?);
+            let second = value(name(two))?;
+            let last = value(name(three))?;
             if let Some(exact) = exact {
                 return from_errors([h1, h2], [second - exact, last - exact]);
             }

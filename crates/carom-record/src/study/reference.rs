@@ -152,11 +152,6 @@ impl Reference {
         self.exact || self.levels.windows(2).any(|pair| pair[1].mesh > pair[0].mesh)
     }
 
-    /// Whether its uncertainty includes the spread of an ensemble: it is exact, or has one.
-    pub fn has_ensemble(&self) -> bool {
-        self.exact || self.levels.last().is_some_and(|level| level.members.len() > 1)
-    }
-
     fn sizes(&self) -> Vec<f64> {
         self.levels.iter().map(|level| level.step).collect()
     }
@@ -272,7 +267,8 @@ impl Reference {
     /// member at the finest level, relative to the range.
     fn deviations(&self, column: &str) -> Option<(Vec<f64>, f64)> {
         let apart = |a: &Trajectory, b: &Trajectory| {
-            let (fine, coarse) = (b.columns.get(column)?, a.columns.get(column)?);
+            let fine = b.columns.get(column)?;
+            let coarse = a.columns.get(column)?;
             metrics::deviation(&a.times, coarse, (&b.times, fine))
         };
         let between = |pair: &[Level]| apart(pair[0].members.first()?, pair[1].members.first()?);
@@ -363,7 +359,7 @@ mod tests {
         assert!((spread.uncertainty - 0.175).abs() < 1e-9 && (spread.spread - 0.05).abs() < 1e-12);
         assert!(matches!(of(&[3.0]).metric("m"), Standing::Not(_)));
         let single = Reference::of_levels(String::new(), vec![level(1.0, &[1.0])]);
-        assert!(matches!(single.metric("m"), Standing::Not(_)) && !single.has_ensemble());
+        assert!(matches!(single.metric("m"), Standing::Not(_)));
     }
 
     /// By hand: the medians 1.4, 1.2, 1.1 are those of the first member and would be uncertain by

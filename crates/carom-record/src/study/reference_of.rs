@@ -55,9 +55,11 @@ impl StudyManifest {
             return Ok(Reference::of_formulas(&facts.exact, facts.end, 8000));
         }
         let arms = self.reference_arms();
-        let (mut levels, mut averaged) = (Vec::new(), Vec::new());
+        let mut levels = Vec::new();
+        let mut averaged = Vec::new();
         for &i in &arms {
-            let (mut members, mut phases) = (Vec::new(), Vec::new());
+            let mut members = Vec::new();
+            let mut phases = Vec::new();
             for run in self.runs_of(i) {
                 let phase = self.run(run).role.member.map_or(0.0, |of| of.member.phase);
                 let record = self.intact(directory, self.run(run))?;

@@ -1,10 +1,13 @@
 //! Results of an arm: a row of the tables.
 
-use crate::metrics::{MUCH_CREATED, Metric};
-use crate::{Expectation, Status, Warning};
+use std::path::Path;
+
+use super::arm::Arm;
+use crate::metrics::{self, MUCH_CREATED, Metric, Overlay};
+use crate::{Expectation, RecordError, Run, Status, Warning, judge};
 
 /// An arm with its metrics.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
     /// The arm.
     pub name: String,
@@ -24,6 +27,28 @@ pub struct Row {
 }
 
 impl Row {
+    /// The results of an arm from its record.
+    pub(super) fn of(arm: &Arm, run: &Run, measured: &[Overlay]) -> Self {
+        let manifest = &run.manifest;
+        let has_metrics = manifest.status == Status::Finished;
+        Self {
+            name: arm.name.clone(),
+            status: Some(manifest.status),
+            reason: manifest.reason.clone(),
+            metrics: if has_metrics { metrics::of_run_beside(run, measured) } else { Vec::new() },
+            expectations: judge(run, &arm.facts.expects),
+            contact: run.had_dynamic_contact(),
+            warnings: manifest.warnings.clone(),
+        }
+    }
+
+    /// An arm whose record is damaged.
+    pub(super) fn damaged(arm: &Arm, error: &RecordError, study: &Path) -> Self {
+        let place = study.join(&arm.directory);
+        let reason = format!("{}; remove {} and compute the arm again", error.what(), place.display());
+        Self { name: arm.name.clone(), reason: Some(reason), ..Self::default() }
+    }
+
     /// Whether it failed, or created so much energy that the default guard would have stopped it.
     pub fn is_unsound(&self) -> bool {
         self.status == Some(Status::Failed)

@@ -49,14 +49,18 @@ impl FieldSet {
         let n = self.points.len();
         for array in &self.arrays {
             if array.values.len() != n * array.components {
-                let (name, got, c) = (&array.name, array.values.len(), array.components);
+                let name = &array.name;
+                let got = array.values.len();
+                let c = array.components;
                 return error(format!("array `{name}` has {got} values for {n} points of {c} components"));
             }
         }
         for block in &self.blocks {
-            let (body, size) = (&block.body, block.cell.nodes(block.degree));
+            let body = &block.body;
+            let size = block.cell.nodes(block.degree);
             if !(1..=3).contains(&block.degree) || !block.connectivity.len().is_multiple_of(size) {
-                let (got, degree) = (block.connectivity.len(), block.degree);
+                let got = block.connectivity.len();
+                let degree = block.degree;
                 return error(format!(
                     "body `{body}` has {got} node numbers in cells of {size} nodes, degree {degree}"
                 ));

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use carom_case::Units;
 use carom_record::Run;
-use carom_record::conversion;
 use carom_record::study::{Arm, Study, StudyManifest};
+use carom_record::units;
 
 /// Labels of length, time and mass of an arm.
 fn system(arm: &Arm) -> [String; 3] {
@@ -46,7 +46,7 @@ impl Systems {
         if self.is_own(run) {
             return Some(1.0);
         }
-        let factor = conversion::factor(from, to);
+        let factor = units::factor(from, to);
         if factor.is_none() {
             self.unknown.insert(from.to_owned());
         }

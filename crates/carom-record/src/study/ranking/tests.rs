@@ -162,7 +162,8 @@ fn cost_is_that_of_the_arm_and_accuracy_that_of_the_median() {
 #[test]
 fn an_arm_that_scatters_by_more_than_the_accuracy_does_not_have_it() {
     let of = |arms: &[Made], members: &[&[(f64, f64)]]| by_energy(&with_members(study(arms), members));
-    let (a, b) = (("a", 0, 0.01, 1.0), ("b", 0, 0.03, 2.0));
+    let a = ("a", 0, 0.01, 1.0);
+    let b = ("b", 0, 0.03, 2.0);
     let (scatters, agrees): (&[_], &[_]) = (&[(0.01, 1.0), (0.1, 1.0)], &[(0.03, 2.0); 2]);
     assert_eq!(of(&[a, b], &[scatters, agrees]).verdict.unwrap().arm, 1);
     let why = of(&[a], &[scatters]).verdict.unwrap_err();
