@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
+use carom_record::RecordError;
 use carom_record::verification::{Row, SetUp, Verification};
 use carom_study::{Kind, Named, Suite, VerifyOptions};
 use include_dir::{Dir, include_dir};
@@ -151,7 +152,9 @@ fn print(v: &Verification, csv: bool, page: &Path) -> Result<(), Failure> {
         "missed": v.missed(), "stopped": v.stopped(), "wall": v.wall, "report": page
     }))?;
     if csv {
-        return Ok(out::line(&String::from_utf8_lossy(&v.csv()?))?);
+        let table = page.with_file_name("verify.csv");
+        let text = std::fs::read_to_string(&table).map_err(RecordError::io("read", &table))?;
+        return Ok(out::line(&text)?);
     }
     out::summary(&summary(v, console::is_verbose()))?;
     Ok(out::summary(&page.display().to_string())?)
