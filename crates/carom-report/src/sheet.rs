@@ -148,21 +148,6 @@ impl Sheet {
     }
 }
 
-/// What the arrowheads at colour bars mean, as a sentence, from what each bar cuts off and its
-/// name; empty where there are none.
-pub(crate) fn arrowheads(bars: impl IntoIterator<Item = ([bool; 2], String)>) -> String {
-    let all: Vec<_> = bars.into_iter().collect();
-    let cut: Vec<_> = all.iter().filter(|(cut, _)| cut.contains(&true)).collect();
-    let name = |name: &str| if all.len() > 1 { format!(" of {name}") } else { String::new() };
-    let share = "at most 0.5 % of the values lie beyond";
-    match cut[..] {
-        [] => String::new(),
-        [([true, true], bar)] => format!(" Arrowheads at the colour bar{}: {share} each end.", name(bar)),
-        [(_, bar)] => format!(" Arrowhead at the colour bar{}: {share} that end.", name(bar)),
-        _ => format!(" Arrowheads at the colour bars: {share} each such end."),
-    }
-}
-
 /// Vertical colour bar with ticks, and an arrow at an end beyond which there are values.
 pub(crate) fn color_bar(out: &mut String, legend: &Legend, x: f64, (top, bottom): (f64, f64)) {
     let Legend { bands, cut, label, unit } = *legend;

@@ -43,11 +43,6 @@ pub(crate) fn unit<'a>(case: &'a Value, of: &str) -> &'a str {
     text(case.get("units").unwrap_or(&Value::Null), of)
 }
 
-/// Names of the items of a list of a case.
-pub(crate) fn names<'a>(case: &'a Value, key: &str) -> Vec<&'a str> {
-    list(case, key).iter().filter_map(|item| item.get("name")?.as_str()).collect()
-}
-
 /// Whether the bodies of a case are in space.
 pub(crate) fn is_in_space(case: &Value) -> bool {
     case.get("dimension").and_then(Value::as_u64) == Some(3)

@@ -112,8 +112,13 @@ fn bar(directory: &Path, rows: usize, with_fields: bool) {
         description: String::new(),
         integer: false,
     });
-    let mut manifest =
-        Manifest::new("0.1.0", common::case(&json!({"dimension": 1})), Source::default(), columns.to_vec(), 1);
+    let mut manifest = Manifest::new(
+        "0.1.0",
+        common::case(&json!({"dimension": 1})),
+        Source::default(),
+        columns.to_vec(),
+        1,
+    );
     let mut writer = RunWriter::create(directory, &manifest, b"").unwrap();
     for i in 0..rows {
         let t = i as f64 * 0.1;
