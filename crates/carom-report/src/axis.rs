@@ -76,7 +76,7 @@ impl Axis {
         let last_of = |step: f64| (high / step + 1e-9).floor() as i64;
         let first_of = |step: f64| (low / step - 1e-9).ceil() as i64;
         while last_of(step) <= first_of(step) {
-            step = round_step(0.7 * step, 1.0);
+            step = round_step(0.4 * step, 1.0);
         }
         let size = low.abs().max(high.abs());
         let offset = if high - low < NARROW * size { round_near(low, high - low) } else { 0.0 };

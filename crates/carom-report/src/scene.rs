@@ -247,7 +247,7 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
                     canvas.over aria-hidden="true" {}
                 }
                 @for (k, bar) in bars.iter().enumerate() { div.bar hidden[k > 0] { (bar) } }
-                button.full type="button" title="full screen" aria-label="full screen" { "⛶" }
+                button.full type="button" { "full screen" }
             }
             (tools.controls())
             figcaption {

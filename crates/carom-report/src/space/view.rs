@@ -37,11 +37,6 @@ impl View {
         }
     }
 
-    /// In words.
-    pub(crate) fn words() -> String {
-        format!("parallel projection, azimuth {TURNED}° from −y towards +x, elevation {RAISED}°")
-    }
-
     /// Coordinates to the right, up, and towards the eye.
     pub(crate) fn of(&self, p: Place) -> Place {
         self.axes.map(|axis| dot(axis, p))

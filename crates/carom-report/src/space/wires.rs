@@ -29,7 +29,7 @@ pub(crate) struct Wire {
 pub(crate) fn wires(run: &Recorded, [low, high]: [Place; 2]) -> Vec<Wire> {
     let of = |contact: &ContactSpec| {
         let surface = run.manifest.surfaces.get(&contact.name);
-        one(contact, surface.map_or(&[], Vec::as_slice), [low, high])
+        one(&contact.name, &contact.primary, surface.map_or(&[], Vec::as_slice), [low, high])
     };
     run.case.contacts.iter().filter_map(of).collect()
 }
@@ -56,13 +56,13 @@ fn across(n: Place) -> [Place; 2] {
 }
 
 /// The lines of one obstacle; `surface` is the edges of a triangulated one.
-fn one(contact: &ContactSpec, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Option<Wire> {
+fn one(name: &str, primary: &PrimarySpec, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Option<Wire> {
     let diagonal = length(minus(high, low));
     let middle = plus(low, 0.5, minus(high, low));
     let reach = (0.5 + MARGIN) * diagonal;
     let share = |k: usize, n: usize| k as f64 / n as f64;
     let angle = |k: usize, n: usize| (std::f64::consts::TAU * share(k, n)).sin_cos();
-    let (lines, origin): (Vec<Vec<Place>>, Place) = match &contact.primary {
+    let (lines, origin): (Vec<Vec<Place>>, Place) = match primary {
         PrimarySpec::Plane { point, normal } => {
             let normal = unit(place(normal)?);
             let point = place(point)?;
@@ -119,7 +119,7 @@ fn one(contact: &ContactSpec, surface: &[[Place; 2]], [low, high]: [Place; 2]) -
     let is_whole = !surface.is_empty() && (0..3).all(|i| extent(i) <= WHOLE * diagonal);
     let pieces = lines.iter().flat_map(|line: &Vec<Place>| line.windows(2)).map(|w| [w[0], w[1]]);
     let segments: Vec<[Place; 2]> = pieces.filter(|piece| is_whole || piece.iter().all(is_near)).collect();
-    let center = ["x", "y", "z"].map(|axis| format!("{}.center_{axis}", contact.name));
+    let center = ["x", "y", "z"].map(|axis| format!("{name}.center_{axis}"));
     (!segments.is_empty()).then_some(Wire { segments, center, origin })
 }
 
@@ -143,32 +143,20 @@ impl Wire {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::{Value, json};
+    use carom_case::SurfaceSpec;
 
     use super::*;
 
-    fn contact(primary: &Value) -> ContactSpec {
-        serde_json::from_value(json!({
-            "name": "strike", "secondary": "b.top", "primary": primary, "enforcement": "multiplier",
-            "stiffness": 1.0, "force": "end", "persistency": "project", "active_set": "within",
-            "detection": "closest-point", "law": null, "restitution": 0.0,
-        }))
-        .unwrap()
-    }
-
     #[test]
     fn lines_lie_on_their_surface_near_the_bodies() {
-        let primaries = [
-            (json!({ "plane": { "point": [0.0, 0.0, -0.1], "normal": [0.0, 1.0, 2.0] } }), 0.0),
-            (json!({ "circle": { "center": [0.0, 0.0, -2.0], "radius": 2.0, "inside": false } }), 2.0),
-            (
-                json!({ "cylinder": { "point": [0.0, 9.0, 0.5], "axis": [0.0, 3.0, 0.0], "radius": 0.7, "inside": false } }),
-                0.7,
-            ),
-        ];
+        let plane = PrimarySpec::Plane { point: vec![0.0, 0.0, -0.1], normal: vec![0.0, 1.0, 2.0] };
+        let circle = PrimarySpec::Circle { center: vec![0.0, 0.0, -2.0], radius: 2.0, inside: false };
+        let point = vec![0.0, 9.0, 0.5];
+        let cylinder = PrimarySpec::Cylinder { point, axis: vec![0.0, 3.0, 0.0], radius: 0.7, inside: false };
+        let primaries = [(plane, 0.0), (circle, 2.0), (cylinder, 0.7)];
         for (k, (primary, radius)) in primaries.into_iter().enumerate() {
             let box_of = [[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]];
-            let wire = one(&contact(&primary), &[], box_of).unwrap();
+            let wire = one("strike", &primary, &[], box_of).unwrap();
             assert!(wire.at_first().len() > 100, "{k}");
             for p in wire.at_first().iter().flatten() {
                 let distance = match k {
@@ -180,15 +168,22 @@ mod tests {
                 assert!(p.iter().all(|x| x.abs() < 1.5), "{k}: {p:?}");
             }
         }
-        let of = |primary, surface: &[_]| one(&contact(&primary), surface, [[0.0; 3], [1.0; 3]]);
-        let file = json!({ "surface": {
-            "file": "a.stl", "group": null, "scale": 1.0, "reverse": false, "hash": "", "triangles": 2, "rim": 0,
-        } });
-        assert!(of(json!({ "side": "b.top" }), &[]).is_none());
-        let wire = of(file.clone(), &[[[0.0; 3], [99.0, 0.0, 0.0]]]).unwrap();
+        let of = |primary: &PrimarySpec, surface: &[_]| one("a", primary, surface, [[0.0; 3], [1.0; 3]]);
+        assert!(of(&PrimarySpec::Side("b.top".into()), &[]).is_none());
+        let surface = PrimarySpec::Surface(SurfaceSpec {
+            file: "a.stl".into(),
+            group: None,
+            scale: 1.0,
+            reverse: false,
+            hash: String::new(),
+            triangles: 0,
+            rim: 0,
+            inner: 0,
+        });
+        let wire = of(&surface, &[[[0.0; 3], [99.0, 0.0, 0.0]]]).unwrap();
         let reach = |wire: &Wire| wire.at_first().iter().flatten().map(|p| p[0]).fold(0.0, f64::max);
         assert!(reach(&wire) > 1.0 && reach(&wire) < 1.3, "{}", reach(&wire));
-        let wire = of(file, &[[[0.0; 3], [9.0, 0.0, 0.0]]]).unwrap();
+        let wire = of(&surface, &[[[0.0; 3], [9.0, 0.0, 0.0]]]).unwrap();
         assert_eq!(reach(&wire), 9.0);
     }
 }

@@ -300,7 +300,7 @@ pub(crate) mod tests {
         };
         let manifest: StudyManifest = serde_json::from_value(json!({
             "status": "finished", "title": "", "version": "", "input_hash": "", "created": "",
-            "machine": { "cpus": 1, "os": "", "arch": "" }, "reference": null, "claims": [],
+            "machine": { "cpus": 1, "os": "", "arch": "", "processor": "" }, "reference": null, "claims": [],
             "arms": arms.iter().map(arm).collect::<Vec<_>>(),
             "source": { "study": "", "case_path": "", "case": "" },
         }))
