@@ -66,7 +66,7 @@ fn summary(v: &Verification) -> Markup {
     }
 }
 
-/// What the tables of families show.
+/// Explanation of the tables of families.
 const WORDS: &str = "Error: result − expected value; for a bound, the amount beyond it. Every value is computed from \
     the run directory that its row links to. After each title: BLAKE3 hash of the files and options of its runs.";
 

@@ -148,7 +148,7 @@ impl Found {
         std::iter::once(whole).chain(part).collect()
     }
 
-    /// What the caption says after the name of the column.
+    /// Words for the caption, after the name of the column.
     fn words(&self, study: &Study) -> String {
         let is_apart = self.curves.iter().any(|curve| curve.apart);
         let grey = said_if(is_apart, " Grey: failed or created energy; no influence on the axes.");
