@@ -22,7 +22,7 @@ pub(crate) struct Figure {
     pub(crate) data: Option<serde_json::Value>,
     /// The drawn numbers, as the text of a `.csv` file.
     pub(crate) table: Option<String>,
-    /// What the page shows below the picture.
+    /// Content of the page below the picture.
     pub(crate) key: Markup,
 }
 

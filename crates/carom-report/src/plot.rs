@@ -40,7 +40,7 @@ pub(crate) struct Band {
     pub(crate) high: Vec<f64>,
 }
 
-/// One pane: axes and curves.
+/// A pane: axes and curves.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pane {
     /// Name in tables, where it is not the title; no two panes of a figure have the same.
@@ -78,7 +78,7 @@ pub(crate) struct Plot {
 }
 
 impl Pane {
-    /// Its name in tables.
+    /// The name of the pane in tables.
     pub(crate) fn name(&self) -> &str {
         if self.name.is_empty() { &self.title } else { &self.name }
     }

@@ -36,41 +36,8 @@ fn page(v: &Verification, directory: &Path) -> String {
     let title = format!("Verification of Carom {}", v.version);
     let body = html! {
         (summary(v))
-        h2 { "Families" }
-        table {
-            thead {
-                tr {
-                    th { "Family" } th.n { "Set-ups" } th.n { "With dynamic contact" } th.n { "Values" }
-                    th.n { "Missed" } th.n { "Sum of run times (s)" }
-                }
-            }
-            @for name in v.families() { (family(v, name)) }
-        }
-        h2 { "Values" }
         p.small { (WORDS) }
-        @for name in v.families() {
-            // What is missed is open; all the rest is a click away.
-            @let (values, missed) = counts(v, name);
-            details id=(name) open[missed > 0] {
-                summary {
-                    b { (name) } ": " (values) @if values == 1 { " value" } @else { " values" } ", " (missed) " missed"
-                }
-                div.scroll {
-                    table {
-                        thead {
-                            tr {
-                                th { "Arm" } th { "Quantity" } th { "Expected" }
-                                th.n { "Result" } th.n { "Error" } th { "Met" } th { "Source" }
-                            }
-                        }
-                        @for set_up in v.set_ups.iter().filter(|s| s.family == name) {
-                            (head(set_up, directory))
-                            @for one in &set_up.rows { (row(one)) }
-                        }
-                    }
-                }
-            }
-        }
+        @for name in v.families() { (family(v, name, directory)) }
         (foot(v))
     };
     document(&title, include_str!("verify.css"), &body)
@@ -99,26 +66,36 @@ fn summary(v: &Verification) -> Markup {
     }
 }
 
-/// What the tables of families show.
+/// Explanation of the tables of families.
 const WORDS: &str = "Error: result − expected value; for a bound, the amount beyond it. Every value is computed from \
     the run directory that its row links to. After each title: BLAKE3 hash of the files and options of its runs.";
 
-/// Numbers of values of a family, and of those that are missed.
-fn counts(v: &Verification, name: &str) -> (usize, usize) {
-    let rows = || v.rows().filter(|(set_up, _)| set_up.family == name);
-    (rows().count(), rows().filter(|(_, row)| !row.verdict.pass).count())
-}
-
-/// The row of a family in the table of families.
-fn family(v: &Verification, name: &str) -> Markup {
-    let mine: Vec<&SetUp> = v.set_ups.iter().filter(|s| s.family == name).collect();
-    let (values, missed) = counts(v, name);
+/// The values of a family, open where one is missed.
+fn family(v: &Verification, name: &str, directory: &Path) -> Markup {
+    let set_ups: Vec<&SetUp> = v.set_ups.iter().filter(|set_up| set_up.family == name).collect();
+    let rows = || set_ups.iter().flat_map(|set_up| &set_up.rows);
+    let missed = rows().filter(|row| !row.verdict.pass).count();
+    let wall = set_ups.iter().map(|set_up| set_up.wall).sum();
     html! {
-        tr {
-            td { a href={ "#" (name) } { (name) } }
-            td.n { (mine.len()) } td.n { (mine.iter().filter(|s| s.contact).count()) } td.n { (values) }
-            td.n.(if missed == 0 { "pass" } else { "miss" }) { (missed) }
-            td.n { (three(mine.iter().map(|s| s.wall).sum())) }
+        details id=(name) open[missed > 0] {
+            summary {
+                b { (name) } ": " (set_ups.len()) " set-ups, " (rows().count()) " values, "
+                span.(if missed == 0 { "pass" } else { "miss" }) { (missed) " missed" } ", " (three(wall)) " s"
+            }
+            div.scroll {
+                table {
+                    thead {
+                        tr {
+                            th { "Arm" } th { "Quantity" } th { "Expected" } th.n { "Result" } th.n { "Error" }
+                            th { "Met" } th { "Source" }
+                        }
+                    }
+                    @for set_up in &set_ups {
+                        (head(set_up, directory))
+                        @for one in &set_up.rows { (row(one)) }
+                    }
+                }
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::palette::LINES;
 use crate::pen::{Point, polyline};
 use crate::trace;
 
-/// What is drawn of a curve.
+/// Lines, markers or both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Drawn {
     /// Lines between the points.
@@ -110,7 +110,7 @@ impl Curve {
         }
     }
 
-    /// Its piece of line and marker in the legend, from a point.
+    /// Draws its piece of line and marker in the legend, from a point.
     pub(super) fn entry(&self, out: &mut String, [x, y]: Point) {
         let (color, dashes, marker) = self.look();
         if self.drawn == Drawn::Dots {

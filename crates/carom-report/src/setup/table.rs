@@ -11,7 +11,7 @@ use carom_record::FieldSet;
 use maud::{Markup, html};
 
 use super::Part;
-use crate::labels::{given_amount, listed, symbol};
+use crate::labels::{given_amount, listed, number, symbol};
 use crate::scientific::given;
 use crate::text::Label;
 
@@ -60,7 +60,11 @@ fn stress(units: &Units) -> String {
 
 /// `(0, -9.81)`; a single component without parentheses.
 fn components(formulas: &[FormulaSpec]) -> String {
-    let parts: Vec<String> = formulas.iter().map(FormulaSpec::to_string).collect();
+    let written = |formula: &FormulaSpec| match formula {
+        FormulaSpec::Number(value) => number(*value),
+        FormulaSpec::Text(text) => text.clone(),
+    };
+    let parts: Vec<String> = formulas.iter().map(written).collect();
     if let [one] = &parts[..] { one.clone() } else { format!("({})", parts.join(", ")) }
 }
 

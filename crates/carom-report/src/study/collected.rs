@@ -1,4 +1,4 @@
-//! What the page of a study needs from the records of its arms: columns, thinned, and the origin of
+//! Data for the page of a study from the records of its arms: columns, thinned, and the origin of
 //! each record.
 
 use carom_record::Run;
@@ -92,7 +92,7 @@ impl Measured {
         self.of(column).enumerate().map(points).filter(|curve| !curve.x.is_empty()).collect()
     }
 
-    /// What the caption of a column says about them.
+    /// Words on measured data for the caption of a column.
     pub(super) fn words(&self, column: &str) -> String {
         let one = |overlay: &Overlay| {
             let source = overlay.source.as_ref().map_or_else(String::new, |source| format!(" ({source})"));

@@ -31,7 +31,7 @@ fn setting(part: &str) -> Option<(&str, &str)> {
 }
 
 impl<'a> Keys<'a> {
-    /// Of arms with these names and a unit of time.
+    /// The keys of arms with these names and a unit of time.
     pub(super) fn of(names: impl Iterator<Item = &'a str>, time: &'a str) -> Self {
         let mut keys: Vec<&str> =
             names.flat_map(|name| name.split(", ")).filter_map(setting).map(|s| s.0).collect();

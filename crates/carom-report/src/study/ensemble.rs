@@ -1,4 +1,4 @@
-//! What an ensemble shows: the median of every metric over the members of an arm, and their range.
+//! Results of an ensemble: the median of every metric over the members of an arm, and their range.
 
 use carom_record::Status;
 use carom_record::metrics::Metric;

@@ -15,17 +15,21 @@ use crate::text::said_if;
 const TOGETHER: usize = 8;
 /// Most panes.
 const PANES: usize = 24;
-/// Figures that are shown; the others are folded away.
+/// Panes and figures that are shown; the other figures are folded away.
+const OPEN_PANES: usize = 36;
 const OPEN: usize = 4;
 /// Most points of the reference in a pane.
 const POINTS: usize = 1200;
 
 /// The figures of all columns.
 pub(super) fn plots(study: &Study, columns: &[Column], measured: &Measured, time: &str) -> Vec<Plot> {
-    let all = columns.iter().filter_map(|column| plot(study, column, measured));
-    let folded =
-        |(k, plot): (usize, Plot)| Plot { folded: k >= OPEN, x_label: with_unit("time t", time), ..plot };
-    all.enumerate().map(folded).collect()
+    let mut panes = 0;
+    let shown = columns.iter().filter_map(|column| plot(study, column, measured)).enumerate();
+    let placed = |(k, plot): (usize, Plot)| {
+        panes += plot.panes.len();
+        Plot { folded: k >= OPEN || panes > OPEN_PANES, x_label: with_unit("time t", time), ..plot }
+    };
+    shown.map(placed).collect()
 }
 
 /// The reference of a column as a line, and where its value is established, the band of its
@@ -144,7 +148,7 @@ impl Found {
         std::iter::once(whole).chain(part).collect()
     }
 
-    /// What the caption says after the name of the column.
+    /// Words for the caption, after the name of the column.
     fn words(&self, study: &Study) -> String {
         let is_apart = self.curves.iter().any(|curve| curve.apart);
         let grey = said_if(is_apart, " Grey: failed or created energy; no influence on the axes.");

@@ -11,7 +11,7 @@ use crate::document::{figure, framed};
 use crate::figure::Figure;
 use crate::text::Prose;
 
-/// What a page is made of.
+/// Contents of a page.
 pub(super) struct Content<'a> {
     pub(super) study: &'a Study,
     /// The drawing of the first arm.

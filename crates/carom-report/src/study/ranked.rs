@@ -190,7 +190,7 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
     }
 }
 
-/// What is recommended for the other goals.
+/// Recommendations for the other goals.
 fn other_goals(study: &Study) -> Markup {
     html! {
         details {
@@ -225,7 +225,7 @@ fn other_goals(study: &Study) -> Markup {
     }
 }
 
-/// What the reference establishes, and what it does not.
+/// Values that the reference establishes, and reasons where it does not.
 fn reference_values(study: &Study, reference: &Reference) -> Markup {
     let is_known = |m: &&Metric| study.rows.iter().any(|row| row.value(&m.name).is_some()) && !m.is_work();
     let metrics: Vec<&Metric> = study.metrics().into_iter().filter(is_known).collect();

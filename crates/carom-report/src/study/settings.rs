@@ -84,7 +84,7 @@ fn table(study: &Study, shared: &[&String]) -> Markup {
     }
 }
 
-/// What makes the arms comparable: equal time steps or equal costs.
+/// The design, which makes the arms comparable: equal time steps or equal costs.
 fn design(study: &Study) -> Markup {
     let manifest = &study.manifest;
     let Some(design) = &manifest.design else {

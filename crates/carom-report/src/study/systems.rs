@@ -14,7 +14,7 @@ fn system(arm: &Arm) -> [String; 3] {
     units.map(|Units { length, time, mass, .. }| [length, time, mass]).unwrap_or_default()
 }
 
-/// What the arms are converted to.
+/// Systems of units of the arms, and the one that they are converted to.
 #[derive(Default)]
 pub(super) struct Systems {
     /// Whether each run is in the system of the first arm.
@@ -41,7 +41,7 @@ impl Systems {
         self.own.iter().all(|own| *own)
     }
 
-    /// What the values of a run are multiplied by.
+    /// Factor of the values of a run.
     pub(super) fn factor(&mut self, run: usize, from: &str, to: &str) -> Option<f64> {
         if self.is_own(run) {
             return Some(1.0);
@@ -53,7 +53,7 @@ impl Systems {
         factor
     }
 
-    /// What the times of a run are multiplied by.
+    /// Factor of the times of a run.
     pub(super) fn of_times(&mut self, arm: usize, run: &Run) -> Option<f64> {
         let to = self.first[1].clone();
         self.factor(arm, run.history.unit("time"), &to)
@@ -84,7 +84,7 @@ impl Systems {
         }
     }
 
-    /// What the page says about it; nothing where all arms have one system.
+    /// Words for the page; nothing where all arms have one system.
     pub(super) fn words(&self) -> Option<String> {
         if self.is_one() {
             return None;
