@@ -37,6 +37,11 @@ impl View {
         }
     }
 
+    /// The view in words.
+    pub(crate) fn words() -> String {
+        format!("parallel projection, azimuth {TURNED}° from −y towards +x, elevation {RAISED}°")
+    }
+
     /// Coordinates to the right, up, and towards the eye.
     pub(crate) fn of(&self, p: Place) -> Place {
         self.axes.map(|axis| dot(axis, p))

@@ -287,24 +287,36 @@ pub(super) fn section(study: &Study) -> Markup {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use carom_record::Status;
-    use carom_record::study::{Row, StudyManifest};
-    use serde_json::json;
+    use carom_record::study::{Arm, Row, StudyManifest, StudySource};
+    use carom_record::{Machine, Status};
 
     /// A study of arms with these changes, and with values of metrics.
     pub(crate) fn study(arms: &[(&str, Vec<(&'static str, f64)>)]) -> Study {
-        let arm = |(sets, _): &(&str, _)| {
-            let sets: Vec<&str> = sets.split(", ").collect();
-            let facts = carom_record::Facts::default();
-            json!({ "name": sets.join(", "), "directory": "", "sets": sets, "steps": 1, "case": {}, "facts": facts })
+        let arm = |(sets, _): &(&str, _)| Arm {
+            name: (*sets).to_owned(),
+            sets: sets.split(", ").map(str::to_owned).collect(),
+            steps: 1,
+            ..Arm::default()
         };
-        let manifest: StudyManifest = serde_json::from_value(json!({
-            "status": "finished", "title": "", "version": "", "input_hash": "", "created": "",
-            "machine": { "cpus": 1, "os": "", "arch": "", "processor": "" }, "reference": null, "claims": [],
-            "arms": arms.iter().map(arm).collect::<Vec<_>>(),
-            "source": { "study": "", "case_path": "", "case": "" },
-        }))
-        .unwrap();
+        let manifest = StudyManifest {
+            status: Status::Finished,
+            title: String::new(),
+            version: String::new(),
+            input_hash: String::new(),
+            created: String::new(),
+            machine: Machine::current(),
+            reference: None,
+            design: None,
+            goal: None,
+            accuracy: None,
+            arms: arms.iter().map(arm).collect(),
+            ensemble: None,
+            members: Vec::new(),
+            overlays: Vec::new(),
+            claims: Vec::new(),
+            expects: Vec::new(),
+            source: StudySource::default(),
+        };
         let metric = |(name, value): &(&'static str, f64)| Metric {
             name: (*name).into(),
             value: Some(*value),
