@@ -53,126 +53,133 @@ pub(super) struct Evidence {
     pub ensemble: bool,
 }
 
+/// What limits the confidence, with the reasons.
+struct Doubts {
+    confidence: Confidence,
+    reasons: Vec<String>,
+}
+
+impl Doubts {
+    fn at_most(&mut self, most: Confidence, why: impl Into<String>) {
+        self.confidence = self.confidence.min(most);
+        self.reasons.push(why.into());
+    }
+}
+
 pub(super) fn confidence(
     goal: Goal,
     manifest: &StudyManifest,
     measure: &Measure,
     levels: &[Vec<Ranked>],
-    evidence: Evidence,
+    evidence: &Evidence,
 ) -> (Confidence, Vec<String>) {
-    let mut confidence = Confidence::High;
-    let mut reasons = Vec::new();
-    let mut at_most = |most: Confidence, why: String| {
-        confidence = confidence.min(most);
-        reasons.push(why);
-    };
+    let mut doubts = Doubts { confidence: Confidence::High, reasons: Vec::new() };
     let widths = if evidence.ensemble { " or the half-widths of both ensembles" } else { "" };
     let close =
         format!("differences of at most {} or {} %{widths}", short(measure.uncertainty), 100.0 * ALIKE);
-    match evidence.decided_by {
-        DecidedBy::Error => {}
-        DecidedBy::Accuracy => at_most(
-            Confidence::Low,
-            format!(
-                "its error is not distinguished from that of other methods ({close}); it alone has the \
-                 required accuracy, {}",
-                manifest.accuracy()
-            ),
-        ),
-        DecidedBy::Cost => at_most(
-            Confidence::Medium,
-            format!(
-                "its error is not distinguished from that of other methods ({close}); its lower cost decides"
-            ),
-        ),
-        DecidedBy::Nothing(_) if goal == Goal::Cost => at_most(
-            Confidence::Low,
-            format!("other methods have the same cost (differences of at most {} %)", 100.0 * EQUAL_COST),
-        ),
-        DecidedBy::Nothing(others) => at_most(
-            Confidence::Low,
-            format!(
-                "not distinguished from it, neither by error ({close}) nor by cost (at most {} % more): {}",
-                100.0 * EQUAL_COST,
-                others.join("; ")
-            ),
-        ),
+    of_decision(&mut doubts, goal, manifest, &evidence.decided_by, &close);
+    let count = levels.len();
+    for (method, shared) in &evidence.sharing {
+        let why = format!("at {shared} of {count} levels {method} is not distinguished from it ({close})");
+        doubts.at_most(Confidence::Medium, why);
     }
-    for (method, count) in evidence.sharing {
-        at_most(
-            Confidence::Medium,
-            format!("at {count} of {} levels {method} is not distinguished from it ({close})", levels.len()),
-        );
+    if evidence.first_at < count {
+        let first_at = evidence.first_at;
+        let why = format!("at only {first_at} of {count} levels no method is distinguishably better");
+        doubts.at_most(Confidence::Low, why);
     }
-    let first_at = evidence.first_at;
-    if first_at < levels.len() {
-        at_most(
-            Confidence::Low,
-            format!("at only {first_at} of {} levels no method is distinguishably better", levels.len()),
-        );
+    if count < 2 {
+        let why = "there is only one level; the ranking may be different at another step";
+        doubts.at_most(Confidence::Medium, why);
     }
-    if levels.len() < 2 {
-        at_most(
-            Confidence::Medium,
-            "there is only one level; the ranking may be different at another step".to_owned(),
-        );
-    }
-    let unseen = |what: &str, cure: &str| format!("{what}; {cure}");
-    let mesh = if evidence.reference {
-        unseen("the reference was computed on the given mesh only", "`mesh = [1, 2, 4]` in [fine] refines it")
-    } else {
-        unseen("all arms were computed on the given mesh", "`mesh = [1, 2]` in [ensemble] refines it")
-    };
-    let ensemble = unseen(
-        "there are arms with the value of a single run, so that chance cannot be distinguished from the \
-         method",
-        "[ensemble] runs every arm with several phases, roles and meshes",
-    );
-    // One of them alone leaves the ranking of this mesh, or of these instants, open.
-    let most = if evidence.mesh || evidence.ensemble { Confidence::Medium } else { Confidence::Low };
-    for why in [(evidence.mesh, mesh), (evidence.ensemble, ensemble)] {
-        if !why.0 {
-            at_most(most, why.1);
-        }
-    }
-    // Members that failed or have no such number do not show how far it is spread.
-    let all = |r: &&Ranked| manifest.runs_of(r.arm).len();
-    let incomplete = levels.iter().flatten().filter(|r| r.members < all(r));
-    if let Some(worst) = incomplete.min_by_key(|r| r.members) {
-        at_most(
-            Confidence::Medium,
-            format!(
-                "only {} of {} members of \"{}\" have a value",
-                worst.members,
-                all(&worst),
-                manifest.arms[worst.arm].name
-            ),
-        );
-    }
-    let off = manifest
-        .arms
-        .iter()
-        .filter(|a| a.role.cost.is_some_and(|share| (share - 1.0).abs() > EQUAL_COST))
-        .count();
-    if off > 0 {
-        at_most(
-            Confidence::Medium,
-            format!("the cost of {off} arms differs from the budget by more than 10 %"),
-        );
-    }
-    if manifest.design.is_none() {
-        at_most(
-            Confidence::Low,
-            "the arms are not matched: the study has no `design` for equal steps or equal cost".to_owned(),
-        );
-    }
-    if reasons.is_empty() {
+    of_evidence(&mut doubts, evidence);
+    of_runs(&mut doubts, manifest, levels);
+    if doubts.reasons.is_empty() {
         let by = if goal == Goal::Cost {
             "10 % of the cost"
         } else {
             "the uncertainties of arms and reference and 5 %"
         };
-        reasons.push(format!("it is ranked first at every level, by more than {by}"));
+        doubts.reasons.push(format!("it is ranked first at every level, by more than {by}"));
     }
-    (confidence, reasons)
+    (doubts.confidence, doubts.reasons)
+}
+
+/// What distinguishes the recommended method.
+fn of_decision(
+    doubts: &mut Doubts,
+    goal: Goal,
+    manifest: &StudyManifest,
+    decided_by: &DecidedBy,
+    close: &str,
+) {
+    let not_by_error = format!("its error is not distinguished from that of other methods ({close})");
+    let equal = 100.0 * EQUAL_COST;
+    match decided_by {
+        DecidedBy::Error => {}
+        DecidedBy::Accuracy => {
+            let accuracy = manifest.accuracy();
+            let why = format!("{not_by_error}; it alone has the required accuracy, {accuracy}");
+            doubts.at_most(Confidence::Low, why);
+        }
+        DecidedBy::Cost => {
+            doubts.at_most(Confidence::Medium, format!("{not_by_error}; its lower cost decides"));
+        }
+        DecidedBy::Nothing(_) if goal == Goal::Cost => {
+            let why = format!("other methods have the same cost (differences of at most {equal} %)");
+            doubts.at_most(Confidence::Low, why);
+        }
+        DecidedBy::Nothing(others) => {
+            let others = others.join("; ");
+            let why = format!(
+                "not distinguished from it, neither by error ({close}) nor by cost (at most {equal} % more): {others}"
+            );
+            doubts.at_most(Confidence::Low, why);
+        }
+    }
+}
+
+/// What the errors may depend on.
+fn of_evidence(doubts: &mut Doubts, evidence: &Evidence) {
+    // One of them alone leaves the ranking of this mesh, or of these instants, open.
+    let most = if evidence.mesh || evidence.ensemble { Confidence::Medium } else { Confidence::Low };
+    if !evidence.mesh {
+        doubts.at_most(
+            most,
+            if evidence.reference {
+                "the reference was computed on the given mesh only; `mesh = [1, 2, 4]` in [fine] refines it"
+            } else {
+                "all arms were computed on the given mesh; `mesh = [1, 2]` in [ensemble] refines it"
+            },
+        );
+    }
+    if !evidence.ensemble {
+        doubts.at_most(
+            most,
+            "there are arms with the value of a single run, so that chance cannot be distinguished from the \
+             method; [ensemble] runs every arm with several phases, roles and meshes",
+        );
+    }
+}
+
+/// Runs that are missing, or not matched.
+fn of_runs(doubts: &mut Doubts, manifest: &StudyManifest, levels: &[Vec<Ranked>]) {
+    // Members that failed or have no such number do not show how far it is spread.
+    let all = |r: &Ranked| manifest.runs_of(r.arm).len();
+    let incomplete = levels.iter().flatten().filter(|r| r.members < all(r));
+    if let Some(worst) = incomplete.min_by_key(|r| r.members) {
+        let name = &manifest.arms[worst.arm].name;
+        let why = format!("only {} of {} members of \"{name}\" have a value", worst.members, all(worst));
+        doubts.at_most(Confidence::Medium, why);
+    }
+    let is_off = |share: f64| (share - 1.0).abs() > EQUAL_COST;
+    let off = manifest.arms.iter().filter(|arm| arm.role.cost.is_some_and(is_off)).count();
+    if off > 0 {
+        let why = format!("the cost of {off} arms differs from the budget by more than 10 %");
+        doubts.at_most(Confidence::Medium, why);
+    }
+    if manifest.design.is_none() {
+        let why = "the arms are not matched: the study has no `design` for equal steps or equal cost";
+        doubts.at_most(Confidence::Low, why);
+    }
 }

@@ -63,7 +63,7 @@ pub(super) fn recommended(
                 format!("at {count} of {} levels no method is distinguishably better", field.levels.len())
             }
         });
-        reasons.extend(field.cheaper_than(&best));
+        reasons.extend(best.cost_beside());
         let accuracy = manifest.accuracy();
         reasons.push(format!("this is the coarsest level at which its error is at most {accuracy}"));
     }
@@ -88,7 +88,7 @@ pub(super) fn recommended(
         ensemble: field.levels.iter().flatten().all(|r| r.members > 1),
     };
     let (mut confidence, mut confidence_reasons) =
-        confidence(goal, manifest, measure, &field.levels, evidence);
+        confidence(goal, manifest, measure, &field.levels, &evidence);
     let matched_step = manifest.design.as_ref().filter(|design| design.kind == Kind::MatchedStep);
     if let Some(design) = matched_step.filter(|_| manifest.by_cost(&manifest.arms[best.chosen.arm])) {
         confidence = confidence.min(Confidence::Medium);
@@ -137,6 +137,18 @@ impl<'a> Best<'a> {
     fn next(&self) -> Option<(&'a str, f64)> {
         let others = self.equals.iter().filter(|(method, _)| *method != self.method);
         others.filter_map(|(m, cost)| Some((*m, (*cost)?))).min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The cost beside that of the methods tied with it.
+    fn cost_beside(&self) -> Option<String> {
+        let (next, other) = self.next()?;
+        let own = self.cost()?;
+        let words = if other > (1.0 + EQUAL_COST) * own {
+            "cheapest of the methods tied with it over all levels"
+        } else {
+            "of the methods tied with it over all levels none is cheaper by more than 10 %"
+        };
+        Some(format!("{words}: {} s of processor time; {next}: {} s", short(own), short(other)))
     }
 }
 
@@ -331,18 +343,6 @@ impl Field<'_> {
             Some(format!("{method} has a smaller error at this level, {}, but {why}", short(here.error)))
         };
         best.methods.iter().filter(|m| !best.tied.contains(m)).filter_map(why_not).collect()
-    }
-
-    /// Its cost beside that of the methods tied with it.
-    fn cheaper_than(&self, best: &Best) -> Option<String> {
-        let (next, other) = best.next()?;
-        let own = best.cost()?;
-        let words = if other > (1.0 + EQUAL_COST) * own {
-            "cheapest of the methods tied with it over all levels"
-        } else {
-            "of the methods tied with it over all levels none is cheaper by more than 10 %"
-        };
-        Some(format!("{words}: {} s of processor time; {next}: {} s", short(own), short(other)))
     }
 
     fn decided_by(&self, best: &Best) -> DecidedBy {
