@@ -45,14 +45,14 @@ fn figures_and_page() {
     let summary = report(&directory).unwrap();
     let names: Vec<_> =
         summary.figures.iter().map(|f| f.file_stem().unwrap().to_str().unwrap().to_string()).collect();
-    assert_eq!(names, ["bodies", "probes", "force", "energy", "solver"]);
+    assert_eq!(names, ["setup", "bodies", "probes", "force", "rotation", "energy", "solver"]);
     assert!(summary.notes.is_empty());
     for figure in &summary.figures {
         let text = fs::read_to_string(figure).unwrap();
         assert!(elements(&text) > 20);
         assert!(!text.contains("NaN") && !text.contains("inf"), "{figure:?}");
     }
-    let bodies = fs::read_to_string(&summary.figures[0]).unwrap();
+    let bodies = fs::read_to_string(&summary.figures[1]).unwrap();
     for part in ["(a)", "(e)", "t = 0.33 s", "t = 0.555 s", ">yy</tspan>", "0.5 m"] {
         assert!(bodies.contains(part), "{part}");
     }
@@ -133,7 +133,7 @@ fn dimension_one_shows_displacement_along_the_bar() {
     let directory = scratch.path().join("run");
     bar(&directory, 9, true);
     let summary = report(&directory).unwrap();
-    let text = fs::read_to_string(&summary.figures[0]).unwrap();
+    let text = fs::read_to_string(&summary.figures[1]).unwrap();
     assert!(text.contains("reference position X (m)") && elements(&text) > 20);
 }
 
@@ -216,7 +216,7 @@ fn solids_are_drawn_and_have_a_scene() {
     let directory = scratch.path().join("run");
     cube(&directory);
     let summary = report(&directory).unwrap();
-    let bodies = fs::read_to_string(&summary.figures[0]).unwrap();
+    let bodies = fs::read_to_string(&summary.figures[1]).unwrap();
     assert!(elements(&bodies) > 10 && bodies.contains("data:image/png"));
     for part in ["(e)", "t = 1", ">vM</tspan>"] {
         assert!(bodies.contains(part), "{part}");
