@@ -10,12 +10,11 @@ use serde::Serialize;
 use crate::exit::Failure;
 
 /// Metrics of the summary, where they are defined; all are in `metrics.json`.
-const SHOWN: [&str; 8] = [
+const SHOWN: [&str; 7] = [
     "contact_duration",
     "peak_mean_force",
     "restitution",
     "energy_lost",
-    "energy_created",
     "penetration",
     "pressure_max",
     "traction_max",
