@@ -45,7 +45,7 @@ fn figures_and_page() {
     let summary = report(&directory).unwrap();
     let names: Vec<_> =
         summary.figures.iter().map(|f| f.file_stem().unwrap().to_str().unwrap().to_string()).collect();
-    assert_eq!(names, ["setup", "bodies", "probes", "force", "energy", "solver"]);
+    assert_eq!(names, ["setup", "bodies", "probes", "force", "rotation", "energy", "solver"]);
     assert!(summary.notes.is_empty());
     for figure in &summary.figures {
         let text = fs::read_to_string(figure).unwrap();

@@ -37,7 +37,7 @@ pub(crate) fn case(parts: &Value) -> Value {
     let mut whole = json!({
         "title": "", "dimension": 2, "plane": "strain", "thickness": 1.0,
         "units": {"length": "m", "time": "s", "mass": "kg"}, "preset": "default", "materials": [], "bodies": [],
-        "supports": [], "contacts": [], "newton": {"tolerance": 1e-9, "max_iterations": 20}, "probes": [],
+        "supports": [], "loads": [], "contacts": [], "newton": {"tolerance": 1e-9, "max_iterations": 20}, "probes": [],
         "output": {"fields_every": 1, "at_times": [], "history_every": 1, "checkpoint_every": 1}, "expects": [],
         "time": {
             "end": 1.0, "step": 0.1, "energy_guard": null,
