@@ -160,7 +160,7 @@ const charts = (() => {
 })();
 
 // Play and pause, the slider and keys. `draw` draws a frame.
-const player = (root, frames, unit, draw) => {
+const player = (root, frames, unit, draw, first) => {
   const [button, slider, shown, speed] = [".play", ".time", "output", ".speed"].map(s => root.querySelector(s));
   const start = frames[0].time, end = frames[frames.length - 1].time;
   let frame = -1, now = start, playing = null;
@@ -200,8 +200,8 @@ const player = (root, frames, unit, draw) => {
     if (by) { pause(); show((frames[frame + by] || frames[frame]).time); event.preventDefault(); }
     if (event.key === " " && event.target !== button) { playing === null ? play() : pause(); event.preventDefault(); }
   });
-  // The frame with the largest contact forces, or the last one.
+  // The frame with the largest contact forces, or else with the largest stress.
   const force = f => f.forces.reduce((sum, x) => sum + Math.abs(x), 0);
   const most = frames.reduce((a, b) => force(b) > force(a) ? b : a);
-  show((force(most) > 0 ? most : frames[frames.length - 1]).time);
+  show(force(most) > 0 ? most.time : first ?? end);
 };
