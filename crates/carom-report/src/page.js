@@ -20,7 +20,9 @@ const charts = (() => {
     const steps = [10, 5, 2, 1].map(f => f * power), fit = s => Math.floor(to / s + 1e-9) - Math.ceil(from / s - 1e-9) + 1;
     const step = steps.reduce((best, s) => s >= 0.999 * raw || fit(best) < 2 ? s : best);
     const decimals = Math.min(12, Math.max(0, -Math.floor(Math.log10(step / 10 ** exponent * 1.0001)))), list = [];
-    for (let i = Math.ceil(from / step - 1e-9); i <= to / step + 1e-9; i++) {
+    // Not where steps are lost in round-off.
+    if (!(step > 1e-12 * Math.max(Math.abs(from), Math.abs(to)))) return list;
+    for (let i = Math.ceil(from / step - 1e-9); i <= to / step + 1e-9 && list.length < 60; i++) {
       const shown = (i * step - offset) / 10 ** exponent, text = Math.abs(shown).toFixed(decimals);
       list.push([i * step, (shown < 0 && +text !== 0 ? "−" : "") + text]);
     }
