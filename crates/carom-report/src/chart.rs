@@ -435,7 +435,10 @@ fn entries(panel: &Panel, axis: &Axis, is_over_time: bool) -> Vec<String> {
             return name.to_owned();
         }
         let [low, high] = [low, high].map(|x| significant(x / 10f64.powi(axis.exponent), 4));
-        format!("{name}  {low} … {high}").trim_start().to_owned()
+        if name.is_empty() {
+            return format!("{low} … {high}");
+        }
+        format!("{name}: {low} … {high}")
     };
     panel.series.iter().map(entry).collect()
 }

@@ -122,7 +122,7 @@ fn force(run: &Recorded, histories: &Histories) -> Option<Figure> {
 
 /// The rotation of the bodies of the plane, where one turns by more than a little.
 fn rotation(histories: &Histories, scene: &Scene) -> Option<Figure> {
-    const LEAST: f64 = 0.5;
+    const LEAST: f64 = 5.0;
     let mut series = Vec::new();
     for (k, (body, degrees)) in scene.rotations.iter().enumerate() {
         // An angle goes on beyond half a turn.

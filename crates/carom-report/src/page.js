@@ -20,7 +20,9 @@ const charts = (() => {
     const steps = [10, 5, 2, 1].map(f => f * power), fit = s => Math.floor(to / s + 1e-9) - Math.ceil(from / s - 1e-9) + 1;
     const step = steps.reduce((best, s) => s >= 0.999 * raw || fit(best) < 2 ? s : best);
     const decimals = Math.min(12, Math.max(0, -Math.floor(Math.log10(step / 10 ** exponent * 1.0001)))), list = [];
-    for (let i = Math.ceil(from / step - 1e-9); i <= to / step + 1e-9; i++) {
+    // Not where steps are lost in round-off.
+    if (!(step > 1e-12 * Math.max(Math.abs(from), Math.abs(to)))) return list;
+    for (let i = Math.ceil(from / step - 1e-9); i <= to / step + 1e-9 && list.length < 60; i++) {
       const shown = (i * step - offset) / 10 ** exponent, text = Math.abs(shown).toFixed(decimals);
       list.push([i * step, (shown < 0 && +text !== 0 ? "−" : "") + text]);
     }
@@ -160,7 +162,7 @@ const charts = (() => {
 })();
 
 // Play and pause, the slider and keys. `draw` draws a frame.
-const player = (root, frames, unit, draw) => {
+const player = (root, frames, unit, draw, first) => {
   const [button, slider, shown, speed] = [".play", ".time", "output", ".speed"].map(s => root.querySelector(s));
   const start = frames[0].time, end = frames[frames.length - 1].time;
   let frame = -1, now = start, playing = null;
@@ -200,8 +202,8 @@ const player = (root, frames, unit, draw) => {
     if (by) { pause(); show((frames[frame + by] || frames[frame]).time); event.preventDefault(); }
     if (event.key === " " && event.target !== button) { playing === null ? play() : pause(); event.preventDefault(); }
   });
-  // The frame with the largest contact forces, or the last one.
+  // The frame with the largest contact forces, or else with the largest stress.
   const force = f => f.forces.reduce((sum, x) => sum + Math.abs(x), 0);
   const most = frames.reduce((a, b) => force(b) > force(a) ? b : a);
-  show((force(most) > 0 ? most : frames[frames.length - 1]).time);
+  show(force(most) > 0 ? most.time : first ?? end);
 };

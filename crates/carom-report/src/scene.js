@@ -474,5 +474,5 @@ const scene = async (root, data) => {
   resize();
   new ResizeObserver(resize).observe(canvas.parentElement);
   paint();
-  player(root, frames, data.unit, fill);
+  player(root, frames, data.unit, fill, data.first);
 };

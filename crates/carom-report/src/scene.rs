@@ -203,6 +203,7 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
     let mut data = pack.data;
     data["packed"] = json!(pack.text);
     data["unit"] = json!(run.time_unit());
+    data["first"] = json!(stress.as_ref().map(|peak: &Peak| peak.time));
     if dimension == 3 {
         data["box"] = json!([low, high]);
         data["rigid"] = rigid_in_space(run, &shown, [low, high]);
