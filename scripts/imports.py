@@ -20,7 +20,7 @@ from pathlib import Path
 
 # From the lowest crate up, as in ARCHITECTURE.md: a crate may use those of earlier rows.
 ORDER = [
-    ["carom-algebra", "carom-formula", "carom-time"],
+    ["carom-algebra", "carom-formula", "carom-keys", "carom-time"],
     ["carom-solid", "carom-record"],
     ["carom-contact", "carom-case"],
     ["carom-mechanics"],

@@ -12,15 +12,16 @@ use super::unit::Labels;
 mod value;
 
 /// All problems of single keys and values.
-pub(super) fn problems(document: &Document) -> Vec<Problem> {
+pub(super) fn problems(document: &Document, root: &'static keys::Table) -> Vec<Problem> {
     let dimension = document.root().get("dimension").and_then(Node::count).filter(|d| (1..=3).contains(d));
     let mut check = Check {
         dimension,
         names: Names::of(document.root()),
         labels: Labels::of(document.root()),
+        root: Some(root),
         problems: Vec::new(),
     };
-    check.table(document.root(), &keys::CASE, "");
+    check.table(document.root(), root, "");
     check.problems
 }
 
@@ -31,18 +32,13 @@ pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
     check.problems
 }
 
-/// The same for one table of fixed keys.
-pub(super) fn table(table: &Table, keys: &keys::Table, path: &str) -> Vec<Problem> {
-    let mut check = Check::default();
-    check.table(table, keys, path);
-    check.problems
-}
-
 #[derive(Default)]
 struct Check {
     dimension: Option<usize>,
     names: Names,
     labels: Labels,
+    /// The whole file, of which other tables may have an unknown key.
+    root: Option<&'static keys::Table>,
     problems: Vec<Problem>,
 }
 
@@ -77,7 +73,7 @@ impl Check {
                 let why = format!("`{}` of {} is planned for a later version of Carom", entry.key, spec.name);
                 self.problems.push(Problem::new(here, what, why, "leave it out").at_key());
             } else if spec.tag != Some(entry.key.as_str()) {
-                let (problem, near) = unknown(&entry.key, table, spec, here);
+                let (problem, near) = self.unknown(&entry.key, table, spec, here);
                 self.problems.push(problem);
                 meant.extend(near);
             }
@@ -150,7 +146,7 @@ impl Check {
         let keys = variants.tables.iter().map(|(_, t)| t).chain(or).flat_map(|t| t.keys).collect();
         let spec = Spec { name: variants.name, tag: Some(tag), keys, later: &[] };
         for entry in table.0.iter().filter(|e| e.key != tag && !spec.keys.iter().any(|k| k.name == e.key)) {
-            let (problem, _) = unknown(&entry.key, table, &spec, joined(path, &entry.key));
+            let (problem, _) = self.unknown(&entry.key, table, &spec, joined(path, &entry.key));
             self.problems.push(problem);
         }
         let here = joined(path, tag);
@@ -178,6 +174,40 @@ impl Check {
     }
 }
 
+impl Check {
+    /// An unknown key, and the key of this table that was probably meant.
+    fn unknown<'a>(
+        &self,
+        word: &str,
+        table: &Table,
+        spec: &Spec<'a>,
+        path: String,
+    ) -> (Problem, Option<&'a str>) {
+        let all = || spec.tag.into_iter().chain(spec.keys.iter().map(|k| k.name));
+        // A key that is present already is not a likely suggestion, unless it may occur several times.
+        let several =
+            |name: &str| spec.keys.iter().any(|k| k.name == name && matches!(k.kind, Kind::Tables(_)));
+        let free = all().filter(|k| table.get(k).is_none() || several(k)).chain(spec.later.iter().copied());
+        let mut homes = self.root.map_or_else(Vec::new, |root| homes(root, word));
+        homes.dedup();
+        let near = suggest::nearest(word, free)
+            .or_else(|| all().find(|key| OTHER_WORDS.contains(&(word, *key)) && table.get(key).is_none()))
+            .or_else(|| suggest::nearest(word, all()).filter(|_| homes.is_empty()));
+        let elsewhere = format!("`{word}` is a key of {}", homes.join(", "));
+        let help = match (near, homes.is_empty()) {
+            (Some(near), true) => format!("did you mean `{near}`?"),
+            (Some(near), false) => format!("did you mean `{near}`? ({elsewhere})"),
+            (None, false) => elsewhere,
+            (None, true) => "leave it out, or list all keys with `carom schema`".to_owned(),
+        };
+        let mut keys: Vec<_> = all().collect();
+        let mut seen = std::collections::HashSet::new();
+        keys.retain(|k| seen.insert(*k));
+        let why = format!("the keys of {} are: {}", spec.name, keys.join(", "));
+        (Problem::new(path, format!("unknown key `{word}` in {}", spec.name), why, help).at_key(), near)
+    }
+}
+
 /// Whether a problem suggests that this key was meant.
 fn meant(problem: &Problem, key: &str) -> bool {
     problem.help.contains(&format!("`{key}`"))
@@ -198,33 +228,8 @@ fn words(variants: &Variants) -> String {
 /// Words that other programs use, and the keys that they mean.
 const OTHER_WORDS: [(&str, &str); 3] = [("point", "at"), ("position", "at"), ("friction", "mu")];
 
-/// An unknown key, and the key of this table that was probably meant.
-fn unknown<'a>(word: &str, table: &Table, spec: &Spec<'a>, path: String) -> (Problem, Option<&'a str>) {
-    let all = || spec.tag.into_iter().chain(spec.keys.iter().map(|k| k.name));
-    // A key that is present already is not a likely suggestion, unless it may occur several times.
-    let several = |name: &str| spec.keys.iter().any(|k| k.name == name && matches!(k.kind, Kind::Tables(_)));
-    let free = all().filter(|k| table.get(k).is_none() || several(k)).chain(spec.later.iter().copied());
-    let mut homes = homes(word);
-    homes.dedup();
-    let near = suggest::nearest(word, free)
-        .or_else(|| all().find(|key| OTHER_WORDS.contains(&(word, *key)) && table.get(key).is_none()))
-        .or_else(|| suggest::nearest(word, all()).filter(|_| homes.is_empty()));
-    let elsewhere = format!("`{word}` is a key of {}", homes.join(", "));
-    let help = match (near, homes.is_empty()) {
-        (Some(near), true) => format!("did you mean `{near}`?"),
-        (Some(near), false) => format!("did you mean `{near}`? ({elsewhere})"),
-        (None, false) => elsewhere,
-        (None, true) => "leave it out, or list all keys with `carom schema`".to_owned(),
-    };
-    let mut keys: Vec<_> = all().collect();
-    let mut seen = std::collections::HashSet::new();
-    keys.retain(|k| seen.insert(*k));
-    let why = format!("the keys of {} are: {}", spec.name, keys.join(", "));
-    (Problem::new(path, format!("unknown key `{word}` in {}", spec.name), why, help).at_key(), near)
-}
-
 /// The tables that have this key.
-fn homes(word: &str) -> Vec<&'static str> {
+fn homes(root: &'static keys::Table, word: &str) -> Vec<&'static str> {
     fn visit(table: &'static keys::Table, word: &str, found: &mut Vec<&'static str>) {
         if table.key(word).is_some() {
             found.push(table.name);
@@ -245,6 +250,6 @@ fn homes(word: &str) -> Vec<&'static str> {
         }
     }
     let mut found = Vec::new();
-    visit(&keys::CASE, word, &mut found);
+    visit(root, word, &mut found);
     found
 }

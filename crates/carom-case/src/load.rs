@@ -1,12 +1,51 @@
-//! Reads loads, motions of supports and initial velocities of bodies.
+//! Reads loads, supports and initial velocities of bodies.
 
-use super::keys::{self, IN_SPACE_AND_TIME};
+use super::keys::Kind::{self, Vector};
+use super::keys::{self, IN_SPACE_AND_TIME, Keys, View};
 use super::load_table;
-use super::view::View;
-use super::{FormulaSpec, LoadKind, LoadSpec};
+use super::spec::{LoadKeys, SupportKeys};
+use super::{FormulaSpec, LoadKind, LoadSpec, SupportSpec};
+
+/// Initial velocity of a rigid-body motion: linear + angular × (X − about).
+#[derive(Keys)]
+#[keys(name = "velocity")]
+pub(crate) struct Velocity {
+    /// Velocity of the point `about`. Default: zero.
+    #[key(Vector, unit = "length/time", optional = "[0.0, -1.0]", with = linear)]
+    linear: Vec<f64>,
+    /// Angular velocity: counter-clockwise in dimension 2, [ωx, ωy, ωz] in dimension 3. Default: zero.
+    #[key(Kind::Angular, unit = "1/time", optional = "2.0", with = angular)]
+    angular: Vec<f64>,
+    /// Centre of the rotation; required with `angular`.
+    #[key(Vector, unit = "length", example = "[0.0, 1.0]")]
+    about: Option<Vec<f64>>,
+}
+
+fn linear(v: &View) -> Option<Vec<f64>> {
+    v.vector("linear")
+}
+
+/// The angular velocity in space.
+fn angular(v: &View) -> Option<Vec<f64>> {
+    match v.get::<Option<f64>>("angular").flatten() {
+        Some(about_z) => Some(vec![0.0, 0.0, about_z]),
+        None if v.has("angular") => v.get("angular"),
+        None => Some(vec![0.0; 3]),
+    }
+}
+
+/// The loads of a case.
+pub(super) fn loads(v: &View) -> Option<Vec<Option<LoadSpec>>> {
+    v.each("load", load)
+}
+
+/// The supports of a case.
+pub(super) fn supports(v: &View) -> Option<Vec<Option<SupportSpec>>> {
+    v.each("support", support)
+}
 
 /// Reads a `[[load]]`.
-pub(super) fn read(v: &View) -> Option<LoadSpec> {
+fn load(v: &View) -> Option<LoadSpec> {
     let given: Vec<_> = ["traction", "pressure", "body_force"].into_iter().filter(|k| v.has(k)).collect();
     let place = if given == ["body_force"] { "body" } else { "on" };
     let other = if place == "body" { "on" } else { "body" };
@@ -18,16 +57,17 @@ pub(super) fn read(v: &View) -> Option<LoadSpec> {
             let what = format!("the load needs exactly one force and its place; it has {had} and {where_}");
             let help = "give `on` with `traction` or `pressure`, or `body` with `body_force`";
             let why = "tractions and pressures act on sides, a body force acts in a body";
-            return v.report(v.problem("", what, why, help).at_key());
+            return v.wrong_key("", what, why, help);
         }
         return None;
     }
+    let LoadKeys { name, on, body, traction, pressure, body_force, table } = LoadKeys::read(v)?;
     let kind = match given[0] {
-        "traction" => LoadKind::Traction { on: v.texts("on")?, value: v.formulas("traction")? },
-        "pressure" => LoadKind::Pressure { on: v.texts("on")?, value: v.formula("pressure")? },
-        _ => LoadKind::BodyForce { body: v.text("body")?, value: v.formulas("body_force")? },
+        "traction" => LoadKind::Traction { on: on?, value: traction? },
+        "pressure" => LoadKind::Pressure { on: on?, value: pressure? },
+        _ => LoadKind::BodyForce { body: body?, value: body_force? },
     };
-    let table = match v.text("table") {
+    let table = match table {
         Some(file) => match load_table::read(&v.folder.join(&file), &file) {
             Ok(table) => Some(table),
             Err(error) => {
@@ -37,28 +77,42 @@ pub(super) fn read(v: &View) -> Option<LoadSpec> {
         },
         None => None,
     };
-    Some(LoadSpec { name: v.text("name"), kind, table })
+    Some(LoadSpec { name, kind, table })
 }
 
-/// Reads the displacements of a support: (direction, formula).
-pub(super) fn motion(v: &View) -> Option<Vec<(usize, FormulaSpec)>> {
-    displacements(&v.at("move")?)
+/// Reads a `[[support]]`.
+fn support(v: &View) -> Option<SupportSpec> {
+    let SupportKeys { name, on, fix, moment_about, r#move } = SupportKeys::read(v)?;
+    let (normal, axes): (Vec<_>, Vec<_>) =
+        fix.into_iter().flatten().partition(|direction| direction == "normal");
+    let axis = |direction: &String| ["x", "y", "z"].iter().position(|axis| axis == direction);
+    let moves = r#move.map_or_else(Vec::new, |by| displacements([&by.x, &by.y, &by.z]));
+    Some(SupportSpec {
+        name,
+        on,
+        fix: axes.iter().map(axis).collect::<Option<_>>()?,
+        normal: !normal.is_empty(),
+        moment_about,
+        moves,
+    })
 }
 
-/// Reads displacements by direction.
-pub(super) fn displacements(v: &View) -> Option<Vec<(usize, FormulaSpec)>> {
-    let axis = |(i, name)| v.has(name).then(|| Some((i, v.formula(name)?)));
-    ["x", "y", "z"].into_iter().enumerate().filter_map(axis).collect()
+/// Displacements along x, y and z, where they are given, each with its direction.
+pub(super) fn displacements(along: [&Option<FormulaSpec>; 3]) -> Vec<(usize, FormulaSpec)> {
+    along.into_iter().enumerate().filter_map(|(i, formula)| Some((i, formula.clone()?))).collect()
 }
 
 /// Reads a body's initial velocity; a rigid-body motion is converted to formulas.
-pub(super) fn velocity(v: &View, dimension: usize) -> Option<Vec<FormulaSpec>> {
-    let Some(v) = v.at("velocity") else { return v.formulas("velocity") };
-    let linear = v.vector("linear", dimension)?;
-    let angular = match v.number("angular") {
-        Some(about_z) => vec![0.0, 0.0, about_z],
-        None => v.vector("angular", 3)?,
-    };
+pub(super) fn velocity(v: &View) -> Option<Vec<FormulaSpec>> {
+    let dimension = v.dimension?;
+    if v.table.get("velocity").is_some_and(|node| node.table().is_none()) {
+        return v.get("velocity");
+    }
+    let v = v.at("velocity")?;
+    let Velocity { linear, angular, about } = Velocity::read(&v)?;
+    if linear.len() != dimension || angular.len() != 3 {
+        return None;
+    }
     if angular.iter().all(|component| *component == 0.0) {
         return Some(linear.into_iter().map(FormulaSpec::Number).collect());
     }
@@ -73,7 +127,7 @@ pub(super) fn velocity(v: &View, dimension: usize) -> Option<Vec<FormulaSpec>> {
         let help = if dimension == 2 { "add `about = [x, y]`" } else { "add `about = [x, y, z]`" };
         return v.wrong("angular", "the rotation has no centre", "a body rotates about a point", help);
     }
-    let about = v.numbers("about")?;
+    let about = about.filter(|about| about.len() == dimension)?;
     // Component i of linear + ω × (X − about), without the terms that vanish.
     let component = |i: usize| {
         let [j, k] = [(i + 1) % 3, (i + 2) % 3];

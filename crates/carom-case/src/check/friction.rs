@@ -15,7 +15,7 @@ impl Check<'_> {
         let (draft, scheme) = (self.draft, self.scheme());
         let is_light = |side: &str| {
             let name = side.split_once('.').map_or(side, |(body, _)| body);
-            draft.bodies.iter().flatten().any(|body| body.name == name && body.mass.is_redistributed())
+            draft.body.iter().flatten().any(|body| body.name == name && body.mass.is_redistributed())
         };
         let light = is_light(&contact.secondary) || contact.primary.side().is_some_and(is_light);
         let mut refuse = |with: &str, why: &str, help: &str| {

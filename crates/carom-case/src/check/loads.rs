@@ -19,7 +19,7 @@ impl Check<'_> {
         }
         let draft = self.draft;
         let Some(end) = draft.time.as_ref().map(|t| t.end) else { return };
-        for (i, load) in draft.loads.iter().enumerate() {
+        for (i, load) in draft.load.iter().enumerate() {
             let Some(table) = load.as_ref().and_then(|l| l.table.as_ref()) else { continue };
             let (first, last) = (table.times[0], table.times[table.times.len() - 1]);
             // The times n·Δt of the grid are rounded.
@@ -91,7 +91,7 @@ impl Check<'_> {
                 self.add(path, format!("`{key}` cannot be used with [manufactured]"), why, "leave it out");
             }
         }
-        for (i, body) in self.draft.bodies.iter().enumerate() {
+        for (i, body) in self.draft.body.iter().enumerate() {
             let Some(body) = body else { continue };
             let given = [
                 ("gravity", body.gravity.iter().any(|g| !g.is_zero())),
@@ -114,7 +114,7 @@ impl Check<'_> {
             (false, true) => "[initial] sets the velocities",
             (false, false) => return,
         };
-        for (i, body) in self.draft.bodies.iter().enumerate() {
+        for (i, body) in self.draft.body.iter().enumerate() {
             let Some(body) = body else { continue };
             if body.starts_moving() {
                 let what = "the body has an initial velocity";

@@ -16,7 +16,7 @@ use carom_solid::Element;
 use super::columns;
 use super::document::Document;
 use super::draft::Draft;
-use super::keys;
+use super::keys::Keys;
 use super::problem::Problem;
 use super::spec::SKIN;
 use super::suggest;
@@ -106,7 +106,9 @@ impl<'a> Check<'a> {
     fn names(&self, list: &str) -> Option<Vec<&'a str>> {
         let tables = self.tables(list);
         let root = &self.document.root().0;
-        if root.iter().any(|e| keys::CASE.key(&e.key).is_none() && suggest::nearest(&e.key, [list]).is_some())
+        if root
+            .iter()
+            .any(|e| Draft::TABLE.key(&e.key).is_none() && suggest::nearest(&e.key, [list]).is_some())
         {
             return None;
         }
@@ -220,12 +222,12 @@ impl<'a> Check<'a> {
     }
 
     fn body(&self, name: &str) -> Option<&'a BodySpec> {
-        self.draft.bodies.iter().flatten().find(|b| b.name == name)
+        self.draft.body.iter().flatten().find(|b| b.name == name)
     }
 
     /// Whether a body has no mass.
     fn massless(&self, body: &BodySpec) -> bool {
-        self.draft.materials.iter().flatten().any(|m| m.name == body.material && m.density == 0.0)
+        self.draft.material.iter().flatten().any(|m| m.name == body.material && m.density == 0.0)
     }
 
     fn bodies(&mut self) {
@@ -234,7 +236,7 @@ impl<'a> Check<'a> {
             if let Some(material) = text("material") {
                 self.reference("material", material, format!("body[{i}].material"));
             }
-            let element: Option<Element> = text("element").and_then(super::view::word);
+            let element: Option<Element> = text("element").and_then(super::keys::word);
             if let (Some(d), Some(element)) = (self.draft.dimension, element)
                 && element.dimension() != d
             {
@@ -341,11 +343,11 @@ impl<'a> Check<'a> {
     }
 
     fn probes(&mut self) {
-        for (i, probe) in self.draft.probes.iter().enumerate() {
+        for (i, probe) in self.draft.probe.iter().enumerate() {
             let Some(probe) = probe else { continue };
             self.reference("body", &probe.body, format!("probe[{i}].body"));
             for (j, quantity) in probe.record.iter().enumerate() {
-                let name = quantity.name();
+                let name = quantity.word();
                 let path = format!("probe[{i}].record[{j}]");
                 if let Some(d) = self.draft.dimension.filter(|d| !columns::exists(*quantity, *d)) {
                     let why = format!("the case has dimension = {d}");
@@ -378,8 +380,8 @@ fn known_sides(body: &BodySpec) -> String {
 
 /// A side of which something was left out when its mesh was read.
 fn inside<'a>(body: &'a BodySpec, side: &str) -> Option<&'a String> {
-    let MeshSpec::File { repairs, .. } = body.mesh.source() else { return None };
-    repairs.iter().find(|repair| repair.contains(&format!("\"{side}\"")))
+    let MeshSpec::File(file) = body.mesh.source() else { return None };
+    file.repairs.iter().find(|repair| repair.contains(&format!("\"{side}\"")))
 }
 
 /// Advice for a mesh from a file without sides.

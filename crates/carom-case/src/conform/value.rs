@@ -3,11 +3,11 @@
 use super::Check;
 use crate::FormulaSpec;
 use crate::document::joined;
+use crate::keys::word as word_of;
 use crate::keys::{self, Default, Key, Kind, Range};
 use crate::problem::Problem;
 use crate::suggest;
 use crate::tree::{Node, Value};
-use crate::view::word as word_of;
 
 impl Check {
     /// All problems of a value, and of the tables in it.
@@ -17,9 +17,10 @@ impl Check {
             | (Kind::NumberOrFalse(_), Value::Flag(false))
             | (Kind::Truth, Value::Flag(_)) => {}
             (Kind::Name, Value::Text(name)) => self.name(name, key, path),
-            (Kind::Choice(now, later), Value::Text(word)) => {
-                let now = if now.contains(&word.as_str()) { now.to_vec() } else { self.of_dimension(now) };
-                self.choice(word, key.name, &now, later, &key.meaning(), path);
+            (Kind::Choice(words), Value::Text(word)) => {
+                let known = words.now.contains(&word.as_str());
+                let now = if known { words.now.to_vec() } else { self.of_dimension(words.now) };
+                self.choice(word, key.name, &now, words.later, &key.meaning(), path);
             }
             (Kind::Choices(words), Value::List(list)) if !list.is_empty() => {
                 self.each(list, path, |check, node, path| match node.text() {
@@ -44,10 +45,10 @@ impl Check {
             }
             (Kind::Direction, Value::Text(word)) if ["x", "y", "z"].contains(&word.as_str()) => {}
             (Kind::Vector | Kind::Direction, Value::List(list)) if self.has_dimension(list.len()) => {
-                self.numbers(list, key, path);
+                self.numbers(list, &keys::ANY, key, path);
             }
             (Kind::Angular, Value::List(list)) if self.has_dimension(3) && list.len() == 3 => {
-                self.numbers(list, key, path);
+                self.numbers(list, &keys::ANY, key, path);
             }
             (Kind::Angular | Kind::Rotation(_), Value::Integer(_) | Value::Float(_))
                 if self.dimension != Some(3) =>
@@ -57,10 +58,10 @@ impl Check {
             (Kind::Rotation(spec), Value::Table(table)) if self.has_dimension(3) => {
                 self.table(table, spec, path);
             }
-            (Kind::Numbers, Value::List(list)) => self.numbers(list, key, path),
+            (Kind::Numbers(range), Value::List(list)) => self.numbers(list, range, key, path),
             (Kind::Points(least), Value::List(list)) if list.len() >= *least => {
                 self.each(list, path, |check, node, path| match &node.value {
-                    Value::List(point) if point.len() == 2 => check.numbers(point, key, path),
+                    Value::List(point) if point.len() == 2 => check.numbers(point, &keys::ANY, key, path),
                     _ => check.wrong(node, key, path),
                 });
             }
@@ -92,6 +93,21 @@ impl Check {
                     Some(table) => check.table(table, spec, path),
                     None => check.wrong(node, key, path),
                 });
+            }
+            (Kind::Changes, Value::Table(_)) => {}
+            (Kind::ChangeLists, Value::List(list)) => {
+                self.each(list, path, |check, node, path| {
+                    check.value(node, &Key { kind: Kind::Changes, ..*key }, path)
+                });
+            }
+            (Kind::Grid, Value::Table(table)) => {
+                for (name, node) in table.flat() {
+                    if node.list().is_none_or(<[Node]>::is_empty) {
+                        let what = format!("`{name}` must be a list of values, not {}", node.described());
+                        let help = format!("write for example `grid = {}`", key.example);
+                        self.add(&format!("{path}.\"{name}\""), what, key.meaning(), help);
+                    }
+                }
             }
             (Kind::Variant(variants), Value::Table(table)) => {
                 let variants = variants();
@@ -191,9 +207,9 @@ impl Check {
         }
     }
 
-    fn numbers(&mut self, list: &[Node], key: &Key, path: &str) {
+    fn numbers(&mut self, list: &[Node], range: &Range, key: &Key, path: &str) {
         self.each(list, path, |check, node, path| match node.number() {
-            Some(_) => check.number(node, &keys::ANY, key, path),
+            Some(_) => check.number(node, range, key, path),
             None => check.wrong(node, key, path),
         });
     }

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::formula::FormulaSpec;
+use crate::keys::Kind::{Choices, Formula, Formulas, Name, Sides, Vector};
+use crate::keys::{IN_SPACE_AND_TIME, Keys};
 
 /// Sides fixed or moved in some directions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,6 +24,77 @@ pub struct SupportSpec {
     /// Prescribed displacements by direction: formulas in X, Y, t.
     #[serde(rename = "move", default)]
     pub moves: Vec<(usize, FormulaSpec)>,
+}
+
+/// Displacement boundary condition: sides fixed in some directions with `fix`, or moved with `move`.
+#[derive(Keys)]
+#[keys(name = "[[support]]")]
+pub(crate) struct SupportKeys {
+    /// Name; the reaction forces of a named support are recorded.
+    #[key(Name, example = "\"floor\"")]
+    pub(crate) name: Option<String>,
+    /// Sides that are constrained.
+    #[key(example = "[\"prism.bottom\"]")]
+    pub(crate) on: Vec<String>,
+    /// Directions that are fixed; normal: that of the side, which must be plane and normal to x, y or
+    /// z.
+    #[key(Choices(&["x", "y", "z", "normal"]), example = "[\"x\", \"y\"]")]
+    pub(crate) fix: Option<Vec<String>>,
+    /// Point about which the moment of the reactions is recorded too, for a named support in
+    /// dimension 2 or 3.
+    #[key(Vector, unit = "length", example = "[0.0, 0.0]")]
+    pub(crate) moment_about: Option<Vec<f64>>,
+    /// Prescribed displacements by direction, zero at t = 0; velocity and acceleration are the time
+    /// derivatives of the formula.
+    #[key(example = "{ y = \"-0.1*t\" }")]
+    pub(crate) r#move: Option<Move>,
+}
+
+/// Displacements of a side from its reference position.
+#[derive(Keys)]
+#[keys(name = "move")]
+pub(crate) struct Move {
+    /// Displacement along x.
+    #[key(Formula(IN_SPACE_AND_TIME), unit = "length", example = "\"0.1*t\"")]
+    pub(crate) x: Option<FormulaSpec>,
+    /// Displacement along y.
+    #[key(Formula(IN_SPACE_AND_TIME), unit = "length", example = "\"-0.1*t\"")]
+    pub(crate) y: Option<FormulaSpec>,
+    /// Displacement along z; dimension 3.
+    #[key(Formula(IN_SPACE_AND_TIME), unit = "length", example = "\"0.1*t\"")]
+    pub(crate) z: Option<FormulaSpec>,
+}
+
+/// A load on sides (`on` with `traction` or `pressure`) or in a body (`body` with `body_force`).
+/// Formulas are functions of the reference position X, Y, Z and the time t.
+#[derive(Keys)]
+#[keys(name = "[[load]]")]
+pub(crate) struct LoadKeys {
+    /// Name used in messages.
+    #[key(Name, example = "\"press\"")]
+    pub(crate) name: Option<String>,
+    /// Loaded sides, with `traction` or `pressure`.
+    #[key(Sides, example = "[\"prism.top\"]")]
+    pub(crate) on: Option<Vec<String>>,
+    /// Loaded body, with `body_force`.
+    #[key(Name, example = "\"prism\"")]
+    pub(crate) body: Option<String>,
+    /// Dead load per reference area.
+    #[key(
+        Formulas(IN_SPACE_AND_TIME),
+        unit = "mass/(length·time²)",
+        example = "[\"0\", \"-5*min(t/0.1, 1)\"]"
+    )]
+    pub(crate) traction: Option<Vec<FormulaSpec>>,
+    /// Follower load per current area, acting against the outward normal.
+    #[key(Formula(IN_SPACE_AND_TIME), unit = "mass/(length·time²)", example = "\"2*t\"")]
+    pub(crate) pressure: Option<FormulaSpec>,
+    /// Dead load per reference volume.
+    #[key(Formulas(IN_SPACE_AND_TIME), unit = "mass/(length²·time²)", example = "[\"0\", \"-3*X\"]")]
+    pub(crate) body_force: Option<Vec<FormulaSpec>>,
+    /// CSV file with the columns t and value: a factor on the load, linearly interpolated in time.
+    #[key(example = "\"amplitude.csv\"")]
+    pub(crate) table: Option<String>,
 }
 
 /// Forces on sides or in a body.

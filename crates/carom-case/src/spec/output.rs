@@ -1,18 +1,27 @@
-//! What a run records: probes, rows of history.csv, fields, checkpoints.
+//! Records of a run: probes, rows of history.csv, fields, checkpoints; measured data.
 
 use carom_record::FieldFormat;
 use serde::{Deserialize, Serialize};
 
-/// A material point whose quantities are recorded as columns.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+use crate::keys::Kind::{Choices, Count, Name, Number, Numbers, Vector};
+use crate::keys::{ANY, Keys, POSITIVE, View};
+
+/// A material point whose quantities are recorded as columns name.quantity.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Keys)]
+#[keys(name = "[[probe]]")]
 pub struct ProbeSpec {
-    /// Name; columns are `name.quantity`.
+    /// Name; its columns are name.quantity.
+    #[key(Name, example = "\"A\"")]
     pub name: String,
-    /// Reference position.
+    /// Reference position of the point.
+    #[key(Vector, unit = "length", example = "[0.0, 1.5]")]
     pub at: Vec<f64>,
     /// Body it belongs to.
+    #[key(Name, example = "\"cylinder\"")]
     pub body: String,
-    /// Recorded quantities.
+    /// Recorded quantities: displacement, velocity, acceleration, Cauchy stress, von Mises stress,
+    /// volume ratio.
+    #[key(Choices(Quantity::WORDS), example = "[\"uy\", \"sigma_yy\"]")]
     pub record: Vec<Quantity>,
 }
 
@@ -34,8 +43,41 @@ pub struct OverlaySpec {
     pub source: Option<String>,
 }
 
+/// Measured data of one column: drawn with it, and compared by the metrics `overlay_rms:NAME`,
+/// `overlay_peak:NAME` and `overlay_shift:NAME`.
+#[derive(Keys)]
+#[keys(name = "[[overlay]]")]
+pub(crate) struct OverlayKeys {
+    /// Name in figures and metrics.
+    #[key(Name, example = "\"test-3\"")]
+    pub(crate) name: String,
+    /// CSV file with a line of headings, relative to the folder of the case or study; its lines that
+    /// begin with # are comments.
+    #[key(example = "\"measured.csv\"")]
+    pub(crate) file: String,
+    /// The column of history.csv that was measured.
+    #[key(example = "\"A.uy\"")]
+    pub(crate) column: String,
+    /// Heading of the times in the file.
+    #[key(default = "\"t\"")]
+    pub(crate) time: String,
+    /// Heading of the values in the file.
+    #[key(default = "\"value\"")]
+    pub(crate) value: String,
+    /// Times of the case in one unit of those of the file: 1e-3 for ms in a case in s.
+    #[key(Number(POSITIVE), default = "1.0")]
+    pub(crate) time_scale: f64,
+    /// Values of the column in one unit of those of the file: −1e-3 for mm downwards in a case in m
+    /// upwards.
+    #[key(Number(ANY), default = "1.0")]
+    pub(crate) scale: f64,
+    /// Where the data come from.
+    #[key(example = "\"own test, 3 May\"")]
+    pub(crate) source: Option<String>,
+}
+
 /// Quantities that a probe can record.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs)]
 pub enum Quantity {
@@ -58,48 +100,33 @@ pub enum Quantity {
     DetF,
 }
 
-impl Quantity {
-    /// Names in the order of the quantities.
-    pub const NAMES: [&str; 17] = [
-        "ux",
-        "uy",
-        "uz",
-        "vx",
-        "vy",
-        "vz",
-        "ax",
-        "ay",
-        "az",
-        "sigma_xx",
-        "sigma_yy",
-        "sigma_zz",
-        "sigma_xy",
-        "sigma_yz",
-        "sigma_xz",
-        "von_mises",
-        "det_f",
-    ];
-
-    /// Its name in cases and columns.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-}
-
 /// What is written, and how often.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Keys)]
+#[keys(name = "[output]")]
 pub struct OutputSpec {
-    /// Steps between two outputs of the fields; 0: none.
+    /// Steps between two outputs of the fields; 0: none. Default: 20, or 0 if at_times is given.
+    #[key(Count(0), optional = "20", with = fields_every)]
     pub fields_every: usize,
-    /// Format of the fields.
+    /// Field format: one VTU file per output, listed in fields.pvd, or a single file,
+    /// fields.vtkhdf.
+    #[key(default = "\"vtu\"")]
     #[serde(default)]
     pub format: FieldFormat,
     /// Fields are also written at the steps nearest to these times.
+    #[key(Numbers(ANY), unit = "time", default = "[]")]
     pub at_times: Vec<f64>,
     /// Steps between two rows of history.csv.
+    #[key(Count(1), default = "1")]
     pub history_every: usize,
-    /// Steps between two checkpoints.
+    /// Steps between two checkpoints, from which a run that is killed is continued; after a power
+    /// failure, from the last one that was flushed to the disk (at most one in five seconds).
+    #[key(Count(1), default = "50")]
     pub checkpoint_every: usize,
+}
+
+fn fields_every(v: &View) -> Option<usize> {
+    let every = if v.has("at_times") { 0 } else { 20 };
+    if v.has("fields_every") { v.get("fields_every") } else { Some(every) }
 }
 
 #[cfg(test)]
@@ -108,9 +135,9 @@ mod tests {
 
     #[test]
     fn names_of_quantities_are_those_of_cases() {
-        for name in Quantity::NAMES {
-            let read: Quantity = serde_json::from_value(name.into()).unwrap();
-            assert_eq!(read.name(), name);
+        for name in Quantity::WORDS {
+            let read: Quantity = serde_json::from_value((*name).into()).unwrap();
+            assert_eq!(read.word(), *name);
         }
     }
 }

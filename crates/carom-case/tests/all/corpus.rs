@@ -33,7 +33,11 @@ fn messages(line: &str) -> Vec<String> {
     };
     let of = |problem: &carom_case::Diagnostic| {
         let place = format!("{}:{}+{}", problem.line, problem.column, problem.length);
-        [format!("  {place} {}", problem.what), format!("  why: {}", problem.why), format!("  try: {}", problem.help)]
+        [
+            format!("  {place} {}", problem.what),
+            format!("  why: {}", problem.why),
+            format!("  try: {}", problem.help),
+        ]
     };
     let here = folder().to_string_lossy().into_owned();
     found.iter().flat_map(of).map(|text| text.replace(&here, "FOLDER").trim_end().to_owned()).collect()
@@ -62,7 +66,8 @@ fn check(name: &str, now: &str) {
     let text = std::fs::read_to_string(&path).unwrap_or_default();
     if std::env::var("CAROM_CORPUS").is_ok_and(|what| what == "write") {
         std::fs::write(&path, now).unwrap();
-    } else if let Some((k, (is, was))) = now.lines().zip(text.lines()).enumerate().find(|(_, (a, b))| a != b) {
+    } else if let Some((k, (is, was))) = now.lines().zip(text.lines()).enumerate().find(|(_, (a, b))| a != b)
+    {
         panic!("{name}:{}: this is now\n{is}\nand was\n{was}", k + 1);
     } else {
         assert_eq!(now.lines().count(), text.lines().count());
@@ -81,7 +86,8 @@ fn mistakes_give_the_messages_of_the_corpus() {
 fn cases_are_stored_as_before() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap();
     let mut files = Vec::new();
-    let mut folders = vec![root.join("cases"), root.join("docs/book/examples"), root.join("crates/carom/templates")];
+    let mut folders =
+        vec![root.join("cases"), root.join("docs/book/examples"), root.join("crates/carom/templates")];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use carom::case::{
-    Case, Document, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
+    Case, Document, FileMesh, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
     SurfaceSpec, gibibytes,
 };
 use carom::stability::SAFETY;
@@ -165,7 +165,7 @@ fn table(case: &Case, facts: &Facts) -> String {
         if let Some(quality) = facts.and_then(|b| b.scaled_jacobian).filter(|_| case.dimension == 3) {
             lines.push(format!("           smallest scaled Jacobian {quality:.2}"));
         }
-        if let MeshSpec::File { file, repairs, .. } = body.mesh.source() {
+        if let MeshSpec::File(FileMesh { file, repairs, .. }) = body.mesh.source() {
             lines.push(format!("           from {}", file.display()));
             lines.extend(repairs.iter().map(|repair| format!("           note: {repair}")));
         }
