@@ -11,25 +11,33 @@ use super::unit::Labels;
 
 mod value;
 
-/// All problems of single keys and values.
-pub(super) fn problems(document: &Document, root: &'static keys::Table) -> Vec<Problem> {
+/// What is wrong with single keys and values.
+#[derive(Default)]
+pub(super) struct Conformity {
+    pub(super) problems: Vec<Problem>,
+    /// Paths of the tables that have an unknown key, perhaps a misspelt one.
+    pub(super) misspelt: Vec<String>,
+}
+
+/// Compares a document with the keys of its tables.
+pub(super) fn file(document: &Document, root: &'static keys::Table) -> Conformity {
     let dimension = document.root().get("dimension").and_then(Node::count).filter(|d| (1..=3).contains(d));
     let mut check = Check {
         dimension,
         names: Names::of(document.root()),
         labels: Labels::of(document.root()),
         root: Some(root),
-        problems: Vec::new(),
+        found: Conformity::default(),
     };
     check.table(document.root(), root, "");
-    check.problems
+    check.found
 }
 
 /// The same for a table of variants alone.
 pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
     let mut check = Check::default();
     check.variant(table, variants, "");
-    check.problems
+    check.found.problems
 }
 
 #[derive(Default)]
@@ -39,7 +47,7 @@ struct Check {
     labels: Labels,
     /// The whole file, of which other tables may have an unknown key.
     root: Option<&'static keys::Table>,
-    problems: Vec<Problem>,
+    found: Conformity,
 }
 
 /// The keys a table may have.
@@ -59,7 +67,7 @@ impl<'a> Spec<'a> {
 
 impl Check {
     fn add(&mut self, path: &str, what: String, why: String, help: String) {
-        self.problems.push(Problem::new(path, what, why, help));
+        self.found.problems.push(Problem::new(path, what, why, help));
     }
 
     fn keys(&mut self, table: &Table, spec: &Spec, path: &str) {
@@ -71,11 +79,12 @@ impl Check {
             } else if spec.later.contains(&entry.key.as_str()) {
                 let what = format!("`{}` is not supported yet", entry.key);
                 let why = format!("`{}` of {} is planned for a later version of Carom", entry.key, spec.name);
-                self.problems.push(Problem::new(here, what, why, "leave it out").at_key());
+                self.found.problems.push(Problem::new(here, what, why, "leave it out").at_key());
             } else if spec.tag != Some(entry.key.as_str()) {
                 let (problem, near) = self.unknown(&entry.key, table, spec, here);
-                self.problems.push(problem);
+                self.found.problems.push(problem);
                 meant.extend(near);
+                self.found.misspelt.push(path.to_owned());
             }
         }
         let required = spec.keys.iter().copied().filter(|k| matches!(k.default, Default::Required));
@@ -86,7 +95,8 @@ impl Check {
         for key in spec.keys.iter().filter(|k| replaced(k) && table.get(k.name).is_some()) {
             let what = format!("`{}` is given with `{}`", key.name, key.unless);
             let why = format!("`{}` takes its place", key.unless);
-            self.problems
+            self.found
+                .problems
                 .push(Problem::new(joined(path, key.name), what, why, "leave one of them out").at_key());
         }
         let missing: Vec<_> = missing.into_iter().filter(|k| !replaced(k)).collect();
@@ -108,7 +118,7 @@ impl Check {
         let what = format!("{} has no {}", spec.name, and(&names));
         let help = format!("add for example {}", and(&examples));
         let why = format!("they are required. {}", meanings.join(" "));
-        self.problems.push(Problem::new(path, what, why, help).at_key());
+        self.found.problems.push(Problem::new(path, what, why, help).at_key());
     }
 
     fn missing(&mut self, name: &str, key: &Key, table: &str, path: &str) {
@@ -120,7 +130,9 @@ impl Check {
         let help = if key.example.is_empty() { help } else { format!("{help}, for example") };
         let what = format!("{table} needs `{name}`");
         let why = format!("`{name}` is required. {}", key.meaning());
-        self.problems.push(Problem::new(path, what, why, help.trim_end_matches(", for example")).at_key());
+        self.found
+            .problems
+            .push(Problem::new(path, what, why, help.trim_end_matches(", for example")).at_key());
     }
 
     fn table(&mut self, table: &Table, spec: &keys::Table, path: &str) {
@@ -138,16 +150,26 @@ impl Check {
         if let Some(Ok(word)) = named
             && let Some(spec) = variants.table(word)
         {
+            if let (Some(needs), Some(dimension)) = (spec.dimension, self.dimension)
+                && needs != dimension
+            {
+                let fits = |(_, table): &&(&str, keys::Table)| table.dimension == Some(dimension);
+                let other = variants.tables.iter().find(fits).map_or("", |(word, _)| word);
+                let what = format!("the {tag} \"{word}\" has dimension {needs}");
+                let why = format!("the case has dimension = {dimension}");
+                let help = format!("use for example {tag} = \"{other}\"");
+                return self.add(&joined(path, tag), what, why, help);
+            }
             return self.keys(table, &Spec::of(spec, Some(tag)), path);
         }
         let or = variants.or.filter(|_| named.is_none());
         // The tag is missing or wrong: any key of any variant is known, none is required.
-        let before = self.problems.len();
+        let before = self.found.problems.len();
         let keys = variants.tables.iter().map(|(_, t)| t).chain(or).flat_map(|t| t.keys).collect();
         let spec = Spec { name: variants.name, tag: Some(tag), keys, later: &[] };
         for entry in table.0.iter().filter(|e| e.key != tag && !spec.keys.iter().any(|k| k.name == e.key)) {
             let (problem, _) = self.unknown(&entry.key, table, &spec, joined(path, &entry.key));
-            self.problems.push(problem);
+            self.found.problems.push(problem);
         }
         let here = joined(path, tag);
         match named {
@@ -159,7 +181,7 @@ impl Check {
                 let what = format!("`{tag}` must be a string in quotes, not {}", node.described());
                 self.add(&here, what, variants.doc.to_owned(), format!("use one of: {}", words(variants)));
             }
-            None if self.problems[before..]
+            None if self.found.problems[before..]
                 .iter()
                 .any(|p| meant(p, tag) || or.is_some_and(|t| meant(p, t.keys[0].name))) => {}
             None => {
@@ -168,7 +190,7 @@ impl Check {
                     .and_then(|t| t.keys.first())
                     .map_or_else(String::new, |k| format!("; or give `{}`", k.name));
                 let help = format!("use one of: {}{or}", words(variants));
-                self.problems.push(Problem::new(path, what, variants.doc, help));
+                self.found.problems.push(Problem::new(path, what, variants.doc, help));
             }
         }
     }

@@ -199,14 +199,11 @@ impl ExpectKeys {
             ["at_most"] => Bound::AtMost(self.at_most?),
             ["at_least"] => Bound::AtLeast(self.at_least?),
             _ => {
-                if !v.has_unknown_key() {
-                    let what = "the expectation needs exactly one bound";
-                    let why =
-                        format!("it has {}", if given.is_empty() { "none".into() } else { given.join(", ") });
-                    let help = "give `value` and `tolerance`, or `value` and `relative`, or `at_most`, or `at_least`; with a formula `tolerance` is enough";
-                    return v.wrong_key("", what, why, help);
-                }
-                return None;
+                let what = "the expectation needs exactly one bound";
+                let why =
+                    format!("it has {}", if given.is_empty() { "none".into() } else { given.join(", ") });
+                let help = "give `value` and `tolerance`, or `value` and `relative`, or `at_most`, or `at_least`; with a formula `tolerance` is enough";
+                return v.wrong_key("", what, why, help);
             }
         })
     }

@@ -24,6 +24,8 @@ pub struct Table {
     pub keys: &'static [Key],
     /// Keys planned for a later version.
     pub later: &'static [&'static str],
+    /// The dimension of the cases that may have it, if not all may.
+    pub dimension: Option<usize>,
 }
 
 /// One key.

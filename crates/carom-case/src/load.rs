@@ -50,16 +50,13 @@ fn load(v: &View) -> Option<LoadSpec> {
     let place = if given == ["body_force"] { "body" } else { "on" };
     let other = if place == "body" { "on" } else { "body" };
     if given.len() != 1 || !v.has(place) || v.has(other) {
-        if !v.has_unknown_key() {
-            let had = if given.is_empty() { "no force".to_owned() } else { given.join(", ") };
-            let places: Vec<_> = ["on", "body"].into_iter().filter(|k| v.has(k)).collect();
-            let where_ = if places.is_empty() { "no place".to_owned() } else { places.join(", ") };
-            let what = format!("the load needs exactly one force and its place; it has {had} and {where_}");
-            let help = "give `on` with `traction` or `pressure`, or `body` with `body_force`";
-            let why = "tractions and pressures act on sides, a body force acts in a body";
-            return v.wrong_key("", what, why, help);
-        }
-        return None;
+        let had = if given.is_empty() { "no force".to_owned() } else { given.join(", ") };
+        let places: Vec<_> = ["on", "body"].into_iter().filter(|k| v.has(k)).collect();
+        let where_ = if places.is_empty() { "no place".to_owned() } else { places.join(", ") };
+        let what = format!("the load needs exactly one force and its place; it has {had} and {where_}");
+        let help = "give `on` with `traction` or `pressure`, or `body` with `body_force`";
+        let why = "tractions and pressures act on sides, a body force acts in a body";
+        return v.wrong_key("", what, why, help);
     }
     let LoadKeys { name, on, body, traction, pressure, body_force, table } = LoadKeys::read(v)?;
     let kind = match given[0] {
@@ -115,9 +112,6 @@ pub(super) fn velocity(v: &View) -> Option<Vec<FormulaSpec>> {
     }
     if angular.iter().all(|component| *component == 0.0) {
         return Some(linear.into_iter().map(FormulaSpec::Number).collect());
-    }
-    if v.has_unknown_key() {
-        return None;
     }
     if dimension == 1 {
         let why = "the case has dimension = 1";

@@ -138,10 +138,6 @@ impl FileMesh {
         let mesh = match gmsh::read(&bytes).and_then(|file| group(file, dimension, &surface, slits)) {
             Ok(mesh) => mesh,
             Err(error) => {
-                // `slits` may be misspelt, which `conform` reports.
-                if matches!(error.fault, gmsh::Fault::Coincident { .. }) && v.has_unknown_key() {
-                    return None;
-                }
                 let key = if matches!(error.fault, gmsh::Fault::NoName { .. }) { named } else { "file" };
                 return wrong(key, format!("{name}: {error}"), error.why(), error.help());
             }

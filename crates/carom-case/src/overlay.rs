@@ -14,10 +14,6 @@ pub fn overlays(v: &View) -> Option<Vec<Option<OverlaySpec>>> {
 
 /// Reads an `[[overlay]]`.
 fn read(v: &View) -> Option<OverlaySpec> {
-    // A misspelt key is reported once, not as headings that the file does not have too.
-    if v.has_unknown_key() {
-        return None;
-    }
     let OverlayKeys { name, file, column, time, value, time_scale, scale, source } = OverlayKeys::read(v)?;
     match load_table::columns(&v.folder.join(&file), &file, [&time, &value]) {
         Ok(table) => {

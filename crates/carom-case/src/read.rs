@@ -5,11 +5,11 @@ use std::path::Path;
 
 use super::between::Bodies;
 use super::check;
-use super::conform;
+use super::conform::{self, Conformity};
 use super::document::Document;
 use super::draft::Draft;
 use super::keys::{Keys, View};
-use super::problem::{CaseError, Problem, Problems};
+use super::problem::{CaseError, Problem, Problems, is_within};
 use super::refine::{self, Counts};
 use super::{BodySpec, Case, ContactSpec, FormulaSpec, Persistency, Preset};
 
@@ -50,7 +50,9 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
         let help = "run it with carom study, or check it with carom check";
         return Err(vec![Problem::new(key, "this is a study, not a case", why, help).at_key()].into());
     }
-    let problems = RefCell::new(conform::problems(document, &Draft::TABLE));
+    let Conformity { problems, misspelt } = conform::file(document, &Draft::TABLE);
+    let known = problems.len();
+    let problems = RefCell::new(problems);
     let root = View::of_keys(document.root(), Draft::TABLE.keys, &problems);
     let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
     let is_paper = root.get("preset") == Some(Preset::Paper);
@@ -61,7 +63,8 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
     draft.refine(&root);
     draft.expand_contacts(&root);
     let mut problems = problems.take();
-    check::problems(document, &draft, &mut problems);
+    check::problems(document, &draft, &misspelt, &mut problems);
+    only_judged(&mut problems, known, &misspelt);
     if !problems.is_empty() {
         return Err(problems.into());
     }
@@ -81,12 +84,24 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
 /// Reads a file with the keys of a table, and adds everything wrong with it to `problems`; relative
 /// paths of files start at `folder`.
 pub fn read_table<T: Keys + Default>(document: &Document, folder: &Path, problems: &mut Vec<Problem>) -> T {
-    problems.extend(conform::problems(document, &T::TABLE));
-    let reported = RefCell::default();
+    let Conformity { problems: found, misspelt } = conform::file(document, &T::TABLE);
+    let known = found.len();
+    let reported = RefCell::new(found);
     let view = View { folder, ..View::of_keys(document.root(), T::TABLE.keys, &reported) };
     let read = T::read(&view);
-    problems.extend(reported.take());
+    let mut found = reported.take();
+    only_judged(&mut found, known, &misspelt);
+    problems.extend(found);
     read.unwrap_or_default()
+}
+
+/// Drops problems, beyond those that are `known`, of tables that have a misspelt key: what depends on
+/// it is not judged.
+fn only_judged(problems: &mut Vec<Problem>, known: usize, misspelt: &[String]) {
+    let tables = || misspelt.iter().filter(|table| !table.is_empty());
+    let judged = problems.split_off(known);
+    problems
+        .extend(judged.into_iter().filter(|problem| !tables().any(|table| is_within(&problem.path, table))));
 }
 
 impl Draft {

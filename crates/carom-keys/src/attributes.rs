@@ -37,6 +37,8 @@ pub(crate) struct Container {
     pub(crate) doc: String,
     /// Name in messages.
     pub(crate) name: String,
+    /// The dimension of the cases that may have it.
+    pub(crate) dimension: Option<Expr>,
     /// Planned keys.
     pub(crate) later: Vec<Expr>,
     /// The key whose value selects the table, and its meaning.
@@ -56,6 +58,7 @@ impl Container {
                 (Some("name"), value) => container.name = text(&value)?,
                 (Some("tag"), value) => container.tag = text(&value)?,
                 (Some("tag_doc"), value) => container.tag_doc = text(&value)?,
+                (Some("dimension"), value) => container.dimension = Some(value),
                 (Some("later"), Expr::Array(list)) => container.later = list.elems.into_iter().collect(),
                 (None, Expr::Path(path)) if path.path.is_ident("untagged") => container.untagged = true,
                 (None, Expr::Path(path)) if path.path.is_ident("lenient") => container.lenient = true,

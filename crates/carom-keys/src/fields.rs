@@ -36,7 +36,11 @@ pub(crate) fn table(name: &str, container: &Container, fields: &Fields) -> syn::
     };
     let doc = &container.doc;
     let later = &container.later;
-    Ok(quote!(::carom_case::keys::Table { name: #name, doc: #doc, keys: #keys, later: &[#(#later),*] }))
+    let dimension =
+        container.dimension.as_ref().map_or_else(|| quote!(None), |dimension| quote!(Some(#dimension)));
+    Ok(quote!(::carom_case::keys::Table { name: #name, doc: #doc, keys: #keys, later: &[#(#later),*],
+        dimension: #dimension,
+    }))
 }
 
 /// The description of a key.

@@ -22,7 +22,7 @@ impl Check<'_> {
             let what = "persistency = \"project\" cannot be used here";
             self.add(path("persistency"), what, why, "leave persistency out");
         }
-        if multiplier && given_stiffness && !self.is_misspelt("contact", contact.entry, "enforcement") {
+        if multiplier && given_stiffness {
             let why = "a multiplier enforces the constraint exactly; only \"penalty\" and \"augmented\" have a stiffness";
             self.add(
                 path("stiffness"),

@@ -38,11 +38,7 @@ impl Check<'_> {
             let moved = table.get("move").and_then(Node::table);
             let fixed: Vec<_> =
                 table.get("fix").and_then(Node::list).unwrap_or(&[]).iter().filter_map(Node::text).collect();
-            let known = ["name", "on", "fix", "move"];
-            let misspelt = table.0.iter().any(|e| !known.contains(&e.key.as_str()))
-                || moved.is_some_and(|m| m.0.iter().any(|e| !["x", "y", "z"].contains(&e.key.as_str())));
-            if !misspelt
-                && table.get("fix").is_none()
+            if table.get("fix").is_none()
                 && moved.is_none_or(|m| m.0.is_empty())
                 && table.get("move").is_none_or(|m| m.table().is_some())
             {

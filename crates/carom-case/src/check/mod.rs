@@ -17,15 +17,15 @@ use super::columns;
 use super::document::Document;
 use super::draft::Draft;
 use super::keys::Keys;
-use super::problem::Problem;
+use super::problem::{Problem, is_within};
 use super::spec::SKIN;
 use super::suggest;
 use super::tree::{Node, Table};
 use super::{BodySpec, MeshSpec, SchemeSpec};
 
 /// Adds the problems found across tables.
-pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Problem>) {
-    let mut check = Check { document, draft, problems };
+pub(super) fn problems(document: &Document, draft: &Draft, misspelt: &[String], problems: &mut Vec<Problem>) {
+    let mut check = Check { document, draft, misspelt, problems };
     check.dimension();
     for list in ["material", "body", "support", "load", "contact", "probe", "overlay"] {
         check.unique_names(list);
@@ -49,6 +49,8 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
 struct Check<'a> {
     document: &'a Document,
     draft: &'a Draft,
+    /// Paths of the tables that have a misspelt key.
+    misspelt: &'a [String],
     problems: &'a mut Vec<Problem>,
 }
 
@@ -81,24 +83,9 @@ impl<'a> Check<'a> {
         self.scheme().is_some_and(SchemeSpec::is_static)
     }
 
-    /// Whether a key of a table in a list is missing, and another one resembles it: one mistake is
-    /// reported once.
-    fn is_misspelt(&self, list: &str, i: usize, key: &'static str) -> bool {
-        self.tables(list).get(i).and_then(Node::table).is_some_and(|table| {
-            let resembles = |name: &str| suggest::nearest(name, [key]).is_some();
-            table.get(key).is_none() && table.0.iter().any(|entry| resembles(&entry.key))
-        })
-    }
-
-    /// Whether the mesh of a body seems to have a misspelt `symmetry`, which gives it sides.
-    fn is_symmetry_misspelt(&self, body: &str) -> bool {
-        let is_of_body = |table: &&Table| table.get("name").and_then(Node::text) == Some(body);
-        let mut tables = self.tables("body").iter().filter_map(Node::table);
-        let mesh = tables.find(is_of_body).and_then(|table| table.get("mesh")?.table());
-        mesh.is_some_and(|mesh| {
-            let resembles = |name: &str| suggest::nearest(name, ["symmetry"]).is_some();
-            mesh.get("symmetry").is_none() && mesh.0.iter().any(|entry| resembles(&entry.key))
-        })
+    /// Whether a table, or one in it, has a misspelt key: what depends on it is not judged.
+    fn is_misspelt(&self, path: &str) -> bool {
+        self.misspelt.iter().any(|table| is_within(table, path))
     }
 
     /// Names of a list of tables; `None` if one of them cannot be read, occurs twice or has a
@@ -202,9 +189,10 @@ impl<'a> Check<'a> {
             return None;
         }
         let body = self.body(name)?;
+        let place = bodies.iter().position(|body| *body == name)?;
         let sides = body.mesh.sides();
         let is_skin = part == SKIN && self.draft.dimension != Some(1);
-        if !is_skin && !sides.iter().any(|s| s == part) && !self.is_symmetry_misspelt(name) {
+        if !is_skin && !sides.iter().any(|s| s == part) && !self.is_misspelt(&format!("body[{place}]")) {
             let help = match suggest::nearest(part, sides.iter().map(String::as_str)) {
                 Some(near) => format!("did you mean `{name}.{near}`?"),
                 None if sides.is_empty() => no_sides(body, self.draft.dimension.unwrap_or(2)),
@@ -317,7 +305,7 @@ impl<'a> Check<'a> {
             if let Some(keys) = table.table().filter(|keys| keys.get("moment_about").is_some()) {
                 let why = if self.draft.dimension == Some(1) {
                     "forces on a line have no moment"
-                } else if keys.get("name").is_none() && !self.is_misspelt("support", i, "name") {
+                } else if keys.get("name").is_none() {
                     "only the reactions of a named support are recorded"
                 } else {
                     ""

@@ -67,10 +67,7 @@ impl Check<'_> {
                     format!("body `{}` has nodes without mass, and {} divides by it", body.name, spec.kind);
                 let why = "it computes velocities from forces or impulses divided by the mass of each node";
                 self.add(format!("body[{i}].mass"), what, why, "use mass = \"lumped\"");
-            } else if spec.is_explicit()
-                && body.mass == MassKind::Consistent
-                && !self.is_misspelt("body", i, "mass")
-            {
+            } else if spec.is_explicit() && body.mass == MassKind::Consistent {
                 let what = format!(
                     "{} needs a lumped mass, but that of body `{}` is consistent",
                     spec.kind, body.name

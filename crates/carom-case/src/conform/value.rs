@@ -234,7 +234,7 @@ impl Check {
                     );
                     let what = format!("the formula of `{}`: {wrong}", key.name);
                     let why = format!("it is a formula in the variables {}", variables.join(", "));
-                    self.problems.push(Problem::new(path, what, why, help).within(error.at));
+                    self.found.problems.push(Problem::new(path, what, why, help).within(error.at));
                 }
             }
             _ => self.wrong(node, key, path),

@@ -51,5 +51,6 @@ fn table(kind: &KindInfo) -> Table {
         doc: kind.summary,
         keys: keys.leak(),
         later: &[],
+        dimension: None,
     }
 }

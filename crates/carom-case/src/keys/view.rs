@@ -62,7 +62,11 @@ impl<'a> View<'a> {
     /// This place with a table of one of several descriptions.
     pub(crate) fn one_of(&self, table: &'a Table, variants: &Variants) -> Option<Self> {
         let tag = if variants.has_other(table) { "" } else { variants.tag };
-        Some(Self { tag, ..self.inside(table, variants.of(table)?.keys) })
+        let spec = variants.of(table)?;
+        let dimension = variants.dimension.or(self.dimension);
+        // A table of another dimension has been reported.
+        let fits = spec.dimension.is_none() || dimension.is_none() || spec.dimension == dimension;
+        fits.then(|| Self { tag, dimension, ..self.inside(table, spec.keys) })
     }
 
     /// The same for a value that must be a table.

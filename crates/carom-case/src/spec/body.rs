@@ -81,7 +81,6 @@ impl MaterialKeys {
                 let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
                 Some(MaterialSpec { name, law, density, lambda, mu: young / (2.0 * (1.0 + poisson)) })
             }
-            given if v.has_unknown_key() && given.len() <= 2 => None,
             given => {
                 let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
                 let what = format!("the elastic constants are not a valid pair: {had}");

@@ -115,10 +115,6 @@ impl ContactSpec {
             contact.primary = shape;
             contact.motion = motion;
         }
-        // What depends on a misspelt key is not judged.
-        if v.has_unknown_key() {
-            contact.friction = FrictionSpec { mu: contact.friction.mu, ..FrictionSpec::default() };
-        }
         Some(contact)
     }
 }

@@ -21,6 +21,7 @@ pub const SKIN: &str = "skin";
 #[keys(name = "mesh", tag = "shape", tag_doc = "Built-in shape.")]
 pub enum MeshSpec {
     /// Dimension 1; sides left, right.
+    #[keys(dimension = 1)]
     Interval {
         /// Left end.
         #[key(unit = "length", example = "0.0")]
@@ -33,6 +34,7 @@ pub enum MeshSpec {
         cells: usize,
     },
     /// Sides bottom, right, top, left.
+    #[keys(dimension = 2)]
     Rectangle {
         /// Lower left corner.
         #[key(Vector, unit = "length", example = "[0.0, 0.0]")]
@@ -49,6 +51,7 @@ pub enum MeshSpec {
         size: (),
     },
     /// Dimension 3; sides left, right (along x), front, back (along y), bottom, top (along z).
+    #[keys(dimension = 3)]
     Box {
         /// Lowest corner.
         #[key(Vector, unit = "length", example = "[0.0, 0.0, 0.0]", with = low_corner)]
@@ -71,6 +74,7 @@ pub enum MeshSpec {
         symmetry: [bool; 3],
     },
     /// Dimension 3; side sphere, and plane_x, plane_y, plane_z where planes of symmetry cut it.
+    #[keys(dimension = 3)]
     Ball {
         /// Radius.
         #[key(Number(POSITIVE), unit = "length", example = "0.5")]
@@ -90,6 +94,7 @@ pub enum MeshSpec {
     },
     /// Dimension 3; sides side, bottom, top, and plane_x, plane_y, plane_z where planes of symmetry
     /// cut it.
+    #[keys(dimension = 3)]
     Cylinder {
         /// Radius.
         #[key(Number(POSITIVE), unit = "length", example = "0.5")]
@@ -115,6 +120,7 @@ pub enum MeshSpec {
     },
     /// Dimension 3; sides inner, outer, bottom, top, and plane_x, plane_y, plane_z where planes of
     /// symmetry cut it.
+    #[keys(dimension = 3)]
     Tube {
         /// Inner radius.
         #[key(Number(POSITIVE), unit = "length", example = "0.4")]
@@ -144,6 +150,7 @@ pub enum MeshSpec {
     /// Dimension 3; a plane shape or a plane mesh of a file from z = 0 to its height; its sides, and
     /// bottom, top (base, lid if it has sides of these names), and plane_x, plane_y, plane_z where
     /// planes of symmetry cut it.
+    #[keys(dimension = 3)]
     Extrusion {
         /// The plane shape, or a surface of a Gmsh file; its cells are the faces of the solid cells.
         #[key(
@@ -166,6 +173,7 @@ pub enum MeshSpec {
         symmetry: [bool; 3],
     },
     /// A whole disc; side arc.
+    #[keys(dimension = 2)]
     Disc {
         /// Radius.
         #[key(Number(POSITIVE), unit = "length", example = "0.5")]
@@ -178,6 +186,7 @@ pub enum MeshSpec {
         size: f64,
     },
     /// The half of a disc to the right of its centre; sides arc, axis.
+    #[keys(dimension = 2)]
     HalfDisc {
         /// Radius.
         #[key(Number(POSITIVE), unit = "length", example = "0.5")]
@@ -190,6 +199,7 @@ pub enum MeshSpec {
         size: f64,
     },
     /// The region between two concentric circles; sides inner, outer.
+    #[keys(dimension = 2)]
     Ring {
         /// Radius of the inner circle.
         #[key(Number(POSITIVE), unit = "length", example = "0.4")]
@@ -206,6 +216,7 @@ pub enum MeshSpec {
         size: f64,
     },
     /// Any simple polygon, convex or not; sides side1 (from the first point to the second), side2, ….
+    #[keys(dimension = 2)]
     Polygon {
         /// Corners in order, clockwise or counter-clockwise.
         #[key(Points(3), unit = "length", example = "[[0.0, 0.0], [48.0, 44.0], [48.0, 60.0], [0.0, 44.0]]")]
@@ -233,8 +244,9 @@ fn plane_shapes() -> &'static Variants {
             doc: "A surface of a Gmsh file; its sides are the physical curves on its boundary.",
             keys: of_file.map(|key| Key { unless: "", ..*key }).collect::<Vec<_>>().leak(),
             later: &[],
+            dimension: None,
         };
-        let is_plane = |(shape, _): &&(&str, Table)| dimension_of(shape) == 2;
+        let is_plane = |(_, table): &&(&str, Table)| table.dimension == Some(2);
         Variants {
             name: "of",
             doc: "Shape of the plane.",
@@ -245,15 +257,6 @@ fn plane_shapes() -> &'static Variants {
         }
     });
     &PLANE
-}
-
-/// The dimension of a built-in shape.
-fn dimension_of(shape: &str) -> usize {
-    match shape {
-        "interval" => 1,
-        "box" | "ball" | "cylinder" | "tube" | "extrusion" => 3,
-        _ => 2,
-    }
 }
 
 /// Names of the coordinates.
@@ -325,19 +328,6 @@ fn of_extrusion(v: &View) -> Option<Box<MeshSpec>> {
 
 fn read(outer: &View, key: &str, purpose: Purpose) -> Option<MeshSpec> {
     let v = &View { element: purpose.element, ..outer.at(key)? };
-    let dimension = purpose.dimension;
-    if let Some(shape) = v.word()
-        && dimension_of(shape) != dimension
-    {
-        let what = format!("the shape \"{shape}\" has dimension {}", dimension_of(shape));
-        let why = format!("the case has dimension = {dimension}");
-        let help = match dimension {
-            1 => "use shape = \"interval\"",
-            2 => "use for example shape = \"rectangle\"",
-            _ => "use for example shape = \"box\"",
-        };
-        return v.wrong("shape", what, why, help);
-    }
     let mesh = MeshSpec::of(outer.table.get(key)?, v)?;
     if let MeshSpec::File(file) = mesh {
         return file.resolved(v, purpose).map(MeshSpec::File);
@@ -431,18 +421,15 @@ fn cells_between<const D: usize>(v: &View, min: [f64; D], max: [f64; D]) -> Opti
             Some(extents.map(|extent| (extent / size - 1e-9).ceil().max(1.0) as usize))
         }
         (both, _) => {
-            if both || !v.has_unknown_key() {
-                let shape = if D == 2 { "rectangle" } else { "box" };
-                let what = if both {
-                    format!("a {shape} has `cells` or `size`, not both")
-                } else {
-                    format!("the {shape} has neither `cells` nor `size`")
-                };
-                let example = if D == 2 { "[8, 4]" } else { "[8, 4, 4]" };
-                let why = "each of them sets the size of the cells";
-                return v.wrong("", what, why, format!("write for example `cells = {example}`"));
-            }
-            None
+            let shape = if D == 2 { "rectangle" } else { "box" };
+            let what = if both {
+                format!("a {shape} has `cells` or `size`, not both")
+            } else {
+                format!("the {shape} has neither `cells` nor `size`")
+            };
+            let example = if D == 2 { "[8, 4]" } else { "[8, 4, 4]" };
+            let why = "each of them sets the size of the cells";
+            v.wrong("", what, why, format!("write for example `cells = {example}`"))
         }
     }
 }

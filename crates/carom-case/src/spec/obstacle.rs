@@ -141,7 +141,7 @@ const SHAPES: [(&str, Option<usize>); 6] = [
 impl Rigid {
     /// The shape of the obstacle in the table of a contact, and its motion.
     pub(crate) fn of(v: &View) -> Option<Obstacle> {
-        let v = v.at("primary").filter(|rigid| v.has("primary") && !rigid.has_unknown_key())?;
+        let v = v.at("primary").filter(|_| v.has("primary"))?;
         let rigid = Self::read(&v)?;
         let motion = rigid.motion(&v);
         Some(Obstacle { shape: rigid.shape(&v)?, motion: motion? })
@@ -221,7 +221,7 @@ impl Rigid {
         }
         match &self.motion {
             None => (!v.has("motion")).then_some(ObstacleMotion::Fixed),
-            Some(motion) => motion.prescribed(&v.at("motion").filter(|motion| !motion.has_unknown_key())?),
+            Some(motion) => motion.prescribed(&v.at("motion")?),
         }
     }
 }
