@@ -7,13 +7,12 @@ use carom_record::Expect;
 use crate::expect::{self, Asked, Exact, ExpectKeys};
 use crate::keys::Kind::{self, ByColumn, Formulas, Number, Tables};
 use crate::keys::{IN_SPACE_AND_TIME, Keys, POSITIVE, Range, View};
+use crate::overlay;
 use crate::spec::{
     self, BodySpec, ContactSpec, FormulaSpec, InitialSpec, LoadKeys, LoadSpec, MaterialKeys, MaterialSpec,
-    NewtonSpec, OutputSpec, OverlayKeys, OverlaySpec, Plane, Preset, ProbeSpec, SupportKeys, SupportSpec,
-    TimeSpec, Units,
+    NewtonSpec, OutputSpec, OverlaySpec, Plane, Preset, ProbeSpec, SupportKeys, SupportSpec, TimeSpec, Units,
 };
 use crate::tree::{Entry, Node};
-use crate::{load, overlay};
 
 /// One simulation of impact or contact of deformable bodies.
 #[derive(Default, Keys)]
@@ -49,10 +48,10 @@ pub(crate) struct Draft {
     #[key()]
     pub(crate) body: Vec<Option<BodySpec>>,
     /// Displacement boundary condition: sides fixed or moved in given directions.
-    #[key(Tables(&SupportKeys::TABLE), optional = "", with = load::supports)]
+    #[key(Tables(&SupportKeys::TABLE), optional = "", with = spec::supports)]
     pub(crate) support: Vec<Option<SupportSpec>>,
     /// A load: traction or pressure on sides, or body force in a body.
-    #[key(Tables(&LoadKeys::TABLE), optional = "", with = load::loads)]
+    #[key(Tables(&LoadKeys::TABLE), optional = "", with = spec::loads)]
     pub(crate) load: Vec<Option<LoadSpec>>,
     /// Start from the final state of another run instead of the reference positions.
     #[key(optional = "")]
@@ -71,7 +70,7 @@ pub(crate) struct Draft {
     #[key(optional = "")]
     pub(crate) newton: NewtonSpec,
     /// Measured data, drawn with a column of history.csv and compared with it.
-    #[key(Tables(&OverlayKeys::TABLE), optional = "", with = overlay::overlays)]
+    #[key(Tables(&overlay::OVERLAY), optional = "", with = overlay::overlays)]
     pub(crate) overlay: Vec<Option<OverlaySpec>>,
     /// A material point whose quantities are recorded as columns of history.csv.
     #[key(optional = "")]

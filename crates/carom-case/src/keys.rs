@@ -8,8 +8,7 @@ mod view;
 pub use carom_keys::Keys;
 pub use schemes::schemes;
 pub(crate) use value::word;
-pub use value::{Keys, Value};
-pub use view::View;
+pub use view::{Keys, Value, View};
 
 pub use crate::tree::{Node, Table as Given};
 

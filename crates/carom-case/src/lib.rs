@@ -14,7 +14,6 @@ mod example;
 mod excerpt;
 mod expect;
 pub mod keys;
-mod load;
 mod load_table;
 mod make;
 mod memory;
@@ -42,7 +41,6 @@ pub use columns::history_columns;
 pub use document::Document;
 pub use excerpt::{Excerpt, merged};
 pub use expect::{Asked, EXPECT, expects};
-pub use load::load_variables;
 pub use memory::{Memory, gibibytes};
 pub use mesh_file::FileMesh;
 pub use no_mesh::NoMesh;
@@ -57,6 +55,6 @@ pub use spec::{
     ForceTime, FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind,
     MaterialSpec, MeshSpec, Method, NewtonSpec, ObstacleMotion, OutputSpec, Overlap, OverlaySpec,
     Persistency, Plane, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec,
-    TableSpec, TangentRule, TimeSpec, Units, Velocities, Volumetric,
+    TableSpec, TangentRule, TimeSpec, Units, Velocities, Volumetric, load_variables,
 };
 pub use surface_file::SurfaceSpec;

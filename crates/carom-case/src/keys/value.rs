@@ -1,4 +1,4 @@
-//! Values of keys by their Rust types: what they take, and how they are read.
+//! Values of keys by their Rust types.
 
 use std::path::PathBuf;
 
@@ -8,34 +8,9 @@ use carom_solid::Element;
 use carom_time::ForceRule;
 use serde::de::DeserializeOwned;
 
-use super::{ANY, Kind, Node, Table, View, Words};
+use super::view::{Keys, Value, View};
+use super::{ANY, Kind, Node, Words};
 use crate::spec::FormulaSpec;
-
-/// A table of keys, derived from a struct.
-pub trait Keys: Sized {
-    /// Its description.
-    const TABLE: Table;
-
-    /// Reads a table of this description; none if a key is missing or has no value of its type,
-    /// which is reported elsewhere.
-    fn read(v: &View<'_>) -> Option<Self>;
-}
-
-/// A value of a key.
-pub trait Value: Sized {
-    /// The values that a key of this type takes, unless it says so itself.
-    const KIND: Kind;
-    /// The values that a key takes for a list of this type.
-    const LIST: Kind = Kind::Vector;
-
-    /// Reads a value at the place `v`; none of another type, which is reported elsewhere.
-    fn of(node: &Node, v: &View<'_>) -> Option<Self>;
-
-    /// The value of an optional key that is not given.
-    fn absent(_: &View<'_>) -> Option<Self> {
-        None
-    }
-}
 
 impl<T: Keys> Value for T {
     const KIND: Kind = Kind::Table(&T::TABLE);

@@ -7,9 +7,35 @@ use std::path::Path;
 
 use carom_solid::Element;
 
-use super::{Default as KeyDefault, Key, Kind, Value, Variants};
+use super::{Default as KeyDefault, Key, Kind, Table as Description, Variants};
 use crate::problem::Problem;
 use crate::tree::{self, Node, Table};
+
+/// A table of keys, derived from a struct.
+pub trait Keys: Sized {
+    /// Its description.
+    const TABLE: Description;
+
+    /// Reads a table of this description; none if a key is missing or has no value of its type,
+    /// which is reported elsewhere.
+    fn read(v: &View<'_>) -> Option<Self>;
+}
+
+/// A value of a key.
+pub trait Value: Sized {
+    /// The values that a key of this type takes, unless it says so itself.
+    const KIND: Kind;
+    /// The values that a key takes for a list of this type.
+    const LIST: Kind = Kind::Vector;
+
+    /// Reads a value at the place `v`; none of another type, which is reported elsewhere.
+    fn of(node: &Node, v: &View<'_>) -> Option<Self>;
+
+    /// The value of an optional key that is not given.
+    fn absent(_: &View<'_>) -> Option<Self> {
+        None
+    }
+}
 
 /// A table with the description of its keys.
 #[derive(Clone)]

@@ -5,9 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::formula::FormulaSpec;
 use super::mesh::{self, MeshSpec};
-use crate::keys::Kind::{Formulas, FormulasOr, Name, Number, Variant};
+use crate::keys::Kind::{self, Formulas, FormulasOr, Name, Number, Variant, Vector};
 use crate::keys::{IN_SPACE, IN_TIME, Keys, NOT_NEGATIVE, POSITIVE, Range, View};
-use crate::load;
 use crate::place::{self, PlaceKeys, PlaceSpec};
 
 /// A hyperelastic material.
@@ -31,26 +30,26 @@ pub struct MaterialSpec {
 pub(crate) struct MaterialKeys {
     /// Name by which bodies refer to it.
     #[key(Name, example = "\"rubber\"")]
-    pub(crate) name: String,
+    name: String,
     /// Constitutive law.
     #[key(example = "\"neo-hookean\"")]
-    pub(crate) law: Law,
+    law: Law,
     /// Mass per reference volume; 0 for a massless body.
     #[key(Number(NOT_NEGATIVE), unit = "mass/length³", example = "0.25")]
-    pub(crate) density: f64,
+    density: f64,
     /// First Lamé constant Λ; 3Λ + 2μ > 0.
     #[key(unit = "mass/(length·time²)", example = "200.0")]
-    pub(crate) lambda: Option<f64>,
+    lambda: Option<f64>,
     /// Second Lamé constant (shear modulus) μ.
     #[key(Number(POSITIVE), unit = "mass/(length·time²)", example = "15.0")]
-    pub(crate) mu: Option<f64>,
+    mu: Option<f64>,
     /// Young's modulus, with poisson instead of lambda and mu.
     #[key(Number(POSITIVE), unit = "mass/(length·time²)", example = "43.95")]
-    pub(crate) young: Option<f64>,
+    young: Option<f64>,
     /// Poisson's ratio; given together with young. At 0.5 the material would be incompressible and
     /// its bulk modulus infinite.
     #[key(Number(Range { low: Some((-1.0, false)), high: Some((0.5, false)) }), example = "0.49")]
-    pub(crate) poisson: Option<f64>,
+    poisson: Option<f64>,
 }
 
 /// The materials of a case.
@@ -189,10 +188,10 @@ pub struct BodySpec {
     /// Initial velocity: numbers or formulas in X, Y, Z, or the table of a rigid-body motion.
     /// Default: zero.
     #[key(
-        FormulasOr(IN_SPACE, &load::Velocity::TABLE),
+        FormulasOr(IN_SPACE, &Velocity::TABLE),
         unit = "length/time",
         optional = "[0.0, -1.0]",
-        with = load::velocity
+        with = velocity
     )]
     pub velocity: Vec<FormulaSpec>,
     /// Mass matrix.
@@ -205,6 +204,70 @@ impl BodySpec {
     pub(crate) fn starts_moving(&self) -> bool {
         !self.velocity.iter().all(FormulaSpec::is_zero)
     }
+}
+
+/// Initial velocity of a rigid-body motion: linear + angular × (X − about).
+#[derive(Keys)]
+#[keys(name = "velocity")]
+struct Velocity {
+    /// Velocity of the point `about`. Default: zero.
+    #[key(Vector, unit = "length/time", optional = "[0.0, -1.0]", with = linear)]
+    linear: Vec<f64>,
+    /// Angular velocity: counter-clockwise in dimension 2, [ωx, ωy, ωz] in dimension 3. Default: zero.
+    #[key(Kind::Angular, unit = "1/time", optional = "2.0", with = angular)]
+    angular: Vec<f64>,
+    /// Centre of the rotation; required with `angular`.
+    #[key(Vector, unit = "length", example = "[0.0, 1.0]")]
+    about: Option<Vec<f64>>,
+}
+
+fn linear(v: &View) -> Option<Vec<f64>> {
+    v.vector("linear")
+}
+
+/// The angular velocity in space.
+fn angular(v: &View) -> Option<Vec<f64>> {
+    match v.get::<Option<f64>>("angular").flatten() {
+        Some(about_z) => Some(vec![0.0, 0.0, about_z]),
+        None if v.has("angular") => v.get("angular"),
+        None => Some(vec![0.0; 3]),
+    }
+}
+
+/// Reads a body's initial velocity; a rigid-body motion is converted to formulas.
+fn velocity(v: &View) -> Option<Vec<FormulaSpec>> {
+    let dimension = v.dimension?;
+    if v.table.get("velocity").is_some_and(|node| node.table().is_none()) {
+        return v.get("velocity");
+    }
+    let v = v.at("velocity")?;
+    let Velocity { linear, angular, about } = Velocity::read(&v)?;
+    if linear.len() != dimension || angular.len() != 3 {
+        return None;
+    }
+    if angular.iter().all(|component| *component == 0.0) {
+        return Some(linear.into_iter().map(FormulaSpec::Number).collect());
+    }
+    if dimension == 1 {
+        let why = "the case has dimension = 1";
+        return v.wrong("angular", "a bar cannot rotate", why, "leave `angular` out");
+    }
+    if !v.has("about") {
+        let help = if dimension == 2 { "add `about = [x, y]`" } else { "add `about = [x, y, z]`" };
+        return v.wrong("angular", "the rotation has no centre", "a body rotates about a point", help);
+    }
+    let about = about.filter(|about| about.len() == dimension)?;
+    // Component i of linear + ω × (X − about), without the terms that vanish.
+    let component = |i: usize| {
+        let [j, k] = [(i + 1) % 3, (i + 2) % 3];
+        let term = |sign: &str, omega: f64, axis: usize| {
+            let exists = axis < dimension && omega != 0.0;
+            let arm = || format!(" {sign} {omega:?}*({} - {:?})", ["X", "Y", "Z"][axis], about[axis]);
+            exists.then(arm).unwrap_or_default()
+        };
+        format!("{:?}{}{}", linear[i], term("+", angular[j], k), term("-", angular[k], j))
+    };
+    Some((0..dimension).map(|i| FormulaSpec::Text(component(i))).collect())
 }
 
 /// Change of volume on which the volumetric energy of a cell depends.

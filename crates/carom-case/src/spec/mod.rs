@@ -20,12 +20,11 @@ pub use contact::{
     Method, Overlap, Persistency,
 };
 pub use formula::FormulaSpec;
-pub(crate) use load::{LoadKeys, SupportKeys};
-pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};
+pub(crate) use load::{LoadKeys, SupportKeys, loads, supports};
+pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec, load_variables};
 pub use mesh::{MeshSpec, RefineSpec, SKIN};
 pub(crate) use mesh_size::PLANES;
 pub use obstacle::{ObstacleMotion, PrimarySpec};
-pub(crate) use output::OverlayKeys;
 pub use output::{OutputSpec, OverlaySpec, ProbeSpec, Quantity};
 pub(crate) use time::scheme;
 pub use time::{Fallback, LinearRule, NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::formula::FormulaSpec;
+use super::load::displacements;
 use crate::keys::Kind::{Formula, Formulas, Number, Points, Vector};
 use crate::keys::{IN_TIME, Keys, NOT_NEGATIVE, POSITIVE, View};
-use crate::load::displacements;
 use crate::surface_file::SurfaceSpec;
 
 /// A primary surface that does not deform: exactly one shape, fixed, moved by `motion`, or free with

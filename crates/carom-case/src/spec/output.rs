@@ -3,8 +3,8 @@
 use carom_record::FieldFormat;
 use serde::{Deserialize, Serialize};
 
-use crate::keys::Kind::{Choices, Count, Name, Number, Numbers, Vector};
-use crate::keys::{ANY, Keys, POSITIVE, View};
+use crate::keys::Kind::{Choices, Count, Name, Numbers, Vector};
+use crate::keys::{ANY, Keys, View};
 
 /// A material point whose quantities are recorded as columns name.quantity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Keys)]
@@ -41,39 +41,6 @@ pub struct OverlaySpec {
     /// Where the data come from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
-}
-
-/// Measured data of one column: drawn with it, and compared by the metrics `overlay_rms:NAME`,
-/// `overlay_peak:NAME` and `overlay_shift:NAME`.
-#[derive(Keys)]
-#[keys(name = "[[overlay]]")]
-pub(crate) struct OverlayKeys {
-    /// Name in figures and metrics.
-    #[key(Name, example = "\"test-3\"")]
-    pub(crate) name: String,
-    /// CSV file with a line of headings, relative to the folder of the case or study; its lines that
-    /// begin with # are comments.
-    #[key(example = "\"measured.csv\"")]
-    pub(crate) file: String,
-    /// The column of history.csv that was measured.
-    #[key(example = "\"A.uy\"")]
-    pub(crate) column: String,
-    /// Heading of the times in the file.
-    #[key(default = "\"t\"")]
-    pub(crate) time: String,
-    /// Heading of the values in the file.
-    #[key(default = "\"value\"")]
-    pub(crate) value: String,
-    /// Times of the case in one unit of those of the file: 1e-3 for ms in a case in s.
-    #[key(Number(POSITIVE), default = "1.0")]
-    pub(crate) time_scale: f64,
-    /// Values of the column in one unit of those of the file: −1e-3 for mm downwards in a case in m
-    /// upwards.
-    #[key(Number(ANY), default = "1.0")]
-    pub(crate) scale: f64,
-    /// Where the data come from.
-    #[key(example = "\"own test, 3 May\"")]
-    pub(crate) source: Option<String>,
 }
 
 /// Quantities that a probe can record.
