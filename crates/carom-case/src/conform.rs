@@ -175,7 +175,8 @@ impl Check {
         match named {
             Some(Ok(word)) => {
                 let now: Vec<_> = variants.tables.iter().map(|(word, _)| *word).collect();
-                self.choice(word, tag, &now, &[], variants.doc, &here);
+                let key = Key { name: tag, doc: variants.doc, ..Key::NONE };
+                self.choice(word, &key, &now, &here);
             }
             Some(Err(node)) => {
                 let what = format!("`{tag}` must be a string in quotes, not {}", node.described());

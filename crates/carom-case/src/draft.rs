@@ -89,9 +89,8 @@ pub(crate) struct Draft {
 
 const AT_LEAST_ONE: Range = Range { low: Some((1.0, true)), high: None };
 
-fn units(v: &View) -> Option<Option<Units>> {
-    let units = Units::read(&v.at("units")?)?;
-    Some(Some(Units { declared: v.has("units"), ..units }))
+fn units(v: &View) -> Option<Units> {
+    Some(Units { declared: v.has("units"), ..Units::read(&v.at("units")?)? })
 }
 
 /// A manufactured solution for all bodies: the load is ρÿ − Div P, boundary nodes follow the given
@@ -124,11 +123,11 @@ fn expects(v: &View) -> Option<Vec<Option<Expect>>> {
 
 /// Formulas by column, as written.
 fn exact(v: &View) -> Option<BTreeMap<String, String>> {
-    let table = v.table.get("exact").and_then(Node::table);
+    let table = v.table.get("exact").map_or(Some(View::EMPTY), Node::table)?;
     let formula = |entry: &Entry| {
         let node = &entry.node;
         let text = node.text().map(str::to_owned);
         Some((entry.key.clone(), text.or_else(|| Some(node.number()?.to_string()))?))
     };
-    Some(table.into_iter().flat_map(|t| &t.0).filter_map(formula).collect())
+    Some(table.0.iter().filter_map(formula).collect())
 }

@@ -319,16 +319,15 @@ impl Key {
 
     /// The meaning with those of its words and the unit.
     pub(crate) fn meaning(&self) -> String {
-        let mut meaning = self.doc.to_owned();
+        let mut meaning = vec![self.doc.to_owned()];
         if let Kind::Choice(words) = self.kind {
-            for (word, says) in words.now.iter().zip(words.meanings) {
-                meaning += &format!(" {word}: {says}");
-            }
+            let says = words.now.iter().zip(words.meanings);
+            meaning.extend(says.map(|(word, says)| format!("{word}: {says}")));
         }
         if !self.unit.is_empty() {
-            meaning += &format!(" Unit: {}.", self.unit);
+            meaning.push(format!("Unit: {}.", self.unit));
         }
-        meaning
+        meaning.join(" ")
     }
 }
 

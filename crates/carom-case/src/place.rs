@@ -5,7 +5,7 @@ use carom_solid::Mesh;
 use serde::{Deserialize, Serialize};
 
 use super::keys::Kind::{self, Vector};
-use super::keys::{Keys, View};
+use super::keys::{Keys, Node, View};
 
 /// A rigid motion of a mesh: x ↦ about + R(rotate)(x − about) + shift.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,7 +53,7 @@ struct Rotation {
 fn rotation(v: &View) -> Option<Rotation> {
     let given = v.table.get("rotate");
     if given.is_none_or(|node| node.table().is_none()) {
-        return Some(Rotation { axis: Vec::new(), angle: given.map_or(Some(0.0), |node| node.number())? });
+        return Some(Rotation { axis: Vec::new(), angle: given.map_or(Some(0.0), Node::number)? });
     }
     let Rotation { axis, angle } = v.get("rotate")?;
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -67,11 +67,8 @@ fn rotation(v: &View) -> Option<Rotation> {
 }
 
 /// Reads the placement of a body, if it has one.
-pub(super) fn read(body: &View) -> Option<Option<PlaceSpec>> {
-    if !body.has("place") {
-        return Some(None);
-    }
-    let v = body.at("place")?;
+pub(super) fn read(body: &View) -> Option<PlaceSpec> {
+    let v = body.at("place").filter(|_| body.has("place"))?;
     let place = PlaceKeys::read(&v)?;
     let Rotation { axis, angle: rotate } = place.rotate;
     if v.dimension == Some(1) && rotate != 0.0 {
@@ -80,7 +77,7 @@ pub(super) fn read(body: &View) -> Option<Option<PlaceSpec>> {
     }
     let zero = vec![0.0; v.dimension?];
     let about = place.about.unwrap_or_else(|| zero.clone());
-    Some(Some(PlaceSpec { rotate, axis, about, shift: place.shift.unwrap_or(zero) }))
+    Some(PlaceSpec { rotate, axis, about, shift: place.shift.unwrap_or(zero) })
 }
 
 impl PlaceSpec {

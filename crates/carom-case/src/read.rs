@@ -57,7 +57,7 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
     let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
     let is_paper = root.get("preset") == Some(Preset::Paper);
     let dimension = root.get("dimension").filter(|d| (1..=3).contains(d));
-    let root = View { is_paper, folder, dimension, ..root };
+    let root = View { is_paper, dimension, folder, ..root };
     let mut draft = Draft::read(&root).unwrap_or_default();
     draft.dimension = dimension;
     draft.refine(&root);

@@ -19,7 +19,7 @@ pub fn schema_of(file: &Table, title: &str) -> Value {
 }
 
 /// A table of values of the case.
-fn overrides(values: Map<String, Value>) -> Value {
+fn overrides(values: &Map<String, Value>) -> Value {
     json!({ "type": "object", "patternProperties": values, "additionalProperties": false })
 }
 
@@ -151,12 +151,12 @@ fn values(kind: &Kind) -> Map<String, Value> {
             { "type": "array", "minItems": 1, "items": { "type": "string" } },
         ] }),
         Kind::SideOr(spec) => json!({ "oneOf": [side, table(spec, None)] }),
-        Kind::Changes => overrides(changes()),
-        Kind::ChangeLists => json!({ "type": "array", "items": overrides(changes()) }),
+        Kind::Changes => overrides(&changes()),
+        Kind::ChangeLists => json!({ "type": "array", "items": overrides(&changes()) }),
         Kind::Grid => {
             let list =
                 |(pattern, schema)| (pattern, json!({ "type": "array", "minItems": 1, "items": schema }));
-            overrides(changes().into_iter().map(list).collect())
+            overrides(&changes().into_iter().map(list).collect())
         }
         Kind::Table(spec) => Value::Object(table(spec, None)),
         Kind::Tables(spec) => json!({ "type": "array", "items": table(spec, None) }),
@@ -240,7 +240,7 @@ mod tests {
         let schema = schema();
         let text = schema.to_string();
         visit(&Draft::TABLE, &mut |_, key| {
-            assert!(text.contains(&format!("\"{}\":", key.name)), "{}", key.name)
+            assert!(text.contains(&format!("\"{}\":", key.name)), "{}", key.name);
         });
         assert_eq!(schema["additionalProperties"], json!(false));
         assert_eq!(schema["required"], json!(["dimension", "material", "body", "time"]));

@@ -82,6 +82,8 @@ pub(crate) struct Key {
     pub(crate) optional: Option<Expr>,
     pub(crate) with: Option<Path>,
     pub(crate) flatten: bool,
+    /// Whether the field says only that it is given.
+    pub(crate) given: bool,
     /// Whether it must be given, though the field can do without it.
     pub(crate) required: bool,
 }
@@ -94,6 +96,7 @@ impl Key {
         for Entry { name, value } in entries {
             match (name, value) {
                 (None, Expr::Path(path)) if path.path.is_ident("flatten") => key.flatten = true,
+                (None, Expr::Path(path)) if path.path.is_ident("given") => key.given = true,
                 (None, Expr::Path(path)) if path.path.is_ident("required") => key.required = true,
                 (None, value) => key.kind = Some(value),
                 (Some(name), Expr::Path(path)) if name == "with" => key.with = Some(path.path),

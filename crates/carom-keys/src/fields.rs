@@ -48,10 +48,8 @@ fn described(field: &Field, key: &Key) -> TokenStream {
     let Key { doc, kind, described, default, paper, optional, .. } = key;
     let name = name(field, key);
     let ty = &field.ty;
-    let kind = match kind {
-        Some(kind) => quote!(#kind),
-        None => quote!(<#ty as ::carom_case::keys::Value>::KIND),
-    };
+    let of_type = || quote!(<#ty as ::carom_case::keys::Value>::KIND);
+    let kind = kind.as_ref().map_or_else(of_type, |kind| quote!(#kind));
     let (entries, values): (Vec<_>, Vec<_>) = described.iter().cloned().unzip();
     let example = default.as_ref().or(optional.as_ref()).map(|toml| quote!(example: #toml,));
     let paper = paper.as_ref().map(|toml| quote!(paper: Some(#toml),));
@@ -80,11 +78,13 @@ pub(crate) fn read(path: &TokenStream, lenient: bool, fields: &Fields) -> syn::R
         names.push(&field.ident);
         values.push(match Key::of(&field.attrs)? {
             None => quote!(Some(::core::default::Default::default())),
+            // None of an option is the same, whether it is absent or wrong.
+            Some(Key { with: Some(with), .. }) if is_option(&field.ty) => quote!(Some(#with(v))),
             Some(Key { with: Some(with), .. }) => quote!(#with(v)),
             Some(Key { flatten: true, .. }) => quote!(::carom_case::keys::Keys::read(v)),
             Some(key) => {
                 let name = name(field, &key);
-                quote!(v.get(#name))
+                if key.given { quote!(Some(v.has(#name))) } else { quote!(v.get(#name)) }
             }
         });
     }

@@ -129,7 +129,7 @@ pub(crate) struct ArmEntry {
     pub(crate) expect: Option<String>,
     /// In a design of matched steps: at every level, this method has the step at which its cost equals
     /// that of `cost_of`; meant for explicit schemes.
-    #[key(Choice(Words::plain(&["cost"])), name = "match", optional = "\"cost\"", with = by_cost)]
+    #[key(Choice(Words::plain(&["cost"])), name = "match", optional = "\"cost\"", given)]
     pub(crate) by_cost: bool,
 }
 
@@ -147,10 +147,6 @@ struct ClaimKeys {
 
 fn set(v: &View) -> Option<Vec<(String, Value)>> {
     v.changes("set")
-}
-
-fn by_cost(v: &View) -> Option<bool> {
-    Some(v.has("match"))
 }
 
 /// The lists of values of the grid.
@@ -183,9 +179,9 @@ fn of_arms(v: &View) -> Option<Vec<Expect>> {
 }
 
 /// The expectations of an arm, checked, as TOML.
-fn of_arm(v: &View) -> Option<Option<String>> {
+fn of_arm(v: &View) -> Option<String> {
     expects(v, Asked::OfARun)?;
-    Some(v.toml("expect").map(|list| list.to_string()))
+    v.toml("expect").map(|list| list.to_string())
 }
 
 /// Refinement of meshes.
@@ -206,11 +202,8 @@ const MOST_PHASES: usize = 100;
 
 impl Members {
     /// The ensemble of a study, if it has one.
-    fn ensemble(study: &View) -> Option<Option<Ensemble>> {
-        if !study.has("ensemble") {
-            return Some(None);
-        }
-        let v = study.at("ensemble")?;
+    fn ensemble(study: &View) -> Option<Ensemble> {
+        let v = study.at("ensemble").filter(|_| study.has("ensemble"))?;
         let Self { phases, swapped, mesh, sets } = Self::read(&v)?;
         if phases > MOST_PHASES {
             let what = format!("`phases` must be an integer from 1 to {MOST_PHASES}, not {phases}");
@@ -219,6 +212,15 @@ impl Members {
                 what,
                 "with more of them, intervals no longer change",
                 "write for example `phases = 5`",
+            );
+        }
+        if sets.iter().any(Vec::is_empty) {
+            let example = "write for example `sets = [{ \"contact.NAME.persistency\" = \"none\" }]`";
+            return v.wrong(
+                "sets",
+                "one of the changes is empty",
+                "the arms themselves are without a change",
+                example,
             );
         }
         if mesh.first().is_some_and(|first| *first != 1.0) {
@@ -231,7 +233,7 @@ impl Members {
             let why = "its members are all combinations of phases, roles and meshes";
             return study.wrong_key("ensemble", "the ensemble has one member", why, "add `phases = 5`");
         }
-        Some(Some(ensemble))
+        Some(ensemble)
     }
 }
 

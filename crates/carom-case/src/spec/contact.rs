@@ -33,7 +33,7 @@ pub struct ContactSpec {
     /// Of two bodies the softer one (smaller λ + 2μ) is secondary; if they are equal, the first. A
     /// pair of bodies with a [[contact]] of its own is excluded. Contacts are named NAME-BODY-BODY and
     /// NAME-BODY, or NAME if there is one.
-    #[key(Between, optional = "\"all\"", with = between)]
+    #[key(Between, optional = "\"all\"", given)]
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub between: bool,
     /// With `between`: whether bodies are in contact with themselves, where their boundary folds.
@@ -90,17 +90,15 @@ pub struct ContactSpec {
     pub restitution: f64,
 }
 
-fn between(v: &View) -> Option<bool> {
-    Some(v.has("between"))
-}
-
 fn secondary(v: &View) -> Option<String> {
     if v.has("between") { Some(String::new()) } else { v.get("secondary") }
 }
 
 /// The side; of an obstacle an empty one, which stands for it.
 fn primary(v: &View) -> Option<PrimarySpec> {
-    Some(PrimarySpec::Side(v.get::<Option<String>>("primary").flatten().unwrap_or_default()))
+    let is_side = v.table.get("primary").is_some_and(|node| node.table().is_none());
+    let side = if is_side && !v.has("between") { v.get("primary")? } else { String::new() };
+    Some(PrimarySpec::Side(side))
 }
 
 impl ContactSpec {

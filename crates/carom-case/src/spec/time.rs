@@ -48,8 +48,8 @@ pub struct TimeSpec {
     pub fallback: Fallback,
 }
 
-fn energy_guard(v: &View) -> Option<Option<f64>> {
-    Some(v.value("energy_guard")?.number())
+fn energy_guard(v: &View) -> Option<f64> {
+    v.value("energy_guard")?.number()
 }
 
 /// The step that replaces a grid step at which the run would stop.
