@@ -41,6 +41,7 @@ pub use columns::history_columns;
 pub use document::Document;
 pub use excerpt::{Excerpt, merged};
 pub use expect::{Asked, EXPECT, expects};
+pub use load_table::TableSpec;
 pub use memory::{Memory, gibibytes};
 pub use mesh_file::FileMesh;
 pub use no_mesh::NoMesh;
@@ -55,6 +56,6 @@ pub use spec::{
     ForceTime, FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind,
     MaterialSpec, MeshSpec, Method, NewtonSpec, ObstacleMotion, OutputSpec, Overlap, OverlaySpec,
     Persistency, Plane, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec,
-    TableSpec, TangentRule, TimeSpec, Units, Velocities, Volumetric, load_variables,
+    TangentRule, TimeSpec, Units, Velocities, Volumetric, load_variables,
 };
 pub use surface_file::SurfaceSpec;

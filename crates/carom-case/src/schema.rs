@@ -96,6 +96,9 @@ fn property(key: &Key) -> Value {
     if matches!(key.kind, Kind::Tables(_)) && !matches!(key.default, Default::Absent) {
         schema.insert("minItems".into(), json!(1));
     }
+    if matches!(key.kind, Kind::Numbers(_)) && !matches!(key.default, Default::Is("[]")) {
+        schema.insert("minItems".into(), json!(1));
+    }
     if let Default::Is(toml) = key.default
         && let Some(default) = json_of(toml)
     {

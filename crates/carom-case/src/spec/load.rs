@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::formula::FormulaSpec;
 use crate::keys::Kind::{Choices, Formula, Formulas, Name, Sides, Vector};
 use crate::keys::{self, IN_SPACE_AND_TIME, Keys, View};
-use crate::load_table;
+use crate::load_table::{self, TableSpec};
 
 /// Sides fixed or moved in some directions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -153,28 +153,6 @@ pub enum LoadKind {
         /// Components, formulas in X, Y, t.
         value: Vec<FormulaSpec>,
     },
-}
-
-/// A factor over time, linearly interpolated. It is stored completely, so that a run can be resumed
-/// without the file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TableSpec {
-    /// The file, as given.
-    pub file: String,
-    /// Times, ascending, at least two.
-    pub times: Vec<f64>,
-    /// Factors.
-    pub values: Vec<f64>,
-}
-
-impl TableSpec {
-    /// The factor at a time within the table.
-    pub fn value(&self, time: f64) -> f64 {
-        let after = self.times.partition_point(|t| *t <= time).clamp(1, self.times.len() - 1);
-        let (t, v) = (&self.times[after - 1..=after], &self.values[after - 1..=after]);
-        let share = (time - t[0]) / (t[1] - t[0]);
-        (1.0 - share) * v[0] + share * v[1]
-    }
 }
 
 /// The loads of a case.

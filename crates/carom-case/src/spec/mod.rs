@@ -21,7 +21,7 @@ pub use contact::{
 };
 pub use formula::FormulaSpec;
 pub(crate) use load::{LoadKeys, SupportKeys, loads, supports};
-pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec, load_variables};
+pub use load::{LoadKind, LoadSpec, SupportSpec, load_variables};
 pub use mesh::{MeshSpec, RefineSpec, SKIN};
 pub(crate) use mesh_size::PLANES;
 pub use obstacle::{ObstacleMotion, PrimarySpec};
