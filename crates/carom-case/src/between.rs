@@ -1,9 +1,9 @@
 //! Contacts among bodies, `between = "all"` or a list: one contact for each pair and one for each
 //! side with itself.
 
+use super::keys::View;
 use super::spec::SKIN;
 use super::tree::Value;
-use super::view::View;
 use super::{BodySpec, ContactSpec, MaterialSpec, PrimarySpec};
 
 /// The bodies and materials of the case, as far as they could be read.
@@ -29,7 +29,7 @@ impl Bodies<'_> {
         one: &ContactSpec,
         declared: &[ContactSpec],
     ) -> Option<Vec<ContactSpec>> {
-        let of_itself = v.flag("self")?;
+        let of_itself: bool = v.get("self")?;
         let sides = self.sides(v)?;
         let body = |side: &str| side.split_once('.').map_or("", |side| side.0).to_owned();
         let known = |a: &str, b: &str| {

@@ -8,7 +8,7 @@ use super::{BodySpec, Case, ContactSpec, Fallback, ObstacleMotion, ProbeSpec, Qu
 
 /// Whether a quantity exists in a space of this dimension: its name has no axis beyond it.
 pub(super) fn exists(of: Quantity, dimension: usize) -> bool {
-    let axes = of.name().trim_start_matches("sigma_");
+    let axes = of.word().trim_start_matches("sigma_");
     let lacks = |axis: &str| axes.len() == 2 && axes.contains(axis);
     !(dimension < 2 && (lacks("y") || of == Quantity::VonMises) || dimension < 3 && lacks("z"))
 }
@@ -159,7 +159,7 @@ impl Recorded<'_> {
         for probe in &self.probes {
             for quantity in &probe.record {
                 let (unit, what) = of_point(*quantity, label);
-                columns.add(&format!("{}.{}", probe.name, quantity.name()), unit, &what);
+                columns.add(&format!("{}.{}", probe.name, quantity.word()), unit, &what);
             }
         }
         if self.manufactured {
@@ -206,7 +206,7 @@ const COUNTS: [(&str, &str); 5] = [
 /// Unit and meaning of a probe's column.
 fn of_point(quantity: Quantity, label: &Labels) -> (&str, String) {
     use Quantity::{Ax, Ay, Az, DetF, Ux, Uy, Uz, VonMises, Vx, Vy, Vz};
-    let axis = &quantity.name()[1..];
+    let axis = &quantity.word()[1..];
     match quantity {
         Ux | Uy | Uz => (&label.length, format!("displacement along {axis}")),
         Vx | Vy | Vz => (&label.velocity, format!("velocity along {axis}")),

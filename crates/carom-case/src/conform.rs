@@ -11,31 +11,33 @@ use super::unit::Labels;
 
 mod value;
 
-/// All problems of single keys and values.
-pub(super) fn problems(document: &Document) -> Vec<Problem> {
+/// What is wrong with single keys and values.
+#[derive(Default)]
+pub(super) struct Conformity {
+    pub(super) problems: Vec<Problem>,
+    /// Paths of the tables that have an unknown key, perhaps a misspelt one.
+    pub(super) misspelt: Vec<String>,
+}
+
+/// Compares a document with the keys of its tables.
+pub(super) fn file(document: &Document, root: &'static keys::Table) -> Conformity {
     let dimension = document.root().get("dimension").and_then(Node::count).filter(|d| (1..=3).contains(d));
     let mut check = Check {
         dimension,
         names: Names::of(document.root()),
         labels: Labels::of(document.root()),
-        problems: Vec::new(),
+        root: Some(root),
+        found: Conformity::default(),
     };
-    check.table(document.root(), &keys::CASE, "");
-    check.problems
+    check.table(document.root(), root, "");
+    check.found
 }
 
 /// The same for a table of variants alone.
 pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
     let mut check = Check::default();
     check.variant(table, variants, "");
-    check.problems
-}
-
-/// The same for one table of fixed keys.
-pub(super) fn table(table: &Table, keys: &keys::Table, path: &str) -> Vec<Problem> {
-    let mut check = Check::default();
-    check.table(table, keys, path);
-    check.problems
+    check.found.problems
 }
 
 #[derive(Default)]
@@ -43,7 +45,9 @@ struct Check {
     dimension: Option<usize>,
     names: Names,
     labels: Labels,
-    problems: Vec<Problem>,
+    /// The whole file, of which other tables may have an unknown key.
+    root: Option<&'static keys::Table>,
+    found: Conformity,
 }
 
 /// The keys a table may have.
@@ -63,7 +67,7 @@ impl<'a> Spec<'a> {
 
 impl Check {
     fn add(&mut self, path: &str, what: String, why: String, help: String) {
-        self.problems.push(Problem::new(path, what, why, help));
+        self.found.problems.push(Problem::new(path, what, why, help));
     }
 
     fn keys(&mut self, table: &Table, spec: &Spec, path: &str) {
@@ -75,11 +79,12 @@ impl Check {
             } else if spec.later.contains(&entry.key.as_str()) {
                 let what = format!("`{}` is not supported yet", entry.key);
                 let why = format!("`{}` of {} is planned for a later version of Carom", entry.key, spec.name);
-                self.problems.push(Problem::new(here, what, why, "leave it out").at_key());
+                self.found.problems.push(Problem::new(here, what, why, "leave it out").at_key());
             } else if spec.tag != Some(entry.key.as_str()) {
-                let (problem, near) = unknown(&entry.key, table, spec, here);
-                self.problems.push(problem);
+                let (problem, near) = self.unknown(&entry.key, table, spec, here);
+                self.found.problems.push(problem);
                 meant.extend(near);
+                self.found.misspelt.push(path.to_owned());
             }
         }
         let required = spec.keys.iter().copied().filter(|k| matches!(k.default, Default::Required));
@@ -90,7 +95,8 @@ impl Check {
         for key in spec.keys.iter().filter(|k| replaced(k) && table.get(k.name).is_some()) {
             let what = format!("`{}` is given with `{}`", key.name, key.unless);
             let why = format!("`{}` takes its place", key.unless);
-            self.problems
+            self.found
+                .problems
                 .push(Problem::new(joined(path, key.name), what, why, "leave one of them out").at_key());
         }
         let missing: Vec<_> = missing.into_iter().filter(|k| !replaced(k)).collect();
@@ -112,7 +118,7 @@ impl Check {
         let what = format!("{} has no {}", spec.name, and(&names));
         let help = format!("add for example {}", and(&examples));
         let why = format!("they are required. {}", meanings.join(" "));
-        self.problems.push(Problem::new(path, what, why, help).at_key());
+        self.found.problems.push(Problem::new(path, what, why, help).at_key());
     }
 
     fn missing(&mut self, name: &str, key: &Key, table: &str, path: &str) {
@@ -124,7 +130,9 @@ impl Check {
         let help = if key.example.is_empty() { help } else { format!("{help}, for example") };
         let what = format!("{table} needs `{name}`");
         let why = format!("`{name}` is required. {}", key.meaning());
-        self.problems.push(Problem::new(path, what, why, help.trim_end_matches(", for example")).at_key());
+        self.found
+            .problems
+            .push(Problem::new(path, what, why, help.trim_end_matches(", for example")).at_key());
     }
 
     fn table(&mut self, table: &Table, spec: &keys::Table, path: &str) {
@@ -142,28 +150,39 @@ impl Check {
         if let Some(Ok(word)) = named
             && let Some(spec) = variants.table(word)
         {
+            if let (Some(needs), Some(dimension)) = (spec.dimension, self.dimension)
+                && needs != dimension
+            {
+                let fits = |(_, table): &&(&str, keys::Table)| table.dimension == Some(dimension);
+                let other = variants.tables.iter().find(fits).map_or("", |(word, _)| word);
+                let what = format!("the {tag} \"{word}\" has dimension {needs}");
+                let why = format!("the case has dimension = {dimension}");
+                let help = format!("use for example {tag} = \"{other}\"");
+                return self.add(&joined(path, tag), what, why, help);
+            }
             return self.keys(table, &Spec::of(spec, Some(tag)), path);
         }
         let or = variants.or.filter(|_| named.is_none());
         // The tag is missing or wrong: any key of any variant is known, none is required.
-        let before = self.problems.len();
+        let before = self.found.problems.len();
         let keys = variants.tables.iter().map(|(_, t)| t).chain(or).flat_map(|t| t.keys).collect();
         let spec = Spec { name: variants.name, tag: Some(tag), keys, later: &[] };
         for entry in table.0.iter().filter(|e| e.key != tag && !spec.keys.iter().any(|k| k.name == e.key)) {
-            let (problem, _) = unknown(&entry.key, table, &spec, joined(path, &entry.key));
-            self.problems.push(problem);
+            let (problem, _) = self.unknown(&entry.key, table, &spec, joined(path, &entry.key));
+            self.found.problems.push(problem);
         }
         let here = joined(path, tag);
         match named {
             Some(Ok(word)) => {
                 let now: Vec<_> = variants.tables.iter().map(|(word, _)| *word).collect();
-                self.choice(word, tag, &now, &[], variants.doc, &here);
+                let key = Key { name: tag, doc: variants.doc, ..Key::NONE };
+                self.choice(word, &key, &now, &here);
             }
             Some(Err(node)) => {
                 let what = format!("`{tag}` must be a string in quotes, not {}", node.described());
                 self.add(&here, what, variants.doc.to_owned(), format!("use one of: {}", words(variants)));
             }
-            None if self.problems[before..]
+            None if self.found.problems[before..]
                 .iter()
                 .any(|p| meant(p, tag) || or.is_some_and(|t| meant(p, t.keys[0].name))) => {}
             None => {
@@ -172,9 +191,43 @@ impl Check {
                     .and_then(|t| t.keys.first())
                     .map_or_else(String::new, |k| format!("; or give `{}`", k.name));
                 let help = format!("use one of: {}{or}", words(variants));
-                self.problems.push(Problem::new(path, what, variants.doc, help));
+                self.found.problems.push(Problem::new(path, what, variants.doc, help));
             }
         }
+    }
+}
+
+impl Check {
+    /// An unknown key, and the key of this table that was probably meant.
+    fn unknown<'a>(
+        &self,
+        word: &str,
+        table: &Table,
+        spec: &Spec<'a>,
+        path: String,
+    ) -> (Problem, Option<&'a str>) {
+        let all = || spec.tag.into_iter().chain(spec.keys.iter().map(|k| k.name));
+        // A key that is present already is not a likely suggestion, unless it may occur several times.
+        let several =
+            |name: &str| spec.keys.iter().any(|k| k.name == name && matches!(k.kind, Kind::Tables(_)));
+        let free = all().filter(|k| table.get(k).is_none() || several(k)).chain(spec.later.iter().copied());
+        let mut homes = self.root.map_or_else(Vec::new, |root| homes(root, word));
+        homes.dedup();
+        let near = suggest::nearest(word, free)
+            .or_else(|| all().find(|key| OTHER_WORDS.contains(&(word, *key)) && table.get(key).is_none()))
+            .or_else(|| suggest::nearest(word, all()).filter(|_| homes.is_empty()));
+        let elsewhere = format!("`{word}` is a key of {}", homes.join(", "));
+        let help = match (near, homes.is_empty()) {
+            (Some(near), true) => format!("did you mean `{near}`?"),
+            (Some(near), false) => format!("did you mean `{near}`? ({elsewhere})"),
+            (None, false) => elsewhere,
+            (None, true) => "leave it out, or list all keys with `carom schema`".to_owned(),
+        };
+        let mut keys: Vec<_> = all().collect();
+        let mut seen = std::collections::HashSet::new();
+        keys.retain(|k| seen.insert(*k));
+        let why = format!("the keys of {} are: {}", spec.name, keys.join(", "));
+        (Problem::new(path, format!("unknown key `{word}` in {}", spec.name), why, help).at_key(), near)
     }
 }
 
@@ -198,33 +251,8 @@ fn words(variants: &Variants) -> String {
 /// Words that other programs use, and the keys that they mean.
 const OTHER_WORDS: [(&str, &str); 3] = [("point", "at"), ("position", "at"), ("friction", "mu")];
 
-/// An unknown key, and the key of this table that was probably meant.
-fn unknown<'a>(word: &str, table: &Table, spec: &Spec<'a>, path: String) -> (Problem, Option<&'a str>) {
-    let all = || spec.tag.into_iter().chain(spec.keys.iter().map(|k| k.name));
-    // A key that is present already is not a likely suggestion, unless it may occur several times.
-    let several = |name: &str| spec.keys.iter().any(|k| k.name == name && matches!(k.kind, Kind::Tables(_)));
-    let free = all().filter(|k| table.get(k).is_none() || several(k)).chain(spec.later.iter().copied());
-    let mut homes = homes(word);
-    homes.dedup();
-    let near = suggest::nearest(word, free)
-        .or_else(|| all().find(|key| OTHER_WORDS.contains(&(word, *key)) && table.get(key).is_none()))
-        .or_else(|| suggest::nearest(word, all()).filter(|_| homes.is_empty()));
-    let elsewhere = format!("`{word}` is a key of {}", homes.join(", "));
-    let help = match (near, homes.is_empty()) {
-        (Some(near), true) => format!("did you mean `{near}`?"),
-        (Some(near), false) => format!("did you mean `{near}`? ({elsewhere})"),
-        (None, false) => elsewhere,
-        (None, true) => "leave it out, or list all keys with `carom schema`".to_owned(),
-    };
-    let mut keys: Vec<_> = all().collect();
-    let mut seen = std::collections::HashSet::new();
-    keys.retain(|k| seen.insert(*k));
-    let why = format!("the keys of {} are: {}", spec.name, keys.join(", "));
-    (Problem::new(path, format!("unknown key `{word}` in {}", spec.name), why, help).at_key(), near)
-}
-
 /// The tables that have this key.
-fn homes(word: &str) -> Vec<&'static str> {
+fn homes(root: &'static keys::Table, word: &str) -> Vec<&'static str> {
     fn visit(table: &'static keys::Table, word: &str, found: &mut Vec<&'static str>) {
         if table.key(word).is_some() {
             found.push(table.name);
@@ -245,6 +273,6 @@ fn homes(word: &str) -> Vec<&'static str> {
         }
     }
     let mut found = Vec::new();
-    visit(&keys::CASE, word, &mut found);
+    visit(root, word, &mut found);
     found
 }

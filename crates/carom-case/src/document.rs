@@ -159,9 +159,14 @@ impl Document {
         self.study_key().is_some()
     }
 
+    /// Whether it has this key.
+    pub fn has(&self, key: &str) -> bool {
+        self.root().get(key).is_some()
+    }
+
     /// A key that only a study has.
     pub(super) fn study_key(&self) -> Option<&'static str> {
-        ["case", "arm", "grid"].into_iter().find(|key| self.root().get(key).is_some())
+        ["case", "arm", "grid"].into_iter().find(|key| self.has(key))
     }
 
     /// Finds the line that a problem is about; a key that was not written is reported at its
@@ -188,15 +193,6 @@ impl Document {
         found.sort_by_key(|d| (d.file != self.name(), d.line, d.column));
         found.dedup();
         CaseError::Wrong(found)
-    }
-
-    /// The value at a key path.
-    pub(super) fn at(&self, path: &str) -> Option<&Node> {
-        segments(path).into_iter().try_fold(&self.root, |node, segment| match (&node.value, segment) {
-            (Value::Table(table), Segment::Key(key)) => table.get(&key),
-            (Value::List(list), Segment::Index(i)) => list.get(i),
-            _ => None,
-        })
     }
 
     fn origin(&self, path: &str, at_key: bool) -> Option<Origin> {

@@ -36,7 +36,7 @@ impl Names {
         match (key.kind, key.name) {
             (Kind::Side | Kind::SideOr(_), name) => format!("{:?}", self.side(name == "primary")),
             (Kind::Sides, _) => format!("[{:?}]", self.side(false)),
-            (Kind::Choice(..), "element") => {
+            (Kind::Choice(_), "element") => {
                 format!("{:?}", ["L3", "T6", "Tet10"][dimension.unwrap_or(2).clamp(1, 3) - 1])
             }
             (Kind::Name, "body") => one(&self.bodies, "BODY"),
@@ -128,7 +128,7 @@ fn sides_of(shape: &str) -> &'static [&'static str] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::keys::shapes;
+    use crate::MeshSpec;
 
     #[test]
     fn vectors_have_the_dimension_of_the_case() {
@@ -153,7 +153,7 @@ mod tests {
     /// Every built-in shape is listed here, with the sides that its documentation names.
     #[test]
     fn sides_are_those_of_the_shapes() {
-        for (shape, table) in shapes().tables {
+        for (shape, table) in MeshSpec::variants().tables {
             let sides = sides_of(shape);
             assert!(!sides.is_empty() && sides.iter().all(|side| table.doc.contains(side)), "{shape}");
         }

@@ -1,18 +1,75 @@
 //! `[[expect]]` of a case, of an arm and of a study: a quantity and one bound on it.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use carom_formula::Formula;
 use carom_record::question::{Question, Series};
 use carom_record::{Bound, Deviation, Expect, Norm, OrderOf};
 
-use super::conform;
-use super::document::Document;
-use super::keys::EXPECT;
-use super::problem::Problem;
-use super::tree::Node;
-use super::view::View;
+use super::keys::Kind::Number;
+use super::keys::{Keys, NOT_NEGATIVE, POSITIVE, Table, View};
+
+/// An expected value with one bound: `value` and `tolerance`, `value` and `relative`, `at_most`, or
+/// `at_least`. With a `formula`, `tolerance` alone is sufficient.
+#[derive(Keys)]
+#[keys(name = "[[expect]]")]
+pub(crate) struct ExpectKeys {
+    /// Quantity: min | max | first | last | at T | time of min | time of max | range | drift | peak |
+    /// rms of a column or of [ columns with + - * / ]; the name of a metric; `stopped`; or an
+    /// expression of these. Operators need blanks on both sides.
+    #[key(example = "\"min A.uy\"")]
+    what: String,
+    /// Expected values of the column `what`, as a formula in t; the bound is on the norm of the
+    /// deviation from it.
+    #[key(example = "\"-0.5*9.81*t^2\"")]
+    formula: Option<String>,
+    /// Norm of the deviation: largest absolute value, or root mean square over the rows. Default: max;
+    /// for an order, rms.
+    #[key(example = "\"rms\"")]
+    norm: Option<Norm>,
+    /// Number that divides the deviation.
+    #[key(Number(POSITIVE), default = "1.0")]
+    scale: f64,
+    /// Only rows strictly after this time are used.
+    #[key(unit = "time", example = "0.52")]
+    after: Option<f64>,
+    /// Only rows strictly before this time are used.
+    #[key(unit = "time", example = "1.147")]
+    before: Option<f64>,
+    /// Expected value.
+    #[key(example = "-0.7827")]
+    value: Option<f64>,
+    /// Absolute tolerance.
+    #[key(Number(NOT_NEGATIVE), example = "4e-3")]
+    tolerance: Option<f64>,
+    /// Relative tolerance.
+    #[key(Number(NOT_NEGATIVE), example = "0.01")]
+    relative: Option<f64>,
+    /// Upper bound.
+    #[key(example = "0.0")]
+    at_most: Option<f64>,
+    /// Lower bound.
+    #[key(example = "0.0")]
+    at_least: Option<f64>,
+    /// Where the expected value comes from.
+    #[key(example = "\"exact solution\"")]
+    source: Option<String>,
+    /// In a study, with what = "order": the quantity or column whose order of convergence is observed.
+    #[key(example = "\"last A.uy\"")]
+    of: Option<String>,
+    /// With what = "order": the key of the case that is refined from arm to arm.
+    #[key(example = "\"time.step\"")]
+    against: Option<String>,
+    /// With what = "order": only arms whose names contain these whole words.
+    #[key(example = "\"hu\"")]
+    r#where: Option<String>,
+    /// With what = "order": the exact value that errors are computed against.
+    #[key(example = "1.0")]
+    exact: Option<f64>,
+    /// Skipped by `carom verify --fast`.
+    #[key(default = "false")]
+    slow: bool,
+}
 
 /// Where the quantity of an expectation comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,161 +91,120 @@ pub(super) enum Exact<'a> {
     Nobody,
 }
 
-/// The expectations of the list at `path` in a study file.
-pub fn read_expects(
-    document: &Document,
-    path: &str,
-    asked: Asked,
-    problems: &mut Vec<Problem>,
-) -> Vec<Expect> {
-    let Some(list) = document.at(path).and_then(Node::list) else { return Vec::new() };
-    let reported = RefCell::new(Vec::new());
-    let mut found = Vec::new();
-    for (i, node) in list.iter().enumerate() {
-        let path = format!("{path}[{i}]");
-        let Some(table) = node.table() else {
-            let (what, why) = ("this is not a table", "an expectation is a table");
-            let help = "write `{ what = \"…\", value = …, tolerance = … }`";
-            reported.borrow_mut().push(Problem::new(path, what, why, help));
-            continue;
-        };
-        reported.borrow_mut().extend(conform::table(table, &EXPECT, &path));
-        let view = View { path, ..View::of_keys(table, EXPECT.keys, &reported) };
-        let later = asked == Asked::OfARun || view.has("against");
-        let exact = if later { Exact::Later } else { Exact::Nobody };
-        found.extend(one(&view, asked, exact));
-    }
-    problems.extend(reported.take());
-    found
+/// The keys of an `[[expect]]`.
+pub const EXPECT: Table = ExpectKeys::TABLE;
+
+/// The expectations of a study or of one of its arms.
+pub fn expects(v: &View, asked: Asked) -> Option<Vec<Option<Expect>>> {
+    v.each("expect", |v| {
+        let later = asked == Asked::OfARun || v.has("against");
+        one(v, asked, if later { Exact::Later } else { Exact::Nobody })
+    })
 }
 
 /// One expectation; `None` if it cannot be read, which is then added to the problems.
 pub(super) fn one(v: &View, asked: Asked, exact: Exact) -> Option<Expect> {
-    let what = v.text("what")?;
+    let keys = ExpectKeys::read(v)?;
     let of_order = ["of", "against", "where", "exact"].into_iter().filter(|k| v.has(k)).collect::<Vec<_>>();
-    let order = match (what == "order", of_order.first()) {
-        (true, _) => Some(order(v, &of_order, asked)?),
+    let order = match (keys.what == "order", of_order.first()) {
+        (true, _) => Some(keys.order(v, asked)?),
         (false, None) => None,
         (false, Some(first)) => {
             let what = format!("`{first}` without what = \"order\"");
-            let why = "it describes an order of convergence";
-            return v.report(v.problem("", what, why, "leave it out").at_key());
+            return v.wrong_key("", what, "it describes an order of convergence", "leave it out");
         }
     };
-    let norm = v.choice("norm").unwrap_or(if order.is_some() { Norm::Rms } else { Norm::Max });
-    let deviation = if v.has("formula") { Some(deviation(v, norm, exact)?) } else { None };
+    let deviation = if v.has("formula") { Some(keys.deviation(v, exact)?) } else { None };
     if deviation.is_none()
         && let Some(key) = ["norm", "scale"].into_iter().find(|k| v.has(k) && !(*k == "norm" && v.has("of")))
     {
         let why = "it defines how the deviation from a formula is measured";
         let help = "add `formula = \"…\"` or leave it out";
-        v.report::<()>(v.problem(key, format!("`{key}` without `formula`"), why, help).at_key());
+        v.wrong_key::<()>(key, format!("`{key}` without `formula`"), why, help);
     }
-    let bound = bound(v, deviation.is_some() && order.is_none())?;
-    let parsed = match (&order, &deviation) {
-        (Some(order), Some(_)) => Series::parse(&order.of).map(drop).map_err(|e| ("of", e)),
+    let bound = keys.bound(v, deviation.is_some() && order.is_none())?;
+    let (key, wanted) = order.as_ref().map_or(("what", &keys.what), |order| ("of", &order.of));
+    let parsed = if deviation.is_some() {
+        Series::parse(wanted).map(drop)
+    } else {
         // A single word is a metric or a column.
-        (Some(order), None) => Question::parse(&order.of).map(drop).map_err(|e| ("of", e)),
-        (None, Some(_)) => Series::parse(&what).map(drop).map_err(|e| ("what", e)),
-        (None, None) => Question::parse(&what)
-            .and_then(|q| if asked == Asked::OfArms { q.of_arms() } else { Ok(()) })
-            .map_err(|e| ("what", e)),
+        let of_arms = order.is_none() && asked == Asked::OfArms;
+        Question::parse(wanted).and_then(|question| if of_arms { question.of_arms() } else { Ok(()) })
     };
-    if let Err((key, why)) = parsed {
-        let wrong = if key == "of" { order.map_or(what, |o| o.of) } else { what };
+    if let Err(why) = parsed {
         let help = "write for example \"last total / first total\"";
-        return v.wrong(key, format!("{wrong:?} is not a valid quantity"), why, help);
+        return v.wrong(key, format!("{wanted:?} is not a valid quantity"), why, help);
     }
-    Some(Expect {
-        what,
-        bound,
-        source: v.text("source"),
-        deviation,
-        after: v.number("after"),
-        before: v.number("before"),
-        order,
-        norm: v.choice("norm"),
-        slow: v.flag("slow")?,
-    })
+    let ExpectKeys { what, source, after, before, norm, slow, .. } = keys;
+    Some(Expect { what, bound, source, deviation, after, before, order, norm, slow })
 }
 
-/// The order of convergence that is expected, with the keys that are given for it.
-fn order(v: &View, given: &[&str], asked: Asked) -> Option<OrderOf> {
-    match (asked, given) {
-        (Asked::OfARun, _) => {
+impl ExpectKeys {
+    /// The order of convergence that is expected.
+    fn order(&self, v: &View, asked: Asked) -> Option<OrderOf> {
+        if asked == Asked::OfARun {
             let why = "it is observed over several runs, for example with different time steps";
             let help = "move it to the [[expect]] of a study";
-            v.report(v.problem("", "one run has no order of convergence", why, help).at_key())
+            return v.wrong_key("", "one run has no order of convergence", why, help);
         }
-        (Asked::OfArms, ["of", "against", ..]) => Some(OrderOf {
-            of: v.text("of")?,
-            against: v.text("against")?,
-            arms: v.text("where"),
-            exact: v.number("exact"),
-        }),
-        (Asked::OfArms, _) => {
+        let (Some(of), Some(against)) = (self.of.clone(), self.against.clone()) else {
             let help = "write `what = \"order\", of = \"last A.uy\", against = \"time.step\"`";
             let why = "an order is that of a quantity or column (`of`) with respect to a key of the case (`against`)";
-            v.report(v.problem("", "the order has no `of` or no `against`", why, help).at_key())
-        }
-    }
-}
-
-/// The deviation from a formula.
-fn deviation(v: &View, norm: Norm, exact: Exact) -> Option<Deviation> {
-    let (formula, scale) = (v.text("formula")?, v.number("scale")?);
-    if formula == "exact" {
-        let column = v.text("what").unwrap_or_default();
-        let found = match exact {
-            Exact::Later => None,
-            Exact::Nobody => {
-                let why = "an exact formula belongs to one case, and this expectation is about several arms, which may differ in it";
-                let what = "formula = \"exact\" cannot be used here";
-                return v.wrong("formula", what, why, "write the formula itself");
-            }
-            Exact::Of(formulas) => {
-                let Some(formula) = formulas.get(&column) else {
-                    let what = format!("the case has no exact formula for `{column}`");
-                    let help = format!("add `\"{column}\" = \"…\"` to [exact]");
-                    let why = "formula = \"exact\" refers to a formula in [exact]";
-                    return v.wrong("formula", what, why, help);
-                };
-                Some(formula.clone())
-            }
+            return v.wrong_key("", "the order has no `of` or no `against`", why, help);
         };
-        return Some(Deviation { formula, exact: found, norm, scale });
+        Some(OrderOf { of, against, arms: self.r#where.clone(), exact: self.exact })
     }
-    if let Err(error) = Formula::parse(&formula, &["t"]) {
-        let help =
-            "write for example \"-0.5*9.81*t^2\"; \"exact\" refers to the formula of the column in [exact]";
-        let problem = v.problem("formula", error.message, "it is a formula in the time t", help);
-        return v.report(problem.within(error.at));
-    }
-    Some(Deviation { formula, exact: None, norm, scale })
-}
 
-fn bound(v: &View, deviation: bool) -> Option<Bound> {
-    let keys = ["value", "tolerance", "relative", "at_most", "at_least"];
-    let given: Vec<_> = keys.into_iter().filter(|k| v.has(k)).collect();
-    Some(match given.as_slice() {
-        ["value", "tolerance"] => {
-            Bound::Near { value: v.number("value")?, tolerance: v.number("tolerance")? }
+    /// The deviation from a formula.
+    fn deviation(&self, v: &View, exact: Exact) -> Option<Deviation> {
+        let norm = self.norm.unwrap_or(if self.what == "order" { Norm::Rms } else { Norm::Max });
+        let formula = self.formula.clone()?;
+        let scale = self.scale;
+        if formula == "exact" {
+            let column = &self.what;
+            let found = match exact {
+                Exact::Later => None,
+                Exact::Nobody => {
+                    let why = "an exact formula belongs to one case, and this expectation is about several arms, which may differ in it";
+                    let what = "formula = \"exact\" cannot be used here";
+                    return v.wrong("formula", what, why, "write the formula itself");
+                }
+                Exact::Of(formulas) => {
+                    let Some(formula) = formulas.get(column) else {
+                        let what = format!("the case has no exact formula for `{column}`");
+                        let help = format!("add `\"{column}\" = \"…\"` to [exact]");
+                        let why = "formula = \"exact\" refers to a formula in [exact]";
+                        return v.wrong("formula", what, why, help);
+                    };
+                    Some(formula.clone())
+                }
+            };
+            return Some(Deviation { formula, exact: found, norm, scale });
         }
-        ["value", "relative"] => {
-            Bound::Relative { value: v.number("value")?, relative: v.number("relative")? }
+        if let Err(error) = Formula::parse(&formula, &["t"]) {
+            let help = "write for example \"-0.5*9.81*t^2\"; \"exact\" refers to the formula of the column in [exact]";
+            let problem = v.problem("formula", error.message, "it is a formula in the time t", help);
+            return v.report(problem.within(error.at));
         }
-        ["tolerance"] if deviation => Bound::AtMost(v.number("tolerance")?),
-        ["at_most"] => Bound::AtMost(v.number("at_most")?),
-        ["at_least"] => Bound::AtLeast(v.number("at_least")?),
-        _ => {
-            if !v.has_unknown_key() {
+        Some(Deviation { formula, exact: None, norm, scale })
+    }
+
+    fn bound(&self, v: &View, deviation: bool) -> Option<Bound> {
+        let keys = ["value", "tolerance", "relative", "at_most", "at_least"];
+        let given: Vec<_> = keys.into_iter().filter(|k| v.has(k)).collect();
+        Some(match given.as_slice() {
+            ["value", "tolerance"] => Bound::Near { value: self.value?, tolerance: self.tolerance? },
+            ["value", "relative"] => Bound::Relative { value: self.value?, relative: self.relative? },
+            ["tolerance"] if deviation => Bound::AtMost(self.tolerance?),
+            ["at_most"] => Bound::AtMost(self.at_most?),
+            ["at_least"] => Bound::AtLeast(self.at_least?),
+            _ => {
                 let what = "the expectation needs exactly one bound";
                 let why =
                     format!("it has {}", if given.is_empty() { "none".into() } else { given.join(", ") });
                 let help = "give `value` and `tolerance`, or `value` and `relative`, or `at_most`, or `at_least`; with a formula `tolerance` is enough";
-                return v.report(v.problem("", what, why, help).at_key());
+                return v.wrong_key("", what, why, help);
             }
-            return None;
-        }
-    })
+        })
+    }
 }

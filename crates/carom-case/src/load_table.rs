@@ -3,7 +3,29 @@
 
 use std::path::Path;
 
-use super::TableSpec;
+use serde::{Deserialize, Serialize};
+
+/// A factor over time, linearly interpolated. It is stored completely, so that a run can be resumed
+/// without the file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TableSpec {
+    /// The file, as given.
+    pub file: String,
+    /// Times, ascending, at least two.
+    pub times: Vec<f64>,
+    /// Factors.
+    pub values: Vec<f64>,
+}
+
+impl TableSpec {
+    /// The factor at a time within the table.
+    pub fn value(&self, time: f64) -> f64 {
+        let after = self.times.partition_point(|t| *t <= time).clamp(1, self.times.len() - 1);
+        let (t, v) = (&self.times[after - 1..=after], &self.values[after - 1..=after]);
+        let share = (time - t[0]) / (t[1] - t[0]);
+        (1.0 - share) * v[0] + share * v[1]
+    }
+}
 
 /// Largest number of lines; the resolved case stores them all.
 const MOST_LINES: usize = 1_000_000;

@@ -4,7 +4,6 @@
 use carom_solid::generate::{self, Refinement};
 use carom_solid::{Element, Mesh};
 
-use crate::mesh_file;
 use crate::no_mesh::NoMesh;
 use crate::spec::PLANES;
 use crate::{BodySpec, MeshSpec, RefineSpec};
@@ -16,7 +15,7 @@ impl BodySpec {
     /// Why it cannot be made.
     pub fn make_mesh(&self, dimension: usize) -> Result<Mesh, NoMesh> {
         let mut mesh = match self.mesh {
-            MeshSpec::File { .. } => of_file(&self.mesh, dimension)?,
+            MeshSpec::File(ref file) => file.mesh(dimension)?,
             MeshSpec::Interval { .. } if dimension != 1 => {
                 return Err(NoMesh::Dimension(1));
             }
@@ -64,19 +63,11 @@ impl BodySpec {
     }
 }
 
-/// The mesh of a file, divided.
-fn of_file(spec: &MeshSpec, dimension: usize) -> Result<Mesh, NoMesh> {
-    let MeshSpec::File { file, surface, hash, parts, slits, .. } = spec else {
-        return Err(NoMesh::NotPlane);
-    };
-    Ok(mesh_file::mesh(file, dimension, surface, *slits, hash)?.subdivided(*parts))
-}
-
 /// The mesh of a shape of the plane, or of a file.
 fn plane_mesh(shape: &MeshSpec, element: Element) -> Result<Mesh, NoMesh> {
     Ok(match *shape {
-        MeshSpec::File { .. } => return of_file(shape, 2),
-        MeshSpec::Rectangle { min, max, cells } => generate::rectangle(element, min, max, cells),
+        MeshSpec::File(ref file) => return file.mesh(2),
+        MeshSpec::Rectangle { min, max, cells, .. } => generate::rectangle(element, min, max, cells),
         MeshSpec::Disc { radius, center, size } => generate::disc(element, radius, center, size),
         MeshSpec::HalfDisc { radius, center, size } => generate::half_disc(element, radius, center, size),
         MeshSpec::Ring { inner, outer, center, size } => generate::ring(element, inner, outer, center, size),

@@ -305,7 +305,7 @@ fn curved_cells(mesh: &MeshSpec, element: Element, cells: f64) -> f64 {
 /// The key that a mesh owes its size to.
 fn size_key(mesh: &MeshSpec) -> &'static str {
     match mesh {
-        MeshSpec::File { .. } => "file",
+        MeshSpec::File(_) => "file",
         MeshSpec::Interval { .. } | MeshSpec::Rectangle { .. } | MeshSpec::Box { .. } => "cells",
         MeshSpec::Extrusion { .. } => "layers",
         _ => "size",

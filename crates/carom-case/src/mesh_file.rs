@@ -2,14 +2,62 @@
 //! the key that names it. The resolved case stores its hash, so that a run is never resumed with a
 //! different mesh.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use carom_solid::{Element, Mesh, generate, gmsh};
+use serde::{Deserialize, Serialize};
 
-use super::MeshSpec;
+use super::keys::Kind::Text;
+use super::keys::{Keys, View};
 use super::no_mesh::NoMesh;
-use super::view::View;
 use carom_record::available_memory;
+
+/// A body from a Gmsh file; its sides are the physical curves (dimension 1: points, dimension 3:
+/// surfaces) on its boundary. A group without a name is called by its number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Keys)]
+#[keys(name = "mesh from a file")]
+pub struct FileMesh {
+    /// Path of a .msh file of version 4.1 or 2.2, relative to the folder of the case.
+    #[key(Text, example = "\"impact.msh\"")]
+    pub file: PathBuf,
+    /// Name of the physical surface (dimension 1: curve) that is the body; in dimension 3 give
+    /// `volume`.
+    #[key(unless = "volume", example = "\"cylinder\"", with = group_name)]
+    pub surface: String,
+    /// Dimension 3: name of the physical volume that is the body.
+    #[key(Text, optional = "\"part\"")]
+    #[serde(skip)]
+    pub volume: (),
+    /// Whether neighbouring cells may have separate nodes at the same place: a closed slit, or
+    /// pieces that touch. Otherwise this is an error.
+    #[key(default = "false")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub slits: bool,
+    /// BLAKE3 hash of the file when the case was read.
+    pub hash: String,
+    /// Nodes of the mesh.
+    pub nodes: usize,
+    /// Cells of the mesh.
+    pub cells: usize,
+    /// Sides of the mesh.
+    pub sides: Vec<String>,
+    /// What was repaired when the mesh was read.
+    pub repairs: Vec<String>,
+    /// Parts into which every edge is divided.
+    #[serde(default = "whole")]
+    pub parts: usize,
+}
+
+/// The physical group of a file that is the body.
+fn group_name(v: &View) -> Option<String> {
+    let named = v.keys.iter().map(|key| key.name).filter(|key| ["surface", "volume"].contains(key));
+    named.rev().find_map(|key| v.get::<Option<String>>(key)?)
+}
+
+/// Edges as they are in the file.
+fn whole() -> usize {
+    1
+}
 
 /// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2,
 /// a volume in space.
@@ -24,81 +72,13 @@ fn group(file: gmsh::MshFile, dimension: usize, name: &str, slits: bool) -> Resu
 
 /// What a mesh from a file is for.
 #[derive(Clone, Copy)]
-pub(super) struct Purpose {
+pub(crate) struct Purpose {
     /// Its dimension.
-    pub dimension: usize,
+    pub(crate) dimension: usize,
     /// Element of the body, if it is known.
-    pub element: Option<Element>,
+    pub(crate) element: Option<Element>,
     /// Whether the body is the extrusion of the mesh.
-    pub extruded: bool,
-}
-
-/// Reads the table of a mesh from a file; its path is relative to the folder of the case.
-pub(super) fn read(v: &View, purpose: Purpose) -> Option<MeshSpec> {
-    let Purpose { dimension, element, extruded } = purpose;
-    let (name, slits) = (v.text("file")?, v.flag("slits")?);
-    let (named, other) = if dimension == 3 { ("volume", "surface") } else { ("surface", "volume") };
-    // The table of an extrusion has no such key.
-    if v.has(other) && !extruded {
-        let what = format!("the body of a file is its `{named}`, not its `{other}`");
-        let why = format!("the case has dimension = {dimension}");
-        return v.report(v.problem(other, what, why, format!("write `{named}`")).at_key());
-    }
-    let surface = v.text(named)?;
-    let file = v.file("file")?;
-    let wrong = |key: &str, what: String, why: String, help: &str| {
-        // A file of several bodies is reported once.
-        if key == "file" && v.has_problem(|known| known.what == what) {
-            return None;
-        }
-        v.wrong(key, what, why, help)
-    };
-    let bytes = match bytes(&file) {
-        Ok(bytes) => bytes,
-        Err(why) => {
-            let what = format!("the mesh \"{name}\" cannot be read");
-            return wrong("file", what, why, "check the path; it is relative to the folder of the case");
-        }
-    };
-    let mesh = match gmsh::read(&bytes).and_then(|file| group(file, dimension, &surface, slits)) {
-        Ok(mesh) => mesh,
-        Err(error) => {
-            // `slits` may be misspelt, which `conform` reports.
-            let unknown = || {
-                v.table.0.iter().any(|e| !["file", "surface", "volume", "slits"].contains(&e.key.as_str()))
-            };
-            if matches!(error.fault, gmsh::Fault::Coincident { .. }) && unknown() {
-                return None;
-            }
-            let key = if matches!(error.fault, gmsh::Fault::NoName { .. }) { named } else { "file" };
-            return wrong(key, format!("{name}: {error}"), error.why(), error.help());
-        }
-    };
-    let found = if extruded { generate::extruded(mesh.element)? } else { mesh.element };
-    if let Some(element) = element.filter(|e| *e != found && e.dimension() == found.dimension()) {
-        let of = if extruded { "the extrusion of " } else { "" };
-        let what = format!("{of}\"{surface}\" of {name} has {found:?} cells, not {element:?}");
-        let wanted = element.degree();
-        let in_gmsh = if found.degree() == wanted {
-            let cells = if extruded { generate::plane_of(element)? } else { element };
-            format!("mesh it with {}", shape(cells))
-        } else {
-            format!("set Mesh.ElementOrder = {wanted}")
-        };
-        let help = format!("write element = \"{found:?}\", or {in_gmsh} in Gmsh");
-        return wrong(named, what, "the element of a body must be that of its mesh".into(), &help);
-    }
-    Some(MeshSpec::File {
-        file,
-        surface,
-        slits,
-        hash: blake3::hash(&bytes).to_hex().to_string(),
-        nodes: mesh.nodes.len(),
-        cells: mesh.cell_count(),
-        sides: mesh.sides.into_keys().collect(),
-        repairs: mesh.repairs,
-        parts: 1,
-    })
+    pub(crate) extruded: bool,
 }
 
 /// The shape of an element's cells.
@@ -128,26 +108,83 @@ pub(super) fn bytes(file: &Path) -> Result<Vec<u8>, String> {
     std::fs::read(file).map_err(|e| e.to_string())
 }
 
-/// The mesh of a resolved case, if its file is still the one the case was resolved with.
-///
-/// # Errors
-/// Why it cannot be read, or is not a mesh.
-pub(crate) fn mesh(
-    file: &Path,
-    dimension: usize,
-    surface: &str,
-    slits: bool,
-    hash: &str,
-) -> Result<Mesh, NoMesh> {
-    let bytes = unchanged(file, hash)?;
-    let none = |error: gmsh::MshError| NoMesh::File { file: file.to_owned(), error: Box::new(error) };
-    gmsh::read(&bytes).and_then(|f| group(f, dimension, surface, slits)).map_err(none)
-}
+impl FileMesh {
+    /// A mesh from a file, with what the file says.
+    pub(crate) fn resolved(self, v: &View, purpose: Purpose) -> Option<Self> {
+        let Purpose { dimension, element, extruded } = purpose;
+        let Self { file, surface, slits, .. } = self;
+        let name: String = v.get("file")?;
+        let (named, other) = if dimension == 3 { ("volume", "surface") } else { ("surface", "volume") };
+        // The table of an extrusion has no such key.
+        if v.has(other) && !extruded {
+            let what = format!("the body of a file is its `{named}`, not its `{other}`");
+            let why = format!("the case has dimension = {dimension}");
+            return v.wrong_key(other, what, why, format!("write `{named}`"));
+        }
+        let wrong = |key: &str, what: String, why: String, help: &str| {
+            // A file of several bodies is reported once.
+            if key == "file" && v.has_problem(|known| known.what == what) {
+                return None;
+            }
+            v.wrong(key, what, why, help)
+        };
+        let bytes = match bytes(&file) {
+            Ok(bytes) => bytes,
+            Err(why) => {
+                let what = format!("the mesh \"{name}\" cannot be read");
+                return wrong("file", what, why, "check the path; it is relative to the folder of the case");
+            }
+        };
+        let mesh = match gmsh::read(&bytes).and_then(|file| group(file, dimension, &surface, slits)) {
+            Ok(mesh) => mesh,
+            Err(error) => {
+                let key = if matches!(error.fault, gmsh::Fault::NoName { .. }) { named } else { "file" };
+                return wrong(key, format!("{name}: {error}"), error.why(), error.help());
+            }
+        };
+        let found = if extruded { generate::extruded(mesh.element)? } else { mesh.element };
+        if let Some(element) = element.filter(|e| *e != found && e.dimension() == found.dimension()) {
+            let of = if extruded { "the extrusion of " } else { "" };
+            let what = format!("{of}\"{surface}\" of {name} has {found:?} cells, not {element:?}");
+            let wanted = element.degree();
+            let in_gmsh = if found.degree() == wanted {
+                let cells = if extruded { generate::plane_of(element)? } else { element };
+                format!("mesh it with {}", shape(cells))
+            } else {
+                format!("set Mesh.ElementOrder = {wanted}")
+            };
+            let help = format!("write element = \"{found:?}\", or {in_gmsh} in Gmsh");
+            return wrong(named, what, "the element of a body must be that of its mesh".into(), &help);
+        }
+        Some(Self {
+            file,
+            surface,
+            volume: (),
+            slits,
+            hash: blake3::hash(&bytes).to_hex().to_string(),
+            nodes: mesh.nodes.len(),
+            cells: mesh.cell_count(),
+            sides: mesh.sides.into_keys().collect(),
+            repairs: mesh.repairs,
+            parts: 1,
+        })
+    }
 
-/// The file of a mesh that was read with its case, once more.
-pub(super) fn again(spec: &MeshSpec) -> Option<gmsh::MshFile> {
-    let MeshSpec::File { file, hash, .. } = spec else { return None };
-    gmsh::read(&unchanged(file, hash).ok()?).ok()
+    /// The mesh of a resolved case, if its file is still the one the case was resolved with.
+    ///
+    /// # Errors
+    /// Why it cannot be read, or is not a mesh.
+    pub(crate) fn mesh(&self, dimension: usize) -> Result<Mesh, NoMesh> {
+        let none = |error: gmsh::MshError| NoMesh::File { file: self.file.clone(), error: Box::new(error) };
+        let file = gmsh::read(&unchanged(&self.file, &self.hash)?);
+        let mesh = file.and_then(|file| group(file, dimension, &self.surface, self.slits)).map_err(none)?;
+        Ok(mesh.subdivided(self.parts))
+    }
+
+    /// The file, once more.
+    pub(crate) fn again(&self) -> Option<gmsh::MshFile> {
+        gmsh::read(&unchanged(&self.file, &self.hash).ok()?).ok()
+    }
 }
 
 /// The bytes of a file that is still the one with this hash.
@@ -160,18 +197,4 @@ pub(super) fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, NoMesh> {
     Err(NoMesh::Unreadable(format!(
         "the mesh file {file} has changed since the run began (BLAKE3 was {hash}): restore the file, or run the case again"
     )))
-}
-
-impl MeshSpec {
-    /// Whether the mesh is still the one the case was resolved with: that its file is there and
-    /// unchanged.
-    ///
-    /// # Errors
-    /// A message with the file's name.
-    pub fn verify(&self) -> Result<(), NoMesh> {
-        match self.source() {
-            Self::File { file, hash, .. } => unchanged(file, hash).map(|_| ()),
-            _ => Ok(()),
-        }
-    }
 }

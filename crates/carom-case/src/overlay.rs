@@ -1,47 +1,59 @@
 //! Reads measured data.
 
-use std::cell::RefCell;
-use std::path::Path;
+use super::keys::Kind::{Name, Number};
+use super::keys::{Keys, POSITIVE, Table, View};
+use super::{OverlaySpec, load_table};
 
-use super::document::Document;
-use super::keys::OVERLAY;
-use super::problem::Problem;
-use super::tree::Node;
-use super::view::View;
-use super::{OverlaySpec, conform, load_table};
+/// Measured data of one column: drawn with it, and compared by the metrics `overlay_rms:NAME`,
+/// `overlay_peak:NAME` and `overlay_shift:NAME`.
+#[derive(Keys)]
+#[keys(name = "[[overlay]]")]
+struct OverlayKeys {
+    /// Name in figures and metrics.
+    #[key(Name, example = "\"test-3\"")]
+    name: String,
+    /// CSV file with a line of headings, relative to the folder of the case or study; its lines that
+    /// begin with # are comments.
+    #[key(example = "\"measured.csv\"")]
+    file: String,
+    /// The column of history.csv that was measured.
+    #[key(example = "\"A.uy\"")]
+    column: String,
+    /// Heading of the times in the file.
+    #[key(default = "\"t\"")]
+    time: String,
+    /// Heading of the values in the file.
+    #[key(default = "\"value\"")]
+    value: String,
+    /// Times of the case in one unit of those of the file: 1e-3 for ms in a case in s.
+    #[key(Number(POSITIVE), default = "1.0")]
+    time_scale: f64,
+    /// Values of the column in one unit of those of the file: −1e-3 for mm downwards in a case in m
+    /// upwards.
+    #[key(default = "1.0")]
+    scale: f64,
+    /// Where the data come from.
+    #[key(example = "\"own test, 3 May\"")]
+    source: Option<String>,
+}
 
-/// The measured data of a study file, whose files start at `folder`.
-pub fn read_overlays(document: &Document, folder: &Path, problems: &mut Vec<Problem>) -> Vec<OverlaySpec> {
-    let list = document.at("overlay").and_then(Node::list).unwrap_or_default();
-    let reported = RefCell::new(Vec::new());
-    let mut found = Vec::new();
-    for (i, table) in list.iter().enumerate().filter_map(|(i, node)| Some((i, node.table()?))) {
-        let path = format!("overlay[{i}]");
-        reported.borrow_mut().extend(conform::table(table, &OVERLAY, &path));
-        let view = View { folder, path, ..View::of_keys(table, OVERLAY.keys, &reported) };
-        found.extend(read(&view));
-    }
-    problems.extend(reported.take());
-    found
+/// The keys of an `[[overlay]]`.
+pub const OVERLAY: Table = OverlayKeys::TABLE;
+
+/// The measured data of a case or a study.
+pub fn overlays(v: &View) -> Option<Vec<Option<OverlaySpec>>> {
+    v.each("overlay", read)
 }
 
 /// Reads an `[[overlay]]`.
-pub(super) fn read(v: &View) -> Option<OverlaySpec> {
-    // A misspelt key is reported once, not as headings that the file does not have too.
-    if v.has_unknown_key() {
-        return None;
-    }
-    let (file, time, value) = (v.text("file")?, v.text("time")?, v.text("value")?);
-    let (time_scale, scale) = (v.number("time_scale")?, v.number("scale")?);
+fn read(v: &View) -> Option<OverlaySpec> {
+    let OverlayKeys { name, file, column, time, value, time_scale, scale, source } = OverlayKeys::read(v)?;
     match load_table::columns(&v.folder.join(&file), &file, [&time, &value]) {
-        Ok(table) => Some(OverlaySpec {
-            name: v.text("name")?,
-            column: v.text("column")?,
-            times: table.times.iter().map(|t| t * time_scale).collect(),
-            values: table.values.iter().map(|x| x * scale).collect(),
-            source: v.text("source"),
-            file,
-        }),
+        Ok(table) => {
+            let times = table.times.iter().map(|t| t * time_scale).collect();
+            let values = table.values.iter().map(|x| x * scale).collect();
+            Some(OverlaySpec { name, file, column, times, values, source })
+        }
         Err(error) => {
             let what = format!("the measured data \"{file}\" cannot be used");
             v.wrong("file", what, error.why, error.help)

@@ -86,7 +86,7 @@ fn value_of(value: &str, start: usize, set: &str, source: usize) -> Result<Node,
         }
         Err(_) => {
             let value = Value::Text(value.trim().to_owned());
-            Ok(Node { value, origin: Origin { source, span } })
+            Ok(Node { value, is_inline: false, origin: Origin { source, span } })
         }
     }
 }

@@ -59,6 +59,11 @@ impl Problem {
     }
 }
 
+/// Whether a path is that of a table, or of something in it.
+pub(super) fn is_within(path: &str, table: &str) -> bool {
+    path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
 /// Everything wrong with a case. [`Document::diagnose_all`](crate::Document::diagnose_all) finds
 /// the lines.
 #[derive(Clone, Debug, Default, PartialEq, Eq, thiserror::Error)]

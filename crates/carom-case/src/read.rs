@@ -1,24 +1,17 @@
-//! Document → case: all tables (`tables.rs`), what follows from several of them, and the checks.
+//! Document → case: all tables, what follows from several of them, and the checks.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::between::Bodies;
 use super::check;
-use super::conform;
+use super::conform::{self, Conformity};
 use super::document::Document;
 use super::draft::Draft;
-use super::expect::{self, Asked, Exact};
-use super::keys;
-use super::load;
-use super::overlay;
-use super::problem::{CaseError, Problem, Problems};
+use super::keys::{Keys, View};
+use super::problem::{CaseError, Problem, Problems, is_within};
 use super::refine::{self, Counts};
-use super::tables::{body, contact, initial, material, newton, output, probe, support, time};
-use super::tree::{Entry, Node};
-use super::view::View;
-use super::{BodySpec, Case, ContactSpec, FormulaSpec, Persistency, Preset, Units};
+use super::{BodySpec, Case, ContactSpec, FormulaSpec, Persistency, Preset};
 
 impl Case {
     /// Reads a case from its text, with overrides `key=value` applied in their order. Files that it
@@ -57,39 +50,25 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
         let help = "run it with carom study, or check it with carom check";
         return Err(vec![Problem::new(key, "this is a study, not a case", why, help).at_key()].into());
     }
-    let problems = RefCell::new(conform::problems(document));
-    let reader = Reader::of(document, &problems);
-    let materials = reader.each("material", material);
-    let time = reader.root.at("time").and_then(|v| time(&v));
-    let refine = reader.root.number("refine").filter(|factor| *factor >= 1.0).unwrap_or(1.0);
-    let counts = |v: &View| Counts::of(v.table.get("mesh")?.table()?, format!("{}.mesh", v.path));
-    let counts: Vec<_> = reader.each("body", counts).into_iter().flatten().collect();
-    problems.borrow_mut().extend(refine::problem(refine, &counts));
-    let bodies = reader.each("body", |v| body(v, reader.dimension?, refine));
-    let exact = reader.exact();
-    let draft = Draft {
-        dimension: reader.dimension,
-        contacts: reader.contacts(&Bodies { bodies: &bodies, materials: &materials }),
-        supports: reader.each("support", support),
-        loads: reader.each("load", load::read),
-        probes: reader.each("probe", probe),
-        overlays: reader.each("overlay", overlay::read),
-        expects: reader.each("expect", |v| {
-            // An unknown key may be a misspelt `exact`.
-            let known = if reader.root.has_unknown_key() { Exact::Later } else { Exact::Of(&exact) };
-            expect::one(v, Asked::OfARun, known)
-        }),
-        materials,
-        bodies,
-        exact,
-        time,
-    };
+    let Conformity { problems, misspelt } = conform::file(document, &Draft::TABLE);
+    let known = problems.len();
+    let problems = RefCell::new(problems);
+    let root = View::of_keys(document.root(), Draft::TABLE.keys, &problems);
+    let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
+    let is_paper = root.get("preset") == Some(Preset::Paper);
+    let dimension = root.get("dimension").filter(|d| (1..=3).contains(d));
+    let root = View { is_paper, dimension, folder, ..root };
+    let mut draft = Draft::read(&root).unwrap_or_default();
+    draft.dimension = dimension;
+    draft.refine(&root);
+    draft.expand_contacts(&root);
     let mut problems = problems.take();
-    check::problems(document, &draft, &mut problems);
+    check::problems(document, &draft, &misspelt, &mut problems);
+    only_judged(&mut problems, known, &misspelt);
     if !problems.is_empty() {
         return Err(problems.into());
     }
-    let case = reader.case(document, draft).ok_or_else(|| {
+    let case = draft.case(document).ok_or_else(|| {
         let why = "all keys passed the checks, but one of them could not be read";
         vec![Problem::new(
             "",
@@ -102,68 +81,70 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
     Ok(case)
 }
 
-struct Reader<'a> {
-    root: View<'a>,
-    dimension: Option<usize>,
+/// Reads a file with the keys of a table, and adds everything wrong with it to `problems`; relative
+/// paths of files start at `folder`.
+pub fn read_table<T: Keys + Default>(document: &Document, folder: &Path, problems: &mut Vec<Problem>) -> T {
+    let Conformity { problems: found, misspelt } = conform::file(document, &T::TABLE);
+    let known = found.len();
+    let reported = RefCell::new(found);
+    let view = View { folder, ..View::of_keys(document.root(), T::TABLE.keys, &reported) };
+    let read = T::read(&view);
+    let mut found = reported.take();
+    only_judged(&mut found, known, &misspelt);
+    problems.extend(found);
+    read.unwrap_or_default()
 }
 
-impl<'a> Reader<'a> {
-    fn of(document: &'a Document, problems: &'a RefCell<Vec<Problem>>) -> Self {
-        let root = View::of_keys(document.root(), keys::CASE.keys, problems);
-        let preset = root.choice("preset").unwrap_or(Preset::Default);
-        let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
-        let root = View { preset, folder, ..root };
-        Self { dimension: root.count("dimension").filter(|d| (1..=3).contains(d)), root }
+/// Drops problems, beyond those that are `known`, of tables that have a misspelt key: what depends on
+/// it is not judged.
+fn only_judged(problems: &mut Vec<Problem>, known: usize, misspelt: &[String]) {
+    let tables = || misspelt.iter().filter(|table| !table.is_empty());
+    let judged = problems.split_off(known);
+    problems
+        .extend(judged.into_iter().filter(|problem| !tables().any(|table| is_within(&problem.path, table))));
+}
+
+impl Draft {
+    /// Refines all meshes.
+    fn refine(&mut self, root: &View) {
+        let factor = self.refine.filter(|factor| *factor >= 1.0).unwrap_or(1.0);
+        let counts = |v: &View| Counts::of(v.table.get("mesh")?.table()?, format!("{}.mesh", v.path));
+        let counts: Vec<_> = root.each("body", counts).into_iter().flatten().flatten().collect();
+        root.problems.borrow_mut().extend(refine::problem(factor, &counts));
+        for body in self.body.iter_mut().flatten() {
+            body.mesh = body.mesh.clone().refined(factor);
+        }
     }
 
-    fn each<T>(&self, name: &str, read: impl FnMut(&View<'a>) -> Option<T>) -> Vec<Option<T>> {
-        self.root.each(name, read).unwrap_or_default()
+    /// Replaces the contacts `between` bodies by those that they stand for.
+    fn expand_contacts(&mut self, root: &View) {
+        let given = std::mem::take(&mut self.contact);
+        let declared: Vec<ContactSpec> =
+            given.iter().flatten().filter(|contact| !contact.between).cloned().collect();
+        let bodies = Bodies { bodies: &self.body, materials: &self.material };
+        let mut given = given.into_iter();
+        let expanded = root.each("contact", |v| {
+            let contact = given.next().flatten();
+            let Some(one) = contact.as_ref().filter(|contact| contact.between) else {
+                return Some(vec![contact]);
+            };
+            bodies.contacts(v, one, &declared).map(|several| several.into_iter().map(Some).collect())
+        });
+        let or_unread = |contacts: Option<Vec<_>>| contacts.unwrap_or_else(|| vec![None]);
+        self.contact = expanded.into_iter().flatten().flat_map(or_unread).collect();
     }
 
-    /// The contacts of all tables; those of `between` need the bodies.
-    fn contacts(&self, bodies: &Bodies) -> Vec<Option<ContactSpec>> {
-        let mut entry = 0..;
-        let tables = self.each("contact", |v| Some((v.clone(), contact(v, entry.next()?, self.dimension))));
-        let specs = tables.iter().flatten().filter_map(|(_, contact)| contact.clone());
-        let declared: Vec<ContactSpec> = specs.filter(|contact| !contact.between).collect();
-        let mut contacts = Vec::new();
-        for table in tables {
-            match table {
-                Some((v, Some(one))) if one.between => match bodies.contacts(&v, &one, &declared) {
-                    Some(several) => contacts.extend(several.into_iter().map(Some)),
-                    None => contacts.push(None),
-                },
-                Some((_, contact)) => contacts.push(contact),
-                None => contacts.push(None),
+    fn case(self, document: &Document) -> Option<Case> {
+        let dimension = self.dimension?;
+        let stem = Path::new(document.name()).file_stem().map(|s| s.to_string_lossy().into_owned());
+        let mut bodies: Vec<BodySpec> = all(self.body)?;
+        for body in &mut bodies {
+            for values in [&mut body.gravity, &mut body.velocity] {
+                values.resize(dimension, FormulaSpec::Number(0.0));
             }
         }
-        contacts
-    }
-
-    /// Formulas by column, as written.
-    fn exact(&self) -> BTreeMap<String, String> {
-        let table = self.root.table.get("exact").and_then(Node::table);
-        let formula = |entry: &Entry| {
-            let node = &entry.node;
-            Some((
-                entry.key.clone(),
-                node.text().map(str::to_owned).or_else(|| Some(node.number()?.to_string()))?,
-            ))
-        };
-        table.into_iter().flat_map(|t| &t.0).filter_map(formula).collect()
-    }
-
-    fn case(&self, document: &Document, draft: Draft) -> Option<Case> {
-        let dimension = draft.dimension?;
-        let stem =
-            std::path::Path::new(document.name()).file_stem().map(|s| s.to_string_lossy().into_owned());
-        let units = self.root.at("units")?;
-        let mut bodies: Vec<BodySpec> = all(draft.bodies)?;
-        for body in &mut bodies {
-            body.gravity.resize(dimension, FormulaSpec::Number(0.0));
-        }
-        let mut contacts: Vec<ContactSpec> = all(draft.contacts)?;
-        let time = draft.time?;
+        let mut contacts: Vec<ContactSpec> = all(self.contact)?;
+        let time = self.time?;
         for contact in &mut contacts {
             contact.law.get_or_insert(time.scheme.contact_law());
             if time.scheme.nonsmooth().is_some() {
@@ -172,36 +153,27 @@ impl<'a> Reader<'a> {
             }
         }
         Some(Case {
-            title: self.root.text("title").or(stem).unwrap_or_default(),
+            title: self.title.or(stem).unwrap_or_default(),
             dimension,
-            plane: self.root.choice("plane")?,
-            thickness: self.root.number("thickness")?,
-            refine: self.root.number("refine")?,
-            units: Units {
-                length: units.text("length")?,
-                time: units.text("time")?,
-                mass: units.text("mass")?,
-                declared: self.root.has("units"),
-            },
-            preset: self.root.preset,
-            materials: all(draft.materials)?,
+            plane: self.plane?,
+            thickness: self.thickness?,
+            refine: self.refine?,
+            units: self.units?,
+            preset: self.preset?,
+            materials: all(self.material)?,
             bodies,
-            supports: all(draft.supports)?,
-            loads: all(draft.loads)?,
-            initial: self.root.has("initial").then(|| initial(&self.root.at("initial")?)).flatten(),
-            manufactured: self
-                .root
-                .has("manufactured")
-                .then(|| self.root.at("manufactured")?.formulas("y"))
-                .flatten(),
+            supports: all(self.support)?,
+            loads: all(self.load)?,
+            initial: self.initial,
+            manufactured: self.manufactured.map(|solution| solution.y),
             contacts,
             time,
-            newton: newton(&self.root.at("newton")?)?,
-            probes: all(draft.probes)?,
-            overlays: all(draft.overlays)?,
-            output: output(&self.root.at("output")?)?,
-            exact: draft.exact,
-            expects: all(draft.expects)?,
+            newton: self.newton,
+            probes: all(self.probe)?,
+            overlays: all(self.overlay)?,
+            output: self.output,
+            exact: self.exact,
+            expects: all(self.expect)?,
             functions: carom_formula::Functions::default(),
         })
     }

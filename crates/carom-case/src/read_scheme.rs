@@ -2,44 +2,12 @@
 
 use std::cell::RefCell;
 
-use carom_time::SchemeError;
-
 use super::SchemeSpec;
 use super::conform;
 use super::document::Document;
-use super::keys::{self, Kind};
+use super::keys::{self, View};
 use super::problem::{CaseError, Diagnostic};
-use super::suggest;
-use super::view::View;
-
-/// The scheme of a table with `kind` and parameters.
-pub(super) fn scheme(v: &View) -> Option<SchemeSpec> {
-    let kind = v.table.get("kind")?.text()?;
-    let v = &View { keys: keys::schemes().table(kind)?.keys, ..v.clone() };
-    let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
-    let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
-    let forces = if v.keys.iter().any(|k| k.name == "forces") {
-        v.choice("forces")?
-    } else {
-        carom_time::ForceRule::default()
-    };
-    let spec = SchemeSpec { kind: kind.to_owned(), parameters, forces };
-    if let Err(error) = spec.integrator()
-        && !v.has_problem(|problem| problem.path.starts_with(&v.path))
-    {
-        let help = match &error {
-            SchemeError::OutOfRange { hint, .. } => hint.clone(),
-            SchemeError::Missing { examples, .. } | SchemeError::Superfluous { examples, .. } => {
-                let written: Vec<_> = examples.iter().map(|example| format!("`{example}`")).collect();
-                format!("write for example {}", written.join(" or "))
-            }
-            SchemeError::UnknownKind { .. } => suggest::help(kind, error.known().iter().copied()),
-        };
-        let why = keys::schemes().table(kind).map_or(keys::schemes().doc, |t| t.doc);
-        v.wrong::<()>(error.key(), error.to_string(), why, help);
-    }
-    Some(spec)
-}
+use super::spec::scheme;
 
 /// A scheme by its kind and parameters `key=value`, as `carom explain` takes them.
 pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, CaseError> {
@@ -60,7 +28,8 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
     let read = || {
         let document = Document::parse("arguments", &text, &[])?;
         let problems = RefCell::new(conform::variant(document.root(), keys::schemes()));
-        let spec = scheme(&View::of_keys(document.root(), &[], &problems));
+        let view = View::of_keys(document.root(), &[], &problems).one_of(document.root(), keys::schemes());
+        let spec = view.and_then(|view| scheme(&view));
         let problems = problems.take();
         spec.filter(|_| problems.is_empty()).ok_or_else(|| document.diagnose_all(&problems))
     };

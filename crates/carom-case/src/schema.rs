@@ -2,21 +2,32 @@
 
 use serde_json::{Map, Value, json};
 
-use super::keys::{CASE, Default, EXPECT, Key, Kind, OVERLAY, Range, Table, Variants};
+use super::draft::Draft;
+use super::keys::{Default, Key, Keys, Kind, Range, Table, Variants};
 
 /// The schema of a case file.
 pub fn schema() -> Value {
-    let mut schema = table(&CASE, None);
+    schema_of(&Draft::TABLE, "Carom case")
+}
+
+/// The schema of a file with the keys of a table.
+pub fn schema_of(file: &Table, title: &str) -> Value {
+    let mut schema = table(file, None);
     schema.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
-    schema.insert("title".into(), json!("Carom case"));
+    schema.insert("title".into(), json!(title));
     Value::Object(schema)
+}
+
+/// A table of values of the case.
+fn overrides(values: &Map<String, Value>) -> Value {
+    json!({ "type": "object", "patternProperties": values, "additionalProperties": false })
 }
 
 /// Schemas of the values that an override may set, by a pattern for the key: `time.step`,
 /// `body.NAME.element`.
-pub fn changes() -> Map<String, Value> {
+fn changes() -> Map<String, Value> {
     let mut found = Vec::new();
-    paths(&CASE, "^", &mut found);
+    paths(&Draft::TABLE, "^", &mut found);
     let mut schemas = Map::new();
     for (pattern, schema) in found {
         // A key with different meanings in different variants takes the values of all of them.
@@ -51,16 +62,6 @@ fn paths(spec: &Table, before: &str, found: &mut Vec<(String, Value)>) {
     }
 }
 
-/// The schema of one expectation, of a case, an arm or a study.
-pub fn expectation() -> Value {
-    Value::Object(table(&EXPECT, None))
-}
-
-/// The schema of measured data of a column, of a case or a study.
-pub fn measured() -> Value {
-    Value::Object(table(&OVERLAY, None))
-}
-
 fn table(spec: &Table, tag: Option<(&str, &str, &str)>) -> Map<String, Value> {
     let mut properties = Map::new();
     let mut required = Vec::new();
@@ -90,10 +91,12 @@ fn table(spec: &Table, tag: Option<(&str, &str, &str)>) -> Map<String, Value> {
 
 fn property(key: &Key) -> Value {
     let mut schema = values(&key.kind);
-    let unit = if key.unit.is_empty() { String::new() } else { format!(" Unit: {}.", key.unit) };
     let paper = key.paper.map_or_else(String::new, |toml| format!(" With preset = \"paper\": {toml}."));
-    schema.insert("description".into(), json!(format!("{}{unit}{paper}", key.doc)));
+    schema.insert("description".into(), json!(format!("{}{paper}", key.meaning())));
     if matches!(key.kind, Kind::Tables(_)) && !matches!(key.default, Default::Absent) {
+        schema.insert("minItems".into(), json!(1));
+    }
+    if matches!(key.kind, Kind::Numbers(_)) && !matches!(key.default, Default::Is("[]")) {
         schema.insert("minItems".into(), json!(1));
     }
     if let Default::Is(toml) = key.default
@@ -111,7 +114,7 @@ fn values(kind: &Kind) -> Map<String, Value> {
     let schema = match kind {
         Kind::Text => json!({ "type": "string" }),
         Kind::Name => json!({ "type": "string", "pattern": "^[^\\s./\\\\,\"'\\[\\]]+$" }),
-        Kind::Choice(words, _) => json!({ "type": "string", "enum": words }),
+        Kind::Choice(words) => json!({ "type": "string", "enum": words.now }),
         Kind::Choices(words) => json!({ "type": "array", "minItems": 1, "items": { "enum": words } }),
         Kind::Number(range) => Value::Object(number(range)),
         Kind::NumberOrFalse(range) => json!({ "oneOf": [number(range), { "const": false }] }),
@@ -135,7 +138,7 @@ fn values(kind: &Kind) -> Map<String, Value> {
             { "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 }
         ] }),
         Kind::Rotation(spec) => json!({ "oneOf": [{ "type": "number" }, table(spec, None)] }),
-        Kind::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
+        Kind::Numbers(range) => json!({ "type": "array", "items": number(range) }),
         Kind::Points(least) => {
             let point =
                 json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number" } });
@@ -151,6 +154,13 @@ fn values(kind: &Kind) -> Map<String, Value> {
             { "type": "array", "minItems": 1, "items": { "type": "string" } },
         ] }),
         Kind::SideOr(spec) => json!({ "oneOf": [side, table(spec, None)] }),
+        Kind::Changes => overrides(&changes()),
+        Kind::ChangeLists => json!({ "type": "array", "items": overrides(&changes()) }),
+        Kind::Grid => {
+            let list =
+                |(pattern, schema)| (pattern, json!({ "type": "array", "minItems": 1, "items": schema }));
+            overrides(&changes().into_iter().map(list).collect())
+        }
         Kind::Table(spec) => Value::Object(table(spec, None)),
         Kind::Tables(spec) => json!({ "type": "array", "items": table(spec, None) }),
         Kind::Variant(variants) => one_of(variants()),
@@ -214,7 +224,7 @@ mod tests {
 
     #[test]
     fn defaults_and_examples_are_toml() {
-        visit(&CASE, &mut |spec, key| {
+        visit(&Draft::TABLE, &mut |spec, key| {
             let nested = matches!(key.kind, Kind::Table(_) | Kind::Tables(_));
             assert!(
                 nested || json_of(key.example).is_some(),
@@ -232,7 +242,9 @@ mod tests {
     fn schema_has_every_key_and_forbids_others() {
         let schema = schema();
         let text = schema.to_string();
-        visit(&CASE, &mut |_, key| assert!(text.contains(&format!("\"{}\":", key.name)), "{}", key.name));
+        visit(&Draft::TABLE, &mut |_, key| {
+            assert!(text.contains(&format!("\"{}\":", key.name)), "{}", key.name);
+        });
         assert_eq!(schema["additionalProperties"], json!(false));
         assert_eq!(schema["required"], json!(["dimension", "material", "body", "time"]));
         let scheme = &schema["properties"]["time"]["properties"]["scheme"];

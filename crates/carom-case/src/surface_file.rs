@@ -1,12 +1,52 @@
 //! A rigid triangulated surface from a file in STL or from Gmsh. It is read together with the case,
 //! so that its errors are reported at the key that names it; the resolved case stores its hash.
 
-use carom_solid::{Triangles, gmsh, stl};
+use std::path::PathBuf;
 
+use carom_solid::{Triangles, gmsh, stl};
+use serde::{Deserialize, Serialize};
+
+use super::keys::Kind::Number;
+use super::keys::{Keys, POSITIVE, View};
 use super::mesh_file::{bytes, unchanged};
 use super::no_mesh::NoMesh;
-use super::view::View;
-use super::{PrimarySpec, SurfaceSpec};
+
+/// A rigid triangulated surface, with the vertices of its triangles counter-clockwise as seen from
+/// outside. It may be closed, or open: past its rim there is no contact, and behind it a body is
+/// inside. Nodes of bodies must not penetrate it; its own edges and vertices do not meet facets of
+/// bodies between their nodes. A node that slides across a convex edge of more than 30° leaves the
+/// surface; in a groove it is constrained by one of the faces only.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Keys)]
+#[keys(name = "surface")]
+pub struct SurfaceSpec {
+    /// A file in STL, text or binary, or a .msh of Gmsh with triangles of order 1; relative to the
+    /// folder of the case.
+    #[key(example = "\"part.stl\"")]
+    pub file: PathBuf,
+    /// Physical surface of a .msh. Default: all triangles of the file.
+    #[key(example = "\"tool\"")]
+    pub group: Option<String>,
+    /// Factor of the coordinates of the file.
+    #[key(Number(POSITIVE), default = "1.0")]
+    pub scale: f64,
+    /// Whether inside and outside are exchanged.
+    #[key(default = "false")]
+    pub reverse: bool,
+    /// BLAKE3 of the file.
+    pub hash: String,
+    /// Number of its triangles.
+    pub triangles: usize,
+    /// Number of its edges with a triangle on one side only.
+    pub rim: usize,
+    /// Number of triangles between touching solids, which are no part of it.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub inner: usize,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
 
 /// Why a file gives no surface: the key at fault, what, why, and what to try.
 struct Fault {
@@ -14,37 +54,6 @@ struct Fault {
     what: String,
     why: String,
     help: String,
-}
-
-/// Reads the table of a surface; its path is relative to the folder of the case.
-pub(super) fn read(v: &View) -> Option<PrimarySpec> {
-    let (name, file) = (v.text("file")?, v.file("file")?);
-    let group = if v.has("group") { Some(v.text("group")?) } else { None };
-    let scale = v.number("scale").filter(|scale| *scale > 0.0)?;
-    let reverse = v.flag("reverse")?;
-    let found = bytes(&file)
-        .map_err(|why| {
-            let what = format!("the surface \"{name}\" cannot be read");
-            let help = "check the path; it is relative to the folder of the case".to_owned();
-            Fault { key: "file", what, why, help }
-        })
-        .and_then(|bytes| triangles(&bytes, group.as_deref()).map(|triangles| (bytes, triangles)));
-    match found {
-        Ok((bytes, triangles)) => Some(PrimarySpec::Surface(SurfaceSpec {
-            file,
-            group,
-            scale,
-            reverse,
-            hash: blake3::hash(&bytes).to_hex().to_string(),
-            triangles: triangles.corners().len(),
-            rim: triangles.rim(),
-            inner: triangles.inner(),
-        })),
-        Err(Fault { key, what, why, help }) => {
-            let what = if what.contains(&name) { what } else { format!("{name}: {what}") };
-            v.wrong(key, what, why, help)
-        }
-    }
 }
 
 /// The triangles of a file, or of a physical group in it.
@@ -87,6 +96,34 @@ fn triangles(bytes: &[u8], group: Option<&str>) -> Result<Triangles, Fault> {
 }
 
 impl SurfaceSpec {
+    /// The surface with what its file says.
+    pub(crate) fn resolved(self, v: &View) -> Option<Self> {
+        if self.scale <= 0.0 {
+            return None;
+        }
+        let name: String = v.get("file")?;
+        let found = bytes(&self.file)
+            .map_err(|why| {
+                let what = format!("the surface \"{name}\" cannot be read");
+                let help = "check the path; it is relative to the folder of the case".to_owned();
+                Fault { key: "file", what, why, help }
+            })
+            .and_then(|bytes| triangles(&bytes, self.group.as_deref()).map(|triangles| (bytes, triangles)));
+        match found {
+            Ok((bytes, triangles)) => Some(Self {
+                hash: blake3::hash(&bytes).to_hex().to_string(),
+                triangles: triangles.corners().len(),
+                rim: triangles.rim(),
+                inner: triangles.inner(),
+                ..self
+            }),
+            Err(Fault { key, what, why, help }) => {
+                let what = if what.contains(&name) { what } else { format!("{name}: {what}") };
+                v.wrong(key, what, why, help)
+            }
+        }
+    }
+
     /// The triangles of a resolved case, if the file is still the one the case was resolved with.
     ///
     /// # Errors

@@ -6,21 +6,23 @@ use toml_edit::{Item, TableLike};
 
 /// Where a value was written: in the case file (source 0) or in the n-th override (source n).
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Origin {
-    pub(super) source: usize,
-    pub(super) span: Range<usize>,
+pub(crate) struct Origin {
+    pub(crate) source: usize,
+    pub(crate) span: Range<usize>,
 }
 
 /// A value and its place.
 #[derive(Clone, Debug)]
-pub(super) struct Node {
-    pub(super) value: Value,
-    pub(super) origin: Origin,
+pub struct Node {
+    pub(crate) value: Value,
+    /// Whether it is a table in braces.
+    pub(crate) is_inline: bool,
+    pub(crate) origin: Origin,
 }
 
 /// TOML's values.
 #[derive(Clone, Debug)]
-pub(super) enum Value {
+pub(crate) enum Value {
     Text(String),
     Integer(i64),
     Float(f64),
@@ -32,31 +34,32 @@ pub(super) enum Value {
 
 /// Keys in the order in which they were written.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Table(pub(super) Vec<Entry>);
+pub struct Table(pub(crate) Vec<Entry>);
 
 /// A key with its value.
 #[derive(Clone, Debug)]
-pub(super) struct Entry {
-    pub(super) key: String,
-    pub(super) origin: Origin,
-    pub(super) node: Node,
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) origin: Origin,
+    pub(crate) node: Node,
 }
 
 impl Table {
-    pub(super) fn entry(&self, key: &str) -> Option<&Entry> {
+    pub(crate) fn entry(&self, key: &str) -> Option<&Entry> {
         self.0.iter().find(|e| e.key == key)
     }
 
-    pub(super) fn get(&self, key: &str) -> Option<&Node> {
+    pub(crate) fn get(&self, key: &str) -> Option<&Node> {
         self.entry(key).map(|e| &e.node)
     }
 
     /// The value of a key that is given at `origin`, as a whole (`replaced`) or in part; added as
     /// an empty table if it is not there.
-    pub(super) fn given(&mut self, key: &str, origin: &Origin, replaced: bool) -> &mut Node {
+    pub(crate) fn given(&mut self, key: &str, origin: &Origin, replaced: bool) -> &mut Node {
         let found = self.0.iter().position(|e| e.key == key);
         let at = found.unwrap_or_else(|| {
-            let node = Node { value: Value::Table(Self::default()), origin: origin.clone() };
+            let node =
+                Node { value: Value::Table(Self::default()), is_inline: false, origin: origin.clone() };
             self.0.push(Entry { key: key.to_owned(), origin: origin.clone(), node });
             self.0.len() - 1
         });
@@ -67,25 +70,56 @@ impl Table {
     }
 }
 
+impl Table {
+    /// Its values with the dotted paths of their keys; a table in braces is a value.
+    pub(crate) fn flat(&self) -> Vec<(String, &Node)> {
+        let mut found = Vec::new();
+        for entry in &self.0 {
+            match &entry.node.value {
+                Value::Table(inner) if !entry.node.is_inline => {
+                    let below = inner.flat().into_iter();
+                    found.extend(below.map(|(key, node)| (format!("{}.{key}", entry.key), node)));
+                }
+                _ => found.push((entry.key.clone(), &entry.node)),
+            }
+        }
+        found
+    }
+}
+
 impl Node {
-    pub(super) fn flag(&self) -> Option<bool> {
+    /// The value as TOML on one line, tables in braces.
+    pub(crate) fn toml(&self) -> toml_edit::Value {
+        match &self.value {
+            Value::Text(text) => text.into(),
+            Value::Integer(n) => (*n).into(),
+            Value::Float(x) => (*x).into(),
+            Value::Flag(flag) => (*flag).into(),
+            Value::Date(date) => date.parse().unwrap_or_else(|_| date.into()),
+            Value::List(list) => list.iter().map(Self::toml).collect(),
+            Value::Table(table) => table.0.iter().map(|entry| (&*entry.key, entry.node.toml())).collect(),
+        }
+    }
+
+    pub(crate) fn flag(&self) -> Option<bool> {
         if let Value::Flag(flag) = self.value { Some(flag) } else { None }
     }
 
-    pub(super) fn table(&self) -> Option<&Table> {
+    pub(crate) fn table(&self) -> Option<&Table> {
         if let Value::Table(table) = &self.value { Some(table) } else { None }
     }
 
-    pub(super) fn list(&self) -> Option<&[Node]> {
+    pub(crate) fn list(&self) -> Option<&[Node]> {
         if let Value::List(list) = &self.value { Some(list) } else { None }
     }
 
-    pub(super) fn text(&self) -> Option<&str> {
+    #[doc(hidden)]
+    pub fn text(&self) -> Option<&str> {
         if let Value::Text(text) = &self.value { Some(text) } else { None }
     }
 
     /// A number, integer or not.
-    pub(super) fn number(&self) -> Option<f64> {
+    pub(crate) fn number(&self) -> Option<f64> {
         match self.value {
             Value::Float(x) => Some(x),
             Value::Integer(n) => Some(n as f64),
@@ -93,12 +127,12 @@ impl Node {
         }
     }
 
-    pub(super) fn count(&self) -> Option<usize> {
+    pub(crate) fn count(&self) -> Option<usize> {
         if let Value::Integer(n) = self.value { usize::try_from(n).ok() } else { None }
     }
 
     /// Description for messages.
-    pub(super) fn described(&self) -> String {
+    pub(crate) fn described(&self) -> String {
         match &self.value {
             Value::Text(text) if text.chars().count() <= 40 => format!("the string {text:?}"),
             Value::Text(_) => "a string".to_owned(),
@@ -114,7 +148,7 @@ impl Node {
 
 /// Converts what `toml_edit` parsed; `shift` is subtracted from its spans (the text in front of an
 /// override's value).
-pub(super) fn node(item: &Item, source: usize, shift: isize, fallback: &Range<usize>) -> Node {
+pub(crate) fn node(item: &Item, source: usize, shift: isize, fallback: &Range<usize>) -> Node {
     let span = item.span().map_or_else(|| fallback.clone(), |span| shifted(&span, shift));
     let value = match item {
         Item::Value(value) => self::value(value, source, shift, &span),
@@ -124,6 +158,7 @@ pub(super) fn node(item: &Item, source: usize, shift: isize, fallback: &Range<us
                 let span = table.span().map_or_else(|| span.clone(), |span| shifted(&span, shift));
                 Node {
                     value: Value::Table(self::table(table, source, shift, &span)),
+                    is_inline: false,
                     origin: Origin { source, span },
                 }
             };
@@ -131,7 +166,11 @@ pub(super) fn node(item: &Item, source: usize, shift: isize, fallback: &Range<us
         }
         Item::None => Value::Table(Table::default()),
     };
-    Node { value, origin: Origin { source, span } }
+    Node { value, is_inline: is_inline(item.as_value()), origin: Origin { source, span } }
+}
+
+fn is_inline(value: Option<&toml_edit::Value>) -> bool {
+    value.and_then(toml_edit::Value::as_inline_table).is_some_and(|table| !table.is_dotted())
 }
 
 fn value(value: &toml_edit::Value, source: usize, shift: isize, span: &Range<usize>) -> Value {
@@ -144,7 +183,12 @@ fn value(value: &toml_edit::Value, source: usize, shift: isize, span: &Range<usi
         toml_edit::Value::Array(list) => {
             let one = |value: &toml_edit::Value| {
                 let span = value.span().map_or_else(|| span.clone(), |span| shifted(&span, shift));
-                Node { value: self::value(value, source, shift, &span), origin: Origin { source, span } }
+                let is_inline = is_inline(Some(value));
+                Node {
+                    value: self::value(value, source, shift, &span),
+                    is_inline,
+                    origin: Origin { source, span },
+                }
             };
             Value::List(list.iter().map(one).collect())
         }

@@ -179,7 +179,7 @@ impl Simulation {
     fn contact_units(&self) -> PyResult<HashMap<&'static str, String>> {
         let inner = self.inner()?;
         let history = History::new(inner.rows.columns().to_vec(), Vec::new());
-        tables::contact_units(&history, inner.axes())
+        Ok(tables::contact_units(&history, inner.axes()))
     }
 
     /// The state as bytes, with the names of the functions and the case.

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use carom_case::{Case, ContactSpec, Excerpt, LoadKind, LoadSpec, MeshSpec, Problems};
+use carom_case::{Case, ContactSpec, Excerpt, FileMesh, LoadKind, LoadSpec, MeshSpec, Problems};
 use carom_mechanics::{GridReport, Simulation, State};
 use carom_record::{Manifest, RecordError, Stop, StopPlace, checkpoints};
 
@@ -286,7 +286,7 @@ fn write(
     put(STATE, &encoded)?;
     let mut meshes = BTreeMap::new();
     for body in &best.case.bodies {
-        if let MeshSpec::File { file, .. } = body.mesh.source() {
+        if let MeshSpec::File(FileMesh { file, .. }) = body.mesh.source() {
             let name = format!("{}.msh", body.name);
             let to = out.join(&name);
             fs::copy(file, &to).map_err(failed("copy", file))?;

@@ -8,11 +8,7 @@ use carom_record::study::sets_step;
 use carom_run::case::{Case, Diagnostic, Document, Problem, gibibytes};
 use toml_edit::Value;
 
-use crate::file::{FINE_NAME, StudyFile};
-use crate::typed::{assignment, one_line};
-
-/// Default factor by which the step of the computed reference is smaller than the smallest one.
-const REFINE: u32 = 8;
+use crate::file::{FINE_NAME, StudyFile, assignment, one_line};
 
 /// The changes of an arm, with their places in the study file.
 #[derive(Clone)]
@@ -130,8 +126,8 @@ pub(crate) fn computes_reference(file: &StudyFile, drafts: &[Draft]) -> bool {
 /// mesh; with them, steps and cells are in the same ratios. All steps divide `end`; none if no
 /// number of steps fits the factors.
 fn levels_of_reference(file: &StudyFile, step: f64, end: f64) -> Option<Vec<(f64, f64)>> {
-    let least = (end / step * f64::from(file.refine.unwrap_or(REFINE)) * (1.0 - 1e-9)).ceil();
-    let factors = if file.fine_mesh.is_empty() { vec![1.0, 2.0, 4.0] } else { file.fine_mesh.clone() };
+    let least = (end / step * file.fine.refine as f64 * (1.0 - 1e-9)).ceil();
+    let factors = if file.fine.mesh.is_empty() { vec![1.0, 2.0, 4.0] } else { file.fine.mesh.clone() };
     let finest = factors[factors.len() - 1];
     let fits = |steps: &f64| {
         factors.iter().all(|factor| {
@@ -141,7 +137,7 @@ fn levels_of_reference(file: &StudyFile, step: f64, end: f64) -> Option<Vec<(f64
     };
     let steps = (0..10_000).map(|more| least + f64::from(more)).find(fits)?;
     let level = |factor: &f64| {
-        let mesh = if file.fine_mesh.is_empty() { 1.0 } else { *factor };
+        let mesh = if file.fine.mesh.is_empty() { 1.0 } else { *factor };
         (end / (steps * factor / finest).round(), mesh)
     };
     Some(factors.iter().map(level).collect())
@@ -155,8 +151,8 @@ pub(crate) fn fine(file: &StudyFile, step: f64, end: f64, refine: f64) -> Option
     let levels = levels_of_reference(file, step, end)?;
     let finest = levels.last()?.0;
     let run = |&(step, mesh): &(f64, f64)| {
-        let mut sets = with_common(file, file.fine.iter().map(|entry| entry_at(entry, "fine")).collect());
-        if !file.fine.iter().any(|(key, _)| key.starts_with("time.scheme")) {
+        let mut sets = with_common(file, file.fine.set.iter().map(|entry| entry_at(entry, "fine")).collect());
+        if !file.fine.set.iter().any(|(key, _)| key.starts_with("time.scheme")) {
             sets.extend(default());
         }
         sets.push((format!("time.step={step:?}"), "fine".to_owned()));
@@ -164,7 +160,7 @@ pub(crate) fn fine(file: &StudyFile, step: f64, end: f64, refine: f64) -> Option
             sets.push((format!("refine={:?}", refine * mesh), "fine.mesh".to_owned()));
         }
         let times = (step / finest * 1e4).round() / 1e4;
-        let on = if file.fine_mesh.is_empty() { String::new() } else { format!(", mesh {mesh}") };
+        let on = if file.fine.mesh.is_empty() { String::new() } else { format!(", mesh {mesh}") };
         let name = if times == 1.0 { FINE_NAME.to_owned() } else { format!("{FINE_NAME}, {times} Δt{on}") };
         let role = Role { fine: true, ..Role::default() };
         let expect = ("expect=[]".to_owned(), "fine".to_owned());

@@ -1,370 +1,301 @@
-//! The study file as written: its keys, their types, and where each of them stands. A path names a
-//! place as in [`carom_run::case::Problem`]: `arm[0].set."time.step"`.
+//! The study file: its tables with their keys, and what they say together. A path names a place as
+//! in [`carom_run::case::Problem`]: `arm[0].set."time.step"`.
 
 use std::path::Path;
 
+use carom_case::keys::Kind::{ChangeLists, Changes, Choice, Count, Grid, Number, Numbers, Table, Tables};
+use carom_case::keys::{Keys, POSITIVE, Range, View, Words};
+use carom_case::{Asked, Document, EXPECT, OVERLAY, OverlaySpec, Problem, expects, overlays, read_table};
 use carom_record::Expect;
 use carom_record::metrics::Overlay;
+use carom_record::study::Claim;
 use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ensemble::Ensemble;
-use carom_run::case::{Asked, Document, OverlaySpec, Problem, read_expects, read_overlays};
-use toml_edit::{Item, TableLike, Value};
-
-use crate::typed::{assignment, flatten, known, not, one_of, tables, text, values};
-
-pub(crate) const KEYS: [&str; 16] = [
-    "title",
-    "case",
-    "set",
-    "design",
-    "steps",
-    "cost_of",
-    "goal",
-    "accuracy",
-    "reference",
-    "fine",
-    "ensemble",
-    "arm",
-    "grid",
-    "overlay",
-    "claim",
-    "expect",
-];
-pub(crate) const FINE: [&str; 3] = ["set", "refine", "mesh"];
-pub(crate) const ENSEMBLE: [&str; 4] = ["phases", "swapped", "mesh", "sets"];
-pub(crate) const ARM: [&str; 5] = ["name", "case", "set", "expect", "match"];
-pub(crate) const CLAIM: [&str; 2] = ["text", "compare"];
+use toml_edit::Value;
 
 /// Name of the computed reference, unless an arm has this name.
 pub(crate) const FINE_NAME: &str = "fine";
 
-/// A study file that has been read; parts that could not be read are reported as problems.
-#[derive(Default)]
+/// A comparison of many runs of one case.
+#[derive(Default, Keys)]
+#[keys(name = "a study", lenient)]
 pub(crate) struct StudyFile {
+    /// Title of the page.
+    #[key(example = "\"Integrators\"")]
     pub(crate) title: Option<String>,
-    /// Case file of the arms that do not name one.
+    /// The case file, relative to the study file.
+    #[key(example = "\"impact.toml\"")]
     pub(crate) case: Option<String>,
-    /// Changes of all arms and of the computed reference to their case.
+    /// Values of the case that all arms and the computed reference replace.
+    #[key(Changes, optional = "{ \"output.fields_every\" = 0 }", with = set)]
     pub(crate) set: Vec<(String, Value)>,
-    pub(crate) reference: Option<String>,
-    /// How the arms, as methods, are made comparable.
+    /// How the arms are made comparable: as methods, each run at every one of `steps` (matched-step),
+    /// or at the steps at which its cost equals that of the method `cost_of` (matched-cost).
+    #[key(example = "\"matched-step\"")]
     pub(crate) design: Option<Kind>,
-    /// Steps of the levels.
+    /// Decreasing time steps of the levels of a design. Default: the step of the case.
+    #[key(Numbers(POSITIVE), optional = "[1e-3, 5e-4]")]
     pub(crate) steps: Vec<f64>,
-    /// The method whose cost is matched.
+    /// The method whose cost the others are matched to, with matched cost or `match = "cost"`.
+    /// Default: the first one.
+    #[key(example = "\"hht\"")]
     pub(crate) cost_of: Option<String>,
+    /// Goal by which the arms are ranked.
+    #[key(example = "\"force\"")]
     pub(crate) goal: Option<Goal>,
+    /// Required accuracy: the largest acceptable error. Default: 0.05.
+    #[key(Number(POSITIVE), example = "0.05")]
     pub(crate) accuracy: Option<f64>,
-    /// Changes of the computed reference to the case.
-    pub(crate) fine: Vec<(String, Value)>,
-    /// Factor by which its step is smaller than the smallest one.
-    pub(crate) refine: Option<u32>,
-    /// Factors by which its meshes are finer, from the coarsest to the finest; empty: the given
-    /// mesh.
-    pub(crate) fine_mesh: Vec<f64>,
-    /// What the members of every arm differ in.
+    /// The arm that the others are compared with, "exact" for the formulas of [exact], or "fine" for a
+    /// computed reference.
+    #[key(example = "\"fine\"")]
+    pub(crate) reference: Option<String>,
+    /// The computed reference.
+    #[key(optional = "{ refine = 8 }")]
+    pub(crate) fine: Fine,
+    /// Every arm is run several times, with all combinations of these changes; claims and rankings are
+    /// then medians with intervals.
+    #[key(Table(&Members::TABLE), example = "{ phases = 5 }", with = Members::ensemble)]
     pub(crate) ensemble: Option<Ensemble>,
+    /// An arm: one variant of the case that is simulated.
+    #[key(name = "arm", optional = "")]
     pub(crate) arms: Vec<ArmEntry>,
-    /// Keys with their values.
+    /// Lists of values; every combination is an arm.
+    #[key(Grid, optional = "{ \"time.step\" = [1e-3, 5e-4] }", with = grid)]
     pub(crate) grid: Vec<(String, Vec<Value>)>,
     /// Measured data.
+    #[key(Tables(&OVERLAY), name = "overlay", optional = "", with = measured)]
     pub(crate) overlays: Vec<Overlay>,
-    pub(crate) claims: Vec<carom_record::study::Claim>,
+    /// A claim about the arms, confirmed or refuted by a comparison.
+    #[key(Tables(&ClaimKeys::TABLE), name = "claim", optional = "", with = claims)]
+    pub(crate) claims: Vec<Claim>,
     /// Expectations of the study as a whole.
+    #[key(Tables(&EXPECT), name = "expect", optional = "", with = of_arms)]
     pub(crate) expects: Vec<Expect>,
 }
 
-/// An `[[arm]]`.
-pub(crate) struct ArmEntry {
-    pub(crate) name: String,
-    /// Keys with their values.
+/// The computed reference.
+#[derive(Default, Keys)]
+#[keys(name = "[fine]")]
+pub(crate) struct Fine {
+    /// Values of the case that it replaces. Default scheme: that of Chung and Hulbert with ρ∞ = 0.1.
+    #[key(Changes, optional = "{ \"time.scheme\" = { kind = \"hu\" } }", with = set)]
     pub(crate) set: Vec<(String, Value)>,
-    /// Its case file, if it is not that of the study.
+    /// Factor by which its step is smaller than the smallest one of the study.
+    #[key(Count(1), default = "8")]
+    pub(crate) refine: usize,
+    /// Factors by which its meshes are finer than that of the case, one for each run, the coarsest
+    /// first; the steps shrink by the same factors, down to the finest one. Default: three steps, each
+    /// half of the one before, on the given mesh.
+    #[key(Numbers(FACTOR), optional = "[1, 2, 4]", with = factors)]
+    pub(crate) mesh: Vec<f64>,
+}
+
+/// Every arm is run several times, with all combinations of these changes; claims and rankings are
+/// then medians with intervals.
+#[derive(Keys)]
+#[keys(name = "[ensemble]")]
+struct Members {
+    /// Number of phases: shifts of the instants of the steps by 0, 1/n, … of a step (time.phase).
+    #[key(Count(1), default = "1")]
+    phases: usize,
+    /// Whether every run is repeated with secondary and primary sides swapped.
+    #[key(default = "false")]
+    swapped: bool,
+    /// Factors by which all meshes are refined; the first one is 1.
+    #[key(Numbers(FACTOR), default = "[1]", with = factors)]
+    mesh: Vec<f64>,
+    /// Changes of the case with each of which every run is repeated; an arm that sets one of their keys
+    /// itself is not.
+    #[key(ChangeLists, optional = "[{ \"contact.NAME.persistency\" = \"none\" }]", with = sets)]
+    sets: Vec<Vec<String>>,
+}
+
+/// An arm: one variant of the case that is simulated.
+#[derive(Keys)]
+#[keys(name = "[[arm]]")]
+pub(crate) struct ArmEntry {
+    /// Name in tables, figures and claims.
+    #[key(example = "\"fine\"")]
+    pub(crate) name: String,
+    /// Case file of this arm, relative to the study file, instead of that of the study.
+    #[key(example = "\"impact.toml\"")]
     pub(crate) case: Option<String>,
-    /// Its expectations, as written.
+    /// Values of the case that this arm replaces: "time.step" = 1e-3, "body.cylinder.element" = "T6".
+    #[key(Changes, optional = "{ \"time.step\" = 1e-3 }", with = set)]
+    pub(crate) set: Vec<(String, Value)>,
+    /// Expectations of this arm, as the override that replaces those of its case.
+    #[key(Tables(&EXPECT), optional = "[{ what = \"last A.uy\", value = 1.0, tolerance = 1e-3 }]", with = of_arm)]
     pub(crate) expect: Option<String>,
-    /// Whether its cost is matched in a design of matched steps.
+    /// In a design of matched steps: at every level, this method has the step at which its cost equals
+    /// that of `cost_of`; meant for explicit schemes.
+    #[key(Choice(Words::plain(&["cost"])), name = "match", optional = "\"cost\"", given)]
     pub(crate) by_cost: bool,
 }
 
-/// Reads the keys of a study file; the paths of its measured data start at `folder`.
-pub(crate) fn read(document: &Document, folder: &Path, problems: &mut Vec<Problem>) -> StudyFile {
-    let mut file = StudyFile::default();
-    // `Document` has parsed the same text already.
-    let Ok(parsed) = toml_edit::Document::parse(document.text()) else { return file };
-    let root = parsed.as_table();
-    if !document.is_study() && root.contains_key("body") {
-        let why = "it has bodies, and neither `case`, `arm` nor `grid`";
-        let help = "run it with carom run, or name it as the `case` of a study";
-        problems.push(Problem::new("body", "this is a case, not a study", why, help).at_key());
-        return file;
-    }
-    known(root, &KEYS, "a study", "", problems);
-    file.title = text(root, "title", "", problems);
-    file.reference = text(root, "reference", "", problems);
-    file.set = values(root, "", "{ \"output.fields_every\" = 0 }", problems);
-    comparison(root, &mut file, problems);
-    file.ensemble = ensemble(root, problems);
-    let arms = tables(root, "arm", problems);
-    let named =
-        !arms.is_empty() && !root.contains_key("grid") && arms.iter().all(|arm| arm.contains_key("case"));
-    match text(root, "case", "", problems) {
-        Some(case) => file.case = Some(case),
-        None if root.contains_key("case") || named => {}
-        None => problems.push(Problem::new(
-            "",
-            "the study has no `case`",
-            "a study compares runs of one case",
-            "add `case = \"impact.toml\"`, relative to this file",
-        )),
-    }
-    for (i, table) in arms.into_iter().enumerate() {
-        let path = format!("arm[{i}]");
-        known(table, &ARM, "[[arm]]", &path, problems);
-        let set = values(table, &path, "{ \"time.step\" = 1e-3 }", problems);
-        let expect = expected(document, table, &format!("{path}.expect"), problems);
-        let case = text(table, "case", &path, problems);
-        let by_cost = matched(table, &path, file.design, problems);
-        match text(table, "name", &path, problems) {
-            Some(name) => file.arms.push(ArmEntry { name, set, case, expect, by_cost }),
-            None if table.contains_key("name") => {}
-            None => problems.push(
-                Problem::new(
-                    &path,
-                    "the arm has no `name`",
-                    "tables and figures identify arms by name",
-                    "add `name = \"fine\"`",
-                )
-                .at_key(),
-            ),
-        }
-    }
-    match root.get("grid").map(Item::as_table_like) {
-        Some(Some(table)) => {
-            let mut entries = Vec::new();
-            flatten(table, "", &mut entries);
-            for (key, value) in entries {
-                match value.as_array().filter(|list| !list.is_empty()) {
-                    Some(list) => file.grid.push((key, list.iter().cloned().collect())),
-                    None => problems.push(not(
-                        &format!("grid.\"{key}\""),
-                        "a list of values",
-                        "\"time.step\" = [1e-3, 5e-4]",
-                    )),
-                }
-            }
-        }
-        Some(None) => problems.push(not("grid", "a table", "[grid]")),
-        None => {}
-    }
-    tables(root, "overlay", problems);
-    let measured = |spec: OverlaySpec| {
+/// A claim about the arms, confirmed or refuted by a comparison.
+#[derive(Keys)]
+#[keys(name = "[[claim]]")]
+struct ClaimKeys {
+    /// The claim, in words.
+    #[key(example = "\"A is smoother than B\"")]
+    text: String,
+    /// The comparison that decides it: 'METRIC of "ARM" > METRIC of "ARM"'.
+    #[key(example = "'restitution of \"A\" > restitution of \"B\"'")]
+    compare: String,
+}
+
+fn set(v: &View) -> Option<Vec<(String, Value)>> {
+    v.changes("set")
+}
+
+/// The lists of values of the grid.
+fn grid(v: &View) -> Option<Vec<(String, Vec<Value>)>> {
+    let list = |(key, value): (String, Value)| Some((key, value.as_array()?.iter().cloned().collect()));
+    v.changes("grid")?.into_iter().map(list).collect()
+}
+
+/// The changes of an ensemble, each as `key=value`.
+fn sets(v: &View) -> Option<Vec<Vec<String>>> {
+    let of = |(key, value): &(String, Value)| assignment(key, value);
+    Some(v.lists_of_changes("sets")?.iter().map(|set| set.iter().map(of).collect()).collect())
+}
+
+fn measured(v: &View) -> Option<Vec<Overlay>> {
+    let of = |spec: OverlaySpec| {
         let OverlaySpec { name, column, times, values, source, .. } = spec;
         Overlay { name, column, times, values, source }
     };
-    file.overlays = read_overlays(document, folder, problems).into_iter().map(measured).collect();
-    tables(root, "expect", problems);
-    file.expects = read_expects(document, "expect", Asked::OfArms, problems);
-    for (i, table) in tables(root, "claim", problems).into_iter().enumerate() {
-        let path = format!("claim[{i}]");
-        known(table, &CLAIM, "[[claim]]", &path, problems);
-        let (words, compare) =
-            (text(table, "text", &path, problems), text(table, "compare", &path, problems));
-        match (words, compare) {
-            (Some(text), Some(compare)) => file.claims.push(carom_record::study::Claim { text, compare }),
-            _ if table.contains_key("text") && table.contains_key("compare") => {}
-            _ => {
-                let why = "a claim is a statement and the comparison that decides it";
-                let help = "add `text = \"…\"` and `compare = 'METRIC of \"ARM\" > METRIC of \"ARM\"'`";
-                problems.push(
-                    Problem::new(&path, "the claim needs both `text` and `compare`", why, help).at_key(),
-                );
-            }
-        }
-    }
-    file
+    Some(overlays(v)?.into_iter().flatten().map(of).collect())
 }
 
-/// The keys that make arms comparable and rank them.
-fn comparison(root: &dyn TableLike, file: &mut StudyFile, problems: &mut Vec<Problem>) {
-    let kinds = [("matched-step", Kind::MatchedStep), ("matched-cost", Kind::MatchedCost)];
-    file.design = one_of(root, "design", &kinds, problems);
-    file.goal = one_of(root, "goal", &Goal::NAMES.map(|(name, goal, _)| (name, goal)), problems);
-    file.cost_of = text(root, "cost_of", "", problems);
-    let positive =
-        |item: &Item| item.as_float().or_else(|| item.as_integer().map(|i| i as f64)).filter(|x| *x > 0.0);
-    if let Some(item) = root.get("accuracy") {
-        match positive(item) {
-            Some(value) => file.accuracy = Some(value),
-            None => problems.push(not("accuracy", "a positive number", "accuracy = 0.05")),
-        }
+fn claims(v: &View) -> Option<Vec<Claim>> {
+    let claims: Vec<ClaimKeys> = v.get("claim")?;
+    Some(claims.into_iter().map(|ClaimKeys { text, compare }| Claim { text, compare }).collect())
+}
+
+fn of_arms(v: &View) -> Option<Vec<Expect>> {
+    Some(expects(v, Asked::OfArms)?.into_iter().flatten().collect())
+}
+
+/// The expectations of an arm, checked, as TOML.
+fn of_arm(v: &View) -> Option<String> {
+    expects(v, Asked::OfARun)?;
+    v.toml("expect").map(|list| list.to_string())
+}
+
+/// Refinement of meshes.
+const FACTOR: Range = Range { low: Some((1.0, true)), high: Some((64.0, true)) };
+
+/// `mesh`, a list of increasing factors; empty if it is not given.
+fn factors(v: &View) -> Option<Vec<f64>> {
+    let list: Vec<f64> = v.get("mesh")?;
+    if list.windows(2).all(|pair| pair[0] < pair[1]) {
+        return Some(list);
     }
-    if let Some(item) = root.get("steps") {
-        let list = item
-            .as_array()
-            .map(|l| l.iter().map(|v| positive(&Item::Value(v.clone()))).collect::<Option<Vec<_>>>());
-        match list {
-            Some(Some(steps)) if !steps.is_empty() && steps.windows(2).all(|h| h[0] > h[1]) => {
-                file.steps = steps;
-            }
-            _ => problems.push(not("steps", "a list of decreasing positive numbers", "steps = [1e-3, 5e-4]")),
-        }
-    }
-    let of_designs = [("steps", !file.steps.is_empty()), ("cost_of", file.cost_of.is_some())];
-    for (key, _) in of_designs.iter().filter(|(_, given)| *given && !root.contains_key("design")) {
-        let why = "it defines the levels of a design, at which all methods are run";
-        let help = "add `design = \"matched-step\"`, or put steps into [grid]";
-        problems.push(Problem::new(*key, format!("`{key}` without a design"), why, help).at_key());
-    }
-    let Some(item) = root.get("fine") else { return };
-    let Some(table) = item.as_table_like() else {
-        problems.push(not("fine", "a table", "[fine]"));
-        return;
-    };
-    known(table, &FINE, "[fine]", "fine", problems);
-    file.fine = values(table, "fine", "{ \"time.scheme\" = { kind = \"hu\" } }", problems);
-    if let Some(item) = table.get("refine") {
-        match item.as_integer().and_then(|n| u32::try_from(n).ok()).filter(|n| *n > 0) {
-            Some(n) => file.refine = Some(n),
-            None => problems.push(not("fine.refine", "a positive integer", "refine = 8")),
-        }
-    }
-    file.fine_mesh = factors(table, "fine", problems);
-    if file.reference.as_deref() != Some(FINE_NAME) {
-        let help = format!("add `reference = \"{FINE_NAME}\"`");
-        problems.push(
-            Problem::new("fine", "[fine] is not used", "it defines the computed reference", help).at_key(),
-        );
-    }
+    let why = "its numbers are factors by which meshes are finer, the coarsest first";
+    v.wrong("mesh", "the numbers of `mesh` do not increase", why, "write for example `mesh = [1, 2, 4]`")
 }
 
 /// Most phases of an ensemble: beyond it, intervals no longer change.
-const MOST_PHASES: u32 = 100;
+const MOST_PHASES: usize = 100;
 
-/// The table [ensemble].
-fn ensemble(root: &dyn TableLike, problems: &mut Vec<Problem>) -> Option<Ensemble> {
-    let item = root.get("ensemble")?;
-    let Some(table) = item.as_table_like() else {
-        problems.push(not("ensemble", "a table", "[ensemble]"));
-        return None;
-    };
-    known(table, &ENSEMBLE, "[ensemble]", "ensemble", problems);
-    let phases = table.get("phases").map_or(Some(1), |item| {
-        item.as_integer().and_then(|n| u32::try_from(n).ok()).filter(|n| (1..=MOST_PHASES).contains(n))
-    });
-    if phases.is_none() {
-        problems.push(not("ensemble.phases", &format!("an integer from 1 to {MOST_PHASES}"), "phases = 5"));
+impl Members {
+    /// The ensemble of a study, if it has one.
+    fn ensemble(study: &View) -> Option<Ensemble> {
+        let v = study.at("ensemble").filter(|_| study.has("ensemble"))?;
+        let Self { phases, swapped, mesh, sets } = Self::read(&v)?;
+        if phases > MOST_PHASES {
+            let what = format!("`phases` must be an integer from 1 to {MOST_PHASES}, not {phases}");
+            return v.wrong(
+                "phases",
+                what,
+                "with more of them, intervals no longer change",
+                "write for example `phases = 5`",
+            );
+        }
+        if sets.iter().any(Vec::is_empty) {
+            let example = "write for example `sets = [{ \"contact.NAME.persistency\" = \"none\" }]`";
+            return v.wrong(
+                "sets",
+                "one of the changes is empty",
+                "the arms themselves are without a change",
+                example,
+            );
+        }
+        if mesh.first().is_some_and(|first| *first != 1.0) {
+            let what = format!("the first factor is {}, not 1", mesh[0]);
+            let why = "the arms themselves are members, on the given mesh";
+            return v.wrong("mesh", what, why, "write for example `mesh = [1, 1.5, 2]`");
+        }
+        let ensemble = Ensemble { phases: phases as u32, swapped, mesh, sets };
+        if ensemble.members().len() < 2 && !v.has_unknown_key() {
+            let why = "its members are all combinations of phases, roles and meshes";
+            return study.wrong_key("ensemble", "the ensemble has one member", why, "add `phases = 5`");
+        }
+        Some(ensemble)
     }
-    let swapped = table.get("swapped").map_or(Some(false), Item::as_bool);
-    if swapped.is_none() {
-        problems.push(not("ensemble.swapped", "true or false", "swapped = true"));
+}
+
+/// Reads a study file; the paths of its measured data start at `folder`.
+pub(crate) fn read(document: &Document, folder: &Path, problems: &mut Vec<Problem>) -> StudyFile {
+    if !document.is_study() && document.has("body") {
+        let why = "it has bodies, and neither `case`, `arm` nor `grid`";
+        let help = "run it with carom run, or name it as the `case` of a study";
+        problems.push(Problem::new("body", "this is a case, not a study", why, help).at_key());
+        return StudyFile::default();
     }
-    let mut mesh = factors(table, "ensemble", problems);
-    if mesh.is_empty() {
-        mesh.push(1.0);
+    let file: StudyFile = read_table(document, folder, problems);
+    let named =
+        file.grid.is_empty() && !file.arms.is_empty() && file.arms.iter().all(|arm| arm.case.is_some());
+    let is_unread = document.has("arm") && file.arms.is_empty();
+    if !document.has("case") && !named && !is_unread {
+        let help = "add `case = \"impact.toml\"`, relative to this file";
+        problems.push(Problem::new("", "the study has no `case`", "a study compares runs of one case", help));
     }
-    if mesh[0] != 1.0 {
+    design(document, &file, problems);
+    file
+}
+
+/// Checks the keys that make arms comparable.
+fn design(document: &Document, file: &StudyFile, problems: &mut Vec<Problem>) {
+    if file.steps.windows(2).any(|pair| pair[0] <= pair[1]) {
+        let what = "the numbers of `steps` do not decrease";
+        let help = "write for example `steps = [1e-3, 5e-4]`";
         problems.push(Problem::new(
-            "ensemble.mesh",
-            format!("the first factor is {}, not 1", mesh[0]),
-            "the arms themselves are members, on the given mesh",
-            "write for example `mesh = [1, 1.5, 2]`",
+            "steps",
+            what,
+            "they are the levels of a design, the coarsest first",
+            help,
         ));
     }
-    let sets = changes(table, problems);
-    let ensemble = Ensemble { phases: phases?, swapped: swapped?, mesh, sets };
-    if ensemble.members().len() < 2 && problems.is_empty() {
-        problems.push(
-            Problem::new(
-                "ensemble",
-                "the ensemble has one member",
-                "its members are all combinations of phases, roles and meshes",
-                "add `phases = 5`",
-            )
-            .at_key(),
-        );
+    for key in ["steps", "cost_of"].into_iter().filter(|key| document.has(key) && !document.has("design")) {
+        let why = "it defines the levels of a design, at which all methods are run";
+        let help = "add `design = \"matched-step\"`, or put steps into [grid]";
+        problems.push(Problem::new(key, format!("`{key}` without a design"), why, help).at_key());
     }
-    Some(ensemble)
-}
-
-/// `sets` of an ensemble: each a table of values, as `key=value`.
-fn changes(table: &dyn TableLike, problems: &mut Vec<Problem>) -> Vec<Vec<String>> {
-    let Some(item) = table.get("sets") else { return Vec::new() };
-    let of = |value: &Value| {
-        let mut entries = Vec::new();
-        flatten(value.as_inline_table()?, "", &mut entries);
-        let set: Vec<String> = entries.iter().map(|(key, value)| assignment(key, value)).collect();
-        (!set.is_empty()).then_some(set)
-    };
-    let list = item.as_array().and_then(|list| list.iter().map(of).collect::<Option<Vec<_>>>());
-    list.unwrap_or_else(|| {
-        let example = "sets = [{ \"contact.NAME.persistency\" = \"none\" }]";
-        problems.push(not("ensemble.sets", "a list of tables of values", example));
-        Vec::new()
-    })
-}
-
-/// `mesh`, a list of increasing factors of at least 1; empty if it is not given.
-fn factors(table: &dyn TableLike, path: &str, problems: &mut Vec<Problem>) -> Vec<f64> {
-    let Some(item) = table.get("mesh") else { return Vec::new() };
-    let number = |v: &Value| v.as_float().or_else(|| v.as_integer().map(|i| i as f64));
-    let list = item.as_array().and_then(|list| list.iter().map(number).collect::<Option<Vec<f64>>>());
-    let valid = |list: &Vec<f64>| {
-        !list.is_empty()
-            && list[0] >= 1.0
-            && list.windows(2).all(|f| f[0] < f[1])
-            && list[list.len() - 1] <= 64.0
-    };
-    list.filter(valid).unwrap_or_else(|| {
-        let what = "a list of increasing numbers from 1 to 64";
-        problems.push(not(&format!("{path}.mesh"), what, "mesh = [1, 2, 4]"));
-        Vec::new()
-    })
-}
-
-/// Checks the expectations of an arm, and returns them as the text that replaces those of its case.
-fn expected(
-    document: &Document,
-    table: &dyn TableLike,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<String> {
-    let item = table.get("expect")?;
-    read_expects(document, path, Asked::OfARun, problems);
-    let text = match item {
-        Item::Value(Value::Array(list)) => list.to_string(),
-        Item::ArrayOfTables(list) => Value::Array(list.clone().into_array()).to_string(),
-        _ => {
-            problems.push(not(
-                path,
-                "a list of tables",
-                "expect = [{ what = \"last A.uy\", value = 1.0, tolerance = 1e-3 }]",
-            ));
-            return None;
-        }
-    };
-    Some(text.lines().map(str::trim).collect::<Vec<_>>().join(" "))
-}
-
-/// Whether the cost of an arm is matched to that of another, in a design of matched steps.
-fn matched(table: &dyn TableLike, path: &str, design: Option<Kind>, problems: &mut Vec<Problem>) -> bool {
-    let word = text(table, "match", path, problems);
-    let place = format!("{path}.match");
-    match (word.as_deref(), design) {
-        (None, _) => return false,
-        (Some("cost"), Some(Kind::MatchedStep)) => return true,
-        (Some("cost"), _) => problems.push(Problem::new(
-            place,
-            "`match` without a design of matched steps",
-            "it matches an arm by cost where the other arms have the steps of the design",
-            "add `design = \"matched-step\"`; with \"matched-cost\" every arm is matched by cost already",
-        )),
-        (Some(word), _) => problems.push(Problem::new(
-            place,
-            format!("an arm cannot match \"{word}\""),
-            "the only allowed value is \"cost\"",
-            "write `match = \"cost\"`",
-        )),
+    for (i, _) in
+        file.arms.iter().enumerate().filter(|(_, arm)| arm.by_cost && file.design != Some(Kind::MatchedStep))
+    {
+        let why = "it matches an arm by cost where the other arms have the steps of the design";
+        let help =
+            "add `design = \"matched-step\"`; with \"matched-cost\" every arm is matched by cost already";
+        let what = "`match` without a design of matched steps";
+        problems.push(Problem::new(format!("arm[{i}].match"), what, why, help));
     }
-    false
+    if document.has("fine") && file.reference.as_deref() != Some(FINE_NAME) {
+        let help = format!("add `reference = \"{FINE_NAME}\"`");
+        let why = "it defines the computed reference";
+        problems.push(Problem::new("fine", "[fine] is not used", why, help).at_key());
+    }
+}
+
+/// `key=value`.
+pub(crate) fn assignment(key: &str, value: &Value) -> String {
+    format!("{key}={}", one_line(value))
+}
+
+/// A value as it is written, on one line.
+pub(crate) fn one_line(value: &Value) -> String {
+    value.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
 }

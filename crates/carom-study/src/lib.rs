@@ -23,7 +23,6 @@ mod run;
 mod schema;
 mod suite;
 mod theory;
-mod typed;
 mod verify;
 
 pub use distributed::{arm, collect, plan, plan_timed};

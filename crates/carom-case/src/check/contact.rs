@@ -22,7 +22,7 @@ impl Check<'_> {
             let what = "persistency = \"project\" cannot be used here";
             self.add(path("persistency"), what, why, "leave persistency out");
         }
-        if multiplier && given_stiffness && !self.is_misspelt("contact", contact.entry, "enforcement") {
+        if multiplier && given_stiffness {
             let why = "a multiplier enforces the constraint exactly; only \"penalty\" and \"augmented\" have a stiffness";
             self.add(
                 path("stiffness"),
@@ -51,7 +51,7 @@ impl Check<'_> {
             let help = "use law = \"position\", or enforcement = \"multiplier\"";
             self.add(path("law"), what, why, help);
         }
-        if self.draft.contacts.iter().flatten().any(|other| other.law != contact.law) {
+        if self.draft.contact.iter().flatten().any(|other| other.law != contact.law) {
             let why =
                 "the predictor belongs to the whole system, so it is projected for all contacts or for none";
             self.add(path("law"), "the contacts have different laws", why, "give all contacts the same law");
@@ -152,8 +152,8 @@ impl Check<'_> {
             self.add(contact.path("primary.mass"), "the obstacle has no equilibrium", why, help);
         }
         let draft = self.draft;
-        let bodies = draft.bodies.iter().flatten().map(|body| ("body", &body.name));
-        let supports = draft.supports.iter().flatten();
+        let bodies = draft.body.iter().flatten().map(|body| ("body", &body.name));
+        let supports = draft.support.iter().flatten();
         let supports = supports.filter_map(|support| Some(("support", support.name.as_ref()?)));
         let mut taken = bodies.chain(supports).filter(|_| !contact.motion.is_fixed());
         if let Some((kind, _)) = taken.find(|(_, name)| **name == contact.name) {
@@ -175,7 +175,7 @@ impl Check<'_> {
     }
 
     pub(super) fn contacts(&mut self) {
-        let contacts = &self.draft.contacts;
+        let contacts = &self.draft.contact;
         for (i, contact) in contacts.iter().enumerate() {
             let Some(contact) = contact else { continue };
             let entry = |side: &str| self.entry_of_between(contact, side);

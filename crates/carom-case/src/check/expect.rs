@@ -19,17 +19,17 @@ impl Check<'_> {
         // not exist were meant to give it.
         let between = |path: &str| path.starts_with("contact[") && path.contains("].between");
         let complete = !self.problems.iter().any(|p| p.at_key || between(&p.path))
-            && draft.probes.iter().all(Option::is_some)
-            && draft.bodies.iter().all(Option::is_some)
-            && draft.contacts.iter().all(Option::is_some)
-            && draft.supports.iter().all(Option::is_some);
+            && draft.probe.iter().all(Option::is_some)
+            && draft.body.iter().all(Option::is_some)
+            && draft.contact.iter().all(Option::is_some)
+            && draft.support.iter().all(Option::is_some);
         let recorded = Recorded {
             dimension: draft.dimension.unwrap_or(2),
-            bodies: draft.bodies.iter().flatten().collect(),
-            contacts: draft.contacts.iter().flatten().collect(),
-            by_contact: draft.contacts.len() > 1,
-            supports: draft.supports.iter().flatten().collect(),
-            probes: draft.probes.iter().flatten().collect(),
+            bodies: draft.body.iter().flatten().collect(),
+            contacts: draft.contact.iter().flatten().collect(),
+            by_contact: draft.contact.len() > 1,
+            supports: draft.support.iter().flatten().collect(),
+            probes: draft.probe.iter().flatten().collect(),
             manufactured: self.document.root().get("manufactured").is_some(),
             fallback: draft.time.as_ref().map_or_else(Fallback::default, |time| time.fallback),
         };
@@ -39,12 +39,12 @@ impl Check<'_> {
         for column in draft.exact.keys().filter(|column| complete && !known.contains(column)) {
             self.no_column(joined("exact", column), column, &known);
         }
-        for (i, overlay) in draft.overlays.iter().enumerate().filter(|_| complete) {
+        for (i, overlay) in draft.overlay.iter().enumerate().filter(|_| complete) {
             if let Some(overlay) = overlay.as_ref().filter(|o| !known.contains(&o.column)) {
                 self.no_column(format!("overlay[{i}].column"), &overlay.column, &known);
             }
         }
-        for (i, expect) in draft.expects.iter().enumerate() {
+        for (i, expect) in draft.expect.iter().enumerate() {
             let Some(expect) = expect else { continue };
             let path = format!("expect[{i}].what");
             let quantities = if expect.deviation.is_some() {
@@ -107,8 +107,8 @@ impl Check<'_> {
     }
 
     fn measured(&mut self, name: &str, path: &str) {
-        let names: Vec<&str> = self.draft.overlays.iter().flatten().map(|o| o.name.as_str()).collect();
-        if !names.contains(&name) && self.draft.overlays.iter().all(Option::is_some) {
+        let names: Vec<&str> = self.draft.overlay.iter().flatten().map(|o| o.name.as_str()).collect();
+        if !names.contains(&name) && self.draft.overlay.iter().all(Option::is_some) {
             let help = suggest::help(name, names);
             let why = "the name after the colon is that of an [[overlay]]";
             self.add(path.to_owned(), format!("there are no measured data `{name}`"), why, help);

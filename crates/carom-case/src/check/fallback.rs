@@ -16,13 +16,13 @@ impl Check<'_> {
             self.refuse(&format!("with scheme `{}`", time.scheme.kind), why, "leave out `fallback`");
             return;
         }
-        for contact in draft.contacts.iter().flatten() {
+        for contact in draft.contact.iter().flatten() {
             for (what, why, help) in of_contact(contact) {
                 self.refuse(&format!("with {what} of contact `{}`", contact.name), why, help);
             }
         }
         let light = |body: &&BodySpec| self.massless(body) || body.mass.is_redistributed();
-        if let Some(body) = draft.bodies.iter().flatten().find(light) {
+        if let Some(body) = draft.body.iter().flatten().find(light) {
             let why = "the velocity of a node without mass does not follow from an impulse";
             let help = "give the body a density > 0 and mass = \"consistent\" or \"lumped\", or leave out `fallback`";
             self.refuse(&format!("with nodes without mass in body `{}`", body.name), why, help);

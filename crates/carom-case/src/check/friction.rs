@@ -15,7 +15,7 @@ impl Check<'_> {
         let (draft, scheme) = (self.draft, self.scheme());
         let is_light = |side: &str| {
             let name = side.split_once('.').map_or(side, |(body, _)| body);
-            draft.bodies.iter().flatten().any(|body| body.name == name && body.mass.is_redistributed())
+            draft.body.iter().flatten().any(|body| body.name == name && body.mass.is_redistributed())
         };
         let light = is_light(&contact.secondary) || contact.primary.side().is_some_and(is_light);
         let mut refuse = |with: &str, why: &str, help: &str| {
@@ -68,20 +68,19 @@ impl Check<'_> {
     /// Keys of friction that say nothing without another one.
     fn friction_keys(&mut self, contact: &ContactSpec) {
         let FrictionSpec { mu, mu_dynamic, decay, stick_stiffness, .. } = &contact.friction;
-        // Not if the other key is there, but misspelt, which is an error of its own.
-        let mut needs = |key: &str, given: bool, wanted: &'static str, other: &str, has: bool, why: &str| {
-            if given && !has && !self.is_misspelt("contact", contact.entry, wanted) {
+        let mut needs = |key: &str, given: bool, other: &str, has: bool, why: &str| {
+            if given && !has {
                 let what = format!("`{key}` is given without {other}");
                 self.add(contact.path(key), what, why, format!("give {other}, or leave out `{key}`"));
             }
         };
         let why = "it is the coefficient of a node that slips, which is at most that of one that sticks";
-        needs("mu_dynamic", mu_dynamic.is_some(), "mu", "`mu`", mu.is_some(), why);
+        needs("mu_dynamic", mu_dynamic.is_some(), "`mu`", mu.is_some(), why);
         let why = "it is the rate of the transition from `mu` to `mu_dynamic`";
-        needs("decay", decay.is_some(), "mu_dynamic", "`mu_dynamic`", mu_dynamic.is_some(), why);
+        needs("decay", decay.is_some(), "`mu_dynamic`", mu_dynamic.is_some(), why);
         let (springs, why) =
             (contact.enforcement != Enforcement::Multiplier, "a multiplier enforces stick exactly");
-        needs("stick_stiffness", stick_stiffness.is_some(), "enforcement", "a penalty", springs, why);
+        needs("stick_stiffness", stick_stiffness.is_some(), "a penalty", springs, why);
         let constant = mu.as_ref().and_then(FormulaSpec::constant);
         if let (Some(stick), Some(slip)) = (constant, *mu_dynamic)
             && slip > stick

@@ -5,23 +5,20 @@
 use carom_solid::gmsh::{Joint, MshFile};
 
 use super::Check;
-use crate::{BodySpec, MeshSpec, mesh_file};
+use crate::{BodySpec, FileMesh, MeshSpec};
 
 /// The file of a body, and the dimension in which it is read.
 struct Source<'a> {
-    spec: &'a MeshSpec,
+    mesh: &'a FileMesh,
     name: std::borrow::Cow<'a, str>,
-    hash: &'a str,
-    group: &'a str,
     dimension: usize,
 }
 
 impl<'a> Source<'a> {
     fn of(body: &'a BodySpec, dimension: usize) -> Option<Self> {
-        let spec = body.mesh.source();
-        let MeshSpec::File { file, surface, hash, .. } = spec else { return None };
-        let dimension = if *spec == body.mesh { dimension } else { 2 };
-        Some(Self { spec, name: file.file_name()?.to_string_lossy(), hash, group: surface, dimension })
+        let MeshSpec::File(mesh) = body.mesh.source() else { return None };
+        let dimension = if matches!(body.mesh, MeshSpec::File(_)) { dimension } else { 2 };
+        Some(Self { mesh, name: mesh.file.file_name()?.to_string_lossy(), dimension })
     }
 }
 
@@ -29,11 +26,11 @@ impl Check<'_> {
     pub(super) fn joined(&mut self) {
         // A contact that cannot be read may be the one between them.
         let Some(dimension) = self.draft.dimension else { return };
-        if self.draft.contacts.iter().any(Option::is_none) {
+        if self.draft.contact.iter().any(Option::is_none) {
             return;
         }
         let bodies: Vec<(usize, &BodySpec)> =
-            self.draft.bodies.iter().enumerate().filter_map(|(k, body)| Some((k, body.as_ref()?))).collect();
+            self.draft.body.iter().enumerate().filter_map(|(k, body)| Some((k, body.as_ref()?))).collect();
         // The file read last: those of a case are mostly one.
         let mut read: Option<(&str, MshFile)> = None;
         for (place, &(k, second)) in bodies.iter().enumerate() {
@@ -41,14 +38,16 @@ impl Check<'_> {
                 let sources = [first, second].map(|body| Source::of(body, dimension));
                 let [Some(a), Some(b)] = sources else { continue };
                 let together = first.place == second.place && first.position == second.position;
-                if a.hash != b.hash || !together || self.in_contact(first, second) {
+                if a.mesh.hash != b.mesh.hash || !together || self.in_contact(first, second) {
                     continue;
                 }
-                if read.as_ref().is_none_or(|(hash, _)| *hash != b.hash) {
-                    read = mesh_file::again(b.spec).map(|file| (b.hash, file));
+                if read.as_ref().is_none_or(|(hash, _)| *hash != b.mesh.hash) {
+                    read = b.mesh.again().map(|file| (b.mesh.hash.as_str(), file));
                 }
                 let Some((_, file)) = &read else { continue };
-                if let Ok(Some(joint)) = file.joint(a.dimension, [a.group, b.group]) {
+                if let Ok(Some(joint)) =
+                    file.joint(a.dimension, [&a.mesh.surface, &b.mesh.surface].map(String::as_str))
+                {
                     self.report(k, [first, second], &b.name, a.dimension, &joint);
                 }
             }
@@ -56,7 +55,7 @@ impl Check<'_> {
     }
 
     fn in_contact(&self, a: &BodySpec, b: &BodySpec) -> bool {
-        self.draft.contacts.iter().flatten().any(|contact| {
+        self.draft.contact.iter().flatten().any(|contact| {
             let has = |body: &BodySpec| contact.bodies().any(|name| name == body.name);
             has(a) && has(b)
         })

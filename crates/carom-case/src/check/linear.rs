@@ -1,6 +1,6 @@
 //! What solves the linear systems of a case, and what `newton.linear = "iterative"` cannot solve.
 
-use super::super::view::word;
+use super::super::keys::word;
 use super::super::{ContactSpec, LinearRule, TimeSpec};
 use super::Check;
 
@@ -45,7 +45,7 @@ impl<'a> Check<'a> {
         }
         let what = |of: String| format!("linear = \"iterative\" does not solve {of}");
         let draft = self.draft;
-        if let Some(contact) = draft.contacts.iter().flatten().find(|contact| contact.friction.exists()) {
+        if let Some(contact) = draft.contact.iter().flatten().find(|contact| contact.friction.exists()) {
             let why =
                 "friction makes the rows of contact unsymmetric, and conjugate gradients need them symmetric";
             self.add(

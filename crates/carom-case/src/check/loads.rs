@@ -19,7 +19,7 @@ impl Check<'_> {
         }
         let draft = self.draft;
         let Some(end) = draft.time.as_ref().map(|t| t.end) else { return };
-        for (i, load) in draft.loads.iter().enumerate() {
+        for (i, load) in draft.load.iter().enumerate() {
             let Some(table) = load.as_ref().and_then(|l| l.table.as_ref()) else { continue };
             let (first, last) = (table.times[0], table.times[table.times.len() - 1]);
             // The times n·Δt of the grid are rounded.
@@ -38,11 +38,7 @@ impl Check<'_> {
             let moved = table.get("move").and_then(Node::table);
             let fixed: Vec<_> =
                 table.get("fix").and_then(Node::list).unwrap_or(&[]).iter().filter_map(Node::text).collect();
-            let known = ["name", "on", "fix", "move"];
-            let misspelt = table.0.iter().any(|e| !known.contains(&e.key.as_str()))
-                || moved.is_some_and(|m| m.0.iter().any(|e| !["x", "y", "z"].contains(&e.key.as_str())));
-            if !misspelt
-                && table.get("fix").is_none()
+            if table.get("fix").is_none()
                 && moved.is_none_or(|m| m.0.is_empty())
                 && table.get("move").is_none_or(|m| m.table().is_some())
             {
@@ -91,7 +87,7 @@ impl Check<'_> {
                 self.add(path, format!("`{key}` cannot be used with [manufactured]"), why, "leave it out");
             }
         }
-        for (i, body) in self.draft.bodies.iter().enumerate() {
+        for (i, body) in self.draft.body.iter().enumerate() {
             let Some(body) = body else { continue };
             let given = [
                 ("gravity", body.gravity.iter().any(|g| !g.is_zero())),
@@ -114,7 +110,7 @@ impl Check<'_> {
             (false, true) => "[initial] sets the velocities",
             (false, false) => return,
         };
-        for (i, body) in self.draft.bodies.iter().enumerate() {
+        for (i, body) in self.draft.body.iter().enumerate() {
             let Some(body) = body else { continue };
             if body.starts_moving() {
                 let what = "the body has an initial velocity";

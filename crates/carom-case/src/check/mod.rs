@@ -16,16 +16,16 @@ use carom_solid::Element;
 use super::columns;
 use super::document::Document;
 use super::draft::Draft;
-use super::keys;
-use super::problem::Problem;
+use super::keys::Keys;
+use super::problem::{Problem, is_within};
 use super::spec::SKIN;
 use super::suggest;
 use super::tree::{Node, Table};
 use super::{BodySpec, MeshSpec, SchemeSpec};
 
 /// Adds the problems found across tables.
-pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Problem>) {
-    let mut check = Check { document, draft, problems };
+pub(super) fn problems(document: &Document, draft: &Draft, misspelt: &[String], problems: &mut Vec<Problem>) {
+    let mut check = Check { document, draft, misspelt, problems };
     check.dimension();
     for list in ["material", "body", "support", "load", "contact", "probe", "overlay"] {
         check.unique_names(list);
@@ -49,6 +49,8 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
 struct Check<'a> {
     document: &'a Document,
     draft: &'a Draft,
+    /// Paths of the tables that have a misspelt key.
+    misspelt: &'a [String],
     problems: &'a mut Vec<Problem>,
 }
 
@@ -81,24 +83,9 @@ impl<'a> Check<'a> {
         self.scheme().is_some_and(SchemeSpec::is_static)
     }
 
-    /// Whether a key of a table in a list is missing, and another one resembles it: one mistake is
-    /// reported once.
-    fn is_misspelt(&self, list: &str, i: usize, key: &'static str) -> bool {
-        self.tables(list).get(i).and_then(Node::table).is_some_and(|table| {
-            let resembles = |name: &str| suggest::nearest(name, [key]).is_some();
-            table.get(key).is_none() && table.0.iter().any(|entry| resembles(&entry.key))
-        })
-    }
-
-    /// Whether the mesh of a body seems to have a misspelt `symmetry`, which gives it sides.
-    fn is_symmetry_misspelt(&self, body: &str) -> bool {
-        let is_of_body = |table: &&Table| table.get("name").and_then(Node::text) == Some(body);
-        let mut tables = self.tables("body").iter().filter_map(Node::table);
-        let mesh = tables.find(is_of_body).and_then(|table| table.get("mesh")?.table());
-        mesh.is_some_and(|mesh| {
-            let resembles = |name: &str| suggest::nearest(name, ["symmetry"]).is_some();
-            mesh.get("symmetry").is_none() && mesh.0.iter().any(|entry| resembles(&entry.key))
-        })
+    /// Whether a table, or one in it, has a misspelt key: what depends on it is not judged.
+    fn is_misspelt(&self, path: &str) -> bool {
+        self.misspelt.iter().any(|table| is_within(table, path))
     }
 
     /// Names of a list of tables; `None` if one of them cannot be read, occurs twice or has a
@@ -106,7 +93,9 @@ impl<'a> Check<'a> {
     fn names(&self, list: &str) -> Option<Vec<&'a str>> {
         let tables = self.tables(list);
         let root = &self.document.root().0;
-        if root.iter().any(|e| keys::CASE.key(&e.key).is_none() && suggest::nearest(&e.key, [list]).is_some())
+        if root
+            .iter()
+            .any(|e| Draft::TABLE.key(&e.key).is_none() && suggest::nearest(&e.key, [list]).is_some())
         {
             return None;
         }
@@ -200,9 +189,10 @@ impl<'a> Check<'a> {
             return None;
         }
         let body = self.body(name)?;
+        let place = bodies.iter().position(|body| *body == name)?;
         let sides = body.mesh.sides();
         let is_skin = part == SKIN && self.draft.dimension != Some(1);
-        if !is_skin && !sides.iter().any(|s| s == part) && !self.is_symmetry_misspelt(name) {
+        if !is_skin && !sides.iter().any(|s| s == part) && !self.is_misspelt(&format!("body[{place}]")) {
             let help = match suggest::nearest(part, sides.iter().map(String::as_str)) {
                 Some(near) => format!("did you mean `{name}.{near}`?"),
                 None if sides.is_empty() => no_sides(body, self.draft.dimension.unwrap_or(2)),
@@ -220,12 +210,12 @@ impl<'a> Check<'a> {
     }
 
     fn body(&self, name: &str) -> Option<&'a BodySpec> {
-        self.draft.bodies.iter().flatten().find(|b| b.name == name)
+        self.draft.body.iter().flatten().find(|b| b.name == name)
     }
 
     /// Whether a body has no mass.
     fn massless(&self, body: &BodySpec) -> bool {
-        self.draft.materials.iter().flatten().any(|m| m.name == body.material && m.density == 0.0)
+        self.draft.material.iter().flatten().any(|m| m.name == body.material && m.density == 0.0)
     }
 
     fn bodies(&mut self) {
@@ -234,7 +224,7 @@ impl<'a> Check<'a> {
             if let Some(material) = text("material") {
                 self.reference("material", material, format!("body[{i}].material"));
             }
-            let element: Option<Element> = text("element").and_then(super::view::word);
+            let element: Option<Element> = text("element").and_then(super::keys::word);
             if let (Some(d), Some(element)) = (self.draft.dimension, element)
                 && element.dimension() != d
             {
@@ -315,7 +305,7 @@ impl<'a> Check<'a> {
             if let Some(keys) = table.table().filter(|keys| keys.get("moment_about").is_some()) {
                 let why = if self.draft.dimension == Some(1) {
                     "forces on a line have no moment"
-                } else if keys.get("name").is_none() && !self.is_misspelt("support", i, "name") {
+                } else if keys.get("name").is_none() {
                     "only the reactions of a named support are recorded"
                 } else {
                     ""
@@ -341,11 +331,11 @@ impl<'a> Check<'a> {
     }
 
     fn probes(&mut self) {
-        for (i, probe) in self.draft.probes.iter().enumerate() {
+        for (i, probe) in self.draft.probe.iter().enumerate() {
             let Some(probe) = probe else { continue };
             self.reference("body", &probe.body, format!("probe[{i}].body"));
             for (j, quantity) in probe.record.iter().enumerate() {
-                let name = quantity.name();
+                let name = quantity.word();
                 let path = format!("probe[{i}].record[{j}]");
                 if let Some(d) = self.draft.dimension.filter(|d| !columns::exists(*quantity, *d)) {
                     let why = format!("the case has dimension = {d}");
@@ -378,8 +368,8 @@ fn known_sides(body: &BodySpec) -> String {
 
 /// A side of which something was left out when its mesh was read.
 fn inside<'a>(body: &'a BodySpec, side: &str) -> Option<&'a String> {
-    let MeshSpec::File { repairs, .. } = body.mesh.source() else { return None };
-    repairs.iter().find(|repair| repair.contains(&format!("\"{side}\"")))
+    let MeshSpec::File(file) = body.mesh.source() else { return None };
+    file.repairs.iter().find(|repair| repair.contains(&format!("\"{side}\"")))
 }
 
 /// Advice for a mesh from a file without sides.

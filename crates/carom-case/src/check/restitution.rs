@@ -6,7 +6,7 @@ use super::Check;
 
 impl Check<'_> {
     pub(super) fn conserving_restitution(&mut self, spec: &SchemeSpec) {
-        let contacts = &self.draft.contacts;
+        let contacts = &self.draft.contact;
         let multiplier = |contact: &&ContactSpec| contact.enforcement.is_exact();
         let first = contacts.iter().flatten().find(multiplier).map_or(0.0, |contact| contact.restitution);
         for contact in contacts.iter().flatten() {

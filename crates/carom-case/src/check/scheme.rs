@@ -22,7 +22,7 @@ impl Check<'_> {
         } else if spec.integrator().is_ok() {
             self.no_restitution(spec, "its contact law constrains positions at the end of a step");
         }
-        for contact in draft.contacts.iter().flatten() {
+        for contact in draft.contact.iter().flatten() {
             let Some(law) = contact.law.filter(|law| *law != spec.contact_law()) else { continue };
             if law == ContactLaw::Predictor && spec.nonsmooth().is_none() {
                 // Whether an implicit scheme has a predictor is checked with the contacts.
@@ -51,7 +51,7 @@ impl Check<'_> {
 
     /// Every dof needs mass; an explicit scheme needs a diagonal one.
     fn masses(&mut self, spec: &SchemeSpec) {
-        for (i, body) in self.draft.bodies.iter().enumerate() {
+        for (i, body) in self.draft.body.iter().enumerate() {
             let Some(body) = body else { continue };
             if self.massless(body) {
                 let what = format!("body `{}` has no mass, and {} divides by it", body.name, spec.kind);
@@ -67,10 +67,7 @@ impl Check<'_> {
                     format!("body `{}` has nodes without mass, and {} divides by it", body.name, spec.kind);
                 let why = "it computes velocities from forces or impulses divided by the mass of each node";
                 self.add(format!("body[{i}].mass"), what, why, "use mass = \"lumped\"");
-            } else if spec.is_explicit()
-                && body.mass == MassKind::Consistent
-                && !self.is_misspelt("body", i, "mass")
-            {
+            } else if spec.is_explicit() && body.mass == MassKind::Consistent {
                 let what = format!(
                     "{} needs a lumped mass, but that of body `{}` is consistent",
                     spec.kind, body.name
@@ -87,14 +84,14 @@ impl Check<'_> {
     /// These schemes have fixed supports and obstacles only.
     fn nothing_moves(&mut self, spec: &SchemeSpec) {
         let draft = self.draft;
-        let supports = draft.supports.iter().enumerate();
+        let supports = draft.support.iter().enumerate();
         let moved = supports.filter(|(_, support)| support.as_ref().is_some_and(|s| !s.moves.is_empty()));
         let supports = moved.map(|(i, _)| {
             let help =
                 "fix the side, apply a [[load]] instead, or use an implicit scheme such as chung-hulbert";
             ("supports", "support", format!("support[{i}].move"), help)
         });
-        let contacts = draft.contacts.iter().flatten();
+        let contacts = draft.contact.iter().flatten();
         let moved = contacts.filter(|c| matches!(c.motion, ObstacleMotion::Prescribed { .. }));
         let obstacles = moved.map(|contact| {
             let help = "leave out `motion` and give the bodies the opposite velocity, or use an implicit \
@@ -143,7 +140,7 @@ impl Check<'_> {
     }
 
     fn no_restitution(&mut self, spec: &SchemeSpec, why: &str) {
-        for contact in self.draft.contacts.iter().flatten() {
+        for contact in self.draft.contact.iter().flatten() {
             let e = contact.restitution;
             if e != 0.0 {
                 let what = format!("{} has no restitution, but e = {e} is given", spec.kind);

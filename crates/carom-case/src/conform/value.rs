@@ -3,11 +3,11 @@
 use super::Check;
 use crate::FormulaSpec;
 use crate::document::joined;
+use crate::keys::word as word_of;
 use crate::keys::{self, Default, Key, Kind, Range};
 use crate::problem::Problem;
 use crate::suggest;
 use crate::tree::{Node, Value};
-use crate::view::word as word_of;
 
 impl Check {
     /// All problems of a value, and of the tables in it.
@@ -15,15 +15,21 @@ impl Check {
         match (&key.kind, &node.value) {
             (Kind::Text | Kind::Side | Kind::SideOr(_), Value::Text(_))
             | (Kind::NumberOrFalse(_), Value::Flag(false))
+            | (Kind::Changes, Value::Table(_))
             | (Kind::Truth, Value::Flag(_)) => {}
             (Kind::Name, Value::Text(name)) => self.name(name, key, path),
-            (Kind::Choice(now, later), Value::Text(word)) => {
-                let now = if now.contains(&word.as_str()) { now.to_vec() } else { self.of_dimension(now) };
-                self.choice(word, key.name, &now, later, &key.meaning(), path);
+            (Kind::Choice(words), Value::Text(word)) => {
+                let known = words.now.contains(&word.as_str());
+                let now = if known { words.now.to_vec() } else { self.of_dimension(words.now) };
+                if words.later.contains(&word.as_str()) {
+                    self.planned(word, key, &now, path);
+                } else {
+                    self.choice(word, key, &now, path);
+                }
             }
             (Kind::Choices(words), Value::List(list)) if !list.is_empty() => {
                 self.each(list, path, |check, node, path| match node.text() {
-                    Some(word) => check.choice(word, key.name, words, &[], &key.meaning(), path),
+                    Some(word) => check.choice(word, key, words, path),
                     None => check.wrong(node, key, path),
                 });
             }
@@ -44,10 +50,10 @@ impl Check {
             }
             (Kind::Direction, Value::Text(word)) if ["x", "y", "z"].contains(&word.as_str()) => {}
             (Kind::Vector | Kind::Direction, Value::List(list)) if self.has_dimension(list.len()) => {
-                self.numbers(list, key, path);
+                self.numbers(list, &keys::ANY, key, path);
             }
             (Kind::Angular, Value::List(list)) if self.has_dimension(3) && list.len() == 3 => {
-                self.numbers(list, key, path);
+                self.numbers(list, &keys::ANY, key, path);
             }
             (Kind::Angular | Kind::Rotation(_), Value::Integer(_) | Value::Float(_))
                 if self.dimension != Some(3) =>
@@ -57,10 +63,14 @@ impl Check {
             (Kind::Rotation(spec), Value::Table(table)) if self.has_dimension(3) => {
                 self.table(table, spec, path);
             }
-            (Kind::Numbers, Value::List(list)) => self.numbers(list, key, path),
+            (Kind::Numbers(range), Value::List(list))
+                if !list.is_empty() || matches!(key.default, Default::Is("[]")) =>
+            {
+                self.numbers(list, range, key, path);
+            }
             (Kind::Points(least), Value::List(list)) if list.len() >= *least => {
                 self.each(list, path, |check, node, path| match &node.value {
-                    Value::List(point) if point.len() == 2 => check.numbers(point, key, path),
+                    Value::List(point) if point.len() == 2 => check.numbers(point, &keys::ANY, key, path),
                     _ => check.wrong(node, key, path),
                 });
             }
@@ -92,6 +102,20 @@ impl Check {
                     Some(table) => check.table(table, spec, path),
                     None => check.wrong(node, key, path),
                 });
+            }
+            (Kind::ChangeLists, Value::List(list)) => {
+                self.each(list, path, |check, node, path| {
+                    check.value(node, &Key { kind: Kind::Changes, ..*key }, path);
+                });
+            }
+            (Kind::Grid, Value::Table(table)) => {
+                for (name, node) in table.flat() {
+                    if node.list().is_none_or(<[Node]>::is_empty) {
+                        let what = format!("`{name}` must be a list of values, not {}", node.described());
+                        let help = format!("write for example `grid = {}`", key.example);
+                        self.add(&format!("{path}.\"{name}\""), what, key.meaning(), help);
+                    }
+                }
             }
             (Kind::Variant(variants), Value::Table(table)) => {
                 let variants = variants();
@@ -125,29 +149,24 @@ impl Check {
         words.iter().filter(here).copied().collect()
     }
 
-    pub(super) fn choice(
-        &mut self,
-        word: &str,
-        key: &str,
-        now: &[&str],
-        later: &[&str],
-        meaning: &str,
-        path: &str,
-    ) {
+    /// A word that is planned for a later version.
+    fn planned(&mut self, word: &str, key: &Key, now: &[&str], path: &str) {
+        let what = format!("`{} = \"{word}\"` is not supported yet", key.name);
+        let why = format!("\"{word}\" is planned for a later version of Carom");
+        self.add(path, what, why, format!("use one of: {}", suggest::list(now.iter().copied())));
+    }
+
+    /// A word that must be one of those.
+    pub(super) fn choice(&mut self, word: &str, key: &Key, now: &[&str], path: &str) {
         if now.contains(&word) {
             return;
         }
-        if later.contains(&word) {
-            let what = format!("`{key} = \"{word}\"` is not supported yet");
-            let why = format!("\"{word}\" is planned for a later version of Carom");
-            return self.add(path, what, why, format!("use one of: {}", suggest::list(now.iter().copied())));
+        let what = format!("`{}` cannot be \"{word}\"", key.name);
+        let mut why = key.meaning();
+        let is_explained = matches!(key.kind, Kind::Choice(words) if !words.meanings.is_empty());
+        if !is_explained && suggest::nearest(word, now.iter().copied()).is_some() {
+            why = format!("{why} Allowed values: {}", suggest::list(now.iter().copied()));
         }
-        let what = format!("`{key}` cannot be \"{word}\"");
-        let near = suggest::nearest(word, now.iter().copied());
-        let why = match near {
-            Some(_) => format!("{meaning} Allowed values: {}", suggest::list(now.iter().copied())),
-            None => meaning.to_owned(),
-        };
         self.add(path, what, why, suggest::help(word, now.iter().copied()));
     }
 
@@ -169,13 +188,17 @@ impl Check {
             let why = format!("all numbers of a case must be finite. {}", key.meaning());
             self.add(path, what, why, format!("write {}", key.kind.described(self.dimension)));
         } else if !range.contains(x) {
-            let what = format!("`{}` must be {}, not {x}", key.name, range.described());
+            let is_list = matches!(key.kind, Kind::Numbers(_));
+            let subject = if is_list { "every number of " } else { "" };
+            let what = format!("{subject}`{}` must be {}, not {x}", key.name, range.described());
             let example =
                 || format!("write for example `{} = {}`", key.name, self.names.example(key, self.dimension));
             // Zero or less of a positive number is a default that is not known, or an attempt to
             // switch something off.
             let is_off = x <= 0.0 && range.low == Some((0.0, false));
-            let help = if is_off && matches!(key.kind, Kind::NumberOrFalse(_)) {
+            let help = if is_list {
+                example()
+            } else if is_off && matches!(key.kind, Kind::NumberOrFalse(_)) {
                 format!("`{} = false` switches it off; or {}", key.name, example())
             } else if is_off && matches!(key.default, keys::Default::Is(_)) {
                 example()
@@ -191,9 +214,9 @@ impl Check {
         }
     }
 
-    fn numbers(&mut self, list: &[Node], key: &Key, path: &str) {
+    fn numbers(&mut self, list: &[Node], range: &Range, key: &Key, path: &str) {
         self.each(list, path, |check, node, path| match node.number() {
-            Some(_) => check.number(node, &keys::ANY, key, path),
+            Some(_) => check.number(node, range, key, path),
             None => check.wrong(node, key, path),
         });
     }
@@ -218,7 +241,7 @@ impl Check {
                     );
                     let what = format!("the formula of `{}`: {wrong}", key.name);
                     let why = format!("it is a formula in the variables {}", variables.join(", "));
-                    self.problems.push(Problem::new(path, what, why, help).within(error.at));
+                    self.found.problems.push(Problem::new(path, what, why, help).within(error.at));
                 }
             }
             _ => self.wrong(node, key, path),
@@ -251,7 +274,9 @@ impl Check {
             what = format!("`{}` must be a list of tables, not a single table", key.name);
         }
         let help = match key.kind {
-            Kind::Tables(table) => format!("write its header in double brackets: {}", table.name),
+            Kind::Tables(table) if key.example.is_empty() => {
+                format!("write its header in double brackets: {}", table.name)
+            }
             Kind::Number(_) | Kind::NumberOrFalse(_)
                 if let Some(advice) =
                     node.text().and_then(|text| self.labels.advice(key.name, Some(key.unit), text)) =>

@@ -7,14 +7,16 @@ use std::sync::LazyLock;
 use carom_time::{KINDS, KindInfo, Parameter};
 
 use super::Kind::{Choice, Number};
-use super::{Key, Range, Table, Variants, key};
+use super::{Default, Key, Range, Table, Variants, Words};
 
-const FORCES: Key = key(
-    "forces",
-    Choice(&["average-forces", "average-state"], &[]),
-    "What is averaged over the step with α_f: the forces (eq. 15), or the state at which they are evaluated.",
-)
-.default("\"average-forces\"");
+const FORCES: Key = Key {
+    name: "forces",
+    kind: Choice(Words::plain(&["average-forces", "average-state"])),
+    doc: "What is averaged over the step with α_f: the forces (eq. 15), or the state at which they are evaluated.",
+    default: Default::Is("\"average-forces\""),
+    example: "\"average-forces\"",
+    ..Key::NONE
+};
 
 /// Time integrators.
 pub fn schemes() -> &'static Variants {
@@ -38,11 +40,17 @@ fn table(kind: &KindInfo) -> Table {
             Bound::Unbounded => None,
         };
         let range = Range { low: end(parameter.range.0), high: end(parameter.range.1) };
-        let key = key(parameter.key, Number(range), parameter.meaning);
-        let example = parameter.example;
-        if kind.sets.len() > 1 { key.optional(example) } else { key.example(example) }
+        let default = if kind.sets.len() > 1 { Default::Absent } else { Default::Required };
+        let Parameter { key: name, meaning: doc, example, .. } = *parameter;
+        Key { name, kind: Number(range), doc, default, example, ..Key::NONE }
     };
     let keys: Vec<Key> =
         kind.parameters().into_iter().map(number).chain(kind.is_alpha().then_some(FORCES)).collect();
-    super::table(format!("scheme \"{}\"", kind.name).leak(), kind.summary, keys.leak())
+    Table {
+        name: format!("scheme \"{}\"", kind.name).leak(),
+        doc: kind.summary,
+        keys: keys.leak(),
+        later: &[],
+        dimension: None,
+    }
 }

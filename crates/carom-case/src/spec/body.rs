@@ -1,16 +1,20 @@
 //! Bodies: material, mesh, placement, initial state.
 
+use carom_solid::Element;
 use serde::{Deserialize, Serialize};
 
 use super::formula::FormulaSpec;
-use super::mesh::MeshSpec;
+use super::mesh::{self, MeshSpec};
+use crate::keys::Kind::{self, Formulas, FormulasOr, Name, Number, Variant, Vector};
+use crate::keys::{IN_SPACE, IN_TIME, Keys, NOT_NEGATIVE, POSITIVE, Range, View};
+use crate::place::{self, PlaceKeys, PlaceSpec};
 
 /// A hyperelastic material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MaterialSpec {
     /// Name by which bodies refer to it.
     pub name: String,
-    /// Law.
+    /// Constitutive law.
     pub law: Law,
     /// Mass per reference volume, ≥ 0.
     pub density: f64,
@@ -18,6 +22,88 @@ pub struct MaterialSpec {
     pub lambda: f64,
     /// Second Lamé constant μ.
     pub mu: f64,
+}
+
+/// A hyperelastic material, given by lambda and mu or by young and poisson.
+#[derive(Keys)]
+#[keys(name = "[[material]]", later = ["plastic", "viscosity", "damping"])]
+pub(crate) struct MaterialKeys {
+    /// Name by which bodies refer to it.
+    #[key(Name, example = "\"rubber\"")]
+    name: String,
+    /// Constitutive law.
+    #[key(example = "\"neo-hookean\"")]
+    law: Law,
+    /// Mass per reference volume; 0 for a massless body.
+    #[key(Number(NOT_NEGATIVE), unit = "mass/length³", example = "0.25")]
+    density: f64,
+    /// First Lamé constant Λ; 3Λ + 2μ > 0.
+    #[key(unit = "mass/(length·time²)", example = "200.0")]
+    lambda: Option<f64>,
+    /// Second Lamé constant (shear modulus) μ.
+    #[key(Number(POSITIVE), unit = "mass/(length·time²)", example = "15.0")]
+    mu: Option<f64>,
+    /// Young's modulus, with poisson instead of lambda and mu.
+    #[key(Number(POSITIVE), unit = "mass/(length·time²)", example = "43.95")]
+    young: Option<f64>,
+    /// Poisson's ratio; given together with young. At 0.5 the material would be incompressible and
+    /// its bulk modulus infinite.
+    #[key(Number(Range { low: Some((-1.0, false)), high: Some((0.5, false)) }), example = "0.49")]
+    poisson: Option<f64>,
+}
+
+/// The materials of a case.
+pub(crate) fn materials(v: &View) -> Option<Vec<Option<MaterialSpec>>> {
+    v.each("material", |v| MaterialKeys::read(v)?.resolved(v))
+}
+
+impl MaterialKeys {
+    fn resolved(self, v: &View) -> Option<MaterialSpec> {
+        let given: Vec<_> = ["lambda", "mu", "young", "poisson"].into_iter().filter(|k| v.has(k)).collect();
+        let Self { name, law, density, lambda, mu, young, poisson } = self;
+        match given.as_slice() {
+            ["lambda", "mu"] => {
+                let lambda = lambda?;
+                let mu = mu?;
+                // Of Young's modulus and Poisson's ratio, the ranges of the keys say the same.
+                if mu > 0.0 && 3.0 * lambda + 2.0 * mu <= 0.0 {
+                    let what =
+                        format!("the elastic constants Λ = {lambda}, μ = {mu} are not positive definite");
+                    let why = format!("the bulk modulus Λ + 2μ/3 = {} must be > 0", lambda + 2.0 * mu / 3.0);
+                    v.wrong::<()>("lambda", what, why, format!("lambda must be > {}", -2.0 * mu / 3.0));
+                }
+                Some(MaterialSpec { name, law, density, lambda, mu })
+            }
+            ["young", "poisson"] => {
+                let young = young?;
+                let poisson = poisson?;
+                let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+                Some(MaterialSpec { name, law, density, lambda, mu: young / (2.0 * (1.0 + poisson)) })
+            }
+            given => {
+                let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
+                let what = format!("the elastic constants are not a valid pair: {had}");
+                let help = elastic_help(mu, poisson, given);
+                // One from an option is too much, whatever the file says.
+                let is_set = |key: &&&str| v.table.get(key).is_some_and(|node| node.origin.source > 0);
+                let key = given.iter().find(is_set).copied().unwrap_or("");
+                v.wrong_key(key, what, "an isotropic material has two elastic constants", help)
+            }
+        }
+    }
+}
+
+/// The pair of elastic constants that was probably meant.
+fn elastic_help(mu: Option<f64>, poisson: Option<f64>, given: &[&str]) -> String {
+    let pairs = "give `lambda` and `mu`, or `young` and `poisson`";
+    let [mu, poisson] = [mu, poisson].map(|x| x.filter(|x| x.is_finite()));
+    let (Some(mu), Some(poisson), ["lambda", "mu", "poisson"]) = (mu, poisson, given) else {
+        return pairs.to_owned();
+    };
+    // Where there is no such material, the nearest that there is.
+    let poisson = poisson.clamp(-0.99, 0.49);
+    let lambda = (2.0 * mu * poisson / (1.0 - 2.0 * poisson) * 1e6).round() / 1e6;
+    format!("{pairs}; with this `mu`, Poisson's ratio is {poisson} for `lambda = {lambda}`")
 }
 
 impl MaterialSpec {
@@ -34,18 +120,21 @@ impl MaterialSpec {
 }
 
 /// Plane state of a two-dimensional body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
+#[keys(later = ["axisymmetric"])]
 pub enum Plane {
-    /// No strain out of the plane.
+    /// Plane strain: no strain out of the plane.
+    #[default]
     Strain,
-    /// No stress out of the plane.
+    /// Plane stress: no stress out of the plane; `thickness` is that of the undeformed sheet.
     Stress,
 }
 
 /// Constitutive law.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
+#[keys(later = ["plastic", "viscoelastic"])]
 pub enum Law {
     /// Ψ = μ(tr E − ln J) + Λ/2 (ln J)².
     NeoHookean,
@@ -55,31 +144,58 @@ pub enum Law {
     LinearElastic,
 }
 
-/// A deformable body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A deformable body; its sides are written name.side.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Keys)]
+#[keys(name = "[[body]]")]
 pub struct BodySpec {
-    /// Name; sides are `name.side`.
+    /// Name; its sides are written name.side.
+    #[key(Name, example = "\"cylinder\"")]
     pub name: String,
     /// Name of its material.
+    #[key(Name, example = "\"rubber\"")]
     pub material: String,
-    /// Cell type.
-    pub element: carom_solid::Element,
-    /// Volumetric energy of a cell.
+    /// Cell type: lines (L) in dimension 1, triangles (T) or quadrilaterals (Q) in dimension 2,
+    /// tetrahedra (Tet) or hexahedra (Hex) in dimension 3. Of the built-in shapes, Q4 and Q9 fill
+    /// rectangles; Hex8 and Hex27 fill those of space, and extrusions of rectangles.
+    #[key(example = "\"T6\"")]
+    pub element: Element,
+    /// Change of volume on which the volumetric energy depends.
+    #[key(default = "\"pointwise\"")]
     #[serde(default, skip_serializing_if = "Volumetric::is_pointwise")]
     pub volumetric: Volumetric,
-    /// Where its mesh comes from.
+    /// Mesh: a built-in shape with its mesh size, or a body of a Gmsh file.
+    #[key(
+        Variant(MeshSpec::variants),
+        example = "{ shape = \"rectangle\", min = [0.0, 0.0], max = [1.0, 1.0], cells = [8, 8] }",
+        with = mesh::of_body
+    )]
     pub mesh: MeshSpec,
-    /// Placement of the mesh; none: as generated or read.
+    /// Rotation and translation of the mesh, applied before anything else.
+    #[key(
+        crate::keys::Kind::Table(&PlaceKeys::TABLE),
+        example = "{ rotate = 30.0, about = [0.0, 0.0], shift = [0.0, 1.0] }",
+        with = place::read
+    )]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<PlaceSpec>,
-    /// Positions at t = 0, formulas in X, Y, Z; none: the reference positions.
+    /// Positions at t = 0 as formulas in X, Y, Z, for a body that starts deformed. Default: X, Y, Z.
+    #[key(Formulas(IN_SPACE), unit = "length", example = "[\"X + 0.1*X*Y\", \"Y\"]")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position: Option<Vec<FormulaSpec>>,
-    /// Gravitational acceleration, one component per dimension: formulas in t.
+    /// Gravitational acceleration: numbers, or formulas in t. Default: zero.
+    #[key(Formulas(IN_TIME), unit = "length/time²", optional = "[0.0, -9.81]")]
     pub gravity: Vec<FormulaSpec>,
-    /// Initial velocity, formulas in X, Y, Z.
+    /// Initial velocity: numbers or formulas in X, Y, Z, or the table of a rigid-body motion.
+    /// Default: zero.
+    #[key(
+        FormulasOr(IN_SPACE, &Velocity::TABLE),
+        unit = "length/time",
+        optional = "[0.0, -1.0]",
+        with = velocity
+    )]
     pub velocity: Vec<FormulaSpec>,
     /// Mass matrix.
+    #[key(default = "\"consistent\"")]
     pub mass: MassKind,
 }
 
@@ -90,14 +206,79 @@ impl BodySpec {
     }
 }
 
-/// On which change of volume the volumetric energy of a cell depends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// Initial velocity of a rigid-body motion: linear + angular × (X − about).
+#[derive(Keys)]
+#[keys(name = "velocity")]
+struct Velocity {
+    /// Velocity of the point `about`. Default: zero.
+    #[key(Vector, unit = "length/time", optional = "[0.0, -1.0]", with = linear)]
+    linear: Vec<f64>,
+    /// Angular velocity: counter-clockwise in dimension 2, [ωx, ωy, ωz] in dimension 3. Default: zero.
+    #[key(Kind::Angular, unit = "1/time", optional = "2.0", with = angular)]
+    angular: Vec<f64>,
+    /// Centre of the rotation; required with `angular`.
+    #[key(Vector, unit = "length", example = "[0.0, 1.0]")]
+    about: Option<Vec<f64>>,
+}
+
+fn linear(v: &View) -> Option<Vec<f64>> {
+    v.vector("linear")
+}
+
+/// The angular velocity in space.
+fn angular(v: &View) -> Option<Vec<f64>> {
+    match v.get::<Option<f64>>("angular").flatten() {
+        Some(about_z) => Some(vec![0.0, 0.0, about_z]),
+        None if v.has("angular") => v.get("angular"),
+        None => Some(vec![0.0; 3]),
+    }
+}
+
+/// Reads a body's initial velocity; a rigid-body motion is converted to formulas.
+fn velocity(v: &View) -> Option<Vec<FormulaSpec>> {
+    let dimension = v.dimension?;
+    if v.table.get("velocity").is_some_and(|node| node.table().is_none()) {
+        return v.get("velocity");
+    }
+    let v = v.at("velocity")?;
+    let Velocity { linear, angular, about } = Velocity::read(&v)?;
+    if linear.len() != dimension || angular.len() != 3 {
+        return None;
+    }
+    if angular.iter().all(|component| *component == 0.0) {
+        return Some(linear.into_iter().map(FormulaSpec::Number).collect());
+    }
+    if dimension == 1 {
+        let why = "the case has dimension = 1";
+        return v.wrong("angular", "a bar cannot rotate", why, "leave `angular` out");
+    }
+    if !v.has("about") {
+        let help = if dimension == 2 { "add `about = [x, y]`" } else { "add `about = [x, y, z]`" };
+        return v.wrong("angular", "the rotation has no centre", "a body rotates about a point", help);
+    }
+    let about = about.filter(|about| about.len() == dimension)?;
+    // Component i of linear + ω × (X − about), without the terms that vanish.
+    let component = |i: usize| {
+        let [j, k] = [(i + 1) % 3, (i + 2) % 3];
+        let term = |sign: &str, omega: f64, axis: usize| {
+            let exists = axis < dimension && omega != 0.0;
+            let arm = || format!(" {sign} {omega:?}*({} - {:?})", ["X", "Y", "Z"][axis], about[axis]);
+            exists.then(arm).unwrap_or_default()
+        };
+        format!("{:?}{}{}", linear[i], term("+", angular[j], k), term("-", angular[k], j))
+    };
+    Some((0..dimension).map(|i| FormulaSpec::Text(component(i))).collect())
+}
+
+/// Change of volume on which the volumetric energy of a cell depends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
 pub enum Volumetric {
-    /// That of each quadrature point.
+    /// That at each quadrature point.
     #[default]
     Pointwise,
-    /// The mean of the cell.
+    /// The mean over the cell (mean dilatation), with which Q4 and Hex8 do not lock in nearly
+    /// incompressible materials.
     Mean,
 }
 
@@ -108,30 +289,16 @@ impl Volumetric {
     }
 }
 
-/// A rigid motion of a mesh: x ↦ about + R(rotate)(x − about) + shift.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PlaceSpec {
-    /// Angle in degrees, counter-clockwise; 0 in dimension 1.
-    pub rotate: f64,
-    /// Unit axis of the rotation, in dimension 3; empty if there is none.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub axis: Vec<f64>,
-    /// Centre of rotation.
-    pub about: Vec<f64>,
-    /// Translation.
-    pub shift: Vec<f64>,
-}
-
-/// How inertia is distributed over the nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// Distribution of the inertia over the nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
 pub enum MassKind {
     /// ∫ρ₀ NᵀN.
     Consistent,
-    /// Diagonal scaling (HRZ).
+    /// Diagonal, by HRZ scaling.
     Lumped,
-    /// No mass on contact nodes; the smallest change of the other nodes preserves total mass,
-    /// centre of mass and second moments.
+    /// No mass on contact nodes, and the smallest change at the other nodes that preserves the total
+    /// mass, the centre of mass and the second moments.
     Redistributed,
 }
 

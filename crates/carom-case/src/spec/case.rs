@@ -13,6 +13,7 @@ use super::formula::FormulaSpec;
 use super::load::{LoadSpec, SupportSpec};
 use super::output::{OutputSpec, OverlaySpec, ProbeSpec};
 use super::time::{NewtonSpec, TimeSpec};
+use crate::keys::Keys;
 
 fn unrefined() -> f64 {
     1.0
@@ -89,14 +90,18 @@ impl Case {
     }
 }
 
-/// Unit labels of the numbers of a case.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// Unit labels in figures and columns; values are not converted.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
+#[keys(name = "units")]
 pub struct Units {
-    /// Length, `m` by default.
+    /// Unit label of length.
+    #[key(default = "\"m\"")]
     pub length: String,
-    /// Time, `s` by default.
+    /// Unit label of time.
+    #[key(default = "\"s\"")]
     pub time: String,
-    /// Mass, `kg` by default.
+    /// Unit label of mass.
+    #[key(default = "\"kg\"")]
     pub mass: String,
     /// Whether the case has them; otherwise its numbers may have any consistent units.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -104,29 +109,34 @@ pub struct Units {
 }
 
 /// Set of default values; keys given explicitly take precedence.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
 pub enum Preset {
     /// Carom's defaults.
+    #[default]
     Default,
     /// The paper as printed, where a key exists for it.
     Paper,
 }
 
-/// Start from the final state of another run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// Start from the final state of another run with the same meshes; time starts at 0 again. Or
+/// continue from a state that `carom reduce` saved, at its time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Keys)]
+#[keys(name = "[initial]")]
 pub struct InitialSpec {
-    /// Absolute path of its directory.
+    /// Directory of the finished run, or file of a saved state, relative to the folder of the case.
+    #[key(example = "\"runs/preload\"")]
     pub from: PathBuf,
     /// Initial velocities.
+    #[key(default = "\"keep\"")]
     pub velocities: Velocities,
 }
 
 /// Initial velocities of a case that starts from another run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
 pub enum Velocities {
-    /// Those of the other run.
+    /// Those at the end of the other run.
     Keep,
     /// Zero: all bodies start at rest.
     Zero,

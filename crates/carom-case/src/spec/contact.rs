@@ -3,68 +3,154 @@
 use serde::{Deserialize, Serialize};
 
 use super::formula::FormulaSpec;
-use super::obstacle::{ObstacleMotion, SurfaceSpec};
+use super::obstacle::{Obstacle, ObstacleMotion, PrimarySpec, Rigid};
+use crate::keys::Kind::{Between, Formula, Name, Number, Side, SideOr, Truth};
+use crate::keys::{IN_SPACE_AND_TIME, Keys, NOT_NEGATIVE, POSITIVE, Range, View};
+
+const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
 
 /// A contact pair: two sides that may come into contact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Keys)]
+#[keys(name = "[[contact]]", later = ["passes", "normals", "tie"])]
 pub struct ContactSpec {
     /// Name used in records and messages.
+    #[key(Name, example = "\"strike\"")]
     pub name: String,
     /// Number of its table in the case.
     #[serde(default)]
     pub entry: usize,
-    /// Whether it is one of the contacts that the key `between` of its table stands for.
+    /// Secondary (slave) side: its nodes must not penetrate the primary. `body.skin` is the whole
+    /// boundary of a body.
+    #[key(Side, example = "\"cylinder.arc\"", unless = "between", with = secondary)]
+    pub secondary: String,
+    /// Primary (master) side, or a rigid obstacle: a table with one of `plane`, `circle`, `sphere`,
+    /// `cylinder`, `polyline` and `surface`. If it is the secondary side, this side is in contact with
+    /// itself.
+    #[key(SideOr(&Rigid::TABLE), example = "\"prism.top\"", unless = "between", with = primary)]
+    pub primary: PrimarySpec,
+    /// In place of `secondary` and `primary`: contact between all pairs of bodies and of each with
+    /// itself, for "all" bodies or those listed, on their whole boundaries or on a side `body.side`.
+    /// Of two bodies the softer one (smaller λ + 2μ) is secondary; if they are equal, the first. A
+    /// pair of bodies with a [[contact]] of its own is excluded. Contacts are named NAME-BODY-BODY and
+    /// NAME-BODY, or NAME if there is one.
+    #[key(Between, optional = "\"all\"", given)]
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub between: bool,
-    /// Secondary (slave) side: its nodes must not penetrate the primary.
-    pub secondary: String,
-    /// Primary (master) side, which may be the secondary one, or a rigid obstacle.
-    pub primary: PrimarySpec,
+    /// With `between`: whether bodies are in contact with themselves, where their boundary folds.
+    #[key(Truth, name = "self", default = "true")]
+    #[serde(skip)]
+    pub of_itself: (),
     /// Motion of a rigid obstacle.
     #[serde(default, skip_serializing_if = "ObstacleMotion::is_fixed")]
     pub motion: ObstacleMotion,
-    /// How the constraint is enforced.
+    /// Discretisation of the contact.
+    #[key(default = "\"node-to-segment\"")]
+    #[serde(skip)]
+    pub method: Method,
+    /// Enforcement of the constraint.
+    #[key(default = "\"multiplier\"")]
     pub enforcement: Enforcement,
-    /// Stiffness of springs: of a penalty, as a multiple of the reference stiffness of the
-    /// secondary node; of an augmented Lagrangian, of the diagonal of the step's tangent there.
+    /// Stiffness of the springs: of a penalty, as a multiple of the reference stiffness of the
+    /// secondary node; of an augmented Lagrangian, of the diagonal of the step's tangent at the node,
+    /// which changes the number of rounds; far too soft springs may bisect a step.
+    #[key(Number(POSITIVE), default = "10.0")]
     pub stiffness: f64,
-    /// When the contact force acts in a step.
+    /// What contact constrains. Default: the law of the scheme.
+    #[key(example = "\"position\"")]
+    pub law: Option<ContactLaw>,
+    /// Weight of the contact force in the balance of a step.
+    #[key(default = "\"alpha_f\"")]
     pub force: ForceTime,
-    /// What happens to velocities and accelerations at activation.
+    /// Velocities and accelerations at activation.
+    #[key(default = "\"project\"", paper = "\"none\"")]
     pub persistency: Persistency,
     /// When the active set is updated.
+    #[key(default = "\"within\"", paper = "\"after\"")]
     pub active_set: ActiveSetRule,
-    /// Which gap decides about activation.
+    /// Gap that decides whether a pair becomes active.
+    #[key(default = "\"closest-point\"", paper = "\"trajectory\"")]
     pub detection: Detection,
-    /// Where the gap is measured during a step; the closest point in records written before this
-    /// key existed.
+    /// Point of the primary facet at which the gap is measured during a step.
+    #[key(default = "\"closest\"")]
     #[serde(default)]
     pub xi: ContactPoint,
-    /// What contact constrains; once resolved, the default is the law of the scheme.
-    pub law: Option<ContactLaw>,
-    /// What happens to an overlap of the bodies at the start.
+    /// Overlap of the bodies at the start.
+    #[key(default = "\"refuse\"")]
     #[serde(default)]
     pub overlap: Overlap,
     /// Friction.
+    #[key(flatten)]
     #[serde(default)]
     pub friction: FrictionSpec,
-    /// Coefficient of restitution e, 0 … 1: Newton's, for laws on velocities; for a constraint that
-    /// conserves, e² is the share of the energy taken that is returned.
+    /// Coefficient of restitution e: Newton's, for contact laws on velocities; with energy-momentum
+    /// and multipliers, e² is the fraction of the energy lost in contact that is returned where nodes
+    /// close or open (1 elastic, 0 inelastic); with paoli-schatzman, the weight of the previous
+    /// position.
+    #[key(Number(RESTITUTION), default = "0.0")]
     pub restitution: f64,
 }
 
+fn secondary(v: &View) -> Option<String> {
+    if v.has("between") { Some(String::new()) } else { v.get("secondary") }
+}
+
+/// The side; of an obstacle an empty one, which stands for it.
+fn primary(v: &View) -> Option<PrimarySpec> {
+    let is_side = v.table.get("primary").is_some_and(|node| node.table().is_none());
+    let side = if is_side && !v.has("between") { v.get("primary")? } else { String::new() };
+    Some(PrimarySpec::Side(side))
+}
+
+impl ContactSpec {
+    /// Reads a `[[contact]]`, the one with this number.
+    pub(crate) fn of(v: &View, entry: usize) -> Option<Self> {
+        let contact = Self::read(v);
+        let is_obstacle = !v.has("between") && v.get::<String>("primary").is_none();
+        let obstacle = if is_obstacle { Some(Rigid::of(v)?) } else { None };
+        let mut contact = contact?;
+        contact.entry = entry;
+        if let Some(Obstacle { shape, motion }) = obstacle {
+            contact.primary = shape;
+            contact.motion = motion;
+        }
+        Some(contact)
+    }
+}
+
+/// Discretisation of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Keys)]
+#[keys(later = ["mortar"])]
+pub enum Method {
+    /// Nodes of the secondary side against facets of the primary one.
+    #[default]
+    NodeToSegment,
+}
+
 /// The law of friction.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Keys)]
 pub struct FrictionSpec {
-    /// μ, in stick if `mu_dynamic` is given; zero: no friction; none: that of `shear` alone.
+    /// Coefficient of Coulomb friction μ, for the slip of the secondary side on the primary one: a
+    /// node sticks while its tangential force is less than μ times its normal force, and otherwise
+    /// slips against exactly this force. A number, or a formula of the node's reference position and
+    /// time. 0: no friction. Default: no friction, or that of `shear`. Dimensions 2 and 3.
+    #[key(Formula(IN_SPACE_AND_TIME), example = "0.3")]
     pub mu: Option<FormulaSpec>,
-    /// μ in slip.
+    /// Coefficient of friction of a node that slips, at most `mu`, which is then that of a node that
+    /// sticks. Where a formula `mu` is smaller, it is used for both. Default: `mu`.
+    #[key(Number(NOT_NEGATIVE), example = "0.2")]
     pub mu_dynamic: Option<f64>,
-    /// Rate of the transition between them, time per length.
+    /// Rate c of the transition to `mu_dynamic`: at a slip rate v, μ = mu_dynamic + (mu − mu_dynamic)
+    /// exp(−c v). In load steps, v is the rate in the time of their formulas. Default: an immediate
+    /// transition.
+    #[key(Number(POSITIVE), unit = "time/length", example = "10.0")]
     pub decay: Option<f64>,
-    /// Largest tangential stress.
+    /// Largest tangential stress (Tresca friction): a node slips against this stress times its area in
+    /// the reference configuration if μ times its normal force is larger, or if `mu` is not given.
+    #[key(Number(POSITIVE), unit = "stress", example = "1e3")]
     pub shear: Option<f64>,
-    /// Stiffness of tangential springs, as a multiple of the reference stiffness.
+    /// Stiffness of the tangential spring of a node that sticks, as `stiffness`. With enforcement =
+    /// "penalty" its energy counts as strain energy. Default: `stiffness`.
+    #[key(Number(POSITIVE), example = "10.0")]
     pub stick_stiffness: Option<f64>,
 }
 
@@ -94,66 +180,16 @@ impl ContactSpec {
     }
 }
 
-/// Primary side of a contact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum PrimarySpec {
-    /// A side of a body, `body.side`.
-    Side(String),
-    /// A rigid half-space.
-    Plane {
-        /// A point on its boundary.
-        point: Vec<f64>,
-        /// Outward normal, of any length > 0.
-        normal: Vec<f64>,
-    },
-    /// A rigid circle; in space a sphere.
-    Circle {
-        /// Its centre.
-        center: Vec<f64>,
-        /// Its radius, > 0.
-        radius: f64,
-        /// Whether bodies are inside it.
-        inside: bool,
-    },
-    /// A rigid infinite cylinder.
-    Cylinder {
-        /// A point of its axis.
-        point: Vec<f64>,
-        /// Direction of its axis, of any length > 0.
-        axis: Vec<f64>,
-        /// Its radius, > 0.
-        radius: f64,
-        /// Whether bodies are inside it.
-        inside: bool,
-    },
-    /// A rigid triangulated surface.
-    Surface(SurfaceSpec),
-    /// A rigid chain of segments with the material to the left of the direction of travel.
-    Polyline {
-        /// Its points; closed if the last one repeats the first.
-        points: Vec<[f64; 2]>,
-        /// Radius of its corners, ≥ 0.
-        radius: f64,
-    },
-}
-
-impl PrimarySpec {
-    /// The side of a body; none of a rigid obstacle.
-    pub fn side(&self) -> Option<&str> {
-        if let Self::Side(side) = self { Some(side) } else { None }
-    }
-}
-
 /// How the contact constraint is enforced.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
 pub enum Enforcement {
-    /// Exactly, by a Lagrange multiplier.
+    /// Exact, by a Lagrange multiplier.
     Multiplier,
-    /// By penalty springs of potential k/2 min(g, 0)².
+    /// Springs of potential k/2 min(g, 0)², whose energy counts as strain energy.
     Penalty,
-    /// To a tolerance, by springs on multipliers that are renewed until gaps are closed.
+    /// An augmented Lagrangian: springs on multipliers that are updated in rounds (Uzawa iterations)
+    /// until gaps of closed nodes and slips of sticking ones are below 1e-10 of the size of the model.
     Augmented,
 }
 
@@ -165,19 +201,19 @@ impl Enforcement {
 }
 
 /// What a contact constrains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactLaw {
     /// Positions at the end of the step.
     Position,
-    /// The predictor y + Δt v, and positions at the end of the step.
+    /// The predictor y + Δt v, and positions at the end of the step (contact-stabilised).
     Predictor,
     /// Velocities, by impulses: 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0 where the predicted gap is closed.
     Velocity,
 }
 
 /// When the contact force acts in a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceTime {
     /// Averaged with α_f, eq. (15).
@@ -187,17 +223,17 @@ pub enum ForceTime {
 }
 
 /// What happens to velocities and accelerations at activation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
 pub enum Persistency {
-    /// v and a are projected onto the active constraints.
+    /// Projected onto the constraints, so that they are compatible with them.
     Project,
-    /// They are left unchanged, as in the paper.
+    /// Left unchanged, as in the paper.
     None,
 }
 
 /// When the active set is updated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
 pub enum ActiveSetRule {
     /// In every Newton iteration (primal–dual).
@@ -207,7 +243,7 @@ pub enum ActiveSetRule {
 }
 
 /// Which gap decides about activation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
 pub enum Detection {
     /// The gap at the closest point; trajectories only find candidates.
@@ -217,26 +253,27 @@ pub enum Detection {
 }
 
 /// The point of the primary facet at which the gap is measured during a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactPoint {
-    /// The closest point of the iterate.
+    /// The closest point, recomputed in every iteration.
     #[default]
     Closest,
-    /// The crossing of the paths, then the closest point at the start of the step, as in the paper.
+    /// As printed in the paper: that of the trajectory crossing in the first step of a contact, and
+    /// the closest point at the start of the step in later ones.
     Frozen,
 }
 
 /// What happens to an overlap of the bodies at the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
 pub enum Overlap {
-    /// It is an error.
+    /// An error.
     #[default]
     Refuse,
-    /// It is closed before the start: the bodies begin in equilibrium with the pressure that closes
-    /// it.
+    /// Closed before the start, which leaves the bodies in equilibrium under the pressure of an
+    /// interference fit.
     Relax,
-    /// The gap of every node is larger by its depth at the start, to the end of the run.
+    /// Allowed: the gap of every node is larger by its depth at the start, to the end of the run.
     KeepGap,
 }

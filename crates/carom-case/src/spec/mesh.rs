@@ -1,181 +1,294 @@
-//! Meshes: shapes and files, the names of their sides, and an estimate of their size before they
-//! are generated.
+//! Meshes: built-in shapes, whose numbers must fit together, and files.
 
-use std::f64::consts::PI;
-use std::path::PathBuf;
+use std::sync::LazyLock;
 
-use carom_solid::{Element, generate};
+use carom_solid::generate::{self, Frame};
 use serde::{Deserialize, Serialize};
 
-use super::polygon::area_within;
+use crate::keys::Kind::{Choices, Count, Direction, Number, Points, Variant, Vector};
+use crate::keys::{Key, Keys, NOT_NEGATIVE, POSITIVE, Table, Value, Variants, View};
+use crate::mesh_file::{FileMesh, Purpose};
+use crate::problem::rounded;
+use crate::tree::Node;
 
 /// Name of the side that is the whole boundary of a body in the plane, unless its mesh has a side
 /// of this name.
 pub const SKIN: &str = "skin";
 
 /// Source of a mesh: a built-in shape, or a file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Keys)]
 #[serde(tag = "shape", rename_all = "kebab-case")]
+#[keys(name = "mesh", tag = "shape", tag_doc = "Built-in shape.")]
 pub enum MeshSpec {
-    /// Dimension 1: `left`, `right`.
+    /// Dimension 1; sides left, right.
+    #[keys(dimension = 1)]
     Interval {
         /// Left end.
+        #[key(unit = "length", example = "0.0")]
         min: f64,
         /// Right end.
+        #[key(unit = "length", example = "1.0")]
         max: f64,
         /// Number of cells.
+        #[key(Count(1), example = "20")]
         cells: usize,
     },
-    /// `bottom right top left`.
+    /// Sides bottom, right, top, left.
+    #[keys(dimension = 2)]
     Rectangle {
         /// Lower left corner.
+        #[key(Vector, unit = "length", example = "[0.0, 0.0]")]
         min: [f64; 2],
         /// Upper right corner.
+        #[key(Vector, unit = "length", example = "[1.0, 1.0]")]
         max: [f64; 2],
-        /// Number of squares along x and y, each a quadrilateral or split into two triangles.
+        /// Number of squares along x and y, each a quadrilateral or split into two triangles; or give `size`.
+        #[key(optional = "[8, 4]", with = divided)]
         cells: [usize; 2],
+        /// Largest side length of the squares; or give `cells`.
+        #[key(Number(POSITIVE), unit = "length", optional = "0.1")]
+        #[serde(skip)]
+        size: (),
     },
-    /// Whole disc, side `arc`.
-    Disc {
-        /// Radius.
-        radius: f64,
-        /// Centre.
-        center: [f64; 2],
-        /// Edge length of the cells.
-        size: f64,
-    },
-    /// The half x ≥ centre of a disc, sides `arc axis`.
-    HalfDisc {
-        /// Radius.
-        radius: f64,
-        /// Centre.
-        center: [f64; 2],
-        /// Edge length of the cells.
-        size: f64,
-    },
-    /// Between two circles, sides `inner outer`.
-    Ring {
-        /// Radius of the inner circle.
-        inner: f64,
-        /// Radius of the outer circle.
-        outer: f64,
-        /// Centre.
-        center: [f64; 2],
-        /// Edge length of the cells.
-        size: f64,
-    },
-    /// Any simple polygon, sides `side1`, `side2`, ….
-    Polygon {
-        /// Corners in order, clockwise or counter-clockwise.
-        points: Vec<[f64; 2]>,
-        /// Edge length of the cells.
-        size: f64,
-        /// Regions of local refinement.
-        refine: Vec<RefineSpec>,
-    },
-    /// Dimension 3: `left right front back bottom top` at −x +x −y +y −z +z.
+    /// Dimension 3; sides left, right (along x), front, back (along y), bottom, top (along z).
+    #[keys(dimension = 3)]
     Box {
         /// Lowest corner.
+        #[key(Vector, unit = "length", example = "[0.0, 0.0, 0.0]", with = low_corner)]
         min: [f64; 3],
         /// Highest corner.
+        #[key(Vector, unit = "length", example = "[1.0, 1.0, 1.0]")]
         max: [f64; 3],
-        /// Number of boxes along x, y and z, each a hexahedron or split into six tetrahedra.
+        /// Number of boxes along x, y and z, each a hexahedron or split into six tetrahedra; or give `size`.
+        #[key(optional = "[8, 4, 4]", with = divided)]
         cells: [usize; 3],
-        /// Whether a plane of symmetry cuts it along x, y, z: `min` is in these planes.
+        /// Largest side length of the boxes; or give `cells`.
+        #[key(Number(POSITIVE), unit = "length", optional = "0.1")]
+        #[serde(skip)]
+        size: (),
+        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the half
+        /// with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
+        /// plane_z. A cylinder or a tube is cut only if its axis is a coordinate.
+        #[key(Choices(&AXES), optional = "[\"x\", \"y\"]", with = symmetry)]
         #[serde(default, skip_serializing_if = "whole_shape")]
         symmetry: [bool; 3],
     },
-    /// Dimension 3: `sphere`.
+    /// Dimension 3; side sphere, and plane_x, plane_y, plane_z where planes of symmetry cut it.
+    #[keys(dimension = 3)]
     Ball {
         /// Radius.
+        #[key(Number(POSITIVE), unit = "length", example = "0.5")]
         radius: f64,
         /// Centre.
+        #[key(Vector, unit = "length", example = "[0.0, 0.0, 1.0]")]
         center: [f64; 3],
         /// Edge length of the cells.
+        #[key(Number(POSITIVE), unit = "length", example = "0.1")]
         size: f64,
-        /// Whether a plane of symmetry cuts it along x, y, z: the sides `plane_x` ….
+        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the half
+        /// with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
+        /// plane_z. A cylinder or a tube is cut only if its axis is a coordinate.
+        #[key(Choices(&AXES), optional = "[\"x\", \"y\"]", with = symmetry)]
         #[serde(default, skip_serializing_if = "whole_shape")]
         symmetry: [bool; 3],
     },
-    /// Dimension 3: `side bottom top`.
+    /// Dimension 3; sides side, bottom, top, and plane_x, plane_y, plane_z where planes of symmetry
+    /// cut it.
+    #[keys(dimension = 3)]
     Cylinder {
         /// Radius.
+        #[key(Number(POSITIVE), unit = "length", example = "0.5")]
         radius: f64,
         /// Length along the axis.
+        #[key(Number(POSITIVE), unit = "length", example = "2.0")]
         height: f64,
         /// Centre of the bottom.
+        #[key(Vector, unit = "length", example = "[0.0, 0.0, 0.0]")]
         center: [f64; 3],
-        /// From the bottom to the top, of any length.
+        /// Direction from the bottom to the top: a coordinate, or a vector of any length.
+        #[key(Direction, default = "\"z\"", with = axis)]
         axis: [f64; 3],
         /// Edge length of the cells.
+        #[key(Number(POSITIVE), unit = "length", example = "0.1")]
         size: f64,
-        /// As of a ball; the plane across the axis stands for the bottom.
+        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the half
+        /// with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
+        /// plane_z. A cylinder or a tube is cut only if its axis is a coordinate.
+        #[key(Choices(&AXES), optional = "[\"x\", \"y\"]", with = symmetry)]
         #[serde(default, skip_serializing_if = "whole_shape")]
         symmetry: [bool; 3],
     },
-    /// Dimension 3: `inner outer bottom top`.
+    /// Dimension 3; sides inner, outer, bottom, top, and plane_x, plane_y, plane_z where planes of
+    /// symmetry cut it.
+    #[keys(dimension = 3)]
     Tube {
         /// Inner radius.
+        #[key(Number(POSITIVE), unit = "length", example = "0.4")]
         inner: f64,
         /// Outer radius.
+        #[key(Number(POSITIVE), unit = "length", example = "0.5")]
         outer: f64,
         /// Length along the axis.
+        #[key(Number(POSITIVE), unit = "length", example = "2.0")]
         height: f64,
         /// Centre of the bottom.
+        #[key(Vector, unit = "length", example = "[0.0, 0.0, 0.0]")]
         center: [f64; 3],
-        /// From the bottom to the top, of any length.
+        /// Direction from the bottom to the top: a coordinate, or a vector of any length.
+        #[key(Direction, default = "\"z\"", with = axis)]
         axis: [f64; 3],
         /// Edge length of the cells.
+        #[key(Number(POSITIVE), unit = "length", example = "0.1")]
         size: f64,
-        /// As of a cylinder.
+        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the half
+        /// with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
+        /// plane_z. A cylinder or a tube is cut only if its axis is a coordinate.
+        #[key(Choices(&AXES), optional = "[\"x\", \"y\"]", with = symmetry)]
         #[serde(default, skip_serializing_if = "whole_shape")]
         symmetry: [bool; 3],
     },
-    /// Dimension 3: a mesh of the plane from z = 0 to a height; its sides, `bottom top`.
+    /// Dimension 3; a plane shape or a plane mesh of a file from z = 0 to its height; its sides, and
+    /// bottom, top (base, lid if it has sides of these names), and plane_x, plane_y, plane_z where
+    /// planes of symmetry cut it.
+    #[keys(dimension = 3)]
     Extrusion {
-        /// The mesh of the plane.
+        /// The plane shape, or a surface of a Gmsh file; its cells are the faces of the solid cells.
+        #[key(
+            Variant(plane_shapes),
+            example = "{ shape = \"ring\", inner = 0.4, outer = 0.5, center = [0.0, 0.0], size = 0.1 }",
+            with = of_extrusion
+        )]
         of: Box<MeshSpec>,
         /// Length along z.
+        #[key(Number(POSITIVE), unit = "length", example = "0.2")]
         height: f64,
         /// Number of layers of cells.
+        #[key(Count(1), example = "2")]
         layers: usize,
-        /// Planes of symmetry by which `of` is cut already, and across which its side is one of
-        /// theirs; that across z leaves the upper half.
+        /// Directions in which a plane of symmetry through the middle of the shape cuts it, as of
+        /// other shapes: z, which leaves the upper half of the height; x and y of a rectangle; x of a
+        /// disc.
+        #[key(Choices(&AXES), optional = "[\"z\"]", with = symmetry)]
         #[serde(default, skip_serializing_if = "whole_shape")]
         symmetry: [bool; 3],
     },
-    /// A named physical surface (dimension 1: curve, dimension 3: volume) of a .msh file; sides are
-    /// its named physical curves (points, surfaces).
-    File {
-        /// Absolute path.
-        file: PathBuf,
-        /// Name of the physical group.
-        surface: String,
-        /// Whether cells at one place with nodes of their own are a slit, not a mistake.
-        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-        slits: bool,
-        /// BLAKE3 hash of the file when the case was read.
-        hash: String,
-        /// Nodes of the mesh.
-        nodes: usize,
-        /// Cells of the mesh.
-        cells: usize,
-        /// Sides of the mesh.
-        sides: Vec<String>,
-        /// What was repaired when the mesh was read.
-        repairs: Vec<String>,
-        /// Parts into which every edge is divided.
-        #[serde(default = "whole")]
-        parts: usize,
+    /// A whole disc; side arc.
+    #[keys(dimension = 2)]
+    Disc {
+        /// Radius.
+        #[key(Number(POSITIVE), unit = "length", example = "0.5")]
+        radius: f64,
+        /// Centre.
+        #[key(Vector, unit = "length", example = "[0.0, 1.0]")]
+        center: [f64; 2],
+        /// Edge length of the cells.
+        #[key(Number(POSITIVE), unit = "length", example = "0.1")]
+        size: f64,
     },
+    /// The half of a disc to the right of its centre; sides arc, axis.
+    #[keys(dimension = 2)]
+    HalfDisc {
+        /// Radius.
+        #[key(Number(POSITIVE), unit = "length", example = "0.5")]
+        radius: f64,
+        /// Centre.
+        #[key(Vector, unit = "length", example = "[0.0, 1.0]")]
+        center: [f64; 2],
+        /// Edge length of the cells.
+        #[key(Number(POSITIVE), unit = "length", example = "0.1")]
+        size: f64,
+    },
+    /// The region between two concentric circles; sides inner, outer.
+    #[keys(dimension = 2)]
+    Ring {
+        /// Radius of the inner circle.
+        #[key(Number(POSITIVE), unit = "length", example = "0.4")]
+        inner: f64,
+        /// Radius of the outer circle.
+        #[key(Number(POSITIVE), unit = "length", example = "0.5")]
+        outer: f64,
+        /// Centre.
+        #[key(Vector, unit = "length", example = "[0.0, 1.0]")]
+        center: [f64; 2],
+        /// Edge length of the cells; smaller if the ring is thinner than this length, or if the inner
+        /// circle would have fewer than twelve edges.
+        #[key(Number(POSITIVE), unit = "length", example = "0.05")]
+        size: f64,
+    },
+    /// Any simple polygon, convex or not; sides side1 (from the first point to the second), side2, ….
+    #[keys(dimension = 2)]
+    Polygon {
+        /// Corners in order, clockwise or counter-clockwise.
+        #[key(Points(3), unit = "length", example = "[[0.0, 0.0], [48.0, 44.0], [48.0, 60.0], [0.0, 44.0]]")]
+        points: Vec<[f64; 2]>,
+        /// Edge length of the cells; smaller where the outline requires it.
+        #[key(Number(POSITIVE), unit = "length", example = "0.1")]
+        size: f64,
+        /// Regions of local refinement.
+        #[key(optional = "[{ near = [48.0, 60.0], radius = 2.0, size = 0.02 }]")]
+        refine: Vec<RefineSpec>,
+    },
+    /// A body of a Gmsh file.
+    #[keys(untagged)]
+    File(FileMesh),
 }
 
-/// Sides in planes of symmetry across x, y and z.
-pub(crate) const PLANES: [&str; 3] = ["plane_x", "plane_y", "plane_z"];
+/// Shapes of the plane, and a surface of a file, to be extruded.
+fn plane_shapes() -> &'static Variants {
+    // Built once per process, so it may be leaked.
+    static PLANE: LazyLock<Variants> = LazyLock::new(|| {
+        let all = MeshSpec::variants();
+        let of_file = all.or.map_or(&[][..], |file| file.keys).iter().filter(|key| key.name != "volume");
+        let file = Table {
+            name: "plane mesh from a file",
+            doc: "A surface of a Gmsh file; its sides are the physical curves on its boundary.",
+            keys: of_file.map(|key| Key { unless: "", ..*key }).collect::<Vec<_>>().leak(),
+            later: &[],
+            dimension: None,
+        };
+        let is_plane = |(_, table): &&(&str, Table)| table.dimension == Some(2);
+        Variants {
+            name: "of",
+            doc: "Shape of the plane.",
+            tables: all.tables.iter().filter(is_plane).copied().collect::<Vec<_>>().leak(),
+            or: Some(Box::leak(Box::new(file))),
+            dimension: Some(2),
+            ..*all
+        }
+    });
+    &PLANE
+}
 
-/// Edges as they are in the file.
-fn whole() -> usize {
-    1
+/// Names of the coordinates.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Directions across which planes of symmetry cut.
+fn symmetry(v: &View) -> Option<[bool; 3]> {
+    let words: Vec<String> = v.get("symmetry")?;
+    Some(AXES.map(|direction| words.iter().any(|word| word == direction)))
+}
+
+/// The lowest corner of a box, of what planes of symmetry leave of it.
+fn low_corner(v: &View) -> Option<[f64; 3]> {
+    let min: [f64; 3] = v.get("min")?;
+    let max: [f64; 3] = v.get("max")?;
+    let symmetry = symmetry(v)?;
+    let is_cut = |i: usize| symmetry[i] && min[i] < max[i];
+    Some(std::array::from_fn(|i| if is_cut(i) { 0.5 * (min[i] + max[i]) } else { min[i] }))
+}
+
+/// Numbers of cells between the corners, given or by their size.
+fn divided<const D: usize>(v: &View) -> Option<[usize; D]> {
+    let min = if D == 3 { low_corner(v)?.as_slice().try_into().ok()? } else { v.get("min")? };
+    cells_between(v, min, v.get("max")?)
+}
+
+/// The direction of an axis.
+fn axis(v: &View) -> Option<[f64; 3]> {
+    match v.value("axis")?.text() {
+        Some(word) => Some(AXES.map(|direction| f64::from(u8::from(direction == word)))),
+        None => v.get("axis"),
+    }
 }
 
 /// Whether no plane of symmetry cuts a shape.
@@ -184,220 +297,172 @@ fn whole_shape(symmetry: &[bool; 3]) -> bool {
     *symmetry == [false; 3]
 }
 
-/// The coordinate along which a vector points.
-fn coordinate(axis: [f64; 3]) -> Option<usize> {
-    (0..3).find(|&i| axis[i] > 0.0 && (0..3).all(|j| i == j || axis[j] == 0.0))
-}
-
-impl MeshSpec {
-    /// The mesh with cells smaller by a factor ≥ 1: a built-in shape is made anew with smaller
-    /// cells, the cells of a file are divided. `refine.rs` rejects factors with which given numbers
-    /// of cells, or the parts of an edge of a file, are not whole; the cells of a rectangle that is
-    /// given by their size are rounded up, as without a factor.
-    #[must_use]
-    pub fn refined(mut self, factor: f64) -> Self {
-        let more = |cells: usize| (cells as f64 * factor * (1.0 - 2e-9)).ceil() as usize;
-        match &mut self {
-            Self::Interval { cells, .. } => *cells = more(*cells),
-            Self::Rectangle { cells, .. } => *cells = cells.map(more),
-            Self::Box { cells, .. } => *cells = cells.map(more),
-            Self::Extrusion { of, layers, .. } => {
-                **of = of.as_ref().clone().refined(factor);
-                *layers = more(*layers);
-            }
-            Self::Disc { size, .. }
-            | Self::HalfDisc { size, .. }
-            | Self::Ring { size, .. }
-            | Self::Ball { size, .. }
-            | Self::Cylinder { size, .. }
-            | Self::Tube { size, .. } => *size /= factor,
-            Self::Polygon { size, refine, .. } => {
-                *size /= factor;
-                refine.iter_mut().for_each(|region| region.size /= factor);
-            }
-            Self::File { parts, .. } => *parts = factor.round() as usize,
-        }
-        self
-    }
-
-    /// The mesh that is extruded, or this one: what comes from a shape or a file.
-    #[must_use]
-    pub fn source(&self) -> &Self {
-        match self {
-            Self::Extrusion { of, .. } => of.source(),
-            _ => self,
-        }
-    }
-
-    /// Names of the sides, in order along the boundary.
-    pub fn sides(&self) -> Vec<String> {
-        let cut = |words: &[&str], symmetry: &[bool; 3], across: [Option<&str>; 3]| {
-            let gone = |word: &str| (0..3).any(|i| symmetry[i] && across[i] == Some(word));
-            let kept = words.iter().filter(|word| !gone(word)).copied();
-            kept.chain((0..3).filter(|&i| symmetry[i]).map(|i| PLANES[i])).map(str::to_owned).collect()
-        };
-        let bottom = |axis: [f64; 3]| {
-            let along = coordinate(axis);
-            std::array::from_fn(|i| (along == Some(i)).then_some("bottom"))
-        };
-        let words: &[&str] = match self {
-            Self::Box { symmetry, .. } => {
-                let words = ["left", "right", "front", "back", "bottom", "top"];
-                return cut(&words, symmetry, self.cut_sides().each_ref().map(Option::as_deref));
-            }
-            Self::Ball { symmetry, .. } => return cut(&["sphere"], symmetry, [None; 3]),
-            Self::Cylinder { symmetry, axis, .. } => {
-                return cut(&["side", "bottom", "top"], symmetry, bottom(*axis));
-            }
-            Self::Tube { symmetry, axis, .. } => {
-                return cut(&["inner", "outer", "bottom", "top"], symmetry, bottom(*axis));
-            }
-            Self::Extrusion { of, symmetry, .. } => {
-                let mut sides = of.sides();
-                for (end, other) in [("bottom", "base"), ("top", "lid")] {
-                    let end = if sides.iter().any(|side| side == end) { other } else { end };
-                    sides.push(end.to_owned());
-                }
-                let words: Vec<&str> = sides.iter().map(String::as_str).collect();
-                return cut(&words, symmetry, self.cut_sides().each_ref().map(Option::as_deref));
-            }
-            Self::File { sides, .. } => return sides.clone(),
-            Self::Polygon { points, .. } => return (1..=points.len()).map(|k| format!("side{k}")).collect(),
-            Self::Interval { .. } => &["left", "right"],
-            Self::Rectangle { .. } => &["bottom", "right", "top", "left"],
-            Self::Disc { .. } => &["arc"],
-            Self::HalfDisc { .. } => &["arc", "axis"],
-            Self::Ring { .. } => &["inner", "outer"],
-        };
-        words.iter().map(ToString::to_string).collect()
-    }
-
-    /// The sides of a box or of an extrusion that planes of symmetry across x, y and z replace; of
-    /// other shapes, none.
-    pub fn cut_sides(&self) -> [Option<String>; 3] {
-        let (all, symmetry) = match self {
-            Self::Box { symmetry, .. } => ([Some("left"), Some("front"), Some("bottom")], symmetry),
-            Self::Extrusion { of, symmetry, .. } => {
-                let low = if of.sides().iter().any(|side| side == "bottom") { "base" } else { "bottom" };
-                let [x, y] = match **of {
-                    Self::Rectangle { .. } => [Some("left"), Some("bottom")],
-                    Self::HalfDisc { .. } => [Some("axis"), None],
-                    _ => [None, None],
-                };
-                ([x, y, Some(low)], symmetry)
-            }
-            _ => return [None, None, None],
-        };
-        std::array::from_fn(|i| all[i].filter(|_| symmetry[i]).map(str::to_owned))
-    }
-
-    /// Estimated numbers of cells and nodes of the mesh, in floating point so that nothing
-    /// overflows.
-    pub fn estimate(&self, element: Element) -> (f64, f64) {
-        let k = element.degree() as f64;
-        let rings = |radius: f64, size: f64| (radius / size).ceil().max(1.0);
-        // Equilateral triangles with the edges h fill an area.
-        let filled = |area: f64, h: f64| area / (0.75_f64.sqrt() / 2.0 * h * h);
-        let nodes = |cells: f64| (cells, 0.5 * k * k * cells * 1.1 + 10.0 * k);
-        match *self {
-            Self::Ring { inner, outer, size, .. } => {
-                let h = size.min(outer - inner);
-                // At least twelve edges on a small inner circle.
-                let growing = 24.0 * (outer / inner).ln().max(1.0);
-                nodes(filled(PI * (outer * outer - inner * inner), h) + growing)
-            }
-            Self::Polygon { ref points, size, ref refine } => {
-                let next = points.iter().cycle().skip(1);
-                let twice: f64 = points.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
-                let area = twice.abs() / 2.0;
-                let place =
-                    |r: &RefineSpec| filled(area_within(points, r.near, r.radius + 3.0 * r.size), r.size);
-                nodes(filled(area, size) + refine.iter().map(place).sum::<f64>())
-            }
-            Self::File { nodes, cells, parts, .. } => {
-                let times = (parts as f64).powi(element.dimension() as i32);
-                (cells as f64 * times, nodes as f64 * times)
-            }
-            Self::Interval { cells, .. } => (cells as f64, k * cells as f64 + 1.0),
-            Self::Rectangle { cells: [nx, ny], .. } => {
-                let (nx, ny) = (nx as f64, ny as f64);
-                let each = if matches!(element, Element::Q4 | Element::Q9) { 1.0 } else { 2.0 };
-                (each * nx * ny, (k * nx + 1.0) * (k * ny + 1.0))
-            }
-            Self::Box { cells, .. } => {
-                let [nx, ny, nz] = cells.map(|n| n as f64);
-                let each = if is_hexahedral(element) { 1.0 } else { 6.0 };
-                (each * nx * ny * nz, (k * nx + 1.0) * (k * ny + 1.0) * (k * nz + 1.0))
-            }
-            Self::Ball { radius, size, symmetry, .. } => {
-                filled_space(element, generate::ball_hexahedra(radius, size, symmetry))
-            }
-            Self::Cylinder { radius, height, size, symmetry, .. } => {
-                filled_space(element, generate::cylinder_hexahedra(radius, height, size, symmetry))
-            }
-            Self::Tube { inner, outer, height, size, symmetry, .. } => {
-                filled_space(element, generate::tube_hexahedra([inner, outer], height, size, symmetry))
-            }
-            Self::Extrusion { ref of, layers, .. } => {
-                let (cells, nodes) = of.estimate(generate::plane_of(element).unwrap_or(Element::T3));
-                let layers = layers as f64;
-                (cells * layers * if is_hexahedral(element) { 1.0 } else { 3.0 }, nodes * (k * layers + 1.0))
-            }
-            Self::Disc { radius, size, .. } => {
-                let n = rings(radius, size);
-                (6.0 * n * n, 1.0 + 3.0 * k * n * (k * n + 1.0))
-            }
-            Self::HalfDisc { radius, size, .. } => {
-                let n = rings(radius, size);
-                (3.0 * n * n, 1.0 + 1.5 * k * n * (k * n + 1.0) + k * n)
-            }
-        }
-    }
-
-    /// Layers of nodes along the longest extent of a shape, which bound the coupling between its
-    /// ends; none where the extents are not known.
-    pub fn layers(&self, element: Element) -> Option<f64> {
-        let k = element.degree() as f64;
-        let along = |cells: f64| k * cells + 1.0;
-        match *self {
-            Self::Interval { cells, .. } => Some(along(cells as f64)),
-            Self::Rectangle { cells, .. } => Some(along(cells.into_iter().max()? as f64)),
-            Self::Box { cells, .. } => Some(along(cells.into_iter().max()? as f64)),
-            Self::Cylinder { height, size, .. } | Self::Tube { height, size, .. } => {
-                Some(along(height / size))
-            }
-            // Each half of a ring couples both ends.
-            Self::Ring { inner, outer, size, .. } => Some(along(PI / 2.0 * (inner + outer) / size)),
-            Self::Extrusion { ref of, layers, .. } => {
-                let plane = generate::plane_of(element).and_then(|element| of.layers(element));
-                Some(plane.unwrap_or(1.0).max(along(layers as f64)))
-            }
-            Self::Ball { .. }
-            | Self::Disc { .. }
-            | Self::HalfDisc { .. }
-            | Self::Polygon { .. }
-            | Self::File { .. } => None,
-        }
-    }
-}
-
-fn is_hexahedral(element: Element) -> bool {
-    matches!(element, Element::Hex8 | Element::Hex27)
-}
-
-/// Cells and nodes of a body of hexahedra, about as thick in all directions.
-fn filled_space(element: Element, hexahedra: f64) -> (f64, f64) {
-    let along = element.degree() as f64 * hexahedra.cbrt();
-    (if is_hexahedral(element) { hexahedra } else { 6.0 * hexahedra }, (along + 1.0).powi(3))
-}
-
-/// A region of local refinement.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A region of local refinement; outside its radius, the edge length grows by 3/10 of the distance,
+/// up to the size of the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Keys)]
+#[keys(name = "refine")]
 pub struct RefineSpec {
     /// Centre of the region.
+    #[key(Vector, unit = "length", example = "[48.0, 60.0]")]
     pub near: [f64; 2],
     /// Radius of the region.
+    #[key(Number(NOT_NEGATIVE), unit = "length", default = "0.0")]
     pub radius: f64,
     /// Edge length of the cells in the region.
+    #[key(Number(POSITIVE), unit = "length", example = "0.02")]
     pub size: f64,
+}
+
+/// Reads the mesh of a body.
+pub(crate) fn of_body(body: &View) -> Option<MeshSpec> {
+    let purpose = Purpose { dimension: body.dimension?, element: body.get("element"), extruded: false };
+    read(body, "mesh", purpose)
+}
+
+/// Reads the mesh that is extruded, as far as planes of symmetry leave it.
+fn of_extrusion(v: &View) -> Option<Box<MeshSpec>> {
+    let purpose = Purpose { dimension: 2, element: v.element, extruded: true };
+    let of = read(v, "of", purpose)?;
+    half(of, &v.at("of")?, symmetry(v)?).map(Box::new)
+}
+
+fn read(outer: &View, key: &str, purpose: Purpose) -> Option<MeshSpec> {
+    let v = &View { element: purpose.element, ..outer.at(key)? };
+    let mesh = MeshSpec::of(outer.table.get(key)?, v)?;
+    if let MeshSpec::File(file) = mesh {
+        return file.resolved(v, purpose).map(MeshSpec::File);
+    }
+    fits(&mesh, v)?;
+    Some(mesh)
+}
+
+/// Whether the numbers of a shape fit together.
+fn fits(mesh: &MeshSpec, v: &View) -> Option<()> {
+    match *mesh {
+        MeshSpec::Interval { min, max, .. } => ordered(v, min, max, ""),
+        MeshSpec::Disc { radius, size, .. }
+        | MeshSpec::HalfDisc { radius, size, .. }
+        | MeshSpec::Ball { radius, size, .. } => fitting(v, size, "radius", radius),
+        MeshSpec::Ring { inner, outer, size, .. } => {
+            radii(v, inner, outer, "the ring would have no width")?;
+            fitting(v, size, "outer radius", outer)
+        }
+        MeshSpec::Cylinder { radius, height, size, .. } => {
+            directed(mesh, v)?;
+            fitting(v, size, "longest extent", radius.max(height))
+        }
+        MeshSpec::Tube { inner, outer, height, size, .. } => {
+            directed(mesh, v)?;
+            radii(v, inner, outer, "the tube would have no wall")?;
+            fitting(v, size, "longest extent", outer.max(height))
+        }
+        MeshSpec::Polygon { ref points, .. } => {
+            let Err(error) = generate::outline(points) else { return Some(()) };
+            let why = "the outline of a polygon must not touch or intersect itself";
+            v.wrong("points", error.to_string(), why, "list its corners in order")
+        }
+        MeshSpec::Rectangle { .. }
+        | MeshSpec::Box { .. }
+        | MeshSpec::Extrusion { .. }
+        | MeshSpec::File(_) => Some(()),
+    }
+}
+
+/// Whether the axis of a shape has a direction, along which planes of symmetry may cut it.
+fn directed(mesh: &MeshSpec, v: &View) -> Option<()> {
+    let (MeshSpec::Cylinder { center, axis, symmetry, .. } | MeshSpec::Tube { center, axis, symmetry, .. }) =
+        *mesh
+    else {
+        return Some(());
+    };
+    let Err(error) = Frame::along(axis, center).and_then(|frame| frame.cuts(symmetry)) else {
+        return Some(());
+    };
+    let why = "an axis has a direction; planes of symmetry need one along x, y or z";
+    v.wrong("axis", error.to_string(), why, "write for example axis = \"z\"")
+}
+
+/// What planes of symmetry across x and y leave of a shape of the plane: the part with the larger
+/// coordinates.
+fn half(of: MeshSpec, v: &View, [x, y, _]: [bool; 3]) -> Option<MeshSpec> {
+    match of {
+        _ if !x && !y => Some(of),
+        MeshSpec::Rectangle { min, max, size, .. } => {
+            let middle = |i: usize, cut: bool| if cut { 0.5 * (min[i] + max[i]) } else { min[i] };
+            let min = [middle(0, x), middle(1, y)];
+            Some(MeshSpec::Rectangle { min, max, cells: cells_between(v, min, max)?, size })
+        }
+        MeshSpec::Disc { radius, center, size } if !y => Some(MeshSpec::HalfDisc { radius, center, size }),
+        _ => {
+            let across = if y { "y" } else { "x" };
+            let what = format!("`symmetry` has \"{across}\", and this plane shape is not cut by that plane");
+            let why = "a rectangle is cut across x and y, a disc across x, and every extrusion across z";
+            let help = "extrude a polygon or a plane mesh that is the half, and hold its side";
+            v.wrong("shape", what, why, help)
+        }
+    }
+}
+
+/// Numbers of cells between two corners, given or by their size.
+fn cells_between<const D: usize>(v: &View, min: [f64; D], max: [f64; D]) -> Option<[usize; D]> {
+    for i in 0..D {
+        ordered(v, min[i], max[i], &format!("[{i}]"))?;
+    }
+    let extents: [f64; D] = std::array::from_fn(|i| max[i] - min[i]);
+    match (v.has("cells"), v.has("size")) {
+        (true, false) => {
+            let cells = v.table.get("cells")?.list()?.iter().map(Node::count);
+            cells.collect::<Option<Vec<_>>>()?.try_into().ok()
+        }
+        (false, true) => {
+            let size = v.get("size").filter(|size| *size > 0.0)?;
+            let name = if D == 2 { "longer side" } else { "longest side" };
+            fitting(v, size, name, extents.iter().copied().fold(0.0, f64::max))?;
+            Some(extents.map(|extent| (extent / size - 1e-9).ceil().max(1.0) as usize))
+        }
+        (both, _) => {
+            let shape = if D == 2 { "rectangle" } else { "box" };
+            let what = if both {
+                format!("a {shape} has `cells` or `size`, not both")
+            } else {
+                format!("the {shape} has neither `cells` nor `size`")
+            };
+            let example = if D == 2 { "[8, 4]" } else { "[8, 4, 4]" };
+            let why = "each of them sets the size of the cells";
+            v.wrong("", what, why, format!("write for example `cells = {example}`"))
+        }
+    }
+}
+
+/// Reports cells that are larger than their body.
+fn fitting(v: &View, size: f64, extent: &str, length: f64) -> Option<()> {
+    // A value that is not positive is reported elsewhere.
+    if size > length && length > 0.0 {
+        let what = format!("`size` = {size} is larger than the {extent}, {}", rounded(length));
+        let why = "it is the edge length of the cells, and none would fit";
+        let help = format!("give size ≤ {}, for example size = {}", rounded(length), rounded(length / 5.0));
+        return v.wrong("size", what, why, help);
+    }
+    Some(())
+}
+
+/// Reports an outer radius that is not greater than the inner one, and why it must be.
+fn radii(v: &View, inner: f64, outer: f64, why: &str) -> Option<()> {
+    if inner >= outer {
+        let what = format!("`outer` = {outer} is not greater than `inner` = {inner}");
+        return v.wrong("outer", what, why, "give outer > inner");
+    }
+    Some(())
+}
+
+/// Reports ends of an extent in the wrong order; `index`: of its direction.
+fn ordered(v: &View, min: f64, max: f64, index: &str) -> Option<()> {
+    if min < max {
+        return Some(());
+    }
+    if min.is_finite() && max.is_finite() {
+        let what = format!("`max` = {max} is not greater than `min` = {min}");
+        return v.wrong(&format!("max{index}"), what, "the shape would have no extent", "give max > min");
+    }
+    None
 }

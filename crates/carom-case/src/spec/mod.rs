@@ -1,4 +1,4 @@
-//! A case as data: one type per table. Reading them is done elsewhere.
+//! The tables of a case: one type each, with its keys.
 
 mod body;
 mod case;
@@ -6,21 +6,25 @@ mod contact;
 mod formula;
 mod load;
 mod mesh;
+mod mesh_size;
 mod obstacle;
 mod output;
 mod polygon;
 mod time;
 
-pub use body::{BodySpec, Law, MassKind, MaterialSpec, PlaceSpec, Plane, Volumetric};
+pub use body::{BodySpec, Law, MassKind, MaterialSpec, Plane, Volumetric};
+pub(crate) use body::{MaterialKeys, materials};
 pub use case::{Case, InitialSpec, Preset, Units, Velocities};
 pub use contact::{
     ActiveSetRule, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime, FrictionSpec,
-    Overlap, Persistency, PrimarySpec,
+    Method, Overlap, Persistency,
 };
 pub use formula::FormulaSpec;
-pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};
-pub(crate) use mesh::PLANES;
+pub(crate) use load::{LoadKeys, SupportKeys, loads, supports};
+pub use load::{LoadKind, LoadSpec, SupportSpec, load_variables};
 pub use mesh::{MeshSpec, RefineSpec, SKIN};
-pub use obstacle::{ObstacleMotion, SurfaceSpec};
+pub(crate) use mesh_size::PLANES;
+pub use obstacle::{ObstacleMotion, PrimarySpec};
 pub use output::{OutputSpec, OverlaySpec, ProbeSpec, Quantity};
+pub(crate) use time::scheme;
 pub use time::{Fallback, LinearRule, NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

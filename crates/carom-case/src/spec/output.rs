@@ -1,17 +1,26 @@
-//! What a run records: probes, rows of history.csv, fields, checkpoints.
+//! Records of a run: probes, rows of history.csv, fields, checkpoints; measured data.
 
 use serde::{Deserialize, Serialize};
 
-/// A material point whose quantities are recorded as columns.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+use crate::keys::Kind::{Choices, Count, Name, Numbers, Text, Vector};
+use crate::keys::{ANY, Keys, View};
+
+/// A material point whose quantities are recorded as columns name.quantity.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Keys)]
+#[keys(name = "[[probe]]")]
 pub struct ProbeSpec {
-    /// Name; columns are `name.quantity`.
+    /// Name; its columns are name.quantity.
+    #[key(Name, example = "\"A\"")]
     pub name: String,
-    /// Reference position.
+    /// Reference position of the point.
+    #[key(Vector, unit = "length", example = "[0.0, 1.5]")]
     pub at: Vec<f64>,
     /// Body it belongs to.
+    #[key(Name, example = "\"cylinder\"")]
     pub body: String,
-    /// Recorded quantities.
+    /// Recorded quantities: displacement, velocity, acceleration, Cauchy stress, von Mises stress,
+    /// volume ratio.
+    #[key(Choices(Quantity::WORDS), example = "[\"uy\", \"sigma_yy\"]")]
     pub record: Vec<Quantity>,
 }
 
@@ -34,7 +43,7 @@ pub struct OverlaySpec {
 }
 
 /// Quantities that a probe can record.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs)]
 pub enum Quantity {
@@ -57,46 +66,51 @@ pub enum Quantity {
     DetF,
 }
 
-impl Quantity {
-    /// Names in the order of the quantities.
-    pub const NAMES: [&str; 17] = [
-        "ux",
-        "uy",
-        "uz",
-        "vx",
-        "vy",
-        "vz",
-        "ax",
-        "ay",
-        "az",
-        "sigma_xx",
-        "sigma_yy",
-        "sigma_zz",
-        "sigma_xy",
-        "sigma_yz",
-        "sigma_xz",
-        "von_mises",
-        "det_f",
-    ];
-
-    /// Its name in cases and columns.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-}
-
 /// What is written, and how often.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Keys)]
+#[keys(name = "[output]")]
 pub struct OutputSpec {
-    /// Steps between two outputs of the fields, 0 for none; without a value, frames are spread over
-    /// the run, with more of them while contact is closed.
+    /// Steps between two outputs of the fields; 0: none. Default: 0 if at_times is given; otherwise
+    /// about 80 outputs spread over the run, fewer of a large model, and up to 72 more while contact
+    /// is closed.
+    #[key(Count(0), optional = "20", with = fields_every)]
     pub fields_every: Option<usize>,
+    /// Field format: one VTU file per output, listed in fields.pvd; Run.to_vtkhdf in Python makes
+    /// one file of them.
+    #[key(Text, default = "\"vtu\"", with = only_vtu)]
+    #[serde(skip)]
+    pub format: (),
     /// Fields are also written at the steps nearest to these times.
+    #[key(Numbers(ANY), unit = "time", default = "[]")]
     pub at_times: Vec<f64>,
     /// Steps between two rows of history.csv.
+    #[key(Count(1), default = "1")]
     pub history_every: usize,
-    /// Steps between two checkpoints.
+    /// Steps between two checkpoints, from which a run that is killed is continued; after a power
+    /// failure, from the last one that was flushed to the disk (at most one in five seconds).
+    #[key(Count(1), default = "50")]
     pub checkpoint_every: usize,
+}
+
+/// None if frames are spread over the run.
+fn fields_every(v: &View) -> Option<usize> {
+    if v.has("fields_every") {
+        return v.get("fields_every");
+    }
+    v.has("at_times").then_some(0)
+}
+
+fn only_vtu(v: &View) -> Option<()> {
+    let format: String = v.get("format")?;
+    if format == "vtu" {
+        return Some(());
+    }
+    v.wrong(
+        "format",
+        "fields are written as VTU, the only format",
+        "one file per output remains readable if the run is killed; a single file for viewers is made after it",
+        "leave format out; after the run, carom.open(DIRECTORY).to_vtkhdf(FILE) in Python makes one VTKHDF file",
+    )
 }
 
 #[cfg(test)]
@@ -105,9 +119,9 @@ mod tests {
 
     #[test]
     fn names_of_quantities_are_those_of_cases() {
-        for name in Quantity::NAMES {
-            let read: Quantity = serde_json::from_value(name.into()).unwrap();
-            assert_eq!(read.name(), name);
+        for name in Quantity::WORDS {
+            let read: Quantity = serde_json::from_value((*name).into()).unwrap();
+            assert_eq!(read.word(), *name);
         }
     }
 }

@@ -105,7 +105,7 @@ fn cases_are_stored_as_before() {
         let here = root.to_string_lossy();
         let stored = case.to_json().unwrap().to_string().replace(&*here, "ROOT");
         let name = file.strip_prefix(&root).unwrap().to_string_lossy().into_owned();
-        now += &format!("{name} {}\n", blake3::hash(stored.as_bytes()).to_hex());
+        now += &[&name, " ", blake3::hash(stored.as_bytes()).to_hex().as_str(), "\n"].concat();
     }
     assert!(now.lines().count() > 50);
     check("stored.txt", &now);

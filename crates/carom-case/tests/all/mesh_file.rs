@@ -21,7 +21,9 @@ fn problem(set: &str) -> Diagnostic {
 #[test]
 fn the_shipped_case_stores_its_meshes() {
     let case = resolved(GMSH, &[]).unwrap();
-    let MeshSpec::File { file, surface, hash, sides, repairs, .. } = &case.bodies[1].mesh else { panic!() };
+    let MeshSpec::File(FileMesh { file, surface, hash, sides, repairs, .. }) = &case.bodies[1].mesh else {
+        panic!()
+    };
     assert!(file.is_absolute() && file.ends_with("impact.msh"));
     assert_eq!((surface.as_str(), hash.len(), repairs.len()), ("prism", 64, 0));
     assert_eq!(*sides, ["axis", "bottom", "right", "top"]);
@@ -148,7 +150,8 @@ fn a_plane_mesh_is_extruded() {
         );
         assert_eq!(made(&[&wedge, &element, "refine=2"]).cell_count(), 8 * cells);
     }
-    let MeshSpec::File { file, .. } = part(&[WEDGE]).unwrap().bodies[0].mesh.source().clone() else {
+    let MeshSpec::File(FileMesh { file, .. }) = part(&[WEDGE]).unwrap().bodies[0].mesh.source().clone()
+    else {
         panic!()
     };
     assert!(file.is_absolute() && file.ends_with("sector_order2.msh"));
@@ -174,7 +177,7 @@ fn errors_of_extruded_files_are_reported_at_their_key() {
             ["the extrusion of \"sector\"", "element = \"Hex8\", or set Mesh.ElementOrder = 2"],
         ),
         ("surface", "volume", ["unknown key `volume`", "surface"]),
-        (", surface = \"sector\"", "", ["needs `surface`", "surface = \"profile\""]),
+        (", surface = \"sector\"", "", ["needs `surface`", "surface = \"cylinder\""]),
         ("height = 0.5, ", "", ["needs `height`", "height = 0.2"]),
     ] {
         let problem = problem_of(old, new);

@@ -203,7 +203,7 @@ fn contact(contact: &ContactSpec, units: &Units) -> Row {
 
 fn probe(probe: &ProbeSpec, units: &Units) -> Row {
     let at: Vec<String> = probe.at.iter().map(|x| given(*x)).collect();
-    let quantities: Vec<String> = probe.record.iter().map(|quantity| symbol(quantity.name())).collect();
+    let quantities: Vec<String> = probe.record.iter().map(|quantity| symbol(quantity.word())).collect();
     let words = html! {
         (probe.body) " at (" (at.join(", ")) ") " (units.length) ": " (Label(&listed(&quantities)))
     };

@@ -12,7 +12,7 @@ use crate::quantity::quantity;
 /// Repairs of meshes that were read from files.
 pub(super) fn repairs(case: &Case) -> Vec<Event> {
     let of_body = |body: &BodySpec| match body.mesh.source() {
-        MeshSpec::File { repairs, .. } => repairs.clone(),
+        MeshSpec::File(file) => file.repairs.clone(),
         _ => Vec::new(),
     };
     let event = |name: &str, repair: &str| {

@@ -169,7 +169,7 @@ pub(super) fn unmatched_pressure(case: &Case, model: &Model) -> Vec<Found> {
             pressures.map(|expect| format!("the expected {}", expect.what)).collect();
         for probe in case.probes.iter().filter(|probe| probe.record.iter().any(stress)) {
             if zone.reaches(Vector(std::array::from_fn(|i| probe.at.get(i).copied().unwrap_or(0.0)))) {
-                let names: Vec<&str> = probe.record.iter().filter(|q| stress(q)).map(|q| q.name()).collect();
+                let names: Vec<&str> = probe.record.iter().filter(|q| stress(q)).map(|q| q.word()).collect();
                 places.push(format!("probe \"{}\" ({})", probe.name, names.join(", ")));
             }
         }

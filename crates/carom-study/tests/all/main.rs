@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+mod corpus;
 mod distributed;
 mod expectations;
 mod study;

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use carom::case::{
-    Case, Document, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
+    Case, Document, FileMesh, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
     SupportSpec, SurfaceSpec, gibibytes,
 };
 use carom::model::Model;
@@ -248,7 +248,7 @@ fn bodies(case: &Case, facts: &Facts) -> Vec<String> {
         if let Some(quality) = facts.scaled_jacobian.filter(|_| case.dimension == 3) {
             lines.push(more(&format!("smallest scaled Jacobian {quality:.2}")));
         }
-        if let MeshSpec::File { file, repairs, .. } = body.mesh.source() {
+        if let MeshSpec::File(FileMesh { file, repairs, .. }) = body.mesh.source() {
             lines.push(more(&format!("from {}", file.display())));
             lines.extend(repairs.iter().map(|repair| more(&format!("note: {repair}"))));
         }

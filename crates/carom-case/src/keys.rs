@@ -1,19 +1,19 @@
-//! The keys of a case file, declared once: the reader, the schema and the documentation use the
-//! same tables.
+//! The description of tables of keys: what a struct of the case or study file declares by
+//! `#[derive(Keys)]`. The reader, the schema and the documentation use the same descriptions.
 
-mod bodies;
-mod contact;
-mod loads;
 mod schemes;
-mod shapes;
-mod tables;
+mod value;
+mod view;
 
+pub use carom_keys::Keys;
 pub use schemes::schemes;
-pub use shapes::shapes;
-pub use tables::{CASE, EXPECT, OVERLAY};
+pub(crate) use value::word;
+pub use view::{Keys, Value, View};
+
+pub use crate::tree::{Node, Table as Given};
 
 /// A table of the case file: its keys, and those planned for later versions.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Table {
     /// Name in messages: `[[body]]`.
     pub name: &'static str,
@@ -23,6 +23,8 @@ pub struct Table {
     pub keys: &'static [Key],
     /// Keys planned for a later version.
     pub later: &'static [&'static str],
+    /// The dimension of the cases that may have it, if not all may.
+    pub dimension: Option<usize>,
 }
 
 /// One key.
@@ -67,8 +69,8 @@ pub enum Kind {
     /// A name: no dots, blanks, slashes, commas or quotes, because names of columns and sides
     /// contain it.
     Name,
-    /// One of these words; the second list is planned for a later version.
-    Choice(&'static [&'static str], &'static [&'static str]),
+    /// One of these words.
+    Choice(Words),
     /// A finite number in a range.
     Number(Range),
     /// A finite number in a range, or `false`.
@@ -83,8 +85,8 @@ pub enum Kind {
     Vector,
     /// `"x"`, `"y"` or `"z"`, or one number per dimension.
     Direction,
-    /// Any number of finite numbers.
-    Numbers,
+    /// Any number of finite numbers in a range.
+    Numbers(Range),
     /// At least this many points of the plane.
     Points(usize),
     /// A finite number, or a formula in these variables (`Y` and `Z` where they exist).
@@ -113,12 +115,36 @@ pub enum Kind {
     Table(&'static Table),
     /// Any number of tables, `[[name]]`.
     Tables(&'static Table),
+    /// Values of the case by key, in a study.
+    Changes,
+    /// Any number of such tables.
+    ChangeLists,
+    /// Lists of values of the case by key, in a study.
+    Grid,
     /// A table whose keys depend on the value of one of them.
     Variant(fn() -> &'static Variants),
 }
 
+/// Words of which one is chosen.
+#[derive(Clone, Copy, Debug)]
+pub struct Words {
+    /// Names.
+    pub now: &'static [&'static str],
+    /// Their meanings, in the same order; empty if the key explains them.
+    pub meanings: &'static [&'static str],
+    /// Words planned for a later version.
+    pub later: &'static [&'static str],
+}
+
+impl Words {
+    /// Words that need no explanation.
+    pub const fn plain(now: &'static [&'static str]) -> Self {
+        Self { now, meanings: &[], later: &[] }
+    }
+}
+
 /// Tables distinguished by the value of the key `tag`.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Variants {
     /// Name in messages.
     pub name: &'static str,
@@ -202,15 +228,7 @@ pub fn variables(all: &'static [&'static str], dimension: usize) -> Vec<&'static
     all.iter().copied().filter(exists).collect()
 }
 
-const fn table(name: &'static str, doc: &'static str, keys: &'static [Key]) -> Table {
-    Table { name, doc, keys, later: &[] }
-}
-
 impl Table {
-    const fn later(self, keys: &'static [&'static str]) -> Self {
-        Self { later: keys, ..self }
-    }
-
     /// A key by name.
     pub fn key(&self, name: &str) -> Option<&Key> {
         self.keys.iter().find(|k| k.name == name)
@@ -221,6 +239,19 @@ impl Variants {
     /// The table that belongs to a value of the tag.
     pub fn table(&self, tag: &str) -> Option<&Table> {
         self.tables.iter().find(|(value, _)| *value == tag).map(|(_, table)| table)
+    }
+
+    /// Whether a table is the one without the tag.
+    pub fn has_other(&self, table: &Given) -> bool {
+        self.or.and_then(|or| or.keys.first()).is_some_and(|key| table.get(key.name).is_some())
+    }
+
+    /// The description of a table; none if its tag is missing or unknown.
+    pub fn of(&self, table: &Given) -> Option<&Table> {
+        match self.or.filter(|_| self.has_other(table)) {
+            Some(or) => Some(or),
+            None => self.table(table.get(self.tag)?.text()?),
+        }
     }
 }
 
@@ -237,7 +268,7 @@ impl Kind {
         match self {
             Self::Text => "a string in quotes".into(),
             Self::Name => "a name in quotes".into(),
-            Self::Choice(choices, _) => format!("one of {}", words(choices)),
+            Self::Choice(choices) => format!("one of {}", words(choices.now)),
             Self::Number(range) => range.described(),
             Self::NumberOrFalse(range) => format!("{}, or false", range.described()),
             Self::Truth => "true or false".into(),
@@ -246,7 +277,7 @@ impl Kind {
             Self::Counts(least) => format!("a list of {} whole numbers ≥ {least}", dimension.unwrap_or(2)),
             Self::Vector => several(dimension),
             Self::Direction => format!("\"x\", \"y\" or \"z\", or {}", several(dimension)),
-            Self::Numbers => "a list of numbers".into(),
+            Self::Numbers(_) => "a list of numbers".into(),
             Self::Points(least) => format!("a list of at least {least} points [x, y]"),
             Self::Formula(_) => "a number or a formula in quotes".into(),
             Self::Formulas(_) => format!("{} or formulas in quotes", several(dimension)),
@@ -264,57 +295,66 @@ impl Kind {
             Self::Angular | Self::Rotation(_) => "a finite number".into(),
             Self::Table(_) => "a table { key = value }".into(),
             Self::Tables(table) => format!("a list of tables {}", table.name),
+            Self::Changes => "a table of values of the case".into(),
+            Self::ChangeLists => "a list of tables of values of the case".into(),
+            Self::Grid => "a table of lists of values of the case".into(),
             Self::Variant(variants) => format!("a table {{ {} = \"…\", … }}", variants().tag),
         }
     }
 }
 
-const fn key(name: &'static str, kind: Kind, doc: &'static str) -> Key {
-    Key {
-        name,
-        kind,
+impl Key {
+    /// A required key without anything else.
+    pub const NONE: Self = Self {
+        name: "",
+        kind: Kind::Text,
         unit: "",
         default: Default::Required,
         paper: None,
-        doc,
+        doc: "",
         example: "",
         later: "",
         unless: "",
+    };
+
+    /// The meaning with those of its words and the unit.
+    pub(crate) fn meaning(&self) -> String {
+        let mut meaning = vec![self.doc.to_owned()];
+        if let Kind::Choice(words) = self.kind {
+            let says = words.now.iter().zip(words.meanings);
+            meaning.extend(says.map(|(word, says)| format!("{word}: {says}")));
+        }
+        if !self.unit.is_empty() {
+            meaning.push(format!("Unit: {}.", self.unit));
+        }
+        meaning.join(" ")
     }
 }
 
-impl Key {
-    /// What it means, with its unit.
-    pub(crate) fn meaning(&self) -> String {
-        if self.unit.is_empty() { self.doc.to_owned() } else { format!("{} Unit: {}.", self.doc, self.unit) }
+/// The number of keys in all groups.
+pub const fn count(groups: &[&[Key]]) -> usize {
+    let mut count = 0;
+    let mut group = 0;
+    while group < groups.len() {
+        count += groups[group].len();
+        group += 1;
     }
+    count
+}
 
-    const fn unit(self, unit: &'static str) -> Self {
-        Self { unit, ..self }
+/// The keys of all groups, `N` in number.
+pub const fn joined<const N: usize>(groups: &[&[Key]]) -> [Key; N] {
+    let mut all = [Key::NONE; N];
+    let mut next = 0;
+    let mut group = 0;
+    while group < groups.len() {
+        let mut key = 0;
+        while key < groups[group].len() {
+            all[next] = groups[group][key];
+            next += 1;
+            key += 1;
+        }
+        group += 1;
     }
-
-    /// Optional, with an example; a table has those of its keys.
-    const fn optional(self, toml: &'static str) -> Self {
-        Self { default: Default::Absent, example: toml, ..self }
-    }
-
-    const fn default(self, toml: &'static str) -> Self {
-        Self { default: Default::Is(toml), example: toml, ..self }
-    }
-
-    const fn paper(self, toml: &'static str) -> Self {
-        Self { paper: Some(toml), ..self }
-    }
-
-    const fn example(self, toml: &'static str) -> Self {
-        Self { example: toml, ..self }
-    }
-
-    const fn unless(self, key: &'static str) -> Self {
-        Self { unless: key, ..self }
-    }
-
-    const fn later(self, what: &'static str) -> Self {
-        Self { later: what, ..self }
-    }
+    all
 }
