@@ -42,7 +42,8 @@ fn applied(text: &str, sets: &[String]) -> Result<DocumentMut, CaseError> {
     let mut case: DocumentMut = text.parse().map_err(|e| wrong("case", text, &e))?;
     for set in sets {
         apply(&mut case, set).ok_or_else(|| {
-            let (what, why) = ("an override of the run cannot be applied", set.as_str());
+            let what = "an override of the run cannot be applied";
+            let why = set.as_str();
             CaseError::of_file("--set", what, why, "")
         })?;
     }
@@ -180,7 +181,8 @@ fn apply(case: &mut DocumentMut, set: &str) -> Option<()> {
     }
     let mut item = case.as_item_mut();
     for (depth, key) in keys.iter().enumerate() {
-        let (key, rest) = (key.get(), &keys[depth + 1..]);
+        let key = key.get();
+        let rest = &keys[depth + 1..];
         item = match item {
             Item::ArrayOfTables(tables) => {
                 let is = |table: &toml_edit::Table| table.get("name").and_then(Item::as_str) == Some(key);

@@ -208,7 +208,8 @@ impl Range {
             (Some((low, closed)), None) => format!("a number {} {low}", if closed { "≥" } else { ">" }),
             (None, Some((high, closed))) => format!("a number {} {high}", if closed { "≤" } else { "<" }),
             (Some((low, left)), Some((high, right))) => {
-                let (left, right) = (if left { '[' } else { '(' }, if right { ']' } else { ')' });
+                let left = if left { '[' } else { '(' };
+                let right = if right { ']' } else { ')' };
                 format!("a number in {left}{low}, {high}{right}")
             }
         }

@@ -21,7 +21,8 @@ impl TableSpec {
     /// The factor at a time within the table.
     pub fn value(&self, time: f64) -> f64 {
         let after = self.times.partition_point(|t| *t <= time).clamp(1, self.times.len() - 1);
-        let (t, v) = (&self.times[after - 1..=after], &self.values[after - 1..=after]);
+        let t = &self.times[after - 1..=after];
+        let v = &self.values[after - 1..=after];
         let share = (time - t[0]) / (t[1] - t[0]);
         (1.0 - share) * v[0] + share * v[1]
     }
@@ -110,7 +111,8 @@ pub(super) fn columns(path: &Path, name: &str, wanted: [&str; 2]) -> Result<Tabl
             let wrong = || TableError::in_line(name, line, why());
             text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong)
         };
-        let (time, value) = (number(0)?, number(1)?);
+        let time = number(0)?;
+        let value = number(1)?;
         if let Some(before) = table.times.last().filter(|before| **before >= time) {
             let why = format!("times must increase, but {time} follows {before}");
             return Err(TableError::in_line(name, line, why));

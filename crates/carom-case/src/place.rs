@@ -132,7 +132,8 @@ mod tests {
         let mut mesh = made.clone();
         PlaceSpec { rotate: 30.0, axis: Vec::new(), about: vec![1.0, 0.0], shift: vec![-3.0, 0.25] }
             .apply(&mut mesh);
-        let (s, c) = (0.5, 0.75_f64.sqrt());
+        let s = 0.5;
+        let c = 0.75_f64.sqrt();
         let center = [1.0 - 2.0 * s - 3.0, 2.0 * c + 0.25];
         for n in mesh.side_nodes("arc").unwrap() {
             let r = (mesh.nodes[n][0] - center[0]).hypot(mesh.nodes[n][1] - center[1]);

@@ -124,7 +124,9 @@ impl Diagnostic {
         why: impl Into<String>,
         help: impl Into<String>,
     ) -> Self {
-        let (what, why, help) = (what.into(), why.into(), help.into());
+        let what = what.into();
+        let why = why.into();
+        let help = help.into();
         Self {
             file: file.to_owned(),
             line: 0,

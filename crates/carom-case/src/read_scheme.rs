@@ -20,7 +20,8 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
     };
     if let Some(parameter) = parameters.iter().find(|parameter| !parameter.contains('=')) {
         let what = format!("`{parameter}` is not a parameter");
-        let (why, help) = ("parameters are written KEY=VALUE", "write for example rho_inf=0.1");
+        let why = "parameters are written KEY=VALUE";
+        let help = "write for example rho_inf=0.1";
         return Err(CaseError::of_file("carom explain", what, why, help));
     }
     let kind_line = format!("kind = {}", toml_edit::Value::from(kind));

@@ -82,7 +82,8 @@ fn whole(factor: f64, n: usize) -> bool {
 /// The greatest common divisor: the multiples of 1/n are the factors with which all are whole.
 fn divisor(numbers: &[usize]) -> usize {
     let of_two = |a: usize, b: usize| {
-        let (mut a, mut b) = (a, b);
+        let mut a = a;
+        let mut b = b;
         while b > 0 {
             (a, b) = (b, a % b);
         }

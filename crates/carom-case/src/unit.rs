@@ -71,7 +71,8 @@ fn split(text: &str) -> Option<(&str, &str)> {
     let is_number = |end: &usize| text.is_char_boundary(*end) && text[..*end].trim().parse::<f64>().is_ok();
     let starts = text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
     let end = (1..=text.len()).rev().filter(|_| starts).find(is_number)?;
-    let (number, unit) = (text[..end].trim(), text[end..].trim());
+    let number = text[..end].trim();
+    let unit = text[end..].trim();
     (!unit.is_empty()).then_some((number, unit))
 }
 
@@ -99,7 +100,8 @@ fn shifted(number: &str, power: i32) -> Option<String> {
 /// Key, value and place of the value in a line `key = 2e-4 s`, which is no TOML.
 pub(super) fn bare(line: &str) -> Option<(&str, &str)> {
     let (key, rest) = line.split_once('=')?;
-    let (key, value) = (key.trim(), rest.split('#').next()?.trim());
+    let key = key.trim();
+    let value = rest.split('#').next()?.trim();
     let is_key = !key.is_empty() && key.chars().all(|c| c.is_alphanumeric() || "_-.".contains(c));
     let is_unit = |(_, unit): (&str, &str)| {
         unit.starts_with(char::is_alphabetic) && !unit.contains(['"', '\'', '[', ']', '{', '}', ',', '='])

@@ -174,7 +174,8 @@ pub fn factor(from: &str, to: &str) -> Option<f64> {
     if from == to {
         return Some(1.0);
     }
-    let ((a, one), (b, other)) = (value(from)?, value(to)?);
+    let (a, one) = value(from)?;
+    let (b, other) = value(to)?;
     (one == other).then_some(a / b)
 }
 

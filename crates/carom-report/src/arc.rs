@@ -29,8 +29,10 @@ pub(crate) fn places(run: &Recorded, name: &str, rows: &[&ContactRow]) -> (BTree
         .map_or(&[][..], Vec::as_slice);
     let first = run.fields.first().and_then(|entry| run.field(entry).ok());
     let rubbing: BTreeSet<u64> = rows.iter().map(|row| row.node).collect();
-    let (mut found, mut end) = (BTreeMap::new(), 0.0);
-    let (mut before, mut gaps) = (0, 0);
+    let mut found = BTreeMap::new();
+    let mut end = 0.0;
+    let mut before = 0;
+    let mut gaps = 0;
     for chain in chains {
         let point = |node: &usize| match &first {
             Some(set) => set.points.get(*node).copied(),

@@ -89,7 +89,8 @@ impl Axis {
         // Labels with more than three decimals are too wide; those of a large number stay as they
         // are.
         let exponent = if exponent == 0 && order < 0 && decimals(0) > 3 { -3 } else { exponent };
-        let (scale, decimals) = (10f64.powi(exponent), decimals(exponent));
+        let scale = 10f64.powi(exponent);
+        let decimals = decimals(exponent);
         let first = first_of(step);
         let last = last_of(step);
         let ticks = (first..=last.min(first + 50)).map(|i| {

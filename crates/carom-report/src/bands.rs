@@ -41,7 +41,8 @@ pub(crate) fn small_triangles(m: usize) -> impl Iterator<Item = ([usize; 3], [bo
     // Row j starts at `row(j)`: m + 1 − j points.
     let row = move |j: usize| j * (m + 1) - j * j.saturating_sub(1) / 2;
     (0..m).flat_map(move |j| (0..m - j).map(move |i| (j, i))).flat_map(move |(j, i)| {
-        let (low, high) = (row(j) + i, row(j + 1) + i);
+        let low = row(j) + i;
+        let high = row(j + 1) + i;
         let upright = ([low, low + 1, high], [j == 0, i + j + 1 == m, i == 0]);
         let turned = (i + 1 < m - j).then_some(([low + 1, high + 1, high], [false; 3]));
         std::iter::once(upright).chain(turned)
@@ -53,7 +54,8 @@ fn clip(polygon: &[(Point, f64)], level: f64, sign: f64) -> Vec<(Point, f64)> {
     let mut out = Vec::with_capacity(polygon.len() + 1);
     for (i, &(p, f)) in polygon.iter().enumerate() {
         let (q, g) = polygon[(i + 1) % polygon.len()];
-        let (inside, next) = (sign * (f - level) >= 0.0, sign * (g - level) >= 0.0);
+        let inside = sign * (f - level) >= 0.0;
+        let next = sign * (g - level) >= 0.0;
         if inside {
             out.push((p, f));
         }
@@ -101,12 +103,14 @@ pub(crate) fn color_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2
     values.sort_unstable_by(f64::total_cmp);
     let last = values.len().saturating_sub(1);
     let value = |k: usize| values.get(k).copied().unwrap_or(0.0);
-    let (low, high) = (value(last / 200).min(0.0), value(last - last / 200).max(0.0));
+    let low = value(last / 200).min(0.0);
+    let high = value(last - last / 200).max(0.0);
     let (low, high) = if low == high { (-1.0, 1.0) } else { (low, high) };
     // Edges are half a step off round numbers, so that zero stress is white.
     let step = round_step(high - low, 24.0);
     let [below, above] = [-low, high].map(|x| (x / step - 0.5).ceil().max(0.0));
-    let (low, high) = (-(below + 0.5) * step, (above + 0.5) * step);
+    let low = -(below + 0.5) * step;
+    let high = (above + 0.5) * step;
     (Bands { low, high, count: (below + above) as usize + 1 }, [value(0) < low, value(last) > high])
 }
 
@@ -121,7 +125,8 @@ pub(crate) fn positive_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool
 pub(crate) fn positive_bands_of(
     instants: impl Iterator<Item = impl Iterator<Item = f64>>,
 ) -> (Bands, [bool; 2]) {
-    let (mut high, mut most) = (0.0_f64, 0.0_f64);
+    let mut high = 0.0_f64;
+    let mut most = 0.0_f64;
     for values in instants {
         let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
         values.sort_unstable_by(f64::total_cmp);
@@ -166,7 +171,8 @@ mod tests {
         let corners = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let mut nodes = corners.to_vec();
         for e in 0..3 {
-            let (a, b) = (corners[e], corners[(e + 1) % 3]);
+            let a = corners[e];
+            let b = corners[(e + 1) % 3];
             let at = |s: f64| [0, 1, 2].map(|d| a[d] + s * (b[d] - a[d]));
             nodes.extend((1..degree).map(|i| at(i as f64 / degree as f64)));
         }
@@ -203,7 +209,8 @@ mod tests {
                     .map(|x| x.parse().unwrap())
                     .collect();
                 // Relative to the first corner.
-                let (mut at, mut corners) = ([0.0; 2], vec![[0.0; 2]]);
+                let mut at = [0.0; 2];
+                let mut corners = vec![[0.0; 2]];
                 for step in steps.as_chunks::<2>().0.iter().skip(1) {
                     at = [at[0] + step[0], at[1] + step[1]];
                     corners.push(at);

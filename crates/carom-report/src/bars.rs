@@ -13,7 +13,8 @@ pub(crate) fn figure(run: &Recorded, sets: &[(f64, FieldSet)], (during, files): 
     // Positions and values of a component along the bars, with a gap after each bar.
     let along = |set: &FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
         let values = set.array(array).filter(|a| component < a.components)?;
-        let (mut x, mut y) = (Vec::new(), Vec::new());
+        let mut x = Vec::new();
+        let mut y = Vec::new();
         for block in &set.blocks {
             let mut nodes = block.connectivity.clone();
             nodes.sort_by(|&a, &b| set.points[a][0].total_cmp(&set.points[b][0]));
@@ -29,7 +30,8 @@ pub(crate) fn figure(run: &Recorded, sets: &[(f64, FieldSet)], (during, files): 
         let line = |(t, set): &(f64, _)| along(set, array, component).map(|(x, y)| (*t, x, y));
         sets.iter().filter_map(line).collect()
     };
-    let (u, stress) = (lines("displacement", 0), lines("stress", 0));
+    let u = lines("displacement", 0);
+    let stress = lines("stress", 0);
     let unit = |array: &str| sets.first().map_or("", |(_, set)| set.unit(array));
     let mut panels = Vec::new();
     for (label, array, lines) in [("u_{x}", "displacement", &u), ("σ_{xx}", "stress", &stress)] {

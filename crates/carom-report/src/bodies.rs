@@ -94,7 +94,8 @@ pub(crate) fn triangles(nodes: &[usize]) -> Vec<Vec<usize>> {
 /// Filled bands of all cells: one path per colour.
 fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -> Point, width: f64) {
     let mut paths = vec![Pen::default(); bands.count];
-    let (mut n, mut corner) = (Vec::new(), Vec::new());
+    let mut n = Vec::new();
+    let mut corner = Vec::new();
     let halves = instant
         .cells
         .iter()
@@ -121,7 +122,8 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
         }
     }
     for (band, pen) in paths.iter().enumerate().filter(|(_, pen)| !pen.is_empty()) {
-        let (d, color) = (pen.data(), bands.color(band));
+        let d = pen.data();
+        let color = bands.color(band);
         // A stroke in the colour of the fill closes the hairlines between neighbours.
         let _ = writeln!(
             out,
@@ -137,12 +139,14 @@ const THIN: f64 = 5.0;
 /// Mean thickness of the cells in units of length: twice their area by the length of their outline.
 fn thickness(instant: &Instant) -> f64 {
     let at = |k: usize| instant.points[k];
-    let (mut area, mut around) = (0.0, 0.0);
+    let mut area = 0.0;
+    let mut around = 0.0;
     let mut found: BTreeMap<[usize; 2], usize> = BTreeMap::new();
     for (_, nodes) in &instant.cells {
         let count = corners(nodes);
         for e in 0..count {
-            let (a, b) = (nodes[e], nodes[(e + 1) % count]);
+            let a = nodes[e];
+            let b = nodes[(e + 1) % count];
             *found.entry([a.min(b), a.max(b)]).or_default() += 1;
             area += 0.5 * (at(a)[0] * at(b)[1] - at(b)[0] * at(a)[1]);
         }
@@ -155,7 +159,8 @@ fn thickness(instant: &Instant) -> f64 {
 
 /// Nodes of an edge from end to end.
 pub(crate) fn edge_nodes(degree: usize, nodes: &[usize], edge: usize) -> impl Iterator<Item = usize> {
-    let (inner, corners) = (degree - 1, corners(nodes));
+    let inner = degree - 1;
+    let corners = corners(nodes);
     let between = &nodes[corners + edge * inner..corners + (edge + 1) * inner];
     std::iter::once(nodes[edge]).chain(between.iter().copied()).chain([nodes[(edge + 1) % corners]])
 }
@@ -193,7 +198,8 @@ pub(crate) fn edges(instant: &Instant, to: &dyn Fn(Point) -> Point) -> [Pen; 2] 
     for (degree, nodes) in &instant.cells {
         let corners = corners(nodes);
         for e in 0..corners {
-            let (a, b) = (nodes[e], nodes[(e + 1) % corners]);
+            let a = nodes[e];
+            let b = nodes[(e + 1) % corners];
             let key = [a.min(b), a.max(b)];
             let entry = found.entry(key).or_insert_with(|| {
                 order.push(key);
@@ -235,7 +241,8 @@ pub(crate) fn figure(
 ) -> [String; 2] {
     let draw = |sheet: &mut Sheet, k: usize| {
         let instant = &instants[k];
-        let (to, scale) = (sheet.map(k), sheet.scale);
+        let to = sheet.map(k);
+        let scale = sheet.scale;
         let out = &mut sheet.out;
         out.push_str(&open_grid());
         // The colour of a body that is thinner than its outline is drawn as a line.

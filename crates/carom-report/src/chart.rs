@@ -382,7 +382,10 @@ fn dashes(panel: &Panel) -> Vec<&'static str> {
 /// The mark of an axis of time, along which the animation moves a line: left and right end, and top
 /// and bottom of each part of the line.
 pub(crate) fn time_axis((left, right): (f64, f64), axis: &Axis, spans: &[[f64; 2]], chart: &str) -> String {
-    let (low, high, exponent, offset) = (axis.low, axis.high, axis.exponent, axis.offset);
+    let low = axis.low;
+    let high = axis.high;
+    let exponent = axis.exponent;
+    let offset = axis.offset;
     let spans: Vec<String> = spans.iter().map(|[top, bottom]| format!("{top:.1} {bottom:.1}")).collect();
     format!(
         "<g class=\"time\" data-chart=\"{chart}\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} {exponent} {offset:e}\" \

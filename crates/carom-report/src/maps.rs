@@ -130,7 +130,8 @@ pub(crate) fn stick_slip(run: &Recorded) -> Option<Figure> {
     let [against, along] = words.unwrap_or(["slips backward", "slips forward"]);
     let mut table = String::from("contact,node,s,time,state,traction\n");
     for (side, (row, place)) in sides.iter().flat_map(|side| side.rows.iter().map(move |row| (side, row))) {
-        let (node, state) = (row.node, &row.friction);
+        let node = row.node;
+        let state = &row.friction;
         let _ =
             writeln!(table, "{},{node},{:?},{:?},{state},{:?}", side.name, place.at, row.time, row.traction);
     }

@@ -38,7 +38,8 @@ impl Points {
         let (first, last) = range(run.times());
         let cut = |o: &metrics::Overlay| {
             let (x, y) = o.within(first, last);
-            let (label, measured) = (measured_label(o), Some(o.name.clone()));
+            let label = measured_label(o);
+            let measured = Some(o.name.clone());
             Self { label, column: o.column.clone(), x, y, measured }
         };
         metrics::overlays(run).iter().map(cut).chain(expected(run)).collect()
@@ -136,7 +137,8 @@ mod tests {
 
     #[test]
     fn columns_are_linear_between_rows() {
-        let (times, values) = ([0.0, 1.0, 3.0], [0.0, 2.0, -2.0]);
+        let times = [0.0, 1.0, 3.0];
+        let values = [0.0, 2.0, -2.0];
         assert_eq!([0.0, 0.5, 2.0, 3.0].map(|t| between(&times, &values, t)), [0.0, 1.0, 0.0, -2.0]);
         assert!(between(&[], &[], 0.0).is_nan());
         assert_eq!(between(&[1.0], &[5.0], 1.0), 5.0);

@@ -181,7 +181,8 @@ impl Obstacle {
 
 /// The part of a segment inside a frame, between 0 and 1 from its start (Liang and Barsky 1984).
 fn inside(a: Point, b: Point, frame: [f64; 4]) -> Option<[f64; 2]> {
-    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    let mut from = 0.0_f64;
+    let mut to = 1.0_f64;
     for i in 0..2 {
         let d = b[i] - a[i];
         let ends = [frame[2 * i] - a[i], frame[2 * i + 1] - a[i]];

@@ -83,7 +83,8 @@ pub fn overlap(case: &Case, fields: &FieldSet, nodes: &[(usize, f64)]) -> Option
     let mut along = WIDTH - 8.0;
     for (k, block) in fields.blocks.iter().enumerate().rev() {
         along -= 7.6 * block.body.chars().count() as f64 + 34.0;
-        let (fill, y) = (fill(k), TOP + height + 10.0);
+        let fill = fill(k);
+        let y = TOP + height + 10.0;
         let _ = writeln!(
             out,
             "<rect x=\"{along:.1}\" y=\"{y:.1}\" width=\"14\" height=\"12\" fill=\"{fill}\" stroke=\"#888\"/>"

@@ -298,7 +298,8 @@ impl Placed<'_> {
         // Above the labels of vertical lines.
         let above = if pane.marks.is_empty() { 8.0 } else { 20.0 };
         let lines = lines(size);
-        let (first, rest) = (lines.first().cloned().unwrap_or_default(), lines.get(1..).unwrap_or_default());
+        let first = lines.first().cloned().unwrap_or_default();
+        let rest = lines.get(1..).unwrap_or_default();
         let last = text::fitted(&rest.join(" "), room / (BOLD * size));
         for (k, line) in [last, first].iter().filter(|line| !line.is_empty()).enumerate() {
             let place = format!("font-size=\"{size}\" font-weight=\"600\"");

@@ -44,7 +44,8 @@ pub(crate) fn powers(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(at) = rest.find('e') {
-        let (front, after) = (&rest[..at], &rest[at + 1..]);
+        let front = &rest[..at];
+        let after = &rest[at + 1..];
         let mantissa = front.len() - front.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
         let sign = if after.starts_with(['-', '−']) { "−" } else { "" };
         let digits = after.trim_start_matches(['-', '−', '+']);

@@ -87,7 +87,8 @@ impl Sheet {
             let before = broad.out.len();
             draw(&mut broad, k);
             if is_alike {
-                let (name, content) = (format!("picture-{k}"), broad.out.split_off(before));
+                let name = format!("picture-{k}");
+                let content = broad.out.split_off(before);
                 once(&mut broad.out, &name, "picture", &content);
                 let [from, to] = [&broad, &narrow].map(|sheet| sheet.picture(k));
                 again(&mut narrow.out, &name, from, to);
@@ -118,7 +119,8 @@ impl Sheet {
     /// The map from units of length to pixels in picture `k`.
     pub(crate) fn map(&self, k: usize) -> impl Fn(Point) -> Point + use<> {
         let [left, top, ..] = self.picture(k);
-        let (frame, scale) = (self.frame, self.scale);
+        let frame = self.frame;
+        let scale = self.scale;
         move |p| [left + (p[0] - frame[0]) * scale, top + (frame[3] - p[1]) * scale]
     }
 
@@ -151,7 +153,8 @@ impl Sheet {
 /// Vertical colour bar with ticks, and an arrow at an end beyond which there are values.
 pub(crate) fn color_bar(out: &mut String, legend: &Legend, x: f64, (top, bottom): (f64, f64)) {
     let Legend { bands, cut, label, unit } = *legend;
-    let (top, width) = (top + 22.0, 15.0);
+    let top = top + 22.0;
+    let width = 15.0;
     let h = (bottom - top) / bands.count as f64;
     let mut arrow = |end: f64, tip: f64, band: usize| {
         let color = bands.color(band);

@@ -40,7 +40,8 @@ pub(crate) fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)
     let total: f64 = lengths.iter().sum();
     let count = (total / spacing).round().max(1.0);
     let mut places = Vec::new();
-    let (mut k, mut before) = (0, 0.0);
+    let mut k = 0;
+    let mut before = 0.0;
     for i in 0..=count as usize {
         let s = total * i as f64 / count;
         while k + 1 < lengths.len() && before + lengths[k] < s {

@@ -132,7 +132,8 @@ impl Render for Code<'_> {
 /// A message of the program as prose: a minus sign before digits, and quotation marks.
 pub(crate) fn typeset(message: &str) -> String {
     let mut out = String::with_capacity(message.len());
-    let (mut before, mut open) = (' ', false);
+    let mut before = ' ';
+    let mut open = false;
     let mut characters = message.chars().peekable();
     while let Some(c) = characters.next() {
         let digit = characters.peek().is_some_and(char::is_ascii_digit);
@@ -181,7 +182,8 @@ pub(crate) fn fitted(label: &str, most: f64) -> String {
     }
     let characters: Vec<char> = label.chars().collect();
     let cut = |kept: usize| -> String {
-        let (front, back) = (kept.div_ceil(2), kept / 2);
+        let front = kept.div_ceil(2);
+        let back = kept / 2;
         let end = &characters[characters.len() - back..];
         characters[..front].iter().chain(&['…']).chain(end).collect()
     };

@@ -85,7 +85,8 @@ pub(crate) fn ends_and_extremes(rows: Range<usize>, value: impl Fn(usize) -> f64
 
 /// Distance of a point from the segment between two others.
 fn distance(p: Point, a: Point, b: Point) -> f64 {
-    let (d, r) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let r = [p[0] - a[0], p[1] - a[1]];
     let square = d[0] * d[0] + d[1] * d[1];
     let along = if square > 0.0 { ((r[0] * d[0] + r[1] * d[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
     (r[0] - along * d[0]).hypot(r[1] - along * d[1])
@@ -115,7 +116,8 @@ fn tenths(out: &mut String, n: i64) {
     if n < 0 {
         out.push('-');
     }
-    let (whole, rest) = (n.unsigned_abs() / 10, n.unsigned_abs() % 10);
+    let whole = n.unsigned_abs() / 10;
+    let rest = n.unsigned_abs() % 10;
     if whole > 0 || rest == 0 {
         out.push_str(&whole.to_string());
     }

@@ -44,7 +44,9 @@ fn page(v: &Verification, directory: &Path) -> String {
 }
 
 fn summary(v: &Verification) -> Markup {
-    let (rows, missed, stopped) = (v.rows().count(), v.missed(), v.stopped());
+    let rows = v.rows().count();
+    let missed = v.missed();
+    let stopped = v.stopped();
     let sourced = v.rows().filter(|(_, row)| row.verdict.source.is_some()).count();
     let (class, word) = match (missed, stopped) {
         (0, 0) if v.fast => ("finished", format!("all {rows} expected values of the fast selection are met")),

@@ -160,7 +160,8 @@ pub(crate) fn relaxed(
         return Err(vec![Problem::new(format!("contact[{first}].overlap"), what, why, help)]);
     }
     // The carriers of moving obstacles come last.
-    let (mut y, from) = (model.initial_position.clone(), &before.y);
+    let mut y = model.initial_position.clone();
+    let from = &before.y;
     y[..from.len()].copy_from_slice(from);
     Ok(Some(InitialState { y, v: model.initial_velocity.clone(), pairs: before.pairs }))
 }

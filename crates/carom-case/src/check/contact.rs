@@ -11,11 +11,12 @@ impl Check<'_> {
     /// Laws and enforcements that cannot be combined with each other or with the scheme.
     fn law(&mut self, contact: &ContactSpec) {
         let path = |key: &str| contact.path(key);
-        let (predictor, penalty) =
-            (contact.law == Some(ContactLaw::Predictor), contact.enforcement == Enforcement::Penalty);
+        let predictor = contact.law == Some(ContactLaw::Predictor);
+        let penalty = contact.enforcement == Enforcement::Penalty;
         let multiplier = contact.enforcement == Enforcement::Multiplier;
         let given = |key: &str| self.given("contact", contact.entry, key).is_some();
-        let (given_persistency, given_stiffness) = (given("persistency"), given("stiffness"));
+        let given_persistency = given("persistency");
+        let given_stiffness = given("stiffness");
         if contact.persistency == Persistency::Project && given_persistency && (predictor || penalty) {
             let by = if penalty { "enforcement = \"penalty\"" } else { "law = \"predictor\"" };
             let why = format!("with {by} there is nothing to project where contact begins");
@@ -77,7 +78,8 @@ impl Check<'_> {
         if contact.xi != ContactPoint::Frozen {
             return;
         }
-        let (draft, scheme) = (self.draft, self.scheme());
+        let draft = self.draft;
+        let scheme = self.scheme();
         let mut add = |what: &str, why: &str, hint: &str| {
             self.add(contact.path("xi"), format!("xi = \"frozen\" cannot be used {what}"), why, hint);
         };

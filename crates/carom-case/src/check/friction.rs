@@ -12,7 +12,8 @@ impl Check<'_> {
         if !contact.friction.exists() {
             return;
         }
-        let (draft, scheme) = (self.draft, self.scheme());
+        let draft = self.draft;
+        let scheme = self.scheme();
         let is_light = |side: &str| {
             let name = side.split_once('.').map_or(side, |(body, _)| body);
             draft.body.iter().flatten().any(|body| body.name == name && body.mass.is_redistributed())
@@ -78,8 +79,8 @@ impl Check<'_> {
         needs("mu_dynamic", mu_dynamic.is_some(), "`mu`", mu.is_some(), why);
         let why = "it is the rate of the transition from `mu` to `mu_dynamic`";
         needs("decay", decay.is_some(), "`mu_dynamic`", mu_dynamic.is_some(), why);
-        let (springs, why) =
-            (contact.enforcement != Enforcement::Multiplier, "a multiplier enforces stick exactly");
+        let springs = contact.enforcement != Enforcement::Multiplier;
+        let why = "a multiplier enforces stick exactly";
         needs("stick_stiffness", stick_stiffness.is_some(), "a penalty", springs, why);
         let constant = mu.as_ref().and_then(FormulaSpec::constant);
         if let (Some(stick), Some(slip)) = (constant, *mu_dynamic)

@@ -21,7 +21,8 @@ impl Check<'_> {
         let Some(end) = draft.time.as_ref().map(|t| t.end) else { return };
         for (i, load) in draft.load.iter().enumerate() {
             let Some(table) = load.as_ref().and_then(|l| l.table.as_ref()) else { continue };
-            let (first, last) = (table.times[0], table.times[table.times.len() - 1]);
+            let first = table.times[0];
+            let last = table.times[table.times.len() - 1];
             // The times n·Δt of the grid are rounded.
             if first > 0.0 || last < end * (1.0 - 1e-12) {
                 let what = format!("the table \"{}\" does not cover the run", table.file);
@@ -117,7 +118,8 @@ impl Check<'_> {
                 self.add(format!("body[{i}].velocity"), what, why, "leave it out");
             }
             if initial && body.position.is_some() {
-                let (what, why) = ("the body has an initial position", "[initial] sets the positions");
+                let what = "the body has an initial position";
+                let why = "[initial] sets the positions";
                 self.add(format!("body[{i}].position"), what, why, "leave it out");
             }
         }

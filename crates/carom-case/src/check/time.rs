@@ -19,7 +19,8 @@ impl TimeSpec {
 impl Check<'_> {
     pub(super) fn time(&mut self) {
         let Some(time) = &self.draft.time else { return };
-        let (end, step) = (time.end, time.step);
+        let end = time.end;
+        let step = time.step;
         if !(end.is_finite() && step.is_finite() && end > 0.0 && step > 0.0) {
             return;
         }
@@ -42,7 +43,8 @@ impl Check<'_> {
                 "choose a longer step or an earlier end",
             );
         } else if (end / step - steps).abs() > 1e-6 * steps {
-            let (below, above) = ((end / step).floor(), (end / step).ceil());
+            let below = (end / step).floor();
+            let above = (end / step).ceil();
             let why = format!("a run has a whole number of steps, and end / step = {}", rounded(end / step));
             let help = format!(
                 "use step = {} or step = {}, or end = {} or end = {}",

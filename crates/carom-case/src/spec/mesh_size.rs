@@ -160,7 +160,8 @@ impl MeshSpec {
             }
             Self::Interval { cells, .. } => (cells as f64, k * cells as f64 + 1.0),
             Self::Rectangle { cells: [nx, ny], .. } => {
-                let (nx, ny) = (nx as f64, ny as f64);
+                let nx = nx as f64;
+                let ny = ny as f64;
                 let each = if matches!(element, Element::Q4 | Element::Q9) { 1.0 } else { 2.0 };
                 (each * nx * ny, (k * nx + 1.0) * (k * ny + 1.0))
             }

@@ -16,7 +16,8 @@ impl Scale {
         let (low, high) =
             if values.0.is_finite() { (values.0.log10(), values.1.log10()) } else { (0.0, 1.0) };
         let air = if tight { 0.0 } else { 0.06 * (high - low).max(0.3) };
-        let (low, high) = (low - air, high + air);
+        let low = low - air;
+        let high = high + air;
         let (low, high) = if high - low < 0.2 { (low - 0.15, high + 0.15) } else { (low, high) };
         let every = ((high - low) / count).ceil().max(1.0) as i64;
         let factors: &[f64] = match high - low {

@@ -41,7 +41,8 @@ pub(crate) fn table(case: &Case, fields: Option<&FieldSet>) -> Markup {
 
 /// The plane state, or the cross-section of bars.
 fn model(case: &Case) -> Option<String> {
-    let (thickness, length) = (given(case.thickness), &case.units.length);
+    let thickness = given(case.thickness);
+    let length = &case.units.length;
     match (case.dimension, case.plane) {
         (1, _) => Some(format!("Bars, cross-section {thickness} {length}^2.")),
         (2, Plane::Strain) => Some(format!("Plane strain, thickness {thickness} {length}.")),

@@ -54,7 +54,8 @@ pub(crate) fn instants(run: &Recorded, sets: &[(f64, FieldSet)]) -> Option<[Stri
         pieces(&skin, places, &|_, node| mises[node], &view, to, scale)
     };
     let picture = |sheet: &mut Sheet, k: usize| {
-        let (place, to) = (sheet.picture(k), sheet.map(k));
+        let place = sheet.picture(k);
+        let to = sheet.map(k);
         underlay(&mut sheet.out, &lines[k], &view, &to);
         let pieces = seen(k, &to, sheet.scale);
         sheet.out.push_str(&image(&pieces, &Paint::Bands(&bands), place));

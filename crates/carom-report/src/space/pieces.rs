@@ -80,7 +80,8 @@ pub(crate) fn pieces(
     scale: f64,
 ) -> Vec<Piece> {
     let mut pieces = Vec::new();
-    let (mut n, mut corner) = (Vec::new(), Vec::new());
+    let mut n = Vec::new();
+    let mut corner = Vec::new();
     for facet in skin {
         let m = intervals(facet.degree, skin.len());
         let seen: Vec<Place> = facet.nodes.iter().map(|&k| view.of(places[k])).collect();

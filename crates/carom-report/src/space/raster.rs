@@ -112,8 +112,10 @@ fn checksum(bytes: &[u8]) -> u32 {
 pub(crate) fn image(pieces: &[Piece], paint: &Paint, [left, top, wide, high]: Rectangle) -> String {
     let fine = DENSITY * SAMPLES;
     let [across, down] = [wide, high].map(|s| (s * DENSITY as f64).ceil().max(1.0) as usize);
-    let (width, height) = (across * SAMPLES, down * SAMPLES);
-    let (depth, color) = (vec![f64::NEG_INFINITY; width * height], vec![[255; 3]; width * height]);
+    let width = across * SAMPLES;
+    let height = down * SAMPLES;
+    let depth = vec![f64::NEG_INFINITY; width * height];
+    let color = vec![[255; 3]; width * height];
     let mut samples = Samples { width, height, depth, color };
     let colors: Vec<[u8; 3]> = (0..paint.count()).map(|number| paint.rgb(number)).collect();
     for piece in pieces {
@@ -171,7 +173,8 @@ mod tests {
         }
         // The first one is at depth x/2, the second one at 5.
         for (at, color) in samples.color.iter().enumerate() {
-            let (x, y) = ((at % 20) as f64 + 0.5, (at / 20) as f64 + 0.5);
+            let x = (at % 20) as f64 + 0.5;
+            let y = (at / 20) as f64 + 0.5;
             let seen = if x + y > 20.0 { [255; 3] } else { colors[usize::from(x < 10.0)] };
             assert_eq!(*color, seen, "{x} {y}");
         }

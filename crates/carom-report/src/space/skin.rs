@@ -35,7 +35,8 @@ fn face(degree: usize, cell: &[usize], f: usize) -> Vec<usize> {
     let corners = FACES[f];
     let mut nodes: Vec<usize> = corners.iter().map(|&c| cell[c]).collect();
     for e in 0..3 {
-        let (a, b) = (corners[e], corners[(e + 1) % 3]);
+        let a = corners[e];
+        let b = corners[(e + 1) % 3];
         for (k, &[from, to]) in EDGES.iter().enumerate() {
             let on_edge = &cell[4 + k * inner..4 + (k + 1) * inner];
             if (from, to) == (a, b) {
@@ -177,7 +178,8 @@ pub(super) mod tests {
             let fields = solid(degree, 2, |[x, y, z]| [2.0 * x + 0.1 * y, 3.0 * y, 0.5 * z - 0.2 * x]);
             let skin = skin(&fields);
             assert_eq!(skin.len(), 6 * 4 * 2);
-            let (mut flux, mut edges) = (0.0, HashMap::new());
+            let mut flux = 0.0;
+            let mut edges = HashMap::new();
             for facet in &skin {
                 let at = |k: usize| fields.points[facet.nodes[k]];
                 let [a, b, c] = [at(0), at(1), at(2)];
@@ -227,7 +229,8 @@ pub(super) mod tests {
             let [a, b, c] = [0, 1, 2].map(|k| fields.points[facet.nodes[k]]);
             flux += 0.5 * a[0] * ((b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1]));
             for e in (0..3).filter(|&e| facet.sides[e]) {
-                let (p, q) = (facet.nodes[e], facet.nodes[(e + 1) % 3]);
+                let p = facet.nodes[e];
+                let q = facet.nodes[(e + 1) % 3];
                 *edges.entry([p.min(q), p.max(q)]).or_insert(0) += 1;
             }
         }

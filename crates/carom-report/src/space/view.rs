@@ -74,7 +74,8 @@ impl View {
             }
             let neck = plus(to, -6.0, along);
             let [a, b] = [2.6, -2.6].map(|s| plus(neck, s, [-along[1], along[0]]));
-            let (shaft, head) = (polyline(&[from, neck]), polyline(&[to, a, b]));
+            let shaft = polyline(&[from, neck]);
+            let head = polyline(&[to, a, b]);
             let _ = writeln!(
                 out,
                 "<path d=\"{shaft}\" stroke=\"#222\" stroke-width=\"1.2\"/><path d=\"{head}z\" fill=\"#222\"/>"

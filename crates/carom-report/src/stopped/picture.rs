@@ -131,7 +131,8 @@ fn draw(
     );
     key(&mut out, place, is_moved);
     let length = round_step(frame[1] - frame[0], 6.0);
-    let (y, pixels) = (height - 14.0, length * scale);
+    let y = height - 14.0;
+    let pixels = length * scale;
     let _ = writeln!(
         out,
         "<rect x=\"8\" y=\"{:.1}\" width=\"{:.1}\" height=\"22\" fill=\"#fff\" fill-opacity=\"0.8\"/>",
@@ -160,7 +161,8 @@ fn filled(around: [f64; 4], points: &[Point], (margin, width): (f64, f64)) -> ([
         frame[low] = around[low].max(all[low] - margin);
         frame[low + 1] = around[low + 1].min(all[low + 1] + margin);
     }
-    let (across, height) = (frame[1] - frame[0], frame[3] - frame[2]);
+    let across = frame[1] - frame[0];
+    let height = frame[3] - frame[2];
     let scale = (width / across).min((HEIGHT - KEY) / height);
     let beside = 0.5 * (width / scale - across);
     ([frame[0] - beside, frame[1] + beside, frame[2], frame[3]], scale)

@@ -72,7 +72,8 @@ pub(super) fn contact(study: &Study, end: f64) -> Option<(f64, f64)> {
     let of = |name: &str| -> Vec<f64> {
         study.rows.iter().filter(|row| !row.is_unsound()).filter_map(|row| row.value(name)).collect()
     };
-    let (first, last) = (range(&of("contact_start")).0, range(&of("contact_end")).1);
+    let first = range(&of("contact_start")).0;
+    let last = range(&of("contact_end")).1;
     let room = 0.25 * (last - first);
     let span = ((first - room).max(0.0), (last + room).min(end));
     (span.0.is_finite() && span.1 > span.0 && span.1 - span.0 < LONG * end).then_some(span)

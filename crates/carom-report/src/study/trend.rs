@@ -113,7 +113,8 @@ impl Trend {
     /// The slope with its interval, in units of the metric per unit of the key.
     fn words(&self, metric: &str, key: &str) -> Option<String> {
         let fit = self.fit?;
-        let (slope, interval) = (three(fit.slope), three(fit.uncertainty));
+        let slope = three(fit.slope);
+        let interval = three(fit.uncertainty);
         // An interval of round-off says nothing.
         let interval = if fit.uncertainty < 1e-6 * fit.slope.abs() { "0" } else { &interval };
         if self.power {
@@ -175,7 +176,8 @@ pub(super) fn plots(study: &Study) -> Vec<Plot> {
 
 fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
     let all: Vec<f64> = groups.iter().flat_map(|group| group.steps.iter().copied()).collect();
-    let (wide, single) = (spans(&all), groups.len() == 1);
+    let wide = spans(&all);
+    let single = groups.len() == 1;
     let labels = labels(study, groups);
     let pane = |metric: &&Metric| {
         let power = power(study, groups, &metric.name);

@@ -204,7 +204,8 @@ impl<'a> Scene<'a> {
     }
 
     fn positions(&self, time: f64) -> Vec<f64> {
-        let (model, d) = (self.model, self.model.dimension);
+        let model = self.model;
+        let d = self.model.dimension;
         let mut y = model.initial_position.clone();
         for (part, course) in model.parts.iter().zip(&self.courses) {
             let [v, g] = course.unwrap_or_default();
