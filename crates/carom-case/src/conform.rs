@@ -207,7 +207,8 @@ impl Check {
         path: String,
     ) -> (Problem, Option<&'a str>) {
         let all = || spec.tag.into_iter().chain(spec.keys.iter().map(|k| k.name));
-        // A key that is present already is not a likely suggestion, unless it may occur several times.
+        // A key that is present already is not a likely suggestion, unless it may occur several
+        // times.
         let several =
             |name: &str| spec.keys.iter().any(|k| k.name == name && matches!(k.kind, Kind::Tables(_)));
         let free = all().filter(|k| table.get(k).is_none() || several(k)).chain(spec.later.iter().copied());

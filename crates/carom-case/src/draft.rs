@@ -30,9 +30,9 @@ pub(crate) struct Draft {
     /// Out-of-plane thickness; in dimension 1, the area of the cross-section.
     #[key(Number(POSITIVE), unit = "length, or length² in dimension 1", default = "1.0")]
     pub(crate) thickness: Option<f64>,
-    /// Refinement of all meshes: built-in shapes are made with cells smaller by this factor; numbers
-    /// of `cells` are multiplied by it and must remain whole; for meshes of files it must be an
-    /// integer, the number of parts into which every edge is divided.
+    /// Refinement of all meshes: built-in shapes are made with cells smaller by this factor;
+    /// numbers of `cells` are multiplied by it and must remain whole; for meshes of files it must
+    /// be an integer, the number of parts into which every edge is divided.
     #[key(Number(AT_LEAST_ONE), default = "1.0")]
     pub(crate) refine: Option<f64>,
     /// Unit labels in figures and columns; values are not converted.

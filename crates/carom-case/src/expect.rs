@@ -14,8 +14,8 @@ use super::keys::{Keys, NOT_NEGATIVE, POSITIVE, Table, View};
 #[derive(Keys)]
 #[keys(name = "[[expect]]")]
 pub(crate) struct ExpectKeys {
-    /// Quantity: min | max | first | last | at T | time of min | time of max | range | drift | peak |
-    /// rms of a column or of [ columns with + - * / ]; the name of a metric; `stopped`; or an
+    /// Quantity: min | max | first | last | at T | time of min | time of max | range | drift | peak
+    /// | rms of a column or of [ columns with + - * / ]; the name of a metric; `stopped`; or an
     /// expression of these. Operators need blanks on both sides.
     #[key(example = "\"min A.uy\"")]
     what: String,
@@ -23,8 +23,8 @@ pub(crate) struct ExpectKeys {
     /// deviation from it.
     #[key(example = "\"-0.5*9.81*t^2\"")]
     formula: Option<String>,
-    /// Norm of the deviation: largest absolute value, or root mean square over the rows. Default: max;
-    /// for an order, rms.
+    /// Norm of the deviation: largest absolute value, or root mean square over the rows. Default:
+    /// max; for an order, rms.
     #[key(example = "\"rms\"")]
     norm: Option<Norm>,
     /// Number that divides the deviation.
@@ -54,7 +54,8 @@ pub(crate) struct ExpectKeys {
     /// Where the expected value comes from.
     #[key(example = "\"exact solution\"")]
     source: Option<String>,
-    /// In a study, with what = "order": the quantity or column whose order of convergence is observed.
+    /// In a study, with what = "order": the quantity or column whose order of convergence is
+    /// observed.
     #[key(example = "\"last A.uy\"")]
     of: Option<String>,
     /// With what = "order": the key of the case that is refined from arm to arm.

@@ -12,8 +12,8 @@ struct OverlayKeys {
     /// Name in figures and metrics.
     #[key(Name, example = "\"test-3\"")]
     name: String,
-    /// CSV file with a line of headings, relative to the folder of the case or study; its lines that
-    /// begin with # are comments.
+    /// CSV file with a line of headings, relative to the folder of the case or study; its lines
+    /// that begin with # are comments.
     #[key(example = "\"measured.csv\"")]
     file: String,
     /// The column of history.csv that was measured.

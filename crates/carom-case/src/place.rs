@@ -25,8 +25,8 @@ pub struct PlaceSpec {
 #[derive(Keys)]
 #[keys(name = "place")]
 pub(crate) struct PlaceKeys {
-    /// Angle of rotation, counter-clockwise, in dimension 2; the table of axis and angle in dimension
-    /// 3. Default: none.
+    /// Angle of rotation, counter-clockwise, in dimension 2; the table of axis and angle in
+    /// dimension 3. Default: none.
     #[key(Kind::Rotation(&Rotation::TABLE), unit = "degrees", optional = "30.0", with = rotation)]
     rotate: Rotation,
     /// Centre of rotation. Default: the origin.

@@ -95,8 +95,8 @@ pub fn read_table<T: Keys + Default>(document: &Document, folder: &Path, problem
     read.unwrap_or_default()
 }
 
-/// Drops problems, beyond those that are `known`, of tables that have a misspelt key: what depends on
-/// it is not judged.
+/// Drops problems, beyond those that are `known`, of tables that have a misspelt key: what depends
+/// on it is not judged.
 fn only_judged(problems: &mut Vec<Problem>, known: usize, misspelt: &[String]) {
     let tables = || misspelt.iter().filter(|table| !table.is_empty());
     let judged = problems.split_off(known);

@@ -14,14 +14,14 @@
 //! ```
 //!
 //! Entries of `key`: `name`, where it is not that of the field; `unit`; `example`, as TOML;
-//! `default` and `paper`, the default under `preset = "paper"`, as TOML; `optional`, an example of a
-//! key without which the field has the default of its type; `later`, other values that are planned;
-//! `unless`, the key that takes its place; `with`, a function that reads the field from the table; `given`, for a field that says only whether
-//! the key is given;
-//! `flatten`, for the keys of another struct in the same table; `required`, for a key that must be
-//! given though the type of its field has a default. A table that is `lenient` is read even where
-//! some of its keys cannot be; their fields have the defaults of their types. A field without `key` is no key, and
-//! gets the default of its type.
+//! `default` and `paper`, the default under `preset = "paper"`, as TOML; `optional`, an example of
+//! a key without which the field has the default of its type; `later`, other values that are
+//! planned; `unless`, the key that takes its place; `with`, a function that reads the field from
+//! the table; `given`, for a field that says only whether the key is given; `flatten`, for the keys
+//! of another struct in the same table; `required`, for a key that must be given though the type of
+//! its field has a default. A table that is `lenient` is read even where some of its keys cannot
+//! be; their fields have the defaults of their types. A field without `key` is no key, and gets the
+//! default of its type.
 
 mod attributes;
 mod fields;

@@ -41,8 +41,8 @@ pub(crate) fn words(name: &Ident, attributes: &[Attribute], data: &DataEnum) -> 
     })
 }
 
-/// An enum whose variants are tables, selected by the value of the key `tag`; one of them, a struct,
-/// may have no tag, and is recognised by its first key.
+/// An enum whose variants are tables, selected by the value of the key `tag`; one of them, a
+/// struct, may have no tag, and is recognised by its first key.
 pub(crate) fn tagged(name: &Ident, container: &Container, data: &DataEnum) -> syn::Result<TokenStream> {
     let Container { name: label, tag, tag_doc, .. } = container;
     let mut tables = Vec::new();

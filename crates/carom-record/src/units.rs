@@ -3,8 +3,8 @@
 //! units. The values of a record are never converted.
 //!
 //! Where a derived unit is a multiple of newton, pascal or joule with a prefix of steps of 1000, it
-//! has that name: with mm, ms and g forces are in N, stresses in MPa and energies in mJ. Otherwise it
-//! is composed of the labels.
+//! has that name: with mm, ms and g forces are in N, stresses in MPa and energies in mJ. Otherwise
+//! it is composed of the labels.
 //!
 //! A label is a product of units with integer powers; what follows a slash, or stands in brackets
 //! after it, is divided by. Definitions: *The International System of Units*, 9th ed., and NIST SP

@@ -33,8 +33,8 @@ struct Facts<'a> {
     metrics: Vec<metrics::Metric>,
 }
 
-/// The numbers fit for the run: of an impact, of bodies that are driven, of a static analysis, or of
-/// a free motion.
+/// The numbers fit for the run: of an impact, of bodies that are driven, of a static analysis, or
+/// of a free motion.
 pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
     let facts = Facts { run, scene, metrics: metrics_of(run) };
     let impact =

@@ -16,7 +16,8 @@ pub(crate) fn measured_label(overlay: &metrics::Overlay) -> String {
     format!("measured: {}", overlay.name)
 }
 
-/// Height in pixels of a panel of differences: of the column, linear between its rows, less the data.
+/// Height in pixels of a panel of differences: of the column, linear between its rows, less the
+/// data.
 const LOW: f64 = 84.0;
 
 /// Colours of measured data, in turn.

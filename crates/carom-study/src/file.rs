@@ -29,8 +29,9 @@ pub(crate) struct StudyFile {
     /// Values of the case that all arms and the computed reference replace.
     #[key(Changes, optional = "{ \"output.fields_every\" = 0 }", with = set)]
     pub(crate) set: Vec<(String, Value)>,
-    /// How the arms are made comparable: as methods, each run at every one of `steps` (matched-step),
-    /// or at the steps at which its cost equals that of the method `cost_of` (matched-cost).
+    /// How the arms are made comparable: as methods, each run at every one of `steps`
+    /// (matched-step), or at the steps at which its cost equals that of the method `cost_of`
+    /// (matched-cost).
     #[key(example = "\"matched-step\"")]
     pub(crate) design: Option<Kind>,
     /// Decreasing time steps of the levels of a design. Default: the step of the case.
@@ -46,15 +47,15 @@ pub(crate) struct StudyFile {
     /// Required accuracy: the largest acceptable error. Default: 0.05.
     #[key(Number(POSITIVE), example = "0.05")]
     pub(crate) accuracy: Option<f64>,
-    /// The arm that the others are compared with, "exact" for the formulas of [exact], or "fine" for a
-    /// computed reference.
+    /// The arm that the others are compared with, "exact" for the formulas of [exact], or "fine"
+    /// for a computed reference.
     #[key(example = "\"fine\"")]
     pub(crate) reference: Option<String>,
     /// The computed reference.
     #[key(optional = "{ refine = 8 }")]
     pub(crate) fine: Fine,
-    /// Every arm is run several times, with all combinations of these changes; claims and rankings are
-    /// then medians with intervals.
+    /// Every arm is run several times, with all combinations of these changes; claims and rankings
+    /// are then medians with intervals.
     #[key(Table(&Members::TABLE), example = "{ phases = 5 }", with = Members::ensemble)]
     pub(crate) ensemble: Option<Ensemble>,
     /// An arm: one variant of the case that is simulated.
@@ -78,15 +79,16 @@ pub(crate) struct StudyFile {
 #[derive(Default, Keys)]
 #[keys(name = "[fine]")]
 pub(crate) struct Fine {
-    /// Values of the case that it replaces. Default scheme: that of Chung and Hulbert with ρ∞ = 0.1.
+    /// Values of the case that it replaces. Default scheme: that of Chung and Hulbert with ρ∞ =
+    /// 0.1.
     #[key(Changes, optional = "{ \"time.scheme\" = { kind = \"hu\" } }", with = set)]
     pub(crate) set: Vec<(String, Value)>,
     /// Factor by which its step is smaller than the smallest one of the study.
     #[key(Count(1), default = "8")]
     pub(crate) refine: usize,
     /// Factors by which its meshes are finer than that of the case, one for each run, the coarsest
-    /// first; the steps shrink by the same factors, down to the finest one. Default: three steps, each
-    /// half of the one before, on the given mesh.
+    /// first; the steps shrink by the same factors, down to the finest one. Default: three steps,
+    /// each half of the one before, on the given mesh.
     #[key(Numbers(FACTOR), optional = "[1, 2, 4]", with = factors)]
     pub(crate) mesh: Vec<f64>,
 }
@@ -105,8 +107,8 @@ struct Members {
     /// Factors by which all meshes are refined; the first one is 1.
     #[key(Numbers(FACTOR), default = "[1]", with = factors)]
     mesh: Vec<f64>,
-    /// Changes of the case with each of which every run is repeated; an arm that sets one of their keys
-    /// itself is not.
+    /// Changes of the case with each of which every run is repeated; an arm that sets one of their
+    /// keys itself is not.
     #[key(ChangeLists, optional = "[{ \"contact.NAME.persistency\" = \"none\" }]", with = sets)]
     sets: Vec<Vec<String>>,
 }
@@ -121,14 +123,15 @@ pub(crate) struct ArmEntry {
     /// Case file of this arm, relative to the study file, instead of that of the study.
     #[key(example = "\"impact.toml\"")]
     pub(crate) case: Option<String>,
-    /// Values of the case that this arm replaces: "time.step" = 1e-3, "body.cylinder.element" = "T6".
+    /// Values of the case that this arm replaces: "time.step" = 1e-3, "body.cylinder.element" =
+    /// "T6".
     #[key(Changes, optional = "{ \"time.step\" = 1e-3 }", with = set)]
     pub(crate) set: Vec<(String, Value)>,
     /// Expectations of this arm, as the override that replaces those of its case.
     #[key(Tables(&EXPECT), optional = "[{ what = \"last A.uy\", value = 1.0, tolerance = 1e-3 }]", with = of_arm)]
     pub(crate) expect: Option<String>,
-    /// In a design of matched steps: at every level, this method has the step at which its cost equals
-    /// that of `cost_of`; meant for explicit schemes.
+    /// In a design of matched steps: at every level, this method has the step at which its cost
+    /// equals that of `cost_of`; meant for explicit schemes.
     #[key(Choice(Words::plain(&["cost"])), name = "match", optional = "\"cost\"", given)]
     pub(crate) by_cost: bool,
 }

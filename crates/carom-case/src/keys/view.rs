@@ -227,7 +227,8 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Values of the case that a key sets, with the dotted paths of their keys; none if it is not given.
+    /// Values of the case that a key sets, with the dotted paths of their keys; none if it is not
+    /// given.
     pub fn changes(&self, name: &str) -> Option<Vec<(String, toml_edit::Value)>> {
         self.table.get(name).map_or(Some(Vec::new()), changes)
     }

@@ -178,7 +178,8 @@ pub struct BodySpec {
     )]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<PlaceSpec>,
-    /// Positions at t = 0 as formulas in X, Y, Z, for a body that starts deformed. Default: X, Y, Z.
+    /// Positions at t = 0 as formulas in X, Y, Z, for a body that starts deformed. Default: X, Y,
+    /// Z.
     #[key(Formulas(IN_SPACE), unit = "length", example = "[\"X + 0.1*X*Y\", \"Y\"]")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position: Option<Vec<FormulaSpec>>,
@@ -213,7 +214,8 @@ struct Velocity {
     /// Velocity of the point `about`. Default: zero.
     #[key(Vector, unit = "length/time", optional = "[0.0, -1.0]", with = linear)]
     linear: Vec<f64>,
-    /// Angular velocity: counter-clockwise in dimension 2, [ωx, ωy, ωz] in dimension 3. Default: zero.
+    /// Angular velocity: counter-clockwise in dimension 2, [ωx, ωy, ωz] in dimension 3. Default:
+    /// zero.
     #[key(Kind::Angular, unit = "1/time", optional = "2.0", with = angular)]
     angular: Vec<f64>,
     /// Centre of the rotation; required with `angular`.
@@ -297,8 +299,8 @@ pub enum MassKind {
     Consistent,
     /// Diagonal, by HRZ scaling.
     Lumped,
-    /// No mass on contact nodes, and the smallest change at the other nodes that preserves the total
-    /// mass, the centre of mass and the second moments.
+    /// No mass on contact nodes, and the smallest change at the other nodes that preserves the
+    /// total mass, the centre of mass and the second moments.
     Redistributed,
 }
 

@@ -24,15 +24,15 @@ pub struct ContactSpec {
     #[key(Side, example = "\"cylinder.arc\"", unless = "between", with = secondary)]
     pub secondary: String,
     /// Primary (master) side, or a rigid obstacle: a table with one of `plane`, `circle`, `sphere`,
-    /// `cylinder`, `polyline` and `surface`. If it is the secondary side, this side is in contact with
-    /// itself.
+    /// `cylinder`, `polyline` and `surface`. If it is the secondary side, this side is in contact
+    /// with itself.
     #[key(SideOr(&Rigid::TABLE), example = "\"prism.top\"", unless = "between", with = primary)]
     pub primary: PrimarySpec,
     /// In place of `secondary` and `primary`: contact between all pairs of bodies and of each with
-    /// itself, for "all" bodies or those listed, on their whole boundaries or on a side `body.side`.
-    /// Of two bodies the softer one (smaller λ + 2μ) is secondary; if they are equal, the first. A
-    /// pair of bodies with a [[contact]] of its own is excluded. Contacts are named NAME-BODY-BODY and
-    /// NAME-BODY, or NAME if there is one.
+    /// itself, for "all" bodies or those listed, on their whole boundaries or on a side
+    /// `body.side`. Of two bodies the softer one (smaller λ + 2μ) is secondary; if they are equal,
+    /// the first. A pair of bodies with a [[contact]] of its own is excluded. Contacts are named
+    /// NAME-BODY-BODY and NAME-BODY, or NAME if there is one.
     #[key(Between, optional = "\"all\"", given)]
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub between: bool,
@@ -51,8 +51,8 @@ pub struct ContactSpec {
     #[key(default = "\"multiplier\"")]
     pub enforcement: Enforcement,
     /// Stiffness of the springs: of a penalty, as a multiple of the reference stiffness of the
-    /// secondary node; of an augmented Lagrangian, of the diagonal of the step's tangent at the node,
-    /// which changes the number of rounds; far too soft springs may bisect a step.
+    /// secondary node; of an augmented Lagrangian, of the diagonal of the step's tangent at the
+    /// node, which changes the number of rounds; far too soft springs may bisect a step.
     #[key(Number(POSITIVE), default = "10.0")]
     pub stiffness: f64,
     /// What contact constrains. Default: the law of the scheme.
@@ -83,9 +83,9 @@ pub struct ContactSpec {
     #[serde(default)]
     pub friction: FrictionSpec,
     /// Coefficient of restitution e: Newton's, for contact laws on velocities; with energy-momentum
-    /// and multipliers, e² is the fraction of the energy lost in contact that is returned where nodes
-    /// close or open (1 elastic, 0 inelastic); with paoli-schatzman, the weight of the previous
-    /// position.
+    /// and multipliers, e² is the fraction of the energy lost in contact that is returned where
+    /// nodes close or open (1 elastic, 0 inelastic); with paoli-schatzman, the weight of the
+    /// previous position.
     #[key(Number(RESTITUTION), default = "0.0")]
     pub restitution: f64,
 }
@@ -131,21 +131,22 @@ pub enum Method {
 pub struct FrictionSpec {
     /// Coefficient of Coulomb friction μ, for the slip of the secondary side on the primary one: a
     /// node sticks while its tangential force is less than μ times its normal force, and otherwise
-    /// slips against exactly this force. A number, or a formula of the node's reference position and
-    /// time. 0: no friction. Default: no friction, or that of `shear`. Dimensions 2 and 3.
+    /// slips against exactly this force. A number, or a formula of the node's reference position
+    /// and time. 0: no friction. Default: no friction, or that of `shear`. Dimensions 2 and 3.
     #[key(Formula(IN_SPACE_AND_TIME), example = "0.3")]
     pub mu: Option<FormulaSpec>,
-    /// Coefficient of friction of a node that slips, at most `mu`, which is then that of a node that
-    /// sticks. Where a formula `mu` is smaller, it is used for both. Default: `mu`.
+    /// Coefficient of friction of a node that slips, at most `mu`, which is then that of a node
+    /// that sticks. Where a formula `mu` is smaller, it is used for both. Default: `mu`.
     #[key(Number(NOT_NEGATIVE), example = "0.2")]
     pub mu_dynamic: Option<f64>,
-    /// Rate c of the transition to `mu_dynamic`: at a slip rate v, μ = mu_dynamic + (mu − mu_dynamic)
-    /// exp(−c v). In load steps, v is the rate in the time of their formulas. Default: an immediate
-    /// transition.
+    /// Rate c of the transition to `mu_dynamic`: at a slip rate v, μ = mu_dynamic + (mu −
+    /// mu_dynamic) exp(−c v). In load steps, v is the rate in the time of their formulas. Default:
+    /// an immediate transition.
     #[key(Number(POSITIVE), unit = "time/length", example = "10.0")]
     pub decay: Option<f64>,
-    /// Largest tangential stress (Tresca friction): a node slips against this stress times its area in
-    /// the reference configuration if μ times its normal force is larger, or if `mu` is not given.
+    /// Largest tangential stress (Tresca friction): a node slips against this stress times its area
+    /// in the reference configuration if μ times its normal force is larger, or if `mu` is not
+    /// given.
     #[key(Number(POSITIVE), unit = "stress", example = "1e3")]
     pub shear: Option<f64>,
     /// Stiffness of the tangential spring of a node that sticks, as `stiffness`. With enforcement =
@@ -188,8 +189,9 @@ pub enum Enforcement {
     Multiplier,
     /// Springs of potential k/2 min(g, 0)², whose energy counts as strain energy.
     Penalty,
-    /// An augmented Lagrangian: springs on multipliers that are updated in rounds (Uzawa iterations)
-    /// until gaps of closed nodes and slips of sticking ones are below 1e-10 of the size of the model.
+    /// An augmented Lagrangian: springs on multipliers that are updated in rounds (Uzawa
+    /// iterations) until gaps of closed nodes and slips of sticking ones are below 1e-10 of the
+    /// size of the model.
     Augmented,
 }
 

@@ -27,7 +27,8 @@ pub struct SupportSpec {
     pub moves: Vec<(usize, FormulaSpec)>,
 }
 
-/// Displacement boundary condition: sides fixed in some directions with `fix`, or moved with `move`.
+/// Displacement boundary condition: sides fixed in some directions with `fix`, or moved with
+/// `move`.
 #[derive(Keys)]
 #[keys(name = "[[support]]")]
 pub(crate) struct SupportKeys {
@@ -37,8 +38,8 @@ pub(crate) struct SupportKeys {
     /// Sides that are constrained.
     #[key(example = "[\"prism.bottom\"]")]
     on: Vec<String>,
-    /// Directions that are fixed; normal: that of the side, which must be plane and normal to x, y or
-    /// z.
+    /// Directions that are fixed; normal: that of the side, which must be plane and normal to x, y
+    /// or z.
     #[key(Choices(&["x", "y", "z", "normal"]), example = "[\"x\", \"y\"]")]
     fix: Option<Vec<String>>,
     /// Point about which the moment of the reactions is recorded too, for a named support in

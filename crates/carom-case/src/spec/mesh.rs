@@ -42,7 +42,8 @@ pub enum MeshSpec {
         /// Upper right corner.
         #[key(Vector, unit = "length", example = "[1.0, 1.0]")]
         max: [f64; 2],
-        /// Number of squares along x and y, each a quadrilateral or split into two triangles; or give `size`.
+        /// Number of squares along x and y, each a quadrilateral or split into two triangles; or
+        /// give `size`.
         #[key(optional = "[8, 4]", with = divided)]
         cells: [usize; 2],
         /// Largest side length of the squares; or give `cells`.
@@ -59,15 +60,16 @@ pub enum MeshSpec {
         /// Highest corner.
         #[key(Vector, unit = "length", example = "[1.0, 1.0, 1.0]")]
         max: [f64; 3],
-        /// Number of boxes along x, y and z, each a hexahedron or split into six tetrahedra; or give `size`.
+        /// Number of boxes along x, y and z, each a hexahedron or split into six tetrahedra; or
+        /// give `size`.
         #[key(optional = "[8, 4, 4]", with = divided)]
         cells: [usize; 3],
         /// Largest side length of the boxes; or give `cells`.
         #[key(Number(POSITIVE), unit = "length", optional = "0.1")]
         #[serde(skip)]
         size: (),
-        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the half
-        /// with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
+        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the
+        /// half with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
         /// plane_z. A cylinder or a tube is cut only if its axis is a coordinate.
         #[key(Choices(&AXES), optional = "[\"x\", \"y\"]", with = symmetry)]
         #[serde(default, skip_serializing_if = "whole_shape")]
@@ -85,8 +87,8 @@ pub enum MeshSpec {
         /// Edge length of the cells.
         #[key(Number(POSITIVE), unit = "length", example = "0.1")]
         size: f64,
-        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the half
-        /// with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
+        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the
+        /// half with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
         /// plane_z. A cylinder or a tube is cut only if its axis is a coordinate.
         #[key(Choices(&AXES), optional = "[\"x\", \"y\"]", with = symmetry)]
         #[serde(default, skip_serializing_if = "whole_shape")]
@@ -111,8 +113,8 @@ pub enum MeshSpec {
         /// Edge length of the cells.
         #[key(Number(POSITIVE), unit = "length", example = "0.1")]
         size: f64,
-        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the half
-        /// with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
+        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the
+        /// half with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
         /// plane_z. A cylinder or a tube is cut only if its axis is a coordinate.
         #[key(Choices(&AXES), optional = "[\"x\", \"y\"]", with = symmetry)]
         #[serde(default, skip_serializing_if = "whole_shape")]
@@ -140,19 +142,20 @@ pub enum MeshSpec {
         /// Edge length of the cells.
         #[key(Number(POSITIVE), unit = "length", example = "0.1")]
         size: f64,
-        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the half
-        /// with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
+        /// Directions in which a plane of symmetry through the middle of the shape cuts it; the
+        /// half with the larger coordinates is meshed, and its cut is the side plane_x, plane_y or
         /// plane_z. A cylinder or a tube is cut only if its axis is a coordinate.
         #[key(Choices(&AXES), optional = "[\"x\", \"y\"]", with = symmetry)]
         #[serde(default, skip_serializing_if = "whole_shape")]
         symmetry: [bool; 3],
     },
-    /// Dimension 3; a plane shape or a plane mesh of a file from z = 0 to its height; its sides, and
-    /// bottom, top (base, lid if it has sides of these names), and plane_x, plane_y, plane_z where
-    /// planes of symmetry cut it.
+    /// Dimension 3; a plane shape or a plane mesh of a file from z = 0 to its height; its sides,
+    /// and bottom, top (base, lid if it has sides of these names), and plane_x, plane_y, plane_z
+    /// where planes of symmetry cut it.
     #[keys(dimension = 3)]
     Extrusion {
-        /// The plane shape, or a surface of a Gmsh file; its cells are the faces of the solid cells.
+        /// The plane shape, or a surface of a Gmsh file; its cells are the faces of the solid
+        /// cells.
         #[key(
             Variant(plane_shapes),
             example = "{ shape = \"ring\", inner = 0.4, outer = 0.5, center = [0.0, 0.0], size = 0.1 }",
@@ -166,8 +169,8 @@ pub enum MeshSpec {
         #[key(Count(1), example = "2")]
         layers: usize,
         /// Directions in which a plane of symmetry through the middle of the shape cuts it, as of
-        /// other shapes: z, which leaves the upper half of the height; x and y of a rectangle; x of a
-        /// disc.
+        /// other shapes: z, which leaves the upper half of the height; x and y of a rectangle; x of
+        /// a disc.
         #[key(Choices(&AXES), optional = "[\"z\"]", with = symmetry)]
         #[serde(default, skip_serializing_if = "whole_shape")]
         symmetry: [bool; 3],
@@ -210,12 +213,13 @@ pub enum MeshSpec {
         /// Centre.
         #[key(Vector, unit = "length", example = "[0.0, 1.0]")]
         center: [f64; 2],
-        /// Edge length of the cells; smaller if the ring is thinner than this length, or if the inner
-        /// circle would have fewer than twelve edges.
+        /// Edge length of the cells; smaller if the ring is thinner than this length, or if the
+        /// inner circle would have fewer than twelve edges.
         #[key(Number(POSITIVE), unit = "length", example = "0.05")]
         size: f64,
     },
-    /// Any simple polygon, convex or not; sides side1 (from the first point to the second), side2, ….
+    /// Any simple polygon, convex or not; sides side1 (from the first point to the second), side2,
+    /// ….
     #[keys(dimension = 2)]
     Polygon {
         /// Corners in order, clockwise or counter-clockwise.

@@ -8,8 +8,8 @@ use crate::keys::Kind::{Formula, Formulas, Number, Points, Vector};
 use crate::keys::{IN_TIME, Keys, NOT_NEGATIVE, POSITIVE, View};
 use crate::surface_file::SurfaceSpec;
 
-/// A primary surface that does not deform: exactly one shape, fixed, moved by `motion`, or free with
-/// `mass`.
+/// A primary surface that does not deform: exactly one shape, fixed, moved by `motion`, or free
+/// with `mass`.
 #[derive(Keys)]
 #[keys(name = "a rigid primary", later = ["spring"])]
 pub(crate) struct Rigid {

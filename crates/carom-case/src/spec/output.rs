@@ -71,8 +71,8 @@ pub enum Quantity {
 #[keys(name = "[output]")]
 pub struct OutputSpec {
     /// Steps between two outputs of the fields; 0: none. Default: 0 if at_times is given; otherwise
-    /// about 80 outputs spread over the run, fewer of a large model, and up to 72 more while contact
-    /// is closed.
+    /// about 80 outputs spread over the run, fewer of a large model, and up to 72 more while
+    /// contact is closed.
     #[key(Count(0), optional = "20", with = fields_every)]
     pub fields_every: Option<usize>,
     /// Field format: one VTU file per output, listed in fields.pvd; Run.to_vtkhdf in Python makes

@@ -41,8 +41,8 @@ pub struct TimeSpec {
     #[key(NumberOrFalse(POSITIVE), default = "0.02", paper = "false", with = energy_guard)]
     pub energy_guard: Option<f64>,
     /// What takes a grid step at which the run would stop, because no substep is accepted or the
-    /// energy guard stops it. Its steps are counted in the column `fallbacks`. For implicit schemes,
-    /// multipliers without friction and restitution, and bodies with mass.
+    /// energy guard stops it. Its steps are counted in the column `fallbacks`. For implicit
+    /// schemes, multipliers without friction and restitution, and bodies with mass.
     #[key(default = "\"none\"")]
     #[serde(default)]
     pub fallback: Fallback,
@@ -151,7 +151,8 @@ pub enum LinearRule {
 #[serde(rename_all = "kebab-case")]
 pub enum TangentRule {
     /// The factorisation is reused as a preconditioner over iterations and steps as long as this
-    /// reduces the cost; with 10 000 unknowns or more it is in single precision where this suffices.
+    /// reduces the cost; with 10 000 unknowns or more it is in single precision where this
+    /// suffices.
     #[default]
     Frozen,
     /// As frozen, always in double precision.

@@ -23,7 +23,8 @@ pub(crate) fn of_any_column() -> impl Iterator<Item = &'static Definition> {
 }
 
 impl Definition {
-    /// The metric with its value: named `COLUMN:METRIC` of a column, `METRIC:NAME` of measured data.
+    /// The metric with its value: named `COLUMN:METRIC` of a column, `METRIC:NAME` of measured
+    /// data.
     fn metric(&self, given: &Given) -> Metric {
         let Definition { name, unit, meaning, value, .. } = self;
         let name = match (given.measured, given.column) {

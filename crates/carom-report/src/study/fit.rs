@@ -13,8 +13,8 @@ const STUDENT: [f64; 30] = [
     2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042,
 ];
 
-/// The 97.5 % quantile for any number of degrees of freedom: of the table, or of the expansion about
-/// the normal distribution (M. Abramowitz, I. Stegun, *Handbook of Mathematical Functions*,
+/// The 97.5 % quantile for any number of degrees of freedom: of the table, or of the expansion
+/// about the normal distribution (M. Abramowitz, I. Stegun, *Handbook of Mathematical Functions*,
 /// 26.7.5).
 fn student(degrees: usize) -> f64 {
     const Z: f64 = 1.959_963_985;

@@ -431,7 +431,8 @@ pub(crate) mod tests {
         assert!(middle < 1e-9 && plot.panes[0].curves[3].x == [8.0, 4.0, 2.0, 1.0], "{:?}", plot.panes[0]);
     }
 
-    /// A metric that differs between groups only is no trend; arms are said to be left out where some are.
+    /// A metric that differs between groups only is no trend; arms are said to be left out where
+    /// some are.
     #[test]
     fn a_trend_varies_against_its_key() {
         let arm =

@@ -1,9 +1,9 @@
 //! Warning about a step that does not resolve an impact.
 //!
-//! The motion of the softer body (impedance ρc) in an impact is made of pressure waves that cross it
-//! along the contact's normal and return: the force of a bar that strikes a wall lasts 2L/c, and
-//! that on a soft bar grows by a stair of this length (K. L. Johnson, *Contact Mechanics*, 1985,
-//! § 11.1). A step Δt > L/c mixes such a wave with its return. Where it also takes a large share of
+//! The motion of the softer body (impedance ρc) in an impact is made of pressure waves that cross
+//! it along the contact's normal and return: the force of a bar that strikes a wall lasts 2L/c, and
+//! that on a soft bar grows by a stair of this length (K. L. Johnson, *Contact Mechanics*, 1985, §
+//! 11.1). A step Δt > L/c mixes such a wave with its return. Where it also takes a large share of
 //! the velocity of approach in one step, the force of this step is an impulse divided by Δt.
 //!
 //! Measured with bars and discs of one and of two materials, with a damped scheme of order two and

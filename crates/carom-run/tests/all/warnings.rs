@@ -114,7 +114,7 @@ fn a_secondary_side_coarser_than_the_primary() {
 #[test]
 fn pressures_on_meshes_that_do_not_match() {
     let unmatched = "unmatched-pressure".to_owned();
-    let at_b = found(IMPACT, &["probe.B.record=[\"sigma_yy\"]"]);
+    let at_b = found(IMPACT, &["probe.B.record=[\"uy\", \"sigma_yy\"]"]);
     assert!(at_b.iter().any(|(id, what)| *id == unmatched && what.contains("probe \"B\"")), "{at_b:?}");
     // It is given where the case asks for what is wrong.
     for unasked in ["probe.B.record=[\"uy\"]", "probe.B.at=[0.0, -0.3]"] {

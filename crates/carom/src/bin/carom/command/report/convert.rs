@@ -28,8 +28,8 @@ pub(super) struct Converter {
 
 #[cfg(feature = "figures")]
 impl Converter {
-    /// A converter with the pixels of a PNG per pixel of a figure, and the only font or those that are
-    /// installed.
+    /// A converter with the pixels of a PNG per pixel of a figure, and the only font or those that
+    /// are installed.
     pub(super) fn new(scale: f32, font: Option<&Path>) -> Result<Self, Failure> {
         let mut options = usvg::Options::default();
         let fonts = options.fontdb_mut();
