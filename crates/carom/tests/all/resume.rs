@@ -12,7 +12,7 @@ fn place(name: &str) -> Place {
     let place = Place::new(name);
     // With the frames of a case that does not say how often.
     let lines = IMPACT.split_inclusive('\n').filter(|line| !line.starts_with("fields_every"));
-    place.file("case.toml", &lines.collect::<String>());
+    place.file("case.toml", lines.collect::<String>());
     place
 }
 
