@@ -31,7 +31,7 @@ pub struct ContactSpec {
     /// In place of `secondary` and `primary`: contact between all pairs of bodies and of each with
     /// itself, for "all" bodies or those listed, on their whole boundaries or on a side
     /// `body.side`. Of two bodies the softer one (smaller λ + 2μ) is secondary; if they are equal,
-    /// the first. A pair of bodies with a [[contact]] of its own is excluded. Contacts are named
+    /// the first. A pair of bodies with a contact of its own is excluded. Contacts are named
     /// NAME-BODY-BODY and NAME-BODY, or NAME if there is one.
     #[key(Between, optional = "\"all\"", given)]
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
