@@ -46,7 +46,8 @@ class Browser:
         self.of, ours = os.pipe()
         command = [
             program, "--headless", "--hide-scrollbars", f"--user-data-dir={profile}", "--no-first-run",
-            # WebGL without a graphics card; the page itself is drawn without it, which is ten times faster.
+            # WebGL without a graphics card; the page itself is drawn without it, which is ten times
+            # faster.
             "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
             "--disable-gpu-rasterization",
             "--remote-debugging-pipe", "--host-resolver-rules=MAP * ~NOTFOUND", "--window-size=1000,1400",

@@ -1,5 +1,5 @@
-//! What the broad picture of a figure has, shown again in the narrow one, so that a page holds it
-//! once.
+//! Parts of the broad picture of a figure that the narrow one shows again, so that a page holds
+//! them once.
 
 use std::fmt::Write as _;
 

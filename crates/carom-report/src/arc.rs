@@ -78,7 +78,7 @@ pub(crate) fn places(run: &Recorded, name: &str, rows: &[&ContactRow]) -> (BTree
     (found, first.is_some())
 }
 
-/// What is said of the places: quantity and unit.
+/// Quantity and unit of the places.
 pub(crate) fn label(is_length: bool, unit: &str) -> (&'static str, &str) {
     if is_length { ("arc length s", unit) } else { ("node along the side", "") }
 }

@@ -10,7 +10,7 @@ pub(crate) struct Axis {
     pub(crate) ticks: Vec<(f64, String)>,
     /// Tick labels are in units of 10^exponent.
     pub(crate) exponent: i32,
-    /// What is subtracted from the values of the tick labels.
+    /// Number that is subtracted from the values of the tick labels.
     pub(crate) offset: f64,
 }
 
@@ -101,7 +101,7 @@ impl Axis {
         Self { low, high, ticks: ticks.collect(), exponent, offset }
     }
 
-    /// The same axis with tick labels in units of another power of ten, if they have at most three
+    /// This axis with tick labels in units of another power of ten, if they have at most three
     /// decimals.
     pub(crate) fn in_units_of(mut self, exponent: i32) -> Self {
         let [(first, _), (second, _), ..] = &self.ticks[..] else { return self };

@@ -120,7 +120,7 @@ pub(crate) fn positive_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool
     positive_bands_of(std::iter::once(values))
 }
 
-/// The same for the values at several instants: all but the largest 0.5 % at each of them. In all
+/// Range of the values at several instants: all but the largest 0.5 % at each of them. In all
 /// instants together those of a short impact would be few.
 pub(crate) fn positive_bands_of(
     instants: impl Iterator<Item = impl Iterator<Item = f64>>,

@@ -15,7 +15,7 @@ use crate::pen::{NOTHING, Pen, Point, around, open_grid};
 use crate::sheet::{Legend, Sheet};
 use crate::symbols::{distance, mark, wall};
 
-/// One instant: deformed nodes, the quantity at them, and the cells.
+/// An instant: deformed nodes, the quantity at them, and the cells.
 #[derive(Default)]
 pub(crate) struct Instant {
     pub(crate) time: String,
@@ -63,7 +63,7 @@ pub(crate) fn places<const D: usize>(fields: &FieldSet) -> Vec<[f64; D]> {
     moved(fields, "displacement")
 }
 
-/// The same with another displacement of the points.
+/// This instant with another displacement of the points.
 pub(crate) fn moved<const D: usize>(fields: &FieldSet, array: &str) -> Vec<[f64; D]> {
     let u = fields.array(array).filter(|a| a.components == 3);
     let at =

@@ -77,7 +77,7 @@ pub(crate) fn open(title: &str, width: f64, height: f64) -> String {
     opened("picture", title, width, height)
 }
 
-/// The same of a class: a dark page shows a `chart` in light colours on dark ground.
+/// Opens a picture of a class: a dark page shows a `chart` in light colours on dark ground.
 pub(crate) fn opened(class: &str, title: &str, width: f64, height: f64) -> String {
     format!(
         "<svg class=\"{class}\" xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 \

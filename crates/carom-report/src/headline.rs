@@ -26,7 +26,7 @@ impl Number {
     }
 }
 
-/// What is known of a run.
+/// Results of a run from which its headline numbers are chosen.
 struct Facts<'a> {
     run: &'a Recorded,
     scene: Option<&'a Scene>,

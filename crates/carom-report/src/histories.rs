@@ -125,7 +125,7 @@ impl<'a> Histories<'a> {
         sources(self.run, &self.points, columns)
     }
 
-    /// What shading means.
+    /// The sentence of a caption that says what shading means.
     pub(crate) fn shaded(&self) -> &'static str {
         if self.shades.is_empty() { "" } else { " Shaded: contact." }
     }

@@ -52,7 +52,7 @@ fn sides(run: &Recorded, chosen: impl Fn(&ContactRow, &Place) -> bool) -> Vec<Si
     sides
 }
 
-/// What the colours of a map mean.
+/// Meaning of the colours of a map.
 enum Colours {
     /// Ranges of the pressure, and whether values lie outside.
     Pressure(Bands, [bool; 2]),

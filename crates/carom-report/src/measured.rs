@@ -34,7 +34,7 @@ pub(crate) struct Points {
 }
 
 impl Points {
-    /// Those of all measured data, then those of all expectations.
+    /// Points of all measured data, then those of all expectations.
     pub(crate) fn all(run: &Run) -> Vec<Self> {
         let (first, last) = range(run.times());
         let cut = |o: &metrics::Overlay| {

@@ -128,7 +128,7 @@ impl Obstacle {
         run.column(&self.center[0]).is_some()
     }
 
-    /// Its surface as the case gives it.
+    /// Surface of the obstacle as the case gives it.
     pub(crate) fn at_first(&self) -> &Walk {
         &self.walk
     }
@@ -139,7 +139,7 @@ impl Obstacle {
         (self.is_plane && self.moves(run)).then(|| self.at(run, time)[STRAIGHT / 2])
     }
 
-    /// Its points and normals in one list, relative to the point about which it turns.
+    /// Points and normals of an obstacle in one list, relative to the point about which it turns.
     pub(crate) fn base(&self) -> Vec<f64> {
         let rounded = |x: f64| format!("{x:.6e}").parse().unwrap_or(0.0);
         let [a, b] = self.about;
@@ -153,7 +153,7 @@ impl Obstacle {
         [place(0).unwrap_or(self.about[0]), place(1).unwrap_or(self.about[1]), sin, cos]
     }
 
-    /// Its surface at a recorded time.
+    /// Surface of the obstacle at a recorded time.
     pub(crate) fn at(&self, run: &Run, time: f64) -> Walk {
         let [x, y, sin, cos] = self.pose(run, time);
         let turned = |v: Point| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]];

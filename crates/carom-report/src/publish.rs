@@ -35,7 +35,7 @@ pub enum ReportError {
         directory: PathBuf,
         /// Version of Carom that wrote the record.
         version: String,
-        /// What is missing or unknown.
+        /// Error that names the missing or unknown key.
         source: serde_json::Error,
     },
     /// The page or a figure cannot be written.

@@ -85,7 +85,7 @@ fn is_meaningful(run: &Recorded, metric: &Metric) -> bool {
     !of_turning || (has_ended && has_turned())
 }
 
-/// What is missing where the first contact lasts to the end.
+/// The sentence about a first contact that lasts to the end, if it does.
 fn unfinished(run: &Recorded) -> Option<String> {
     let episode = metrics::first_episode(&run.history).filter(|episode| episode.end.is_none())?;
     let last = run.times().last().filter(|last| run.times()[episode.start] < **last)?;

@@ -112,7 +112,7 @@ fn forces(run: &Recorded, entries: &[&FieldEntry]) -> HashMap<u64, Vec<f64>> {
     if count > 2 * dimension * FORCES { HashMap::new() } else { found }
 }
 
-/// What is rigid, in the plane: outlines with normals, and their positions in each frame.
+/// Rigid obstacles in the plane: outlines with normals, and their positions in each frame.
 fn rigid_in_plane(run: &Recorded, entries: &[&FieldEntry], bodies: [f64; 4]) -> (Value, [f64; 4]) {
     let all = obstacles::all(run, bodies);
     let mut frame = bodies;
@@ -130,7 +130,7 @@ fn rigid_in_plane(run: &Recorded, entries: &[&FieldEntry], bodies: [f64; 4]) -> 
     (json!({ "walls": walls, "marked": marked, "poses": poses }), frame)
 }
 
-/// What is rigid, in space: lines, and how far they have moved in each frame.
+/// Rigid obstacles in space: lines, and how far they have moved in each frame.
 fn rigid_in_space(run: &Recorded, entries: &[&FieldEntry], bodies: [Place; 2]) -> Value {
     let all = wires(run, bodies);
     let lines: Vec<Vec<f32>> = all
@@ -284,7 +284,7 @@ fn box_of(places: &[Place], frames: &[Frame], dimension: usize) -> [Place; 2] {
     [low, high]
 }
 
-/// What is played.
+/// The sentence about the recorded instants that are played.
 fn frames_in_words(run: &Recorded, shown: &[&FieldEntry]) -> String {
     let last = shown.last().map_or(0.0, |entry| entry.time);
     let ends = run.times().last().is_some_and(|end| end - last > 1e-9 * end.abs());
@@ -296,7 +296,7 @@ fn frames_in_words(run: &Recorded, shown: &[&FieldEntry]) -> String {
         .replace(" = ", "\u{a0}=\u{a0}")
 }
 
-/// What can be chosen below the picture.
+/// Choices below the picture.
 struct Tools<'a> {
     names: &'a [&'a str],
     is_solid: bool,

@@ -23,7 +23,7 @@ pub(crate) fn significant(x: f64, digits: usize) -> String {
     text.replace('-', "−")
 }
 
-/// The same without zeros at the end of its decimals, for values that were given.
+/// Typesets a number without zeros at the end of its decimals, for values that were given.
 pub(crate) fn given(x: f64) -> String {
     let text = significant(x, 4);
     let (number, power) = text.split_once('×').unwrap_or((&text, ""));

@@ -25,7 +25,7 @@ const ALIKE: f64 = 0.7;
 const TALLEST: f64 = 420.0;
 const LINE: f64 = 30.0;
 
-/// What a colour bar shows: bands, whether values lie below and above them, quantity and unit.
+/// Content of a colour bar: bands, whether values lie below and above them, quantity and unit.
 #[derive(Clone, Copy)]
 pub(crate) struct Legend<'a> {
     pub(crate) bands: &'a Bands,

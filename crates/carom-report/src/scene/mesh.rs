@@ -1,4 +1,4 @@
-//! What is drawn of the bodies: triangles between nodes, their edges, and the cells of solids.
+//! Drawn parts of the bodies: triangles between nodes, their edges, and the cells of solids.
 
 use std::collections::{BTreeMap, HashSet};
 

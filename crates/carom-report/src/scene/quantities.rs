@@ -1,4 +1,4 @@
-//! What the bodies can be coloured by: the recorded fields, component by component.
+//! Quantities by which the bodies can be coloured: the recorded fields, component by component.
 
 use carom_record::FieldSet;
 use maud::{Markup, PreEscaped};
@@ -10,14 +10,14 @@ use crate::chart::open;
 use crate::recorded::Recorded;
 use crate::sheet::{Legend, color_bar};
 
-/// One stored number per node and frame: a component of an array of the field files.
+/// A stored number per node and frame: a component of an array of the field files.
 pub(super) struct Channel {
     array: String,
     component: usize,
 }
 
 impl Channel {
-    /// Its values at some points of a field file.
+    /// Values of the component at some points of a field file.
     pub(super) fn values(&self, fields: &FieldSet, nodes: &[usize]) -> Option<Vec<f32>> {
         let array = fields.array(&self.array)?;
         let value = |&node: &usize| array.values[array.components * node + self.component];
@@ -191,7 +191,7 @@ impl Quantity {
         }
     }
 
-    /// Its rule and colours for the script, and its colour bar.
+    /// Rule and colours of the quantity for the script, and its colour bar.
     pub(super) fn shown(&self, frames: &[Frame]) -> (Value, Markup) {
         let (bands, cut) = self.bands(frames);
         let colors: Vec<String> = (0..bands.count).map(|band| bands.color(band)).collect();

@@ -124,7 +124,7 @@ fn one(name: &str, primary: &PrimarySpec, surface: &[[Place; 2]], [low, high]: [
 }
 
 impl Wire {
-    /// Its lines where it is at first.
+    /// Lines of the obstacle where it is at first.
     pub(crate) fn at_first(&self) -> &[[Place; 2]] {
         &self.segments
     }
@@ -134,7 +134,7 @@ impl Wire {
         [0, 1, 2].map(|i| recorded(run, &self.center[i], time).map_or(0.0, |place| place - self.origin[i]))
     }
 
-    /// Its lines at a recorded time.
+    /// Lines of the obstacle at a recorded time.
     pub(crate) fn at(&self, run: &Run, time: f64) -> Vec<[Place; 2]> {
         let moved = self.moved(run, time);
         self.segments.iter().map(|piece| piece.map(|p| plus(p, 1.0, moved))).collect()
