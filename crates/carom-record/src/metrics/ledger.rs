@@ -54,7 +54,8 @@ pub(super) fn by_integrator(given: &Given) -> Option<f64> {
     share(given, "dissipation")
 }
 
-/// None without friction.
+/// Energy dissipated by friction, divided by the largest kinetic + strain energy; none without
+/// friction.
 pub(super) fn by_friction(given: &Given) -> Option<f64> {
     given.history.column("slip")?;
     share(given, "friction_work").map(|work| 0.0 - work)
