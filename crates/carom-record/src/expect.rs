@@ -133,7 +133,7 @@ fn plain(x: f64) -> String {
     if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) { format!("{x:e}") } else { x.to_string() }
 }
 
-/// A share in per cent, without the digits that the product by 100 makes up.
+/// A share in per cent, rounded so that multiplying by 100 adds no digits.
 fn short_percent(share: f64) -> f64 {
     format!("{:.9e}", share * 100.0).parse().unwrap_or(share * 100.0)
 }

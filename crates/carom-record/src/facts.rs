@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::expect::Expect;
 
-/// Facts of a case, which whoever resolves the case states.
+/// Properties of a case, filled in by whoever resolves the case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Facts {
     /// Title of the case.
@@ -40,7 +40,7 @@ pub struct ContactFacts {
     pub name: String,
     /// Secondary side, `body.side`.
     pub secondary: String,
-    /// Primary side; none of an obstacle.
+    /// Primary side, `body.side`; none if the other party is an obstacle.
     pub primary: Option<String>,
     /// Whether the obstacle moves.
     pub moves: bool,
@@ -55,7 +55,7 @@ pub struct ContactFacts {
 pub struct Held {
     /// Name of the body.
     pub body: String,
-    /// The axis; none across the side, whose direction is not recorded.
+    /// Number of the axis; none for the direction across a side, which is not recorded.
     pub axis: Option<usize>,
     /// Displacement as a formula in X, Y, Z and t; none where it is constant.
     pub displacement: Option<String>,

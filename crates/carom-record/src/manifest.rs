@@ -15,13 +15,13 @@ const PER_BYTE: f64 = 3.0;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
-    /// Being computed, or killed; resumable.
+    /// The run is being computed, or its process was killed; it can be resumed.
     Running,
     /// The run reached its end time.
     Finished,
-    /// Interrupted by the user; resumable.
+    /// The run was interrupted by the user; it can be resumed.
     Stopped,
-    /// Could not continue, for the given reason.
+    /// The run could not continue, for the reason in the manifest.
     Failed,
 }
 
@@ -32,7 +32,7 @@ pub struct Column {
     pub name: String,
     /// Unit label; empty for counts and ratios.
     pub unit: String,
-    /// Short description.
+    /// Short description of the column.
     pub description: String,
     /// Written without a decimal point.
     pub integer: bool,
@@ -198,7 +198,7 @@ pub const PHASES: [(&str, &str); 5] = [
 ];
 
 impl Manifest {
-    /// The manifest of a run that starts now on this machine.
+    /// Creates the manifest of a run that starts now on this machine.
     pub fn new(
         version: &str,
         facts: Facts,

@@ -35,7 +35,7 @@ pub struct ContactRow<'a> {
     pub eta: f64,
     /// Gap, negative for penetration.
     pub gap: f64,
-    /// Multiplier, negative for compression.
+    /// Contact multiplier in units of force, negative for compression.
     pub multiplier: f64,
     /// −multiplier / consistent weight of the node.
     pub pressure: f64,

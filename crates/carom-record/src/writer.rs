@@ -42,7 +42,7 @@ pub struct RunWriter {
     /// The last flush; none since the run was reopened.
     flushed: Option<Instant>,
     flush_interval: Duration,
-    /// Locked as long as this writer exists.
+    /// Lock file of the run directory, locked as long as this writer exists.
     _lock: File,
 }
 

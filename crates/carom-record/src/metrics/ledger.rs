@@ -17,7 +17,8 @@ use crate::History;
 /// `time.energy_guard`.
 pub const MUCH_CREATED: f64 = 0.02;
 
-/// ΔE of every row, and the largest kinetic + strain energy.
+/// Change ΔE of the total energy less the external work, by row; and the largest kinetic + strain
+/// energy.
 fn changes(history: &History) -> Option<(Vec<f64>, f64)> {
     let [kinetic, strain, total, work] =
         ["kinetic", "strain", "total", "external_work"].map(|name| history.column(name));

@@ -53,7 +53,7 @@ pub struct StudyManifest {
     pub arms: Vec<Arm>,
     /// Changes with which the arms are repeated, if they are run several times.
     pub ensemble: Option<Ensemble>,
-    /// The members of all arms, except for the arms themselves.
+    /// Repetitions of the arms in an ensemble, without the arms themselves.
     pub members: Vec<Arm>,
     /// Measured data with which all arms are compared.
     pub overlays: Vec<Overlay>,

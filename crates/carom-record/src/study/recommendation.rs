@@ -19,7 +19,7 @@ use super::row::Row;
 /// The recommendation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// The recommended arm.
+    /// Number of the recommended arm.
     pub arm: usize,
     /// Methods (arms in a study without methods) that are not distinguished from the recommended
     /// one.
@@ -286,8 +286,8 @@ impl Field<'_> {
         self.levels.iter().filter(|level| self.is_first(method, level)).count()
     }
 
-    /// Methods with a worse mean place that nevertheless share the first place with the best one,
-    /// with the number of levels.
+    /// Methods that have a worse mean place than the best one but share the first place with it,
+    /// with the number of levels at which they do.
     fn sharing(&self, best: &Best) -> Vec<(String, usize)> {
         if self.goal == Goal::Cost {
             return Vec::new();
