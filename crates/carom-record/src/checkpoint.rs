@@ -29,7 +29,7 @@ pub(crate) struct Header {
     pub(crate) step: u64,
     /// Rows in `history.csv`, without the header.
     pub(crate) rows: u64,
-    /// Of `history.csv`, `contact.csv`, `log.jsonl`.
+    /// Length and checksum of `history.csv`, `contact.csv` and `log.jsonl`, in this order.
     pub(crate) streams: [Extent; 3],
     pub(crate) fields: Vec<FieldEntry>,
     /// Checksum of each entry's file.
@@ -37,20 +37,20 @@ pub(crate) struct Header {
     pub(crate) payload: u64,
 }
 
-/// One of the checkpoints of a run.
+/// Generation of a checkpoint; a run writes A and B alternately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Generation {
     A,
     B,
-    /// The last one that was flushed to the disk, under a second name until the run ends.
+    /// The last checkpoint that was flushed to the disk, under a second name until the run ends.
     Flushed,
 }
 
 impl Generation {
-    /// All of them.
+    /// All generations.
     pub(crate) const ALL: [Self; 3] = [Self::A, Self::B, Self::Flushed];
 
-    /// The one to write after this one.
+    /// The generation to write after this one.
     pub(crate) fn next(self) -> Self {
         match self {
             Self::A => Self::B,

@@ -12,7 +12,7 @@ pub enum RecordError {
     Io {
         /// The operation.
         action: &'static str,
-        /// Its path.
+        /// Path of the file or directory that the operation failed on.
         path: PathBuf,
         /// The error of the system.
         source: io::Error,
@@ -38,16 +38,16 @@ pub enum RecordError {
     /// A file of the record is damaged.
     #[error("{}; {hint}", damage(path, *line, what))]
     Corrupt {
-        /// The file.
+        /// The damaged file.
         path: PathBuf,
         /// Line, counted from 1, in files that have lines.
         line: Option<u64>,
-        /// What is wrong.
+        /// Description of the damage.
         what: String,
-        /// What to try.
+        /// Suggested remedy.
         hint: &'static str,
     },
-    /// Fields of an earlier version in one file.
+    /// Fields that an earlier version wrote into one file, which is no longer read.
     #[error("{} is of an earlier version, whose fields are no longer read; open it in ParaView, and move it out of the run directory to read the rest of the record", path.display())]
     OneFile {
         /// The file.
@@ -74,7 +74,7 @@ pub enum RecordError {
     /// Lengths inside a field set contradict each other.
     #[error("field set: {what}")]
     Field {
-        /// Which ones, with numbers.
+        /// The lengths that contradict each other, with numbers.
         what: String,
     },
 }
@@ -85,13 +85,13 @@ impl RecordError {
         if self.is_system() { 4 } else { 2 }
     }
 
-    /// Whether it is an error of the system, and not of the record.
+    /// Whether this is an error of the operating system rather than of the record.
     pub fn is_system(&self) -> bool {
         matches!(self, Self::Io { .. })
     }
 
-    /// What is wrong, without what to try, which may not be possible where the record is a part of
-    /// something else.
+    /// Description of the error without its remedy, for records that are a part of something else,
+    /// where the remedy may not be possible.
     pub fn what(&self) -> String {
         match self {
             Self::Corrupt { path, line, what, .. } => damage(path, *line, what),
@@ -99,7 +99,7 @@ impl RecordError {
         }
     }
 
-    /// What to try; none if the message says it, or if it depends on the system.
+    /// Suggested remedy; none if the message contains it, or if it depends on the system.
     pub fn cure(&self) -> Option<String> {
         Some(match self {
             Self::Io { .. }

@@ -13,15 +13,15 @@ pub struct Expect {
     pub source: Option<String>,
     /// Expected values of the column; the bound is then on the deviation from them.
     pub deviation: Option<Deviation>,
-    /// Only rows after this time are used.
+    /// Time after which rows are used; none for all rows from the first.
     pub after: Option<f64>,
-    /// Only rows before this time are used.
+    /// Time before which rows are used; none for all rows up to the last.
     pub before: Option<f64>,
     /// The order of convergence, in a study.
     pub order: Option<OrderOf>,
     /// Norm of deviations, if given.
     pub norm: Option<Norm>,
-    /// Skipped by `carom verify --fast`.
+    /// Whether `carom verify --fast` skips the expectation.
     pub slow: bool,
 }
 
@@ -32,7 +32,7 @@ pub struct OrderOf {
     pub of: String,
     /// Key of the case that is refined.
     pub against: String,
-    /// Only arms whose names contain this.
+    /// Text that the names of the arms contain, if not all arms are used.
     pub arms: Option<String>,
     /// The exact value of the quantity.
     pub exact: Option<f64>,
@@ -47,7 +47,7 @@ pub struct Deviation {
     pub exact: Option<String>,
     /// Norm of the deviation.
     pub norm: Norm,
-    /// Number that divides it.
+    /// Number by which the norm of the deviation is divided.
     pub scale: f64,
 }
 
@@ -133,7 +133,7 @@ fn plain(x: f64) -> String {
     if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) { format!("{x:e}") } else { x.to_string() }
 }
 
-/// A share in per cent, without the digits that the product by 100 makes up.
+/// A share in per cent, rounded so that multiplying by 100 adds no digits.
 fn short_percent(share: f64) -> f64 {
     format!("{:.9e}", share * 100.0).parse().unwrap_or(share * 100.0)
 }

@@ -44,15 +44,15 @@ impl Deviation {
 }
 
 impl Expect {
-    /// The rows that are used.
+    /// Window of time whose rows are used.
     pub fn window(&self) -> Window {
         Window { after: self.after, before: self.before }
     }
 
-    /// The value in a record.
+    /// Value of the quantity in a record.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why the quantity has no value.
     pub fn got(&self, records: &dyn Records) -> Result<f64, Reason> {
         match &self.deviation {
             _ if self.order.is_some() => Err("an order of convergence needs a study".into()),
@@ -83,7 +83,7 @@ impl Expect {
         words
     }
 
-    /// The outcome for a value, or for a missing one.
+    /// The outcome for the value of the quantity, or for the reason why it has none.
     pub fn verdict(&self, got: Result<f64, Reason>) -> Expectation {
         let (got, why) = match got {
             Ok(got) => (Some(got), None),
@@ -102,7 +102,7 @@ impl Expect {
         }
     }
 
-    /// Whether it depends on `stopped`.
+    /// Whether the expectation depends on `stopped`, so that an unfinished record is judged too.
     pub fn asks_whether_stopped(&self) -> bool {
         self.deviation.is_none() && Question::parse(&self.what).is_ok_and(|q| q.asks_whether_stopped())
     }

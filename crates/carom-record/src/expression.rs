@@ -56,7 +56,7 @@ impl Sign {
 }
 
 impl<Q> Expression<Q> {
-    /// The same expression with its quantities replaced.
+    /// Replaces each quantity of the expression by the result of a function.
     pub(crate) fn map<R>(&self, of: &dyn Fn(&Q) -> R) -> Expression<R> {
         match self {
             Self::Number(value) => Expression::Number(*value),
@@ -67,7 +67,7 @@ impl<Q> Expression<Q> {
         }
     }
 
-    /// Its value, given the values of its quantities.
+    /// Evaluates the expression, with a function that gives the value of each quantity.
     ///
     /// # Errors
     /// The first error of a quantity.
@@ -82,7 +82,7 @@ impl<Q> Expression<Q> {
         }
     }
 
-    /// Its quantities, from left to right.
+    /// Quantities of the expression, from left to right.
     pub fn quantities(&self) -> Vec<&Q> {
         match self {
             Self::Number(_) => Vec::new(),

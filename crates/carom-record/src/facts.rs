@@ -1,4 +1,4 @@
-//! What metrics, expectations and studies need to know of a case.
+//! Properties of a case that metrics, expectations and studies depend on.
 
 use std::collections::BTreeMap;
 
@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::expect::Expect;
 
-/// Facts of a case, which whoever resolves the case states.
+/// Properties of a case, filled in by whoever resolves the case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Facts {
-    /// Title.
+    /// Title of the case.
     pub title: String,
     /// Space dimension: 1, 2 or 3.
     pub dimension: usize,
-    /// Whether it has load steps in place of time steps.
+    /// Whether the case has load steps instead of time steps.
     pub is_static: bool,
     /// End time.
     pub end: f64,
@@ -36,11 +36,11 @@ pub struct Facts {
 /// Facts of a contact.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactFacts {
-    /// Its name; the columns of an obstacle that moves have it too.
+    /// Name of the contact; it is also in the names of the columns of a moving obstacle.
     pub name: String,
     /// Secondary side, `body.side`.
     pub secondary: String,
-    /// Primary side; none of an obstacle.
+    /// Primary side, `body.side`; none if the other party is an obstacle.
     pub primary: Option<String>,
     /// Whether the obstacle moves.
     pub moves: bool,
@@ -53,9 +53,9 @@ pub struct ContactFacts {
 /// An axis along which a support holds a body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Held {
-    /// The body.
+    /// Name of the body.
     pub body: String,
-    /// The axis; none across the side, whose direction is not recorded.
+    /// Number of the axis; none for the direction across a side, which is not recorded.
     pub axis: Option<usize>,
     /// Displacement as a formula in X, Y, Z and t; none where it is constant.
     pub displacement: Option<String>,
@@ -64,15 +64,15 @@ pub struct Held {
 /// Measured data, in the units of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Overlay {
-    /// Its name in figures and metrics.
+    /// Name of the data in figures and metrics.
     pub name: String,
-    /// The column of the history that it belongs to.
+    /// Column of the history that the data belong to.
     pub column: String,
-    /// Times.
+    /// Times of the data.
     pub times: Vec<f64>,
-    /// Values.
+    /// Values of the data.
     pub values: Vec<f64>,
-    /// Where they come from.
+    /// Where the data come from.
     pub source: Option<String>,
 }
 

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 
 use crate::{RecordError, files};
 
-/// The value in the text of a file; `hint` tells what to do if it is damaged.
+/// Parses the text of a file as JSON; `hint` is the remedy if it is damaged.
 pub(crate) fn value<T: DeserializeOwned>(
     path: &Path,
     text: &[u8],
@@ -29,14 +29,14 @@ pub fn read<T: DeserializeOwned>(path: &Path, hint: &'static str) -> Result<Opti
     }
 }
 
-/// What is written into a file for a value.
+/// Serialises a value as indented JSON that ends in a newline; `path` is named in errors.
 pub(crate) fn text(path: &Path, value: &impl Serialize) -> Result<Vec<u8>, RecordError> {
     let text =
         serde_json::to_vec_pretty(value).map_err(|error| RecordError::io("write", path)(error.into()))?;
     Ok([&text[..], b"\n"].concat())
 }
 
-/// Replaces a file by one with this value.
+/// Replaces a file by one that contains this value as JSON.
 ///
 /// # Errors
 /// Input/output or system error.

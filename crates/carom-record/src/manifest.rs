@@ -15,13 +15,13 @@ const PER_BYTE: f64 = 3.0;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
-    /// Being computed, or killed; resumable.
+    /// The run is being computed, or its process was killed; it can be resumed.
     Running,
-    /// Reached its end time.
+    /// The run reached its end time.
     Finished,
-    /// Interrupted by the user; resumable.
+    /// The run was interrupted by the user; it can be resumed.
     Stopped,
-    /// Could not continue, for the given reason.
+    /// The run could not continue, for the reason in the manifest.
     Failed,
 }
 
@@ -32,7 +32,7 @@ pub struct Column {
     pub name: String,
     /// Unit label; empty for counts and ratios.
     pub unit: String,
-    /// Short description.
+    /// Short description of the column.
     pub description: String,
     /// Written without a decimal point.
     pub integer: bool,
@@ -64,7 +64,7 @@ impl Source {
     }
 }
 
-/// The computer, as far as it matters to a result.
+/// Properties of a computer that may affect a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
     /// Cores available to this process.
@@ -93,7 +93,7 @@ impl Machine {
         (&self.os, &self.arch, &self.processor) == (&other.os, &other.arch, &other.processor)
     }
 
-    /// Its type in words.
+    /// Description of the machine: processor, operating system and architecture.
     pub fn kind(&self) -> String {
         [&self.processor[..], &self.os, &self.arch]
             .into_iter()
@@ -109,7 +109,7 @@ impl Machine {
     }
 }
 
-/// Linux lists the model of every core; the first one counts.
+/// Model of the first core that Linux lists; empty on other systems.
 fn processor() -> String {
     use std::io::{BufRead, BufReader};
     let Ok(list) = std::fs::File::open("/proc/cpuinfo") else { return String::new() };
@@ -122,23 +122,23 @@ fn processor() -> String {
 /// Outcome of one `[[expect]]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Expectation {
-    /// As in the case file: `min A.uy`.
+    /// The quantity as written in the case file: `min A.uy`.
     pub what: String,
     /// The bound in words: `-0.7827 ± 0.004`.
     pub expected: String,
     /// The expected value, or the upper or lower bound.
     pub value: Option<f64>,
-    /// Absolute tolerance about it; none for an upper or lower bound.
+    /// Absolute tolerance about the expected value; none for an upper or lower bound.
     pub tolerance: Option<f64>,
     /// The value in the record; none if it cannot be evaluated.
     pub got: Option<f64>,
     /// Whether the bound is satisfied.
     pub pass: bool,
-    /// Why there is no value.
+    /// Why the quantity has no value in the record.
     pub why: Option<String>,
     /// Where the expected value comes from.
     pub source: Option<String>,
-    /// Skipped by `carom verify --fast`.
+    /// Whether `carom verify --fast` skips the expectation.
     pub slow: bool,
 }
 
@@ -147,26 +147,27 @@ pub struct Expectation {
 pub struct Manifest {
     /// Status of the run.
     pub status: Status,
-    /// Why it stopped or failed.
+    /// Why the run stopped or failed.
     pub reason: Option<String>,
-    /// Version of Carom that wrote it.
+    /// Version of Carom that wrote the record.
     pub version: String,
     /// Hash of `source`.
     pub input_hash: String,
     /// When the directory was created, UTC.
     pub created: String,
-    /// When the last process that wrote it started, UTC.
+    /// When the last process that wrote the record started, UTC.
     pub started: String,
-    /// The machine it ran on.
+    /// The machine that the run was computed on.
     pub machine: Machine,
-    /// Threads used.
+    /// Number of threads.
     pub threads: usize,
     /// Columns of `history.csv`, in order.
     pub columns: Vec<Column>,
     /// Named sides, `body.side`: chains of point numbers of the field files in order along the
     /// boundary, facet by facet, with interior points between the end points of a facet.
     pub sides: BTreeMap<String, Vec<Vec<usize>>>,
-    /// Edges that show the rigid triangulated surfaces, by contact, where they are at first.
+    /// Edges of the rigid triangulated surfaces by contact, as pairs of end points in their initial
+    /// position.
     pub surfaces: BTreeMap<String, Vec<[[f64; 3]; 2]>>,
     /// Doubts about the case, and, once the run has finished, about its results.
     pub warnings: Vec<Warning>,
@@ -179,7 +180,7 @@ pub struct Manifest {
     pub hashes: BTreeMap<String, String>,
     /// Outcomes of the expectations, once the run has finished.
     pub expectations: Vec<Expectation>,
-    /// What metrics and studies need to know of the case.
+    /// Properties of the case that metrics and studies depend on.
     pub facts: Facts,
     /// The case as resolved.
     pub case: serde_json::Value,
@@ -197,7 +198,7 @@ pub const PHASES: [(&str, &str); 5] = [
 ];
 
 impl Manifest {
-    /// The manifest of a run that starts now on this machine.
+    /// Creates the manifest of a run that starts now on this machine.
     pub fn new(
         version: &str,
         facts: Facts,

@@ -30,15 +30,14 @@ pub struct Extrapolation {
     pub order: f64,
     /// Value at step zero.
     pub value: f64,
-    /// Half width of its uncertainty band.
+    /// Half width of the uncertainty band of the value.
     pub band: f64,
 }
 
 /// Order from the differences f₁ − f₂ and f₂ − f₃ (or their norms) at three decreasing steps.
 ///
 /// # Errors
-/// Why there is none: steps that do not decrease, differences of opposite signs, a difference of
-/// zero.
+/// Steps that do not decrease, differences of opposite signs, or a difference of zero.
 pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, Reason> {
     decreasing(&steps)?;
     let quotient = differences[0] / differences[1];
@@ -81,7 +80,7 @@ pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, R
 /// Order from two errors at two decreasing steps.
 ///
 /// # Errors
-/// Why there is none: steps that do not decrease, an error of zero.
+/// Steps that do not decrease, or an error of zero.
 pub fn from_errors(steps: [f64; 2], errors: [f64; 2]) -> Result<f64, Reason> {
     decreasing(&steps)?;
     let order = (errors[0] / errors[1]).abs().ln() / (steps[0] / steps[1]).ln();

@@ -83,7 +83,7 @@ impl Recorder for RunWriter {
 /// A record in memory. It has no checkpoints.
 #[derive(Clone, Debug)]
 pub struct MemoryRecord {
-    /// What [`Run::open`] would read from a directory; its directory is empty.
+    /// The run, as [`Run::open`] would read it from a directory; its path is empty.
     pub run: Run,
     /// The fields of the instants `run.fields`, in their order.
     pub fields: Vec<FieldSet>,

@@ -16,26 +16,26 @@ use crate::units::Unit;
 /// State of one active contact node at the end of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactRow<'a> {
-    /// Step.
+    /// Step number.
     pub step: u64,
-    /// Time.
+    /// Time at the end of the step.
     pub time: f64,
     /// Name of the contact.
     pub contact: Cow<'a, str>,
     /// Node of the secondary side, or one of the primary side that is paired with a facet of the
     /// secondary one.
     pub node: u64,
-    /// Its current position.
+    /// Current position of the node.
     pub point: [f64; 3],
-    /// Facet of the other side that it is paired with.
+    /// Facet of the other side that the node is paired with.
     pub facet: u64,
     /// Coordinate of the closest point on that facet, −1 … 1; on a triangle 0 … 1.
     pub xi: f64,
-    /// Its second coordinate, in space.
+    /// Second coordinate of the closest point on the facet, in space.
     pub eta: f64,
     /// Gap, negative for penetration.
     pub gap: f64,
-    /// Multiplier, negative for compression.
+    /// Contact multiplier in units of force, negative for compression.
     pub multiplier: f64,
     /// −multiplier / consistent weight of the node.
     pub pressure: f64,
@@ -116,11 +116,11 @@ impl<'a> ContactRow<'a> {
 pub struct Event {
     /// Step being computed.
     pub step: u64,
-    /// Time at its start.
+    /// Time at the start of that step.
     pub time: f64,
     /// Kind: `rejected`, `active-set`, `cycle`, `fallback`, …
     pub kind: String,
-    /// One sentence.
+    /// Description of the event, in one sentence.
     pub message: String,
     /// Names and numbers for programs.
     #[serde(flatten)]

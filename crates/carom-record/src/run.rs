@@ -15,13 +15,13 @@ const HINT: &str = "resume from the last checkpoint with `carom resume`, or run 
 pub struct History {
     /// Names and units, in order.
     pub columns: Vec<Column>,
-    /// One vector per column, all of the same length.
+    /// Values by column; all columns have the same length.
     pub values: Vec<Vec<f64>>,
     index: HashMap<String, usize>,
 }
 
 impl History {
-    /// Columns with their values.
+    /// Creates a history from columns and their values.
     pub fn new(columns: Vec<Column>, values: Vec<Vec<f64>>) -> Self {
         let index = columns.iter().enumerate().map(|(i, c)| (c.name.clone(), i)).collect();
         Self { columns, values, index }
@@ -46,17 +46,17 @@ impl History {
 /// A run directory, read.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// Its path.
+    /// Path of the run directory.
     pub directory: PathBuf,
-    /// The manifest.
+    /// The manifest of the run.
     pub manifest: Manifest,
-    /// One row per recorded step.
+    /// The history, with one row per recorded step.
     pub history: History,
-    /// One row per active contact node of a recorded step.
+    /// Contact rows: one per active contact node and recorded step.
     pub contact: Vec<ContactRow<'static>>,
-    /// Events.
+    /// Events of the log.
     pub log: Vec<Event>,
-    /// Why it stopped, if it did.
+    /// Why the run stopped, if it did.
     pub stop: Option<Stop>,
     /// Instants with recorded fields, in the order of time.
     pub fields: Vec<FieldEntry>,

@@ -25,22 +25,22 @@ pub struct Stop {
     pub dt: f64,
     /// Time of the last accepted state, which `stopped.vtu` contains.
     pub last: f64,
-    /// Where, if it is known.
+    /// Place of the stop, if it is known.
     pub place: Option<StopPlace>,
     /// The last iterations of Newton's method in the last attempt.
     pub iterations: Vec<StopIteration>,
-    /// What to try, the most promising first.
+    /// Suggested remedies, the most promising first.
     pub advice: Vec<Advice>,
 }
 
 /// The place of a stop. Positions are those of the last accepted state.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StopPlace {
-    /// How it was found, if the reason does not name it.
+    /// How the place was found, if the reason does not name it.
     pub found: Option<String>,
     /// The node, or the first one of the cell.
     pub node: Option<StopNode>,
-    /// Contact.
+    /// Name of the contact.
     pub contact: Option<String>,
     /// Number of the facet that the node faces.
     pub facet: Option<usize>,
@@ -57,9 +57,9 @@ pub struct StopPlace {
 /// A node of the place.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StopNode {
-    /// Number of its point in `stopped.vtu`.
+    /// Number of the node's point in `stopped.vtu`.
     pub number: usize,
-    /// Its body.
+    /// Name of the body that the node belongs to.
     pub body: String,
     /// Reference position.
     pub reference: Vec<f64>,
@@ -75,7 +75,7 @@ pub struct StopIteration {
     pub number: u32,
     pub residual: Option<f64>,
     pub gap: Option<f64>,
-    /// None before the first correction.
+    /// Size of the correction relative to the length of the model; none before the first one.
     pub correction: Option<f64>,
     /// Fraction of the correction that was taken.
     pub length: f64,
@@ -87,7 +87,7 @@ pub struct StopIteration {
 /// Something to try.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Advice {
-    /// In words.
+    /// The remedy in words.
     pub what: String,
     /// The option that makes this change, as `key=value`.
     pub sets: Vec<String>,

@@ -45,7 +45,7 @@ impl Stream {
         files::flush(&self.file)
     }
 
-    /// What has been written.
+    /// Length and checksum of the bytes written so far.
     pub(crate) fn extent(&self) -> Extent {
         Extent { length: self.hasher.count(), hash: self.hasher.finalize().into() }
     }

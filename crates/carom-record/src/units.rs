@@ -29,27 +29,27 @@ pub enum Unit {
 /// Labels of all kinds of columns.
 #[derive(Clone, Debug)]
 pub struct Labels {
-    /// Of time.
+    /// Unit of time.
     pub time: String,
-    /// Of length.
+    /// Unit of length.
     pub length: String,
-    /// Of velocity.
+    /// Unit of velocity.
     pub velocity: String,
-    /// Of acceleration.
+    /// Unit of acceleration.
     pub acceleration: String,
-    /// Of force.
+    /// Unit of force.
     pub force: String,
-    /// Of moment.
+    /// Unit of moment.
     pub moment: String,
-    /// Of momentum.
+    /// Unit of momentum.
     pub momentum: String,
-    /// Of angular momentum.
+    /// Unit of angular momentum.
     pub angular_momentum: String,
-    /// Of energy.
+    /// Unit of energy.
     pub energy: String,
-    /// Of stress.
+    /// Unit of stress.
     pub stress: String,
-    /// Of what has no unit.
+    /// Label of numbers without a unit: empty.
     pub none: String,
 }
 
@@ -61,7 +61,7 @@ fn named(unit: &str, value: f64) -> Option<String> {
 }
 
 impl Labels {
-    /// From those of length, time and mass.
+    /// Derives the labels of all units from those of length, time and mass.
     pub fn of(l: &str, t: &str, m: &str) -> Self {
         let known = |label: &str, powers: [i32; 3]| Some(unit(label).filter(|known| known.1 == powers)?.0);
         // A product of powers of mass, length and time.
@@ -168,8 +168,8 @@ fn value(label: &str) -> Option<Size> {
     Some((value, powers))
 }
 
-/// What values in units of `from` are multiplied by to be in units of `to`; none where a unit is
-/// not known, or where the two are units of different quantities.
+/// Factor that converts values from the unit `from` to the unit `to`; none where a unit is not
+/// known, or where the two are units of different quantities.
 pub fn factor(from: &str, to: &str) -> Option<f64> {
     if from == to {
         return Some(1.0);

@@ -33,13 +33,13 @@ const COLUMNS: [&str; 11] = [
 pub struct Verification {
     /// Version of Carom.
     pub version: String,
-    /// When it started, UTC.
+    /// When the verification started, UTC.
     pub started: String,
-    /// The machine it ran on.
+    /// The machine that the verification ran on.
     pub machine: Machine,
     /// Number of concurrent runs.
     pub jobs: usize,
-    /// Wall seconds.
+    /// Wall time of the verification in seconds.
     pub wall: f64,
     /// Whether slow expectations were skipped.
     pub fast: bool,
@@ -50,38 +50,38 @@ pub struct Verification {
 /// A case, or a study with all its arms.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SetUp {
-    /// Folder of its file.
+    /// Name of the folder of the set-up's file.
     pub family: String,
-    /// Name of its file without the ending.
+    /// Name of the set-up's file without the ending.
     pub name: String,
-    /// Its title.
+    /// Title of the case or study.
     pub title: String,
     /// The file.
     pub file: String,
-    /// BLAKE3 hash of its input.
+    /// BLAKE3 hash of the set-up's input.
     pub input_hash: String,
-    /// Directory of its records, relative to the verification's.
+    /// Directory of the set-up's records, relative to that of the verification.
     pub directory: String,
-    /// Simulations.
+    /// Number of simulations.
     pub runs: usize,
     /// Simulations that stopped unexpectedly, and why.
     pub stopped: Vec<String>,
-    /// Whether a contact was active in one of its dynamic runs.
+    /// Whether a contact was active in one of the dynamic runs.
     pub contact: bool,
-    /// Sum of the wall seconds of its simulations.
+    /// Sum of the wall times of the simulations, in seconds.
     pub wall: f64,
-    /// Its expectations.
+    /// Outcomes of the expectations.
     pub rows: Vec<Row>,
 }
 
-/// One expectation, judged.
+/// Outcome of one expectation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The arm, if it is an expectation of an arm.
     pub arm: Option<String>,
-    /// Directory of its record, relative to the verification's.
+    /// Directory of the record, relative to that of the verification.
     pub directory: String,
-    /// The outcome.
+    /// Outcome of the expectation.
     #[serde(flatten)]
     pub verdict: Expectation,
 }
@@ -94,7 +94,7 @@ impl SetUp {
 }
 
 impl Row {
-    /// The quantity, with its arm.
+    /// The quantity in words, with its arm.
     pub fn quantity(&self) -> String {
         match &self.arm {
             Some(arm) => format!("{} of \"{arm}\"", self.verdict.what),

@@ -5,15 +5,15 @@ use serde::{Deserialize, Serialize};
 /// A reason to distrust some of a run's numbers: what a reviewer would ask about.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Warning {
-    /// Its name in the table of warnings: `coarse-secondary`.
+    /// Name of the warning in the table of warnings: `coarse-secondary`.
     pub id: String,
-    /// Where: `contact "strike"`.
+    /// Place in the case: `contact "strike"`.
     pub place: String,
-    /// What was found, with its numbers.
+    /// Description of what was found, with numbers.
     pub what: String,
-    /// Why it matters.
+    /// Why the finding matters.
     pub why: String,
-    /// What to try.
+    /// Suggested remedy.
     pub advice: String,
 }
 

@@ -4,7 +4,7 @@
 //! lengths and checksums of the row files and of the field files. Reopening compares these with the
 //! files, truncates the row files to these lengths and removes later fields.
 //!
-//! What a process has written survives its death. Only a power failure needs files that were
+//! Data that a process has written survive its death. Only a power failure needs files that were
 //! flushed to the disk, and a flush costs more than a step: a checkpoint flushes what it describes
 //! if the last flush is [`FLUSH_INTERVAL`] ago, and the generations written since then do not
 //! replace the flushed one (`checkpoint.rs`). The fields of a finished run, which is not resumed,
@@ -27,11 +27,11 @@ pub const FLUSH_INTERVAL: Duration = Duration::from_secs(5);
 /// A run directory being written. If it is dropped without `finish`, the run can be reopened.
 pub struct RunWriter {
     directory: PathBuf,
-    /// Which history columns are integers.
+    /// Whether each column of the history is an integer.
     integer: Vec<bool>,
     /// Axes of the positions and normals of contact rows.
     axes: usize,
-    /// Those of [`ROW_FILES`].
+    /// The three row files, in the order of [`ROW_FILES`].
     rows: [Table; 3],
     /// Header of the next checkpoint; its streams are those of the last one.
     header: Header,
@@ -42,7 +42,7 @@ pub struct RunWriter {
     /// The last flush; none since the run was reopened.
     flushed: Option<Instant>,
     flush_interval: Duration,
-    /// Locked as long as this writer exists.
+    /// Lock file of the run directory, locked as long as this writer exists.
     _lock: File,
 }
 
@@ -54,7 +54,7 @@ pub struct Reopened {
     pub manifest: Manifest,
     /// The checkpoint's payload.
     pub payload: Vec<u8>,
-    /// Its step.
+    /// Step at which the checkpoint was taken.
     pub step: u64,
     /// Number of rows in the history; 0 if not even the initial state was recorded.
     pub rows: u64,

@@ -11,9 +11,9 @@ use super::evaluated::{all, of_columns, probe_columns};
 use super::samples::{at, integral};
 use crate::{History, Run};
 
-/// Metrics of the history that depend on single rows.
+/// Metrics of the contact force that depend on single rows.
 const OF_FORCE: [&str; 4] = ["peak_force", "force_roughness", "force_variation", "force_high_frequency"];
-/// The same of a column.
+/// Metrics of a column that depend on single rows.
 const OF_COLUMN: [&str; 5] = ["min", "max", "roughness", "variation", "high_frequency"];
 
 /// The metrics that depend on single rows, of the averaged record; empty without a contact episode.

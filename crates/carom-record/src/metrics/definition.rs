@@ -11,7 +11,7 @@ use crate::{History, units};
 pub(crate) struct Definition {
     /// Name in expectations and studies.
     pub name: &'static str,
-    /// Unit.
+    /// Unit of the metric.
     pub unit: Unit,
     /// Formula in columns of the history.
     pub formula: &'static str,
@@ -19,7 +19,7 @@ pub(crate) struct Definition {
     pub source: &'static str,
     /// Meaning, in one line.
     pub meaning: &'static str,
-    /// Its value; none if it is not defined for the record.
+    /// Computes the metric; none if it is not defined for the record.
     pub(crate) value: fn(&Given) -> Option<f64>,
 }
 
@@ -69,9 +69,9 @@ pub struct Metric {
     pub name: Cow<'static, str>,
     /// Value; none if it is not defined for the record (no contact, or contact has not ended).
     pub value: Option<f64>,
-    /// Unit label.
+    /// Label of the unit.
     pub unit: String,
-    /// Its meaning.
+    /// Meaning of the metric, in one line.
     pub definition: &'static str,
 }
 

@@ -22,7 +22,8 @@ impl Episode {
         Some((times[self.end?] - times[self.start]) / WINDOWS)
     }
 
-    /// Its rows, from the row before it to the row that ends it.
+    /// Indices of the rows of the episode, from the row before its first one to the row that ends
+    /// it.
     pub(super) fn span(self, history: &History) -> Range<usize> {
         self.start.saturating_sub(1)..self.end.map_or(history.times().len(), |end| end + 1)
     }

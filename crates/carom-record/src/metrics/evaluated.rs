@@ -54,12 +54,12 @@ impl Metric {
         WORK.iter().find(|definition| definition.name == self.name)
     }
 
-    /// Whether it is one of the computational work, which says nothing about the solution.
+    /// Whether the metric measures computational work, which says nothing about the solution.
     pub fn is_work(&self) -> bool {
         self.work().is_some()
     }
 
-    /// Whether it is a measured time, which differs from run to run.
+    /// Whether the metric is a measured time, which differs from run to run.
     pub fn is_measured(&self) -> bool {
         self.work().is_some_and(|definition| definition.unit == Unit::Second)
     }

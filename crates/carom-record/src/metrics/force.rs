@@ -55,7 +55,8 @@ pub(super) fn chatter(given: &Given) -> Option<f64> {
     (duration > 0.0).then(|| switches / duration)
 }
 
-/// None if a row stands for several steps: it has the largest penetration of all of them.
+/// Mean penetration over the rows with contact; none if rows stand for several steps, because such
+/// a row has the largest penetration of all of them.
 pub(super) fn mean_penetration(given: &Given) -> Option<f64> {
     let steps = given.history.column("step").unwrap_or_default();
     if steps.windows(2).any(|two| two[1] - two[0] > 1.0) {

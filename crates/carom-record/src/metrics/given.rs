@@ -1,4 +1,4 @@
-//! What a metric is computed from.
+//! Input of the metrics.
 
 use std::ops::Range;
 

@@ -17,7 +17,8 @@ use crate::History;
 /// `time.energy_guard`.
 pub const MUCH_CREATED: f64 = 0.02;
 
-/// ΔE of every row, and the largest kinetic + strain energy.
+/// Change ΔE of the total energy less the external work, by row; and the largest kinetic + strain
+/// energy.
 fn changes(history: &History) -> Option<(Vec<f64>, f64)> {
     let [kinetic, strain, total, work] =
         ["kinetic", "strain", "total", "external_work"].map(|name| history.column(name));
@@ -54,7 +55,8 @@ pub(super) fn by_integrator(given: &Given) -> Option<f64> {
     share(given, "dissipation")
 }
 
-/// None without friction.
+/// Energy dissipated by friction, divided by the largest kinetic + strain energy; none without
+/// friction.
 pub(super) fn by_friction(given: &Given) -> Option<f64> {
     given.history.column("slip")?;
     share(given, "friction_work").map(|work| 0.0 - work)

@@ -51,12 +51,12 @@ fn principal(given: &Given) -> Option<(f64, f64, f64)> {
     (angle * (values.len() - 1) as f64 >= TAU).then(|| (0.5 * square.ln(), angle, step))
 }
 
-/// ξ.
+/// Damping ratio ξ of a free oscillation; none if the column is not one.
 pub(super) fn damping_ratio(given: &Given) -> Option<f64> {
     principal(given).map(|(log, angle, _)| -log / angle)
 }
 
-/// T.
+/// Period T of a free oscillation; none if the column is not one.
 pub(super) fn period(given: &Given) -> Option<f64> {
     principal(given).map(|(_, angle, step)| TAU * step / angle)
 }

@@ -27,7 +27,7 @@ pub(super) type Party<'a> = Option<&'a str>;
 /// The first episode of a run as the impact of its striker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Impact<'a> {
-    /// The striker.
+    /// Name of the striker.
     pub striker: &'a str,
     /// The body or obstacle that is struck; none: a fixed obstacle.
     pub others: Vec<Party<'a>>,
@@ -40,9 +40,9 @@ pub struct Impact<'a> {
 }
 
 impl<'a> Impact<'a> {
-    /// None without contact, where the striker did not approach before it, where it strikes nothing
-    /// but itself or several parties of different velocities, and where the velocity of a support
-    /// is not known.
+    /// The first impact of a run. None without contact, where the striker did not approach before
+    /// it, where it strikes nothing but itself or several parties of different velocities, and
+    /// where the velocity of a support is not known.
     pub fn first(run: &'a Run) -> Option<Self> {
         let episode = first_episode(&run.history)?;
         let striker = striker(&run.history)?;
@@ -115,7 +115,8 @@ fn velocity(run: &Run, party: Party, row: usize) -> Option<Vec<f64>> {
     Some(of_center.zip(prescribed).map(|(v, held)| held.unwrap_or(v)).collect())
 }
 
-/// Velocity that supports give a body along each axis, where they hold it; none if it is not known.
+/// Velocity that the supports of a body prescribe, by axis; none along a free axis. None for the
+/// whole if the axis or velocity of a support is unknown, or if two supports contradict each other.
 fn prescribed(run: &Run, body: &str, time: f64) -> Option<[Option<f64>; 3]> {
     let mut rates = [None; 3];
     for held in run.manifest.facts.held.iter().filter(|held| held.body == body) {

@@ -1,10 +1,10 @@
-//! How a column is reduced to a number, and the words for it.
+//! Reductions of a column to a number, and the words for them.
 
 use crate::Reason;
 use crate::expression::Token;
 use crate::metrics;
 
-/// How a column is reduced to a number.
+/// Reduction of a column to a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum Form {

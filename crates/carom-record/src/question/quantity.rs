@@ -1,4 +1,4 @@
-//! What a question asks for, and its value in records.
+//! Questions, and their values in records.
 
 use std::borrow::Cow;
 
@@ -9,13 +9,13 @@ use crate::expression::Expression;
 /// Two times are equal if they differ by less than this fraction of the span of the first record.
 const SAME_TIME: f64 = 1e-9;
 
-/// The value of an expectation, or of one side of a claim.
+/// Expression that an expectation, or one side of a claim, evaluates.
 pub type Question = Expression<Quantity>;
 
 /// A number computed from a record.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Quantity {
-    /// A metric by its name, of an arm.
+    /// Metric by its name, and the arm if one is named.
     Metric(String, Option<String>),
     /// A reduction of columns.
     Reduced(Form, Series),
@@ -33,29 +33,29 @@ pub struct Series {
 /// A column, of an arm in a study.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Asked {
-    /// Its name.
+    /// Name of the column.
     pub column: String,
-    /// The arm.
+    /// Name of the arm; none outside a study.
     pub arm: Option<String>,
 }
 
 /// A column with the times and steps of its rows.
 #[derive(Clone, Debug)]
 pub struct Rows<'a> {
-    /// Times.
+    /// Times of the rows.
     pub times: Cow<'a, [f64]>,
-    /// Step numbers.
+    /// Step numbers of the rows.
     pub steps: Cow<'a, [f64]>,
-    /// Values.
+    /// Values of the column.
     pub values: Cow<'a, [f64]>,
 }
 
-/// The rows that are used: those strictly between two times.
+/// Window of time: only rows strictly between two times are used.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Window {
-    /// Only rows after this time.
+    /// Time after which rows are used; none for all rows from the first.
     pub after: Option<f64>,
-    /// Only rows before this time.
+    /// Time before which rows are used; none for all rows up to the last.
     pub before: Option<f64>,
 }
 
@@ -67,21 +67,21 @@ impl Window {
 
 /// The source of the numbers: one record, or the arms of a study.
 pub trait Records {
-    /// A metric by its name.
+    /// Value of a metric by its name.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why the metric is not available.
     fn metric(&self, name: &str, arm: Option<&str>) -> Result<f64, Reason>;
 
-    /// A column.
+    /// Rows of a column.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why the column is not available.
     fn column(&self, asked: &Asked) -> Result<Rows<'_>, Reason>;
 }
 
 impl Question {
-    /// Its value in these records.
+    /// Evaluates the question in these records; only rows in the window are used.
     ///
     /// # Errors
     /// What is missing, or why there is no value.
@@ -96,7 +96,7 @@ impl Question {
         if value.is_finite() { Ok(value) } else { Err(format!("its value is {value}").into()) }
     }
 
-    /// The same question, with this arm for quantities that name none.
+    /// Copies the question, with this arm for quantities that name none.
     pub(crate) fn of_arm(&self, arm: &str) -> Self {
         self.map(&|quantity| match quantity {
             Quantity::Metric(name, of) => {
@@ -120,14 +120,14 @@ impl Question {
         arms
     }
 
-    /// Whether it depends on `stopped`, so that an unfinished record is used too.
+    /// Whether the question depends on `stopped`, so that an unfinished record is used too.
     pub fn asks_whether_stopped(&self) -> bool {
         self.quantities().iter().any(|q| matches!(q, Quantity::Metric(name, _) if name == "stopped"))
     }
 }
 
 impl Series {
-    /// Times and values of its rows.
+    /// Times and values of the rows of the series.
     ///
     /// # Errors
     /// What is missing.
@@ -136,7 +136,7 @@ impl Series {
         Ok((times, values.swap_remove(0)))
     }
 
-    /// The same series, with this arm for columns that name none.
+    /// Copies the series, with this arm for columns that name none.
     pub(crate) fn of_arm(&self, arm: &str) -> Self {
         let named = |a: &Asked| Asked {
             column: a.column.clone(),

@@ -1,4 +1,4 @@
-//! What is known about an arm that failed: the arms of the same method that finished.
+//! Context of a failed arm: the arms of the same method that finished.
 
 use serde_json::Value;
 

@@ -5,40 +5,40 @@ use serde::{Deserialize, Serialize};
 use super::design::Role;
 use crate::Facts;
 
-/// One simulation of a study.
+/// Arm of a study: one simulation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Arm {
     /// Name in tables and figures.
     pub name: String,
-    /// Its run directory, relative to the study's.
+    /// Run directory of the arm, relative to the directory of the study.
     pub directory: String,
-    /// Its changes to the case, `key=value`.
+    /// Changes of the case in this arm, each as `key=value`.
     pub sets: Vec<String>,
     /// Number of time steps.
     pub steps: u64,
-    /// Its role in the study.
+    /// Role of the arm in the study.
     pub role: Role,
-    /// Its case file, if it is not that of the study.
+    /// Path of the arm's case file, if it is not that of the study.
     pub case_path: Option<String>,
-    /// What metrics and rankings need to know of its case.
+    /// Properties of the arm's case that metrics and rankings depend on.
     pub facts: Facts,
     /// The case as resolved.
     pub case: serde_json::Value,
 }
 
 impl Arm {
-    /// Its method, or its name where there are no methods.
+    /// Method of the arm, or the name of the arm in a study without methods.
     pub fn method(&self) -> &str {
         self.role.method.as_ref().unwrap_or(&self.name)
     }
 
-    /// Its changes to the case, except for the step.
+    /// Changes of the case in this arm, except for the time step.
     pub fn sets_without_step(&self) -> impl Iterator<Item = &String> {
         self.sets.iter().filter(|set| !sets_step(set))
     }
 }
 
-/// Whether a change is that of the step.
+/// Whether a change `key=value` sets the time step.
 pub fn sets_step(set: &str) -> bool {
     set.split('=').next().is_some_and(|key| key.trim() == "time.step")
 }
@@ -68,7 +68,7 @@ fn counts_cells(key: &str) -> bool {
     key.ends_with("cells") || key == "refine"
 }
 
-/// What an arm sets for a key.
+/// Value that an arm sets for a key; the last one counts.
 fn set<'a>(arm: &'a Arm, key: &str) -> Option<&'a str> {
     let sets = |set: &'a String| set.strip_prefix(key)?.trim_start().strip_prefix('=').map(str::trim);
     arm.sets.iter().rev().find_map(sets)

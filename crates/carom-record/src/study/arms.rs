@@ -8,7 +8,7 @@ use crate::metrics::Metric;
 use crate::question::{self, Asked, Quantity, Question, Records, Rows, Series};
 use crate::{Run, Status};
 
-/// What is asked of the arms.
+/// Questions and series that are to be evaluated from the records of the arms.
 #[derive(Default)]
 pub(super) struct Needs {
     pub(super) questions: Vec<Question>,

@@ -32,9 +32,9 @@ pub fn fingerprint(run: &Path) -> Result<String, RecordError> {
 /// `checks.json`: an arm that was computed two more times.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Checks {
-    /// Its name.
+    /// Name of the arm.
     pub arm: String,
-    /// Its fingerprint.
+    /// Fingerprint of the arm's record.
     pub fingerprint: String,
     /// Threads of the first repetition, and its fingerprint.
     pub threads: (usize, String),

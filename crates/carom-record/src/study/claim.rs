@@ -15,7 +15,7 @@ use crate::question::{Question, Window};
 /// A statement and the comparison that decides it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Claim {
-    /// In words.
+    /// The claim in words.
     pub text: String,
     /// `METRIC of "ARM" > METRIC of "ARM"`: see [`Comparison`].
     pub compare: String,
@@ -24,30 +24,30 @@ pub struct Claim {
 /// A claim with its numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// The claim.
+    /// The claim that is decided.
     pub claim: Claim,
     /// Value on the left of the comparison; none if an arm did not finish or has no such metric.
     pub left: Option<f64>,
-    /// Value on the right.
+    /// Value on the right of the comparison; none if an arm did not finish or has no such metric.
     pub right: Option<f64>,
-    /// Whether it holds; none if it cannot be decided.
+    /// Whether the claim holds; none if it cannot be decided.
     pub holds: Option<bool>,
     /// The left quantity divided by the right one, without the constant factors of the sides.
     pub ratio: Option<f64>,
-    /// What the ratio is compared with, and how: `> 2`. Where the right side is only a number, it
-    /// is this number, and the ratio is the left side. Less is greater where the right side is
-    /// negative, and there is none where its sign differs between members.
+    /// Operator and number that the ratio is compared with: `> 2`. If the right side is only a
+    /// number, it is this number, and the ratio is the left side. The operator is reversed where
+    /// the right side is negative; none where its sign differs between members.
     pub bound: Option<(&'static str, f64)>,
-    /// How it fares over an ensemble, if the study has one.
+    /// Outcome of the claim over an ensemble, if the study has one.
     pub ensemble: Option<Confirmed>,
 }
 
-/// A claim over the members of an ensemble in which it can be decided.
+/// Outcome of a claim over the members of an ensemble in which it can be decided.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Confirmed {
-    /// Members in which it holds.
+    /// Number of members in which the claim holds.
     pub count: usize,
-    /// Members in which it can be decided.
+    /// Number of members in which the claim can be decided.
     pub of: usize,
     /// The left quantity divided by the right one, without the constant factors of the sides.
     pub ratio: Option<Spread>,
@@ -66,7 +66,8 @@ impl Confirmed {
 }
 
 impl Verdict {
-    /// From the records of the arms, and those of the members of their ensemble, the arms included.
+    /// Decides a claim from the records of the arms, and from those of the members of their
+    /// ensemble, the arms included.
     pub(super) fn of(
         claim: &Claim,
         comparison: Option<&Comparison>,
@@ -201,7 +202,7 @@ impl Comparison {
         Ok(Self { sides, operator })
     }
 
-    /// Names of the arms it uses.
+    /// Names of the arms that the comparison uses.
     pub fn arms(&self) -> Vec<&str> {
         self.questions().iter().flat_map(Question::arms).flatten().collect()
     }
@@ -219,7 +220,7 @@ impl Comparison {
         self.sides.each_ref().map(factor)
     }
 
-    /// Its two sides.
+    /// Left and right side of the comparison.
     pub(super) fn questions(&self) -> &[Question] {
         &self.sides
     }

@@ -11,22 +11,22 @@ use crate::order::from_errors;
 /// Deviations of a column from that of the reference, relative to the range of the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviated {
-    /// The column.
+    /// Name of the column.
     pub column: String,
-    /// Root mean square over all rows.
+    /// Root mean square of the deviations over all rows.
     pub whole: Option<f64>,
-    /// Over the rows before the first contact of the reference.
+    /// Root mean square over the rows before the first contact of the reference.
     pub before: Option<f64>,
-    /// Over the rows after the first contact.
+    /// Root mean square over the rows after the first contact of the reference.
     pub after: Option<f64>,
 }
 
 /// An arm compared with the reference.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Compared {
-    /// Its columns.
+    /// Deviations of the columns of the arm.
     pub columns: Vec<Deviated>,
-    /// The column whose phase was compared, and its delay.
+    /// Name of the column whose phase was compared, and its delay in the unit of time.
     pub late: Option<(String, f64)>,
 }
 
@@ -85,9 +85,9 @@ impl Compared {
 /// before the first contact, and after it, across the impact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhaseOrders {
-    /// The method.
+    /// Name of the method.
     pub method: String,
-    /// The column.
+    /// Name of the column.
     pub column: String,
     /// Before the first contact.
     pub smooth: Result<f64, Reason>,

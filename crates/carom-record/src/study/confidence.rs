@@ -18,7 +18,7 @@ pub enum Confidence {
 }
 
 impl Confidence {
-    /// As a word.
+    /// The confidence as a word.
     pub fn word(self) -> &'static str {
         match self {
             Self::Low => "low",
@@ -28,32 +28,33 @@ impl Confidence {
     }
 }
 
-/// What distinguishes the recommended method from all others.
+/// Criterion that distinguishes the recommended method from all others.
 pub(super) enum DecidedBy {
     Error,
-    /// Its error alone is small enough, though not distinguished from the others.
+    /// Only the recommended one of the methods that share the best place is accurate enough.
     Accuracy,
     Cost,
-    /// Nothing does from these methods.
+    /// Neither error nor cost distinguishes the recommended method from these.
     Nothing(Vec<String>),
 }
 
-/// What a recommendation rests on.
+/// Evidence that a recommendation is based on.
 pub(super) struct Evidence {
     pub decided_by: DecidedBy,
-    /// Number of levels at which no method is distinguishably better.
+    /// Number of levels at which no other method is distinguishably better.
     pub first_at: usize,
-    /// Other methods that share the first place with it, and at how many levels.
+    /// Other methods that share the first place with the recommended one, and at how many levels.
     pub sharing: Vec<(String, usize)>,
-    /// The reference was computed on finer meshes; without one, the arms were.
+    /// Whether the uncertainty of the reference includes that of the mesh; without a reference,
+    /// whether the ensemble refines the mesh.
     pub mesh: bool,
-    /// There is a reference.
+    /// Whether there is a reference.
     pub reference: bool,
-    /// The arms were run with several phases, roles or meshes.
+    /// Whether every ranked arm has the values of several runs, with other phases, roles or meshes.
     pub ensemble: bool,
 }
 
-/// What limits the confidence, with the reasons.
+/// Confidence in a recommendation, with the reasons that lower it.
 struct Doubts {
     confidence: Confidence,
     reasons: Vec<String>,
@@ -105,7 +106,7 @@ pub(super) fn confidence(
     (doubts.confidence, doubts.reasons)
 }
 
-/// What distinguishes the recommended method.
+/// Lowers the confidence if the recommended method is not distinguished from others by its error.
 fn of_decision(
     doubts: &mut Doubts,
     goal: Goal,
@@ -139,7 +140,7 @@ fn of_decision(
     }
 }
 
-/// What the errors may depend on.
+/// Lowers the confidence if the mesh was not refined, or if arms were run only once.
 fn of_evidence(doubts: &mut Doubts, evidence: &Evidence) {
     // One of them alone leaves the ranking of this mesh, or of these instants, open.
     let most = if evidence.mesh || evidence.ensemble { Confidence::Medium } else { Confidence::Low };
@@ -162,7 +163,8 @@ fn of_evidence(doubts: &mut Doubts, evidence: &Evidence) {
     }
 }
 
-/// Runs that are missing, or not matched.
+/// Lowers the confidence if members have no value, or if steps or costs of the arms are not
+/// matched.
 fn of_runs(doubts: &mut Doubts, manifest: &StudyManifest, levels: &[Vec<Ranked>]) {
     // Members that failed or have no such number do not show how far it is spread.
     let all = |r: &Ranked| manifest.runs_of(r.arm).len();

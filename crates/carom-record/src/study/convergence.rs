@@ -35,7 +35,7 @@ const UNSAFE: f64 = 3.0;
 /// Share of the differences below which the last one is round-off.
 const SETTLED: f64 = 1e-9;
 
-/// From sizes and values, the finest last; none for a single run.
+/// Uncertainty and order from the values at decreasing sizes; none for a single run.
 pub(super) fn converged(sizes: &[f64], values: &[f64]) -> Option<Converged> {
     let n = values.len().min(sizes.len());
     if n < 2 {

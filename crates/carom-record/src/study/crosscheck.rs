@@ -12,18 +12,19 @@ use super::manifest::StudyManifest;
 use super::places::{Ranked, alike};
 use super::row::Row;
 
-/// A level, judged by what was not matched there.
+/// Comparison of the methods at a level by what was not matched there: at equal step if costs were
+/// matched, otherwise at equal cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crosscheck {
     /// Number of the level.
     pub level: usize,
-    /// What the errors are interpolated at: `cost` or `step`.
+    /// Quantity at which errors are interpolated: `cost` or `step`.
     pub at: &'static str,
-    /// Its value, of the arm that is ranked first at the level.
+    /// Value of this quantity for the arm that is ranked first at the level.
     pub value: f64,
     /// The method that is ranked first at the level.
     pub first: String,
-    /// Methods with their interpolated errors, the smallest first; the first one included.
+    /// Methods with their interpolated errors, the smallest first; includes the method `first`.
     pub errors: Vec<(String, f64)>,
     /// The method with the smallest interpolated error, if that is distinguished from the error of
     /// the method ranked first.
@@ -33,8 +34,9 @@ pub struct Crosscheck {
 /// A method with its errors: abscissa, error, uncertainty.
 type Curve = (String, Vec<[f64; 3]>);
 
-/// Of every level of a design with at least two levels and two methods. `uncertainty`: that of
-/// errors from the reference.
+/// Compares the methods at every level of a design; empty unless it has at least two levels and two
+/// methods. `uncertainty` is the part of the uncertainty of the errors that comes from the
+/// reference.
 pub(super) fn of(
     manifest: &StudyManifest,
     rows: &[Row],

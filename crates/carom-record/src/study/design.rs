@@ -17,7 +17,7 @@ pub enum Kind {
 /// A design: methods, and the levels at which each of them is run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Design {
-    /// What is matched at a level.
+    /// Whether steps or costs are equal at a level.
     pub kind: Kind,
     /// The method whose cost the others are matched to, in a design of matched cost or where an arm
     /// requests it.
@@ -77,7 +77,7 @@ impl Goal {
         Self::NAMES.iter().find(|(_, goal, _)| *goal == self).map_or("", |(name, ..)| name)
     }
 
-    /// The measure it ranks by, in words.
+    /// Description of the measure that the goal ranks by.
     pub fn meaning(self) -> &'static str {
         Self::NAMES.iter().find(|(_, goal, _)| *goal == self).map_or("", |(.., meaning)| meaning)
     }
@@ -86,27 +86,27 @@ impl Goal {
 /// The role of an arm in its study.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Role {
-    /// Its method, in a design.
+    /// Method of the arm, in a design.
     pub method: Option<String>,
-    /// Number of its level.
+    /// Number of the arm's level.
     pub level: usize,
-    /// Whether its cost is matched to that of `cost_of`, while the other arms have the step of the
-    /// level.
+    /// Whether the cost of the arm is matched to that of `cost_of`, while the other arms have the
+    /// step of the level.
     pub by_cost: bool,
-    /// Its counted cost divided by the budget of its level, if its cost is matched.
+    /// Counted cost of the arm divided by the budget of its level, if its cost is matched.
     pub cost: Option<f64>,
-    /// Whether it is one of the runs of the computed reference.
+    /// Whether the arm is one of the runs of the computed reference.
     pub fine: bool,
-    /// The arm that it is a member of, in an ensemble.
+    /// Place of the run in an ensemble, if it is a member of one.
     pub member: Option<MemberOf>,
 }
 
 /// A member of an ensemble.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MemberOf {
-    /// Number of the arm.
+    /// Number of the arm that is repeated.
     pub arm: usize,
-    /// What it changes.
+    /// How the member differs from the arm.
     #[serde(flatten)]
     pub member: Member,
 }

@@ -17,7 +17,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What the members of an arm differ in.
+/// Changes with which every arm of a study is repeated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ensemble {
     /// Number of phases of the grid of times.
@@ -26,11 +26,11 @@ pub struct Ensemble {
     pub swapped: bool,
     /// Factors of mesh refinement; the first one is 1.
     pub mesh: Vec<f64>,
-    /// Changes of the case, `key=value`, besides none.
+    /// Sets of changes of the case, each `key=value`, besides the case as given.
     pub sets: Vec<Vec<String>>,
 }
 
-/// A member of every arm.
+/// Difference of one member of an ensemble from its arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Member {
     /// Shift of the grid of times as a fraction of a step.
@@ -39,7 +39,7 @@ pub struct Member {
     pub swapped: bool,
     /// Factor of mesh refinement.
     pub mesh: f64,
-    /// Number of its changes of the case, from one; zero: none.
+    /// Number of the set of changes of the case, from 1; 0 for none.
     pub set: usize,
 }
 
@@ -76,7 +76,7 @@ impl Ensemble {
         parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
-    /// In words.
+    /// Description of the ensemble in words.
     pub fn words(&self) -> String {
         let mut parts = Vec::new();
         if self.mesh.len() > 1 {
@@ -100,12 +100,12 @@ impl Ensemble {
 /// Values of the members: their median and range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spread {
-    /// In ascending order.
+    /// The values in ascending order.
     values: Vec<f64>,
 }
 
 impl Spread {
-    /// Of any number of finite values; none if there are none.
+    /// Collects the finite values; none if there are none.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         values.sort_by(f64::total_cmp);

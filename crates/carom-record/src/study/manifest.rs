@@ -31,15 +31,15 @@ pub struct StudySource {
 pub struct StudyManifest {
     /// Running, finished or stopped; a study with failed arms still finishes.
     pub status: Status,
-    /// Title.
+    /// Title of the study.
     pub title: String,
-    /// Version of Carom that wrote it.
+    /// Version of Carom that wrote the study.
     pub version: String,
     /// BLAKE3 hash of the study file and the case file.
     pub input_hash: String,
     /// When the directory was created, UTC.
     pub created: String,
-    /// The machine it ran on.
+    /// The machine that the study was computed on.
     pub machine: Machine,
     /// Arm that the others are compared with, if any.
     pub reference: Option<String>,
@@ -51,9 +51,9 @@ pub struct StudyManifest {
     pub accuracy: Option<f64>,
     /// The simulations.
     pub arms: Vec<Arm>,
-    /// What the members of an arm differ in, if arms are run several times.
+    /// Changes with which the arms are repeated, if they are run several times.
     pub ensemble: Option<Ensemble>,
-    /// The members of all arms, except for the arms themselves.
+    /// Repetitions of the arms in an ensemble, without the arms themselves.
     pub members: Vec<Arm>,
     /// Measured data with which all arms are compared.
     pub overlays: Vec<Overlay>,
@@ -169,7 +169,7 @@ impl StudyManifest {
         Ok(run)
     }
 
-    /// As [`Self::record`], and none of a record that is damaged.
+    /// Reads the record of an arm as [`Self::record`] does; none if it is damaged.
     pub(super) fn intact(&self, directory: &Path, arm: &Arm) -> Result<Option<Run>, RecordError> {
         self.record(directory, arm).or_else(|error| if error.is_system() { Err(error) } else { Ok(None) })
     }

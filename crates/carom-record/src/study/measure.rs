@@ -11,7 +11,7 @@ use super::row::Row;
 pub struct Measure {
     /// Name of the metric, or of the combination of columns.
     pub name: String,
-    /// In words.
+    /// Description of the measure in words.
     pub words: String,
     /// Uncertainty of the errors that comes from the reference.
     pub uncertainty: f64,
@@ -93,7 +93,7 @@ pub(super) struct Judge<'a> {
 struct Known {
     name: String,
     right: f64,
-    /// Uncertainty of its error.
+    /// Uncertainty of the errors in the metric, relative to the reference value unless that is 0.
     uncertainty: f64,
 }
 

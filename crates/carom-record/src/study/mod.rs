@@ -55,15 +55,15 @@ pub use row::Row;
 /// A study that has been read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// Its path.
+    /// Path of the study directory.
     pub directory: PathBuf,
-    /// The manifest.
+    /// The manifest of the study.
     pub manifest: StudyManifest,
-    /// One per arm.
+    /// Results of the arms, one row per arm.
     pub rows: Vec<Row>,
-    /// One per member of an ensemble, in the order of the manifest.
+    /// Results of the members of ensembles, one row per member, in the order of the manifest.
     pub members: Vec<Row>,
-    /// One per claim.
+    /// Outcomes of the claims, one per claim.
     pub verdicts: Vec<Verdict>,
     /// Outcomes of the expectations of the study as a whole; an order may have one per group of
     /// arms.
@@ -78,7 +78,7 @@ pub struct Study {
     pub ranking: Option<Ranking>,
     /// The rankings for the other goals.
     pub other_rankings: Vec<Ranking>,
-    /// Repetitions of one of its arms.
+    /// Checks of one arm, which was computed two more times.
     pub checks: Option<Checks>,
 }
 

@@ -47,7 +47,7 @@ pub fn refinements(manifest: &StudyManifest, key: &str, name: Option<&str>) -> V
     groups(manifest, key, name, step)
 }
 
-/// The same of the values that a function gives for a key.
+/// Groups arms as [`refinements`] does; `value` gives the value of an arm for the key.
 fn groups(
     manifest: &StudyManifest,
     key: &str,

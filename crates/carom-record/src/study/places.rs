@@ -11,20 +11,20 @@ pub(super) const EQUAL_COST: f64 = 0.1;
 pub struct Ranked {
     /// Number of the arm.
     pub arm: usize,
-    /// Its error: the median over its ensemble.
+    /// Error of the arm: the median over its ensemble.
     pub error: f64,
-    /// Largest distance of a member of its ensemble from the median.
+    /// Largest distance of a member of the arm's ensemble from the median.
     pub uncertainty: f64,
-    /// Members of its ensemble that have an error, the arm itself included.
+    /// Number of members of the arm's ensemble that have an error, the arm itself included.
     pub members: usize,
-    /// Whether it did not create much energy; other arms are placed last.
+    /// Whether the arm did not create much energy; arms that did are placed last.
     pub sound: bool,
-    /// Place, from 1; arms that are not distinguished share one.
+    /// Place in the ranking of the level, from 1; arms that are not distinguished share one.
     pub place: usize,
 }
 
 impl Ranked {
-    /// Whether its error is at most this, and its members scatter by no more.
+    /// Whether the error is at most `accuracy`, and the members scatter by no more.
     pub(super) fn has_accuracy(&self, accuracy: f64) -> bool {
         self.error.max(self.uncertainty) <= accuracy
     }
@@ -56,12 +56,12 @@ pub(super) fn places(
     }
 }
 
-/// By their errors.
+/// Whether the error of `a` is smaller than that of `b` and distinguished from it.
 pub(super) fn more_accurate(a: &Ranked, b: &Ranked, reference: f64) -> bool {
     a.error < b.error && !alike((a.error, a.uncertainty), (b.error, b.uncertainty), reference)
 }
 
-/// By their costs.
+/// Whether the cost `a` is less than `b` by more than the scatter of measured times.
 pub(super) fn cheaper(a: f64, b: f64) -> bool {
     (1.0 + EQUAL_COST) * a < b
 }

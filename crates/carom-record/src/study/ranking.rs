@@ -36,7 +36,7 @@ use crate::Reason;
 /// The ranking of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
-    /// The goal.
+    /// The goal of the ranking.
     pub goal: Goal,
     /// The measure, or why there is none.
     pub measure: Result<Measure, Reason>,

@@ -19,15 +19,16 @@ use super::row::Row;
 /// The recommendation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// The recommended arm.
+    /// Number of the recommended arm.
     pub arm: usize,
-    /// Methods (arms in a study without methods) that are not distinguished from it.
+    /// Methods (arms in a study without methods) that are not distinguished from the recommended
+    /// one.
     pub alike: Vec<String>,
-    /// Its penetration if its contact is enforced by a penalty, in words.
+    /// Penetration of the recommended arm in words, if its contact is enforced by a penalty.
     pub penetration: Option<String>,
     /// Reasons for the recommendation.
     pub reasons: Vec<String>,
-    /// Confidence in it.
+    /// Confidence in the recommendation.
     pub confidence: Confidence,
     /// Reasons for the confidence.
     pub confidence_reasons: Vec<String>,
@@ -101,7 +102,7 @@ pub(super) fn recommended(
     Ok(Verdict { arm: best.chosen.arm, alike, penetration, reasons, confidence, confidence_reasons })
 }
 
-/// What methods are compared by: the sound arms of each level that has any, the coarsest first.
+/// Input of a recommendation, with the sound arms of each level that has any, the coarsest first.
 struct Field<'a> {
     goal: Goal,
     manifest: &'a StudyManifest,
@@ -113,18 +114,18 @@ struct Field<'a> {
 /// The method that would be recommended.
 struct Best<'a> {
     method: &'a str,
-    /// Its arm.
+    /// Arm of the method that would be recommended.
     chosen: &'a Ranked,
-    /// All methods, in order.
+    /// All methods in order of their mean place or cost.
     methods: Vec<&'a str>,
     /// Methods with the same mean place or cost, itself included.
     tied: Vec<&'a str>,
-    /// Those of them among which cost decides, and their measured costs.
+    /// Tied methods among which cost decides, with their measured costs.
     equals: Vec<(&'a str, Option<f64>)>,
 }
 
 impl<'a> Best<'a> {
-    /// Methods that are not distinguished from it.
+    /// Other methods that are tied with the best one.
     fn alike(&self) -> impl Iterator<Item = &'a str> {
         self.tied.iter().copied().filter(|method| *method != self.method)
     }
@@ -133,13 +134,13 @@ impl<'a> Best<'a> {
         self.equals.iter().find(|(method, _)| *method == self.method)?.1
     }
 
-    /// The cheapest of the others among its equals, with its cost.
+    /// The cheapest of the other methods among which cost decides, with its cost.
     fn next(&self) -> Option<(&'a str, f64)> {
         let others = self.equals.iter().filter(|(method, _)| *method != self.method);
         others.filter_map(|(m, cost)| Some((*m, (*cost)?))).min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// The cost beside that of the methods tied with it.
+    /// Compares the cost with that of the methods tied with the best one, in words.
     fn cost_beside(&self) -> Option<String> {
         let (next, other) = self.next()?;
         let own = self.cost()?;
@@ -166,7 +167,7 @@ impl Field<'_> {
         self.rows[ranked.arm].value("cpu_time").unwrap_or(f64::INFINITY)
     }
 
-    /// What the goal minimises.
+    /// Quantity of an arm that the goal minimises: its cost in seconds, or its error.
     fn minimised(&self, ranked: &Ranked) -> f64 {
         if self.goal == Goal::Cost { self.cost(ranked) } else { ranked.error }
     }
@@ -285,8 +286,8 @@ impl Field<'_> {
         self.levels.iter().filter(|level| self.is_first(method, level)).count()
     }
 
-    /// Methods with a worse mean place that nevertheless share the first place with the best one,
-    /// with the number of levels.
+    /// Methods that have a worse mean place than the best one but share the first place with it,
+    /// with the number of levels at which they do.
     fn sharing(&self, best: &Best) -> Vec<(String, usize)> {
         if self.goal == Goal::Cost {
             return Vec::new();

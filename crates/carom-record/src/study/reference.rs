@@ -47,20 +47,20 @@ pub const IDEAL: [&str; 8] = [
     "penetration_mean",
 ];
 
-/// Metrics that are instants or differences of instants, which a record shows to a step.
+/// Metrics that are instants or differences of instants, which a record resolves to one step.
 const INSTANTS: [&str; 5] = ["contact_start", "contact_end", "contact_duration", "turning_time", "apex_time"];
 
 /// A reference value, or why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Standing {
-    /// It is established.
+    /// The reference establishes a value.
     Established {
         /// The value.
         value: f64,
-        /// Its uncertainty.
+        /// Uncertainty of the value, in the same unit.
         uncertainty: f64,
     },
-    /// It is not established, for this reason.
+    /// The reference establishes no value, for this reason.
     Not(String),
 }
 
@@ -96,7 +96,7 @@ pub struct Level {
     pub mesh: f64,
     /// Number of different phases of the members.
     pub phases: usize,
-    /// The members of its ensemble, the run as given first.
+    /// Members of the level's ensemble, the run as given first.
     pub members: Vec<Trajectory>,
 }
 
@@ -113,22 +113,22 @@ impl Level {
     }
 }
 
-/// A reference.
+/// Reference that arms are compared with: runs at several levels of refinement, or exact formulas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     /// Description in words.
     pub what: String,
-    /// Its levels, the finest last; for exact formulas, one sampled from them.
+    /// Levels of refinement, the finest last; for exact formulas, one level sampled from them.
     levels: Vec<Level>,
     /// Metrics of the finest run after averaging over a short time.
     averaged: Vec<Metric>,
-    /// Uncertainties of its columns, which take the whole record to compute.
+    /// Uncertainties by column, which take the whole record to compute.
     uncertainties: BTreeMap<String, Standing>,
     exact: bool,
 }
 
 impl Reference {
-    /// Of levels of decreasing steps, the finest last.
+    /// Creates a reference from levels of decreasing steps, the finest last.
     pub fn of_levels(what: String, levels: Vec<Level>) -> Self {
         let mut reference =
             Self { what, levels, averaged: Vec::new(), uncertainties: BTreeMap::new(), exact: false };
@@ -137,17 +137,18 @@ impl Reference {
         reference
     }
 
-    /// With a description, and metrics of the finest run after averaging over a short time.
+    /// Sets the description, and the metrics of the finest run after averaging over a short time.
     pub(super) fn described(self, what: String, averaged: Vec<Metric>) -> Self {
         Self { what, averaged, ..self }
     }
 
-    /// Its levels, the finest last.
+    /// Levels of refinement, the finest last.
     pub(super) fn levels(&self) -> &[Level] {
         &self.levels
     }
 
-    /// Whether its uncertainty includes that of the mesh: it is exact, or its mesh was refined.
+    /// Whether the uncertainty includes that of the mesh: the reference is exact, or its mesh was
+    /// refined.
     pub fn refines_mesh(&self) -> bool {
         self.exact || self.levels.windows(2).any(|pair| pair[1].mesh > pair[0].mesh)
     }
@@ -160,7 +161,8 @@ impl Reference {
         self.levels.last()?.members.first()
     }
 
-    /// Of formulas in t by column, sampled at `rows` + 1 times from 0 to `end`.
+    /// Creates an exact reference from formulas in t by column, sampled at `rows` + 1 times from 0
+    /// to `end`; none if a formula cannot be read.
     pub fn of_formulas(formulas: &BTreeMap<String, String>, end: f64, rows: usize) -> Option<Self> {
         let times: Vec<f64> = (0..=rows).map(|i| end * i as f64 / rows as f64).collect();
         let mut columns = BTreeMap::new();
@@ -198,7 +200,7 @@ impl Reference {
     /// Value of a metric with its uncertainty.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why the reference has no such value.
     pub fn estimate(&self, name: &str) -> Result<Estimate, Reason> {
         if self.exact {
             let value = self.finest().and_then(|run| run.value(name));
@@ -258,7 +260,7 @@ impl Reference {
         Some((&run.times, run.columns.get(name)?))
     }
 
-    /// Names of its columns.
+    /// Names of the columns of the reference.
     pub fn columns(&self) -> Vec<&str> {
         self.finest().map_or_else(Vec::new, |run| run.columns.keys().map(String::as_str).collect())
     }

@@ -9,8 +9,8 @@ use super::trajectory::Trajectory;
 use crate::metrics;
 use crate::{RecordError, Status};
 
-/// What happens where contact begins, which is a part of the mathematical problem as long as
-/// contact nodes have mass.
+/// Impact law of the contact nodes, as a part of the description of a reference: while contact
+/// nodes have mass, the law belongs to the mathematical problem.
 fn begins(arm: &Arm) -> &'static str {
     let mut projects = arm.facts.contacts.iter().map(|contact| contact.projects);
     match projects.next() {

@@ -6,23 +6,23 @@ use super::arm::Arm;
 use crate::metrics::{self, MUCH_CREATED, Metric, Overlay};
 use crate::{Expectation, RecordError, Run, Status, Warning, judge};
 
-/// An arm with its metrics.
+/// Results of an arm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
-    /// The arm.
+    /// Name of the arm.
     pub name: String,
-    /// Status; none if it has not started, or if its record is damaged.
+    /// Status of the run; none if it has not started, or if its record is damaged.
     pub status: Option<Status>,
-    /// Why it did not finish, or how its record is damaged and what to do about it.
+    /// Why the run did not finish, or how its record is damaged and what to do about it.
     pub reason: Option<String>,
     /// Metrics of a finished run; empty otherwise, because those of an unfinished run would be
     /// misleading.
     pub metrics: Vec<Metric>,
-    /// Outcomes of its expectations.
+    /// Outcomes of the expectations of the arm.
     pub expectations: Vec<Expectation>,
-    /// Whether it had dynamic contact.
+    /// Whether the run had dynamic contact.
     pub contact: bool,
-    /// Its warnings.
+    /// Warnings of the run.
     pub warnings: Vec<Warning>,
 }
 
@@ -49,18 +49,19 @@ impl Row {
         Self { name: arm.name.clone(), reason: Some(reason), ..Self::default() }
     }
 
-    /// Whether it failed, or created so much energy that the default guard would have stopped it.
+    /// Whether the arm failed, or created so much energy that the default guard would have stopped
+    /// it.
     pub fn is_unsound(&self) -> bool {
         self.status == Some(Status::Failed)
             || self.value("energy_created").is_some_and(|share| share > MUCH_CREATED)
     }
 
-    /// Whether its record is damaged.
+    /// Whether the record of the arm is damaged.
     pub fn is_damaged(&self) -> bool {
         self.status.is_none() && self.reason.is_some()
     }
 
-    /// Whether it has finished or failed.
+    /// Whether the arm has finished or failed.
     pub fn has_ended(&self) -> bool {
         matches!(self.status, Some(Status::Finished | Status::Failed))
     }

@@ -13,7 +13,7 @@ pub struct Trajectory {
     /// Columns of probes and of the striker's centre, and [`FORCE`], the magnitude of the contact
     /// force.
     pub columns: BTreeMap<String, Vec<f64>>,
-    /// The metrics.
+    /// Metrics of the run.
     pub metrics: Vec<Metric>,
 }
 
@@ -21,7 +21,7 @@ pub struct Trajectory {
 pub const FORCE: &str = "contact force";
 
 impl Trajectory {
-    /// From a record.
+    /// Extracts the trajectory from a record.
     pub fn of(run: &Run, metrics: &[Metric]) -> Self {
         let history = &run.history;
         let mut names: Vec<String> = metrics::probe_columns(run).into_iter().map(str::to_owned).collect();

@@ -22,15 +22,15 @@ const NAMED: &str = "body ";
 /// Shape of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cell {
-    /// Ends, then interior.
+    /// Nodes at both ends, then in the interior.
     Curve,
-    /// Corners, edges, interior.
+    /// Nodes at corners, then edges, then the interior.
     Triangle,
-    /// Of degree 1 or 2: corners, edges, interior.
+    /// Degree 1 or 2; nodes at corners, then edges, then the interior.
     Quadrilateral,
-    /// Corners, edges, faces, interior.
+    /// Nodes at corners, then edges, faces, and the interior.
     Tetrahedron,
-    /// Of degree 1 or 2: corners, edges, faces, interior.
+    /// Degree 1 or 2; nodes at corners, then edges, faces, and the interior.
     Hexahedron,
 }
 
@@ -130,7 +130,7 @@ pub struct FieldSet {
     pub points: Vec<[f64; 3]>,
     /// Cells, one block per body; the points of a body need not be contiguous.
     pub blocks: Vec<Block>,
-    /// Quantities.
+    /// Quantities at the points.
     pub arrays: Vec<PointArray>,
 }
 

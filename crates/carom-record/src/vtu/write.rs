@@ -16,7 +16,7 @@ struct Parts {
 }
 
 impl Parts {
-    /// One appended array: its byte count (UInt64), then its values, little-endian.
+    /// Appends one array: its byte count (UInt64), then its values, little-endian.
     fn array<const B: usize>(
         &mut self,
         kind: &str,

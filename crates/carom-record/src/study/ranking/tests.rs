@@ -67,8 +67,8 @@ fn study(runs: &[Made]) -> (StudyManifest, Vec<Row>) {
     (manifest, rows.collect())
 }
 
-/// The same with deviations of a displacement in the place of energy drifts, from three identical
-/// runs.
+/// Ranks a study by cost. The errors are its energy drifts, taken as deviations of a displacement
+/// from a reference of three identical runs.
 fn by_cost((manifest, rows): &(StudyManifest, Vec<Row>)) -> Ranking {
     let column = || ("A.uy".to_owned(), vec![0.0, 1.0]);
     let run = || Trajectory { times: vec![0.0, 1.0], columns: [column()].into(), metrics: Vec::new() };
@@ -164,7 +164,8 @@ fn an_arm_that_scatters_by_more_than_the_accuracy_does_not_have_it() {
     let of = |arms: &[Made], members: &[&[(f64, f64)]]| by_energy(&with_members(study(arms), members));
     let a = ("a", 0, 0.01, 1.0);
     let b = ("b", 0, 0.03, 2.0);
-    let (scatters, agrees): (&[_], &[_]) = (&[(0.01, 1.0), (0.1, 1.0)], &[(0.03, 2.0); 2]);
+    let scatters: &[_] = &[(0.01, 1.0), (0.1, 1.0)];
+    let agrees: &[_] = &[(0.03, 2.0); 2];
     assert_eq!(of(&[a, b], &[scatters, agrees]).verdict.unwrap().arm, 1);
     let why = of(&[a], &[scatters]).verdict.unwrap_err();
     assert!(
@@ -176,7 +177,7 @@ fn an_arm_that_scatters_by_more_than_the_accuracy_does_not_have_it() {
     assert_eq!(ranking.levels[0].iter().map(|r| r.arm).collect::<Vec<_>>(), [1]);
 }
 
-/// What an ensemble shows is in the members that have a value: all three, two of three, or one.
+/// Only members with a value count as evidence: all three, two of three, or one.
 #[test]
 fn failed_members_are_no_evidence() {
     let arms =
@@ -252,7 +253,8 @@ fn identical_arms_count_once() {
     assert_eq!(found(0.0101), (vec![(0, 1), (1, 1), (2, 3)], vec!["b".to_owned()]));
 }
 
-/// Of three arms the one with the smallest drift created 3 % of energy; the guard allows 2 %.
+/// Three arms, of which the one with the smallest drift created 3 % of energy; the guard allows 2
+/// %.
 #[test]
 fn an_arm_that_creates_energy_is_last_and_not_recommended() {
     let (manifest, mut rows) = study(&[("a", 0, 0.01, 1.0), ("b", 0, 0.03, 1.0), ("c", 0, 0.04, 1.0)]);
@@ -303,7 +305,7 @@ fn conclusions_change_by_more_than_the_uncertainties() {
     assert_eq!((&of(0.06, 0.0)[0].better, &of(0.0, 0.11)[0].better), (&None, &None));
 }
 
-/// Of two arms in the first place, table and check begin with the same one, the cheaper.
+/// Where two arms share the first place, table and check begin with the same one, the cheaper.
 #[test]
 fn the_check_begins_with_the_first_arm_of_the_table() {
     let runs = [("a", 0, 0.100, 2.0), ("b", 0, 0.102, 1.0), ("a", 1, 0.050, 4.0), ("b", 1, 0.051, 3.0)];
