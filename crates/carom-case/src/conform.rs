@@ -11,7 +11,7 @@ use super::unit::Labels;
 
 mod value;
 
-/// What is wrong with single keys and values.
+/// Problems of the keys and values of a document, each compared with its description.
 #[derive(Default)]
 pub(super) struct Conformity {
     pub(super) problems: Vec<Problem>,
@@ -33,7 +33,7 @@ pub(super) fn file(document: &Document, root: &'static keys::Table) -> Conformit
     check.found
 }
 
-/// The same for a table of variants alone.
+/// Compares a single table with the descriptions of its variants, without a document around it.
 pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
     let mut check = Check::default();
     check.variant(table, variants, "");
@@ -59,7 +59,7 @@ struct Spec<'a> {
 }
 
 impl<'a> Spec<'a> {
-    /// Of a table, which belongs to a value of the key `tag` if there is one.
+    /// Keys of a table as described; `tag` is the key whose value selected the table, if one did.
     fn of(table: &'a keys::Table, tag: Option<&'a str>) -> Self {
         Self { name: table.name, tag, keys: table.keys.iter().collect(), later: table.later }
     }

@@ -187,7 +187,8 @@ impl Document {
         Diagnostic { system: problem.system, ..found }
     }
 
-    /// The same for all problems, in the order of the file.
+    /// Finds the lines of all problems, sorted by place: those in the file, then those in
+    /// overrides.
     pub fn diagnose_all(&self, problems: &[Problem]) -> CaseError {
         let mut found: Vec<_> = problems.iter().map(|p| self.diagnose(p)).collect();
         found.sort_by_key(|d| (d.file != self.name(), d.line, d.column));

@@ -6,7 +6,7 @@ use toml_edit::{DocumentMut, Item, TableLike, Value, value};
 
 use super::problem::{CaseError, Diagnostic};
 
-/// What remains of a case.
+/// Parts of a case that remain in an excerpt, and the files that it refers to.
 #[derive(Clone, Debug, Default)]
 pub struct Excerpt {
     /// Names of the bodies that remain.

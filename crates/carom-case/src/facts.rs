@@ -1,4 +1,4 @@
-//! What a record states of its case for metrics and studies.
+//! Facts of a case that its record states for metrics and studies.
 
 use carom_record::metrics::Overlay;
 use carom_record::{ContactFacts, Facts, Held, body_of};

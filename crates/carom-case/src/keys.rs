@@ -17,17 +17,17 @@ pub use crate::tree::{Node, Table as Given};
 pub struct Table {
     /// Name in messages: `[[body]]`.
     pub name: &'static str,
-    /// Its meaning.
+    /// Meaning of the table.
     pub doc: &'static str,
-    /// Its keys, in the order of the documentation.
+    /// Keys of the table, in the order of the documentation.
     pub keys: &'static [Key],
     /// Keys planned for a later version.
     pub later: &'static [&'static str],
-    /// The dimension of the cases that may have it, if not all may.
+    /// Dimension of the cases that may have the table; none if all may.
     pub dimension: Option<usize>,
 }
 
-/// One key.
+/// A key of a table: its values, default and meaning.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     /// Name in the file.
@@ -40,20 +40,21 @@ pub struct Key {
     pub default: Default,
     /// Default under `preset = "paper"`, as TOML, where it differs.
     pub paper: Option<&'static str>,
-    /// Its meaning.
+    /// Meaning of the key.
     pub doc: &'static str,
     /// An example value, as TOML.
     pub example: &'static str,
     /// Other kinds of value planned for a later version: a table, a string.
     pub later: &'static str,
-    /// A key in whose presence it is not required, and may not be given; empty if none.
+    /// Name of a key that replaces this one: where it is given, this one must not be; empty if
+    /// none.
     pub unless: &'static str,
 }
 
-/// What happens when a key is omitted.
+/// Default value of a key that is not given.
 #[derive(Clone, Copy, Debug)]
 pub enum Default {
-    /// An error: it must be given.
+    /// None: the key must be given.
     Required,
     /// There is no default value, or a computed one (stated in the documentation).
     Absent,
@@ -69,7 +70,7 @@ pub enum Kind {
     /// A name: no dots, blanks, slashes, commas or quotes, because names of columns and sides
     /// contain it.
     Name,
-    /// One of these words.
+    /// A word from a list.
     Choice(Words),
     /// A finite number in a range.
     Number(Range),
@@ -81,7 +82,7 @@ pub enum Kind {
     Count(usize),
     /// An integer in dimension 1, one per direction in dimensions 2 and 3.
     Counts(usize),
-    /// One finite number per dimension.
+    /// A vector: one finite number per dimension.
     Vector,
     /// `"x"`, `"y"` or `"z"`, or one number per dimension.
     Direction,
@@ -91,9 +92,9 @@ pub enum Kind {
     Points(usize),
     /// A finite number, or a formula in these variables (`Y` and `Z` where they exist).
     Formula(&'static [&'static str]),
-    /// One number or formula per dimension.
+    /// A vector of numbers or formulas in these variables, one per dimension.
     Formulas(&'static [&'static str]),
-    /// One number or formula per dimension, or this table.
+    /// A vector of numbers or formulas in these variables, one per dimension; or this table.
     FormulasOr(&'static [&'static str], &'static Table),
     /// A table of formulas in t, with names of columns as keys.
     ByColumn,

@@ -63,7 +63,8 @@ pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, TableError> {
     columns(path, name, ["t", "value"])
 }
 
-/// The same of the columns with these headings.
+/// Reads the two columns with the headings `wanted` from the file at `path`, called `name` in
+/// messages.
 ///
 /// # Errors
 /// If it is not a table with these columns.

@@ -1,17 +1,17 @@
 //! The memory that a run needs, estimated from the numbers of a case before anything is allocated.
 //!
-//! Of a body of n nodes and e cells with N nodes each, in dimension D, with c nodes coupled to a
-//! node (itself included; mean over a large mesh: 3, 4, 5 for L2 L3 L4; 7, 12, 19 for T3 T6 T10; 9,
-//! 16 for Q4 Q9; 15, 29, 51 for Tet4 Tet10 Tet20; 27, 64 for Hex8 Hex27), in bytes:
+//! Bytes for a body of n nodes and e cells with N nodes each, in dimension D, with c nodes coupled
+//! to a node (itself included; mean over a large mesh: 3, 4, 5 for L2 L3 L4; 7, 12, 19 for T3 T6
+//! T10; 9, 16 for Q4 Q9; 15, 29, 51 for Tet4 Tet10 Tet20; 27, 64 for Hex8 Hex27):
 //!
 //! ```text
 //! model     n (58 D + 8 + m) + e (16 N + 4 N D + 8 D² + 64)       m = 12 c for a consistent mass, 12 for a lumped one
 //!           + e' q (N D + 1) 8                                    e' cells with q quadrature points of their own (curved, or of constant strain)
 //! lists     4 e N² + 24 n                                         nodes that share a cell, while a structure is made from them
-//! steps     8 D n V                                               V vectors: states, iterates, and what solves
+//! steps     8 D n V                                               V vectors: states, iterates, and those of the solver
 //! ```
 //!
-//! What solves:
+//! Additional bytes for the solver:
 //!
 //! ```text
 //! explicit  n (c + 1)/2 (4 D² + 8), for the stable step; freed before the first step

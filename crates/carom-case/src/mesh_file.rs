@@ -41,7 +41,7 @@ pub struct FileMesh {
     pub cells: usize,
     /// Sides of the mesh.
     pub sides: Vec<String>,
-    /// What was repaired when the mesh was read.
+    /// Descriptions of the repairs made when the mesh was read.
     pub repairs: Vec<String>,
     /// Parts into which every edge is divided.
     #[serde(default = "whole")]
@@ -70,10 +70,10 @@ fn group(file: gmsh::MshFile, dimension: usize, name: &str, slits: bool) -> Resu
     }
 }
 
-/// What a mesh from a file is for.
+/// Requirements of the body that a mesh is read from a file for.
 #[derive(Clone, Copy)]
 pub(crate) struct Purpose {
-    /// Its dimension.
+    /// Dimension of the mesh in the file: 1, 2 or 3.
     pub(crate) dimension: usize,
     /// Element of the body, if it is known.
     pub(crate) element: Option<Element>,

@@ -41,7 +41,8 @@ impl SchemeSpec {
         self.kind == ENERGY_MOMENTUM
     }
 
-    /// What contact constrains under this scheme, unless the case sets `law`.
+    /// Default contact law of the scheme: velocities for schemes with impulses, positions for
+    /// others.
     pub fn contact_law(&self) -> ContactLaw {
         match self.nonsmooth() {
             Some(Nonsmooth::Impulse(_)) => ContactLaw::Velocity,

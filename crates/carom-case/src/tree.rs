@@ -71,7 +71,8 @@ impl Table {
 }
 
 impl Table {
-    /// Its values with the dotted paths of their keys; a table in braces is a value.
+    /// Values of the table with the dotted paths of their keys; a table in braces counts as one
+    /// value.
     pub(crate) fn flat(&self) -> Vec<(String, &Node)> {
         let mut found = Vec::new();
         for entry in &self.0 {

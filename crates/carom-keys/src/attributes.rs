@@ -1,4 +1,4 @@
-//! What the attributes `keys` and `key`, and doc comments, say.
+//! Reads the attributes `keys` and `key`, and the doc comments, of a type that derives `Keys`.
 
 use syn::parse::{Parse, ParseStream};
 use syn::punctuated::Punctuated;

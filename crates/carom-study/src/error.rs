@@ -16,7 +16,7 @@ pub enum StudyError {
     /// An arm cannot be computed, for a reason other than a failure of the simulation.
     #[error("arm \"{arm}\": {source}")]
     Arm {
-        /// Its name.
+        /// Name of the arm.
         arm: String,
         /// Why.
         source: RunError,
@@ -28,7 +28,7 @@ pub enum StudyError {
         arm: String,
         /// The directory of its run.
         place: PathBuf,
-        /// What is wrong.
+        /// Description of the damage.
         what: String,
     },
     /// `study.json` has a case that this version cannot read.
@@ -36,7 +36,7 @@ pub enum StudyError {
     Incompatible {
         /// The arm.
         arm: String,
-        /// What is not compatible.
+        /// Message of the reader: the part of the case that it cannot read.
         what: String,
     },
     /// The steps of some arms depend on measured times, which differ between machines.
@@ -87,7 +87,7 @@ pub enum StudyError {
 }
 
 impl StudyError {
-    /// What to try; none if the message of its cause says it.
+    /// Suggested remedy; none if the message of the cause contains it.
     pub fn cure(&self) -> Option<String> {
         Some(match self {
             Self::Record(error) => return error.cure(),

@@ -10,13 +10,13 @@ use carom_run::recording::{self, End, Progress};
 /// An event of an arm, given by its number.
 #[derive(Clone, Debug)]
 pub enum Event {
-    /// It had finished or failed before.
+    /// The arm had finished or failed before.
     AlreadyDone(usize),
-    /// It is started or resumed.
+    /// The arm is started or resumed.
     Began(usize),
-    /// It accepted a step.
+    /// The arm accepted a time step.
     Progress(usize, Progress),
-    /// It ended.
+    /// The arm ended.
     Ended(usize, Ended),
 }
 

@@ -83,7 +83,7 @@ fn count(manifest: &Manifest, name: &str) -> f64 {
 struct Trial {
     /// Steps.
     steps: u64,
-    /// Its cost in seconds; none if it did not run to its end.
+    /// Cost of the run in seconds; none if it did not reach its end.
     cost: Option<f64>,
 }
 
@@ -309,8 +309,8 @@ fn pilot(
     Ok((Ended { status: run.status, reason: run.reason, wall }, accepted.steps, share))
 }
 
-/// One pilot run, started or resumed; none if the step is not possible, for example above the
-/// stable step of an explicit scheme.
+/// Starts or resumes one pilot run of `steps` steps; none if the time step is not possible, for
+/// example above the stable step of an explicit scheme.
 fn trial(
     manifest: &StudyManifest,
     i: usize,

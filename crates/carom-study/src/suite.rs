@@ -18,7 +18,7 @@ pub struct Suite {
     pub fast: bool,
 }
 
-/// One file of a suite.
+/// A case file or study file of a suite.
 #[derive(Clone, Debug)]
 pub struct Item {
     /// Folder of its file.
@@ -34,9 +34,9 @@ pub struct Item {
 /// A case, or a study.
 #[derive(Clone, Debug)]
 pub enum Kind {
-    /// One simulation.
+    /// A case: one simulation.
     Case(Box<Case>, Source),
-    /// Many of them.
+    /// A study: many simulations.
     Study(Box<Plan>),
 }
 

@@ -31,7 +31,7 @@ pub struct VerifyOptions {
     pub fail_fast: bool,
 }
 
-/// One simulation of a suite.
+/// A simulation that a suite runs: a case, or an arm of a study.
 struct Unit {
     item: usize,
     name: String,

@@ -1,4 +1,5 @@
-//! What solves the linear systems of a case, and what `newton.linear = "iterative"` cannot solve.
+//! Choice between direct and iterative solution of the linear systems of a case, and checks of
+//! `newton.linear = "iterative"`.
 
 use super::super::keys::word;
 use super::super::{ContactSpec, LinearRule, TimeSpec};

@@ -13,7 +13,7 @@ use crate::tree::{self, Node, Table};
 
 /// A table of keys, derived from a struct.
 pub trait Keys: Sized {
-    /// Its description.
+    /// Description of the table: its keys and their meanings.
     const TABLE: Description;
 
     /// Reads a table of this description; none if a key is missing or has no value of its type,
@@ -54,7 +54,7 @@ pub struct View<'a> {
     pub(crate) folder: &'a Path,
     /// Path of the table; empty for the whole document.
     pub(crate) path: String,
-    /// What its readers report.
+    /// Problems reported while the document is read.
     pub(crate) problems: &'a RefCell<Vec<Problem>>,
 }
 
@@ -95,7 +95,7 @@ impl<'a> View<'a> {
         fits.then(|| Self { tag, dimension, ..self.inside(table, spec.keys) })
     }
 
-    /// The same for a value that must be a table.
+    /// View of a value that must be a table of one of several descriptions.
     #[doc(hidden)]
     pub fn variant(&self, node: &'a Node, variants: &Variants) -> Option<Self> {
         self.one_of(node.table()?, variants)
@@ -227,13 +227,14 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Values of the case that a key sets, with the dotted paths of their keys; none if it is not
-    /// given.
+    /// Values of the case that the table of a key sets, with the dotted paths of their keys; empty
+    /// if the key is not given.
     pub fn changes(&self, name: &str) -> Option<Vec<(String, toml_edit::Value)>> {
         self.table.get(name).map_or(Some(Vec::new()), changes)
     }
 
-    /// The same for a list of tables.
+    /// Values of the case that each table of a list sets, with the dotted paths of their keys;
+    /// empty if the list is not given.
     pub fn lists_of_changes(&self, name: &str) -> Option<Vec<Vec<(String, toml_edit::Value)>>> {
         let list = self.table.get(name).map_or(Some(&[][..]), Node::list)?;
         list.iter().map(changes).collect()

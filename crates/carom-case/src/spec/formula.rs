@@ -36,7 +36,7 @@ impl FormulaSpec {
         }
     }
 
-    /// Its value, if it does not depend on anything.
+    /// The constant value; none if the formula contains a variable.
     pub fn constant(&self) -> Option<f64> {
         match self {
             Self::Number(value) => Some(*value),

@@ -386,8 +386,8 @@ fn directed(mesh: &MeshSpec, v: &View) -> Option<()> {
     v.wrong("axis", error.to_string(), why, "write for example axis = \"z\"")
 }
 
-/// What planes of symmetry across x and y leave of a shape of the plane: the part with the larger
-/// coordinates.
+/// Part of a plane shape that remains after cuts along planes of symmetry across x and y: the one
+/// with the larger coordinates.
 fn half(of: MeshSpec, v: &View, [x, y, _]: [bool; 3]) -> Option<MeshSpec> {
     match of {
         _ if !x && !y => Some(of),

@@ -68,7 +68,7 @@ pub enum Fallback {
 pub struct SchemeSpec {
     /// The `kind` key.
     pub kind: String,
-    /// Its parameters by key, as given.
+    /// Parameters of the scheme by key, as given.
     #[serde(flatten)]
     pub parameters: BTreeMap<String, f64>,
     /// `average-forces` or `average-state`.
