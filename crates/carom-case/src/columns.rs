@@ -14,7 +14,7 @@ pub(super) fn exists(of: Quantity, dimension: usize) -> bool {
 }
 
 impl Case {
-    /// Unit labels of what is recorded.
+    /// Unit labels of the recorded quantities.
     pub fn labels(&self) -> Labels {
         Labels::of(&self.units.length, &self.units.time, &self.units.mass)
     }
@@ -60,7 +60,7 @@ pub(super) struct Recorded<'a> {
     pub(super) fallback: Fallback,
 }
 
-/// Columns of a space.
+/// A list of columns under construction; `axes` are the names of the coordinates.
 struct Columns {
     axes: &'static [&'static str],
     list: Vec<Column>,

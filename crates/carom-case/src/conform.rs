@@ -45,7 +45,7 @@ struct Check {
     dimension: Option<usize>,
     names: Names,
     labels: Labels,
-    /// The whole file, of which other tables may have an unknown key.
+    /// Description of the whole file, in which an unknown key of one table may belong to another.
     root: Option<&'static keys::Table>,
     found: Conformity,
 }
@@ -107,7 +107,7 @@ impl Check {
         }
     }
 
-    /// Missing parameters of one scheme or shape: one mistake.
+    /// Reports missing parameters of one scheme or shape together, as one problem.
     fn missing_together(&mut self, keys: &[&Key], spec: &Spec, path: &str) {
         let names: Vec<_> = keys.iter().map(|key| format!("`{}`", key.name)).collect();
         let meanings: Vec<_> = keys.iter().map(|key| format!("{}: {}", key.name, key.meaning())).collect();
@@ -198,7 +198,7 @@ impl Check {
 }
 
 impl Check {
-    /// An unknown key, and the key of this table that was probably meant.
+    /// The problem of an unknown key, and the key of its table that was probably meant.
     fn unknown<'a>(
         &self,
         word: &str,
@@ -232,12 +232,12 @@ impl Check {
     }
 }
 
-/// Whether a problem suggests that this key was meant.
+/// Whether the remedy of a problem names this key.
 fn meant(problem: &Problem, key: &str) -> bool {
     problem.help.contains(&format!("`{key}`"))
 }
 
-/// `a, b and c`.
+/// Joins words as in `a, b and c`.
 fn and(words: &[String]) -> String {
     match words.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
@@ -252,7 +252,7 @@ fn words(variants: &Variants) -> String {
 /// Words that other programs use, and the keys that they mean.
 const OTHER_WORDS: [(&str, &str); 3] = [("point", "at"), ("position", "at"), ("friction", "mu")];
 
-/// The tables that have this key.
+/// Names of the tables, in `root` and below, that have this key.
 fn homes(root: &'static keys::Table, word: &str) -> Vec<&'static str> {
     fn visit(table: &'static keys::Table, word: &str, found: &mut Vec<&'static str>) {
         if table.key(word).is_some() {

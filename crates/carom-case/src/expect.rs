@@ -75,7 +75,7 @@ pub(crate) struct ExpectKeys {
 /// Runs that an expectation is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
-    /// One run. Orders of convergence are not allowed.
+    /// A single run: orders of convergence are not allowed.
     OfARun,
     /// The arms of a study: every quantity names its arm; orders of convergence are allowed too.
     OfArms,

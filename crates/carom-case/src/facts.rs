@@ -37,7 +37,8 @@ fn contact(spec: &ContactSpec) -> ContactFacts {
     }
 }
 
-/// Every axis of every body that a support holds.
+/// Constrained axes of all bodies of a support, each with its displacement if that is a formula;
+/// the axis is none where it is the normal of the side.
 fn held(support: &SupportSpec) -> Vec<Held> {
     let mut axes = Vec::new();
     if support.normal {

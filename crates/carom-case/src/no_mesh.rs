@@ -22,13 +22,13 @@ pub enum NoMesh {
     /// The mesh file cannot be read, or has changed: a sentence that says why.
     #[error("{0}")]
     Unreadable(String),
-    /// The shape is one of another dimension.
+    /// The shape needs a case of this dimension.
     #[error("this shape needs dimension = {0}")]
     Dimension(usize),
     /// A shape in space is extruded.
     #[error("this shape is not plane")]
     NotPlane,
-    /// There are no such cells of an extrusion.
+    /// An extrusion cannot have cells of this element.
     #[error("an extrusion has no cells {0:?}")]
     Extrusion(Element),
 }

@@ -13,7 +13,7 @@ pub struct Problem {
     pub within: Option<Box<std::ops::Range<usize>>>,
     /// Message: what is wrong with the key or value.
     pub what: String,
-    /// Why it is wrong.
+    /// Reason why it is wrong.
     pub why: String,
     /// Suggested remedy; may be empty.
     pub help: String,

@@ -15,7 +15,7 @@ pub(crate) struct Origin {
 #[derive(Clone, Debug)]
 pub struct Node {
     pub(crate) value: Value,
-    /// Whether it is a table in braces.
+    /// Whether the value is a table in braces.
     pub(crate) is_inline: bool,
     pub(crate) origin: Origin,
 }

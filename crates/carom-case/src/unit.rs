@@ -66,7 +66,8 @@ impl Labels {
     }
 }
 
-/// A number and what follows it, which begins with no digit.
+/// Splits a text into a number and the unit after it, which begins with no digit; none if either is
+/// missing.
 fn split(text: &str) -> Option<(&str, &str)> {
     let is_number = |end: &usize| text.is_char_boundary(*end) && text[..*end].trim().parse::<f64>().is_ok();
     let starts = text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
@@ -76,13 +77,13 @@ fn split(text: &str) -> Option<(&str, &str)> {
     (!unit.is_empty()).then_some((number, unit))
 }
 
-/// The power of ten of a unit with a prefix.
+/// Power of ten of the prefix of `unit`, whose unit without prefix is `base`.
 fn power(unit: &str, base: &str) -> Option<i32> {
     let prefix = unit.strip_suffix(base)?;
     PREFIXES.iter().find(|(name, _)| *name == prefix).map(|(_, power)| *power)
 }
 
-/// A number as written, times a power of ten.
+/// Text of a number multiplied by a power of ten.
 fn shifted(number: &str, power: i32) -> Option<String> {
     if power == 0 {
         return Some(number.to_owned());

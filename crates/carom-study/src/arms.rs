@@ -110,7 +110,7 @@ fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
     methods.iter().flat_map(|m| (0..count).map(move |level| (m, level))).map(at).collect()
 }
 
-/// A step for names: at most four digits, `1.875e-3`.
+/// Text of a time step for names: at most four digits, `1.875e-3`.
 fn short(step: f64) -> String {
     let text = format!("{step:.3e}");
     let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
@@ -243,7 +243,7 @@ fn entry_at((key, value): &(String, Value), path: &str) -> (String, String) {
     (assignment(key, value), format!("{path}{dot}set.\"{key}\""))
 }
 
-/// A value for names: a table by its kind and numbers, `chung-hulbert 0.6`.
+/// Text of a value for names; a table is its kind and numbers, `chung-hulbert 0.6`.
 fn brief(value: &Value) -> String {
     match value {
         Value::String(text) => text.value().clone(),

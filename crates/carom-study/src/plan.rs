@@ -18,7 +18,7 @@ use crate::resolved::{Base, Checked, Planned, bases, stored};
 /// A study that can be started.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The manifest.
+    /// Manifest of the study, to be written as `study.json`.
     pub manifest: StudyManifest,
     /// Simulations of the study, one per arm.
     pub arms: Vec<PlannedArm>,
@@ -27,9 +27,9 @@ pub struct Plan {
 /// A simulation of a study.
 #[derive(Clone, Debug)]
 pub struct PlannedArm {
-    /// The case.
+    /// Resolved case of the simulation.
     pub case: Case,
-    /// Text of the case file, and changes.
+    /// Text of the case file, and the changes applied to it.
     pub source: Source,
     /// The warnings that the case and its model give.
     pub warnings: Vec<Warning>,

@@ -21,11 +21,11 @@ pub struct Suite {
 /// A case file or study file of a suite.
 #[derive(Clone, Debug)]
 pub struct Item {
-    /// Folder of its file.
+    /// Name of the folder by which items are grouped.
     pub family: String,
-    /// Name of its file without the ending.
+    /// Name of the file without its ending.
     pub name: String,
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
     /// Case or study.
     pub kind: Kind,
@@ -103,7 +103,7 @@ fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, CaseError> {
     Ok(found)
 }
 
-/// Whether any of the expectations is to be evaluated.
+/// Whether any expectation is evaluated; with `fast`, slow ones are not.
 fn wanted<'a>(expects: impl IntoIterator<Item = &'a Expect>, fast: bool) -> bool {
     expects.into_iter().any(|e| !(fast && e.slow))
 }

@@ -8,7 +8,8 @@ use super::super::{
 use super::{Check, Node};
 
 impl Check<'_> {
-    /// Laws and enforcements that cannot be combined with each other or with the scheme.
+    /// Reports contact laws and enforcements that cannot be combined with each other or with the
+    /// scheme.
     fn law(&mut self, contact: &ContactSpec) {
         let path = |key: &str| contact.path(key);
         let predictor = contact.law == Some(ContactLaw::Predictor);
@@ -139,7 +140,7 @@ impl Check<'_> {
         }
     }
 
-    /// `self` is a key of `between`.
+    /// Reports the key `self` of a contact without `between`.
     fn of_between(&mut self, contact: &ContactSpec) {
         if !contact.between && self.given("contact", contact.entry, "self").is_some() {
             let why = "it says whether the bodies of `between` are in contact with themselves";
@@ -168,7 +169,8 @@ impl Check<'_> {
         }
     }
 
-    /// Path of the entry of `between` that is a side; none if there is no such list.
+    /// Path of the entry of `between` that names a side or its body; none if the contact has no
+    /// such list.
     fn entry_of_between(&self, contact: &ContactSpec, side: &str) -> Option<String> {
         let list = self.given("contact", contact.entry, "between")?.list()?;
         let is = |node: &Node| {
@@ -286,7 +288,7 @@ fn same_pair(a: &ContactSpec, b: &ContactSpec) -> bool {
     a.secondary == b.secondary && a.primary == b.primary || swapped(a, b) && swapped(b, a)
 }
 
-/// The last direction of so many.
+/// TOML of the unit vector along the last axis in a space of this dimension.
 fn upward(dimension: usize) -> &'static str {
     ["[1.0]", "[0.0, 1.0]", "[0.0, 0.0, 1.0]"][dimension.clamp(1, 3) - 1]
 }

@@ -35,7 +35,7 @@ impl<'a> Check<'a> {
         self.document.root().get("newton")?.table()?.get(key)?.text()
     }
 
-    /// `newton.linear`.
+    /// Value of `newton.linear`, or its default.
     pub(super) fn linear_rule(&self) -> LinearRule {
         self.newton("linear").and_then(word).unwrap_or_default()
     }

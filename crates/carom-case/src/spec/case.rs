@@ -103,7 +103,7 @@ pub struct Units {
     /// Unit label of mass.
     #[key(default = "\"kg\"")]
     pub mass: String,
-    /// Whether the case has them; otherwise its numbers may have any consistent units.
+    /// Whether the case declares its units; otherwise they may be any consistent ones.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub declared: bool,
 }

@@ -266,13 +266,13 @@ fn plane_shapes() -> &'static Variants {
 /// Names of the coordinates.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Directions across which planes of symmetry cut.
+/// Whether a plane of symmetry cuts across x, y and z.
 fn symmetry(v: &View) -> Option<[bool; 3]> {
     let words: Vec<String> = v.get("symmetry")?;
     Some(AXES.map(|direction| words.iter().any(|word| word == direction)))
 }
 
-/// The lowest corner of a box, of what planes of symmetry leave of it.
+/// Lowest corner of the part of a box that planes of symmetry leave.
 fn low_corner(v: &View) -> Option<[f64; 3]> {
     let min: [f64; 3] = v.get("min")?;
     let max: [f64; 3] = v.get("max")?;

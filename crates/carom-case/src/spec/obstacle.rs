@@ -339,12 +339,13 @@ pub enum ObstacleMotion {
 }
 
 impl ObstacleMotion {
-    /// Whether it does not move.
+    /// Whether the obstacle is fixed.
     pub fn is_fixed(&self) -> bool {
         *self == Self::Fixed
     }
 
-    /// Number of nodes that carry it: its position, and its angle.
+    /// Number of nodes that represent the motion: one for the position, one for an angle; 0 if the
+    /// obstacle is fixed.
     pub fn nodes(&self) -> usize {
         match self {
             Self::Fixed => 0,
