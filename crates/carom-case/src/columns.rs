@@ -14,7 +14,7 @@ pub(super) fn exists(of: Quantity, dimension: usize) -> bool {
 }
 
 impl Case {
-    /// Unit labels of what is recorded.
+    /// Unit labels of the recorded quantities.
     pub fn labels(&self) -> Labels {
         Labels::of(&self.units.length, &self.units.time, &self.units.mass)
     }
@@ -47,7 +47,7 @@ pub fn history_columns(case: &Case) -> Vec<Column> {
     recorded.columns(&case.labels())
 }
 
-/// What of a case is recorded.
+/// Parts of a case that determine the columns of history.csv.
 pub(super) struct Recorded<'a> {
     pub(super) dimension: usize,
     pub(super) bodies: Vec<&'a BodySpec>,
@@ -60,7 +60,7 @@ pub(super) struct Recorded<'a> {
     pub(super) fallback: Fallback,
 }
 
-/// Columns of a space.
+/// A list of columns under construction; `axes` are the names of the coordinates.
 struct Columns {
     axes: &'static [&'static str],
     list: Vec<Column>,
@@ -86,7 +86,8 @@ impl Columns {
         }
     }
 
-    /// Of a rotation: a number in the plane, a vector in space.
+    /// Adds the columns of a rotational quantity: one number in the plane, a vector in space,
+    /// nothing in dimension 1.
     fn rotational(&mut self, name: &str, unit: &str, description: &str) {
         match self.axes.len() {
             2 => self.add(name, unit, description),

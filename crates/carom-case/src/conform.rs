@@ -11,7 +11,7 @@ use super::unit::Labels;
 
 mod value;
 
-/// What is wrong with single keys and values.
+/// Problems of the keys and values of a document, each compared with its description.
 #[derive(Default)]
 pub(super) struct Conformity {
     pub(super) problems: Vec<Problem>,
@@ -33,7 +33,7 @@ pub(super) fn file(document: &Document, root: &'static keys::Table) -> Conformit
     check.found
 }
 
-/// The same for a table of variants alone.
+/// Compares a single table with the descriptions of its variants, without a document around it.
 pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
     let mut check = Check::default();
     check.variant(table, variants, "");
@@ -45,7 +45,7 @@ struct Check {
     dimension: Option<usize>,
     names: Names,
     labels: Labels,
-    /// The whole file, of which other tables may have an unknown key.
+    /// Description of the whole file, in which an unknown key of one table may belong to another.
     root: Option<&'static keys::Table>,
     found: Conformity,
 }
@@ -59,7 +59,7 @@ struct Spec<'a> {
 }
 
 impl<'a> Spec<'a> {
-    /// Of a table, which belongs to a value of the key `tag` if there is one.
+    /// Keys of a table as described; `tag` is the key whose value selected the table, if one did.
     fn of(table: &'a keys::Table, tag: Option<&'a str>) -> Self {
         Self { name: table.name, tag, keys: table.keys.iter().collect(), later: table.later }
     }
@@ -107,7 +107,7 @@ impl Check {
         }
     }
 
-    /// Missing parameters of one scheme or shape: one mistake.
+    /// Reports missing parameters of one scheme or shape together, as one problem.
     fn missing_together(&mut self, keys: &[&Key], spec: &Spec, path: &str) {
         let names: Vec<_> = keys.iter().map(|key| format!("`{}`", key.name)).collect();
         let meanings: Vec<_> = keys.iter().map(|key| format!("{}: {}", key.name, key.meaning())).collect();
@@ -198,7 +198,7 @@ impl Check {
 }
 
 impl Check {
-    /// An unknown key, and the key of this table that was probably meant.
+    /// The problem of an unknown key, and the key of its table that was probably meant.
     fn unknown<'a>(
         &self,
         word: &str,
@@ -232,12 +232,12 @@ impl Check {
     }
 }
 
-/// Whether a problem suggests that this key was meant.
+/// Whether the remedy of a problem names this key.
 fn meant(problem: &Problem, key: &str) -> bool {
     problem.help.contains(&format!("`{key}`"))
 }
 
-/// `a, b and c`.
+/// Joins words as in `a, b and c`.
 fn and(words: &[String]) -> String {
     match words.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
@@ -252,7 +252,7 @@ fn words(variants: &Variants) -> String {
 /// Words that other programs use, and the keys that they mean.
 const OTHER_WORDS: [(&str, &str); 3] = [("point", "at"), ("position", "at"), ("friction", "mu")];
 
-/// The tables that have this key.
+/// Names of the tables, in `root` and below, that have this key.
 fn homes(root: &'static keys::Table, word: &str) -> Vec<&'static str> {
     fn visit(table: &'static keys::Table, word: &str, found: &mut Vec<&'static str>) {
         if table.key(word).is_some() {

@@ -17,12 +17,12 @@ const LARGEST: u64 = 10_000_000;
 /// A parsed case file with its overrides applied.
 #[derive(Clone, Debug)]
 pub struct Document {
-    /// Name and text: the file first, then the overrides.
+    /// Name and text of each source: the file first, then the overrides.
     sources: Vec<(String, String)>,
     root: Node,
 }
 
-/// A case in the folder of a file that does not exist, with a similar name.
+/// Path of a `.toml` file with a similar name, in the folder of a file that does not exist.
 fn beside(path: &Path) -> Option<PathBuf> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let names =
@@ -34,7 +34,8 @@ fn beside(path: &Path) -> Option<PathBuf> {
     Some(path.with_file_name(format!("{near}.toml")))
 }
 
-/// A diagnostic for text that is not TOML, or of a number with a unit where that is why.
+/// The diagnostic of text that is not TOML: about the unit, where a number with a unit is the
+/// reason.
 fn without_unit(name: &str, text: &str, error: &toml_edit::TomlError) -> Diagnostic {
     let found = Diagnostic::of_syntax(name, text, error);
     let line = text.lines().nth(found.line.saturating_sub(1)).unwrap_or_default();
@@ -154,17 +155,17 @@ impl Document {
         self.root.table().unwrap_or(EMPTY)
     }
 
-    /// Whether its keys are those of a study (many runs of one case).
+    /// Whether the file has a key of a study (many runs of one case).
     pub fn is_study(&self) -> bool {
         self.study_key().is_some()
     }
 
-    /// Whether it has this key.
+    /// Whether the file has this key at its top level.
     pub fn has(&self, key: &str) -> bool {
         self.root().get(key).is_some()
     }
 
-    /// A key that only a study has.
+    /// The first key found that only a study has; none in a case.
     pub(super) fn study_key(&self) -> Option<&'static str> {
         ["case", "arm", "grid"].into_iter().find(|key| self.has(key))
     }
@@ -187,7 +188,8 @@ impl Document {
         Diagnostic { system: problem.system, ..found }
     }
 
-    /// The same for all problems, in the order of the file.
+    /// Finds the lines of all problems, sorted by place: those in the file, then those in
+    /// overrides.
     pub fn diagnose_all(&self, problems: &[Problem]) -> CaseError {
         let mut found: Vec<_> = problems.iter().map(|p| self.diagnose(p)).collect();
         found.sort_by_key(|d| (d.file != self.name(), d.line, d.column));

@@ -6,7 +6,7 @@ use toml_edit::{DocumentMut, Item, TableLike, Value, value};
 
 use super::problem::{CaseError, Diagnostic};
 
-/// What remains of a case.
+/// Parts of a case that remain in an excerpt, and the files that it refers to.
 #[derive(Clone, Debug, Default)]
 pub struct Excerpt {
     /// Names of the bodies that remain.
@@ -14,15 +14,15 @@ pub struct Excerpt {
     /// Numbers of the tables of the contacts that remain, with another name if it needs one: that
     /// of the only contact that is left of those between bodies.
     pub contacts: BTreeMap<usize, Option<String>>,
-    /// End time.
+    /// End time of the simulation.
     pub end: f64,
-    /// File of the state from which it continues, beside the case.
+    /// File of the state from which the excerpt continues, beside the case.
     pub state: String,
     /// Mesh files of bodies beside the case.
     pub meshes: BTreeMap<String, String>,
     /// Tables of loads beside the case, in the order of the loads; empty where there is none.
     pub tables: Vec<String>,
-    /// Lines at the top.
+    /// Comment lines at the top of the file.
     pub comment: String,
 }
 
@@ -50,7 +50,7 @@ fn applied(text: &str, sets: &[String]) -> Result<DocumentMut, CaseError> {
     Ok(case)
 }
 
-/// Tables that say what is watched, not what is computed.
+/// Keys that an excerpt drops: those of measurements and expectations, and the initial state.
 const WATCHED: [&str; 5] = ["probe", "overlay", "expect", "exact", "initial"];
 
 impl Excerpt {
@@ -135,7 +135,7 @@ impl Excerpt {
     }
 }
 
-/// Calls `of` for every table of a list.
+/// Calls `of` for every table of the list `list` of a case.
 fn each(case: &mut DocumentMut, list: &str, of: &mut dyn FnMut(&mut dyn TableLike)) {
     match case.get_mut(list) {
         Some(Item::ArrayOfTables(tables)) => tables.iter_mut().for_each(|table| of(table)),
@@ -146,7 +146,7 @@ fn each(case: &mut DocumentMut, list: &str, of: &mut dyn FnMut(&mut dyn TableLik
     }
 }
 
-/// Keeps some tables of a list.
+/// Removes the tables of a list for which `keep` is false, and the list if none remains.
 fn retain(case: &mut DocumentMut, list: &str, keep: &mut dyn FnMut(&dyn TableLike) -> bool) {
     let empty = match case.get_mut(list) {
         Some(Item::ArrayOfTables(tables)) => {
@@ -164,7 +164,7 @@ fn retain(case: &mut DocumentMut, list: &str, keep: &mut dyn FnMut(&dyn TableLik
     }
 }
 
-/// A number, whole or not.
+/// The value of an item that is an integer or a float.
 fn number(item: &Item) -> Option<f64> {
     item.as_float().or_else(|| item.as_integer().map(|whole| whole as f64))
 }

@@ -72,23 +72,23 @@ pub(crate) struct ExpectKeys {
     slow: bool,
 }
 
-/// Where the quantity of an expectation comes from.
+/// Runs that an expectation is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
-    /// One run.
+    /// A single run: orders of convergence are not allowed.
     OfARun,
     /// The arms of a study: every quantity names its arm; orders of convergence are allowed too.
     OfArms,
 }
 
-/// What `formula = "exact"` stands for.
+/// Formulas that `formula = "exact"` in an expectation refers to.
 #[derive(Clone, Copy)]
 pub(super) enum Exact<'a> {
-    /// These formulas by column.
+    /// Formulas of the case, by column.
     Of(&'a BTreeMap<String, String>),
     /// The formulas of a case that is not known yet; for an order, of the cases of the arms.
     Later,
-    /// Nothing: there is no such formula.
+    /// None: the expectation is about several arms, whose cases may have different formulas.
     Nobody,
 }
 
@@ -103,7 +103,7 @@ pub fn expects(v: &View, asked: Asked) -> Option<Vec<Option<Expect>>> {
     })
 }
 
-/// One expectation; `None` if it cannot be read, which is then added to the problems.
+/// Reads one expectation; `None` if it cannot be read, after its problem has been reported.
 pub(super) fn one(v: &View, asked: Asked, exact: Exact) -> Option<Expect> {
     let keys = ExpectKeys::read(v)?;
     let of_order = ["of", "against", "where", "exact"].into_iter().filter(|k| v.has(k)).collect::<Vec<_>>();

@@ -1,4 +1,4 @@
-//! What a record states of its case for metrics and studies.
+//! Facts of a case that its record states for metrics and studies.
 
 use carom_record::metrics::Overlay;
 use carom_record::{ContactFacts, Facts, Held, body_of};
@@ -37,7 +37,8 @@ fn contact(spec: &ContactSpec) -> ContactFacts {
     }
 }
 
-/// Every axis of every body that a support holds.
+/// Constrained axes of all bodies of a support, each with its displacement if that is a formula;
+/// the axis is none where it is the normal of the side.
 fn held(support: &SupportSpec) -> Vec<Held> {
     let mut axes = Vec::new();
     if support.normal {

@@ -15,45 +15,46 @@ pub use crate::tree::{Node, Table as Given};
 /// A table of the case file: its keys, and those planned for later versions.
 #[derive(Clone, Copy, Debug)]
 pub struct Table {
-    /// Name in messages: `[[body]]`.
+    /// Name of the table in messages: `[[body]]`.
     pub name: &'static str,
-    /// Its meaning.
+    /// Meaning of the table.
     pub doc: &'static str,
-    /// Its keys, in the order of the documentation.
+    /// Keys of the table, in the order of the documentation.
     pub keys: &'static [Key],
     /// Keys planned for a later version.
     pub later: &'static [&'static str],
-    /// The dimension of the cases that may have it, if not all may.
+    /// Dimension of the cases that may have the table; none if all may.
     pub dimension: Option<usize>,
 }
 
-/// One key.
+/// A key of a table: its values, default and meaning.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     /// Name in the file.
     pub name: &'static str,
-    /// The values it takes.
+    /// Kind of value that the key takes.
     pub kind: Kind,
     /// Physical unit, in the case's own labels; empty if none.
     pub unit: &'static str,
-    /// Whether it is required, and its default value.
+    /// Whether the key is required, and its default value.
     pub default: Default,
     /// Default under `preset = "paper"`, as TOML, where it differs.
     pub paper: Option<&'static str>,
-    /// Its meaning.
+    /// Meaning of the key.
     pub doc: &'static str,
     /// An example value, as TOML.
     pub example: &'static str,
     /// Other kinds of value planned for a later version: a table, a string.
     pub later: &'static str,
-    /// A key in whose presence it is not required, and may not be given; empty if none.
+    /// Name of a key that replaces this one: where it is given, this one must not be; empty if
+    /// none.
     pub unless: &'static str,
 }
 
-/// What happens when a key is omitted.
+/// Default value of a key that is not given.
 #[derive(Clone, Copy, Debug)]
 pub enum Default {
-    /// An error: it must be given.
+    /// None: the key must be given.
     Required,
     /// There is no default value, or a computed one (stated in the documentation).
     Absent,
@@ -69,7 +70,7 @@ pub enum Kind {
     /// A name: no dots, blanks, slashes, commas or quotes, because names of columns and sides
     /// contain it.
     Name,
-    /// One of these words.
+    /// A word from a list.
     Choice(Words),
     /// A finite number in a range.
     Number(Range),
@@ -77,11 +78,12 @@ pub enum Kind {
     NumberOrFalse(Range),
     /// `true` or `false`.
     Truth,
-    /// An integer of at least this.
+    /// An integer ≥ the given one.
     Count(usize),
-    /// An integer in dimension 1, one per direction in dimensions 2 and 3.
+    /// Integers ≥ the given one: one in dimension 1, a list with one per direction in dimensions 2
+    /// and 3.
     Counts(usize),
-    /// One finite number per dimension.
+    /// A vector: one finite number per dimension.
     Vector,
     /// `"x"`, `"y"` or `"z"`, or one number per dimension.
     Direction,
@@ -91,9 +93,9 @@ pub enum Kind {
     Points(usize),
     /// A finite number, or a formula in these variables (`Y` and `Z` where they exist).
     Formula(&'static [&'static str]),
-    /// One number or formula per dimension.
+    /// A vector of numbers or formulas in these variables, one per dimension.
     Formulas(&'static [&'static str]),
-    /// One number or formula per dimension, or this table.
+    /// A vector of numbers or formulas in these variables, one per dimension; or this table.
     FormulasOr(&'static [&'static str], &'static Table),
     /// A table of formulas in t, with names of columns as keys.
     ByColumn,
@@ -115,11 +117,11 @@ pub enum Kind {
     Table(&'static Table),
     /// Any number of tables, `[[name]]`.
     Tables(&'static Table),
-    /// Values of the case by key, in a study.
+    /// A table with values of the case by key, in a study.
     Changes,
-    /// Any number of such tables.
+    /// A list of tables with values of the case by key, in a study.
     ChangeLists,
-    /// Lists of values of the case by key, in a study.
+    /// A table with lists of values of the case by key, in a study.
     Grid,
     /// A table whose keys depend on the value of one of them.
     Variant(fn() -> &'static Variants),
@@ -128,9 +130,9 @@ pub enum Kind {
 /// Words of which one is chosen.
 #[derive(Clone, Copy, Debug)]
 pub struct Words {
-    /// Names.
+    /// The words, as written in files.
     pub now: &'static [&'static str],
-    /// Their meanings, in the same order; empty if the key explains them.
+    /// Meanings of the words, in the same order; empty if the key explains them.
     pub meanings: &'static [&'static str],
     /// Words planned for a later version.
     pub later: &'static [&'static str],
@@ -156,7 +158,7 @@ pub struct Variants {
     pub tables: &'static [(&'static str, Table)],
     /// A table without the tag, recognised by its first key.
     pub or: Option<&'static Table>,
-    /// Dimension of its vectors, if it is not that of the case.
+    /// Dimension of the vectors in these tables; none if it is that of the case.
     pub dimension: Option<usize>,
 }
 
@@ -183,8 +185,8 @@ impl Range {
             && self.high.is_none_or(|(high, closed)| x < high || closed && x == high)
     }
 
-    /// The end that a number outside is beyond or, if that end is not included, a number near it in
-    /// a range of finite width.
+    /// A valid number near the invalid number `x`: the end of the range that it exceeds, or, if
+    /// that end is excluded, a number inside a range of finite width.
     pub fn value_next_to(&self, x: f64) -> Option<f64> {
         let inwards = match (self.low, self.high) {
             (Some((low, _)), Some((high, _))) => Some(0.01 * (high - low).min(1.0)),
@@ -201,7 +203,7 @@ impl Range {
         }
     }
 
-    /// `a number > 0`, `a number in [0, 1]`.
+    /// Description of the range for messages: `a number > 0`, `a number in [0, 1]`.
     pub fn described(&self) -> String {
         match (self.low, self.high) {
             (None, None) => "a finite number".to_owned(),
@@ -216,11 +218,11 @@ impl Range {
     }
 }
 
-/// Reference position and time.
+/// Variables of formulas in reference position and time.
 pub const IN_SPACE_AND_TIME: &[&str] = &["X", "Y", "Z", "t"];
-/// Time.
+/// Variables of formulas in time.
 pub const IN_TIME: &[&str] = &["t"];
-/// Reference position.
+/// Variables of formulas in reference position.
 pub const IN_SPACE: &[&str] = &["X", "Y", "Z"];
 
 /// The variables of a formula in a space of this dimension: `Y` in the plane, `Z` in space.
@@ -242,7 +244,7 @@ impl Variants {
         self.tables.iter().find(|(value, _)| *value == tag).map(|(_, table)| table)
     }
 
-    /// Whether a table is the one without the tag.
+    /// Whether a table is of the variant without the tag.
     pub fn has_other(&self, table: &Given) -> bool {
         self.or.and_then(|or| or.keys.first()).is_some_and(|key| table.get(key.name).is_some())
     }
@@ -305,7 +307,7 @@ impl Kind {
 }
 
 impl Key {
-    /// A required key without anything else.
+    /// A required key with all other properties empty, as a base for others.
     pub const NONE: Self = Self {
         name: "",
         kind: Kind::Text,
@@ -318,7 +320,7 @@ impl Key {
         unless: "",
     };
 
-    /// The meaning with those of its words and the unit.
+    /// Meaning of the key, followed by the meanings of its words and its unit.
     pub(crate) fn meaning(&self) -> String {
         let mut meaning = vec![self.doc.to_owned()];
         if let Kind::Choice(words) = self.kind {
@@ -332,7 +334,7 @@ impl Key {
     }
 }
 
-/// The number of keys in all groups.
+/// Total number of keys in groups.
 pub const fn count(groups: &[&[Key]]) -> usize {
     let mut count = 0;
     let mut group = 0;
@@ -343,7 +345,7 @@ pub const fn count(groups: &[&[Key]]) -> usize {
     count
 }
 
-/// The keys of all groups, `N` in number.
+/// Keys of all groups in one array; `N` is their total number.
 pub const fn joined<const N: usize>(groups: &[&[Key]]) -> [Key; N] {
     let mut all = [Key::NONE; N];
     let mut next = 0;

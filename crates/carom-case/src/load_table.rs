@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// without the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TableSpec {
-    /// The file, as given.
+    /// Name of the file, as given.
     pub file: String,
     /// Times, ascending, at least two.
     pub times: Vec<f64>,
@@ -36,7 +36,7 @@ const MOST_BYTES: u64 = 100_000_000;
 /// Why a table cannot be used, and what to try.
 #[derive(Debug)]
 pub(super) struct TableError {
-    /// With the file's name and line.
+    /// Reason, with the name and line of the file.
     pub(super) why: String,
     pub(super) help: String,
 }
@@ -63,7 +63,8 @@ pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, TableError> {
     columns(path, name, ["t", "value"])
 }
 
-/// The same of the columns with these headings.
+/// Reads the two columns with the headings `wanted` from the file at `path`, called `name` in
+/// messages.
 ///
 /// # Errors
 /// If it is not a table with these columns.

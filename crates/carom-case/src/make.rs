@@ -9,7 +9,7 @@ use crate::spec::PLANES;
 use crate::{BodySpec, MeshSpec, RefineSpec};
 
 impl BodySpec {
-    /// The mesh in a case of this dimension.
+    /// Makes the mesh of the body in a case of this dimension.
     ///
     /// # Errors
     /// Why it cannot be made.

@@ -1,17 +1,17 @@
 //! The memory that a run needs, estimated from the numbers of a case before anything is allocated.
 //!
-//! Of a body of n nodes and e cells with N nodes each, in dimension D, with c nodes coupled to a
-//! node (itself included; mean over a large mesh: 3, 4, 5 for L2 L3 L4; 7, 12, 19 for T3 T6 T10; 9,
-//! 16 for Q4 Q9; 15, 29, 51 for Tet4 Tet10 Tet20; 27, 64 for Hex8 Hex27), in bytes:
+//! Bytes for a body of n nodes and e cells with N nodes each, in dimension D, with c nodes coupled
+//! to a node (itself included; mean over a large mesh: 3, 4, 5 for L2 L3 L4; 7, 12, 19 for T3 T6
+//! T10; 9, 16 for Q4 Q9; 15, 29, 51 for Tet4 Tet10 Tet20; 27, 64 for Hex8 Hex27):
 //!
 //! ```text
 //! model     n (58 D + 8 + m) + e (16 N + 4 N D + 8 D² + 64)       m = 12 c for a consistent mass, 12 for a lumped one
 //!           + e' q (N D + 1) 8                                    e' cells with q quadrature points of their own (curved, or of constant strain)
 //! lists     4 e N² + 24 n                                         nodes that share a cell, while a structure is made from them
-//! steps     8 D n V                                               V vectors: states, iterates, and what solves
+//! steps     8 D n V                                               V vectors: states, iterates, and those of the solver
 //! ```
 //!
-//! What solves:
+//! Additional bytes for the solver:
 //!
 //! ```text
 //! explicit  n (c + 1)/2 (4 D² + 8), for the stable step; freed before the first step
@@ -36,7 +36,7 @@ use carom_solid::Element;
 use crate::columns::history_columns;
 use crate::{BodySpec, Case, MassKind, MeshSpec, Problem};
 
-/// The process before it allocates anything.
+/// Bytes of the process before it allocates anything.
 const PROGRAM: f64 = 18.0 * 1024.0 * 1024.0;
 /// Bytes per number of `history.csv` when it is read.
 const PER_NUMBER: f64 = 40.0;
@@ -61,7 +61,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// All of it.
+    /// Total memory in bytes.
     pub fn total(&self) -> f64 {
         let total = self.program + self.model + self.steps + self.matrices + self.factors + self.record;
         // ∞ − ∞ of a shape beyond all numbers.
@@ -69,7 +69,7 @@ impl Memory {
     }
 }
 
-/// How a case is solved, as far as it matters here.
+/// Solver of a case, as far as it determines the memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Solver {
     Explicit,
@@ -83,7 +83,7 @@ impl Case {
         self.memory_with(self.solver())
     }
 
-    /// The memory that it needs where the tangent is factored, whatever its steps are solved with.
+    /// Memory of a run of this case if the tangent is factorised, whatever solver the case has.
     pub fn memory_factored(&self) -> Memory {
         self.memory_with(Solver::Direct { is_static: false, has_impulses: false })
     }
@@ -159,12 +159,12 @@ impl Case {
         self.bodies.iter().map(|body| body.mesh.estimate(body.element).1).sum()
     }
 
-    /// Rows of `history.csv`.
+    /// Number of rows of `history.csv`.
     fn rows(&self) -> f64 {
         1.0 + (self.time.steps() as f64 / self.output.history_every as f64).ceil()
     }
 
-    /// Whether conjugate gradients solve its systems, too.
+    /// Whether conjugate gradients can solve the linear systems of the case.
     fn can_iterate(&self) -> bool {
         let has_friction = self.contacts.iter().any(|contact| contact.friction.exists());
         self.time.scheme.nonsmooth().is_none() && !has_friction
@@ -184,7 +184,7 @@ impl Case {
     }
 }
 
-/// A body in a case of so many unknowns.
+/// Memory of one body; `unknowns`: number of unknowns of the whole case.
 fn of_body(body: &BodySpec, case: &Case, solver: Solver, unknowns: f64) -> Memory {
     let element = body.element;
     let (cells, nodes) = body.mesh.estimate(element);
@@ -239,7 +239,7 @@ const IMPLICIT: f64 = 60.0;
 /// Corrections that are kept, at most: those of a linear problem.
 const MOST_MIXED: usize = 30;
 
-/// Entries of a column of the factor.
+/// Mean number of entries in a column of the factor.
 fn fill(body: &BodySpec, dimension: usize, nodes: f64) -> f64 {
     let c = coupled(body.element);
     let d = dimension as f64;
@@ -271,7 +271,7 @@ fn coupled(element: Element) -> f64 {
     }
 }
 
-/// Quadrature points for the forces of a curved cell.
+/// Number of quadrature points for the forces of a curved cell.
 fn points(element: Element) -> f64 {
     match element {
         Element::T3 | Element::Tet4 => 1.0,
@@ -302,7 +302,7 @@ fn curved_cells(mesh: &MeshSpec, element: Element, cells: f64) -> f64 {
     }
 }
 
-/// The key that a mesh owes its size to.
+/// Name of the key that determines the size of a mesh.
 fn size_key(mesh: &MeshSpec) -> &'static str {
     match mesh {
         MeshSpec::File(_) => "file",
@@ -312,7 +312,7 @@ fn size_key(mesh: &MeshSpec) -> &'static str {
     }
 }
 
-/// Bytes in words.
+/// A number of bytes as text in MiB or GiB, for messages.
 pub fn gibibytes(bytes: f64) -> String {
     let gib = bytes / (1024.0 * 1024.0 * 1024.0);
     match gib {

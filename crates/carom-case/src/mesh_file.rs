@@ -35,15 +35,15 @@ pub struct FileMesh {
     pub slits: bool,
     /// BLAKE3 hash of the file when the case was read.
     pub hash: String,
-    /// Nodes of the mesh.
+    /// Number of nodes of the mesh.
     pub nodes: usize,
-    /// Cells of the mesh.
+    /// Number of cells of the mesh.
     pub cells: usize,
-    /// Sides of the mesh.
+    /// Names of the sides of the mesh.
     pub sides: Vec<String>,
-    /// What was repaired when the mesh was read.
+    /// Descriptions of the repairs made when the mesh was read.
     pub repairs: Vec<String>,
-    /// Parts into which every edge is divided.
+    /// Number of parts into which every edge is divided.
     #[serde(default = "whole")]
     pub parts: usize,
 }
@@ -54,7 +54,7 @@ fn group_name(v: &View) -> Option<String> {
     named.rev().find_map(|key| v.get::<Option<String>>(key)?)
 }
 
-/// Edges as they are in the file.
+/// Default of `parts`: edges remain as they are in the file.
 fn whole() -> usize {
     1
 }
@@ -70,10 +70,10 @@ fn group(file: gmsh::MshFile, dimension: usize, name: &str, slits: bool) -> Resu
     }
 }
 
-/// What a mesh from a file is for.
+/// Properties of a body that the mesh from its file must match.
 #[derive(Clone, Copy)]
 pub(crate) struct Purpose {
-    /// Its dimension.
+    /// Dimension of the mesh in the file: 1, 2 or 3.
     pub(crate) dimension: usize,
     /// Element of the body, if it is known.
     pub(crate) element: Option<Element>,
@@ -109,7 +109,8 @@ pub(super) fn bytes(file: &Path) -> Result<Vec<u8>, String> {
 }
 
 impl FileMesh {
-    /// A mesh from a file, with what the file says.
+    /// Reads the file and completes the description of the mesh; problems are reported at the keys
+    /// of `v`.
     pub(crate) fn resolved(self, v: &View, purpose: Purpose) -> Option<Self> {
         let Purpose { dimension, element, extruded } = purpose;
         let Self { file, surface, slits, .. } = self;
@@ -181,7 +182,7 @@ impl FileMesh {
         Ok(mesh.subdivided(self.parts))
     }
 
-    /// The file, once more.
+    /// Reads the mesh file again; none if it has changed or cannot be read.
     pub(crate) fn again(&self) -> Option<gmsh::MshFile> {
         gmsh::read(&unchanged(&self.file, &self.hash).ok()?).ok()
     }

@@ -7,28 +7,28 @@ use carom_solid::{Element, generate, gmsh};
 /// Why the mesh of a body cannot be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoMesh {
-    /// Its shape gives none.
+    /// The built-in shape cannot be meshed.
     #[error(transparent)]
     Shape(#[from] generate::MeshError),
-    /// Its file gives none.
+    /// The mesh file has no usable mesh.
     #[error("{}: {error}; {}", .file.display(), .error.why())]
     File {
-        /// The file.
+        /// Path of the mesh file.
         file: PathBuf,
-        /// Why.
+        /// Fault of the mesh file.
         #[source]
         error: Box<gmsh::MshError>,
     },
-    /// Its file cannot be used: a sentence with its name.
+    /// The mesh file cannot be read, or has changed: a sentence that says why.
     #[error("{0}")]
     Unreadable(String),
-    /// The shape is one of another dimension.
+    /// The shape needs a case of this dimension.
     #[error("this shape needs dimension = {0}")]
     Dimension(usize),
     /// A shape in space is extruded.
     #[error("this shape is not plane")]
     NotPlane,
-    /// There are no such cells of an extrusion.
+    /// An extrusion cannot have cells of this element.
     #[error("an extrusion has no cells {0:?}")]
     Extrusion(Element),
 }

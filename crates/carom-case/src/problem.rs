@@ -11,11 +11,11 @@ pub struct Problem {
     pub at_key: bool,
     /// Bytes of the value's text to point at, if it is a formula.
     pub within: Option<Box<std::ops::Range<usize>>>,
-    /// What is wrong.
+    /// Message: what is wrong with the key or value.
     pub what: String,
-    /// Why it is wrong.
+    /// Reason why it is wrong.
     pub why: String,
-    /// What to try.
+    /// Suggested remedy; may be empty.
     pub help: String,
     /// Whether the system is the reason, such as a lack of memory, and not the case.
     pub system: bool,
@@ -40,19 +40,19 @@ impl Problem {
         }
     }
 
-    /// The same problem, caused by the system.
+    /// Marks the problem as caused by the system, such as a lack of memory.
     #[must_use]
     pub fn of_system(self) -> Self {
         Self { system: true, ..self }
     }
 
-    /// The same problem, pointing at the key instead of its value.
+    /// Points the problem at the key instead of its value.
     #[must_use]
     pub fn at_key(self) -> Self {
         Self { at_key: true, ..self }
     }
 
-    /// The same problem, pointing at a part of its value's text.
+    /// Points the problem at a range of bytes in the text of its value.
     #[must_use]
     pub fn within(self, bytes: std::ops::Range<usize>) -> Self {
         Self { within: Some(Box::new(bytes)), ..self }
@@ -106,11 +106,11 @@ pub struct Diagnostic {
     pub quoted: String,
     /// Number of characters marked, ≥ 1.
     pub length: usize,
-    /// What is wrong.
+    /// Message: what is wrong at this place.
     pub what: String,
     /// Why it is wrong.
     pub why: String,
-    /// What to try.
+    /// Suggested remedy; may be empty.
     pub help: String,
     /// Whether the system is the reason, and not the case.
     pub system: bool,
@@ -217,7 +217,7 @@ pub enum CaseError {
 }
 
 impl CaseError {
-    /// Of a file as a whole.
+    /// An error about a file as a whole.
     pub(super) fn of_file(
         file: &str,
         what: impl Into<String>,

@@ -17,7 +17,7 @@ pub(super) struct Counts {
 }
 
 impl Counts {
-    /// Of a mesh; none if it is given by the size of its cells.
+    /// Numbers of cells of the mesh at `path`; none if it is given by the size of its cells.
     pub(super) fn of(mesh: &Table, path: String) -> Option<Self> {
         if mesh.get("file").is_some() {
             return Some(Self { path, of_file: true, numbers: vec![1] });

@@ -22,7 +22,7 @@ impl SchemeSpec {
         carom_time::scheme(&self.kind, &self.parameters, self.forces)
     }
 
-    /// The scheme, if it has its own contact law.
+    /// The scheme as one with its own contact law; none if it has no such law.
     pub fn nonsmooth(&self) -> Option<Nonsmooth> {
         match self.integrator() {
             Ok(Integrator::Nonsmooth(scheme, _)) => Some(scheme),
@@ -30,18 +30,20 @@ impl SchemeSpec {
         }
     }
 
-    /// Whether it is of the α family, where a contact force may be averaged over the step.
+    /// Whether the scheme is of the generalised-α family, where a contact force may be averaged
+    /// over the step.
     pub fn is_alpha(&self) -> bool {
         self.integrator().is_ok_and(|integrator| integrator.alpha().is_some())
     }
 
-    /// Whether its internal forces are a discrete gradient that conserves energy; contact springs
-    /// then conserve energy too.
+    /// Whether the internal forces of the scheme are a discrete gradient that conserves energy;
+    /// contact springs then conserve energy too.
     pub fn conserves(&self) -> bool {
         self.kind == ENERGY_MOMENTUM
     }
 
-    /// What contact constrains under this scheme, unless the case sets `law`.
+    /// Default contact law of the scheme: velocities for schemes with impulses, positions for
+    /// others.
     pub fn contact_law(&self) -> ContactLaw {
         match self.nonsmooth() {
             Some(Nonsmooth::Impulse(_)) => ContactLaw::Velocity,

@@ -34,11 +34,11 @@ pub struct SurfaceSpec {
     pub reverse: bool,
     /// BLAKE3 of the file.
     pub hash: String,
-    /// Number of its triangles.
+    /// Number of triangles of the surface.
     pub triangles: usize,
-    /// Number of its edges with a triangle on one side only.
+    /// Number of edges of the surface with a triangle on one side only.
     pub rim: usize,
-    /// Number of triangles between touching solids, which are no part of it.
+    /// Number of triangles between touching solids, which are not part of the surface.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub inner: usize,
 }

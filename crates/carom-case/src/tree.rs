@@ -15,7 +15,7 @@ pub(crate) struct Origin {
 #[derive(Clone, Debug)]
 pub struct Node {
     pub(crate) value: Value,
-    /// Whether it is a table in braces.
+    /// Whether the value is a table in braces.
     pub(crate) is_inline: bool,
     pub(crate) origin: Origin,
 }
@@ -71,7 +71,8 @@ impl Table {
 }
 
 impl Table {
-    /// Its values with the dotted paths of their keys; a table in braces is a value.
+    /// Values of the table with the dotted paths of their keys; a table in braces counts as one
+    /// value.
     pub(crate) fn flat(&self) -> Vec<(String, &Node)> {
         let mut found = Vec::new();
         for entry in &self.0 {

@@ -16,7 +16,7 @@ const PREFIXES: [(&str, i32); 10] = [
     ("G", 9),
 ];
 
-/// What is measured, the unit that takes prefixes, and its symbol in `[units]`.
+/// Name of each quantity, its unit without prefix, and its default label in `[units]`.
 const QUANTITIES: [(&str, &str, &str); 3] = [("length", "m", "m"), ("time", "s", "s"), ("mass", "g", "kg")];
 
 /// Unit labels of a case: of length, time and mass.
@@ -29,15 +29,15 @@ impl Default for Labels {
 }
 
 impl Labels {
-    /// Those of a case, with the defaults for others.
+    /// Labels that a case gives, and the defaults for the others.
     pub(super) fn of(case: &Table) -> Self {
         let units = case.get("units").and_then(Node::table);
         let label = |name: &str| units.and_then(|units| units.get(name)?.text()).map(str::to_owned);
         Self(QUANTITIES.map(|(name, _, default)| label(name).unwrap_or_else(|| default.to_owned())))
     }
 
-    /// What to write for a key instead of a number with a unit, if the text is one; `unit`: what
-    /// the key measures, if it is known.
+    /// Advice if `text`, the value of `key`, is a number with a unit: what to write instead. `unit`
+    /// is the dimension of the key, such as "time", if it is known.
     pub(super) fn advice(&self, key: &str, unit: Option<&str>, text: &str) -> Option<String> {
         let (number, suffix) = split(text)?;
         for (label, (name, base, _)) in self.0.iter().zip(QUANTITIES) {
@@ -66,7 +66,8 @@ impl Labels {
     }
 }
 
-/// A number and what follows it, which begins with no digit.
+/// Splits a text into a number and the unit after it, which begins with no digit; none if either is
+/// missing.
 fn split(text: &str) -> Option<(&str, &str)> {
     let is_number = |end: &usize| text.is_char_boundary(*end) && text[..*end].trim().parse::<f64>().is_ok();
     let starts = text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
@@ -76,13 +77,13 @@ fn split(text: &str) -> Option<(&str, &str)> {
     (!unit.is_empty()).then_some((number, unit))
 }
 
-/// The power of ten of a unit with a prefix.
+/// Power of ten of the prefix of `unit`, whose unit without prefix is `base`.
 fn power(unit: &str, base: &str) -> Option<i32> {
     let prefix = unit.strip_suffix(base)?;
     PREFIXES.iter().find(|(name, _)| *name == prefix).map(|(_, power)| *power)
 }
 
-/// A number as written, times a power of ten.
+/// Text of a number multiplied by a power of ten.
 fn shifted(number: &str, power: i32) -> Option<String> {
     if power == 0 {
         return Some(number.to_owned());

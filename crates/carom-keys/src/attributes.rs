@@ -1,4 +1,4 @@
-//! What the attributes `keys` and `key`, and doc comments, say.
+//! Reads the attributes `keys` and `key`, and the doc comments, of a type that derives `Keys`.
 
 use syn::parse::{Parse, ParseStream};
 use syn::punctuated::Punctuated;
@@ -31,13 +31,13 @@ fn entries(attributes: &[Attribute], name: &str) -> syn::Result<Option<Vec<Entry
     Ok(found)
 }
 
-/// A table.
+/// The attributes of a struct, enum or variant that describes a table.
 #[derive(Default)]
 pub(crate) struct Container {
     pub(crate) doc: String,
     /// Name in messages.
     pub(crate) name: String,
-    /// The dimension of the cases that may have it.
+    /// Dimension of the cases that may have the table.
     pub(crate) dimension: Option<Expr>,
     /// Planned keys.
     pub(crate) later: Vec<Expr>,
@@ -69,27 +69,27 @@ impl Container {
     }
 }
 
-/// A key.
+/// The attributes of a field that is a key.
 #[derive(Default)]
 pub(crate) struct Key {
     pub(crate) doc: String,
     pub(crate) kind: Option<Expr>,
     pub(crate) name: Option<String>,
-    /// Entries that the description has as well, as TOML or words.
+    /// Entries copied into the description of the key, as TOML or words.
     pub(crate) described: Vec<(Ident, Expr)>,
     pub(crate) default: Option<Expr>,
     pub(crate) paper: Option<Expr>,
     pub(crate) optional: Option<Expr>,
     pub(crate) with: Option<Path>,
     pub(crate) flatten: bool,
-    /// Whether the field says only that it is given.
+    /// Whether the field states only whether the key is given.
     pub(crate) given: bool,
-    /// Whether it must be given, though the field can do without it.
+    /// Whether the key must be given, though the type of the field has a default.
     pub(crate) required: bool,
 }
 
 impl Key {
-    /// The key of a field; none of one that is no key.
+    /// Reads the attributes `key` of a field; none if it has none.
     pub(crate) fn of(attributes: &[Attribute]) -> syn::Result<Option<Self>> {
         let Some(entries) = entries(attributes, "key")? else { return Ok(None) };
         let mut key = Self { doc: doc(attributes), ..Self::default() };
@@ -111,7 +111,7 @@ impl Key {
     }
 }
 
-/// The doc comment as one line.
+/// Text of the doc comment, as one line.
 pub(crate) fn doc(attributes: &[Attribute]) -> String {
     let line = |attribute: &Attribute| match &attribute.meta {
         Meta::NameValue(pair) if pair.path.is_ident("doc") => text(&pair.value).ok(),
@@ -121,7 +121,7 @@ pub(crate) fn doc(attributes: &[Attribute]) -> String {
     lines.join(" ").trim().to_owned()
 }
 
-/// Whether words are written with underscores.
+/// Whether serde writes the words of an enum in snake case.
 pub(crate) fn is_snake(attributes: &[Attribute]) -> bool {
     let says = |attribute: &&Attribute| {
         let Meta::List(list) = &attribute.meta else { return false };

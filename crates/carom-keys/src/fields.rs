@@ -7,7 +7,7 @@ use syn::{Field, Fields, Type};
 
 use crate::attributes::{Container, Key};
 
-/// The description of a table.
+/// Code of the description of a table, a `carom_case::keys::Table`.
 pub(crate) fn table(name: &str, container: &Container, fields: &Fields) -> syn::Result<TokenStream> {
     let mut own = Vec::new();
     // The keys of other structs stand where their field does.
@@ -43,7 +43,7 @@ pub(crate) fn table(name: &str, container: &Container, fields: &Fields) -> syn::
     }))
 }
 
-/// The description of a key.
+/// Code of the description of a key, a `carom_case::keys::Key`.
 fn described(field: &Field, key: &Key) -> TokenStream {
     let Key { doc, kind, described, default, paper, optional, .. } = key;
     let name = name(field, key);
@@ -70,7 +70,7 @@ fn described(field: &Field, key: &Key) -> TokenStream {
     })
 }
 
-/// The value of a struct, or of a variant, read from the table `v`.
+/// Code that reads a struct, or a variant, from the table `v`.
 pub(crate) fn read(path: &TokenStream, lenient: bool, fields: &Fields) -> syn::Result<TokenStream> {
     let mut names = Vec::new();
     let mut values = Vec::new();

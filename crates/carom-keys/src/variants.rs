@@ -7,7 +7,8 @@ use syn::{Attribute, DataEnum, Fields, Ident, LitStr};
 use crate::attributes::{Container, doc, is_snake};
 use crate::fields;
 
-/// An enum of unit variants: words in kebab case, or in snake case where serde writes them so.
+/// Code for an enum of unit variants: words in kebab case, or in snake case where serde writes them
+/// so.
 pub(crate) fn words(name: &Ident, attributes: &[Attribute], data: &DataEnum) -> syn::Result<TokenStream> {
     let separator = if is_snake(attributes) { '_' } else { '-' };
     let later = Container::of(attributes)?.later;
@@ -94,7 +95,7 @@ pub(crate) fn tagged(name: &Ident, container: &Container, data: &DataEnum) -> sy
     })
 }
 
-/// `HalfDisc` as `half-disc`.
+/// Name of a variant in files: `HalfDisc` becomes `half-disc`.
 fn word(variant: &Ident, separator: char) -> String {
     let mut word = String::new();
     for letter in variant.to_string().chars() {

@@ -14,15 +14,16 @@ use crate::file::{FINE_NAME, StudyFile, assignment, one_line};
 #[derive(Clone)]
 pub(crate) struct Draft {
     pub(crate) name: String,
-    /// Path of the arm.
+    /// Path of the arm in the study file.
     pub(crate) path: String,
-    /// `key=value`, and its path.
+    /// Overrides `key=value`, each with its path in the study file.
     pub(crate) sets: Vec<(String, String)>,
-    /// Its case file, if it names one.
+    /// Case file that the arm names; none if it uses that of the study.
     pub(crate) case: Option<String>,
-    /// Its expectations as an override that replaces those of the case, and their path.
+    /// Override `expect=…` that replaces the expectations of the case, and its path in the study
+    /// file.
     pub(crate) expect: (String, String),
-    /// Its role in the study.
+    /// Role of the arm in the study.
     pub(crate) role: Role,
 }
 
@@ -109,7 +110,7 @@ fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
     methods.iter().flat_map(|m| (0..count).map(move |level| (m, level))).map(at).collect()
 }
 
-/// A step for names: at most four digits, `1.875e-3`.
+/// Text of a time step for names: at most four digits, `1.875e-3`.
 fn short(step: f64) -> String {
     let text = format!("{step:.3e}");
     let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
@@ -218,7 +219,7 @@ pub(crate) fn members(ensemble: &Ensemble, draft: &Draft, case: &Case) -> Vec<(M
     ensemble.members().into_iter().skip(1).filter(possible).map(member).collect()
 }
 
-/// What every arm changes, except for what this one changes itself, then its own.
+/// Overrides of an arm: those of all arms, except for keys that `own` replaces, followed by `own`.
 fn with_common(file: &StudyFile, own: Vec<(String, String)>) -> Vec<(String, String)> {
     let overridden = |set: &str| own.iter().any(|(own, _)| replaces(key_of(own), key_of(set)));
     let common = file.set.iter().map(|entry| entry_at(entry, ""));
@@ -242,7 +243,7 @@ fn entry_at((key, value): &(String, Value), path: &str) -> (String, String) {
     (assignment(key, value), format!("{path}{dot}set.\"{key}\""))
 }
 
-/// A value for names: a table by its kind and numbers, `chung-hulbert 0.6`.
+/// Text of a value for names; a table is its kind and numbers, `chung-hulbert 0.6`.
 fn brief(value: &Value) -> String {
     match value {
         Value::String(text) => text.value().clone(),

@@ -18,7 +18,7 @@ use carom_run::recording::{self, End, Progress};
 use crate::compute::case_of;
 use crate::error::StudyError;
 
-/// Threads of the first repetition; arms have one.
+/// Number of threads of the first repetition; arms have one.
 const THREADS: usize = 2;
 
 /// Makes the checks, unless they exist or no arm has finished. If they cannot be made, because of a

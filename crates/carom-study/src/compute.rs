@@ -10,7 +10,7 @@ use carom_run::recording::{self, Progress, RunError};
 use crate::error::StudyError;
 use crate::jobs::Ended;
 
-/// Computes a run to its end on so many threads; `begun`: resumes it.
+/// Computes run number `i` to its end; `begun`: resumes it.
 pub(crate) fn compute(
     manifest: &StudyManifest,
     directory: &Path,

@@ -83,7 +83,8 @@ pub fn arm(
     }
 }
 
-/// Matched costs are compared by their times: all steps have been found, on a machine of this type.
+/// Checks that costs can be compared by their times: all steps of matched cost have been found, on
+/// a machine of this type.
 fn comparable(manifest: &StudyManifest, directory: &Path) -> Result<(), StudyError> {
     let timed: Vec<&Arm> = manifest.arms.iter().filter(|arm| manifest.by_cost(arm)).collect();
     if timed.is_empty() {

@@ -16,27 +16,27 @@ pub enum StudyError {
     /// An arm cannot be computed, for a reason other than a failure of the simulation.
     #[error("arm \"{arm}\": {source}")]
     Arm {
-        /// Its name.
+        /// Name of the arm.
         arm: String,
-        /// Why.
+        /// Error of the run.
         source: RunError,
     },
     /// The record of an arm is damaged.
     #[error("the record of arm \"{arm}\" cannot be used: {what}")]
     Damaged {
-        /// The arm.
+        /// Name of the arm.
         arm: String,
-        /// The directory of its run.
+        /// Directory of the run.
         place: PathBuf,
-        /// What is wrong.
+        /// Description of the damage.
         what: String,
     },
     /// `study.json` has a case that this version cannot read.
     #[error("the case of arm \"{arm}\" is not compatible with this version of Carom: {what}")]
     Incompatible {
-        /// The arm.
+        /// Name of the arm.
         arm: String,
-        /// What is not compatible.
+        /// Message of the reader: the part of the case that it cannot read.
         what: String,
     },
     /// The steps of some arms depend on measured times, which differ between machines.
@@ -45,15 +45,15 @@ pub enum StudyError {
          of the other runs are compared with them, so that processes elsewhere need a machine of the same type"
     )]
     Timed {
-        /// The arm.
+        /// Name of the arm.
         arm: String,
     },
     /// The steps of matched cost were found on a machine of another type.
     #[error("the steps of matched cost were timed on another type of machine, {there}; this one is {here}")]
     OtherMachine {
-        /// The machine of the plan.
+        /// Type of the machine on which the study was planned.
         there: String,
-        /// This machine.
+        /// Type of this machine.
         here: String,
     },
     /// The concurrent runs do not fit into the memory together.
@@ -65,29 +65,29 @@ pub enum StudyError {
         need: f64,
         /// Bytes that are available.
         available: f64,
-        /// How many runs fit.
+        /// Number of concurrent runs that fit; none if fewer runs are no remedy.
         fitting: Option<usize>,
     },
-    /// There is no such run.
+    /// The study has no run with this number.
     #[error("the study in {} has no run {number}: its runs are 1 to {count}", directory.display())]
     NoRun {
-        /// The study.
+        /// Directory of the study.
         directory: PathBuf,
         /// The number asked for, from 1.
         number: usize,
-        /// How many it has.
+        /// Number of runs of the study.
         count: usize,
     },
-    /// The directory exists.
+    /// The directory exists already.
     #[error("{} exists already; a study never overwrites a directory", path.display())]
     Exists {
-        /// The directory.
+        /// Path of the directory.
         path: PathBuf,
     },
 }
 
 impl StudyError {
-    /// What to try; none if the message of its cause says it.
+    /// Suggested remedy; none if the message of the cause contains it.
     pub fn cure(&self) -> Option<String> {
         Some(match self {
             Self::Record(error) => return error.cure(),

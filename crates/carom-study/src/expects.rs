@@ -6,7 +6,7 @@ use carom_record::question::{Asked, Quantity, Question, Series, column_metric_na
 use carom_record::{Expect, Expression, OrderOf, Reason};
 use carom_run::case::{Case, Problem, history_columns};
 
-/// What the names in expectations refer to.
+/// Arms and measured data whose names the expectations of a study can contain.
 struct Known<'a> {
     arms: &'a [(&'a str, &'a Case)],
     overlays: &'a [Overlay],

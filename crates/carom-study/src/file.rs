@@ -293,7 +293,7 @@ fn design(document: &Document, file: &StudyFile, problems: &mut Vec<Problem>) {
     }
 }
 
-/// `key=value`.
+/// Text of an assignment, `key=value`.
 pub(crate) fn assignment(key: &str, value: &Value) -> String {
     format!("{key}={}", one_line(value))
 }

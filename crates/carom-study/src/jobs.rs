@@ -10,13 +10,13 @@ use carom_run::recording::{self, End, Progress};
 /// An event of an arm, given by its number.
 #[derive(Clone, Debug)]
 pub enum Event {
-    /// It had finished or failed before.
+    /// The arm had finished or failed before.
     AlreadyDone(usize),
-    /// It is started or resumed.
+    /// The arm is started or resumed.
     Began(usize),
-    /// It accepted a step.
+    /// The arm accepted a time step.
     Progress(usize, Progress),
-    /// It ended.
+    /// The arm ended.
     Ended(usize, Ended),
 }
 
@@ -25,7 +25,7 @@ pub enum Event {
 pub struct Ended {
     /// Finished, failed or stopped.
     pub status: Status,
-    /// Why it did not finish.
+    /// Reason why the arm did not finish.
     pub reason: Option<String>,
     /// Wall seconds of this process.
     pub wall: f64,
@@ -42,7 +42,7 @@ impl Ended {
     }
 }
 
-/// Threads of each of so many concurrent runs: those of the machine are shared.
+/// Number of threads of each of `jobs` concurrent runs, which share those of the machine.
 pub(crate) fn threads(jobs: usize) -> usize {
     (std::thread::available_parallelism().map_or(1, usize::from) / jobs.max(1)).max(1)
 }

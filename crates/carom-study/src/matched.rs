@@ -52,7 +52,7 @@ struct Weights {
 }
 
 impl Weights {
-    /// From the timings and counters of a run.
+    /// Weights from the timings and counters of a run.
     fn of(manifest: &Manifest) -> Self {
         let time = |name: &str| manifest.timings.get(name).copied().unwrap_or(0.0);
         let newton = count(manifest, "newton");
@@ -81,19 +81,19 @@ fn count(manifest: &Manifest, name: &str) -> f64 {
 /// A pilot run that ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Trial {
-    /// Steps.
+    /// Number of time steps.
     steps: u64,
-    /// Its cost in seconds; none if it did not run to its end.
+    /// Cost of the run in seconds; none if it did not reach its end.
     cost: Option<f64>,
 }
 
-/// `pilots/ARM/pilot.json`.
+/// Pilot runs of an arm, stored in `pilots/ARM/pilot.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Pilot {
     weights: Option<Weights>,
     budget: Option<f64>,
     trials: Vec<Trial>,
-    /// The trial that was accepted.
+    /// Index of the trial that was accepted.
     settled: Option<usize>,
 }
 
@@ -309,8 +309,8 @@ fn pilot(
     Ok((Ended { status: run.status, reason: run.reason, wall }, accepted.steps, share))
 }
 
-/// One pilot run, started or resumed; none if the step is not possible, for example above the
-/// stable step of an explicit scheme.
+/// Starts or resumes one pilot run of `steps` steps; none if the time step is not possible, for
+/// example above the stable step of an explicit scheme.
 fn trial(
     manifest: &StudyManifest,
     i: usize,

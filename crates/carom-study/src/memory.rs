@@ -27,7 +27,7 @@ pub(crate) fn fit<'a>(cases: impl Iterator<Item = &'a Case>, jobs: usize) -> Res
 }
 
 impl Plan {
-    /// Bytes that the largest run needs, and as many of the largest as are computed at once.
+    /// Bytes for the largest run, and for the `jobs` largest runs together.
     pub fn memory(&self, jobs: usize) -> [f64; 2] {
         let mut needs = largest_first(self.arms.iter().map(|arm| arm.case.memory()));
         // The members of an ensemble are as large as their arms, on the given mesh.
@@ -62,7 +62,7 @@ fn largest_first(needs: impl Iterator<Item = Memory>) -> Vec<Memory> {
     needs
 }
 
-/// The largest ones together.
+/// Bytes of the `jobs` largest runs together; `needs` begins with the largest.
 fn at_once(needs: &[Memory], jobs: usize) -> f64 {
     let program = needs.first().map_or(0.0, |first| first.program);
     program + needs.iter().take(jobs).map(|need| need.total() - need.program).sum::<f64>()

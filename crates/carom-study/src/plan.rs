@@ -18,18 +18,18 @@ use crate::resolved::{Base, Checked, Planned, bases, stored};
 /// A study that can be started.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The manifest.
+    /// Manifest of the study, to be written as `study.json`.
     pub manifest: StudyManifest,
-    /// Its simulations.
+    /// Simulations of the study, one per arm.
     pub arms: Vec<PlannedArm>,
 }
 
 /// A simulation of a study.
 #[derive(Clone, Debug)]
 pub struct PlannedArm {
-    /// The case.
+    /// Resolved case of the simulation.
     pub case: Case,
-    /// Text of the case file, and changes.
+    /// Text of the case file, and the changes applied to it.
     pub source: Source,
     /// The warnings that the case and its model give.
     pub warnings: Vec<Warning>,
@@ -51,7 +51,8 @@ impl Plan {
         Self::of(&Document::open(path, &[])?, path.parent().unwrap_or(Path::new("")))
     }
 
-    /// Of a study file that has been read; the paths of its cases start at `folder`.
+    /// Plans a study from a file that has been read; the paths of its cases are relative to
+    /// `folder`.
     ///
     /// # Errors
     /// All problems, with their places in the study file, or in the case file for problems that it
@@ -72,7 +73,8 @@ impl Plan {
         checked.end().map(|()| cases)
     }
 
-    /// As [`Self::of`], with a case that has been read, and need not be a file: that of its name.
+    /// As [`Self::of`], with a case that has been read and need not be a file; it takes the place
+    /// of the case file of its name.
     ///
     /// # Errors
     /// As [`Self::of`].

@@ -64,13 +64,13 @@ impl<'s> Checked<'s> {
         Ok(())
     }
 
-    /// An error if there are problems.
+    /// Ends a stage of the check: an error if problems have been found.
     pub(crate) fn end(&mut self) -> Result<(), CaseError> {
         let found = std::mem::take(&mut self.found);
         if found.is_empty() { Ok(()) } else { Err(CaseError::Wrong(found)) }
     }
 
-    /// The cases of drafts; their models are not built.
+    /// Reads the cases of drafts without building their models; adds their problems.
     pub(crate) fn read(
         &mut self,
         file: &StudyFile,
@@ -100,8 +100,9 @@ impl<'s> Checked<'s> {
         }
     }
 
-    /// Adds what is wrong with a draft, at its place in the study.
-    /// `of` gives what was wrong, and is asked the same of the case without changes.
+    /// Adds the diagnostics in `error` of a draft, at its place in the study. `of` is the reader
+    /// that returned the error; it is called again without changes, to find the problems that the
+    /// case itself has.
     fn add<T>(
         &mut self,
         draft: &Draft,
@@ -175,7 +176,7 @@ impl<'s> Checked<'s> {
     }
 }
 
-/// A run as it is stored.
+/// Record of an arm in `study.json`.
 pub(crate) fn stored(draft: &Draft, directory: String, sets: Vec<String>, case: &Case) -> Arm {
     Arm {
         name: draft.name.clone(),
@@ -199,7 +200,8 @@ fn changes(draft: &Draft) -> Vec<String> {
     draft.sets.iter().map(|(set, _)| set).chain([&draft.expect.0]).cloned().collect()
 }
 
-/// The steps of the computed reference do not divide the end time in the ratios of its meshes.
+/// The problem that no steps of the computed reference both divide the end time and have the ratios
+/// of its meshes.
 fn no_steps() -> Problem {
     Problem::new(
         "fine.mesh",
@@ -209,7 +211,7 @@ fn no_steps() -> Problem {
     )
 }
 
-/// A case file that arms change.
+/// A case file that arms are made from by changes.
 pub(crate) struct Base {
     name: String,
     pub(crate) text: String,

@@ -18,14 +18,14 @@ pub struct Suite {
     pub fast: bool,
 }
 
-/// One file of a suite.
+/// A case file or study file of a suite.
 #[derive(Clone, Debug)]
 pub struct Item {
-    /// Folder of its file.
+    /// Name of the folder by which items are grouped.
     pub family: String,
-    /// Name of its file without the ending.
+    /// Name of the file without its ending.
     pub name: String,
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
     /// Case or study.
     pub kind: Kind,
@@ -34,9 +34,9 @@ pub struct Item {
 /// A case, or a study.
 #[derive(Clone, Debug)]
 pub enum Kind {
-    /// One simulation.
+    /// A case: one simulation.
     Case(Box<Case>, Source),
-    /// Many of them.
+    /// A study: many simulations.
     Study(Box<Plan>),
 }
 
@@ -103,7 +103,7 @@ fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, CaseError> {
     Ok(found)
 }
 
-/// Whether any of the expectations is to be evaluated.
+/// Whether any expectation is evaluated; with `fast`, slow ones are not.
 fn wanted<'a>(expects: impl IntoIterator<Item = &'a Expect>, fast: bool) -> bool {
     expects.into_iter().any(|e| !(fast && e.slow))
 }

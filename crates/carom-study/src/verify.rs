@@ -31,7 +31,7 @@ pub struct VerifyOptions {
     pub fail_fast: bool,
 }
 
-/// One simulation of a suite.
+/// A simulation that a suite runs: a case, or an arm of a study.
 struct Unit {
     item: usize,
     name: String,
@@ -43,9 +43,9 @@ struct Unit {
 /// Name and length of a simulation of a suite.
 #[derive(Clone, Debug)]
 pub struct Named {
-    /// Family, file and arm.
+    /// Family, file and arm, as one text.
     pub name: String,
-    /// Time steps.
+    /// Number of time steps.
     pub steps: u64,
 }
 
@@ -157,7 +157,7 @@ fn order(units: &[Unit], items: usize, shortest_first: bool) -> Vec<usize> {
     order
 }
 
-/// A case that writes its history only, with the same bits.
+/// A case that, unless `whole`, writes only its history, which is bitwise the same.
 fn bare(mut case: Case, whole: bool) -> Case {
     if !whole {
         case.output.fields_every = Some(0);
@@ -195,7 +195,7 @@ impl Item {
         }
     }
 
-    /// Compares its records with its expectations.
+    /// Compares the records of a case or study with its expectations.
     fn judged(&self, root: &Path, place: &str, wall: f64, fast: bool) -> Result<SetUp, StudyError> {
         let directory = root.join(place);
         let row = |arm: Option<&str>, directory: String, verdict: Expectation| Row {

@@ -8,7 +8,8 @@ use super::super::{
 use super::{Check, Node};
 
 impl Check<'_> {
-    /// Laws and enforcements that cannot be combined with each other or with the scheme.
+    /// Reports contact laws and enforcements that cannot be combined with each other or with the
+    /// scheme.
     fn law(&mut self, contact: &ContactSpec) {
         let path = |key: &str| contact.path(key);
         let predictor = contact.law == Some(ContactLaw::Predictor);
@@ -72,8 +73,9 @@ impl Check<'_> {
         }
     }
 
-    /// What a frozen contact point needs: a curve on which it can be, a detection that finds one, a
-    /// constraint whose gap may be that of the tangent line, and one stage per step.
+    /// Checks what `xi = "frozen"` needs: a deformable primary side that is not a point, `detection
+    /// = "trajectory"`, an enforcement without penalty springs, and a scheme of the generalised-α
+    /// family without `law = "predictor"`.
     fn frozen_point(&mut self, contact: &ContactSpec) {
         if contact.xi != ContactPoint::Frozen {
             return;
@@ -111,7 +113,7 @@ impl Check<'_> {
         add(what, why, hint);
     }
 
-    /// What contact in space is not built for is refused.
+    /// Refuses `detection = "trajectory"` in dimension 3.
     fn in_space(&mut self, contact: &ContactSpec) {
         if self.draft.dimension == Some(3) && contact.detection == Detection::Trajectory {
             let what = "detection = \"trajectory\" cannot be used in dimension 3";
@@ -120,8 +122,8 @@ impl Check<'_> {
         }
     }
 
-    /// What contact of a side with itself needs: a boundary that can fold, and a detection by the
-    /// closest point.
+    /// Checks contact of a side with itself: it needs dimension 2 or 3, and a detection other than
+    /// "trajectory".
     fn itself(&mut self, contact: &ContactSpec) {
         if !contact.is_of_itself() {
             return;
@@ -138,7 +140,7 @@ impl Check<'_> {
         }
     }
 
-    /// `self` is a key of `between`.
+    /// Reports the key `self` of a contact without `between`.
     fn of_between(&mut self, contact: &ContactSpec) {
         if !contact.between && self.given("contact", contact.entry, "self").is_some() {
             let why = "it says whether the bodies of `between` are in contact with themselves";
@@ -146,7 +148,8 @@ impl Check<'_> {
         }
     }
 
-    /// What an obstacle that moves needs: inertia if it is free, and a name for its columns.
+    /// Checks a rigid obstacle that moves: a free one needs a scheme with inertia, and no body or
+    /// support may have the name of its contact, which begins the names of its columns.
     fn obstacle(&mut self, contact: &ContactSpec) {
         if is_free(contact) && self.is_static() {
             let why = "the scheme \"static\" has no inertia, and nothing else constrains a free obstacle";
@@ -166,7 +169,8 @@ impl Check<'_> {
         }
     }
 
-    /// Path of the entry of `between` that is a side; none if there is no such list.
+    /// Path of the entry of `between` that names a side or its body; none if the contact has no
+    /// such list.
     fn entry_of_between(&self, contact: &ContactSpec, side: &str) -> Option<String> {
         let list = self.given("contact", contact.entry, "between")?.list()?;
         let is = |node: &Node| {
@@ -278,13 +282,13 @@ fn is_free(contact: &ContactSpec) -> bool {
     matches!(contact.motion, ObstacleMotion::Free { .. })
 }
 
-/// The same sides, either way round.
+/// Whether two contacts have the same pair of sides, in either order.
 fn same_pair(a: &ContactSpec, b: &ContactSpec) -> bool {
     let swapped = |a: &ContactSpec, b: &ContactSpec| a.primary == PrimarySpec::Side(b.secondary.clone());
     a.secondary == b.secondary && a.primary == b.primary || swapped(a, b) && swapped(b, a)
 }
 
-/// The last direction of so many.
+/// TOML of the unit vector along the last axis in a space of this dimension.
 fn upward(dimension: usize) -> &'static str {
     ["[1.0]", "[0.0, 1.0]", "[0.0, 0.0, 1.0]"][dimension.clamp(1, 3) - 1]
 }

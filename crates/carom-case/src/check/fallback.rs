@@ -45,7 +45,8 @@ fn of_scheme(scheme: &SchemeSpec) -> Option<&'static str> {
     }
 }
 
-/// Everything that the step is not built for, why, and what to do.
+/// Properties of a contact with which the fallback step is not implemented; for each the key and
+/// value, the reason, and a remedy.
 fn of_contact(contact: &ContactSpec) -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
     let is_of_the_paper = contact.xi == ContactPoint::Frozen || contact.detection == Detection::Trajectory;
     let all = [

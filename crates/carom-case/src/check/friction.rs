@@ -6,7 +6,7 @@ use super::super::{ContactPoint, ContactSpec, Enforcement, FormulaSpec, Friction
 use super::Check;
 
 impl Check<'_> {
-    /// Combinations for which friction is not built.
+    /// Reports combinations with which friction is not implemented.
     pub(super) fn friction(&mut self, contact: &ContactSpec) {
         self.friction_keys(contact);
         if !contact.friction.exists() {
@@ -66,7 +66,7 @@ impl Check<'_> {
         }
     }
 
-    /// Keys of friction that say nothing without another one.
+    /// Reports keys of friction that have no effect without another key.
     fn friction_keys(&mut self, contact: &ContactSpec) {
         let FrictionSpec { mu, mu_dynamic, decay, stick_stiffness, .. } = &contact.friction;
         let mut needs = |key: &str, given: bool, other: &str, has: bool, why: &str| {

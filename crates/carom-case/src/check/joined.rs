@@ -7,7 +7,7 @@ use carom_solid::gmsh::{Joint, MshFile};
 use super::Check;
 use crate::{BodySpec, FileMesh, MeshSpec};
 
-/// The file of a body, and the dimension in which it is read.
+/// Mesh file of a body, its name, and the dimension in which it is read.
 struct Source<'a> {
     mesh: &'a FileMesh,
     name: std::borrow::Cow<'a, str>,

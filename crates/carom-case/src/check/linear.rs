@@ -1,4 +1,5 @@
-//! What solves the linear systems of a case, and what `newton.linear = "iterative"` cannot solve.
+//! Choice between direct and iterative solution of the linear systems of a case, and checks of
+//! `newton.linear = "iterative"`.
 
 use super::super::keys::word;
 use super::super::{ContactSpec, LinearRule, TimeSpec};
@@ -34,7 +35,7 @@ impl<'a> Check<'a> {
         self.document.root().get("newton")?.table()?.get(key)?.text()
     }
 
-    /// `newton.linear`.
+    /// Value of `newton.linear`, or its default.
     pub(super) fn linear_rule(&self) -> LinearRule {
         self.newton("linear").and_then(word).unwrap_or_default()
     }

@@ -70,7 +70,8 @@ impl Check<'_> {
         }
     }
 
-    /// A manufactured solution excludes other loads, supports, contacts and initial states.
+    /// Reports loads, supports, contacts and initial states beside a manufactured solution, which
+    /// excludes them.
     pub(super) fn manufactured(&mut self) {
         let root = self.document.root();
         if root.get("manufactured").is_none() {

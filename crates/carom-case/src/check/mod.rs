@@ -83,7 +83,8 @@ impl<'a> Check<'a> {
         self.scheme().is_some_and(SchemeSpec::is_static)
     }
 
-    /// Whether a table, or one in it, has a misspelt key: what depends on it is not judged.
+    /// Whether a table, or one in it, has a misspelt key; checks that depend on it are then
+    /// skipped.
     fn is_misspelt(&self, path: &str) -> bool {
         self.misspelt.iter().any(|table| is_within(table, path))
     }
@@ -366,7 +367,7 @@ fn known_sides(body: &BodySpec) -> String {
     }
 }
 
-/// A side of which something was left out when its mesh was read.
+/// Message of the repair that left out a part of this side when the mesh was read, if one did.
 fn inside<'a>(body: &'a BodySpec, side: &str) -> Option<&'a String> {
     let MeshSpec::File(file) = body.mesh.source() else { return None };
     file.repairs.iter().find(|repair| repair.contains(&format!("\"{side}\"")))

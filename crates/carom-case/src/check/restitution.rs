@@ -17,7 +17,8 @@ impl Check<'_> {
         }
     }
 
-    /// Why, and what to do; `first`: the restitution of the first contact by multipliers.
+    /// Reason why a contact cannot have its restitution, and a remedy; `first`: the restitution of
+    /// the first contact by multipliers.
     fn restitution_is_unusable(&self, contact: &ContactSpec, first: f64) -> Option<(&'static str, String)> {
         let light = |name: &str| self.body(name).is_some_and(|body| body.mass.is_redistributed());
         let massless = || contact.bodies().any(light);

@@ -49,7 +49,7 @@ impl Check<'_> {
         }
     }
 
-    /// Every dof needs mass; an explicit scheme needs a diagonal one.
+    /// Reports bodies with nodes without mass, and consistent masses under an explicit scheme.
     fn masses(&mut self, spec: &SchemeSpec) {
         for (i, body) in self.draft.body.iter().enumerate() {
             let Some(body) = body else { continue };
@@ -81,7 +81,7 @@ impl Check<'_> {
         }
     }
 
-    /// These schemes have fixed supports and obstacles only.
+    /// Reports supports and obstacles with prescribed motion, which the scheme does not implement.
     fn nothing_moves(&mut self, spec: &SchemeSpec) {
         let draft = self.draft;
         let supports = draft.support.iter().enumerate();

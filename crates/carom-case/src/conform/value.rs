@@ -10,7 +10,7 @@ use crate::suggest;
 use crate::tree::{Node, Value};
 
 impl Check {
-    /// All problems of a value, and of the tables in it.
+    /// Adds all problems of a value, and of the tables in it.
     pub(super) fn value(&mut self, node: &Node, key: &Key, path: &str) {
         match (&key.kind, &node.value) {
             (Kind::Text | Kind::Side | Kind::SideOr(_), Value::Text(_))
@@ -135,12 +135,12 @@ impl Check {
         }
     }
 
-    /// Whether the case has this dimension, or none that is known.
+    /// Whether the dimension of the case is this one, or unknown.
     fn has_dimension(&self, dimension: usize) -> bool {
         self.dimension.is_none_or(|d| d == dimension)
     }
 
-    /// The words without cells of another dimension than that of the case.
+    /// The words without names of elements whose dimension is not that of the case.
     fn of_dimension<'w>(&self, words: &[&'w str]) -> Vec<&'w str> {
         let here = |word: &&&str| match (self.dimension, word_of::<carom_solid::Element>(word)) {
             (Some(dimension), Some(element)) => element.dimension() == dimension,
@@ -149,14 +149,14 @@ impl Check {
         words.iter().filter(here).copied().collect()
     }
 
-    /// A word that is planned for a later version.
+    /// Reports a word that is planned for a later version; `now` are the words allowed today.
     fn planned(&mut self, word: &str, key: &Key, now: &[&str], path: &str) {
         let what = format!("`{} = \"{word}\"` is not supported yet", key.name);
         let why = format!("\"{word}\" is planned for a later version of Carom");
         self.add(path, what, why, format!("use one of: {}", suggest::list(now.iter().copied())));
     }
 
-    /// A word that must be one of those.
+    /// Reports a word that is none of the words `now`.
     pub(super) fn choice(&mut self, word: &str, key: &Key, now: &[&str], path: &str) {
         if now.contains(&word) {
             return;

@@ -25,7 +25,8 @@ impl<T: Keys> Value for T {
     }
 }
 
-/// A value of another type is none: what depends on it is read without it.
+/// An optional value: none where the key is absent or has a value of another type, so that the rest
+/// of the table can still be read.
 impl<T: Value> Value for Option<T> {
     const KIND: Kind = T::KIND;
     const LIST: Kind = T::LIST;
@@ -59,7 +60,7 @@ impl<T: Value, const N: usize> Value for [T; N] {
     }
 }
 
-/// A key without a value of its own in the field: what it says is in another one.
+/// The field of a key whose value is read into another field.
 impl Value for () {
     const KIND: Kind = Kind::Text;
 
@@ -106,7 +107,7 @@ impl Value for String {
     }
 }
 
-/// The absolute path of a file.
+/// The absolute path of a file, which is given relative to the folder of the document.
 impl Value for PathBuf {
     const KIND: Kind = Kind::Text;
 
@@ -132,7 +133,7 @@ pub(crate) fn word<T: DeserializeOwned>(word: &str) -> Option<T> {
     serde_json::from_value(serde_json::Value::String(word.to_owned())).ok()
 }
 
-/// Enums of other crates, with their words.
+/// Implements `Value` for enums of other crates by their words.
 macro_rules! words {
     ($($name:ty: $words:expr;)*) => {$(
         impl Value for $name {

@@ -13,7 +13,7 @@ use crate::tree::{self, Node, Table};
 
 /// A table of keys, derived from a struct.
 pub trait Keys: Sized {
-    /// Its description.
+    /// Description of the table: its keys and their meanings.
     const TABLE: Description;
 
     /// Reads a table of this description; none if a key is missing or has no value of its type,
@@ -23,12 +23,12 @@ pub trait Keys: Sized {
 
 /// A value of a key.
 pub trait Value: Sized {
-    /// The values that a key of this type takes, unless it says so itself.
+    /// Kind of value of a key whose field has this type, unless the key states another.
     const KIND: Kind;
-    /// The values that a key takes for a list of this type.
+    /// Kind of value of a key whose field is a list of this type.
     const LIST: Kind = Kind::Vector;
 
-    /// Reads a value at the place `v`; none of another type, which is reported elsewhere.
+    /// Reads the value at the place `v`; none if it has another type, which is reported elsewhere.
     fn of(node: &Node, v: &View<'_>) -> Option<Self>;
 
     /// The value of an optional key that is not given.
@@ -54,14 +54,14 @@ pub struct View<'a> {
     pub(crate) folder: &'a Path,
     /// Path of the table; empty for the whole document.
     pub(crate) path: String,
-    /// What its readers report.
+    /// Problems reported while the document is read.
     pub(crate) problems: &'a RefCell<Vec<Problem>>,
 }
 
 impl<'a> View<'a> {
     pub(crate) const EMPTY: &'static Table = &Table(Vec::new());
 
-    /// A table that stands alone.
+    /// View of a table that is no part of a document, with these keys.
     pub(crate) fn of_keys(
         table: &'a Table,
         keys: &'static [Key],
@@ -80,12 +80,13 @@ impl<'a> View<'a> {
         }
     }
 
-    /// This place with a table of these keys.
+    /// View of a table with these keys, at the same place.
     pub(crate) fn inside(&self, table: &'a Table, keys: &'static [Key]) -> Self {
         Self { table, keys, tag: "", ..self.clone() }
     }
 
-    /// This place with a table of one of several descriptions.
+    /// View of a table at the same place with the one of several descriptions that fits it; none if
+    /// none does.
     pub(crate) fn one_of(&self, table: &'a Table, variants: &Variants) -> Option<Self> {
         let tag = if variants.has_other(table) { "" } else { variants.tag };
         let spec = variants.of(table)?;
@@ -95,7 +96,7 @@ impl<'a> View<'a> {
         fits.then(|| Self { tag, dimension, ..self.inside(table, spec.keys) })
     }
 
-    /// The same for a value that must be a table.
+    /// View of a value that must be a table of one of several descriptions.
     #[doc(hidden)]
     pub fn variant(&self, node: &'a Node, variants: &Variants) -> Option<Self> {
         self.one_of(node.table()?, variants)
@@ -107,17 +108,17 @@ impl<'a> View<'a> {
         self.table.get(self.tag)?.text()
     }
 
-    /// The place of an element of a list.
+    /// View at the place of an element of a list.
     pub(crate) fn element(&self, i: usize) -> Self {
         Self { path: format!("{}[{i}]", self.path), ..self.clone() }
     }
 
-    /// The place of a key.
+    /// View at the place of a key.
     pub(crate) fn place(&self, key: &str) -> Self {
         Self { path: self.path_of(key), ..self.clone() }
     }
 
-    /// The table of a key, or an empty one with all defaults if it is not given.
+    /// View of the table of a key, or of an empty one with all defaults if it is not given.
     pub fn at(&self, name: &str) -> Option<Self> {
         let table = self.table.get(name).map_or(Some(Self::EMPTY), Node::table)?;
         let keys = match self.key(name)?.kind {
@@ -130,7 +131,8 @@ impl<'a> View<'a> {
         Some(self.place(name).inside(table, keys))
     }
 
-    /// Reads every table of a list, which may be absent; `None` if it is something else.
+    /// Reads every table of a list, which is empty if it is not given; none if the value is no
+    /// list.
     pub fn each<T>(&self, name: &str, mut read: impl FnMut(&Self) -> Option<T>) -> Option<Vec<Option<T>>> {
         let keys = match self.key(name)?.kind {
             Kind::Tables(spec) => spec.keys,
@@ -173,7 +175,7 @@ impl<'a> View<'a> {
         self.report(self.problem(key, what, why, help))
     }
 
-    /// Reports a problem with a key itself, likewise.
+    /// As [`Self::wrong`], but points at the key instead of its value.
     pub fn wrong_key<T>(
         &self,
         key: &str,
@@ -184,24 +186,24 @@ impl<'a> View<'a> {
         self.report(self.problem(key, what, why, help).at_key())
     }
 
-    /// Reports any problem, likewise.
+    /// Reports a problem; returns `None`, in place of the value that cannot be read.
     pub(crate) fn report<T>(&self, problem: Problem) -> Option<T> {
         self.problems.borrow_mut().push(problem);
         None
     }
 
-    /// Whether such a problem has been reported.
+    /// Whether a problem that satisfies `is` has been reported.
     pub(crate) fn has_problem(&self, is: impl Fn(&Problem) -> bool) -> bool {
         self.problems.borrow().iter().any(is)
     }
 
-    /// Whether it has a key that is none of its own: a misspelt key is reported once, not as a
-    /// missing one too.
+    /// Whether the table has a key that its description lacks: a misspelt key is reported once, not
+    /// as a missing one too.
     pub fn has_unknown_key(&self) -> bool {
         self.table.0.iter().any(|entry| entry.key != self.tag && self.key(&entry.key).is_none())
     }
 
-    /// The given value, or its default.
+    /// Node of a key: the given one, or that of the default.
     pub(crate) fn value(&self, name: &str) -> Option<Cow<'a, Node>> {
         if let Some(node) = self.table.get(name) {
             return Some(Cow::Borrowed(node));
@@ -227,13 +229,14 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Values of the case that a key sets, with the dotted paths of their keys; none if it is not
-    /// given.
+    /// Values of the case that the table of a key sets, with the dotted paths of their keys; empty
+    /// if the key is not given.
     pub fn changes(&self, name: &str) -> Option<Vec<(String, toml_edit::Value)>> {
         self.table.get(name).map_or(Some(Vec::new()), changes)
     }
 
-    /// The same for a list of tables.
+    /// Values of the case that each table of a list sets, with the dotted paths of their keys;
+    /// empty if the list is not given.
     pub fn lists_of_changes(&self, name: &str) -> Option<Vec<Vec<(String, toml_edit::Value)>>> {
         let list = self.table.get(name).map_or(Some(&[][..]), Node::list)?;
         list.iter().map(changes).collect()

@@ -19,7 +19,7 @@ fn unrefined() -> f64 {
     1.0
 }
 
-/// One simulation, fully resolved.
+/// A simulation, fully resolved: all defaults are filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Case {
     /// Title for figures and pages.
@@ -64,7 +64,7 @@ pub struct Case {
     /// Measured data of columns.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub overlays: Vec<OverlaySpec>,
-    /// What is written, and how often.
+    /// Output settings: what is written, and how often.
     pub output: OutputSpec,
     /// Exact solution by column, as formulas in t.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -103,7 +103,7 @@ pub struct Units {
     /// Unit label of mass.
     #[key(default = "\"kg\"")]
     pub mass: String,
-    /// Whether the case has them; otherwise its numbers may have any consistent units.
+    /// Whether the case declares its units; otherwise they may be any consistent ones.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub declared: bool,
 }

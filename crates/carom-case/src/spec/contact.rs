@@ -94,7 +94,7 @@ fn secondary(v: &View) -> Option<String> {
     if v.has("between") { Some(String::new()) } else { v.get("secondary") }
 }
 
-/// The side; of an obstacle an empty one, which stands for it.
+/// Reads the side `primary`; an empty name where it is an obstacle or follows from `between`.
 fn primary(v: &View) -> Option<PrimarySpec> {
     let is_side = v.table.get("primary").is_some_and(|node| node.table().is_none());
     let side = if is_side && !v.has("between") { v.get("primary")? } else { String::new() };
@@ -163,7 +163,7 @@ impl FrictionSpec {
 }
 
 impl ContactSpec {
-    /// Path of a key of its table, of `between` for the sides that this stands for.
+    /// Path of a key in the table of the contact; that of `between` for sides that follow from it.
     pub fn path(&self, key: &str) -> String {
         let of_side = key == "secondary" || key == "primary";
         format!("contact[{}].{}", self.entry, if self.between && of_side { "between" } else { key })

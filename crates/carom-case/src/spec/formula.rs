@@ -28,7 +28,8 @@ impl FormulaSpec {
         }
     }
 
-    /// The name of the function of a program that it stands for, `push` of `@push`.
+    /// Name of the function that the program provides for this value: `push` of `@push`; none of a
+    /// formula.
     pub fn function(&self) -> Option<&str> {
         match self {
             Self::Number(_) => None,
@@ -36,7 +37,7 @@ impl FormulaSpec {
         }
     }
 
-    /// Its value, if it does not depend on anything.
+    /// The constant value; none if the formula contains a variable.
     pub fn constant(&self) -> Option<f64> {
         match self {
             Self::Number(value) => Some(*value),
@@ -50,7 +51,7 @@ impl FormulaSpec {
     }
 }
 
-/// As written.
+/// Writes the number or formula as it was given.
 impl std::fmt::Display for FormulaSpec {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {

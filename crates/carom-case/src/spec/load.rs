@@ -99,7 +99,7 @@ pub(crate) struct LoadKeys {
     table: Option<String>,
 }
 
-/// Forces on sides or in a body.
+/// A load: forces on sides or in a body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoadSpec {
     /// Name used in messages.

@@ -266,13 +266,13 @@ fn plane_shapes() -> &'static Variants {
 /// Names of the coordinates.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Directions across which planes of symmetry cut.
+/// Whether a plane of symmetry cuts across x, y and z.
 fn symmetry(v: &View) -> Option<[bool; 3]> {
     let words: Vec<String> = v.get("symmetry")?;
     Some(AXES.map(|direction| words.iter().any(|word| word == direction)))
 }
 
-/// The lowest corner of a box, of what planes of symmetry leave of it.
+/// Lowest corner of the part of a box that planes of symmetry leave.
 fn low_corner(v: &View) -> Option<[f64; 3]> {
     let min: [f64; 3] = v.get("min")?;
     let max: [f64; 3] = v.get("max")?;
@@ -386,8 +386,8 @@ fn directed(mesh: &MeshSpec, v: &View) -> Option<()> {
     v.wrong("axis", error.to_string(), why, "write for example axis = \"z\"")
 }
 
-/// What planes of symmetry across x and y leave of a shape of the plane: the part with the larger
-/// coordinates.
+/// Part of a plane shape that remains after cuts along planes of symmetry across x and y: the one
+/// with the larger coordinates.
 fn half(of: MeshSpec, v: &View, [x, y, _]: [bool; 3]) -> Option<MeshSpec> {
     match of {
         _ if !x && !y => Some(of),

@@ -9,10 +9,11 @@ use super::polygon::area_within;
 use crate::mesh_file::{FileMesh, unchanged};
 use crate::no_mesh::NoMesh;
 
-/// Sides in planes of symmetry across x, y and z.
+/// Names of the sides in planes of symmetry across x, y and z.
 pub(crate) const PLANES: [&str; 3] = ["plane_x", "plane_y", "plane_z"];
 
-/// The coordinate along which a vector points.
+/// Index of the coordinate in whose positive direction a vector points; none if it is not along
+/// one.
 fn coordinate(axis: [f64; 3]) -> Option<usize> {
     (0..3).find(|&i| axis[i] > 0.0 && (0..3).all(|j| i == j || axis[j] == 0.0))
 }
@@ -60,7 +61,7 @@ impl MeshSpec {
         self
     }
 
-    /// The mesh that is extruded, or this one: what comes from a shape or a file.
+    /// The mesh from a shape or a file: this one, or the one that it extrudes.
     #[must_use]
     pub fn source(&self) -> &Self {
         match self {

@@ -277,11 +277,11 @@ pub enum PrimarySpec {
     },
     /// A rigid circle; in space a sphere.
     Circle {
-        /// Its centre.
+        /// Centre of the circle or sphere.
         center: Vec<f64>,
-        /// Its radius, > 0.
+        /// Radius of the circle or sphere, > 0.
         radius: f64,
-        /// Whether bodies are inside it.
+        /// Whether bodies are inside the circle or sphere.
         inside: bool,
     },
     /// A rigid infinite cylinder.
@@ -290,7 +290,7 @@ pub enum PrimarySpec {
         point: Vec<f64>,
         /// Direction of its axis, of any length > 0.
         axis: Vec<f64>,
-        /// Its radius, > 0.
+        /// Radius of the cylinder, > 0.
         radius: f64,
         /// Whether bodies are inside it.
         inside: bool,
@@ -299,7 +299,7 @@ pub enum PrimarySpec {
     Surface(SurfaceSpec),
     /// A rigid chain of segments with the material to the left of the direction of travel.
     Polyline {
-        /// Its points; closed if the last one repeats the first.
+        /// Points of the chain in order; closed if the last one repeats the first.
         points: Vec<[f64; 2]>,
         /// Radius of its corners, ≥ 0.
         radius: f64,
@@ -317,19 +317,19 @@ impl PrimarySpec {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ObstacleMotion {
-    /// It does not move.
+    /// The obstacle is fixed.
     #[default]
     Fixed,
-    /// It follows formulas in t.
+    /// The obstacle follows formulas in t.
     Prescribed {
         /// Displacements by direction: 0 is x, 1 is y; the others are zero.
         moves: Vec<(usize, FormulaSpec)>,
         /// Rotation in degrees, counter-clockwise, with its centre.
         rotate: Option<(FormulaSpec, Vec<f64>)>,
     },
-    /// It is free in translation.
+    /// The obstacle is free in translation and does not turn.
     Free {
-        /// Its mass, > 0.
+        /// Mass of the obstacle, > 0.
         mass: f64,
         /// Initial velocity.
         velocity: Vec<f64>,
@@ -339,12 +339,13 @@ pub enum ObstacleMotion {
 }
 
 impl ObstacleMotion {
-    /// Whether it does not move.
+    /// Whether the obstacle is fixed.
     pub fn is_fixed(&self) -> bool {
         *self == Self::Fixed
     }
 
-    /// Number of nodes that carry it: its position, and its angle.
+    /// Number of nodes that represent the motion: one for the position, one for an angle; 0 if the
+    /// obstacle is fixed.
     pub fn nodes(&self) -> usize {
         match self {
             Self::Fixed => 0,

@@ -92,7 +92,8 @@ pub struct OutputSpec {
     pub checkpoint_every: usize,
 }
 
-/// None if frames are spread over the run.
+/// Reads the number of steps between two outputs of the fields; none if outputs are spread over the
+/// run.
 fn fields_every(v: &View) -> Option<usize> {
     if v.has("fields_every") {
         return v.get("fields_every");

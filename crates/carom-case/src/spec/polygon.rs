@@ -1,6 +1,6 @@
 //! How much of a circle lies in a polygon, estimated from points of equal shares of its area.
 
-/// Circles and directions of the points.
+/// Numbers of circles and directions at which points are sampled.
 const CIRCLES: usize = 12;
 const DIRECTIONS: usize = 24;
 

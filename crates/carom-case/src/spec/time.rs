@@ -66,12 +66,12 @@ pub enum Fallback {
 /// A time integrator by its published name: `{ kind = "chung-hulbert", rho_inf = 0.1 }`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SchemeSpec {
-    /// The `kind` key.
+    /// Published name of the scheme, the key `kind`.
     pub kind: String,
-    /// Its parameters by key, as given.
+    /// Parameters of the scheme by key, as given.
     #[serde(flatten)]
     pub parameters: BTreeMap<String, f64>,
-    /// `average-forces` or `average-state`.
+    /// Whether forces are averaged over the step, or evaluated at the averaged state.
     pub forces: ForceRule,
 }
 
