@@ -85,7 +85,7 @@ fn reactions(run: &Recorded, histories: &Histories) -> Option<Figure> {
         panels.extend(histories.vector(&format!("{what}, {name}"), HIGH, lines, least));
     }
     let caption = format!(
-        "Forces of the supports on the bodies.{} Data: `history.csv`, columns `SUPPORT.reaction_…`.",
+        "Forces of the supports, and of obstacles that are moved, on the bodies.{} Data: `history.csv`, columns `SUPPORT.reaction_…`.",
         histories.shaded()
     );
     histories.figure("reactions", "Support reactions", caption, panels, &[])
@@ -226,7 +226,12 @@ fn others(run: &Recorded, histories: &Histories) -> Option<Figure> {
             .iter()
             .map(|column| Line::new(column.as_str(), if members.len() == 1 { "" } else { column.as_str() }))
             .collect();
+        let name = if members.len() == 1 { members[0].clone() } else { name };
         for mut panel in histories.vector(&name, 150.0, lines, 0.0) {
+            // Of two panels for large and small components, one can be empty.
+            if panel.series.is_empty() {
+                continue;
+            }
             for (_, series) in formulas.iter().filter(|(column, _)| members.contains(&column)) {
                 let Series { color, x, .. } = *series;
                 panel.series.push(Series {

@@ -4,7 +4,7 @@ use carom_record::metrics;
 use maud::{Markup, html};
 
 use crate::asked::metrics_of;
-use crate::labels::{amount, instant_label, number};
+use crate::labels::{amount, instant_label};
 use crate::ordered::distinct;
 use crate::recorded::Recorded;
 use crate::scene::{Peak, Scene};
@@ -46,17 +46,25 @@ pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
     let numbers: Vec<Option<Number>> = if run.is_static() {
         facts.reactions().into_iter().chain(outside()).collect()
     } else if run.has_contact() && !run.is_driven() {
-        impact().into_iter().chain([facts.largest_stress(), facts.friction()]).collect()
+        impact().into_iter().chain([facts.largest_stress(), facts.friction(), facts.displacement()]).collect()
     } else if run.is_driven() {
         facts.reactions().into_iter().chain(inside()).chain([facts.displacement()]).collect()
     } else {
         free().into_iter().chain(facts.reactions()).collect()
     };
-    let numbers: Vec<Number> = numbers.into_iter().flatten().take(COUNT).collect();
+    // The reaction of an obstacle is its contact force.
+    let all = numbers.into_iter().flatten();
+    let numbers = all.fold(Vec::<Number>::new(), |mut kept, number| {
+        if kept.iter().all(|other| (&other.value, &other.note) != (&number.value, &number.note)) {
+            kept.push(number);
+        }
+        kept
+    });
+    let numbers = &numbers[..numbers.len().min(COUNT)];
     html! {
         @if !numbers.is_empty() {
             dl.numbers {
-                @for number in &numbers {
+                @for number in numbers {
                     div {
                         dt { (Label(&number.name)) }
                         dd { (Label(&number.value)) }
@@ -123,8 +131,12 @@ impl Facts<'_> {
 
     fn energy_lost(&self) -> Option<Number> {
         let value = self.metric("energy_lost")?;
-        let name = if value < 0.0 { "Energy created" } else { "Energy lost" };
         let percent = 100.0 * value.abs();
+        let name = match value {
+            _ if percent < 1e-6 => "Energy lost or created",
+            _ if value < 0.0 => "Energy created",
+            _ => "Energy lost",
+        };
         let shown = if percent < 1e-6 { "< 10^{-6}".to_owned() } else { significant(percent, 2) };
         Some(Number::new(name, format!("{shown} %"), "of the largest kinetic + strain energy"))
     }
@@ -180,7 +192,11 @@ impl Facts<'_> {
         let most = kinetic.iter().copied().filter(|x| x.is_finite()).fold(0.0, f64::max);
         let first = kinetic.first().copied().unwrap_or(0.0);
         (most > 0.0).then(|| {
-            Number::new("Largest kinetic energy", self.energy(most), format!("{} at first", number(first)))
+            Number::new(
+                "Largest kinetic energy",
+                self.energy(most),
+                format!("{} at first", self.energy(first)),
+            )
         })
     }
 }

@@ -36,7 +36,7 @@ fn five(run: &Recorded) -> (Vec<&FieldEntry>, &'static str) {
         );
     }
     let equidistant = std::array::from_fn(|k| start + (end - start) * k as f64 / 4.0);
-    (nearest(equidistant), "of the run")
+    (nearest(equidistant), "during the run")
 }
 
 /// The deformed bodies at several instants, coloured by stress.

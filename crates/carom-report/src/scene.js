@@ -233,7 +233,9 @@ const scene = async (root, data) => {
     const [a, b] = frameBox(), aspect = (b[1] - a[1]) / (b[0] - a[0]), isFull = document.fullscreenElement === root;
     W = Math.max(160, canvas.parentElement.clientWidth);
     const tall = Math.max(300, 0.58 * window.innerHeight);
-    H = isFull ? Math.max(200, canvas.parentElement.clientHeight) : isSolid ? Math.min(tall, 0.75 * W) : Math.max(130, Math.min(tall, aspect * (W - 2 * PAD) + 2 * PAD));
+    // Flat bodies are in the middle of the height that the colour bar needs.
+    const bar = Math.max(130, ...[...root.querySelectorAll(".bar")].map(each => each.clientHeight));
+    H = isFull ? Math.max(200, canvas.parentElement.clientHeight) : isSolid ? Math.min(tall, 0.75 * W) : Math.max(bar, Math.min(tall, aspect * (W - 2 * PAD) + 2 * PAD));
     ratio = Math.min(3, window.devicePixelRatio || 1);
     for (const each of [canvas, over]) { each.width = W * ratio; each.height = H * ratio; each.style.height = H + "px"; }
     if (shown.length) redraw();
