@@ -354,7 +354,7 @@ def scene(browser, stored=None, store=False):
         ("two fingers", spread),
         *[(f"the key {name}", lambda name=name: key(name)) for name in ("ArrowLeft", "ArrowUp", "+", "-", ".")],
         *[(f"the colours of {k}", lambda k=k: pick(browser, ".quantity", k)) for k in "1020"],
-        *[(f"a cut at {axis}", lambda axis=axis: pick(browser, ".cut", axis)) for axis in ("x", "−y", "")],
+        *[(f"a cut at {axis}", lambda axis=axis: pick(browser, ".cut", axis)) for axis in ("x", "−y", "z", "")],
     ]
     for name, step in steps:
         # Each from the same view: after several, the bodies may be out of sight.

@@ -222,10 +222,13 @@ fn others(run: &Recorded, histories: &Histories) -> Option<Figure> {
         run.manifest.expectations.iter().filter_map(|e| formula(run, &e.what)).collect();
     let mut panels = Vec::new();
     for (name, members) in grouped(columns.iter().map(|column| (stem(column), column))) {
-        let lines = members
-            .iter()
-            .map(|column| Line::new(column.as_str(), if members.len() == 1 { "" } else { column.as_str() }))
-            .collect();
+        let has_formula = |column: &String| formulas.iter().any(|(known, _)| known == column);
+        let word = |column: &String| match members.len() {
+            1 if has_formula(column) => "computed".to_owned(),
+            1 => String::new(),
+            _ => column.clone(),
+        };
+        let lines = members.iter().map(|column| Line::new(column.as_str(), word(column))).collect();
         let name = if members.len() == 1 { members[0].clone() } else { name };
         for mut panel in histories.vector(&name, 150.0, lines, 0.0) {
             // Of two panels for large and small components, one can be empty.

@@ -40,8 +40,7 @@ pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
     let impact =
         || [facts.rebound(), facts.peak_force(), facts.mean_force(), facts.duration(), facts.energy_lost()];
     let outside = || [facts.largest_stress(), facts.peak_force(), facts.work(), facts.displacement()];
-    let inside =
-        || [facts.peak_force(), facts.work(), facts.friction(), facts.largest_stress(), facts.energy_lost()];
+    let inside = || [facts.peak_force(), facts.work(), facts.friction(), facts.largest_stress()];
     let free = || [facts.largest_stress(), facts.displacement(), facts.kinetic(), facts.energy_lost()];
     let numbers: Vec<Option<Number>> = if run.is_static() {
         facts.reactions().into_iter().chain(outside()).collect()
@@ -126,7 +125,9 @@ impl Facts<'_> {
         let note = self
             .metric("contact_start")
             .map_or_else(String::new, |t| format!("from {}", instant_label(self.run, t)));
-        Some(Number::new("Contact duration", amount(value, self.run.time_unit()), note))
+        // In the unit of the instants.
+        let duration = format!("{} {}", significant(value, 3), self.run.time_unit());
+        Some(Number::new("Contact duration", duration.trim_end().to_owned(), note))
     }
 
     fn energy_lost(&self) -> Option<Number> {
