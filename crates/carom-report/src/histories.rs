@@ -146,7 +146,7 @@ impl<'a> Histories<'a> {
         let chart = Chart { title, x_label: time_label(self.run), shades: self.shades.clone(), panels };
         let options = Options { tracks, time: true, name, ..Options::default() };
         let mut figure = chart.figure(name, caption, &options);
-        figure.title = title.to_owned();
+        title.clone_into(&mut figure.title);
         figure.data = Some(chart.data(tracks));
         Some(figure)
     }
