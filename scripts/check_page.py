@@ -170,6 +170,7 @@ def animation(browser):
             wrong.append(f"{when}, {lost} time histories do not show the instant of the animation")
 
     found("as opened")
+    opened = browser.value("document.querySelector('#animation .time').value")
 
     def shown():
         return json.loads(browser.value(SHOWN))
@@ -223,6 +224,9 @@ def animation(browser):
 
     # Other colours, with their colour bar; those of a scene are tried with it.
     if not browser.value("!!document.querySelector('#animation .cut')"):
+        # At the instant of the opened page: bodies may have no stress before.
+        browser.value(f"""(slider => {{ slider.value = {opened}; slider.dispatchEvent(new Event("input")); }})(
+            document.querySelector("#animation .time"))""")
         before = shown()
         pick(browser, ".quantity", "1")
         if shown()[1] == before[1]:
@@ -350,8 +354,8 @@ def scene(browser, stored=None, store=False):
         ("a finger", swipe),
         ("two fingers", spread),
         *[(f"the key {name}", lambda name=name: key(name)) for name in ("ArrowLeft", "ArrowUp", "+", "-", ".")],
-        *[(f"the colours of {k}", lambda k=k: pick(browser, ".quantity", k)) for k in "120"],
-        *[(f"a cut at {axis}", lambda axis=axis: pick(browser, ".cut", axis)) for axis in ("x", "−y", "")],
+        *[(f"the colours of {k}", lambda k=k: pick(browser, ".quantity", k)) for k in "1020"],
+        *[(f"a cut at {axis}", lambda axis=axis: pick(browser, ".cut", axis)) for axis in ("x", "−y", "z", "")],
     ]
     for name, step in steps:
         # Each from the same view: after several, the bodies may be out of sight.

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::axis::{Axis, range};
 use crate::labels::unit_of;
-use crate::scientific::significant;
+use crate::scientific::{significant, without_zeros};
 use crate::text::{self, Label};
 use crate::trace::{ends_and_extremes, path};
 
@@ -437,7 +437,12 @@ fn entries(panel: &Panel, axis: &Axis, is_over_time: bool) -> Vec<String> {
         if !is_ranged {
             return name.to_owned();
         }
-        let [low, high] = [low, high].map(|x| significant(x / 10f64.powi(axis.exponent), 4));
+        let is_count = axis.exponent == 0 && series.y.iter().all(|y| y.fract() == 0.0);
+        let digits = |x: f64| {
+            let text = significant(x / 10f64.powi(axis.exponent), 4);
+            if is_count { without_zeros(&text).to_owned() } else { text }
+        };
+        let [low, high] = [low, high].map(digits);
         if name.is_empty() {
             return format!("{low} … {high}");
         }

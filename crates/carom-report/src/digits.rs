@@ -1,12 +1,13 @@
 //! Numbers on the page of a study: five digits, or three where a file has them in full precision.
 
-use crate::scientific::without_zeros;
+use crate::scientific::{significant, without_zeros};
 
-/// A number with five digits, with an exponent when far from one.
+/// A number with five digits as a label, with a power of ten when far from one.
 pub(crate) fn five(x: f64) -> String {
-    let text = if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
-        format!("{x:.3e}")
-    } else if x.fract() == 0.0 {
+    if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
+        return significant(x, 4);
+    }
+    let text = if x.fract() == 0.0 {
         format!("{x}")
     } else {
         let decimals = (4 - x.abs().log10().floor() as i32).clamp(0, 8) as usize;
@@ -20,13 +21,13 @@ pub(crate) fn count(x: f64) -> String {
     if x.fract() == 0.0 && x.abs() < 1e15 { format!("{x}").replace('-', "−") } else { three(x) }
 }
 
-/// A number with three digits.
+/// A number with three digits as a label.
 pub(crate) fn three(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return five(x);
     }
     if !(1e-4..1e6).contains(&x.abs()) {
-        return format!("{x:.2e}").replace('-', "−");
+        return significant(x, 3);
     }
     let scale = 10f64.powi(2 - x.abs().log10().floor() as i32);
     five((x * scale).round() / scale)

@@ -4,7 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
 use crate::figure::Figure;
 use crate::stacked::with_headings;
-use crate::text::Prose;
+use crate::text::{Label, Prose};
 
 /// A self-contained page; `style` is added to the style sheet of all pages.
 pub(crate) fn document(title: &str, style: &str, body: &Markup) -> String {
@@ -68,6 +68,11 @@ pub(crate) fn codes(items: &[impl Render], separator: impl Render) -> Markup {
 /// An expected value with minus signs in place of hyphens.
 pub(crate) fn minus(expected: &str) -> String {
     expected.replace('-', "−")
+}
+
+/// A number in the given format, which makes a label, or a dash where there is none.
+pub(crate) fn labelled(x: Option<f64>, format: impl Fn(f64) -> String) -> Markup {
+    Label(&or_dash(x, format)).render()
 }
 
 /// A number in the given format, or a dash where there is none.

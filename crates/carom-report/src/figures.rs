@@ -85,7 +85,7 @@ fn reactions(run: &Recorded, histories: &Histories) -> Option<Figure> {
         panels.extend(histories.vector(&format!("{what}, {name}"), HIGH, lines, least));
     }
     let caption = format!(
-        "Forces of the supports on the bodies.{} Data: `history.csv`, columns `SUPPORT.reaction_…`.",
+        "Forces of the supports, and of obstacles that are moved, on the bodies.{} Data: `history.csv`, columns `SUPPORT.reaction_…`.",
         histories.shaded()
     );
     histories.figure("reactions", "Support reactions", caption, panels, &[])
@@ -222,11 +222,19 @@ fn others(run: &Recorded, histories: &Histories) -> Option<Figure> {
         run.manifest.expectations.iter().filter_map(|e| formula(run, &e.what)).collect();
     let mut panels = Vec::new();
     for (name, members) in grouped(columns.iter().map(|column| (stem(column), column))) {
-        let lines = members
-            .iter()
-            .map(|column| Line::new(column.as_str(), if members.len() == 1 { "" } else { column.as_str() }))
-            .collect();
+        let has_formula = |column: &String| formulas.iter().any(|(known, _)| known == column);
+        let word = |column: &String| match members.len() {
+            1 if has_formula(column) => "computed".to_owned(),
+            1 => String::new(),
+            _ => column.clone(),
+        };
+        let lines = members.iter().map(|column| Line::new(column.as_str(), word(column))).collect();
+        let name = if members.len() == 1 { members[0].clone() } else { name };
         for mut panel in histories.vector(&name, 150.0, lines, 0.0) {
+            // Of two panels for large and small components, one can be empty.
+            if panel.series.is_empty() {
+                continue;
+            }
             for (_, series) in formulas.iter().filter(|(column, _)| members.contains(&column)) {
                 let Series { color, x, .. } = *series;
                 panel.series.push(Series {

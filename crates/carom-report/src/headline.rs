@@ -4,7 +4,7 @@ use carom_record::metrics;
 use maud::{Markup, html};
 
 use crate::asked::metrics_of;
-use crate::labels::{amount, instant_label, number};
+use crate::labels::{amount, instant_label};
 use crate::ordered::distinct;
 use crate::recorded::Recorded;
 use crate::scene::{Peak, Scene};
@@ -40,23 +40,30 @@ pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
     let impact =
         || [facts.rebound(), facts.peak_force(), facts.mean_force(), facts.duration(), facts.energy_lost()];
     let outside = || [facts.largest_stress(), facts.peak_force(), facts.work(), facts.displacement()];
-    let inside =
-        || [facts.peak_force(), facts.work(), facts.friction(), facts.largest_stress(), facts.energy_lost()];
+    let inside = || [facts.peak_force(), facts.work(), facts.friction(), facts.largest_stress()];
     let free = || [facts.largest_stress(), facts.displacement(), facts.kinetic(), facts.energy_lost()];
     let numbers: Vec<Option<Number>> = if run.is_static() {
         facts.reactions().into_iter().chain(outside()).collect()
     } else if run.has_contact() && !run.is_driven() {
-        impact().into_iter().chain([facts.largest_stress(), facts.friction()]).collect()
+        impact().into_iter().chain([facts.largest_stress(), facts.friction(), facts.displacement()]).collect()
     } else if run.is_driven() {
         facts.reactions().into_iter().chain(inside()).chain([facts.displacement()]).collect()
     } else {
         free().into_iter().chain(facts.reactions()).collect()
     };
-    let numbers: Vec<Number> = numbers.into_iter().flatten().take(COUNT).collect();
+    // The reaction of an obstacle is its contact force.
+    let all = numbers.into_iter().flatten();
+    let numbers = all.fold(Vec::<Number>::new(), |mut kept, number| {
+        if kept.iter().all(|other| (&other.value, &other.note) != (&number.value, &number.note)) {
+            kept.push(number);
+        }
+        kept
+    });
+    let numbers = &numbers[..numbers.len().min(COUNT)];
     html! {
         @if !numbers.is_empty() {
             dl.numbers {
-                @for number in &numbers {
+                @for number in numbers {
                     div {
                         dt { (Label(&number.name)) }
                         dd { (Label(&number.value)) }
@@ -118,13 +125,19 @@ impl Facts<'_> {
         let note = self
             .metric("contact_start")
             .map_or_else(String::new, |t| format!("from {}", instant_label(self.run, t)));
-        Some(Number::new("Contact duration", amount(value, self.run.time_unit()), note))
+        // In the unit of the instants.
+        let duration = format!("{} {}", significant(value, 3), self.run.time_unit());
+        Some(Number::new("Contact duration", duration.trim_end().to_owned(), note))
     }
 
     fn energy_lost(&self) -> Option<Number> {
         let value = self.metric("energy_lost")?;
-        let name = if value < 0.0 { "Energy created" } else { "Energy lost" };
         let percent = 100.0 * value.abs();
+        let name = match value {
+            _ if percent < 1e-6 => "Energy lost or created",
+            _ if value < 0.0 => "Energy created",
+            _ => "Energy lost",
+        };
         let shown = if percent < 1e-6 { "< 10^{-6}".to_owned() } else { significant(percent, 2) };
         Some(Number::new(name, format!("{shown} %"), "of the largest kinetic + strain energy"))
     }
@@ -180,7 +193,11 @@ impl Facts<'_> {
         let most = kinetic.iter().copied().filter(|x| x.is_finite()).fold(0.0, f64::max);
         let first = kinetic.first().copied().unwrap_or(0.0);
         (most > 0.0).then(|| {
-            Number::new("Largest kinetic energy", self.energy(most), format!("{} at first", number(first)))
+            Number::new(
+                "Largest kinetic energy",
+                self.energy(most),
+                format!("{} at first", self.energy(first)),
+            )
         })
     }
 }

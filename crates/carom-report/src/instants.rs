@@ -17,17 +17,17 @@ fn five(run: &Recorded) -> (Vec<&FieldEntry>, &'static str) {
     let times = run.times();
     let start = times[0];
     let end = times[times.len() - 1];
-    let nearest = |instants: [f64; 5]| {
-        let near =
-            |at: f64| run.fields.iter().min_by(|p, q| (p.time - at).abs().total_cmp(&(q.time - at).abs()));
-        let mut list: Vec<&FieldEntry> = instants.into_iter().filter_map(near).collect();
-        list.dedup();
-        list
-    };
+    let all: Vec<&FieldEntry> = run.fields.iter().collect();
     let contact = metrics::first_episode(&run.history).filter(|_| run.stop.is_none()).map(|episode| {
         let first = times[episode.start];
         let last = times[episode.end.unwrap_or(times.len()) - 1];
-        nearest([start, first, 0.5 * (first + last), last, end])
+        let during: Vec<&FieldEntry> =
+            all.iter().copied().filter(|entry| (first..=last).contains(&entry.time)).collect();
+        let mut list = nearest(&all, &[start]);
+        list.extend(nearest(&during, &[first, 0.5 * (first + last), last]));
+        list.extend(nearest(&all, &[end]));
+        list.dedup();
+        list
     });
     if let Some(list) = contact.filter(|list| list.len() > 3) {
         return (
@@ -35,8 +35,17 @@ fn five(run: &Recorded) -> (Vec<&FieldEntry>, &'static str) {
             "from the start of the run to its end, with start, middle and end of the first contact",
         );
     }
-    let equidistant = std::array::from_fn(|k| start + (end - start) * k as f64 / 4.0);
-    (nearest(equidistant), "of the run")
+    let equidistant: [f64; 5] = std::array::from_fn(|k| start + (end - start) * k as f64 / 4.0);
+    (nearest(&all, &equidistant), "during the run")
+}
+
+/// The entries nearest to some instants, each once.
+fn nearest<'a>(entries: &[&'a FieldEntry], instants: &[f64]) -> Vec<&'a FieldEntry> {
+    let near =
+        |at: &f64| entries.iter().copied().min_by(|p, q| (p.time - at).abs().total_cmp(&(q.time - at).abs()));
+    let mut list: Vec<&FieldEntry> = instants.iter().filter_map(near).collect();
+    list.dedup();
+    list
 }
 
 /// The deformed bodies at several instants, coloured by stress.

@@ -45,11 +45,16 @@ fn facts(run: &Recorded) -> Markup {
                 (three(wall)) " s, " (m.threads) @if m.threads == 1 { " thread" } @else { " threads" } " of "
                 (machine.cpus) " cores, " (capitalised(&machine.os)) " " (machine.arch)
             }))
-            (row("Started", m.started.replace('T', " ").replace('Z', " UTC")))
+            (row("Started", moment(&m.started)))
             (row("Carom", &m.version))
             (row("Input hash", html! { code.hash { (m.input_hash) } }))
         }
     }
+}
+
+/// A time stamp as it is read: `2026-01-02 03:04:05 UTC`.
+pub(crate) fn moment(stamp: &str) -> String {
+    stamp.replace('T', " ").replace('Z', " UTC")
 }
 
 fn row(name: &str, value: impl Render) -> Markup {

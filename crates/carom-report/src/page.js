@@ -202,8 +202,8 @@ const player = (root, frames, unit, draw, first) => {
     if (by) { pause(); show((frames[frame + by] || frames[frame]).time); event.preventDefault(); }
     if (event.key === " " && event.target !== button) { playing === null ? play() : pause(); event.preventDefault(); }
   });
-  // The frame with the largest contact forces, or else with the largest stress.
+  // The first frame with the largest contact forces, but for round-off, or else with the largest stress.
   const force = f => f.forces.reduce((sum, x) => sum + Math.abs(x), 0);
-  const most = frames.reduce((a, b) => force(b) > force(a) ? b : a);
+  const most = frames.reduce((a, b) => force(b) > 1.001 * force(a) ? b : a);
   show(force(most) > 0 ? most.time : first ?? end);
 };

@@ -204,7 +204,7 @@ const scene = async (root, data) => {
   };
 
   // The view.
-  let turn, zoom, shift, frame = 0, quantity = data.quantities[0], cut = [0, 0, 0, 1], queued = false, W = 1, H = 1, ratio = 1;
+  let turn, fit, zoom, shift, frame = 0, quantity = data.quantities[0], cut = [0, 0, 0, 1], queued = false, W = 1, H = 1, ratio = 1;
   const [low, high] = data.box, size = low.map((x, d) => high[d] - x);
   const on = name => find(name)?.checked;
   const mirrors = () => data.mirrors.filter((_, k) => root.querySelectorAll(".mirror")[k].checked);
@@ -222,18 +222,20 @@ const scene = async (root, data) => {
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const middle = () => { const [a, b] = frameBox(); return a.map((x, d) => (x + b[d]) / 2); };
   const reach = Math.hypot(...size) || 1, PAD = 34;
-  // Pixels per unit of length at zoom 1: the box fills the picture in the first view.
+  // Pixels per unit of length at zoom 1: the box fills the picture in the first view, or in the chosen one.
   const fitted = () => {
-    const [a, b] = frameBox(), wide = [0, 1].map(k => a.reduce((s, x, d) => s + Math.abs(data.view[k][d]) * (b[d] - x), 0));
+    const [a, b] = frameBox(), wide = [0, 1].map(k => a.reduce((s, x, d) => s + Math.abs(fit[k][d]) * (b[d] - x), 0));
     return Math.min((W - 2 * PAD) / (wide[0] || 1e-12), (H - 2 * PAD) / (wide[1] || 1e-12));
   };
-  const home = () => { turn = data.view.map(axis => [...axis]); zoom = 1; shift = [0, 0]; };
+  const home = (view = data.view) => { fit = view; turn = view.map(axis => [...axis]); zoom = 1; shift = [0, 0]; };
   home();
   const resize = () => {
     const [a, b] = frameBox(), aspect = (b[1] - a[1]) / (b[0] - a[0]), isFull = document.fullscreenElement === root;
     W = Math.max(160, canvas.parentElement.clientWidth);
     const tall = Math.max(300, 0.58 * window.innerHeight);
-    H = isFull ? Math.max(200, canvas.parentElement.clientHeight) : isSolid ? Math.min(tall, 0.75 * W) : Math.max(130, Math.min(tall, aspect * (W - 2 * PAD) + 2 * PAD));
+    // Flat bodies are in the middle of the height that the colour bar needs.
+    const bar = Math.max(130, ...[...root.querySelectorAll(".bar")].map(each => each.clientHeight));
+    H = isFull ? Math.max(200, canvas.parentElement.clientHeight) : isSolid ? Math.min(tall, 0.75 * W) : Math.max(bar, Math.min(tall, aspect * (W - 2 * PAD) + 2 * PAD));
     ratio = Math.min(3, window.devicePixelRatio || 1);
     for (const each of [canvas, over]) { each.width = W * ratio; each.height = H * ratio; each.style.height = H + "px"; }
     if (shown.length) redraw();
@@ -346,8 +348,8 @@ const scene = async (root, data) => {
       gl.uniform1i(at.kind, 0); gl.uniform1f(at.before, 0);
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, lists.triangles.buffer);
       gl.drawElements(gl.TRIANGLES, lists.triangles.count, gl.UNSIGNED_INT, 0);
-      if (on(".mesh")) lines(lists.edges, [0.2, 0.2, 0.2], isSolid ? 0.006 : 0.5);
-      if (isSolid && on(".sides")) marked.forEach((_, k) => lines(lists.marked[k], tone(SIDES[k]), 0.008));
+      if (on(".mesh")) lines(lists.edges, [0.2, 0.2, 0.2], isSolid ? 0.002 : 0.5);
+      if (isSolid && on(".sides")) marked.forEach((_, k) => lines(lists.marked[k], tone(SIDES[k]), 0.003));
       if (cut[3] !== 1 && sizes.section) {
         bind("section");
         gl.uniform1i(at.kind, 2); gl.uniform1f(at.before, 0);
@@ -460,7 +462,7 @@ const scene = async (root, data) => {
     if (event.target.value) {
       const [d, sign] = axis(event.target.value), unit = k => [0, 1, 2].map(i => +(i === k)), up = d === 2 ? 1 : 2;
       const eye = unit(d).map(x => sign * x), [a, b] = [unit(up), eye];
-      turn = [[a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], a, b];
+      home([[a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], a, b]);
     }
     redraw();
   });

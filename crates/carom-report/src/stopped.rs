@@ -125,7 +125,7 @@ fn advice(stop: &Stop) -> Markup {
             h3 { "What to try" }
             div.scroll {
                 table.advice {
-                    thead { tr { th { "Remedy" } th { "Command" } } }
+                    thead { tr { th { "Remedy" } th { "Command, with the case file as " code { "case.toml" } } } }
                     @for advice in &stop.advice {
                         tr {
                             td { (Prose(&advice.what)) }

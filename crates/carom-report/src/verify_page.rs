@@ -8,9 +8,12 @@ use carom_record::verification::{Row, SetUp, Verification};
 use maud::{Markup, html};
 
 use crate::digits::{five, three};
-use crate::document::{document, file, minus, or_dash};
-use crate::labels::number;
+use crate::document::{document, file, labelled, minus, or_dash};
+use crate::labels::{capitalised, number};
+use crate::made::moment;
 use crate::publish::{ReportError, write};
+use crate::scientific::powers;
+use crate::text::Label;
 
 /// Writes `verify.html` into the directory of a verification, from `verify.json` alone.
 ///
@@ -61,8 +64,8 @@ fn summary(v: &Verification) -> Markup {
         p { span.status.(class) { (word) } " " (sourced) " of them with a stated source." }
         p.small {
             (v.set_ups.len()) " set-ups (a study counts as one), " (v.with_contact()) " with dynamic contact; " (runs)
-            " simulations in " (three(v.wall)) " s, " (v.jobs) " at once, on " (v.machine.cpus) " cores, " (v.machine.os)
-            " " (v.machine.arch) "; " (v.started) "."
+            " simulations in " (three(v.wall)) " s, " (v.jobs) " at once, on " (v.machine.cpus) " cores, " (capitalised(&v.machine.os))
+            " " (v.machine.arch) "; " (moment(&v.started)) "."
             @if v.fast { " Without cases marked slow (" code { "--fast" } ")." }
         }
     }
@@ -133,8 +136,8 @@ fn row(row: &Row) -> Markup {
                 a href={ (row.directory) "/" } { code { (verdict.what) } }
                 @if let Some(why) = &verdict.why { br; span.small { (why) } }
             }
-            td { (minus(&verdict.expected)) }
-            td.n { (or_dash(verdict.got, five)) } td.n { (or_dash(row.error(), three)) }
+            td { (Label(&powers(&minus(&verdict.expected)))) }
+            td.n { (labelled(verdict.got, five)) } td.n { (labelled(row.error(), three)) }
             @if verdict.pass { td.pass { "yes" } } @else { td.miss { "missed" } }
             td.source { @if let Some(source) = &verdict.source { (source) } }
         }

@@ -204,9 +204,10 @@ fn contact(contact: &ContactSpec, units: &Units) -> Row {
 
 fn probe(probe: &ProbeSpec, units: &Units) -> Row {
     let at: Vec<String> = probe.at.iter().map(|x| given(*x)).collect();
+    let at = if at.len() == 1 { format!("x\u{a0}=\u{a0}{}", at[0]) } else { format!("({})", at.join(", ")) };
     let quantities: Vec<String> = probe.record.iter().map(|quantity| symbol(quantity.word())).collect();
     let words = html! {
-        (probe.body) " at (" (at.join(", ")) ") " (units.length) ": " (Label(&listed(&quantities)))
+        (probe.body) " at " (at) " " (units.length) ": " (Label(&listed(&quantities)))
     };
     (html! { (probe.name) }, words)
 }

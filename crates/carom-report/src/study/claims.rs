@@ -5,7 +5,8 @@ use carom_record::study::{Confirmed, Study, Verdict};
 use maud::{Markup, html};
 
 use crate::digits::three;
-use crate::document::or_dash;
+use crate::document::labelled;
+use crate::text::Label;
 
 fn class(v: &Verdict) -> &'static str {
     match (&v.ensemble, v.holds) {
@@ -25,12 +26,12 @@ fn ratio(v: &Verdict) -> Markup {
     html! {
         @match spread {
             Some(spread) => {
-                b { (three(spread.median())) } br;
-                span.small { (three(spread.range().0)) " to " (three(spread.range().1)) }
+                b { (Label(&three(spread.median()))) } br;
+                span.small { (Label(&three(spread.range().0))) " to " (Label(&three(spread.range().1))) }
             }
-            None => b { (or_dash(v.ratio, three)) },
+            None => b { (labelled(v.ratio, three)) },
         }
-        @if !bound.is_empty() { br; span.small { "claimed " (bound) } }
+        @if !bound.is_empty() { br; span.small { "claimed " (Label(&bound)) } }
     }
 }
 
@@ -68,7 +69,7 @@ pub(super) fn section(study: &Study) -> Markup {
                         td {
                             (v.claim.text) br; code { (v.claim.compare) }
                             @if let (Some(left), Some(right)) = (v.left, v.right) {
-                                br; span.small { "left " (three(left)) ", right " (factored(v, right)) }
+                                br; span.small { "left " (Label(&three(left))) ", right " (Label(&factored(v, right))) }
                             }
                         }
                         td.(class(v)) { (result(v)) }

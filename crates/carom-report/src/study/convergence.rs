@@ -9,7 +9,7 @@ use maud::{Markup, html};
 
 use super::settings::own_settings;
 use crate::digits::{five, three};
-use crate::document::or_dash;
+use crate::document::labelled;
 use crate::labels::number;
 use crate::text::{Label, typeset};
 
@@ -63,7 +63,7 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
                     @let values = values(&metric.name);
                     tr {
                         td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
-                        @for value in &values { td.n { (or_dash(*value, five)) } }
+                        @for value in &values { td.n { (labelled(*value, five)) } }
                         @if enough { (observed(&group.steps, &values)) }
                     }
                 }
@@ -80,7 +80,7 @@ fn observed(steps: &[f64], values: &[Option<f64>]) -> Markup {
         @match known.and_then(|values| order::extrapolated(steps, &values)) {
             Ok(limit) => {
                 td.n { (format_args!("{:.2}", limit.order)) }
-                td.n { (five(limit.value)) " ± " (three(limit.band)) }
+                td.n { (Label(&five(limit.value))) " ± " (Label(&three(limit.band))) }
             }
             Err(why) => td colspan="2" { "no order " span.small { "(" (why) ")" } },
         }

@@ -8,6 +8,7 @@ use maud::{Markup, html};
 use super::numbers::by_arm;
 use crate::digits::three;
 use crate::document::file;
+use crate::text::Label;
 
 /// Nothing for a study without an ensemble.
 pub(super) fn section(study: &Study) -> Markup {
@@ -36,7 +37,7 @@ fn cell(study: &Study, arm: usize, metric: &Metric) -> Markup {
     let Some(spread) = study.spread(arm, &metric.name) else { return html! { "–" } };
     let (low, high) = spread.range();
     html! {
-        (three(spread.median()))
-        @if spread.count() > 1 { br; span.small { "(" (three(low)) " to " (three(high)) ")" } }
+        (Label(&three(spread.median())))
+        @if spread.count() > 1 { br; span.small { "(" (Label(&three(low))) " to " (Label(&three(high))) ")" } }
     }
 }

@@ -10,7 +10,7 @@ use super::comparison::style_of;
 use super::systems::Systems;
 use super::trend;
 use crate::digits::five;
-use crate::document::{file, minus, or_dash};
+use crate::document::{file, labelled, minus};
 use crate::labels::with_unit;
 use crate::plot::{APART, style};
 use crate::text::{Label, typeset};
@@ -33,7 +33,7 @@ pub(super) fn results(study: &Study, origins: &[Origin]) -> Markup {
                     tr {
                         th.n { "No." } th { "Line" } th { "Arm" } th { "Ended" }
                         @for metric in &metrics {
-                            th.n title=(metric.definition) { (Label(&with_unit(&metric.name.replace('_', " "), &metric.unit))) }
+                            th.n title=(metric.definition) { (Label(&with_unit(&metric.name.replace('_', " "), &metric.unit.replace(' ', "\u{a0}")))) }
                         }
                         th.n { "Steps" }
                     }
@@ -47,12 +47,21 @@ pub(super) fn results(study: &Study, origins: &[Origin]) -> Markup {
                             @if study.manifest.reference.as_ref() == Some(&row.name) { " (reference)" }
                         }
                         (ended(study, i, row, twin(origins, i)))
-                        @for metric in &metrics { td.n { (or_dash(row.value(&metric.name), five)) } }
+                        @for metric in &metrics { td.n { (result(row, metric)) } }
                         td.n { (arm.steps) }
                     }
                 }
             }
         }
+    }
+}
+
+/// A metric of an arm. Shares of the energy far below one are round-off.
+fn result(row: &Row, metric: &Metric) -> Markup {
+    const ROUND_OFF: f64 = 1e-12;
+    match row.value(&metric.name) {
+        Some(x) if metric.unit.is_empty() && x != 0.0 && x.abs() < ROUND_OFF => html! { "≈ 0" },
+        value => labelled(value, five),
     }
 }
 
@@ -111,7 +120,7 @@ pub(super) fn expectations(study: &Study) -> Markup {
                                 code { (e.what) }
                                 @if let Some(why) = &e.why { br; span.small { (why) } }
                             }
-                            td { (arm) } td { (minus(&e.expected)) } td.n { (or_dash(e.got, five)) }
+                            td { (arm) } td { (minus(&e.expected)) } td.n { (labelled(e.got, five)) }
                             @if e.pass { td.pass { "yes" } } @else { td.miss { "missed" } }
                             td { @if let Some(source) = &e.source { (source) } }
                         }
@@ -130,7 +139,7 @@ pub(super) fn metrics(study: &Study, systems: &Systems) -> Markup {
         details {
             summary { (shown.len()) " metrics of " (study.rows.len()) " arms" }
             (by_arm(study, &shown, COLUMNS, |arm, metric| {
-                html! { (or_dash(study.rows[arm].value(&metric.name), five)) }
+                result(&study.rows[arm], metric)
             }))
             p.small {
                 "Headings are the numbers of the arms. "

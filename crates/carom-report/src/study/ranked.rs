@@ -12,8 +12,9 @@ use super::collected::{Origin, in_time, time_unit, twin};
 use super::comparison::methods;
 use super::settings::is_off_budget;
 use crate::digits::{count, five, three};
-use crate::document::{file, or_dash};
+use crate::document::{file, labelled, or_dash};
 use crate::labels::with_unit;
+use crate::scientific::powers;
 use crate::text::{Label, typeset};
 
 /// How places are given.
@@ -131,7 +132,7 @@ fn table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
                                 }
                                 @if !r.sound { span.small { " (created energy)" } }
                             }
-                            @for (_, cell) in &columns { td.n { (cell(r.arm).as_deref().unwrap_or("–")) } }
+                            @for (_, cell) in &columns { td.n { (Label(cell(r.arm).as_deref().unwrap_or("–"))) } }
                         }
                     }
                 }
@@ -176,7 +177,7 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
                     }
                     @for check in &ranking.crosschecks {
                         tr {
-                            td { (check.level + 1) } td { (Label(&check.first)) } td { (value(check)) }
+                            td { (check.level + 1) } td { (Label(&check.first)) } td { (Label(&value(check))) }
                             td { (Label(&best(check))) } td { (Label(&conclusion(check))) }
                         }
                     }
@@ -205,12 +206,12 @@ fn other_goals(study: &Study) -> Markup {
                                 @let arm = &study.manifest.arms[verdict.arm];
                                 td {
                                     (Label(arm.method()))
-                                    @if let Some(h) = step(arm, "time.step") { ", Δt = " (in_time(study, h)) }
+                                    @if let Some(h) = step(arm, "time.step") { ", Δt = " (Label(&in_time(study, h))) }
                                     @if !verdict.alike.is_empty() {
                                         br; span.small { "tied with " (Label(&verdict.alike.join("; "))) }
                                     }
                                     @if let Some(depth) = &verdict.penetration {
-                                        br; span.small { "a penalty: " (depth) }
+                                        br; span.small { "a penalty: " (Label(&powers(depth))) }
                                     }
                                 }
                                 td { (verdict.confidence.word()) } td { (Label(&measure.words)) }
@@ -250,10 +251,10 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                             Standing::Established { value, uncertainty } => {
                                 @let estimate = reference.estimate(&metric.name).ok();
                                 @let order = estimate.and_then(|estimate| estimate.order).filter(|_| uncertainty > 0.0);
-                                td.n { (three(value)) }
-                                td.n { @if uncertainty == 0.0 { "exact" } @else { (three(uncertainty)) } }
+                                td.n { (Label(&three(value))) }
+                                td.n { @if uncertainty == 0.0 { "exact" } @else { (Label(&three(uncertainty))) } }
                                 td.n { (or_dash(order, |p| if p > HIGHEST { format!("({p:.2})") } else { format!("{p:.2}") })) }
-                                td.n { (or_dash(estimate.map(|estimate| estimate.spread).filter(|s| *s > 0.0), three)) }
+                                td.n { (labelled(estimate.map(|estimate| estimate.spread).filter(|s| *s > 0.0), three)) }
                             }
                             Standing::Not(why) => td colspan="4" { "not established: " (typeset(&why)) },
                         }

@@ -270,7 +270,7 @@ pub(super) fn section(study: &Study) -> Markup {
                                 @if let Some(words) = trend(study, group, &metric.name, power).words(&metric.unit, unit_of_key(study, key)) {
                                     tr {
                                         td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
-                                        td { (label) } td { (words) }
+                                        td { (Label(label)) } td { (Label(&words)) }
                                     }
                                 }
                             }

@@ -10,6 +10,7 @@ use super::comparison::methods;
 use crate::digits::{count, three};
 use crate::document::{joined, or_dash};
 use crate::labels::capitalised;
+use crate::scientific::powers;
 use crate::text::{Label, Prose, typeset};
 
 /// Metrics whose error a user should know before following a recommendation.
@@ -50,7 +51,7 @@ pub(super) fn section(study: &Study) -> Markup {
     let entry = |head: &str, lines: &[String]| {
         html! {
             dt { (head) }
-            @for line in lines { dd { (Prose(&capitalised(&typeset(line)))) "." } }
+            @for line in lines { dd { (Prose(&powers(&capitalised(&typeset(line))))) "." } }
         }
     };
     html! {
