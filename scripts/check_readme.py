@@ -70,7 +70,7 @@ def main():
     if f"Verified by {set_ups} cases and studies" not in readme:
         wrong.append(f"README.md does not say {set_ups} cases and studies")
 
-    for pattern, step in ((r"loses (\d+) % of its energy", 1.875e-3), (r"of the step it loses\s+([\d.]+) %", 4.6875e-4)):
+    for pattern, step in ((r"loses (\d+) % of its energy", 1.875e-3), (r"of the step\s+it loses\s+([\d.]+) %", 4.6875e-4)):
         claim = re.search(pattern, readme)
         found = lost(carom, step)
         decimals = len(claim[1].partition(".")[2]) if claim else 0
