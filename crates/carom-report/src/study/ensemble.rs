@@ -25,8 +25,8 @@ pub(super) fn section(study: &Study) -> Markup {
         }
         details {
             summary { "Median and range of " (metrics.len()) " metrics" }
-            // Four medians with their ranges are as wide as the page.
-            (by_arm(study, &metrics, 4, |arm, metric| cell(study, arm, metric)))
+            // Three medians with their ranges are as wide as the page.
+            (by_arm(study, &metrics, 3, |arm, metric| cell(study, arm, metric)))
             p.small { "With all digits: " (file("ensemble.csv")) "." }
         }
     }
