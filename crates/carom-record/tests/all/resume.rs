@@ -88,7 +88,8 @@ fn an_altered_record_is_not_continued() {
     let scratch = scratch();
     let directory = scratch.path().join("run");
     drop(advance(started(&directory), 0, 0, STEPS));
-    let (mut refused, mut repeated) = (0, 0);
+    let mut refused = 0;
+    let mut repeated = 0;
     for (name, good) in all_bytes(&directory) {
         let row_file = ["csv", "jsonl"].iter().any(|e| name.extension().is_some_and(|x| x == *e));
         if !row_file && name.extension().is_none_or(|e| e != "vtu") {
