@@ -22,23 +22,17 @@ impl Bodies<'_> {
     }
 
     /// The contacts of the table `v` with the key `between`; `one`: its other keys, `declared`: the
-    /// contacts that have tables of their own.
+    /// bodies of contacts and ties that have tables of their own.
     pub(super) fn contacts(
         &self,
         v: &View,
         one: &ContactSpec,
-        declared: &[ContactSpec],
+        declared: &[Vec<String>],
     ) -> Option<Vec<ContactSpec>> {
         let of_itself: bool = v.get("self")?;
         let sides = self.sides(v)?;
         let body = |side: &str| side.split_once('.').map_or("", |side| side.0).to_owned();
-        let known = |a: &str, b: &str| {
-            let both = |contact: &&ContactSpec| {
-                let bodies: Vec<&str> = contact.bodies().collect();
-                bodies == [a, b] || bodies == [b, a]
-            };
-            declared.iter().any(|contact| both(&contact))
-        };
+        let known = |a: &str, b: &str| declared.iter().any(|bodies| *bodies == [a, b] || *bodies == [b, a]);
         let mut contacts = Vec::new();
         let mut add = |name: String, secondary: &str, primary: &str| {
             let primary = PrimarySpec::Side(primary.to_owned());
@@ -69,8 +63,8 @@ impl Bodies<'_> {
             [] if v.has_problem(|p| p.path == format!("{}.between", v.path)) => return None,
             [] => {
                 let what = format!("contact `{}` has no pair of sides", one.name);
-                let why = "there is no other body, or the contacts of these bodies are all declared in \
-                    tables of their own";
+                let why = "there is no other body, or the contacts and ties of these bodies are all \
+                    declared in tables of their own";
                 let help = if of_itself { "leave it out" } else { "leave out `self = false`" };
                 return v.wrong("between", what, why, help);
             }

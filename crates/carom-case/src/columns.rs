@@ -4,7 +4,9 @@
 use carom_record::Column;
 use carom_record::units::Labels;
 
-use super::{BodySpec, Case, ContactSpec, Fallback, ObstacleMotion, ProbeSpec, Quantity, SupportSpec};
+use super::{
+    BodySpec, Case, ContactSpec, Fallback, ObstacleMotion, ProbeSpec, Quantity, SupportSpec, TieSpec,
+};
 
 /// Whether a quantity exists in a space of this dimension: its name has no axis beyond it.
 pub(super) fn exists(of: Quantity, dimension: usize) -> bool {
@@ -39,6 +41,7 @@ pub fn history_columns(case: &Case) -> Vec<Column> {
         bodies: case.bodies.iter().collect(),
         contacts: case.contacts.iter().collect(),
         by_contact: case.contacts.len() > 1,
+        ties: case.ties.iter().collect(),
         supports: case.supports.iter().collect(),
         probes: case.probes.iter().collect(),
         manufactured: case.manufactured.is_some(),
@@ -54,6 +57,7 @@ pub(super) struct Recorded<'a> {
     pub(super) contacts: Vec<&'a ContactSpec>,
     /// Whether the force of each contact is recorded.
     pub(super) by_contact: bool,
+    pub(super) ties: Vec<&'a TieSpec>,
     pub(super) supports: Vec<&'a SupportSpec>,
     pub(super) probes: Vec<&'a ProbeSpec>,
     pub(super) manufactured: bool,
@@ -145,6 +149,10 @@ impl Recorded<'_> {
         for contact in self.contacts.iter().filter(|_| self.by_contact) {
             let what = "contact force on its secondary side";
             columns.vector(&format!("{}.force", contact.name), &label.force, what);
+        }
+        for tie in &self.ties {
+            let what = "force of the tie on its secondary side";
+            columns.vector(&format!("{}.force", tie.name), &label.force, what);
         }
         let named = self.supports.iter().filter_map(|support| Some((support.name.as_ref()?, *support)));
         let prescribed = moving().filter(|c| matches!(c.motion, ObstacleMotion::Prescribed { .. }));

@@ -10,13 +10,14 @@ use crate::keys::{IN_SPACE_AND_TIME, Keys, POSITIVE, Range, View};
 use crate::overlay;
 use crate::spec::{
     self, BodySpec, ContactSpec, FormulaSpec, InitialSpec, LoadKeys, LoadSpec, MaterialKeys, MaterialSpec,
-    NewtonSpec, OutputSpec, OverlaySpec, Plane, Preset, ProbeSpec, SupportKeys, SupportSpec, TimeSpec, Units,
+    NewtonSpec, OutputSpec, OverlaySpec, Plane, Preset, ProbeSpec, SupportKeys, SupportSpec, TieSpec,
+    TimeSpec, Units,
 };
 use crate::tree::{Entry, Node};
 
 /// One simulation of impact or contact of deformable bodies.
 #[derive(Default, Keys)]
-#[keys(name = "the case", lenient, later = ["tie"])]
+#[keys(name = "the case", lenient)]
 pub(crate) struct Draft {
     /// Title of figures and report pages. Default: the name of the file.
     #[key(example = "\"Two bars\"")]
@@ -63,6 +64,9 @@ pub(crate) struct Draft {
     /// A contact pair: two sides that may come into contact.
     #[key(Tables(&ContactSpec::TABLE), optional = "", with = contacts)]
     pub(crate) contact: Vec<Option<ContactSpec>>,
+    /// A tie: a side whose nodes move with another side.
+    #[key(optional = "")]
+    pub(crate) tie: Vec<Option<TieSpec>>,
     /// Time interval, time step and time integrator.
     #[key(required)]
     pub(crate) time: Option<TimeSpec>,

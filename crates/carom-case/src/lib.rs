@@ -55,8 +55,8 @@ pub use schema::{schema, schema_of};
 pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Fallback,
     ForceTime, FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind,
-    MaterialSpec, MeshSpec, Method, NewtonSpec, ObstacleMotion, OutputSpec, Overlap, OverlaySpec,
+    MaterialSpec, MeshSpec, Method, NewtonSpec, ObstacleMotion, OutputSpec, Overhang, Overlap, OverlaySpec,
     Persistency, Plane, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec,
-    TangentRule, TimeSpec, Units, Velocities, Volumetric, load_variables,
+    TangentRule, TieSpec, TimeSpec, Units, Velocities, Volumetric, load_variables,
 };
 pub use surface_file::SurfaceSpec;

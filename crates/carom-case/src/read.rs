@@ -119,8 +119,13 @@ impl Draft {
     /// Replaces the contacts `between` bodies by those that they stand for.
     fn expand_contacts(&mut self, root: &View) {
         let given = std::mem::take(&mut self.contact);
-        let declared: Vec<ContactSpec> =
-            given.iter().flatten().filter(|contact| !contact.between).cloned().collect();
+        let owned = |bodies: Vec<&str>| bodies.into_iter().map(str::to_owned).collect::<Vec<String>>();
+        let contacts = given.iter().flatten().filter(|contact| !contact.between);
+        let of_contacts = contacts.map(|contact| owned(contact.bodies().collect()));
+        // The rest of a body with a tie of two of its sides may still meet itself.
+        let of_ties = self.tie.iter().flatten().map(|tie| owned(tie.bodies().collect()));
+        let of_ties = of_ties.filter(|bodies| bodies[0] != bodies[1]);
+        let declared: Vec<Vec<String>> = of_contacts.chain(of_ties).collect();
         let bodies = Bodies { bodies: &self.body, materials: &self.material };
         let mut given = given.into_iter();
         let expanded = root.each("contact", |v| {
@@ -167,6 +172,7 @@ impl Draft {
             initial: self.initial,
             manufactured: self.manufactured.map(|solution| solution.y),
             contacts,
+            ties: all(self.tie)?,
             time,
             newton: self.newton,
             probes: all(self.probe)?,

@@ -157,7 +157,9 @@ fn normalise(model: &Model, system: &Direct, x: &mut [f64]) -> f64 {
 fn mass_product(model: &Model, x: &[f64]) -> Vec<f64> {
     let mut all = vec![0.0; model.dofs()];
     model.free.iter().zip(x).for_each(|(dof, x)| all[*dof] = *x);
+    model.points.carry(&mut all);
     let mut product = vec![0.0; all.len()];
     model.mass.multiply_into(&all, &mut product);
+    model.points.gather(&mut product);
     model.free.iter().map(|dof| product[*dof]).collect()
 }

@@ -158,10 +158,7 @@ fn add_supports(
     // Residual at the step's start.
     let mut residual = vec![0.0; if start == 0.0 { 0 } else { model.dofs() }];
     if start != 0.0 {
-        model.mass.multiply_into(&state.a, &mut residual);
-        for i in model.motions.dofs() {
-            residual[i] += state.f_internal[i] + state.f_contact[i] - model.gravity[i] - state.f_external[i];
-        }
+        balance_into(model, state, &state.a, &mut residual);
     }
     for moved in &equations.motions {
         let i = moved.dof;
@@ -225,6 +222,16 @@ pub(crate) fn account(
     book_kinetic(model, next);
 }
 
+/// Overwrites `residual` with the balance of a state whose accelerations are `a`: the reactions of
+/// supports, with those of the points that their nodes carry.
+fn balance_into(model: &Model, state: &State, a: &[f64], residual: &mut [f64]) {
+    model.mass.multiply_into(a, residual);
+    for (i, force) in residual.iter_mut().enumerate() {
+        *force += state.f_internal[i] + state.f_contact[i] - model.gravity[i] - state.f_external[i];
+    }
+    model.points.gather(residual);
+}
+
 /// Work of moving supports.
 fn work_of_motions(equations: &Equations, next: &State, increment: &[f64], dt: f64, means: &Means) -> f64 {
     let Equations { model, state, stage, .. } = equations;
@@ -236,6 +243,7 @@ fn work_of_motions(equations: &Equations, next: &State, increment: &[f64], dt: f
     for i in model.motions.dofs() {
         jump[i] = next.v[i] - state.v[i] - dt * means.accelerations[i];
     }
+    model.points.carry(&mut jump);
     let mut impulse = vec![0.0; increment.len()];
     model.mass.multiply_into(&jump, &mut impulse);
     sum + dot(increment, &impulse) / dt
@@ -247,11 +255,9 @@ fn change_of_reactions(model: &Model, state: &State, next: &State, increment: &[
     let reactions = |state: &State| {
         let mut a = state.a.clone();
         model.motions.dofs().for_each(|i| a[i] = 0.0);
+        model.points.carry(&mut a);
         let mut forces = vec![0.0; model.dofs()];
-        model.mass.multiply_into(&a, &mut forces);
-        for i in model.motions.dofs() {
-            forces[i] += state.f_internal[i] + state.f_contact[i] - model.gravity[i] - state.f_external[i];
-        }
+        balance_into(model, state, &a, &mut forces);
         forces
     };
     let (before, now) = (reactions(state), reactions(next));

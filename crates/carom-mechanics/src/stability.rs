@@ -32,16 +32,16 @@ pub struct StableStep {
 }
 
 /// Stable step of a model with lumped masses for its initial tangent; `None` if a cell is inverted
-/// or a free node is massless.
+/// or a free node is massless. Ties are left out: they lower the highest frequency.
 pub fn stable_step(model: &Model) -> Option<StableStep> {
     let mass = lumped(model);
-    if model.free.iter().any(|dof| mass[*dof] <= 0.0) {
+    if (0..model.dofs()).any(|dof| !model.fixed[dof] && mass[dof] <= 0.0) {
         return None;
     }
     let cell = largest_of_cells(model)?.max(f64::MIN_POSITIVE);
     let mut matrix = scaled_tangent(model, &mass, cell)?;
     let mut x = vec![0.0; model.dofs()];
-    for (i, &dof) in model.free.iter().enumerate() {
+    for (i, dof) in (0..model.dofs()).filter(|dof| !model.fixed[*dof]).enumerate() {
         x[dof] = mass[dof].sqrt() * (12.9898 * (i as f64 + 1.0)).sin();
     }
     let mut product = vec![0.0; x.len()];

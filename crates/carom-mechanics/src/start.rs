@@ -93,6 +93,7 @@ pub(crate) fn start(
             [state.v[moved.dof], state.a[moved.dof]] = [moved.motion[1], moved.motion[2]];
         }
     }
+    model.points.carry(&mut state.v);
     let gaps = measure_all(model, &mut state)?;
     state.ledger.springs = press(model, &mut state, &gaps);
     state.ledger.stick_springs = model.stick_energy(state.pairs.iter().map(Vec::as_slice));

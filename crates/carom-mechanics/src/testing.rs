@@ -3,7 +3,9 @@
 use carom_contact::{Boundary, Detection, Kinematics, NodeToFacet, NodeToPatch, Surface, Unilateral};
 use carom_solid::{Law, LoadedSide, Mesh, body};
 
-use crate::model::{AllowedDepths, BodyInstance, Contact, Loads, Mass, Model, Motions, gap_tolerance};
+use crate::model::{
+    AllowedDepths, BodyInstance, Contact, Loads, Mass, Model, Motions, Points, gap_tolerance,
+};
 
 /// Bodies of one material, with consecutive node numbers.
 pub(crate) fn parts(meshes: impl IntoIterator<Item = Mesh>, law: Law, density: f64) -> Vec<BodyInstance> {
@@ -82,9 +84,8 @@ pub(crate) fn model(
     let dofs = reference.len();
     let mut constrained = vec![false; dofs];
     fixed.iter().copied().chain(motions.dofs()).for_each(|dof| constrained[dof] = true);
-    let free: Vec<usize> = (0..dofs).filter(|&dof| !constrained[dof]).collect();
-    let mut unknown = vec![usize::MAX; dofs];
-    free.iter().enumerate().for_each(|(place, &dof)| unknown[dof] = place);
+    let points = Points::default();
+    let [free, unknown] = Model::unknowns(&constrained, dimension, &points);
     let scale = parts.iter().map(|part| part.body.mesh().diameter()).fold(0.0, f64::max);
     Model {
         dimension,
@@ -94,6 +95,8 @@ pub(crate) fn model(
         fixed: constrained,
         free,
         unknown,
+        points,
+        ties: Vec::new(),
         massless: (0..dofs).map(|dof| mass.is_massless(dof / dimension)).collect(),
         mass,
         gravity: vec![0.0; dofs],

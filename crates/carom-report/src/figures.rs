@@ -70,7 +70,7 @@ fn probes(run: &Recorded, histories: &Histories) -> Option<Figure> {
     histories.figure("probes", "Probes", caption, histories.probes(), &[])
 }
 
-/// The forces of supports and of obstacles whose motion is prescribed, each in its panels.
+/// The forces of supports, of obstacles whose motion is prescribed and of ties, each in its panels.
 fn reactions(run: &Recorded, histories: &Histories) -> Option<Figure> {
     let mut panels = Vec::new();
     let columns = run.history.columns.iter().map(|column| column.name.as_str());
@@ -84,11 +84,24 @@ fn reactions(run: &Recorded, histories: &Histories) -> Option<Figure> {
         let least = 1e-10 * largest(most);
         panels.extend(histories.vector(&format!("{what}, {name}"), HIGH, lines, least));
     }
+    let ties = &run.case.ties;
+    for tie in ties {
+        let lines = Line::vector(run, &format!("{}.force", tie.name), "f");
+        let most = lines.iter().filter_map(|line| run.column(&line.column)).flatten();
+        let least = 1e-10 * largest(most);
+        panels.extend(histories.vector(&format!("tie force, {}", tie.name), HIGH, lines, least));
+    }
+    let [of_ties, columns] = if ties.is_empty() {
+        ["", ""]
+    } else {
+        [" Tie force: on the secondary side of a tie.", ", `TIE.force_…`"]
+    };
     let caption = format!(
-        "Forces of the supports, and of obstacles that are moved, on the bodies.{} Data: `history.csv`, columns `SUPPORT.reaction_…`.",
+        "Forces of the supports, and of obstacles that are moved, on the bodies.{of_ties}{} Data: `history.csv`, columns `SUPPORT.reaction_…`{columns}.",
         histories.shaded()
     );
-    histories.figure("reactions", "Support reactions", caption, panels, &[])
+    let title = if ties.is_empty() { "Support reactions" } else { "Forces of supports and ties" };
+    histories.figure("reactions", title, caption, panels, &[])
 }
 
 /// Contact forces, in all and by contact, and their impulse.

@@ -49,6 +49,7 @@ const FRONT: View = View { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1
 pub(crate) enum Part {
     Supported,
     Loaded,
+    Tied,
     Primary,
     Secondary,
 }
@@ -59,6 +60,7 @@ impl Part {
         match self {
             Self::Supported => "#44607c",
             Self::Loaded => "#7a2f8f",
+            Self::Tied => "#3f7d3a",
             Self::Primary => LINES[1],
             Self::Secondary => LINES[2],
         }
@@ -69,6 +71,7 @@ impl Part {
         match self {
             Self::Supported => "#b7c6d4",
             Self::Loaded => "#d5bcdc",
+            Self::Tied => "#b9d8b4",
             Self::Primary => "#a9cfe8",
             Self::Secondary => "#f2c6a4",
         }
@@ -81,11 +84,13 @@ fn parts(case: &Case) -> Vec<(Part, &str)> {
     let loaded = case.loads.iter().flat_map(LoadSpec::sides);
     let primary = case.contacts.iter().filter_map(|contact| contact.primary.side());
     let secondary = case.contacts.iter().map(|contact| contact.secondary.as_str());
+    let tied = case.ties.iter().flat_map(|tie| [tie.primary.as_str(), tie.secondary.as_str()]);
+    let tied = tied.map(|side| (Part::Tied, side));
     let supported = supported.map(|side| (Part::Supported, side.as_str()));
     let loaded = loaded.map(|side| (Part::Loaded, side.as_str()));
     let contact =
         primary.map(|side| (Part::Primary, side)).chain(secondary.map(|side| (Part::Secondary, side)));
-    supported.chain(loaded).chain(contact).collect()
+    supported.chain(loaded).chain(tied).chain(contact).collect()
 }
 
 /// The figure with its table; nothing without cells.

@@ -28,6 +28,7 @@ impl Check<'_> {
             bodies: draft.body.iter().flatten().collect(),
             contacts: draft.contact.iter().flatten().collect(),
             by_contact: draft.contact.len() > 1,
+            ties: draft.tie.iter().flatten().collect(),
             supports: draft.support.iter().flatten().collect(),
             probes: draft.probe.iter().flatten().collect(),
             manufactured: self.document.root().get("manufactured").is_some(),

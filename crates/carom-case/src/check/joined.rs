@@ -1,4 +1,4 @@
-//! Bodies of one Gmsh file that have common facets, and no contact: every body has nodes of its
+//! Bodies of one Gmsh file that have common facets, and neither contact nor tie: every body has nodes of its
 //! own, so that cells of one conforming mesh come apart where two bodies meet. Whether they are to
 //! be one body or two that touch, the file does not say; a contact between them does.
 
@@ -55,10 +55,11 @@ impl Check<'_> {
     }
 
     fn in_contact(&self, a: &BodySpec, b: &BodySpec) -> bool {
-        self.draft.contact.iter().flatten().any(|contact| {
-            let has = |body: &BodySpec| contact.bodies().any(|name| name == body.name);
-            has(a) && has(b)
-        })
+        let contacts =
+            self.draft.contact.iter().flatten().map(|contact| contact.bodies().collect::<Vec<_>>());
+        let ties = self.draft.tie.iter().flatten().map(|tie| tie.bodies().collect::<Vec<_>>());
+        let has = |bodies: &[&str], body: &BodySpec| bodies.contains(&body.name.as_str());
+        contacts.chain(ties).any(|bodies| has(&bodies, a) && has(&bodies, b))
     }
 
     fn report(&mut self, k: usize, bodies: [&BodySpec; 2], file: &str, dimension: usize, joint: &Joint) {
@@ -66,7 +67,8 @@ impl Check<'_> {
         let [low, high] = joint.extent.map(|x| format!("{:?}", &x[..dimension]));
         let at = if low == high { format!("at {low}") } else { format!("from {low} to {high}") };
         let nodes = if joint.nodes == 1 { "a node".to_owned() } else { format!("{} nodes", joint.nodes) };
-        let what = format!("bodies `{a}` and `{b}` have {nodes} of {file} in common, {at}, and no contact");
+        let what =
+            format!("bodies `{a}` and `{b}` have {nodes} of {file} in common, {at}, and no contact or tie");
         let facets = match (joint.facets, dimension) {
             (1, 1) => "point".to_owned(),
             (count, 1) => format!("{count} points"),
@@ -76,7 +78,7 @@ impl Check<'_> {
             (count, _) => format!("{count} faces"),
         };
         let why = format!(
-            "every body has nodes of its own: without a contact the two come apart, or pass through each other, at the {facets} between them"
+            "every body has nodes of its own: without a contact or a tie the two come apart, or pass through each other, at the {facets} between them"
         );
         let group = ["point", "curve", "surface", "volume"][dimension.min(3)];
         let side = joint.sides.first().map_or("SIDE", String::as_str);
@@ -87,7 +89,7 @@ impl Check<'_> {
             (true, _) => ", where SIDE is a physical surface there",
         };
         let help = format!(
-            "to connect them, put the cells of both into one physical {group}, which is one body; to let them touch and part, add a [[contact]] with secondary = \"{a}.{side}\" and primary = \"{b}.{side}\"{unnamed}"
+            "to connect them, put the cells of both into one physical {group}, which is one body, or add a [[tie]] of these sides; to let them touch and part, add a [[contact]] with secondary = \"{a}.{side}\" and primary = \"{b}.{side}\"{unnamed}"
         );
         self.add(format!("body[{k}].mesh"), what, why, help);
     }

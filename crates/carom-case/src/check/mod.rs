@@ -9,6 +9,7 @@ mod linear;
 mod loads;
 mod restitution;
 mod scheme;
+mod ties;
 mod time;
 
 use carom_solid::Element;
@@ -27,7 +28,7 @@ use super::{BodySpec, MeshSpec, SchemeSpec};
 pub(super) fn problems(document: &Document, draft: &Draft, misspelt: &[String], problems: &mut Vec<Problem>) {
     let mut check = Check { document, draft, misspelt, problems };
     check.dimension();
-    for list in ["material", "body", "support", "load", "contact", "probe", "overlay"] {
+    for list in ["material", "body", "support", "load", "contact", "tie", "probe", "overlay"] {
         check.unique_names(list);
     }
     check.bodies();
@@ -37,6 +38,7 @@ pub(super) fn problems(document: &Document, draft: &Draft, misspelt: &[String], 
     check.starts();
     check.manufactured();
     check.contacts();
+    check.ties();
     check.joined();
     check.probes();
     check.time();

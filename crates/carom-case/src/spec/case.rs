@@ -12,6 +12,7 @@ use super::contact::ContactSpec;
 use super::formula::FormulaSpec;
 use super::load::{LoadSpec, SupportSpec};
 use super::output::{OutputSpec, OverlaySpec, ProbeSpec};
+use super::tie::TieSpec;
 use super::time::{NewtonSpec, TimeSpec};
 use crate::keys::Keys;
 
@@ -55,6 +56,9 @@ pub struct Case {
     pub manufactured: Option<Vec<FormulaSpec>>,
     /// Contact pairs of sides.
     pub contacts: Vec<ContactSpec>,
+    /// Ties of sides.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ties: Vec<TieSpec>,
     /// Time interval, step and scheme.
     pub time: TimeSpec,
     /// Newton's method.

@@ -11,7 +11,7 @@ const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true
 
 /// A contact pair: two sides that may come into contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Keys)]
-#[keys(name = "[[contact]]", later = ["passes", "normals", "tie"])]
+#[keys(name = "[[contact]]", later = ["passes", "normals"])]
 pub struct ContactSpec {
     /// Name used in records and messages.
     #[key(Name, example = "\"strike\"")]
@@ -31,7 +31,8 @@ pub struct ContactSpec {
     /// In place of `secondary` and `primary`: contact between all pairs of bodies and of each with
     /// itself, for "all" bodies or those listed, on their whole boundaries or on a side
     /// `body.side`. Of two bodies the softer one (smaller λ + 2μ) is secondary; if they are equal,
-    /// the first. A pair of bodies with a contact of its own is excluded. Contacts are named
+    /// the first. A pair of bodies with a contact or a
+    /// tie of its own is excluded. Contacts are named
     /// NAME-BODY-BODY and NAME-BODY, or NAME if there is one.
     #[key(Between, optional = "\"all\"", given)]
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

@@ -10,6 +10,7 @@ mod mesh_size;
 mod obstacle;
 mod output;
 mod polygon;
+mod tie;
 mod time;
 
 pub use body::{BodySpec, Law, MassKind, MaterialSpec, Plane, Volumetric};
@@ -26,5 +27,6 @@ pub use mesh::{MeshSpec, RefineSpec, SKIN};
 pub(crate) use mesh_size::PLANES;
 pub use obstacle::{ObstacleMotion, PrimarySpec};
 pub use output::{OutputSpec, OverlaySpec, ProbeSpec, Quantity};
+pub use tie::{Overhang, TieSpec};
 pub(crate) use time::scheme;
 pub use time::{Fallback, LinearRule, NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

@@ -149,9 +149,9 @@ impl Undeclared {
     }
 }
 
-/// What the contacts between two bodies cover.
+/// What the contacts and ties between two bodies cover.
 struct Covered {
-    /// Nodes of their sides.
+    /// Nodes of their sides; of a tie, those that it ties and those that carry them.
     nodes: HashSet<usize>,
     /// Depth that is allowed to other nodes, over the length of a facet.
     share: f64,
@@ -166,7 +166,7 @@ impl Default for Covered {
 }
 
 impl Covered {
-    /// By pairs of bodies that have a contact, the lower number first.
+    /// By pairs of bodies that have a contact or a tie, the lower number first.
     fn all(model: &Model) -> HashMap<(usize, usize), Self> {
         let mut all: HashMap<_, Self> = HashMap::new();
         for contact in &model.contacts {
@@ -175,6 +175,11 @@ impl Covered {
             covered.nodes.extend(contact.facets.iter().flat_map(|(_, facets)| facets).flatten());
             covered.share = covered.share.max(contact.depths.others);
             covered.kept = kept_depths(contact).into_values().fold(covered.kept, f64::max);
+        }
+        for tie in &model.ties {
+            // Tied sides coincide; where they are curved and their meshes differ, their chords cross.
+            let [a, b] = tie.bodies;
+            all.entry((a.min(b), a.max(b))).or_default().nodes.extend(model.carrying_tie(tie));
         }
         all
     }

@@ -56,7 +56,7 @@ pub(crate) fn independent_above<'a, T>(
     // The accepted row whose pivot is this dof.
     let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
     let mut independent = |row: Row, least: f64| {
-        let mut row: Vec<(usize, f64)> = row.entries().filter(|(dof, _)| !model.fixed[*dof]).collect();
+        let mut row = on_free_dofs(model, row);
         let mut from = 0;
         // An accepted row contains pivots of later ones only: in ascending order each occurs once.
         while let Some((r, factor)) = row
@@ -85,4 +85,20 @@ pub(crate) fn independent_above<'a, T>(
         true
     };
     rows.filter_map(|(name, row, least)| independent(row, least).then_some(name)).collect()
+}
+
+/// Entries of a row on the free dofs, an entry each.
+fn on_free_dofs(model: &Model, row: Row) -> Vec<(usize, f64)> {
+    let is_free = |(dof, _): &(usize, f64)| !model.fixed[*dof];
+    if model.points.is_empty() {
+        return row.entries().filter(is_free).collect();
+    }
+    let mut sums: Vec<(usize, f64)> = Vec::new();
+    for (dof, slope) in model.points.pulled(row.entries()).filter(is_free) {
+        match sums.iter_mut().find(|(other, _)| *other == dof) {
+            Some((_, sum)) => *sum += slope,
+            None => sums.push((dof, slope)),
+        }
+    }
+    sums
 }

@@ -77,7 +77,7 @@ impl Direct {
         let n = model.free.len();
         let is_between_nodes =
             |node: usize| model.mass.row(node).any(|(other, mass)| other != node && mass != 0.0);
-        let is_lumped = !(0..model.mass.nodes()).any(is_between_nodes);
+        let is_lumped = model.points.is_empty() && !(0..model.mass.nodes()).any(is_between_nodes);
         let of_node = |node: usize| -> f64 {
             model.mass.row(node).filter(|(other, _)| *other == node).map(|(_, mass)| mass).sum()
         };
@@ -147,17 +147,16 @@ impl Direct {
             let unknown = model.unknown(dof).filter(|_| !(self.of_mass && model.massless[dof]));
             unknown.and_then(|unknown| elimination.schur_place(unknown))
         };
+        let points = &model.points;
         let mut count = 0;
         for ((row, gradient), direction) in rows.list.iter().zip(rows.rows.iter()).zip(rows.directions.iter())
         {
             if row.compliance == 0.0 {
                 let at_places = |(dof, slope): (usize, f64)| Some((place(dof)?, row.weight * slope));
-                gradient
-                    .entries()
-                    .filter_map(at_places)
-                    .for_each(|(a, slope)| saddle.add_row(count, a, slope));
+                let slopes = points.pulled(gradient.entries()).filter_map(at_places);
+                slopes.for_each(|(a, slope)| saddle.add_row(count, a, slope));
                 if is_turned {
-                    let slopes = direction.entries().filter_map(at_places);
+                    let slopes = points.pulled(direction.entries()).filter_map(at_places);
                     slopes.for_each(|(a, slope)| saddle.add_direction(count, a, slope));
                 }
                 saddle.yields(count, row.weight * row.yields);
@@ -166,15 +165,15 @@ impl Direct {
             if row.compliance == 0.0 && !curved {
                 continue;
             }
-            let places: Vec<Option<usize>> = gradient.entries().map(|(dof, _)| place(dof)).collect();
-            for (i, a) in places.iter().enumerate() {
-                for (j, b) in places.iter().enumerate() {
-                    if let (Some(a), Some(b)) = (*a, *b)
-                        && a >= b
-                    {
-                        let value = row.stiffness(gradient.gradient, [i, j], row.compliance, curved);
-                        saddle.add(a, b, value);
-                    }
+            // An entry with the places that carry its dof.
+            let carried = |(i, (dof, _)): (usize, (usize, f64))| {
+                points.carriers(dof).filter_map(move |(dof, weight)| Some((i, place(dof)?, weight)))
+            };
+            let places: Vec<(usize, usize, f64)> = gradient.entries().enumerate().flat_map(carried).collect();
+            for &(i, a, of_a) in &places {
+                for &(j, b, of_b) in places.iter().filter(|(_, b, _)| a >= *b) {
+                    let value = row.stiffness(gradient.gradient, [i, j], row.compliance, curved);
+                    saddle.add(a, b, of_a * of_b * value);
                 }
             }
         }
@@ -228,8 +227,8 @@ impl Preconditioner for Direct {
             let Matrices { pattern, mass, .. } = built(matrices, model);
             (&*pattern, &*mass)
         };
-        let current = self.point.as_ref().filter(|point| spans(&point.boundary, rows));
-        let boundary = current.map_or_else(|| rows.nodes(), |point| point.boundary.clone());
+        let current = self.point.as_ref().filter(|point| spans(model, &point.boundary, rows));
+        let boundary = current.map_or_else(|| interface(model, rows), |point| point.boundary.clone());
         let elimination = elimination(latest, model, pattern, &boundary)?;
         if !self.mass.as_ref().is_some_and(|factor| Arc::ptr_eq(factor.elimination(), &elimination)) {
             self.mass = None;
@@ -250,7 +249,7 @@ impl Preconditioner for Direct {
     /// Those of the rows and nearby ones on the sides in contact, so that the choice lasts. The
     /// last choice is reused while it includes the rows and is not much too large.
     fn boundary(&self, model: &Model, y: &[f64], rows: &Constraints, last: Option<&Point>) -> Vec<usize> {
-        let (row_nodes, d) = (rows.nodes(), model.dimension);
+        let (row_nodes, d) = (interface(model, rows), model.dimension);
         let last = last.map_or(&[][..], |point| &point.boundary);
         if row_nodes.is_empty() {
             return last.to_vec();
@@ -268,11 +267,11 @@ impl Preconditioner for Direct {
         let mut chosen: Vec<usize> = row_nodes.iter().copied().chain(around).collect();
         chosen.sort_unstable();
         chosen.dedup();
-        if spans(last, rows) && last.len() <= 2 * chosen.len() { last.to_vec() } else { chosen }
+        if spans(model, last, rows) && last.len() <= 2 * chosen.len() { last.to_vec() } else { chosen }
     }
 
-    fn spans(&self, rows: &Constraints) -> bool {
-        self.point.as_ref().is_some_and(|point| spans(&point.boundary, rows))
+    fn spans(&self, model: &Model, rows: &Constraints) -> bool {
+        self.point.as_ref().is_some_and(|point| spans(model, &point.boundary, rows))
     }
 
     fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<bool, LinearError> {
@@ -299,12 +298,18 @@ impl Preconditioner for Direct {
         let mut x = std::mem::take(&mut self.solution);
         x.clear();
         x.extend(model.free.iter().map(|&dof| forces[dof]));
+        for point in model.points.iter() {
+            for dof in point.node * model.dimension..(point.node + 1) * model.dimension {
+                model.moved_by(dof).for_each(|(unknown, weight)| x[unknown] += weight * forces[dof]);
+            }
+        }
         x.extend(self.springs.iter().zip(gaps).filter(|(is_spring, _)| !**is_spring).map(|(_, gap)| *gap));
         self.solve_all(unknowns, &mut x);
         increment.fill(0.0);
         for (value, &dof) in x.iter().zip(&model.free) {
             increment[dof] = *value;
         }
+        model.points.carry(increment);
         multipliers.clear();
         let mut found = x[unknowns..].iter().copied();
         let of = |is_spring: &bool| if *is_spring { None } else { found.next() };
@@ -359,8 +364,24 @@ fn no_factor(model: &Model) -> LinearError {
     LinearError::Engine { size: model.free.len(), reason: "solve before factor".into() }
 }
 
-fn spans(boundary: &[usize], rows: &Constraints) -> bool {
-    rows.rows.iter().flat_map(|row| row.nodes).all(|node| boundary.binary_search(node).is_ok())
+fn spans(model: &Model, boundary: &[usize], rows: &Constraints) -> bool {
+    let is_in = |node: &usize| boundary.binary_search(node).is_ok();
+    if model.points.is_empty() {
+        return rows.rows.iter().flat_map(|row| row.nodes).all(is_in);
+    }
+    interface(model, rows).iter().all(is_in)
+}
+
+/// The nodes that the rows act on, ascending; of points those that carry them.
+fn interface(model: &Model, rows: &Constraints) -> Vec<usize> {
+    let nodes = rows.nodes();
+    if model.points.is_empty() {
+        return nodes;
+    }
+    let mut carrying = model.points.carrying(&nodes);
+    carrying.sort_unstable();
+    carrying.dedup();
+    carrying
 }
 
 #[cfg(test)]

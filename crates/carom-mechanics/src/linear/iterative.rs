@@ -132,7 +132,8 @@ impl Iterative {
         self.rows.clear();
         for (row, constraint) in rows.rows.iter().zip(&rows.list) {
             let weight = constraint.weight;
-            let entries = row.entries().filter(|(dof, _)| !model.fixed[*dof] && included(*dof));
+            let entries = model.points.pulled(row.entries());
+            let entries = entries.filter(|(dof, _)| !model.fixed[*dof] && included(*dof));
             let entries = entries.map(|(dof, slope)| (dof, weight * slope));
             // A row that yields is eliminated like a spring, and its multiplier found afterwards.
             self.rows.push(weight * (constraint.compliance + constraint.yields), entries);
@@ -196,7 +197,7 @@ impl Preconditioner for Iterative {
         Vec::new()
     }
 
-    fn spans(&self, _: &Constraints) -> bool {
+    fn spans(&self, _: &Model, _: &Constraints) -> bool {
         self.point.is_some()
     }
 
@@ -221,7 +222,10 @@ impl Preconditioner for Iterative {
         let Self { matrix, contacts, rows, curved, constrained, massless, of_mass, .. } = self;
         self.forces.clear();
         self.forces.extend_from_slice(forces);
+        model.points.gather(&mut self.forces);
         constrained.iter().for_each(|dof| self.forces[*dof] = 0.0);
+        let points = &model.points;
+        let mut moved = vec![0.0; if points.is_empty() { 0 } else { forces.len() }];
         self.gaps.clear();
         self.gaps.extend((0..gaps.len()).map(|r| if rows.is_spring(r) { 0.0 } else { gaps[r] }));
         multipliers.resize(gaps.len(), 0.0);
@@ -229,6 +233,12 @@ impl Preconditioner for Iterative {
         yielding.clone().for_each(|(r, _)| rows.pull(r, gaps[r], &mut self.forces));
         loop {
             let product = |x: &[f64], out: &mut [f64]| {
+                let mut x = x;
+                if !points.is_empty() {
+                    moved.copy_from_slice(x);
+                    points.carry(&mut moved);
+                    x = &moved;
+                }
                 if *of_mass {
                     model.mass.multiply_into(x, out);
                     massless.iter().for_each(|dof| out[*dof] = x[*dof]);
@@ -236,6 +246,7 @@ impl Preconditioner for Iterative {
                     matrix.multiply_into(x, out);
                     add_contacts(contacts, *curved, x, out);
                 }
+                points.gather(out);
                 constrained.iter().for_each(|dof| out[*dof] = 0.0);
             };
             let ended = self.method.solve(
@@ -259,6 +270,7 @@ impl Preconditioner for Iterative {
                 return Err(LinearError::Stalled { size: model.free.len(), iterations, reduction });
             }
             yielding.for_each(|(r, _)| multipliers[r] = rows.pulled(r, gaps[r], increment));
+            points.carry(increment);
             return Ok(());
         }
     }

@@ -14,6 +14,8 @@ use crate::rejected::Rejected;
 
 /// Slot of an entry that is not stored: of a constrained dof, or in a facet's upper triangle.
 const SKIP: u32 = u32::MAX;
+/// Slot of an entry of a point, which several unknowns carry.
+const CARRIED: u32 = u32::MAX - 1;
 
 /// The matrices of a model.
 pub(crate) struct Matrices {
@@ -34,30 +36,31 @@ impl Matrices {
     pub(crate) fn new(model: &Model) -> Self {
         let pattern = pattern(model);
         let mut slots = Vec::new();
-        for_each_cell_pair(model, |pair| {
-            slots.push(pair.and_then(|(a, b)| pattern.slot(a, b)).map_or(SKIP, |s| s as u32));
-        });
+        for part in &model.parts {
+            for cell in 0..part.body.mesh().cell_count() {
+                let dofs = part.cell_dofs(cell);
+                for (row, a) in dofs.iter().enumerate() {
+                    let row = dofs[..=row].iter();
+                    slots.extend(row.map(|b| slot_of(model, &pattern, [*a as usize, *b as usize])));
+                }
+            }
+        }
         let (d, mut mass) = (model.dimension, vec![0.0; pattern.len()]);
         for node in 0..model.mass.nodes() {
             for (other, value) in model.mass.row(node) {
                 for i in 0..d {
-                    if let (Some(a), Some(b)) = (model.unknown(node * d + i), model.unknown(other * d + i))
-                        && a >= b
-                        && let Some(slot) = pattern.slot(a, b)
-                    {
-                        mass[slot] += value;
-                    }
+                    add_carried(model, &pattern, [node * d + i, other * d + i], value, &mut mass);
                 }
             }
         }
         let mut facet_slots = Vec::new();
         model.loads.each_facet_tangent(d, None, |nodes, _| {
-            let dofs =
-                || nodes.iter().flat_map(|n| (0..d).map(move |i| n * d + i)).map(|dof| model.unknown(dof));
+            let dofs = || nodes.iter().flat_map(|n| (0..d).map(move |i| n * d + i));
             for a in dofs() {
                 for b in dofs() {
-                    let slot = a.zip(b).filter(|(a, b)| a >= b).and_then(|(a, b)| pattern.slot(a, b));
-                    facet_slots.push(slot.map_or(SKIP, |s| s as u32));
+                    let slot = slot_of(model, &pattern, [a, b]);
+                    let is_upper = slot != CARRIED && model.unknown(a) < model.unknown(b);
+                    facet_slots.push(if is_upper { SKIP } else { slot });
                 }
             }
         });
@@ -73,11 +76,19 @@ impl Matrices {
         model.loads.at(&model.parts, model.dofs(), time, &mut at)?;
         self.follower.fill(0.0);
         let follower = &mut self.follower;
-        model.loads.each_facet_tangent(model.dimension, Some((&at, y)), |nodes, k| {
-            let n = nodes.len() * model.dimension;
+        let (pattern, d) = (&self.pattern, model.dimension);
+        model.loads.each_facet_tangent(d, Some((&at, y)), |nodes, k| {
+            let n = nodes.len() * d;
             for entry in 0..n * n {
-                if let Some(&slot) = slots.next().filter(|slot| **slot != SKIP) {
-                    follower[slot as usize] += 0.5 * (k[entry] + k[entry % n * n + entry / n]);
+                let [row, column] = [entry / n, entry % n];
+                let value = 0.5 * (k[entry] + k[column * n + row]);
+                match slots.next() {
+                    Some(&CARRIED) => {
+                        let dofs = [row, column].map(|i| nodes[i / d] * d + i % d);
+                        add_carried(model, pattern, dofs, value, follower);
+                    }
+                    Some(&slot) if slot != SKIP => follower[slot as usize] += value,
+                    _ => {}
                 }
             }
         });
@@ -95,13 +106,22 @@ impl Matrices {
     /// If a cell is inverted there.
     pub(crate) fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<Vec<f64>, Rejected> {
         self.stiffness.fill(0.0);
-        let (mut slots, stiffness) = (self.slots.iter(), &mut self.stiffness);
-        each_tangent(model, y, |part, _, tangent| {
+        let Self { slots, stiffness, pattern, .. } = self;
+        let mut slots = slots.iter();
+        each_tangent(model, y, |part, cell, tangent| {
             let n = part.body.mesh().element.dofs();
             for (row, k) in tangent.chunks_exact(n).enumerate() {
-                for (value, slot) in k[..=row].iter().zip(slots.by_ref()) {
-                    if *slot != SKIP {
-                        stiffness[*slot as usize] += value;
+                for (column, (value, slot)) in k[..=row].iter().zip(slots.by_ref()).enumerate() {
+                    match *slot {
+                        SKIP => {}
+                        CARRIED => {
+                            let dofs = [row, column].map(|i| part.cell_dofs(cell)[i] as usize);
+                            add_carried(model, pattern, dofs, *value, stiffness);
+                            if row != column {
+                                add_carried(model, pattern, [dofs[1], dofs[0]], *value, stiffness);
+                            }
+                        }
+                        slot => stiffness[slot as usize] += value,
                     }
                 }
             }
@@ -111,10 +131,34 @@ impl Matrices {
     }
 }
 
-/// The pattern of the bodies: unknowns of every two nodes that share a cell. Nodes are paired
-/// first, which avoids a list of all pairs of dofs.
+/// Slot of the entry of two dofs, whichever of their unknowns is the larger.
+fn slot_of(model: &Model, pattern: &Pattern, [a, b]: [usize; 2]) -> u32 {
+    let is_point = |dof: usize| model.points.of(dof / model.dimension).is_some();
+    if is_point(a) || is_point(b) {
+        return CARRIED;
+    }
+    let places = model.unknown(a).zip(model.unknown(b));
+    let slot = places.and_then(|(a, b)| pattern.slot(a.max(b), a.min(b)));
+    slot.map_or(SKIP, |slot| slot as u32)
+}
+
+/// Adds an entry of a matrix over all dofs to the lower triangle of the one over the unknowns that
+/// carry them.
+fn add_carried(model: &Model, pattern: &Pattern, [row, column]: [usize; 2], value: f64, to: &mut [f64]) {
+    for (a, of_a) in model.moved_by(row) {
+        for (b, of_b) in model.moved_by(column).filter(|(b, _)| a >= *b) {
+            if let Some(slot) = pattern.slot(a, b) {
+                to[slot] += of_a * of_b * value;
+            }
+        }
+    }
+}
+
+/// The pattern of the bodies: unknowns of every two nodes that share a cell, or carry those of one.
+/// Nodes are paired first, which avoids a list of all pairs of dofs.
 fn pattern(model: &Model) -> Pattern {
     let (d, mut neighbours) = (model.dimension, coupled(model));
+    add_carriers(model, &mut neighbours);
     for (node, nodes) in neighbours.iter_mut().enumerate() {
         // The mass of a rigid obstacle has no cells.
         nodes.push(node as u32);
@@ -129,17 +173,19 @@ fn pattern(model: &Model) -> Pattern {
     Pattern::from_entries(model.free.len(), unknowns)
 }
 
-/// Calls `visit` with the unknowns of every two dofs of every cell, the larger first, in the order
-/// of the lower triangles of the cells' tangents; with none if one is constrained.
-fn for_each_cell_pair(model: &Model, mut visit: impl FnMut(Option<(usize, usize)>)) {
-    let mut unknowns = Vec::new();
+/// Couples the nodes that carry the nodes of a cell.
+fn add_carriers(model: &Model, neighbours: &mut [Vec<u32>]) {
+    if model.points.is_empty() {
+        return;
+    }
     for part in &model.parts {
-        for cell in 0..part.body.mesh().cell_count() {
-            unknowns.clear();
-            unknowns.extend(part.cell_dofs(cell).iter().map(|dof| model.unknown(*dof as usize)));
-            for (row, a) in unknowns.iter().enumerate() {
-                for b in &unknowns[..=row] {
-                    visit(a.zip(*b).map(|(a, b)| (a.max(b), a.min(b))));
+        let mesh = part.body.mesh();
+        for cell in (0..mesh.cell_count()).map(|cell| mesh.cell(cell)) {
+            let nodes: Vec<usize> = cell.iter().map(|node| part.first_node + node).collect();
+            if nodes.iter().any(|node| model.points.of(*node).is_some()) {
+                let carriers = model.points.carrying(&nodes);
+                for &a in &carriers {
+                    neighbours[a].extend(carriers.iter().map(|b| *b as u32));
                 }
             }
         }

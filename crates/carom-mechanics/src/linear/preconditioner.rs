@@ -63,7 +63,7 @@ pub(crate) trait Preconditioner: Send + Sync {
     fn boundary(&self, model: &Model, y: &[f64], rows: &Constraints, last: Option<&Point>) -> Vec<usize>;
 
     /// Whether the tangent serves these rows.
-    fn spans(&self, rows: &Constraints) -> bool;
+    fn spans(&self, model: &Model, rows: &Constraints) -> bool;
 
     /// Prepares solves with the tangent and these rows; returns whether the system is positive
     /// definite on the kernel of the rows, as far as is known.

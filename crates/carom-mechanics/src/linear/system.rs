@@ -133,7 +133,7 @@ impl System {
         renewal: &mut Renewal,
     ) -> Result<(), Rejected> {
         for again in [true, false] {
-            if renewal.due || !self.preconditioner.spans(rows) {
+            if renewal.due || !self.preconditioner.spans(equations.model, rows) {
                 self.renew(equations, now, rows, renewal)?;
             }
             if self.preconditioner.prepare(equations.model, rows)? || !again {

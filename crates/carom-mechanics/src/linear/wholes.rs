@@ -76,7 +76,7 @@ impl Whole {
     }
 }
 
-/// The nodes of each piece, ascending: those that cells connect.
+/// The nodes of each piece, ascending: those that cells and ties connect.
 fn pieces(model: &Model) -> Vec<Vec<usize>> {
     let mut first: Vec<usize> = (0..model.dofs() / model.dimension).collect();
     for part in &model.parts {
@@ -86,6 +86,12 @@ fn pieces(model: &Model) -> Vec<Vec<usize>> {
             let roots: Vec<usize> = roots.collect();
             let least = roots.iter().copied().fold(usize::MAX, usize::min);
             roots.into_iter().for_each(|root| first[root] = least);
+        }
+    }
+    for point in model.points.iter() {
+        for (carrier, _) in &point.weights {
+            let roots = [point.node, *carrier].map(|node| root(&mut first, node));
+            first[roots[0].max(roots[1])] = roots[0].min(roots[1]);
         }
     }
     let mut pieces: Vec<Vec<usize>> = vec![Vec::new(); first.len()];

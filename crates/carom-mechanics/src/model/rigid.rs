@@ -2,20 +2,28 @@
 //! there is no equilibrium.
 //!
 //! The rigid modes of a body are its translations and rotations about its centre, u = t + ω × (x −
-//! c)/size: one in dimension 1, three in the plane, six in space. Constrained dofs (supports) and
-//! active contacts (their gradients) are rows over these few unknowns; the null space of the rows
-//! is free.
+//! c)/size: one in dimension 1, three in the plane, six in space. Constrained dofs (supports), ties
+//! and active contacts (their gradients) are rows over these few unknowns; the null space of the
+//! rows is free. Bodies that ties connect have modes together.
 
 use carom_contact::Row;
 
 use super::body_instance::BodyInstance;
+use super::points::{Point, Points};
 
 /// Norm (rows are of order one) below which a row constrains nothing.
 const SHORT: f64 = 1e-8;
 
-/// A rigid mode of a body that supports leave free.
+/// A rigid mode of bodies that ties connect, or of one body, that supports leave free.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
+    /// The motion of each of them.
+    pub motions: Vec<RigidMotion>,
+}
+
+/// A rigid motion of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidMotion {
     /// Index of the body.
     pub part: usize,
     translation: [f64; 3],
@@ -51,6 +59,15 @@ fn axes(dimension: usize) -> (&'static [usize], &'static [usize]) {
 }
 
 impl Mode {
+    /// The name of the largest motion, that of the first body among equal ones.
+    pub fn motion(&self) -> &'static str {
+        let first =
+            self.motions.iter().reduce(|most, next| if next.most() > most.most() { next } else { most });
+        first.map_or("move", RigidMotion::motion)
+    }
+}
+
+impl RigidMotion {
     /// All rigid modes of a body.
     fn all(place: usize, part: &BodyInstance) -> Vec<Self> {
         let mesh = part.body.mesh();
@@ -81,32 +98,110 @@ impl Mode {
         self.translation[axis] + self.rotation[j] * arm(k) - self.rotation[k] * arm(j)
     }
 
-    /// Its name, from the largest share.
-    pub fn motion(&self) -> &'static str {
-        const NAMES: [&str; 4] = ["turn", "move along x", "move along y", "move along z"];
+    /// Its shares of a rotation and of translations along the axes.
+    fn shares(&self) -> [f64; 4] {
         let turn = self.rotation.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        let shares = [turn, self.translation[0].abs(), self.translation[1].abs(), self.translation[2].abs()];
+        [turn, self.translation[0].abs(), self.translation[1].abs(), self.translation[2].abs()]
+    }
+
+    fn most(&self) -> f64 {
+        self.shares().into_iter().fold(0.0, f64::max)
+    }
+
+    /// Its name, from the largest share.
+    fn motion(&self) -> &'static str {
+        const NAMES: [&str; 4] = ["turn", "move along x", "move along y", "move along z"];
+        let shares = self.shares();
         let largest = (0..4).fold(0, |most, k| if shares[k] > shares[most] { k } else { most });
         NAMES[largest]
     }
 }
 
-/// Rigid modes that constrained dofs leave to the bodies.
-pub fn free_motions(parts: &[BodyInstance], fixed: &[bool]) -> Vec<Mode> {
+/// Rigid modes that constrained dofs and ties leave to the bodies.
+pub fn free_motions(parts: &[BodyInstance], fixed: &[bool], points: &Points) -> Vec<Mode> {
     let mut free = Vec::new();
-    for (place, part) in parts.iter().enumerate().filter(|(_, part)| !part.is_rigid()) {
-        let (mesh, modes) = (part.body.mesh(), Mode::all(place, part));
-        let d = mesh.dimension();
-        let constrained =
-            part.nodes().flat_map(|n| (0..d).map(move |i| (n, i))).filter(|(n, i)| fixed[n * d + i]);
-        let row = |(node, axis): (usize, usize)| {
-            modes.iter().map(|m| m.at(&mesh.nodes[node - part.first_node], axis)).collect::<Vec<f64>>()
-        };
-        free.extend(
-            null_space(modes.len(), constrained.map(row)).iter().map(|shares| Mode::combined(&modes, shares)),
-        );
+    for group in groups(parts, points) {
+        let motions: Vec<RigidMotion> =
+            group.iter().flat_map(|&place| RigidMotion::all(place, &parts[place])).collect();
+        let supports = group.iter().flat_map(|&place| support_rows(parts, place, fixed, &motions));
+        let is_own = |point: &&Point| group.iter().any(|&place| parts[place].nodes().contains(&point.node));
+        let ties = points.iter().filter(is_own).flat_map(|point| tie_rows(parts, point, &motions));
+        for shares in null_space(motions.len(), supports.chain(ties)) {
+            free.push(Mode { motions: combined(&motions, &shares) });
+        }
     }
     free
+}
+
+/// The deformable bodies, those together that ties connect.
+fn groups(parts: &[BodyInstance], points: &Points) -> Vec<Vec<usize>> {
+    let part_of = |node: usize| parts.iter().position(|part| part.nodes().contains(&node));
+    let mut group: Vec<usize> = (0..parts.len()).collect();
+    for point in points.iter() {
+        for (carrier, _) in &point.weights {
+            let (Some(a), Some(b)) = (part_of(point.node), part_of(*carrier)) else { continue };
+            let [low, high] = [group[a].min(group[b]), group[a].max(group[b])];
+            group.iter_mut().filter(|group| **group == high).for_each(|group| *group = low);
+        }
+    }
+    let members = |first: usize| -> Vec<usize> {
+        (0..parts.len()).filter(|&place| group[place] == first && !parts[place].is_rigid()).collect()
+    };
+    (0..parts.len()).map(members).filter(|members| !members.is_empty()).collect()
+}
+
+/// The motions of the constrained dofs of a body.
+fn support_rows<'a>(
+    parts: &'a [BodyInstance],
+    place: usize,
+    fixed: &'a [bool],
+    motions: &'a [RigidMotion],
+) -> impl Iterator<Item = Vec<f64>> + 'a {
+    let part = &parts[place];
+    let d = part.body.mesh().dimension();
+    let dofs = part.nodes().flat_map(move |node| (0..d).map(move |axis| (node, axis)));
+    let constrained = dofs.filter(move |(node, axis)| fixed[node * d + axis]);
+    constrained.map(move |(node, axis)| moved(parts, motions, node, axis))
+}
+
+/// The motions of a tied node relative to its point.
+fn tie_rows<'a>(
+    parts: &'a [BodyInstance],
+    point: &'a Point,
+    motions: &'a [RigidMotion],
+) -> impl Iterator<Item = Vec<f64>> + 'a {
+    let d = parts[0].body.mesh().dimension();
+    (0..d).map(move |axis| {
+        let mut row = moved(parts, motions, point.node, axis);
+        for (carrier, weight) in &point.weights {
+            let carried = moved(parts, motions, *carrier, axis);
+            row.iter_mut().zip(carried).for_each(|(row, carried)| *row -= weight * carried);
+        }
+        row
+    })
+}
+
+/// Displacement of a node along an axis by each motion, zero by those of other bodies.
+fn moved(parts: &[BodyInstance], motions: &[RigidMotion], node: usize, axis: usize) -> Vec<f64> {
+    let of = |motion: &RigidMotion| {
+        let part = &parts[motion.part];
+        if !part.nodes().contains(&node) {
+            return 0.0;
+        }
+        motion.at(&part.body.mesh().nodes[node - part.first_node], axis)
+    };
+    motions.iter().map(of).collect()
+}
+
+/// Σ shares · motions, of each body.
+fn combined(motions: &[RigidMotion], shares: &[f64]) -> Vec<RigidMotion> {
+    let mut first = 0;
+    let mut all = Vec::new();
+    for own in motions.chunk_by(|a, b| a.part == b.part) {
+        all.push(RigidMotion::combined(own, &shares[first..first + own.len()]));
+        first += own.len();
+    }
+    all
 }
 
 /// A basis of the null space of all rows, of `size` entries each.
@@ -158,11 +253,12 @@ pub(crate) fn check_rigid_modes<'a>(
     }
     let row = |gap: Row| -> Vec<f64> {
         let d = gap.dimension();
-        let along = |mode: &Mode| {
-            let nodes = parts[mode.part].nodes();
+        let of_body = |motion: &RigidMotion| {
+            let nodes = parts[motion.part].nodes();
             let own = gap.entries().filter(|(dof, _)| nodes.contains(&(dof / d)));
-            own.map(|(dof, slope)| slope * mode.at(&y[dof / d * d..dof / d * d + d], dof % d)).sum::<f64>()
+            own.map(|(dof, slope)| slope * motion.at(&y[dof / d * d..dof / d * d + d], dof % d)).sum::<f64>()
         };
+        let along = |mode: &Mode| mode.motions.iter().map(of_body).sum::<f64>();
         free.iter().map(along).collect()
     };
     let rows: Vec<Vec<f64>> = rows.map(row).collect();
@@ -174,7 +270,7 @@ pub(crate) fn check_rigid_modes<'a>(
         (0..remaining.len()).max_by(|a, b| remaining[*a].abs().total_cmp(&remaining[*b].abs())).unwrap_or(0);
     let mode = &free[largest];
     Err(Unconstrained {
-        body: parts[mode.part].name.clone(),
+        body: mode.motions.first().map_or_else(String::new, |motion| parts[motion.part].name.clone()),
         motion: mode.motion(),
         slips: remaining_with_slips.is_empty(),
     })

@@ -11,6 +11,7 @@ use super::formulas::NoValue;
 use super::loads::{Loads, LoadsAt};
 use super::mass::Mass;
 use super::motion::Motions;
+use super::points::Points;
 use super::probe::Probe;
 use super::rigid::Mode;
 use crate::cells;
@@ -23,6 +24,16 @@ pub struct Support {
     pub dofs: Vec<usize>,
     /// Point about which their moment is recorded.
     pub moment_about: Option<Vec<f64>>,
+}
+
+/// A named tie, whose force is recorded.
+pub struct Tie {
+    /// Name in the case.
+    pub name: String,
+    /// Global numbers of the nodes of its secondary side that it makes points of the primary one.
+    pub nodes: Vec<usize>,
+    /// Bodies of the secondary and of the primary side.
+    pub bodies: [usize; 2],
 }
 
 /// The constant data of a simulation.
@@ -39,10 +50,14 @@ pub struct Model {
     pub initial_velocity: Vec<f64>,
     /// Whether a dof is constrained: fixed or prescribed.
     pub fixed: Vec<bool>,
-    /// Unconstrained dofs, ascending.
+    /// Unknown dofs, ascending: those that neither are constrained nor belong to a point.
     pub free: Vec<usize>,
-    /// Index of a dof among the free ones; `usize::MAX` if constrained.
+    /// Index of a dof among the unknown ones; `usize::MAX` of others.
     pub unknown: Vec<usize>,
+    /// Nodes that are points of other bodies.
+    pub points: Points,
+    /// Named ties.
+    pub ties: Vec<Tie>,
     /// Mass matrix.
     pub mass: Mass,
     /// Whether a dof is massless.
@@ -89,6 +104,28 @@ impl Model {
     /// Number of dofs, including constrained ones.
     pub fn dofs(&self) -> usize {
         self.reference.len()
+    }
+
+    /// The unknown dofs: those that neither are constrained nor belong to a point; and the index of
+    /// each dof among them, `usize::MAX` of others.
+    pub fn unknowns(fixed: &[bool], dimension: usize, points: &Points) -> [Vec<usize>; 2] {
+        let is_unknown = |dof: &usize| !fixed[*dof] && points.of(dof / dimension).is_none();
+        let free: Vec<usize> = (0..fixed.len()).filter(is_unknown).collect();
+        let mut places = vec![usize::MAX; fixed.len()];
+        for (place, &dof) in free.iter().enumerate() {
+            places[dof] = place;
+        }
+        [free, places]
+    }
+
+    /// The nodes of a tie, and those that carry them.
+    pub(crate) fn carrying_tie(&self, tie: &Tie) -> impl Iterator<Item = usize> {
+        tie.nodes.iter().copied().chain(self.points.carrying(&tie.nodes))
+    }
+
+    /// The unknowns that a dof moves with, with their weights.
+    pub(crate) fn moved_by(&self, dof: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.points.carriers(dof).filter_map(|(dof, weight)| Some((self.unknown(dof)?, weight)))
     }
 
     /// The index of a dof among the unknowns, if it is one.

@@ -78,7 +78,7 @@ pub(crate) fn terms(model: &Model, stage: &Stage, forces: &Forces, known: &[f64]
     ]
 }
 
-/// r over all dofs. Returns its norm over the free ones, and the sum of the norms of its terms as
+/// r over all dofs, of points pulled back to what carries them. Returns its norm over the free ones, and the sum of the norms of its terms as
 /// reference.
 pub(crate) fn residual_into(
     model: &Model,
@@ -97,6 +97,11 @@ pub(crate) fn residual_into(
             }
             squares[5] += residual[i] * residual[i];
         }
+    }
+    if !model.points.is_empty() {
+        model.points.gather(residual);
+        let free = (0..residual.len()).filter(|&i| !model.fixed[i]);
+        squares[5] = free.map(|i| residual[i] * residual[i]).sum();
     }
     let norms = squares.map(f64::sqrt);
     (norms[5], norms[..5].iter().sum())

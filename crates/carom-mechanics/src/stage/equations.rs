@@ -122,9 +122,10 @@ impl<'a> Equations<'a> {
         self.prescribed().map(|(dof, whole)| (dof, whole - at.increment[dof]))
     }
 
-    /// Sets prescribed dofs to their exact positions.
+    /// Sets prescribed dofs, and the points that they carry, to their exact positions.
     pub(crate) fn arrive(&self, increment: &mut [f64]) {
         self.prescribed().for_each(|(dof, whole)| increment[dof] = whole);
+        self.model.points.carry(increment);
     }
 
     /// Forces, gaps and residual at an iterate.
@@ -175,6 +176,7 @@ impl<'a> Equations<'a> {
                 let mean = mean_acceleration(stage, moved.motion[2], before);
                 acceleration[moved.dof] = (mean - stage.before.mass * before) / stage.weights.mass;
             }
+            model.points.carry(acceleration);
         }
         model.mass.multiply_into(acceleration, &mut forces.inertia);
         self.change_contacts(evaluation, timings)

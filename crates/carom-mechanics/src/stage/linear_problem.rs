@@ -157,6 +157,7 @@ impl LinearProblem {
             self.increment[dof] = distance;
             remaining |= distance != 0.0;
         }
+        equations.model.points.carry(&mut self.increment);
         if remaining { self.subtract_product(equations, now, rows, timings) } else { Ok(()) }
     }
 

@@ -47,11 +47,14 @@ pub(crate) fn are_balanced(equations: &Equations, now: &Evaluation, noise: f64) 
     let springs = of_springs(equations, now);
     model.unconstrained.iter().all(|mode| {
         let (mut sums, mut sizes, mut whole) = ([0.0; 5], 0.0, 0.0);
-        for node in model.parts[mode.part].nodes() {
+        let of_bodies = mode.motions.iter();
+        for (rigid, node) in
+            of_bodies.flat_map(|rigid| model.parts[rigid.part].nodes().map(move |n| (rigid, n)))
+        {
             let place = &now.y[node * d..(node + 1) * d];
             let moved = motion[node * d..(node + 1) * d].iter().map(|m| m * m).sum::<f64>().sqrt();
             for (axis, i) in (node * d..(node + 1) * d).enumerate() {
-                let u = mode.at(place, axis);
+                let u = rigid.at(place, axis);
                 let terms = terms(model, &equations.stage, &now.forces, &equations.known, i);
                 sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += u * term);
                 let size = terms.iter().map(|term| term.abs()).sum::<f64>() + springs[i];

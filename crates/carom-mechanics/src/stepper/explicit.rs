@@ -33,6 +33,7 @@
 use carom_algebra::sums::sum;
 
 use super::increments::Increments;
+use super::tied_mass::TiedMass;
 use super::watch::{active, approach, depth};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::friction_state::{book_states, each_slip};
@@ -78,6 +79,9 @@ impl Stepper for Explicit {
         to: f64,
         work: &mut Workspace,
     ) -> Result<Accepted, Rejected> {
+        if work.explicit.ties.is_none() {
+            work.explicit.ties = TiedMass::new(model, &self.inverse_mass)?;
+        }
         let mut report = StepReport::default();
         let mut begun = None;
         if state.half_step.dt != dt {
@@ -192,9 +196,9 @@ impl Explicit {
         work: &mut Workspace,
         report: &mut StepReport,
     ) -> Result<(), Rejected> {
-        let free =
-            |i: usize| self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
-        let before: Vec<f64> = (0..state.v.len()).map(|i| state.v[i] - 0.5 * dt * free(i)).collect();
+        let mut free = Vec::new();
+        self.accelerate_freely(model, state, &mut work.explicit.ties, &mut free);
+        let before: Vec<f64> = state.v.iter().zip(&free).map(|(v, a)| v - 0.5 * dt * a).collect();
         let (velocity, kinetic) = (state.v.clone(), state.ledger.kinetic);
         let last = state.half_step.dt;
         let lent = self.lent(model, state, last);
@@ -219,6 +223,17 @@ impl Explicit {
         Ok(())
     }
 
+    /// Accelerations without contact, into `a`.
+    fn accelerate_freely(&self, model: &Model, state: &State, ties: &mut Option<TiedMass>, a: &mut Vec<f64>) {
+        a.resize(state.y.len(), 0.0);
+        for i in 0..a.len() {
+            a[i] = self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
+        }
+        if let Some(ties) = ties {
+            ties.correct(model, &self.inverse_mass, a);
+        }
+    }
+
     /// Computes contact forces, a_n, v_n and v_{n+½} from y_n and f_int,n in `state` and v_{n−½}.
     fn advance_half_step(
         &self,
@@ -229,10 +244,9 @@ impl Explicit {
         work: &mut Workspace,
         report: &mut StepReport,
     ) -> Result<(), Rejected> {
-        for i in 0..state.a.len() {
-            state.a[i] =
-                self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
-        }
+        let mut free = std::mem::take(&mut state.a);
+        self.accelerate_freely(model, state, &mut work.explicit.ties, &mut free);
+        state.a = free;
         if model.contacts.is_empty() {
             state.half_step.velocity.resize(before.len(), 0.0);
             for i in 0..before.len() {
@@ -264,8 +278,15 @@ impl Explicit {
             state.f_contact.iter_mut().zip(&friction).for_each(|(force, part)| *force += part);
             state.f_friction = friction;
         }
+        let contact = |i: usize| self.inverse_mass[i] * state.f_contact[i];
+        if let Some(ties) = &mut scratch.ties {
+            let mut pushed: Vec<f64> = (0..state.a.len()).map(contact).collect();
+            ties.correct(model, &self.inverse_mass, &mut pushed);
+            state.a.iter_mut().zip(pushed).for_each(|(a, pushed)| *a -= pushed);
+        } else {
+            (0..state.a.len()).for_each(|i| state.a[i] -= contact(i));
+        }
         for i in 0..state.a.len() {
-            state.a[i] -= self.inverse_mass[i] * state.f_contact[i];
             state.v[i] = before[i] + 0.5 * dt * state.a[i];
         }
         book_contact_forces(model, state);

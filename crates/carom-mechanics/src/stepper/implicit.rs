@@ -297,6 +297,8 @@ fn take_motions(equations: &Equations, next: &mut State) {
     for moved in equations.motions.iter().filter(|_| !equations.stage.is_static()) {
         [next.v[moved.dof], next.a[moved.dof]] = [moved.motion[1], moved.motion[2]];
     }
+    equations.model.points.carry(&mut next.v);
+    equations.model.points.carry(&mut next.a);
 }
 
 /// Whether any pair penetrates after motion from `before` to `now`.

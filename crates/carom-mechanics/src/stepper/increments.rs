@@ -9,6 +9,7 @@ use super::StepReport;
 use super::forward::Forward;
 use super::rubbing::{combined, friction_state, kind, loose};
 use super::scratch::Scratch;
+use super::tied_mass::TiedMass;
 use super::watch::{active, carry_into, gap_at, measure_into, moves, overconstrained};
 use crate::contact::independent::is_dependent;
 use crate::contact::update::search;
@@ -174,8 +175,8 @@ impl Increments<'_> {
     /// Solves the small problem of these rows.
     fn find_impulses(&self, dependence: &mut Dependence, scratch: &mut Scratch) -> Result<(), Rejected> {
         let (model, dt) = (self.model, self.dt);
-        let Scratch { free, at, pairings, rows, impulses, places, acting, kinds, .. } = scratch;
-        let (mut matrix, mut right) = self.matrix(acting, at)?;
+        let Scratch { free, at, pairings, rows, impulses, places, acting, kinds, ties, .. } = scratch;
+        let (mut matrix, mut right) = self.matrix(acting, at, ties)?;
         for (i, &(k, p)) in places.iter().enumerate() {
             let leaves = pairings[k].pairs[p].start.is_some();
             let restitution = if leaves { 0.0 } else { model.contacts[k].restitution };
@@ -209,7 +210,7 @@ impl Increments<'_> {
 
     /// Gives the impulses to their pairs, and to the velocity.
     fn apply(&self, velocity: &mut [f64], scratch: &mut Scratch) {
-        let Scratch { free, at, pairings, impulses, places, acting, along, kinds, .. } = scratch;
+        let Scratch { free, at, pairings, impulses, places, acting, along, kinds, ties, .. } = scratch;
         for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
             (pair.lambda, pair.tangential.traction) = (0.0, [0.0; 2]);
         }
@@ -223,6 +224,14 @@ impl Increments<'_> {
             let (k, p) = places[of];
             let traction = &mut pairings[k].pairs[p].tangential.traction;
             (0..2).for_each(|a| traction[a] -= force[a]);
+        }
+        if let Some(ties) = ties {
+            at.iter_mut().zip(self.inverse_mass).for_each(|(force, inverse)| *force *= inverse);
+            ties.correct(self.model, self.inverse_mass, at);
+            for i in 0..free.len() {
+                velocity[i] = free[i] + self.dt * at[i];
+            }
+            return;
         }
         for i in 0..free.len() {
             velocity[i] = free[i] + self.dt * self.inverse_mass[i] * at[i];
@@ -251,7 +260,12 @@ impl Increments<'_> {
     ///
     /// # Errors
     /// If there is not enough memory for it: it is dense.
-    fn matrix(&self, rows: &Rows, column: &mut [f64]) -> Result<(Vec<f64>, Vec<f64>), LinearError> {
+    fn matrix(
+        &self,
+        rows: &Rows,
+        column: &mut [f64],
+        ties: &mut Option<TiedMass>,
+    ) -> Result<(Vec<f64>, Vec<f64>), LinearError> {
         let count = rows.len();
         let mut matrix: Vec<f64> = Vec::new();
         matrix.try_reserve_exact(count * count).map_err(|_| LinearError::Memory { size: count })?;
@@ -261,8 +275,14 @@ impl Increments<'_> {
             for (dof, slope) in row.entries() {
                 column[dof] = self.inverse_mass[dof] * slope;
             }
+            if let Some(ties) = ties {
+                ties.correct(self.model, self.inverse_mass, column);
+            }
             for (i, other) in rows.iter().enumerate() {
                 matrix[i * count + j] = other.along(column);
+            }
+            if ties.is_some() {
+                column.fill(0.0);
             }
             row.entries().for_each(|(dof, _)| column[dof] = 0.0);
         }

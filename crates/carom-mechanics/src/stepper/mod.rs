@@ -10,6 +10,7 @@ mod increments;
 mod meetings;
 mod rubbing;
 mod scratch;
+mod tied_mass;
 mod watch;
 
 pub use explicit::Explicit;
@@ -64,7 +65,14 @@ pub struct Accepted {
 
 impl Accepted {
     /// Makes the final checks of a result.
-    fn new(model: &Model, state: State, report: StepReport, work: &mut Workspace) -> Result<Self, Rejected> {
+    fn new(
+        model: &Model,
+        mut state: State,
+        report: StepReport,
+        work: &mut Workspace,
+    ) -> Result<Self, Rejected> {
+        // The round-off of increments does not accumulate between tied sides.
+        model.points.carry(&mut state.y);
         for (what, values) in
             [("a position", &state.y), ("a velocity", &state.v), ("an acceleration", &state.a)]
         {

@@ -3,6 +3,7 @@
 use carom_algebra::Kind;
 use carom_contact::{Along, Pairing, Rows};
 
+use super::tied_mass::TiedMass;
 use crate::model::LoadsAt;
 
 /// Buffers of a step.
@@ -27,6 +28,8 @@ pub(crate) struct Scratch {
     /// Contact, node and facet of the forces before a search.
     pub loaded: Vec<(usize, usize, usize)>,
     pub loads: LoadsAt,
+    /// The ties, once they have been factored.
+    pub ties: Option<TiedMass>,
 }
 
 impl Scratch {
@@ -45,6 +48,7 @@ impl Scratch {
             kinds: Vec::new(),
             loaded: Vec::new(),
             loads: LoadsAt::default(),
+            ties: None,
         }
     }
 }

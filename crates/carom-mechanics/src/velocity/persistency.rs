@@ -166,6 +166,7 @@ pub(crate) fn accelerate(
                 // Moving supports keep theirs.
                 state.a[i] = if model.massless[i] { 0.0 } else { motion.x[i] };
             }
+            model.points.carry(&mut state.a);
             break;
         }
         changes.iter().for_each(|&i| held[i] = !held[i]);

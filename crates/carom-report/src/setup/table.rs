@@ -5,7 +5,7 @@ use std::collections::HashSet;
 
 use carom_case::{
     BodySpec, Case, ContactSpec, FormulaSpec, Law, LoadKind, LoadSpec, MaterialSpec, ObstacleMotion, Plane,
-    PrimarySpec, ProbeSpec, SupportSpec, Units,
+    PrimarySpec, ProbeSpec, SupportSpec, TieSpec, Units,
 };
 use carom_record::FieldSet;
 use maud::{Markup, html};
@@ -20,12 +20,13 @@ type Row = (Markup, Markup);
 
 /// The table; cells, nodes and extents of the bodies are those of fields.
 pub(crate) fn table(case: &Case, fields: Option<&FieldSet>) -> Markup {
-    let groups: [(&str, Vec<Row>); 6] = [
+    let groups: [(&str, Vec<Row>); 7] = [
         ("Bodies", case.bodies.iter().map(|one| body(case, one, fields)).collect()),
         ("Materials", case.materials.iter().map(|one| material(one, &case.units)).collect()),
         ("Supports", case.supports.iter().map(|one| support(one, &case.units)).collect()),
         ("Loads", case.loads.iter().map(|one| load(one, &case.units)).collect()),
         ("Contacts", case.contacts.iter().map(|one| contact(one, &case.units)).collect()),
+        ("Ties", case.ties.iter().map(tie).collect()),
         ("Probes", case.probes.iter().map(|one| probe(one, &case.units)).collect()),
     ];
     html! {
@@ -165,6 +166,13 @@ fn load(load: &LoadSpec, units: &Units) -> Row {
         @if let Some(table) = &load.table { " × " code { (table.file) } }
     };
     (sample(Part::Loaded, &place), words)
+}
+
+fn tie(tie: &TieSpec) -> Row {
+    let words = html! {
+        (sample(Part::Tied, &tie.secondary)) " (secondary) to " (sample(Part::Tied, &tie.primary)) " (primary)"
+    };
+    (html! { (tie.name) }, words)
 }
 
 fn contact(contact: &ContactSpec, units: &Units) -> Row {

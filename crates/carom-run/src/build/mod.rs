@@ -12,6 +12,7 @@ mod obstacles;
 mod overlaps;
 pub(crate) mod side;
 mod supports;
+mod ties;
 mod unsolvable;
 mod weights;
 
@@ -26,6 +27,7 @@ use carom_solid::{Constitutive, Law, mean_dilatation_body};
 
 use side::side;
 use supports::Supported;
+use ties::Tying;
 use weights::Weights;
 
 pub(crate) use overlaps::overlaps;
@@ -40,7 +42,7 @@ pub(crate) type Materials = BTreeMap<String, Box<dyn Constitutive>>;
 /// cannot be solved.
 pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Problem>> {
     let d = case.dimension;
-    let mut parts = parts(case, materials)?;
+    let (mut parts, tied) = parts(case, materials)?;
     let scale = parts.iter().map(|p| p.body.mesh().diameter()).fold(0.0, f64::max);
     let obstacles = obstacles::carriers(case, &mut parts, scale)?;
     let mut problems = Vec::new();
@@ -48,6 +50,8 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let Placed { reference, initial_position, mut initial_velocity } =
         placed(case, &parts, &obstacles, &mut problems);
     let Supported { mut fixed, mut supports } = supports::supported(case, &parts, &reference, &mut problems);
+    let tying = Tying { case, parts: &parts, reference: &reference };
+    let (points, ties) = tying.points(tied, &mut problems);
     for (velocity, _) in initial_velocity.iter_mut().zip(&fixed).filter(|(_, fixed)| **fixed) {
         *velocity = 0.0;
     }
@@ -55,7 +59,10 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let prescribed = obstacles.iter().flat_map(obstacles::Moving::prescribed);
     prescribed.filter(|(_, formula)| formula.is_none()).for_each(|(dof, _)| fixed[dof] = true);
 
-    let motions = motions::motions(case, &parts, &obstacles, &fixed, &mut problems);
+    let mut moves = motions::moves(case, &parts, &obstacles, &fixed, &mut problems);
+    tying.release(&points, &mut fixed, &mut moves, &mut problems);
+    tying.check_start(&points, &initial_position, &initial_velocity, &mut problems);
+    let motions = moves.motions(case, &parts);
     motions.dofs().for_each(|dof| fixed[dof] = true);
     let mut loads = loads::loads(case, &parts, &mut problems);
 
@@ -66,22 +73,19 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let mut massless: Vec<bool> = (0..dofs).map(|dof| mass.is_massless(dof / d)).collect();
     // The force on a prescribed carrier is averaged like that on the nodes that press on it.
     obstacles.iter().flat_map(obstacles::Moving::prescribed).for_each(|(dof, _)| massless[dof] = false);
+    tying.check_masses(&points, &massless, &mut problems);
     let weights = Weights { case, parts: &parts, obstacles: &obstacles, mass: &mass };
     let gravity = weights.constant();
     problems.extend(weights.add_varying(&mut loads));
     let contacts = contacts::contacts(case, &parts, &obstacles, [&massless, &fixed], &mut problems);
     let probes = probes(case, &parts, &mut problems);
-    let unconstrained = free_motions(&parts, &fixed);
+    let unconstrained = free_motions(&parts, &fixed, &points);
     if case.time.scheme.is_static() {
         problems.extend(unsolvable::unconstrained(&parts, &unconstrained, &contacts));
     }
     problems.extend(unsolvable::massless(case, &parts, &massless));
 
-    let free: Vec<usize> = (0..dofs).filter(|&i| !fixed[i]).collect();
-    let mut unknown = vec![usize::MAX; dofs];
-    for (place, &dof) in free.iter().enumerate() {
-        unknown[dof] = place;
-    }
+    let [free, unknown] = Model::unknowns(&fixed, d, &points);
     if problems.is_empty() {
         Ok(Model {
             dimension: d,
@@ -93,6 +97,8 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
             fixed,
             free,
             unknown,
+            points,
+            ties,
             mass,
             massless,
             gravity,
@@ -177,11 +183,14 @@ fn nodal(
     }
 }
 
-fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Problem>> {
+/// The bodies of a case, and the points of its ties.
+fn parts(case: &Case, materials: &Materials) -> Result<(Vec<BodyInstance>, Vec<ties::Found>), Vec<Problem>> {
     let mut parts = Vec::new();
     let mut problems = Vec::new();
     let mut first_node = 0;
-    for (k, spec) in case.bodies.iter().enumerate() {
+    let mut meshes = meshes(case)?;
+    let tied = ties::found(case, &mut meshes, &mut problems);
+    for ((k, spec), mesh) in case.bodies.iter().enumerate().zip(meshes) {
         let Some(material) = case.material(spec) else { continue };
         let lambda = material.lambda;
         let mu = material.mu;
@@ -205,24 +214,34 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
             (2, carom_case::Plane::Stress) => own.plane_stress_body(mesh, material.density, case.thickness),
             _ => own.body(mesh, material.density, case.thickness),
         };
-        let made = spec.make_mesh(case.dimension).map_err(|error| error.to_string());
-        let made =
-            made.and_then(|mesh| body(with_skin(case, &spec.name, mesh)).map_err(|error| error.to_string()));
-        match made {
+        match body(mesh) {
             Ok(body) => {
                 let nodes = body.mesh().nodes.len();
                 parts.push(BodyInstance::new(spec.name.clone(), first_node, body));
                 first_node += nodes;
             }
-            Err(why) => problems.push(Problem::new(
-                format!("body[{k}].mesh"),
-                format!("the mesh of body \"{}\" cannot be generated", spec.name),
-                why,
-                "change the values of `mesh`",
-            )),
+            Err(error) => problems.push(no_mesh(case, k, error.to_string())),
         }
     }
-    if problems.is_empty() { Ok(parts) } else { Err(problems) }
+    if problems.is_empty() { Ok((parts, tied)) } else { Err(problems) }
+}
+
+/// The meshes of the bodies.
+fn meshes(case: &Case) -> Result<Vec<carom_solid::Mesh>, Vec<Problem>> {
+    let mut meshes = Vec::new();
+    let mut problems = Vec::new();
+    for (k, spec) in case.bodies.iter().enumerate() {
+        match spec.make_mesh(case.dimension) {
+            Ok(mesh) => meshes.push(with_skin(case, &spec.name, mesh)),
+            Err(error) => problems.push(no_mesh(case, k, error.to_string())),
+        }
+    }
+    if problems.is_empty() { Ok(meshes) } else { Err(problems) }
+}
+
+fn no_mesh(case: &Case, k: usize, why: String) -> Problem {
+    let what = format!("the mesh of body \"{}\" cannot be generated", case.bodies[k].name);
+    Problem::new(format!("body[{k}].mesh"), what, why, "change the values of `mesh`")
 }
 
 /// The mesh of a body, with its whole boundary as a side if the case refers to that.
@@ -232,7 +251,8 @@ fn with_skin(case: &Case, body: &str, mut mesh: carom_solid::Mesh) -> carom_soli
         case.contacts.iter().flat_map(|contact| [Some(contact.secondary.as_str()), contact.primary.side()]);
     let supports = case.supports.iter().flat_map(|support| &support.on);
     let loads = case.loads.iter().flat_map(carom_case::LoadSpec::sides);
-    let mut sides = contacts.flatten().chain(supports.chain(loads).map(String::as_str));
+    let ties = case.ties.iter().flat_map(|tie| [tie.secondary.as_str(), tie.primary.as_str()]);
+    let mut sides = contacts.flatten().chain(supports.chain(loads).map(String::as_str)).chain(ties);
     if mesh.dimension() > 1 && sides.any(|side| side == name) && !mesh.sides.contains_key(SKIN) {
         let skin = mesh.ordered_skin();
         mesh.sides.insert(SKIN.to_owned(), skin);

@@ -14,20 +14,20 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Formulas with their labels, and the formula of each prescribed dof.
 #[derive(Default)]
-struct Moves {
+pub(super) struct Moves {
     formulas: Vec<(String, Formula)>,
-    by_dof: BTreeMap<usize, usize>,
+    pub(super) by_dof: BTreeMap<usize, usize>,
 }
 
 /// The motions of a case, ascending by dof. A dof that is fixed and moved by anything but 0, or
 /// prescribed by two different formulas, is a problem.
-pub(super) fn motions(
+pub(super) fn moves(
     case: &Case,
     parts: &[BodyInstance],
     obstacles: &[Moving],
     fixed: &[bool],
     problems: &mut Vec<Problem>,
-) -> Motions {
+) -> Moves {
     let d = case.dimension;
     let mut moves = Moves::default();
     for (k, spec) in case.supports.iter().enumerate() {
@@ -73,11 +73,22 @@ pub(super) fn motions(
     if let Some(y) = &case.manufactured {
         moves.manufactured(case, y, parts, problems);
     }
-    let Moves { formulas, by_dof } = moves;
-    Motions::new(formulas, by_dof.into_iter().map(|(dof, formula)| (dof, formula, place_of(parts, dof / d))))
+    moves
 }
 
 impl Moves {
+    /// The formula of a moved dof.
+    pub(super) fn text(&self, dof: usize) -> Option<&str> {
+        self.by_dof.get(&dof).map(|formula| self.formulas[*formula].1.text())
+    }
+
+    /// The motions of the model.
+    pub(super) fn motions(self, case: &Case, parts: &[BodyInstance]) -> Motions {
+        let place = |dof: usize| place_of(parts, dof / case.dimension);
+        let moved = self.by_dof.into_iter().map(|(dof, formula)| (dof, formula, place(dof)));
+        Motions::new(self.formulas, moved)
+    }
+
     /// Assigns a formula to a dof; returns a conflicting assignment.
     fn conflict(&mut self, dof: usize, formula: usize, fixed: &[bool]) -> Option<String> {
         let text = |formula: usize| self.formulas[formula].1.text();

@@ -14,7 +14,11 @@ pub(super) fn unconstrained(parts: &[BodyInstance], free: &[Mode], contacts: &[C
                 |place: usize| c.kinematics.secondary().iter().any(|n| parts[place].nodes().contains(n));
             !c.itself && (c.primary_part == Some(place) || secondary(place))
         };
-        if let Some(mode) = free.iter().find(|m| m.part == place).filter(|_| !contacts.iter().any(involves)) {
+        if let Some(mode) = free
+            .iter()
+            .find(|mode| mode.motions.iter().any(|motion| motion.part == place))
+            .filter(|_| !contacts.iter().any(involves))
+        {
             problems.push(Problem::new(
                 format!("body[{place}]"),
                 format!("body \"{}\" is free to {} and has no equilibrium", part.name, mode.motion()),

@@ -92,8 +92,12 @@ pub(super) fn row(simulation: &Simulation, since: &Since, weights: &[f64]) -> Ve
     if model.contacts.len() > 1 {
         row.extend(state.contact_forces.iter().flat_map(|f| f[..d].to_vec()));
     }
-    if !model.supports.is_empty() {
-        let reaction = reactions(model, state);
+    if !model.supports.is_empty() || !model.ties.is_empty() {
+        let mut reaction = reactions(model, state);
+        for tie in &model.ties {
+            row.extend((0..d).map(|i| tie.nodes.iter().map(|node| reaction[node * d + i]).sum::<f64>()));
+        }
+        model.points.gather(&mut reaction);
         for support in &model.supports {
             row.extend((0..d).map(|i| {
                 support.dofs.iter().filter(|dof| *dof % d == i).map(|&dof| reaction[dof]).sum::<f64>()
@@ -158,7 +162,7 @@ impl Since {
     }
 }
 
-/// Reaction forces on the bodies at constrained dofs: M a + f_int + Gᵀλ − f_ext.
+/// Reaction forces on the bodies at constrained dofs and tied nodes: M a + f_int + Gᵀλ − f_ext.
 fn reactions(model: &Model, state: &State) -> Vec<f64> {
     let mut force = vec![0.0; model.dofs()];
     model.mass.multiply_into(&state.a, &mut force);

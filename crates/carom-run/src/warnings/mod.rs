@@ -134,7 +134,7 @@ pub const WARNINGS: [Entry; 22] = [
     Entry {
         id: "unconnected-bodies",
         why: "every body has nodes of its own: nothing holds the two together there, and nothing keeps one out of the other",
-        advice: "a [[contact]] between the sides that touch; to connect the two, one body with a mesh of both",
+        advice: "a [[contact]] between the sides that touch; to connect the two, a [[tie]] of these sides",
         rule: Rule::Model(unconnected::unconnected_bodies),
     },
     Entry {

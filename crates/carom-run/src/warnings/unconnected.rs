@@ -1,9 +1,9 @@
-//! Warning about bodies that touch along whole facets at the start, without a contact: every body
+//! Warning about bodies that touch along whole facets at the start, without contact or tie: every body
 //! has nodes of its own, so that nodes at one place are not connected.
 
 use std::collections::{BTreeMap, HashMap};
 
-use carom_case::{Case, ContactSpec};
+use carom_case::Case;
 use carom_mechanics::model::{BodyInstance, Model};
 
 use super::found::Found;
@@ -16,12 +16,12 @@ pub(super) fn unconnected_bodies(case: &Case, model: &Model) -> Vec<Found> {
     if case.initial.is_some() {
         return Vec::new();
     }
+    let contacts = case.contacts.iter().map(|contact| contact.bodies().collect::<Vec<_>>());
+    let ties = case.ties.iter().map(|tie| tie.bodies().collect::<Vec<_>>());
+    let connected: Vec<Vec<&str>> = contacts.chain(ties).collect();
     let in_contact = |a: &BodyInstance, b: &BodyInstance| {
-        let joins = |contact: &ContactSpec| {
-            let has = |part: &BodyInstance| contact.bodies().any(|name| name == part.name);
-            has(a) && has(b)
-        };
-        case.contacts.iter().any(joins)
+        let has = |bodies: &[&str], part: &BodyInstance| bodies.contains(&part.name.as_str());
+        connected.iter().any(|bodies| has(bodies, a) && has(bodies, b))
     };
     let bodies: Vec<&BodyInstance> = model.parts.iter().filter(|part| !part.is_rigid()).collect();
     if bodies.len() < 2 {
@@ -54,7 +54,7 @@ pub(super) fn unconnected_bodies(case: &Case, model: &Model) -> Vec<Found> {
             found.push(Found::at(
                 format!("bodies \"{}\" and \"{}\"", a.name, b.name),
                 format!(
-                    "they have {several} in common at the start, the first at {:?}, and no contact",
+                    "they have {several} in common at the start, the first at {:?}, and neither contact nor tie",
                     facets[0]
                 ),
             ));

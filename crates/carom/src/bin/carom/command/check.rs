@@ -219,6 +219,9 @@ fn table(case: &Case, facts: &Facts, warnings: &[Warning]) -> String {
             &format!("{} against {primary}", contact.secondary),
         ));
     }
+    for tie in &case.ties {
+        lines.push(named("tie", Some(&tie.name), &format!("{} to {}", tie.secondary, tie.primary)));
+    }
     for probe in &case.probes {
         lines.push(named("probe", Some(&probe.name), &format!("at {:?} in {}", probe.at, probe.body)));
     }

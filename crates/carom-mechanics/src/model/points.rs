@@ -1,0 +1,202 @@
+//! Nodes that are points of other bodies. A material point is a constant combination of nodes,
+//!
+//! ```text
+//! y_P = Σ w_a y_a,   Σ w_a = 1
+//! ```
+//!
+//! so a node that is tied to a point P has the same combination of positions, velocities and
+//! accelerations, y = T q with the remaining nodes q. Every linear problem is solved for those:
+//! forces are pulled back by Tᵀ (`gather`), motions follow by T (`carry`). What remains of the
+//! balance at a tied node is the force of the tie, as the reaction of a support is that of a
+//! constrained dof; it does no work, and T makes force and moment balance.
+
+use std::collections::HashMap;
+
+/// A node as a point: the nodes that carry it, with their weights.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Global number of the node.
+    pub node: usize,
+    /// Global numbers of nodes that are no points themselves, with weights of sum 1.
+    pub weights: Vec<(usize, f64)>,
+}
+
+/// The nodes of a model that are points of others.
+#[derive(Clone, Debug, Default)]
+pub struct Points {
+    dimension: usize,
+    list: Vec<Point>,
+    /// Place in the list of each node, `u32::MAX` of others; empty without points.
+    places: Vec<u32>,
+}
+
+/// A chain of points that leads back to its first node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the position of node {node} would depend on itself")]
+pub struct Circular {
+    /// The node.
+    pub node: usize,
+}
+
+/// Weights that are round-off.
+const NOTHING: f64 = 1e-14;
+
+impl Points {
+    /// The points of a model with `nodes` nodes. One that is carried by points is carried by what
+    /// carries those.
+    ///
+    /// # Errors
+    /// If a chain of points is circular.
+    pub fn new(dimension: usize, nodes: usize, given: Vec<Point>) -> Result<Self, Circular> {
+        if given.is_empty() {
+            return Ok(Self { dimension, ..Self::default() });
+        }
+        let of: HashMap<usize, &Point> = given.iter().map(|point| (point.node, point)).collect();
+        let mut list = Vec::with_capacity(given.len());
+        for point in &given {
+            let mut weights = point.weights.clone();
+            // Longer chains than there are points repeat one.
+            let mut length = 0;
+            while weights.iter().any(|(node, _)| of.contains_key(node)) {
+                length += 1;
+                if length > given.len() {
+                    return Err(Circular { node: point.node });
+                }
+                weights = weights.iter().flat_map(|&(node, weight)| carriers(&of, node, weight)).collect();
+            }
+            list.push(Point { node: point.node, weights: summed(weights) });
+        }
+        list.sort_unstable_by_key(|point| point.node);
+        let mut places = vec![u32::MAX; nodes];
+        for (place, point) in list.iter().enumerate() {
+            places[point.node] = place as u32;
+        }
+        Ok(Self { dimension, list, places })
+    }
+
+    /// Whether no node is a point.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// All points, by their nodes.
+    pub fn iter(&self) -> impl Iterator<Item = &Point> {
+        self.list.iter()
+    }
+
+    /// The nodes that carry a node with their weights, if it is a point.
+    pub fn of(&self, node: usize) -> Option<&[(usize, f64)]> {
+        let place = *self.places.get(node)?;
+        self.list.get(place as usize).map(|point| point.weights.as_slice())
+    }
+
+    /// The dofs that carry a dof with their weights: itself unless its node is a point.
+    pub(crate) fn carriers(&self, dof: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let d = self.dimension.max(1);
+        let weights = self.of(dof / d);
+        let own = if weights.is_none() { Some((dof, 1.0)) } else { None };
+        let carrying = weights.unwrap_or_default().iter();
+        own.into_iter().chain(carrying.map(move |&(node, weight)| (node * d + dof % d, weight)))
+    }
+
+    /// Entries of a row pulled back to the dofs that carry its own; a dof may occur repeatedly.
+    pub(crate) fn pulled<'a>(
+        &'a self,
+        entries: impl Iterator<Item = (usize, f64)> + 'a,
+    ) -> impl Iterator<Item = (usize, f64)> + 'a {
+        entries.flat_map(|(dof, slope)| {
+            self.carriers(dof).map(move |(carrier, weight)| (carrier, weight * slope))
+        })
+    }
+
+    /// The nodes that carry these, which are replaced.
+    pub(crate) fn carrying(&self, nodes: &[usize]) -> Vec<usize> {
+        let mut all = Vec::with_capacity(nodes.len());
+        for &node in nodes {
+            match self.of(node) {
+                Some(weights) => all.extend(weights.iter().map(|(carrier, _)| *carrier)),
+                None => all.push(node),
+            }
+        }
+        all
+    }
+
+    /// Gives the points the motion of what carries them: x := T x.
+    pub fn carry(&self, x: &mut [f64]) {
+        let d = self.dimension;
+        for point in &self.list {
+            for i in 0..d {
+                let sum = point.weights.iter().map(|(node, weight)| weight * x[node * d + i]).sum();
+                x[point.node * d + i] = sum;
+            }
+        }
+    }
+
+    /// Gives the forces on the points to what carries them: f := Tᵀf, zero at the points.
+    pub fn gather(&self, forces: &mut [f64]) {
+        let d = self.dimension;
+        for point in &self.list {
+            for i in 0..d {
+                let force = std::mem::take(&mut forces[point.node * d + i]);
+                for (node, weight) in &point.weights {
+                    forces[node * d + i] += weight * force;
+                }
+            }
+        }
+    }
+}
+
+/// What carries a node, times a weight.
+fn carriers(of: &HashMap<usize, &Point>, node: usize, weight: f64) -> Vec<(usize, f64)> {
+    of.get(&node).map_or_else(
+        || vec![(node, weight)],
+        |point| point.weights.iter().map(|&(carrier, share)| (carrier, weight * share)).collect(),
+    )
+}
+
+/// One weight a node, ascending; without those that are round-off.
+fn summed(mut weights: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
+    weights.sort_by_key(|(node, _)| *node);
+    let mut sums: Vec<(usize, f64)> = Vec::new();
+    for (node, weight) in weights {
+        match sums.last_mut() {
+            Some((last, sum)) if *last == node => *sum += weight,
+            _ => sums.push((node, weight)),
+        }
+    }
+    sums.retain(|(_, weight)| weight.abs() > NOTHING);
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(node: usize, weights: &[(usize, f64)]) -> Point {
+        Point { node, weights: weights.to_vec() }
+    }
+
+    #[test]
+    fn chains_end_at_nodes_that_are_no_points() {
+        let given = vec![point(3, &[(2, 0.5), (1, 0.5)]), point(2, &[(0, 0.25), (1, 0.75)])];
+        let points = Points::new(1, 4, given).unwrap();
+        assert_eq!(points.of(3), Some(&[(0, 0.125), (1, 0.875)][..]));
+        let circular = vec![point(0, &[(1, 1.0)]), point(1, &[(0, 1.0)])];
+        assert_eq!(Points::new(1, 2, circular).unwrap_err(), Circular { node: 0 });
+    }
+
+    /// The power of forces is the same before and after: f·(T q) = (Tᵀf)·q.
+    #[test]
+    fn gathering_is_the_transpose_of_carrying() {
+        let given = vec![point(2, &[(0, 0.3), (1, 0.7)]), point(3, &[(1, 1.0)])];
+        let points = Points::new(2, 4, given).unwrap();
+        let mut x = vec![1.0, -2.0, 3.0, 0.5, 9.0, 9.0, 9.0, 9.0];
+        points.carry(&mut x);
+        let mut forces: Vec<f64> = (0..8).map(|i| (i as f64).cos()).collect();
+        let power: f64 = forces.iter().zip(&x).map(|(f, x)| f * x).sum();
+        points.gather(&mut forces);
+        let gathered: f64 = forces.iter().zip(&x).map(|(f, x)| f * x).sum();
+        assert!((power - gathered).abs() < 1e-14);
+        assert_eq!(forces[4..], [0.0; 4]);
+    }
+}
