@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use educe::Educe;
 use serde::{Deserialize, Serialize};
 
 use crate::friction::Tangential;
@@ -72,7 +73,8 @@ pub(crate) fn in_order(pairs: &mut [Pair]) {
 }
 
 /// The pairs of one contact during one solve, ascending by node.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, Educe, PartialEq)]
+#[educe(Clone)]
 pub struct Pairing {
     /// The pairs.
     pub pairs: Vec<Pair>,
@@ -117,14 +119,6 @@ impl Pairing {
     pub(crate) fn append(&mut self, other: Self, node: usize) {
         self.pairs.extend(other.pairs.into_iter().map(|pair| Pair { node: pair.node + node, ..pair }));
         self.left.extend(other.left.into_iter().map(|(k, facet)| (k + node, facet)));
-    }
-
-    /// Copies another one, reusing allocated memory.
-    pub fn copy_from(&mut self, other: &Self) {
-        self.pairs.clone_from(&other.pairs);
-        self.margin = other.margin;
-        self.left.clone_from(&other.left);
-        self.fresh = other.fresh;
     }
 }
 

@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stage::renewal::FrozenTangent;
 use crate::start::press;
-use crate::state::{Ledger, Previous, State};
+use crate::state::{Ledger, OverDofs, State};
 use crate::velocity::active_rows::measure_all;
 
 impl State {
@@ -16,33 +16,16 @@ impl State {
     /// # Errors
     /// If a cell is inverted.
     pub fn restricted(&self, model: &Model, dofs: &[usize], contacts: &[usize]) -> Result<Self, Rejected> {
-        let of = |all: &[f64]| -> Vec<f64> {
-            if all.is_empty() { Vec::new() } else { dofs.iter().map(|&dof| all[dof]).collect() }
-        };
-        let each = |all: &[[f64; 3]]| contacts.iter().map(|&k| all[k]).collect::<Vec<_>>();
         let mut state = self.clone();
-        for vector in [&mut state.y, &mut state.v, &mut state.a] {
-            *vector = of(vector);
-        }
-        for vector in
-            [&mut state.f_internal, &mut state.f_external, &mut state.f_contact, &mut state.f_friction]
+        for OverDofs { values, .. } in
+            state.over_dofs().into_iter().filter(|vector| !vector.values.is_empty())
         {
-            *vector = of(vector);
+            *values = dofs.iter().map(|&dof| values[dof]).collect();
         }
-        state.half_step.velocity = of(&self.half_step.velocity);
-        for list in [&mut state.contact_forces, &mut state.impulses, &mut state.carried.forces] {
-            *list = each(list);
+        for (_, resultants) in state.over_contacts() {
+            *resultants = contacts.iter().map(|&k| resultants[k]).collect();
         }
         state.pairs = contacts.iter().map(|&k| self.pairs[k].clone()).collect();
-        if let Some(Previous { increment, velocity, means, .. }) = &mut state.previous {
-            for vector in [increment, velocity, &mut means.contact, &mut means.loads] {
-                *vector = of(vector);
-            }
-            for vector in [&mut means.friction, &mut means.supports, &mut means.accelerations] {
-                *vector = of(vector);
-            }
-            means.contact_forces = each(&means.contact_forces);
-        }
         state.frozen = FrozenTangent::default();
         state.overlaps.clear();
         let mut internal = vec![0.0; model.dofs()];

@@ -1,6 +1,7 @@
 //! All data that determine the next step. A clone is a checkpoint.
 
 use carom_contact::{Pair, Pairing};
+use educe::Educe;
 use serde::{Deserialize, Serialize};
 
 use crate::check::overlapping::Overlap;
@@ -98,7 +99,8 @@ impl Created {
 }
 
 /// Contact's part of the algorithmic accelerations.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, Educe, PartialEq, Serialize, Deserialize)]
+#[educe(Clone)]
 pub struct Carried {
     /// Step with which it counts; 0 before the first one.
     pub(crate) dt: f64,
@@ -116,15 +118,11 @@ impl Carried {
     pub fn dt(&self) -> Option<f64> {
         (self.dt > 0.0).then_some(self.dt)
     }
-
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.dt = other.dt;
-        self.forces.clone_from(&other.forces);
-    }
 }
 
 /// Data of the previous step for a two-step scheme.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, Educe, PartialEq, Serialize, Deserialize)]
+#[educe(Clone)]
 pub struct Previous {
     /// Size of that step, which must equal the next one.
     pub dt: f64,
@@ -137,7 +135,8 @@ pub struct Previous {
 }
 
 /// Means over a step, weighting start and stages as its velocity update; flat over all dofs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, Educe, PartialEq, Serialize, Deserialize)]
+#[educe(Clone)]
 pub struct Means {
     /// Contact forces.
     pub contact: Vec<f64>,
@@ -174,7 +173,8 @@ impl Means {
 }
 
 /// The half-step velocity of an explicit scheme, which leads the state's time.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, Educe, PartialEq, Serialize, Deserialize)]
+#[educe(Clone)]
 pub struct HalfStepVelocity {
     /// v_{n+½}, for which y_{n+1} = y_n + Δt v_{n+½} is admissible.
     pub velocity: Vec<f64>,
@@ -192,7 +192,8 @@ pub struct OtherModel {
 }
 
 /// The state at the end of a step.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, Educe, PartialEq, Serialize, Deserialize)]
+#[educe(Clone)]
 pub struct State {
     /// Step on the grid of times.
     pub step: u64,
@@ -235,49 +236,85 @@ pub struct State {
     pub overlaps: Vec<Overlap>,
 }
 
+/// A vector of a state over all dofs.
+pub(crate) struct OverDofs<'a> {
+    /// Name in messages.
+    what: &'static str,
+    /// Whether it may be empty.
+    may_lack: bool,
+    pub(crate) values: &'a mut Vec<f64>,
+}
+
 impl State {
+    /// Every vector over the dofs.
+    pub(crate) fn over_dofs(&mut self) -> Vec<OverDofs<'_>> {
+        let always = |what, values| OverDofs { what, may_lack: false, values };
+        let may_lack = |what, values| OverDofs { what, may_lack: true, values };
+        let mut all = vec![
+            always("positions", &mut self.y),
+            always("velocities", &mut self.v),
+            always("accelerations", &mut self.a),
+            always("internal forces", &mut self.f_internal),
+            always("loads", &mut self.f_external),
+            always("averaged contact forces", &mut self.f_contact),
+            may_lack("forces of friction", &mut self.f_friction),
+            may_lack("velocities at half a step", &mut self.half_step.velocity),
+        ];
+        if let Some(Previous { increment, velocity, means, .. }) = &mut self.previous {
+            let of_step = [
+                increment,
+                velocity,
+                &mut means.contact,
+                &mut means.loads,
+                &mut means.supports,
+                &mut means.accelerations,
+            ];
+            all.extend(of_step.map(|values| always("values of a previous step", values)));
+            all.push(may_lack("means of friction", &mut means.friction));
+        }
+        all
+    }
+
+    /// Every list of a resultant for each contact, with its name in messages.
+    pub(crate) fn over_contacts(&mut self) -> Vec<(&'static str, &mut Vec<[f64; 3]>)> {
+        let mut all = vec![
+            ("contacts with forces", &mut self.contact_forces),
+            ("contacts with impulses", &mut self.impulses),
+            ("contacts with forces in accelerations", &mut self.carried.forces),
+        ];
+        if let Some(previous) = &mut self.previous {
+            all.push(("contacts with means", &mut previous.means.contact_forces));
+        }
+        all
+    }
+
     /// Whether every vector, and node and facet of every pair, exist in this model, and all
     /// positions, velocities and accelerations are finite.
     ///
     /// # Errors
     /// What does not.
     pub fn fits(&self, model: &Model) -> Result<(), OtherModel> {
-        let (dofs, contacts) = (model.dofs(), model.contacts.len());
         let is = |what: &str, got: usize, wanted: usize| {
             let what = format!("it has {got} {what}, this one {wanted}");
             if got == wanted { Ok(()) } else { Err(OtherModel { what }) }
         };
-        is("positions", self.y.len(), dofs)?;
-        is("velocities", self.v.len(), dofs)?;
-        is("accelerations", self.a.len(), dofs)?;
-        if let Some(dof) = (0..dofs).find(|&dof| !(self.y[dof] + self.v[dof] + self.a[dof]).is_finite()) {
+        let mut copy = self.clone();
+        for OverDofs { what, may_lack, values } in copy.over_dofs() {
+            if !(may_lack && values.is_empty()) {
+                is(what, values.len(), model.dofs())?;
+            }
+        }
+        for (what, resultants) in copy.over_contacts() {
+            is(what, resultants.len(), model.contacts.len())?;
+        }
+        is("contacts with pairs", self.pairs.len(), model.contacts.len())?;
+        let is_finite = |dof: usize| (self.y[dof] + self.v[dof] + self.a[dof]).is_finite();
+        if let Some(dof) = (0..model.dofs()).find(|&dof| !is_finite(dof)) {
             let what = format!("position, velocity or acceleration {dof} is not finite");
             return Err(OtherModel { what });
         }
-        is("internal forces", self.f_internal.len(), dofs)?;
-        is("loads", self.f_external.len(), dofs)?;
-        is("averaged contact forces", self.f_contact.len(), dofs)?;
-        is("contacts with pairs", self.pairs.len(), contacts)?;
-        is("contacts with forces", self.contact_forces.len(), contacts)?;
-        is("contacts with impulses", self.impulses.len(), contacts)?;
-        is("contacts with forces in accelerations", self.carried.forces.len(), contacts)?;
-        if let Some(Previous { increment, velocity, means, .. }) = &self.previous {
-            for list in
-                [increment, velocity, &means.contact, &means.loads, &means.supports, &means.accelerations]
-            {
-                is("values of a previous step", list.len(), dofs)?;
-            }
-            is("contacts with means", means.contact_forces.len(), contacts)?;
-        }
-        let frictions = self.previous.iter().map(|previous| &previous.means.friction);
-        for friction in frictions.chain([&self.f_friction]).filter(|friction| !friction.is_empty()) {
-            is("forces of friction", friction.len(), dofs)?;
-        }
-        if !self.half_step.velocity.is_empty() {
-            is("velocities at half a step", self.half_step.velocity.len(), dofs)?;
-        }
         if let Some(point) = &self.frozen.point {
-            is("positions of a factor", point.at.len(), dofs)?;
+            is("positions of a factor", point.at.len(), model.dofs())?;
         }
         for (pairs, contact) in self.pairs.iter().zip(&model.contacts) {
             let nodes = contact.kinematics.secondary().len();
@@ -312,28 +349,6 @@ impl State {
     /// Impulse of all contacts on their secondary sides since the start.
     pub fn impulse(&self) -> [f64; 3] {
         std::array::from_fn(|i| self.impulses.iter().map(|impulse| impulse[i]).sum())
-    }
-
-    /// Copies another state, reusing allocated memory.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        let Self { step, time, y, v, a, f_internal, f_external, f_contact, contact_forces, pairs, .. } = self;
-        (*step, *time) = (other.step, other.time);
-        let from = [&other.y, &other.v, &other.a, &other.f_internal, &other.f_external, &other.f_contact];
-        for (to, from) in [y, v, a, f_internal, f_external, f_contact].into_iter().zip(from) {
-            to.clone_from(from);
-        }
-        self.f_friction.clone_from(&other.f_friction);
-        contact_forces.clone_from(&other.contact_forces);
-        self.impulses.clone_from(&other.impulses);
-        self.carried.copy_from(&other.carried);
-        pairs.clone_from(&other.pairs);
-        self.ledger = other.ledger.clone();
-        self.previous.clone_from(&other.previous);
-        self.half_step.velocity.clone_from(&other.half_step.velocity);
-        (self.half_step.dt, self.half_step.longest) = (other.half_step.dt, other.half_step.longest);
-        self.frozen = other.frozen.clone();
-        self.bisection = other.bisection;
-        self.overlaps.clone_from(&other.overlaps);
     }
 
     /// Takes over the pairs at the end of a solve.

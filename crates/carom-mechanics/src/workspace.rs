@@ -58,7 +58,7 @@ impl Workspace {
     /// A copy of a state, in reused memory.
     pub(crate) fn copy(&mut self, state: &State) -> State {
         let mut copy = self.states.pop().unwrap_or_default();
-        copy.copy_from(state);
+        copy.clone_from(state);
         copy
     }
 

@@ -88,7 +88,7 @@ pub(crate) fn independent_above<'a, T>(
 }
 
 /// Entries of a row on the free dofs, an entry each.
-fn on_free_dofs(model: &Model, row: Row) -> Vec<(usize, f64)> {
+pub(crate) fn on_free_dofs(model: &Model, row: Row) -> Vec<(usize, f64)> {
     let is_free = |(dof, _): &(usize, f64)| !model.fixed[*dof];
     if model.points.is_empty() {
         return row.entries().filter(is_free).collect();

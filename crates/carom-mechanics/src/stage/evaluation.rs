@@ -1,12 +1,14 @@
 //! An iterate of a stage, and what was computed there.
 
 use carom_contact::{Along, Answer, DiscreteGradient, Pairing, Rows};
+use educe::Educe;
 
 use crate::stage::balance::Forces;
 use crate::state::State;
 
 /// The unknowns of a stage.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default, Educe)]
+#[educe(Clone)]
 pub(crate) struct Iterate {
     /// d = y − y_s.
     pub increment: Vec<f64>,
@@ -115,10 +117,7 @@ impl Spare {
     /// A copy of an iterate in reused memory.
     pub(crate) fn copy(&mut self, of: &Iterate) -> Iterate {
         let mut iterate = self.0.last_mut().map(|spare| std::mem::take(&mut spare.at)).unwrap_or_default();
-        iterate.increment.clone_from(&of.increment);
-        iterate.stiffer = of.stiffer;
-        iterate.pairings.resize_with(of.pairings.len(), Pairing::default);
-        iterate.pairings.iter_mut().zip(&of.pairings).for_each(|(to, from)| to.copy_from(from));
+        iterate.clone_from(of);
         iterate
     }
 }

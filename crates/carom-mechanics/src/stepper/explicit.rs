@@ -32,11 +32,12 @@
 
 use carom_algebra::sums::sum;
 
+use super::finish::Finish;
 use super::increments::Increments;
 use super::tied_mass::TiedMass;
 use super::watch::{active, approach, depth};
-use super::{Accepted, StepReport, Stepper, difference};
-use crate::friction_state::{book_states, each_slip};
+use super::{Accepted, StepReport, Stepper};
+use crate::friction_state::each_slip;
 use crate::ledger::book_contact_forces;
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -103,17 +104,16 @@ impl Stepper for Explicit {
         self.advance_half_step(model, &mut next, &start.half_step.velocity, dt, work, &mut report)?;
         self.record_work(model, start, &mut next, dt);
 
-        report.activations = difference(model, &next, state);
-        report.releases = difference(model, state, &next);
         // Positions were admissible when they were predicted; a node handed over since may be
         // behind its new facet by a fraction of its sliding distance.
         let bound = depth(model, start) + approach(model, &start.half_step.velocity, dt);
-        let deepest = depth(model, &next);
         if let Some(state) = begun {
             work.put(state);
         }
-        book_states(model, &mut next, dt);
-        Accepted::within(model, next, report, [deepest, bound], work)
+        let leaves = Some(bound);
+        let finish =
+            Finish { model, start: state, dt, carried: 0.0, paths: Vec::new(), previous: None, leaves };
+        finish.accept(next, report, work)
     }
 }
 

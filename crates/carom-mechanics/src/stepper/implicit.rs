@@ -7,12 +7,13 @@ use carom_contact::{Pairing, Rows};
 use carom_time::schemes::backward_euler::BackwardEuler;
 use carom_time::{Kernel, Memory, PreviousStep, Stage, Weights};
 
+use super::finish::Finish;
 use super::in_velocity::solve_in_velocity;
-use super::meetings::{Path, meetings};
-use super::{Accepted, StepReport, Stepper, difference};
+use super::meetings::Path;
+use super::{Accepted, StepReport, Stepper};
 use crate::carried;
 use crate::contact::update::{search, start_step};
-use crate::friction_state::{book_states, take_slips};
+use crate::friction_state::take_slips;
 use crate::ledger;
 use crate::model::{Contact, LoadsAt, Model};
 use crate::rejected::{Rejected, SINGULAR};
@@ -21,8 +22,7 @@ use crate::stage::equations::Equations;
 use crate::stage::evaluation::Iterate;
 use crate::stage::newton::solve_stage;
 use crate::state::{Means, Previous, State};
-use crate::velocity::persistency::{averaged_contact_into, project};
-use crate::velocity::restitution::{self, Impact, separate};
+use crate::velocity::persistency::averaged_contact_into;
 use crate::workspace::Workspace;
 
 /// The implicit stepper.
@@ -168,31 +168,16 @@ impl Stepper for Implicit {
             next.pairs[k].iter_mut().zip(gaps).for_each(|(pair, gap)| pair.start = gap);
         }
 
-        report.activations = difference(model, &next, state);
-        report.releases = difference(model, state, &next);
-        report.meetings = meetings(model, &next, &report.activations, &paths(state, &finished, &ends));
-        let taken = state.ledger.contact_work - next.ledger.contact_work;
-        restitution::take(model, &mut next, taken);
-        let closed = closed(model, state, &solved.at.pairings, &report.activations);
-        let impact = Impact { dt, start: state, closed };
-        let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;
-        if let Some(jump) = projected {
-            report.projection = jump;
-            carried::project(&mut next, factor);
-        }
-        if !report.releases.is_empty() {
-            report.restitution = separate(model, &mut next, &report.releases, &mut work.system)?;
-        }
-        let continues = projected.is_none() && report.activations.is_empty();
-        next.previous = (self.kernel.two_step() && continues).then(|| Previous {
+        let previous = self.kernel.two_step().then(|| Previous {
             dt,
             increment: solved.at.increment.clone(),
             velocity: state.v.clone(),
             means,
         });
         work.spare.put(solved);
-        book_states(model, &mut next, dt);
-        Accepted::new(model, next, report, work)
+        let paths = paths(state, &finished, &ends);
+        let finish = Finish { model, start: state, dt, carried: factor, paths, previous, leaves: None };
+        finish.accept(next, report, work)
     }
 }
 
@@ -260,36 +245,6 @@ fn paths<'a>(state: &'a State, finished: &'a [Point], ends: &[f64]) -> Vec<Path<
     let first: [&[f64]; 3] = [&state.y, &state.v, &state.a];
     let starts = std::iter::once(first).chain(finished.iter().map(|p| [&p.y[..], &p.v[..], &p.a[..]]));
     starts.zip(ends.windows(2)).map(|(start, ends)| Path { start, from: ends[0], to: ends[1] }).collect()
-}
-
-/// Contact and pair of new contacts, with the gaps at the step's start where they exist.
-fn closed(
-    model: &Model,
-    state: &State,
-    pairings: &[Pairing],
-    activations: &[(usize, usize)],
-) -> Vec<((usize, usize), f64)> {
-    let mut rows = Rows::new(model.dimension);
-    let mut found = Vec::new();
-    for &(k, node) in activations {
-        let (kinematics, pairs) = (&model.contacts[k].kinematics, &pairings[k].pairs);
-        // An edge has the number of one of its nodes.
-        let mut last = None;
-        for (p, pair) in
-            pairs.iter().enumerate().filter(|(_, pair)| kinematics.secondary()[pair.node] == node)
-        {
-            let is_node = pair.node < kinematics.nodes();
-            let closes = if is_node { last != Some(pair.node) } else { pair.active };
-            last = Some(pair.node);
-            if closes
-                && state.closed(k, pair.node).is_none()
-                && kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_ok()
-            {
-                found.push(((k, p), rows.pop()));
-            }
-        }
-    }
-    found
 }
 
 /// Moving supports have their own velocities and accelerations, not the scheme's.

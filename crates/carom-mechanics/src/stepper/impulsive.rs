@@ -22,15 +22,15 @@ use carom_algebra::sums::max_abs;
 use carom_contact::{Pairing, Rows, Tangential};
 use carom_time::{Impulse, ImpulseShares, Kernel, Memory, Stage};
 
+use super::finish::Finish;
 use super::impulses::{Impulses, TIE};
-use super::meetings::{Path, meetings};
+use super::meetings::Path;
 use super::watch::{approach, carry_into, depth, gap_at, measure_into};
-use super::{Accepted, StepReport, Stepper, difference};
+use super::{Accepted, StepReport, Stepper};
 use crate::check::skins::length;
 use crate::check::watched::has_gaps;
 use crate::contact::constraints::Constraints;
 use crate::contact::update::search;
-use crate::friction_state::book_states;
 use crate::ledger::{book_kinetic, change_of_loads, work_of_loads};
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
@@ -155,17 +155,13 @@ impl Stepper for Impulsive {
         book_kinetic(model, &mut next);
         work.spare.put(solved);
 
-        report.activations = difference(model, &next, state);
-        report.releases = difference(model, state, &next);
-        let path = Path { start: [&state.y, &state.v, &state.a], from: state.time, to };
-        report.meetings = meetings(model, &next, &report.activations, &[path]);
         sinks_slowly(model, state, &next)?;
         let tie = 2.0 * TIE * model.scale;
         let fastest = approach(model, &state.v, dt).max(approach(model, &next.v, dt));
-        let bound = depth(model, state) + fastest + tie;
-        let deepest = depth(model, &next);
-        book_states(model, &mut next, dt);
-        Accepted::within(model, next, report, [deepest, bound], work)
+        let leaves = Some(depth(model, state) + fastest + tie);
+        let paths = vec![Path { start: [&state.y, &state.v, &state.a], from: state.time, to }];
+        Finish { model, start: state, dt, carried: 0.0, paths, previous: None, leaves }
+            .accept(next, report, work)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Time steppers: from the state at one time to the state at the next.
 
 mod explicit;
+mod finish;
 mod forward;
 mod implicit;
 mod impulses;
@@ -65,14 +66,7 @@ pub struct Accepted {
 
 impl Accepted {
     /// Makes the final checks of a result.
-    fn new(
-        model: &Model,
-        mut state: State,
-        report: StepReport,
-        work: &mut Workspace,
-    ) -> Result<Self, Rejected> {
-        // The round-off of increments does not accumulate between tied sides.
-        model.points.carry(&mut state.y);
+    fn new(model: &Model, state: State, report: StepReport, work: &mut Workspace) -> Result<Self, Rejected> {
         for (what, values) in
             [("a position", &state.y), ("a velocity", &state.v), ("an acceleration", &state.a)]
         {
@@ -93,20 +87,6 @@ impl Accepted {
                 Err(rejected)
             }
         }
-    }
-
-    /// As [`Self::new`], for laws that allow penetration by up to `bound`.
-    fn within(
-        model: &Model,
-        state: State,
-        report: StepReport,
-        [depth, bound]: [f64; 2],
-        work: &mut Workspace,
-    ) -> Result<Self, Rejected> {
-        if depth > bound {
-            return Err(Rejected::Deep { depth, bound });
-        }
-        Self::new(model, state, report, work)
     }
 
     /// The state at the end of the step.

@@ -5,7 +5,7 @@
 use carom_contact::{Pair, Pairing, Row, Rows};
 
 use crate::check::watched::has_gaps;
-use crate::contact::independent::DEPENDENT;
+use crate::contact::independent::{DEPENDENT, on_free_dofs};
 use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
 use crate::state::State;
@@ -41,6 +41,9 @@ pub(super) fn gap_at(contact: &Contact, pair: &mut Pair, y: &[f64], row: &mut Ro
 
 /// Whether a force along a row moves anything: not if supports constrain all its nodes.
 pub(super) fn moves(model: &Model, row: Row) -> bool {
+    if !model.points.is_empty() {
+        return on_free_dofs(model, row).iter().any(|(_, slope)| slope.abs() > DEPENDENT);
+    }
     row.entries().any(|(dof, slope)| !model.fixed[dof] && slope.abs() > DEPENDENT)
 }
 

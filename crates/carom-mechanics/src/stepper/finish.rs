@@ -1,0 +1,104 @@
+//! The end of every step, whatever took it: which nodes came into contact and left it, the impact
+//! and the restitution of contacts on positions, what friction did, and the checks of a state that
+//! is accepted.
+
+use carom_contact::Rows;
+
+use super::meetings::{Path, meetings};
+use super::watch::depth;
+use super::{Accepted, StepReport, difference};
+use crate::carried;
+use crate::friction_state::book_states;
+use crate::model::Model;
+use crate::rejected::Rejected;
+use crate::state::{Previous, State};
+use crate::velocity::persistency::project;
+use crate::velocity::restitution::{self, Impact, separate};
+use crate::workspace::Workspace;
+
+/// A step that is to be finished.
+pub(super) struct Finish<'a> {
+    pub model: &'a Model,
+    /// The state at its start.
+    pub start: &'a State,
+    pub dt: f64,
+    /// c of the momentum in accelerations (`carried.rs`); 0 of schemes that carry none.
+    pub carried: f64,
+    /// The parts of the step, to find when nodes met the other side; none if that is not asked.
+    pub paths: Vec<Path<'a>>,
+    /// What a two-step scheme needs of this step, unless velocities jump at its end.
+    pub previous: Option<Previous>,
+    /// The depth that the contact law leaves; none if it leaves no more than the checks allow.
+    pub leaves: Option<f64>,
+}
+
+impl Finish<'_> {
+    /// The accepted step that ends in the state `next`.
+    ///
+    /// # Errors
+    /// Why it is not accepted.
+    pub(super) fn accept(
+        self,
+        mut next: State,
+        mut report: StepReport,
+        work: &mut Workspace,
+    ) -> Result<Accepted, Rejected> {
+        let Self { model, start, dt, .. } = self;
+        // The round-off of increments does not accumulate between tied sides.
+        model.points.carry(&mut next.y);
+        report.activations = difference(model, &next, start);
+        report.releases = difference(model, start, &next);
+        report.meetings = meetings(model, &next, &report.activations, &self.paths);
+        if let Some(bound) = self.leaves {
+            let depth = depth(model, &next);
+            if depth > bound {
+                return Err(Rejected::Deep { depth, bound });
+            }
+        }
+        let taken = start.ledger.contact_work - next.ledger.contact_work;
+        restitution::take(model, &mut next, taken);
+        let closed = closed(model, start, &next, &report.activations);
+        let impact = Impact { dt, start, closed };
+        let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;
+        if let Some(jump) = projected {
+            report.projection = jump;
+            carried::project(&mut next, self.carried);
+        }
+        if !report.releases.is_empty() {
+            report.restitution = separate(model, &mut next, &report.releases, &mut work.system)?;
+        }
+        let continues = projected.is_none() && report.activations.is_empty();
+        next.previous = self.previous.filter(|_| continues);
+        book_states(model, &mut next, dt);
+        Accepted::new(model, next, report, work)
+    }
+}
+
+/// Contact and pair of new contacts, with the gaps at the step's start where they exist.
+fn closed(
+    model: &Model,
+    start: &State,
+    next: &State,
+    activations: &[(usize, usize)],
+) -> Vec<((usize, usize), f64)> {
+    let mut rows = Rows::new(model.dimension);
+    let mut found = Vec::new();
+    for &(k, node) in activations {
+        let kinematics = &model.contacts[k].kinematics;
+        // An edge has the number of one of its nodes.
+        let mut last = None;
+        let is_own = |pair: &carom_contact::Pair| kinematics.secondary()[pair.node] == node;
+        for (p, pair) in next.pairs[k].iter().enumerate().filter(|(_, pair)| is_own(pair)) {
+            let is_node = pair.node < kinematics.nodes();
+            let closes = if is_node { last != Some(pair.node) } else { pair.active };
+            last = Some(pair.node);
+            if closes
+                && start.closed(k, pair.node).is_none()
+                && kinematics.measure(&mut pair.clone(), &start.y, &mut rows).is_ok()
+            {
+                found.push(((k, p), rows.pop()));
+            }
+        }
+    }
+    found
+}
