@@ -1,9 +1,7 @@
 //! Linear algebra of Carom: small tensors, sparse symmetric systems, finite-difference checks.
 
-mod complementarity;
 mod condensed;
-mod coulomb;
-mod coulomb_exact;
+mod cone;
 mod difference;
 mod elimination;
 mod forest;
@@ -25,10 +23,8 @@ pub mod sums;
 mod symbolic;
 mod threads;
 
-pub use complementarity::{complementarity, proximal};
 pub use condensed::Condensed;
-pub use coulomb::coulomb;
-pub use coulomb_exact::Kind;
+pub use cone::{Cone, Kind};
 pub use difference::jacobian_error;
 pub use elimination::Elimination;
 pub use linear::LinearError;

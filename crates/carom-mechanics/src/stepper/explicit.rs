@@ -25,7 +25,7 @@
 //! g(y_{n+1}) ≥ (1 − Δt/H) g(y_n): within Δt it would be thrown out with g/Δt.
 //!
 //! With friction Q acts along H_n, the row of the slip (`friction.rs`), and its law is that of the
-//! mean slip rate H_n v_{n+½}: P and Q solve one small problem (`carom_algebra::coulomb`).
+//! mean slip rate H_n v_{n+½}: P and Q solve one small problem (`carom_algebra::Cone`).
 //!
 //! The first step, and one of another size, starts with v_{n−½} := v_n − Δt/2 M⁻¹f_n; a contact
 //! force at t_n then acts over a whole step.

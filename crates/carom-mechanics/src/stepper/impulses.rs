@@ -4,11 +4,11 @@
 //! 0 ≤ G v + e G v_n ⊥ P ≥ 0,   G v = b + D P
 //! ```
 //!
-//! with D symmetric and positive definite. With friction (`carom_algebra::coulomb`) each normal row
+//! with D symmetric and positive definite. With friction (`carom_algebra::Cone`) each normal row
 //! has one of slip, H at the predicted positions, whose impulse obeys Coulomb's law with the rate
 //! H v; e acts on normal rates alone, which can create energy.
 
-use carom_algebra::{Kind, LinearError, complementarity, coulomb, proximal};
+use carom_algebra::{Cone, Kind, LinearError};
 use carom_contact::{Along, Law, Pairing, Rows, Tangential};
 use carom_time::ImpulseShares;
 
@@ -194,17 +194,11 @@ impl Impulses {
                 matrix[i * count + j] = velocity.slope * shares.force * row.along(&columns[j]) + direct;
             }
         }
-        if self.dependent {
-            proximal(&mut matrix, &mut right, &self.values);
+        for i in 0..count {
+            (0..i).for_each(|j| matrix[j * count + i] = matrix[i * count + j]);
         }
-        if self.rows.list.iter().any(|row| row.slip.is_some()) {
-            for i in 0..count {
-                (0..i).for_each(|j| matrix[j * count + i] = matrix[i * count + j]);
-            }
-            values.clone_from(&self.values);
-            return coulomb(&matrix, &right, &self.kinds, values);
-        }
-        complementarity(&matrix, &right, values)
+        values.clone_from(&self.values);
+        Cone { matrix, right, kinds: &self.kinds, is_dependent: self.dependent }.solve(values)
     }
 
     /// x += factor M⁻¹GᵀP.

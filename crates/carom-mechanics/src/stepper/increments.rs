@@ -2,7 +2,7 @@
 //! admissible (`explicit.rs`). With linearised gaps they solve a complementarity problem with
 //! G M⁻¹Gᵀ, with friction one of both forces; the linearisation is repeated.
 
-use carom_algebra::{Kind, LinearError, complementarity, coulomb, proximal};
+use carom_algebra::{Cone, Kind, LinearError};
 use carom_contact::{Law, Pair, Pairing, Rows, Tangential, inner};
 
 use super::StepReport;
@@ -176,7 +176,7 @@ impl Increments<'_> {
     fn find_impulses(&self, dependence: &mut Dependence, scratch: &mut Scratch) -> Result<(), Rejected> {
         let (model, dt) = (self.model, self.dt);
         let Scratch { free, at, pairings, rows, impulses, places, acting, kinds, ties, .. } = scratch;
-        let (mut matrix, mut right) = self.matrix(acting, at, ties)?;
+        let (matrix, mut right) = self.matrix(acting, at, ties)?;
         for (i, &(k, p)) in places.iter().enumerate() {
             let leaves = pairings[k].pairs[p].start.is_some();
             let restitution = if leaves { 0.0 } else { model.contacts[k].restitution };
@@ -197,15 +197,7 @@ impl Increments<'_> {
             *dependent = is_dependent(model, acting.iter().take(places.len()))
                 || model.dimension == 3 && is_dependent(model, acting.iter());
         }
-        if *dependent {
-            proximal(&mut matrix, &mut right, impulses);
-        }
-        if kinds.len() > places.len() {
-            coulomb(&matrix, &right, kinds, impulses)?;
-        } else {
-            complementarity(&matrix, &right, impulses)?;
-        }
-        Ok(())
+        Ok(Cone { matrix, right, kinds, is_dependent: *dependent }.solve(impulses)?)
     }
 
     /// Gives the impulses to their pairs, and to the velocity.

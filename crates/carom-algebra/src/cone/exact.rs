@@ -1,32 +1,18 @@
-//! The exact solution of Coulomb's problem (`coulomb.rs`) for given states.
+//! The exact solution of Coulomb's problem for given states.
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
+
+use super::Kind;
 
 /// Corrections of directions, and a force across one, relative to the largest of those that slip,
 /// that is round-off.
 const CORRECTIONS: usize = 40;
 const TURN: f64 = 1e-13;
 
-/// Coulomb's law of an unknown: `Normal`, or `Tangential` with the index of its normal force and μ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// P ≥ 0.
-    Normal,
-    /// Q.
-    Tangential {
-        /// Index of P.
-        of: usize,
-        /// μ ≥ 0.
-        coefficient: f64,
-        /// Largest Q; may be infinite.
-        limit: f64,
-    },
-}
-
 /// What an unknown does.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum State {
+pub(super) enum State {
     Zero,
     /// Its motion is zero.
     Fixed,
@@ -37,7 +23,7 @@ pub(crate) enum State {
 }
 
 /// The second component of the vector whose first one this is.
-pub(crate) fn second(kinds: &[Kind], i: usize) -> Option<usize> {
+pub(super) fn second(kinds: &[Kind], i: usize) -> Option<usize> {
     let of = |i: usize| match kinds.get(i) {
         Some(Kind::Tangential { of, .. }) => Some(*of),
         _ => None,
@@ -47,7 +33,7 @@ pub(crate) fn second(kinds: &[Kind], i: usize) -> Option<usize> {
 }
 
 /// The solution for given states, with the directions of vectors that slip, which are corrected.
-pub(crate) fn settle(
+pub(super) fn settle(
     a: &[f64],
     b: &[f64],
     kinds: &[Kind],

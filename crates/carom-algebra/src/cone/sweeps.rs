@@ -1,13 +1,8 @@
-//! Complementarity of normal and tangential forces with Coulomb's law:
+//! Sweeps of the nonlinear Gauss–Seidel method for contacts with friction.
 //!
-//! ```text
-//! u = A z + b,   z = (P, Q),   0 ≤ P_i ⊥ u_i ≥ 0
-//! |Q_j| ≤ r_j,   Q_j = −r_j u_j/|u_j| where u_j ≠ 0,   r_j = min(μ_j P_j, limit_j)
-//! ```
-//!
-//! A symmetric and positive semi-definite; a force of zero diagonal moves nothing and is zero, also
+//! A force of zero diagonal moves nothing and is zero, also
 //! as a component of a vector, unless that component has a motion of its own, b_i ≠ 0. Rows that
-//! depend on each other come as a proximal step (`complementarity.rs`). Each tangential force
+//! depend on each other come as a proximal step. Each tangential force
 //! belongs to one normal one; two in a row that belong to the same one are the components of a
 //! vector. Sweeps of the nonlinear Gauss–Seidel method find which contacts are open, stick, or
 //! slip; with that and the directions d of the slips the problem is linear and is solved exactly.
@@ -18,7 +13,8 @@
 //! e·u + (d·u/r) s = 0,   δd = −e s/r
 //! ```
 
-use crate::coulomb_exact::{Kind, State, second, settle};
+use super::Kind;
+use super::exact::{State, second, settle};
 use crate::linear::LinearError;
 
 /// Sweeps between two attempts, and attempts.
@@ -48,7 +44,7 @@ fn radius(coefficient: f64, limit: f64, normal: f64) -> (f64, bool) {
 ///
 /// # Errors
 /// If none is found, as for large μ, where there may be none.
-pub fn coulomb(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(), LinearError> {
+pub(super) fn coulomb(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(), LinearError> {
     let n = kinds.len();
     z.resize(n, 0.0);
     let mut group: Vec<Option<usize>> = vec![None; n];
@@ -366,7 +362,7 @@ mod tests {
         let b = [-1.0, 0.5, 2.0, -0.3];
         let (mut z, mut normal) = (Vec::new(), Vec::new());
         coulomb(&A, &b, &KINDS(0.0, f64::INFINITY), &mut z).unwrap();
-        crate::complementarity(&[4.0, 1.0, 1.0, 3.0], &b[..2], &mut normal).unwrap();
+        super::super::pivoting::complementarity(&[4.0, 1.0, 1.0, 3.0], &b[..2], &mut normal).unwrap();
         assert!((z[0] - normal[0]).abs() < 1e-15 && (z[1] - normal[1]).abs() < 1e-15);
         assert_eq!(z[2..], [0.0, 0.0]);
     }

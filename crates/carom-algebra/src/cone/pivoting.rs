@@ -14,22 +14,12 @@ const TIE: f64 = 1e-14;
 /// A pivot below this fraction of its diagonal entry is rejected.
 const PIVOT: f64 = 1e-13;
 
-/// ε of the proximal step.
-const PROXIMAL: f64 = 1e-10;
-
 /// Solves 0 ≤ z ⊥ D z + b ≥ 0 into `z`. `d` is the square matrix D, row by row; only its lower
 /// triangle is read.
 ///
 /// # Errors
 /// D is not positive definite on the indices of positive z.
-///
-/// ```
-/// let mut z = Vec::new();
-/// carom_algebra::complementarity(&[2.0, 1.0, 1.0, 2.0], &[-3.0, 1.0], &mut z)?;
-/// assert!((z[0] - 1.5).abs() < 1e-15 && z[1] == 0.0); // D z + b = (0, 2.5)
-/// # Ok::<(), carom_algebra::LinearError>(())
-/// ```
-pub fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<(), LinearError> {
+pub(super) fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<(), LinearError> {
     let n = b.len();
     let entry = |i: usize, j: usize| d[i.max(j) * n + i.min(j)];
     let tie = TIE * b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
@@ -74,30 +64,6 @@ pub fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<(), Lin
         size: n,
         reason: "principal pivoting does not terminate: the matrix is not definite".into(),
     })
-}
-
-/// Makes D definite by a proximal step from an earlier solution `z`: adds ε D_ii to the diagonal
-/// and −ε D_ii z_i to b. Where D is semidefinite, because rows of contacts depend on each other,
-/// each inequality still counts, and repeated steps converge to a solution of the problem itself.
-/// ε = 1e-10.
-///
-/// ```
-/// let (d, b, mut z) = (vec![1.0; 4], vec![-1.0, -2.0], vec![0.0; 2]);
-/// for _ in 0..2 {
-///     let (mut near, mut right) = (d.clone(), b.clone());
-///     carom_algebra::proximal(&mut near, &mut right, &z);
-///     carom_algebra::complementarity(&near, &right, &mut z)?;
-/// }
-/// assert!((z[0] + z[1] - 2.0).abs() < 1e-15); // the stricter of two equal rows
-/// # Ok::<(), carom_algebra::LinearError>(())
-/// ```
-pub fn proximal(d: &mut [f64], b: &mut [f64], z: &[f64]) {
-    let n = b.len();
-    for i in 0..n {
-        let near = PROXIMAL * d[i * n + i];
-        d[i * n + i] += near;
-        b[i] -= near * z[i];
-    }
 }
 
 /// L of the submatrix of the chosen indices, D = L Lᵀ, packed row by row.
