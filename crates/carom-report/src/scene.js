@@ -381,7 +381,10 @@ const scene = async (root, data) => {
     load("skin", position, value);
     if (cut[3] !== 1 && cells.length) section(points, values);
     if (isSolid) {
-      const lines = data.rigid.lines.flatMap((list, j) => list.map((x, i) => x + data.rigid.moves[k][j][i % 3]));
+      const lines = data.rigid.lines.flatMap((list, j) => list.map((_, i) => {
+        const [a, b, c, shift] = data.rigid.moves[k][j][i % 3], first = i - i % 3;
+        return a * list[first] + b * list[first + 1] + c * list[first + 2] + shift;
+      }));
       load("rigid", Float32Array.from(lines), new Float32Array(lines.length / 3));
     }
     render();

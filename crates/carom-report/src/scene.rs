@@ -130,15 +130,15 @@ fn rigid_in_plane(run: &Recorded, entries: &[&FieldEntry], bodies: [f64; 4]) -> 
     (json!({ "walls": walls, "marked": marked, "poses": poses }), frame)
 }
 
-/// Rigid obstacles in space: lines, and how far they have moved in each frame.
+/// Rigid obstacles in space: lines, and how they have turned and moved in each frame.
 fn rigid_in_space(run: &Recorded, entries: &[&FieldEntry], bodies: [Place; 2]) -> Value {
     let all = wires(run, bodies);
     let lines: Vec<Vec<f32>> = all
         .iter()
         .map(|wire| wire.at_first().iter().flatten().flatten().map(|x| *x as f32).collect())
         .collect();
-    let moves: Vec<Vec<Place>> =
-        entries.iter().map(|entry| all.iter().map(|wire| wire.moved(run, entry.time)).collect()).collect();
+    let moves: Vec<Vec<[[f64; 4]; 3]>> =
+        entries.iter().map(|entry| all.iter().map(|wire| wire.pose(run, entry.time)).collect()).collect();
     json!({ "lines": lines, "moves": moves })
 }
 

@@ -87,7 +87,7 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
         first += nodes;
     }
     // The nodes of moving obstacles come after the bodies; they start anew.
-    let carriers: usize = old.contacts.iter().map(|contact| contact.motion.nodes()).sum();
+    let carriers: usize = old.contacts.iter().map(|contact| contact.motion.nodes(d)).sum();
     if state.y.len() != (first + carriers) * d {
         return Err(unreadable(format!("its state has {} nodes, its meshes {first}", state.y.len() / d)));
     }

@@ -120,12 +120,16 @@ struct Motion {
     /// Displacement along z; dimension 3.
     #[key(Formula(IN_TIME), unit = "length", example = "\"-0.1*t\"")]
     z: Option<FormulaSpec>,
-    /// Angle of rotation, counter-clockwise; dimension 2.
+    /// Angle of rotation, in the plane counter-clockwise, in space by the right hand about `axis`;
+    /// dimensions 2 and 3.
     #[key(Formula(IN_TIME), unit = "degrees", example = "\"360*t\"")]
     rotate: Option<FormulaSpec>,
     /// Centre of the rotation at t = 0; required with `rotate`.
     #[key(Vector, unit = "length", example = "[0.0, 0.0]")]
     about: Option<Vec<f64>>,
+    /// Direction of the axis of the rotation; required with `rotate` in dimension 3.
+    #[key(Vector, example = "[0.0, 0.0, 1.0]")]
+    axis: Option<Vec<f64>>,
 }
 
 /// Shapes with the dimension that they need.
@@ -237,22 +241,33 @@ impl Motion {
         }
         let absent: &[&str] = match v.dimension {
             Some(1) => &["y", "z", "rotate"],
-            Some(2) => &["z"],
-            Some(3) => &["rotate"],
+            Some(2) => &["z", "axis"],
             _ => &[],
         };
         if let (Some(d), Some(key)) = (v.dimension, absent.iter().find(|key| v.has(key))) {
             let what = format!("there is no motion `{key}` in dimension {d}");
             let axes = ["x", "x and y", "x, y and z"][d.clamp(1, 3) - 1];
-            let help = format!("an obstacle moves along {axes} here; in the plane it also turns");
+            let turns = if d == 2 { ", and turns about the normal of the plane" } else { "" };
+            let help = format!("an obstacle moves along {axes} here{turns}");
             return v.wrong_key(key, what, format!("the case has dimension = {d}"), help);
+        }
+        if v.dimension == Some(3) && turns != v.has("axis") {
+            let (key, help) =
+                if turns { ("rotate", "add `axis = [x, y, z]`") } else { ("axis", "add `rotate`") };
+            let what = "`rotate` and `axis` belong together in dimension 3";
+            return v.wrong_key(key, what, "an obstacle turns about an axis by an angle", help);
+        }
+        if self.axis.as_ref().is_some_and(|axis| axis.iter().all(|x| *x == 0.0)) {
+            let why = "it is the direction of the axis of the rotation, so its length must be > 0";
+            return v.wrong("axis", "the axis is zero", why, "write for example axis = [0.0, 0.0, 1.0]");
         }
         let moves = displacements([&self.x, &self.y, &self.z]);
         if moves.is_empty() && !turns {
             let why = "a motion has at least one of `x`, `y`, `z` and `rotate`";
             return v.wrong_key("", "the motion is empty", why, "leave `motion` out for a fixed obstacle");
         }
-        Some(ObstacleMotion::Prescribed { moves, rotate: self.rotate.clone().zip(self.about.clone()) })
+        let rotate = self.rotate.clone().zip(self.about.clone());
+        Some(ObstacleMotion::Prescribed { moves, rotate, axis: self.axis.clone() })
     }
 }
 
@@ -326,6 +341,9 @@ pub enum ObstacleMotion {
         moves: Vec<(usize, FormulaSpec)>,
         /// Rotation in degrees, counter-clockwise, with its centre.
         rotate: Option<(FormulaSpec, Vec<f64>)>,
+        /// Direction of its axis, in space.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        axis: Option<Vec<f64>>,
     },
     /// The obstacle is free in translation and does not turn.
     Free {
@@ -344,12 +362,12 @@ impl ObstacleMotion {
         *self == Self::Fixed
     }
 
-    /// Number of nodes that represent the motion: one for the position, one for an angle; 0 if the
-    /// obstacle is fixed.
-    pub fn nodes(&self) -> usize {
+    /// Number of nodes that carry the obstacle in a space of some dimension: those of a simplex if it
+    /// turns, otherwise one; 0 if it is fixed.
+    pub fn nodes(&self, dimension: usize) -> usize {
         match self {
             Self::Fixed => 0,
-            Self::Prescribed { rotate: Some(_), .. } => 2,
+            Self::Prescribed { rotate: Some(_), .. } => dimension + 1,
             Self::Prescribed { .. } | Self::Free { .. } => 1,
         }
     }

@@ -6,6 +6,7 @@
 mod apart;
 mod both_sides;
 mod candidate;
+mod carrier;
 mod facets;
 mod facing;
 mod folds;
@@ -27,12 +28,13 @@ mod trajectory;
 mod way;
 
 pub use both_sides::BothSides;
+pub use carrier::Carrier;
 pub use facets::Depth;
 pub(crate) use facets::Facets;
 pub use folds::Side;
 pub(crate) use folds::{Folds, Turns};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
-pub use node_to_obstacle::{Carrier, NodeToObstacle};
+pub use node_to_obstacle::NodeToObstacle;
 pub use obstacle::{Faceted, Obstacle, Polyline, PolylineError};
 pub use one_way::OneWay;
 pub use passed::Passed;

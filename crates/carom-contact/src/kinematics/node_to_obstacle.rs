@@ -1,30 +1,23 @@
-//! Secondary nodes against a rigid obstacle, fixed or carried by a node c and turned by an angle θ.
+//! Secondary nodes against a rigid obstacle, fixed or carried by nodes (`carrier.rs`).
 //!
-//! With the signed distance G(p) of the shape (`obstacle/`), R = R(θ), and s = p − c₀ = Rᵀ(x − c):
-//!
-//! ```text
-//! g = G(p)      ∂g/∂x = R n = −∂g/∂c      ∂g/∂θ = −n·Js,   J = [0 −1; 1 0],   n = ∇G(p)
-//! ∂²g/∂x² = R H Rᵀ = ∂²g/∂c² = −∂²g/∂x∂c     ∂²g/∂x∂θ = R (Jn − H Js) = −∂²g/∂c∂θ     ∂²g/∂θ² = Js·H Js − n·s
-//! ```
-//!
-//! The slip has the rows ∂S/∂x = τ = −∂S/∂c of every tangent, and in the plane, with t = Jn and τ =
-//! R t,
+//! With the signed distance G(p) of the shape (`obstacle/`), n = ∇G and H = ∇²G, the place p of a node x
+//! in the coordinates of the shape, and γ = (1, −w₁, −w₂, …) over the node and the carrier,
 //!
 //! ```text
-//! ∂S/∂θ = −κ n·s,   κ = tan φ/φ,   φ = ½Δθ        dτ = −R n (h τ·(dx − dc) + (1 − h n·s) dθ),   H = h (1 − n nᵀ)
-//! d(n·s) = (h (t·s) τ + R n)·(dx − dc) + (1 − h n·s)(t·s) dθ
+//! g = G(p)      δp = F⁻¹ r,   r = Σ γ_k δy_k      ∂g/∂y_k = γ_k N,   N = F⁻ᵀ n
+//! ∂²g/∂y_k∂y_l = γ_k γ_l F⁻ᵀ H F⁻¹ − N ⊗ Ω_k γ_l − γ_k Ω_l ⊗ N      Ω_a = F⁻ᵀ ω_a of the carrier, 0 of the node
 //! ```
 //!
-//! A point that turns with the obstacle moves along a chord, 2 sin φ of the arm, whose middle has
-//! the arm cos φ: with κ the slip is zero for every Δθ < π, and the moment of friction, κ times its
-//! force times its arm, does the work that friction takes.
+//! The rows of the slip are γ_k τ of every tangent τ ⊥ N, so that it is zero for every rigid motion of
+//! node and obstacle: weights at the middle of a step are those of its ends. With m = N/|N|,
 //!
-//! The angle is the first component of a node of its own, as the arc θℓ, a length like every other
-//! unknown; the force on it is moment/ℓ. So motion of an obstacle is motion of nodes: supports
-//! prescribe it, masses make it free, and reactions and works are theirs.
+//! ```text
+//! ∂(γ_k τ)/∂y_l = −γ_k m ⊗ (γ_l F⁻ᵀ H F⁻¹ τ − (τ·Ω_l) N)/|N| − τ ⊗ Ω_k γ_l
+//! ```
 
 use carom_algebra::Vector;
 
+use super::carrier::{Carrier, Local};
 use super::obstacle::{AtCorner, Near, Obstacle, Point, dot};
 use super::passed::Passed;
 use super::tangents::tangents;
@@ -32,18 +25,6 @@ use super::way::{SHARE, share};
 use super::{Kinematics, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
-
-/// The nodes that carry an obstacle.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Carrier {
-    /// Global number of the node that it moves with.
-    pub node: usize,
-    /// Position of this node for which the shape is given.
-    pub origin: [f64; 3],
-    /// The node whose first component is the arc of the rotation about `node`, that component at
-    /// rest, and the radius ℓ of the arc; none: the obstacle does not turn.
-    pub turn: Option<(usize, f64, f64)>,
-}
 
 /// A rigid obstacle as primary.
 #[derive(Clone, Debug)]
@@ -56,14 +37,6 @@ pub struct NodeToObstacle {
     lengths: Vec<f64>,
     /// Depth that each node keeps; empty if none does.
     kept: Vec<f64>,
-}
-
-/// A point in the coordinates of the shape, with sin θ and cos θ.
-struct Local {
-    at: Point,
-    /// s = p − c₀; zero without a carrier.
-    arm: Point,
-    turn: [f64; 2],
 }
 
 impl NodeToObstacle {
@@ -91,15 +64,8 @@ impl NodeToObstacle {
     }
 
     fn local(&self, node: usize, y: &[f64]) -> Local {
-        let x = self.position(node, y);
-        let Some(Carrier { node, origin, turn }) = &self.carrier else {
-            return Local { at: x, arm: [0.0; 3], turn: [0.0, 1.0] };
-        };
-        let c = self.position(*node, y);
-        let (sin, cos) =
-            turn.map_or((0.0, 1.0), |(n, rest, l)| ((y[n * self.dimension] - rest) / l).sin_cos());
-        let arm = rotated([x[0] - c[0], x[1] - c[1], x[2] - c[2]], [-sin, cos]);
-        Local { at: std::array::from_fn(|i| origin[i] + arm[i]), arm, turn: [sin, cos] }
+        let place = self.position(node, y);
+        self.carrier.as_ref().map_or(Local::fixed(place), |carrier| carrier.local(place, y, self.dimension))
     }
 
     /// The piece that an inactive node faces: the closest one outside, and inside that through
@@ -133,48 +99,33 @@ impl NodeToObstacle {
         tangents(Vector(normal), pair.tangential.tangents).map(|tangent| tangent.0)
     }
 
-    /// κ = tan φ/φ and its derivative by φ, with half of the angle by which the obstacle turns.
-    fn chord(&self, moved: &[f64]) -> [f64; 2] {
-        let turn = self.carrier.as_ref().and_then(|carrier| carrier.turn);
-        let half = turn.map_or(0.0, |(angle, _, length)| {
-            0.5 * moved.get(angle * self.dimension).copied().unwrap_or(0.0) / length
-        });
-        if half.abs() < 1e-3 {
-            let square = half * half;
-            return [1.0 + square / 3.0 + square * square * 2.0 / 15.0, half * (2.0 + square * 1.6) / 3.0];
-        }
-        let tan = half.tan();
-        [tan / half, (1.0 + tan * tan) / half - tan / (half * half)]
+    /// γ of the node of a pair and of those of the carrier.
+    fn factors(&self, local: &Local) -> Vec<f64> {
+        let carrier = self.carrier.as_ref().map_or(0, |carrier| carrier.nodes.len());
+        std::iter::once(1.0).chain(local.weights[..carrier].iter().map(|weight| -weight)).collect()
     }
 
-    /// Adds the row of a node with its gradient, that of the node which carries the obstacle, and
-    /// the moment about that.
-    fn push(&self, gap: f64, node: usize, [own, back]: [Point; 2], moment: f64, rows: &mut Rows) {
-        let Some(Carrier { node: carrier, turn, .. }) = &self.carrier else {
-            return rows.push(gap, [(node, own)]);
-        };
-        match turn {
-            None => rows.push(gap, [(node, own), (*carrier, back)]),
-            Some((angle, _, length)) => {
-                let along = [moment / length, 0.0, 0.0];
-                rows.push(gap, [(node, own), (*carrier, back), (*angle, along)]);
-            }
-        }
+    /// Ω of the same nodes.
+    fn slopes(&self, local: &Local) -> Vec<Point> {
+        let carrier = self.carrier.as_ref().map_or(0, |carrier| carrier.nodes.len());
+        std::iter::once([0.0; 3]).chain((0..carrier).map(|a| local.slope(a))).collect()
     }
 
-    /// Number of nodes of a row: the node, and those that carry the obstacle.
-    fn stencil(&self) -> usize {
-        self.carrier.as_ref().map_or(1, |carrier| if carrier.turn.is_some() { 3 } else { 2 })
+    /// Adds the row γ_k v over a node and the carrier.
+    fn push(&self, gap: f64, node: usize, local: &Local, v: Point, rows: &mut Rows) {
+        let carrier = self.carrier.iter().flat_map(|carrier| carrier.nodes.iter().copied());
+        let nodes = std::iter::once(node).chain(carrier);
+        rows.push(gap, nodes.zip(self.factors(local)).map(|(node, factor)| (node, v.map(|x| factor * x))));
     }
 
-    /// Fills the blocks of a node and of the one that carries the obstacle with `entry(i, k)`, with
-    /// the other sign between the two.
-    fn fill(&self, matrix: &mut [f64], entry: impl Fn(usize, usize) -> f64) {
-        let (d, size) = (self.dimension, self.stencil() * self.dimension);
-        let blocks = self.stencil().min(2);
-        for (p, q) in (0..blocks).flat_map(|p| (0..blocks).map(move |q| (p, q))) {
-            for (i, k) in (0..d).flat_map(|i| (0..d).map(move |k| (i, k))) {
-                matrix[(p * d + i) * size + q * d + k] = sign(p) * sign(q) * entry(i, k);
+    /// Overwrites the matrix over a node and the carrier, and over axes, with `entry([k, l], [i, j])`.
+    fn fill(&self, matrix: &mut [f64], entry: impl Fn([usize; 2], [usize; 2]) -> f64) {
+        let d = self.dimension;
+        let blocks = 1 + self.carrier.as_ref().map_or(0, |carrier| carrier.nodes.len());
+        let size = blocks * d;
+        for (row, values) in matrix[..size * size].chunks_exact_mut(size).enumerate() {
+            for (column, value) in values.iter_mut().enumerate() {
+                *value = entry([row / d, column / d], [row % d, column % d]);
             }
         }
     }
@@ -208,10 +159,8 @@ impl Kinematics for NodeToObstacle {
 
     fn tips(&self, y: &[f64]) -> Vec<([f64; 3], f64)> {
         let placed = |(at, radius): (Point, f64)| {
-            let Some(Carrier { node, origin, .. }) = &self.carrier else { return (at, radius) };
-            let c = self.position(*node, y);
-            let arm = rotated(std::array::from_fn(|i| at[i] - origin[i]), self.local(0, y).turn);
-            (std::array::from_fn(|i| c[i] + arm[i]), radius)
+            let moved = self.carrier.as_ref().map(|carrier| carrier.placed(at, y, self.dimension));
+            (moved.unwrap_or(at), radius)
         };
         self.shape.tips().into_iter().map(placed).collect()
     }
@@ -266,7 +215,7 @@ impl Kinematics for NodeToObstacle {
     }
 
     fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
-        let turns = self.carrier.as_ref().is_some_and(|carrier| carrier.turn.is_some());
+        let turns = self.carrier.as_ref().is_some_and(Carrier::turns);
         let met = |&node: &usize| {
             let [from, to] = [before, now].map(|y| self.local(self.secondary[node], y).at);
             // The path relative to an obstacle that turns is not straight.
@@ -292,99 +241,77 @@ impl Kinematics for NodeToObstacle {
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
-        let Local { at, arm, turn } = self.local(node, y);
-        pair.facet = self.measured(pair, at);
-        let mut near = self.near(pair.facet, at, node)?;
-        near.gap += self.kept(pair.node);
-        let n = rotated(near.normal, turn);
-        let moment = -dot(near.normal, turned(arm));
-        self.push(near.gap, node, [n, n.map(|n| -n)], moment, rows);
+        let local = self.local(node, y);
+        pair.facet = self.measured(pair, local.at);
+        let near = self.near(pair.facet, local.at, node)?;
+        self.push(near.gap + self.kept(pair.node), node, &local, local.forth(near.normal), rows);
         Ok(())
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        let (d, size) = (self.dimension, self.stencil() * self.dimension);
-        let curvature = &mut curvature[..size * size];
-        curvature.fill(0.0);
-        let Local { at, arm, turn } = self.local(self.secondary[pair.node], y);
-        let Some(Near { normal, bend, straight, .. }) = self.shape.near(pair.facet, at) else { return };
-        let n = rotated(normal, turn);
-        self.fill(curvature, |i, k| {
+        let local = self.local(self.secondary[pair.node], y);
+        let Some(Near { normal, bend, straight, .. }) = self.shape.near(pair.facet, local.at) else {
+            self.fill(curvature, |_, _| 0.0);
+            return;
+        };
+        let n = local.forth(normal);
+        let bent = |k: usize, i: usize| {
             let same = if i == k { 1.0 } else { 0.0 };
-            bend * (same - (n[i] * n[k] + straight[i] * straight[k]))
+            bend * (same - (normal[i] * normal[k] + straight[i] * straight[k]))
+        };
+        // F⁻ᵀ H F⁻¹ by columns.
+        let unit = |j: usize| -> Point { std::array::from_fn(|i| if i == j { 1.0 } else { 0.0 }) };
+        let column = |j: usize| {
+            let back = local.back(unit(j));
+            local.forth(std::array::from_fn(|i| (0..3).map(|k| bent(k, i) * back[k]).sum()))
+        };
+        let shape = [column(0), column(1), column(2)];
+        let factors = self.factors(&local);
+        let slopes = self.slopes(&local);
+        self.fill(curvature, |[k, l], [i, j]| {
+            let turns = n[i] * slopes[k][j] * factors[l] + factors[k] * slopes[l][i] * n[j];
+            factors[k] * factors[l] * shape[j][i] - turns
         });
-        let Some((_, _, length)) = self.carrier.as_ref().and_then(|carrier| carrier.turn) else { return };
-        let (arm_turned, normal_turned) = (turned(arm), turned(normal));
-        let along = dot(normal, arm_turned);
-        let bent: Point = std::array::from_fn(|i| bend * (arm_turned[i] - along * normal[i]));
-        let mixed = rotated(std::array::from_fn(|i| normal_turned[i] - bent[i]), turn);
-        let angle = 2 * d;
-        for (p, i) in (0..2).flat_map(|p| (0..d).map(move |i| (p, i))) {
-            let entry = sign(p) * mixed[i] / length;
-            curvature[(p * d + i) * size + angle] = entry;
-            curvature[angle * size + p * d + i] = entry;
-        }
-        curvature[angle * size + angle] = (dot(arm_turned, bent) - dot(normal, arm)) / (length * length);
     }
 
-    fn slip(&self, pair: &Pair, y: &[f64], moved: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+    fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
-        let Local { at, arm, turn } = self.local(node, y);
-        let normal = self.near(pair.facet, at, node)?.normal;
-        for along in self.tangents(pair, rotated(normal, turn)).into_iter().take(self.dimension - 1) {
-            let moment = -self.chord(moved)[0] * dot(normal, arm);
-            self.push(0.0, node, [along, along.map(|x| -x)], moment, rows);
+        let local = self.local(node, y);
+        let normal = local.forth(self.near(pair.facet, local.at, node)?.normal);
+        for along in self.tangents(pair, unit(normal)).into_iter().take(self.dimension - 1) {
+            self.push(0.0, node, &local, along, rows);
         }
         Ok(())
     }
 
-    fn slip_derivative_into(
-        &self,
-        pair: &Pair,
-        y: &[f64],
-        moved: &[f64],
-        tangent: usize,
-        matrix: &mut [f64],
-    ) {
-        let (d, size) = (self.dimension, self.stencil() * self.dimension);
-        let matrix = &mut matrix[..size * size];
-        matrix.fill(0.0);
-        let Local { at, arm, turn } = self.local(self.secondary[pair.node], y);
-        let Some(near) = self.shape.near(pair.facet, at) else { return };
-        let Near { normal, bend, .. } = near;
-        let n = rotated(normal, turn);
-        let along = self.tangents(pair, n)[tangent];
-        let bent = near.bent(along);
-        self.fill(matrix, |i, k| -n[i] * bent[k]);
-        let Some((_, _, length)) = self.carrier.as_ref().and_then(|carrier| carrier.turn) else { return };
-        let [factor, slope] = self.chord(moved);
-        let [across, beside] = [normal, turned(normal)].map(|direction| dot(direction, arm));
-        let turns = 1.0 - bend * across;
-        let angle = 2 * d;
-        for (p, i) in (0..2).flat_map(|p| (0..d).map(move |i| (p, i))) {
-            matrix[(p * d + i) * size + angle] = -sign(p) * n[i] * turns / length;
-            matrix[angle * size + p * d + i] = -sign(p) * factor * (bend * beside * along[i] + n[i]) / length;
-        }
-        matrix[angle * size + angle] = -(factor * turns * beside + slope * across) / (length * length);
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
+        let local = self.local(self.secondary[pair.node], y);
+        let Some(near) = self.shape.near(pair.facet, local.at) else {
+            self.fill(matrix, |_, _| 0.0);
+            return;
+        };
+        let normal = local.forth(near.normal);
+        let size = dot(normal, normal).sqrt();
+        let along = self.tangents(pair, unit(normal))[tangent];
+        let bent = local.forth(near.bent(local.back(along)));
+        let factors = self.factors(&local);
+        let slopes = self.slopes(&local);
+        self.fill(matrix, |[k, l], [i, j]| {
+            let turned = (factors[l] * bent[j] - dot(along, slopes[l]) * normal[j]) / size;
+            -factors[k] * normal[i] / size * turned - along[i] * slopes[k][j] * factors[l]
+        });
     }
 }
 
-/// R v of a vector of the plane, with sin θ and cos θ.
-fn rotated(v: Point, [sin, cos]: [f64; 2]) -> Point {
-    if sin == 0.0 && cos == 1.0 {
-        return v;
-    }
-    [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]]
+/// A vector as one of length one; the same bits if it has that length.
+fn unit(v: Point) -> Point {
+    let size = dot(v, v).sqrt();
+    if (size - 1.0).abs() <= f64::EPSILON { v } else { v.map(|x| x / size) }
 }
 
 /// J v.
 fn turned(v: Point) -> Point {
     [-v[1], v[0], 0.0]
-}
-
-/// The sign of a block: of a node, or of the one that carries the obstacle.
-fn sign(block: usize) -> f64 {
-    if block == 0 { 1.0 } else { -1.0 }
 }
 
 #[cfg(test)]

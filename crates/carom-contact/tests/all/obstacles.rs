@@ -60,7 +60,7 @@ fn impossible_polylines_are_named() {
     assert_eq!(round, PolylineError::TooRound { first: 1, second: 2, taken: 3.0, length: 2.0 });
 }
 
-/// A node, a carrier and an angle, near every kind of piece.
+/// A node, and one or three nodes of a carrier, near every kind of piece.
 fn scenes() -> Vec<(NodeToObstacle, Vec<f64>)> {
     let room = [[2.0, 0.0], [0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]];
     let round = |points: &[[f64; 2]]| Obstacle::Polyline(Polyline::new(points, 0.4).unwrap());
@@ -76,11 +76,14 @@ fn scenes() -> Vec<(NodeToObstacle, Vec<f64>)> {
     let mut scenes = Vec::new();
     for (shape, at) in shapes {
         let fixed = NodeToObstacle::new(vec![0], 2, shape);
-        let carrier = Carrier { node: 1, origin: [0.2, 0.3, 0.0], turn: None };
-        let turning = Carrier { turn: Some((2, 0.7, 1.3)), ..carrier.clone() };
+        let carrier = Carrier { nodes: vec![1], origin: [0.2, 0.3, 0.0], length: 1.3 };
+        let turning = Carrier { nodes: vec![1, 2, 3], ..carrier.clone() };
+        // Turned by 0.04 and moved.
+        let (sin, cos) = 0.04_f64.sin_cos();
+        let simplex = [0.21, 0.33, 0.21 + 1.3 * cos, 0.33 + 1.3 * sin, 0.21 - 1.3 * sin, 0.33 + 1.3 * cos];
         scenes.push((fixed.clone(), at.to_vec()));
         scenes.push((fixed.clone().carried_by(carrier), [&at[..], &[0.21, 0.33]].concat()));
-        scenes.push((fixed.carried_by(turning), [&at[..], &[0.21, 0.33, 0.75, 0.0]].concat()));
+        scenes.push((fixed.carried_by(turning), [&at[..], &simplex].concat()));
     }
     scenes
 }
@@ -96,10 +99,8 @@ fn the_gap_does_not_see_a_rigid_motion() {
     let (contact, y) = scenes().swap_remove(11);
     let (before, _) = measured(&contact, &mut Pair::open(0, 0, 0.0), &y);
     let (sin, cos) = 0.6_f64.sin_cos();
-    let arm = [y[0] - y[2], y[1] - y[3]];
-    let center = [y[2] + 3.0, y[3] - 1.0];
-    let x = [center[0] + cos * arm[0] - sin * arm[1], center[1] + sin * arm[0] + cos * arm[1]];
-    let moved = [x[0], x[1], center[0], center[1], y[4] + 0.6 * 1.3, 0.0];
+    let turned = |[x, y]: &[f64; 2]| [cos * x - sin * y + 3.0, sin * x + cos * y - 1.0];
+    let moved: Vec<f64> = y.as_chunks::<2>().0.iter().flat_map(turned).collect();
     close(before, measured(&contact, &mut Pair::open(0, 0, 0.0), &moved).0);
 }
 
@@ -189,7 +190,7 @@ fn a_path_through_an_obstacle_is_found_with_its_depth() {
     let room = Obstacle::circle(&[1.0, 1.0], 0.5, true);
     assert_eq!(passed(&room, [0.5, 1.0], [1.5, 1.0]), None);
     // In the frame of an obstacle that moves with node 1: it passes the node.
-    let carrier = Carrier { node: 1, origin: [1.0, 1.0, 0.0], turn: None };
+    let carrier = Carrier { nodes: vec![1], origin: [1.0, 1.0, 0.0], length: 1.0 };
     let moving = NodeToObstacle::new(vec![0], 2, circle).with_lengths(vec![0.1]).carried_by(carrier);
     assert!(moving.passed(&[1.0, 2.0, 1.0, 1.0], &[1.0, 2.0, 1.0, 4.0], 0.01).is_some());
     assert!(moving.passed(&[1.0, 2.0, 1.0, 1.0], &[1.0, 5.0, 1.0, 4.0], 0.01).is_none());

@@ -141,11 +141,25 @@ pub(crate) fn scenes() -> Vec<(NodeToObstacle, Vec<f64>)> {
     ];
     let mut scenes = Vec::new();
     for (shape, at) in shapes {
-        let carrier = Carrier { node: 1, origin: [0.1, -0.3, 0.2], turn: None };
+        let carrier = Carrier { nodes: vec![1], origin: [0.1, -0.3, 0.2], length: 0.8 };
+        let turning = Carrier { nodes: vec![1, 2, 3, 4], ..carrier.clone() };
+        // Moved, and turned by a little about an axis across space.
+        let simplex: Vec<f64> =
+            turning.places(3).as_chunks::<3>().0.iter().flat_map(|x| tilted(*x)).collect();
+        scenes.push((contact(shape.clone()).carried_by(turning), [&at[..], &simplex].concat()));
         scenes.push((contact(shape.clone()), at.to_vec()));
         scenes.push((contact(shape).carried_by(carrier), [&at[..], &[0.12, -0.33, 0.21]].concat()));
     }
     scenes
+}
+
+/// A place turned by 0.03 about an axis through the origin, and moved by a little.
+fn tilted(x: [f64; 3]) -> [f64; 3] {
+    let axis = [2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0];
+    let (sin, cos) = 0.03_f64.sin_cos();
+    let along = (0..3).map(|i| axis[i] * x[i]).sum::<f64>();
+    let across = |i: usize| axis[(i + 1) % 3] * x[(i + 2) % 3] - axis[(i + 2) % 3] * x[(i + 1) % 3];
+    std::array::from_fn(|i| cos * x[i] + sin * across(i) + (1.0 - cos) * along * axis[i] + 0.01 * i as f64)
 }
 
 #[test]

@@ -13,7 +13,8 @@ fn scenes(height: f64) -> Vec<(Box<dyn Kinematics>, Vec<f64>, bool)> {
         (Box::new(contact) as Box<dyn Kinematics>, y, true)
     };
     let mut scenes: Vec<_> = SHAPES.into_iter().map(of_shape).collect();
-    let carrier = Carrier { node: 1, origin: [0.1, -0.3, 0.2], turn: None };
+    let carrier = Carrier { nodes: vec![1], origin: [0.1, -0.3, 0.2], length: 0.6 };
+    let turning = Carrier { nodes: vec![1, 2, 3, 4], ..carrier.clone() };
     for shape in [
         Obstacle::plane(&[0.0, 0.0, 0.0], &[0.6, 0.48, 0.64]),
         Obstacle::circle(&[0.1, -0.4, 0.3], 0.5, false),
@@ -21,6 +22,8 @@ fn scenes(height: f64) -> Vec<(Box<dyn Kinematics>, Vec<f64>, bool)> {
         Obstacle::cylinder(&[0.1, -0.4, 0.3], &[0.3, 0.6, -0.2], 0.5, false),
         Obstacle::cylinder(&[0.1, -0.4, 0.3], &[0.3, 0.6, -0.2], 1.5, true),
     ] {
+        let contact = NodeToObstacle::new(vec![0], 3, shape.clone()).carried_by(turning.clone());
+        scenes.push((Box::new(contact), [&[0.23, height, 0.7], &turning.places(3)[..]].concat(), true));
         let contact = NodeToObstacle::new(vec![0], 3, shape).carried_by(carrier.clone());
         scenes.push((Box::new(contact), vec![0.23, height, 0.7, 0.1, -0.3, 0.2], false));
     }

@@ -21,7 +21,7 @@ pub use friction::Friction;
 pub use loads::{Amplitude, Load, Loads, LoadsAt, Weight};
 pub use manufactured::Manufactured;
 pub use mass::Mass;
-pub use motion::{Motions, Prescribed};
+pub use motion::{Motion, Motions, Prescribed, Turn};
 pub use points::{Circular, Point, Points};
 pub use probe::{Probe, Quantity, von_mises};
 pub use redistribution::redistribute;

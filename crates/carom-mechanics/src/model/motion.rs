@@ -1,4 +1,4 @@
-//! Moving supports: y = X + u(X, t) with v = u̇ and a = ü from the formula's own derivatives. The
+//! Prescribed motions: y = X + u(X, t) with v = u̇ and a = ü from the formulas' own derivatives. The
 //! scheme's relations between d, v and a are not used for these dofs, so they cannot ring, and
 //! their inertia M a acts on their neighbours.
 
@@ -6,19 +6,53 @@ use carom_formula::Formula;
 
 use super::formulas::{Arguments, NoValue, finite, points};
 
+/// What moves prescribed dofs.
+#[derive(Clone, Debug)]
+pub enum Motion {
+    /// A displacement by a formula of position and time, with its label in messages.
+    Displacement {
+        /// Label.
+        label: String,
+        /// Displacement along the axis of the dof.
+        formula: Formula,
+    },
+    /// A rigid motion.
+    Rigid(Turn),
+}
+
+/// A rigid motion: with the centre c, the displacement m of the centre and the rotation R by an angle
+/// θ about an axis k,
+///
+/// ```text
+/// u = m + R r − r,   u̇ = ṁ + θ̇ k × R r,   ü = m̈ + θ̈ k × R r + θ̇² k × (k × R r),   r = X − c
+/// ```
+#[derive(Clone, Debug)]
+pub struct Turn {
+    /// Label in messages.
+    pub label: String,
+    /// Displacements m by axis, formulas of time; those without are zero.
+    pub moves: Vec<Option<Formula>>,
+    /// θ in degrees, a formula of time.
+    pub angle: Formula,
+    /// c.
+    pub centre: Vec<f64>,
+    /// k, of length one; along the third axis in the plane.
+    pub axis: [f64; 3],
+}
+
 /// A prescribed dof.
 #[derive(Clone, Debug)]
 struct Moved {
     dof: usize,
-    /// Index into `formulas`.
-    formula: usize,
+    /// Index into `motions`.
+    motion: usize,
     place: Vec<f64>,
 }
 
 /// All prescribed motions of a model.
 #[derive(Default)]
 pub struct Motions {
-    formulas: Vec<(String, Formula)>,
+    motions: Vec<Motion>,
     moved: Vec<Moved>,
 }
 
@@ -32,15 +66,11 @@ pub struct Prescribed {
 }
 
 impl Motions {
-    /// Prescribed displacements by formulas of position and time: formulas with their labels, and
-    /// each prescribed dof once, ascending, with the index of its formula and its reference
-    /// position.
-    pub fn new(
-        formulas: Vec<(String, Formula)>,
-        moved: impl IntoIterator<Item = (usize, usize, Vec<f64>)>,
-    ) -> Self {
-        let moved = moved.into_iter().map(|(dof, formula, place)| Moved { dof, formula, place }).collect();
-        Self { formulas, moved }
+    /// Prescribed motions, and each prescribed dof once, ascending, with the index of its motion and
+    /// its reference position.
+    pub fn new(motions: Vec<Motion>, moved: impl IntoIterator<Item = (usize, usize, Vec<f64>)>) -> Self {
+        let moved = moved.into_iter().map(|(dof, motion, place)| Moved { dof, motion, place }).collect();
+        Self { motions, moved }
     }
 
     /// Whether there are none.
@@ -59,30 +89,148 @@ impl Motions {
     /// The first formula without a finite value or derivative.
     pub fn at(&self, time: f64, out: &mut Vec<Prescribed>) -> Result<(), NoValue> {
         out.clear();
-        let mut given: Vec<_> = (0..self.formulas.len()).map(|k| self.given(k, time).into_iter()).collect();
+        let now = (0..self.motions.len()).map(|k| self.now(k, time));
+        let mut now: Vec<Now> = now.collect::<Result<_, _>>()?;
         for moved in &self.moved {
-            let (label, formula) = &self.formulas[moved.formula];
-            let motion = match formula.function() {
-                Some(_) => given[moved.formula].next().unwrap_or([f64::NAN; 3]),
-                None => {
-                    formula.with_derivatives(Arguments::new(&moved.place, time).as_slice(), moved.place.len())
+            let d = moved.place.len();
+            let motion = match (&self.motions[moved.motion], &mut now[moved.motion]) {
+                (Motion::Displacement { label, formula }, Now::Given(values)) => {
+                    let motion = match formula.function() {
+                        Some(_) => values.next().unwrap_or([f64::NAN; 3]),
+                        None => formula.with_derivatives(Arguments::new(&moved.place, time).as_slice(), d),
+                    };
+                    for value in motion {
+                        finite(value, formula, label, &moved.place, time)?;
+                    }
+                    motion
                 }
+                (Motion::Rigid(turn), Now::Turned(pose)) => turn.at(pose, &moved.place, moved.dof % d),
+                _ => [0.0; 3],
             };
-            for value in motion {
-                finite(value, formula, label, &moved.place, time)?;
-            }
             out.push(Prescribed { dof: moved.dof, motion });
         }
         Ok(())
     }
 
-    /// Displacements of the dofs of formula `k` with their derivatives, if it is a function of a
-    /// program, which is called once.
-    fn given(&self, k: usize, time: f64) -> Vec<[f64; 3]> {
-        let Some(function) = self.formulas[k].1.function() else { return Vec::new() };
-        let moved = self.moved.iter().filter(|moved| moved.formula == k);
+    /// What is found once for all dofs of a motion.
+    fn now(&self, k: usize, time: f64) -> Result<Now, NoValue> {
+        match &self.motions[k] {
+            Motion::Displacement { formula, .. } => Ok(Now::Given(self.given(k, formula, time).into_iter())),
+            Motion::Rigid(turn) => Ok(Now::Turned(turn.pose(time)?)),
+        }
+    }
+
+    /// Displacements of the dofs of motion `k` with their derivatives, if its formula is a function
+    /// of a program, which is called once.
+    fn given(&self, k: usize, formula: &Formula, time: f64) -> Vec<[f64; 3]> {
+        let Some(function) = formula.function() else { return Vec::new() };
+        let moved = self.moved.iter().filter(|moved| moved.motion == k);
         let places: Vec<&[f64]> = moved.map(|moved| moved.place.as_slice()).collect();
         let Some(width) = places.first().map(|place| place.len() + 1) else { return Vec::new() };
         function.with_derivatives(&points(&places, time), width)
+    }
+}
+
+/// A motion at a time.
+enum Now {
+    /// Values of a function of a program.
+    Given(std::vec::IntoIter<[f64; 3]>),
+    Turned(Pose),
+}
+
+/// A rigid motion at a time: m by axis, and θ in radians, with their derivatives.
+struct Pose {
+    moves: Vec<[f64; 3]>,
+    angle: [f64; 3],
+}
+
+impl Turn {
+    fn pose(&self, time: f64) -> Result<Pose, NoValue> {
+        let at = |formula: &Formula| -> Result<[f64; 3], NoValue> {
+            let place = &self.centre;
+            let values = match formula.function() {
+                Some(function) => {
+                    let found = function.with_derivatives(&points(&[place], time), place.len() + 1);
+                    found.first().copied().unwrap_or([f64::NAN; 3])
+                }
+                None => formula.with_derivatives(Arguments::new(place, time).as_slice(), place.len()),
+            };
+            for value in values {
+                finite(value, formula, &self.label, place, time)?;
+            }
+            Ok(values)
+        };
+        let moves = self.moves.iter().map(|formula| formula.as_ref().map_or(Ok([0.0; 3]), at));
+        let moves = moves.collect::<Result<_, _>>()?;
+        Ok(Pose { moves, angle: at(&self.angle)?.map(f64::to_radians) })
+    }
+
+    /// u, u̇ and ü of a place along an axis.
+    fn at(&self, pose: &Pose, place: &[f64], i: usize) -> [f64; 3] {
+        let k = self.axis;
+        let r: [f64; 3] = std::array::from_fn(|i| place.get(i).map_or(0.0, |x| x - self.centre[i]));
+        let [angle, rate, change] = pose.angle;
+        let (sin, cos) = angle.sin_cos();
+        // 1 − cos θ without cancellation.
+        let half = (0.5 * angle).sin();
+        let versine = 2.0 * half * half;
+        let along = dot(k, r);
+        let aside = cross(k, r);
+        // R r − r and R r, by the formula of Rodrigues.
+        let turned: [f64; 3] = std::array::from_fn(|i| sin * aside[i] + versine * (along * k[i] - r[i]));
+        let now: [f64; 3] = std::array::from_fn(|i| cos * r[i] + sin * aside[i] + versine * along * k[i]);
+        let swept = cross(k, now);
+        let inwards = cross(k, swept);
+        let [m, v, a] = pose.moves.get(i).copied().unwrap_or([0.0; 3]);
+        [m + turned[i], v + rate * swept[i], a + change * swept[i] + rate * rate * inwards[i]]
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| {
+        let [j, k] = [(i + 1) % 3, (i + 2) % 3];
+        a[j] * b[k] - a[k] * b[j]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lengths are kept, and velocities and accelerations are the differences of displacements.
+    #[test]
+    fn a_turn_is_rigid_and_its_derivatives_are_those_of_differences() {
+        let read = |text: &str| Formula::parse(text, &["X", "Y", "Z", "t"]).unwrap();
+        let turn = Turn {
+            label: "the cam".to_owned(),
+            moves: vec![Some(read("0.1*t")), None, Some(read("t^2"))],
+            angle: read("90*t^2"),
+            centre: vec![0.3, -0.2, 0.1],
+            axis: [2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0],
+        };
+        let places = [vec![1.0, 0.5, -0.3], vec![-0.4, 0.9, 0.2]];
+        let moved = (0..6).map(|dof| (dof, 0, places[dof / 3].clone()));
+        let motions = Motions::new(vec![Motion::Rigid(turn)], moved);
+        let at = |time: f64| {
+            let mut out = Vec::new();
+            motions.at(time, &mut out).unwrap();
+            out
+        };
+        let now = at(0.7);
+        let y = |i: usize| places[i / 3][i % 3] + now[i].motion[0];
+        let apart = |f: &dyn Fn(usize) -> f64| (0..3).map(|i| (f(i) - f(i + 3)).powi(2)).sum::<f64>();
+        assert!((apart(&y) - apart(&|i| places[i / 3][i % 3])).abs() < 1e-14);
+        let h = 1e-4;
+        let [before, after] = [at(0.7 - h), at(0.7 + h)];
+        for i in 0..6 {
+            let [u, v, a] = now[i].motion;
+            let [low, high] = [before[i].motion[0], after[i].motion[0]];
+            assert!(((high - low) / (2.0 * h) - v).abs() < 1e-6, "{i}");
+            assert!(((high - 2.0 * u + low) / (h * h) - a).abs() < 1e-5, "{i}");
+        }
     }
 }

@@ -8,7 +8,7 @@ use carom_time::schemes::energy_momentum::EnergyMomentum;
 use carom_time::{ForceRule, Kernel, Memory, Scheme, Stage};
 
 use crate::contact::constraints::Constraints;
-use crate::model::{Friction, Load, Loads, Model, Motions};
+use crate::model::{Friction, Load, Loads, Model, Motion, Motions};
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::{Iterate, Spare};
 use crate::stage::linear_problem::LinearProblem;
@@ -371,7 +371,8 @@ fn pressed(on: &str, pressure: &str) -> Model {
     right.sort_unstable();
     let place = |node: usize| parts[0].body.mesh().nodes[node].to_vec();
     let moved = right.iter().flat_map(|&node| [0, 1].map(|axis| (2 * node + axis, axis, place(node))));
-    let motions = ["0.1*t", "t^2"].map(|text| ("the right side".to_owned(), read(text))).to_vec();
+    let along = |text| Motion::Displacement { label: "the right side".to_owned(), formula: read(text) };
+    let motions = ["0.1*t", "t^2"].map(along).to_vec();
     let motions = Motions::new(motions, moved);
     let mut loads = Loads::default();
     let side = loaded(&parts[0], on);

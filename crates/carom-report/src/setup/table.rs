@@ -188,9 +188,10 @@ fn contact(contact: &ContactSpec, units: &Units) -> Row {
     let motion = match &contact.motion {
         ObstacleMotion::Fixed => Markup::default(),
         ObstacleMotion::Free { mass, .. } => html! { ", free, mass " (given(*mass)) " " (units.mass) },
-        ObstacleMotion::Prescribed { moves: moved, rotate } => html! {
+        ObstacleMotion::Prescribed { moves: moved, rotate, axis } => html! {
             @if !moved.is_empty() { ", " (moves(moved, &units.length)) }
             @if let Some((angle, _)) = rotate { ", angle = " code { (angle) } " degrees" }
+            @if let Some(axis) = axis { " about " (format!("{axis:?}")) }
         },
     };
     let friction = &contact.friction;

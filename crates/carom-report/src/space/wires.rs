@@ -1,7 +1,8 @@
 //! Rigid obstacles in space as lines on their surfaces, near the bodies: a grid on a plane, circles
 //! on a sphere, circles and lines on a cylinder, edges of a triangulated surface.
 
-use carom_case::{ContactSpec, PrimarySpec};
+use carom_case::{ContactSpec, ObstacleMotion, PrimarySpec};
+use carom_formula::Formula;
 use carom_record::Run;
 
 use super::skin::Place;
@@ -23,13 +24,29 @@ pub(crate) struct Wire {
     /// Columns of its position, and where it is at first.
     center: [String; 3],
     origin: Place,
+    /// How it turns about that place.
+    turn: Option<Turn>,
+}
+
+/// The rotation of an obstacle.
+struct Turn {
+    /// Angle in degrees over time.
+    angle: Formula,
+    axis: Place,
 }
 
 /// The obstacles of a run whose bodies fill a box.
 pub(crate) fn wires(run: &Recorded, [low, high]: [Place; 2]) -> Vec<Wire> {
     let of = |contact: &ContactSpec| {
         let surface = run.manifest.surfaces.get(&contact.name);
-        one(&contact.name, &contact.primary, surface.map_or(&[], Vec::as_slice), [low, high])
+        let wire = one(&contact.name, &contact.primary, surface.map_or(&[], Vec::as_slice), [low, high])?;
+        let ObstacleMotion::Prescribed { rotate: Some((angle, about)), axis: Some(axis), .. } =
+            &contact.motion
+        else {
+            return Some(wire);
+        };
+        let turn = Turn { angle: angle.formula(&["t"]).ok()?, axis: unit(place(axis)?) };
+        Some(Wire { origin: place(about)?, turn: Some(turn), ..wire })
     };
     run.case.contacts.iter().filter_map(of).collect()
 }
@@ -120,7 +137,7 @@ fn one(name: &str, primary: &PrimarySpec, surface: &[[Place; 2]], [low, high]: [
     let pieces = lines.iter().flat_map(|line: &Vec<Place>| line.windows(2)).map(|w| [w[0], w[1]]);
     let segments: Vec<[Place; 2]> = pieces.filter(|piece| is_whole || piece.iter().all(is_near)).collect();
     let center = ["x", "y", "z"].map(|axis| format!("{name}.center_{axis}"));
-    (!segments.is_empty()).then_some(Wire { segments, center, origin })
+    (!segments.is_empty()).then_some(Wire { segments, center, origin, turn: None })
 }
 
 impl Wire {
@@ -129,15 +146,28 @@ impl Wire {
         &self.segments
     }
 
-    /// How far it has moved at a recorded time.
-    pub(crate) fn moved(&self, run: &Run, time: f64) -> Place {
-        [0, 1, 2].map(|i| recorded(run, &self.center[i], time).map_or(0.0, |place| place - self.origin[i]))
+    /// The rotation of its points, and what is added to them then, by rows, at a recorded time.
+    pub(crate) fn pose(&self, run: &Run, time: f64) -> [[f64; 4]; 3] {
+        let center = [0, 1, 2].map(|i| recorded(run, &self.center[i], time).unwrap_or(self.origin[i]));
+        let turned = |v: Place| match &self.turn {
+            None => v,
+            Some(Turn { angle, axis }) => {
+                let (sin, cos) = angle.value(&[time]).to_radians().sin_cos();
+                let along = dot(*axis, v);
+                let aside = cross(*axis, v);
+                [0, 1, 2].map(|i| cos * v[i] + sin * aside[i] + (1.0 - cos) * along * axis[i])
+            }
+        };
+        let columns = [0, 1, 2].map(|k| turned([0, 1, 2].map(|i| if i == k { 1.0 } else { 0.0 })));
+        let origin = turned(self.origin);
+        [0, 1, 2].map(|i| [columns[0][i], columns[1][i], columns[2][i], center[i] - origin[i]])
     }
 
     /// Lines of the obstacle at a recorded time.
     pub(crate) fn at(&self, run: &Run, time: f64) -> Vec<[Place; 2]> {
-        let moved = self.moved(run, time);
-        self.segments.iter().map(|piece| piece.map(|p| plus(p, 1.0, moved))).collect()
+        let pose = self.pose(run, time);
+        let placed = |p: Place| pose.map(|[a, b, c, shift]| a * p[0] + b * p[1] + c * p[2] + shift);
+        self.segments.iter().map(|piece| piece.map(placed)).collect()
     }
 }
 

@@ -56,8 +56,7 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
         *velocity = 0.0;
     }
     supports.extend(obstacles.iter().filter_map(obstacles::Moving::support));
-    let prescribed = obstacles.iter().flat_map(obstacles::Moving::prescribed);
-    prescribed.filter(|(_, formula)| formula.is_none()).for_each(|(dof, _)| fixed[dof] = true);
+    obstacles.iter().flat_map(obstacles::Moving::fixed).for_each(|dof| fixed[dof] = true);
 
     let mut moves = motions::moves(case, &parts, &obstacles, &fixed, &mut problems);
     tying.release(&points, &mut fixed, &mut moves, &mut problems);
@@ -72,7 +71,7 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     problems.extend(redistributions(case, &parts, &reference, &mut mass));
     let mut massless: Vec<bool> = (0..dofs).map(|dof| mass.is_massless(dof / d)).collect();
     // The force on a prescribed carrier is averaged like that on the nodes that press on it.
-    obstacles.iter().flat_map(obstacles::Moving::prescribed).for_each(|(dof, _)| massless[dof] = false);
+    obstacles.iter().flat_map(obstacles::Moving::prescribed).for_each(|dof| massless[dof] = false);
     tying.check_masses(&points, &massless, &mut problems);
     let weights = Weights { case, parts: &parts, obstacles: &obstacles, mass: &mass };
     let gravity = weights.constant();

@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use carom_case::{Case, FormulaSpec, Problem};
-use carom_formula::Formula;
-use carom_mechanics::model::{BodyInstance, Motions};
+use carom_mechanics::model::{BodyInstance, Motion, Motions};
 
 use super::given::in_space_and_time;
 use super::obstacles::Moving;
@@ -12,10 +11,10 @@ use super::side::{coordinates, owner, side};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Formulas with their labels, and the formula of each prescribed dof.
+/// The motions, and that of each prescribed dof.
 #[derive(Default)]
 pub(super) struct Moves {
-    formulas: Vec<(String, Formula)>,
+    motions: Vec<Motion>,
     pub(super) by_dof: BTreeMap<usize, usize>,
 }
 
@@ -40,15 +39,16 @@ pub(super) fn moves(
                     continue;
                 }
             };
-            let label = spec.name.as_ref().map_or_else(|| spec.on.join(", "), Clone::clone);
-            let place = moves.formulas.len();
-            moves.formulas.push((format!("the motion of support \"{label}\""), read));
+            let named = spec.name.as_ref().map_or_else(|| spec.on.join(", "), Clone::clone);
+            let place = moves.motions.len();
+            let label = format!("the motion of support \"{named}\"");
+            moves.motions.push(Motion::Displacement { label, formula: read });
             let sides = spec.on.iter().filter_map(|name| side(parts, name, "").ok());
             for node in sides.flat_map(|s| s.nodes) {
                 if let Some(with) = moves.conflict(node * d + axis, place, fixed) {
                     problems.push(Problem::new(
                         path.clone(),
-                        format!("a node of {label} is moved along {} and also {with}", AXES[*axis]),
+                        format!("a node of {named} is moved along {} and also {with}", AXES[*axis]),
                         format!("the node at {} is on two supports", coordinates(&place_of(parts, node))),
                         "remove one of the sides, or give both the same motion",
                     ));
@@ -58,16 +58,14 @@ pub(super) fn moves(
         }
     }
     for obstacle in obstacles {
-        for (dof, formula) in obstacle.prescribed() {
-            let Some(formula) = formula else { continue };
-            let path = format!("{}.motion", case.contacts[obstacle.contact].path("primary"));
-            match in_space_and_time(case, &formula, &path) {
-                Ok(read) => {
-                    moves.by_dof.insert(dof, moves.formulas.len());
-                    moves.formulas.push((obstacle.label(), read));
+        match obstacle.motions(case) {
+            Ok(motions) => {
+                for (dofs, motion) in motions {
+                    moves.by_dof.extend(dofs.into_iter().map(|dof| (dof, moves.motions.len())));
+                    moves.motions.push(motion);
                 }
-                Err(problem) => problems.push(problem),
             }
+            Err(problem) => problems.push(problem),
         }
     }
     if let Some(y) = &case.manufactured {
@@ -79,19 +77,19 @@ pub(super) fn moves(
 impl Moves {
     /// The formula of a moved dof.
     pub(super) fn text(&self, dof: usize) -> Option<&str> {
-        self.by_dof.get(&dof).map(|formula| self.formulas[*formula].1.text())
+        self.by_dof.get(&dof).map(|motion| text(&self.motions[*motion]))
     }
 
     /// The motions of the model.
     pub(super) fn motions(self, case: &Case, parts: &[BodyInstance]) -> Motions {
         let place = |dof: usize| place_of(parts, dof / case.dimension);
         let moved = self.by_dof.into_iter().map(|(dof, formula)| (dof, formula, place(dof)));
-        Motions::new(self.formulas, moved)
+        Motions::new(self.motions, moved)
     }
 
     /// Assigns a formula to a dof; returns a conflicting assignment.
     fn conflict(&mut self, dof: usize, formula: usize, fixed: &[bool]) -> Option<String> {
-        let text = |formula: usize| self.formulas[formula].1.text();
+        let text = |motion: usize| text(&self.motions[motion]);
         if fixed[dof] && text(formula).parse::<f64>() == Ok(0.0) {
             return None;
         }
@@ -110,16 +108,27 @@ impl Moves {
         for (axis, formula) in y.iter().enumerate() {
             let moved = FormulaSpec::Text(format!("({formula}) - {}", ["X", "Y", "Z"][axis]));
             match in_space_and_time(case, &moved, "manufactured.y") {
-                Ok(read) => self.formulas.push((format!("component {} of [manufactured]", axis + 1), read)),
+                Ok(formula) => {
+                    let label = format!("component {} of [manufactured]", axis + 1);
+                    self.motions.push(Motion::Displacement { label, formula });
+                }
                 Err(problem) => return problems.push(problem),
             }
-            let place = self.formulas.len() - 1;
+            let place = self.motions.len() - 1;
             for part in parts {
                 let on = part.body.mesh().on_boundary();
                 let nodes = part.nodes().zip(on).filter_map(|(node, on)| on.then_some(node));
                 self.by_dof.extend(nodes.map(|node| (node * case.dimension + axis, place)));
             }
         }
+    }
+}
+
+/// The formula of a motion, by which two are compared; of a rigid motion that of its angle.
+fn text(motion: &Motion) -> &str {
+    match motion {
+        Motion::Displacement { formula, .. } => formula.text(),
+        Motion::Rigid(turn) => turn.angle.text(),
     }
 }
 

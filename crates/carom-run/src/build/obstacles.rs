@@ -1,13 +1,14 @@
 //! Rigid obstacles of a case: their shapes, and the nodes that carry those that move.
 //!
-//! A carrier is a part of the model without cells: a node at the centre of the rotation (or at the
-//! shape's first point), and one for the angle. A prescribed motion moves it like a support; a mass
-//! makes it a free particle.
+//! A carrier is a part of the model without cells: a node, or those of a simplex if the obstacle
+//! turns. A prescribed motion moves it like a support; a mass makes it a free particle.
 
 use carom_case::{Case, FormulaSpec, ObstacleMotion, PrimarySpec, Problem};
 use carom_contact::{Carrier, Faceted, Obstacle, Polyline};
-use carom_mechanics::model::{BodyInstance, Support};
+use carom_mechanics::model::{BodyInstance, Motion, Support, Turn};
 use carom_solid::{Element, Law, Mesh, Positions};
+
+use super::given::in_space_and_time;
 
 /// The shape of a rigid primary; none for a side.
 pub(super) fn shape(primary: &PrimarySpec, contact: usize) -> Result<Option<Obstacle>, Problem> {
@@ -48,7 +49,7 @@ pub(super) struct Moving<'a> {
     dimension: usize,
 }
 
-/// Adds the parts that carry the moving obstacles of a case; angles are arcs of radius `length`.
+/// Adds the parts that carry the moving obstacles of a case; a simplex has edges of this length.
 pub(super) fn carriers<'a>(
     case: &'a Case,
     parts: &mut Vec<BodyInstance>,
@@ -65,10 +66,11 @@ pub(super) fn carriers<'a>(
         };
         let node = parts.last().map_or(0, |part| part.nodes().end);
         let padded = std::array::from_fn(|i| origin.get(i).copied().unwrap_or(0.0));
-        let turn = (spec.motion.nodes() == 2).then(|| (node + 1, origin[0], length));
+        let nodes = (node..node + spec.motion.nodes(d)).collect();
+        let carrier = Carrier { nodes, origin: padded, length };
         let mesh = Mesh {
             element: [Element::L2, Element::T3, Element::Tet4][d.clamp(1, 3) - 1],
-            nodes: Positions::new(d, origin.repeat(spec.motion.nodes())),
+            nodes: Positions::new(d, carrier.places(d)),
             cells: Vec::new(),
             sides: std::collections::BTreeMap::new(),
             repairs: Vec::new(),
@@ -80,7 +82,6 @@ pub(super) fn carriers<'a>(
             vec![Problem::new(spec.path("primary"), what, error.to_string(), "")]
         })?;
         parts.push(BodyInstance::rigid(spec.name.clone(), node, body, mass));
-        let carrier = Carrier { node, origin: padded, turn };
         let part = parts.len() - 1;
         let motion = &spec.motion;
         moving.push(Moving { contact, part, carrier, motion, name: &spec.name, dimension: d });
@@ -105,7 +106,7 @@ impl Moving<'_> {
     pub(super) fn velocity(&self) -> Vec<f64> {
         match self.motion {
             ObstacleMotion::Free { velocity, .. } => velocity.clone(),
-            motion => vec![0.0; motion.nodes() * self.dimension],
+            motion => vec![0.0; motion.nodes(self.dimension) * self.dimension],
         }
     }
 
@@ -117,34 +118,64 @@ impl Moving<'_> {
         }
     }
 
-    /// Prescribed dofs, each with its formula in the unit of the dof; none: it is fixed.
-    pub(super) fn prescribed(&self) -> Vec<(usize, Option<FormulaSpec>)> {
-        let ObstacleMotion::Prescribed { moves, rotate } = self.motion else { return Vec::new() };
+    /// All its dofs, if its motion is prescribed.
+    pub(super) fn prescribed(&self) -> impl Iterator<Item = usize> {
         let d = self.dimension;
-        let node = self.carrier.node;
-        let along = |axis: usize| moves.iter().find(|(i, _)| *i == axis).map(|(_, formula)| formula.clone());
-        let mut dofs: Vec<_> = (0..d).map(|axis| (node * d + axis, along(axis))).collect();
-        if let (Some((angle, _)), Some((turn, _, length))) = (rotate, self.carrier.turn) {
-            let arc = FormulaSpec::Text(format!("({angle})*{:?}", length * std::f64::consts::PI / 180.0));
-            dofs.push((turn * d, Some(arc)));
-            dofs.extend((1..d).map(|axis| (turn * d + axis, None)));
+        let is_prescribed = matches!(self.motion, ObstacleMotion::Prescribed { .. });
+        let nodes = self.carrier.nodes.iter().copied().filter(move |_| is_prescribed);
+        nodes.flat_map(move |node| node * d..(node + 1) * d)
+    }
+
+    /// The dofs that do not move.
+    pub(super) fn fixed(&self) -> Vec<usize> {
+        match self.motion {
+            ObstacleMotion::Prescribed { moves, rotate: None, .. } => {
+                let moves = |dof: &usize| moves.iter().any(|(axis, _)| *axis == dof % self.dimension);
+                self.prescribed().filter(|dof| !moves(dof)).collect()
+            }
+            _ => Vec::new(),
         }
-        dofs
+    }
+
+    /// Its prescribed motions, with the dofs that follow each.
+    pub(super) fn motions(&self, case: &Case) -> Result<Vec<(Vec<usize>, Motion)>, Problem> {
+        let ObstacleMotion::Prescribed { moves, rotate, axis } = self.motion else { return Ok(Vec::new()) };
+        let path = format!("{}.motion", case.contacts[self.contact].path("primary"));
+        let read = |formula: &FormulaSpec| in_space_and_time(case, formula, &path);
+        if let Some((angle, about)) = rotate {
+            let along =
+                |axis: usize| moves.iter().find(|(i, _)| *i == axis).map(|(_, formula)| read(formula));
+            let turn = Turn {
+                label: self.label(),
+                moves: (0..self.dimension).map(|axis| along(axis).transpose()).collect::<Result<_, _>>()?,
+                angle: read(angle)?,
+                centre: about.clone(),
+                axis: unit(axis.as_deref().unwrap_or(&[0.0, 0.0, 1.0])),
+            };
+            return Ok(vec![(self.prescribed().collect(), Motion::Rigid(turn))]);
+        }
+        let along = |(axis, formula): &(usize, FormulaSpec)| {
+            let dofs = self.prescribed().filter(|dof| dof % self.dimension == *axis).collect();
+            Ok((dofs, Motion::Displacement { label: self.label(), formula: read(formula)? }))
+        };
+        moves.iter().map(along).collect()
     }
 
     /// The support whose reaction is that of the obstacle; none if it is free.
     pub(super) fn support(&self) -> Option<Support> {
-        let d = self.dimension;
-        let node = self.carrier.node;
-        matches!(self.motion, ObstacleMotion::Prescribed { .. }).then(|| Support {
-            name: self.name.to_owned(),
-            dofs: (node * d..(node + 1) * d).collect(),
-            moment_about: None,
-        })
+        let dofs: Vec<usize> = self.prescribed().collect();
+        let name = self.name.to_owned();
+        (!dofs.is_empty()).then(|| Support { name, dofs, moment_about: None })
     }
 
     /// Description for messages.
     pub(super) fn label(&self) -> String {
         format!("the motion of the obstacle of contact \"{}\"", self.name)
     }
+}
+
+/// A direction as a vector of length one.
+fn unit(axis: &[f64]) -> [f64; 3] {
+    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+    std::array::from_fn(|i| axis[i] / length)
 }
