@@ -244,5 +244,6 @@ fn apart(case: &Case, k: usize, tie: &TieSpec, place: [f64; 3], point: &FacetPoi
          `adjust = {:.2e}`: nodes up to so far away are then moved onto the primary side, without stress",
         1.01 * point.distance
     );
-    Problem::new(format!("tie[{k}].adjust"), what, why, help)
+    let key = if tie.adjust.is_some() { "adjust" } else { "secondary" };
+    Problem::new(format!("tie[{k}].{key}"), what, why, help)
 }

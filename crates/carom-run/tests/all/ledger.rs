@@ -317,23 +317,25 @@ fn variants(path: &Path, turn: usize, at_night: bool) -> Vec<(String, Case)> {
 
 #[test]
 fn booked_works_leave_what_the_scheme_dissipates() {
-    assert!(judged_pairs("friction", false) > 200);
+    assert!(judged_pairs("friction", false, 1e-12) > 200);
 }
 
-/// The forces of a tie do no work, with every scheme.
+/// The forces of a tie do no work, with every scheme. Displacements there are small: the digits of
+/// positions are fewer of the energies.
 #[test]
 fn booked_works_with_ties_leave_what_every_scheme_dissipates() {
-    judged_pairs("tie", true);
+    judged_pairs("tie", true, 1e-8);
 }
 
 #[test]
 #[ignore = "every case with every scheme: .ci/nightly"]
 fn booked_works_leave_what_every_scheme_dissipates() {
-    assert!(judged_pairs("friction", true) > 300);
+    assert!(judged_pairs("friction", true, 1e-12) > 300);
 }
 
-/// Judges every case of a folder of `cases`; returns the number of pairs that rubbed.
-fn judged_pairs(folder: &str, at_night: bool) -> usize {
+/// Judges every case of a folder of `cases`; returns the number of pairs that rubbed. `round_off`:
+/// relative to the energies.
+fn judged_pairs(folder: &str, at_night: bool, round_off: f64) -> usize {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(folder);
     let mut cases: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     cases.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
@@ -348,7 +350,7 @@ fn judged_pairs(folder: &str, at_night: bool) -> usize {
                 let steps = if at_night && k == 0 { STEPS_AT_NIGHT } else { STEPS };
                 let Some(judged) = judge(&case, steps) else { continue };
                 let Judged { errors: [identity, energies], scale, noise, .. } = judged;
-                let closes = identity < 1e-12 * scale + 16.0 * noise && energies < 1e-12 * scale;
+                let closes = identity < round_off * scale + 16.0 * noise && energies < round_off * scale;
                 if !closes {
                     missed
                         .lock()

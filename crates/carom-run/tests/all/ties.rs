@@ -288,7 +288,7 @@ fn unmatched_tied_cubes_keep_their_momenta() {
                 |range: std::ops::Range<usize>| range.map(|i| (now[i] - start[i]).abs()).fold(0.0, f64::max);
             assert!(most(0..3) < 1e-13, "{element} {scheme}: {:e}", most(0..3));
             let keeps = matches!(scheme, "energy-momentum" | "central-difference");
-            assert!(most(3..6) < if keeps { 1e-12 } else { 1e-4 }, "{element} {scheme}: {:e}", most(3..6));
+            assert!(most(3..6) < if keeps { 1e-11 } else { 1e-4 }, "{element} {scheme}: {:e}", most(3..6));
         }
     }
 }
@@ -354,23 +354,21 @@ fn messages_name_place_cause_and_cure() {
     let light = format!(
         "{light}[[material]]\nname = \"air\"\nlaw = \"neo-hookean\"\ndensity = 0.0\nlambda = 1.0\nmu = 1.0\n"
     );
-    let around = format!(
-        "{}{}",
-        text.replace("\"lower.top\"", "\"lower.skin\""),
-        LOWER_TO_UPPER
-            .replace("joint", "back")
-            .replace("lower.top", "lower.skin")
-            .replace("upper.bottom", "upper.skin")
-    );
-    let around = around.replace("primary = \"upper.skin\"", "primary = \"upper.skin\"\noverhang = \"free\"");
+    let back = LOWER_TO_UPPER.replace("joint", "back").replace("upper.bottom", "upper.skin");
+    let around = format!("{text}{back}");
     let cases: [(&str, &str, &str, [&str; 3]); 9] = [
         (
             "wide",
             &wide,
             "secondary = \"upper.bottom\"",
-            ["has no partner on lower.top", "beside the primary side, 1.667e-1", "overhang = \"free\""],
+            ["has no partner on lower.top", "beside the primary side, 2.500e-1", "overhang = \"free\""],
         ),
-        ("high", &high, "name = \"joint\"", ["1.000e-2 away from lower.top", "moment", "`adjust = 1.01e-2`"]),
+        (
+            "high",
+            &high,
+            "secondary = \"upper.bottom\"",
+            ["1.000e-2 away from lower.top", "moment", "`adjust = 1.01e-2`"],
+        ),
         (
             "far",
             &format!("{far}\n")
@@ -442,7 +440,8 @@ fn messages_name_place_cause_and_cure() {
         let mended = text.replace("primary = \"lower.top\"", &format!("primary = \"lower.top\"\n{key}"));
         assert!(problems(&mended).is_empty(), "{key}: {:?}", problems(&mended));
     }
-    assert!(problems(&around).iter().any(|(_, problem)| problem.what.contains("depend on itself")));
+    let found = problems(&around);
+    assert!(found.iter().any(|(_, problem)| problem.what.contains("depend on itself")), "{found:?}");
 }
 
 /// Runs a case into a folder.
@@ -460,7 +459,11 @@ fn a_tied_run_starts_from_another_one() {
     let short = blocks(UPPER_TO_LOWER).replace("end = 0.2", "end = 0.02");
     record(&short, &tied);
     record(&short.replace(UPPER_TO_LOWER, ""), &loose);
-    let from = |directory: &Path| format!("{short}[initial]\nfrom = {:?}\n", directory.display().to_string());
+    let moves = |line: &&str| !line.starts_with("position =") && !line.starts_with("velocity =");
+    let resting: Vec<&str> = short.lines().filter(moves).collect();
+    let from = |directory: &Path| {
+        format!("{}\n[initial]\nfrom = {:?}\n", resting.join("\n"), directory.display().to_string())
+    };
     let sim = simulation(&from(&tied), &[""; 0]);
     let ended = finish(simulation(&short, &[""; 0]));
     let apart = sim.state().y.iter().zip(&ended.state().y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -478,7 +481,7 @@ fn four_bodies_meet_at_a_corner() {
         format!(
             "[[body]]\nname = {name:?}\nmaterial = \"rubber\"\nelement = \"T6\"\n\
              mesh = {{ shape = \"rectangle\", min = [{x:?}, {y:?}], max = [{:?}, {:?}], cells = [{n}, {n}] }}\n\
-             position = [\"1.05*X\", \"Y\"]\n",
+             mass = \"lumped\"\nposition = [\"1.05*X\", \"Y\"]\n",
             x + 1.0,
             y + 1.0
         )
@@ -504,8 +507,8 @@ fn four_bodies_meet_at_a_corner() {
             let ties: String = (0..4).map(table).collect();
             let text = format!(
                 "dimension = 2\n[[material]]\nname = \"rubber\"\nlaw = \"neo-hookean\"\ndensity = 1.0\n\
-                 lambda = 20.0\nmu = 15.0\n{bodies}{ties}[time]\nend = 0.1\nstep = 5e-3\n\
-                 scheme = {{ kind = \"energy-momentum\" }}\n[newton]\ntolerance = 1e-13\n"
+                 lambda = 20.0\nmu = 15.0\n{bodies}{ties}[time]\nend = 0.1\nstep = 2e-3\n\
+                 scheme = {{ kind = \"central-difference\" }}\n"
             );
             let sim = finish(simulation(&text, &[""; 0]));
             let (model, state) = (sim.model(), sim.state());
@@ -596,7 +599,7 @@ fn a_laminate_falls_on_a_floor_and_on_another_body() {
     ];
     for scheme in kinds {
         for below in ["floor", "block"] {
-            for friction in ["", "friction = 0.3\n"] {
+            for friction in ["", "mu = 0.3\n"] {
                 let sets = [format!("time.scheme={scheme}"), "time.energy_guard=false".to_owned()];
                 let mut sim = simulation(&laminate(below, friction), &sets);
                 let start = momenta(&sim, &sim.state().v);
@@ -632,42 +635,75 @@ fn a_laminate_falls_on_a_floor_and_on_another_body() {
     }
 }
 
-/// A plane of symmetry and a moving support cross a tie: both sides have them.
+/// A plane of symmetry and a moving support cross a tie: both sides have them. With meshes that match
+/// the tied blocks are one block, in what supports and ledger say as well, on a support and where they
+/// fall on a floor while the other support accelerates.
 #[test]
 fn supports_cross_a_tie() {
-    let supports = "support = [{ name = \"wall\", on = [\"lower.left\", \"upper.left\"], fix = [\"x\"] }, \
-        { on = [\"lower.bottom\"], fix = [\"y\"] }, \
-        { name = \"grip\", on = [\"lower.right\", \"upper.right\"], move = { x = \"0.1*sin(3*t)\" } }]";
-    for kind in ["static", "chung-hulbert", "energy-momentum", "bathe"] {
-        let keys = match kind {
-            "chung-hulbert" => ", rho_inf = 0.6",
-            "bathe" => ", rho_inf = 0.6",
-            _ => "",
-        };
-        let text = pulled("")
-            .replace("dimension = 2", &format!("dimension = 2\n{supports}"))
-            .replace("{ kind = \"static\" }", &format!("{{ kind = {kind:?}{keys} }}"))
-            .replace("step = 0.5", "step = 0.05");
-        let mut sim = simulation(&text, &[""; 0]);
-        let mut work = 0.0_f64;
-        while !sim.finished() {
-            sim.advance(&mut GridReport::default()).unwrap_or_else(|e| panic!("{kind}: {e}"));
-            let ledger = &sim.state().ledger;
-            work = work.max(ledger.external_work);
-            if kind == "energy-momentum" {
-                let missing = ledger.total() - ledger.external_work;
-                assert!(missing.abs() < 1e-10, "{missing:e}");
-            }
+    let sides = |names: &[&str], side: &str| -> String {
+        names.iter().map(|name| format!("\"{name}.{side}\", ")).collect()
+    };
+    let floors = ["support", "contact"];
+    let kinds = ["static", "chung-hulbert", "energy-momentum", "bathe", "backward-euler", "hu"];
+    for (kind, below) in kinds.iter().flat_map(|kind| floors.map(|below| (*kind, below))) {
+        if kind == "static" && below == "contact" {
+            continue;
         }
-        assert!(work > 0.1, "{kind}: {work}");
-        let (model, state) = (sim.model(), sim.state());
-        let moved = 1.0 + 0.1 * 3.0_f64.sin();
-        for node in 0..state.y.len() / 2 {
-            let x = model.reference[2 * node];
-            if x == 0.0 || x == 1.0 {
-                let place = if x == 0.0 { 0.0 } else { moved };
-                assert!((state.y[2 * node] - place).abs() < 1e-14, "{kind}: {}", state.y[2 * node]);
-                assert!(model.fixed[2 * node]);
+        let floor = if below == "support" {
+            "[[support]]\nname = \"floor\"\non = [\"lower.bottom\"]\nfix = [\"y\"]\n"
+        } else {
+            "[[contact]]\nname = \"floor\"\nsecondary = \"lower.bottom\"\n\
+             primary = { plane = { point = [0.0, -0.02], normal = [0.0, 1.0] } }\n"
+        };
+        let keys = if matches!(kind, "chung-hulbert" | "bathe") { ", rho_inf = 0.6" } else { "" };
+        let run = |names: &[&str], cells: [usize; 2]| {
+            let top = names[names.len() - 1];
+            let mut text = format!(
+                "dimension = 2\n[[material]]\nname = \"rubber\"\nlaw = \"neo-hookean\"\ndensity = 1.0\n\
+                 lambda = 20.0\nmu = 15.0\n\
+                 [[support]]\nname = \"wall\"\non = [{}]\nfix = [\"x\"]\n\
+                 {floor}\
+                 [[support]]\nname = \"grip\"\non = [{}]\nmove = {{ x = \"0.1*sin(3*t)\" }}\n\
+                 [[load]]\non = [\"{top}.top\"]\npressure = \"0.5*t\"\n\
+                 [time]\nend = 1.0\nstep = 0.05\nscheme = {{ kind = \"{kind}\"{keys} }}\n\
+                 [newton]\ntolerance = 1e-13\n",
+                sides(names, "left"),
+                sides(names, "right")
+            );
+            let ends = if names.len() == 1 { vec![(0.0, 1.0)] } else { vec![(0.0, 0.5), (0.5, 1.0)] };
+            for ((name, (low, high)), n) in names.iter().zip(ends).zip(cells) {
+                text += &format!(
+                    "[[body]]\nname = \"{name}\"\nmaterial = \"rubber\"\nelement = \"Q4\"\n\
+                     gravity = [0.0, -1.0]\nmesh = {{ shape = \"rectangle\", min = [0.0, {low:?}], \
+                     max = [1.0, {high:?}], cells = [{n}, {}] }}\n",
+                    if names.len() == 1 { 4 } else { 2 }
+                );
+            }
+            if names.len() == 2 {
+                text += UPPER_TO_LOWER;
+            }
+            finish(simulation(&text, &[""; 0]))
+        };
+        let one = run(&["lower"], [3, 0]);
+        let tied = run(&["lower", "upper"], [3, 3]);
+        let ledgers = [&one, &tied].map(|sim| sim.state().ledger.clone());
+        let [a, b] = ledgers.map(|l| [l.kinetic, l.strain, l.external_work, l.dissipation(), l.potential]);
+        for (a, b) in a.iter().zip(&b) {
+            assert!((a - b).abs() < 1e-10, "{kind}: {a} {b}");
+        }
+        assert!(a[2].abs() > 1e-3, "{kind}: {a:?}");
+        assert!(below == "support" || one.state().impulse()[1] > 0.1, "{kind}");
+        let unmatched = run(&["lower", "upper"], [2, 3]);
+        for sim in [tied, unmatched] {
+            let (model, state) = (sim.model(), sim.state());
+            let moved = 1.0 + 0.1 * 3.0_f64.sin();
+            for node in 0..state.y.len() / 2 {
+                let x = model.reference[2 * node];
+                if x == 0.0 || x == 1.0 {
+                    let place = if x == 0.0 { 0.0 } else { moved };
+                    assert!((state.y[2 * node] - place).abs() < 1e-14, "{kind}: {}", state.y[2 * node]);
+                    assert!(model.fixed[2 * node]);
+                }
             }
         }
     }
