@@ -59,6 +59,7 @@ FIGURES = {
     "friction": ("bar-on-bed", "energy"),
     "loads": ("", "bodies"),
     "static": ("", "bodies"),
+    "tie": ("wave", "bodies"),
     "manufactured": ("moving-block-orders", "energy"),
 }
 

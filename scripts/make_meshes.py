@@ -177,9 +177,9 @@ def strips():
     return mesh.file()
 
 
-def strip(slit):
+def strip(slit, named=False):
     """A strip 0 ≤ x ≤ 6, 0 ≤ y ≤ 1, with a closed slit at x = 3 from y = 1/4 up, or without. Surface
-    `bar`; curves `left` and `right`."""
+    `bar`; curves `left` and `right`, and if `named` the sides `near` and `far` of the slit."""
 
     def key(point, square):
         a, b = point
@@ -190,6 +190,10 @@ def strip(slit):
     mesh.add(2, "bar", grid.triangles(columns(24, 4), RISING))
     mesh.add(1, "left", grid.line((0, b) for b in range(9)))
     mesh.add(1, "right", grid.line((48, b) for b in range(9)))
+    if named:
+        for name, square in (("near", 11), ("far", 12)):
+            nodes = [grid.node((24, b), (square, b // 2)) for b in range(2, 9)]
+            mesh.add(1, name, [[nodes[k], nodes[k + 2], nodes[k + 1]] for k in range(0, 6, 2)])
     return mesh.file()
 
 
@@ -235,6 +239,57 @@ def thin():
     mesh.add(2, "ring", grid.triangles(columns(count, 1), CLOCKWISE))
     mesh.add(1, "outer", grid.line((a, 0) for a in range(2 * count + 1)))
     mesh.add(1, "inner", grid.line((a, 2) for a in range(2 * count + 1)))
+    return mesh.file()
+
+
+# cases/tie
+
+
+def tied_rings():
+    """Quarters of two concentric rings of radii 20, 50 and 100, with 8 and 12 cells along the arc and
+    no common nodes. Surfaces `shaft` and `hub`; curves `inner`, `bond` and `bottom`, `left` of the
+    first, `seat`, `outer` and `low`, `side` of the second."""
+    mesh = Mesh()
+
+    def ring(radii, along, across):
+        def place(a, b):
+            angle = 0.5 * pi * a / along
+            radius = radii[0] + (radii[1] - radii[0]) * b / across
+            if a == along:
+                return (0.0, radius)
+            return (radius * cos(angle), radius * sin(angle))
+
+        return Grid(mesh, place)
+
+    shaft, hub = ring((20.0, 50.0), 8, 4), ring((50.0, 100.0), 12, 5)
+    mesh.add(2, "shaft", shaft.triangles(columns(8, 4), CLOCKWISE))
+    mesh.add(2, "hub", hub.triangles(columns(12, 5), CLOCKWISE))
+    for grid, along, across, names in (
+        (shaft, 16, 8, ("inner", "bond", "bottom", "left")),
+        (hub, 24, 10, ("seat", "outer", "low", "side")),
+    ):
+        mesh.add(1, names[0], grid.line((a, 0) for a in range(along + 1)))
+        mesh.add(1, names[1], grid.line((a, across) for a in range(along + 1)))
+        mesh.add(1, names[2], grid.line((0, b) for b in range(across + 1)))
+        mesh.add(1, names[3], grid.line((along, b) for b in range(across + 1)))
+    return mesh.file()
+
+
+def cut_ring():
+    """A ring of radii 0.95 and 1.05 that is cut at φ = 0. Surface `ring`; curves `begin` and `end`, the
+    two sides of the cut."""
+    mesh = Mesh()
+    count = 32
+
+    def place(a, b):
+        angle = 2 * pi * a / count
+        radius = 0.95 + 0.1 * b
+        return (radius, 0.0) if a == count else (radius * cos(angle), radius * sin(angle))
+
+    grid = Grid(mesh, place, order=3)
+    mesh.add(2, "ring", grid.triangles(columns(count, 1), CLOCKWISE))
+    mesh.add(1, "begin", grid.line((0, b) for b in range(4)))
+    mesh.add(1, "end", grid.line((3 * count, b) for b in range(4)))
     return mesh.file()
 
 
@@ -737,6 +792,9 @@ def recipes(carom):
         "cases/self/strips.msh": strips,
         "cases/self/slit.msh": lambda: strip(slit=True),
         "cases/self/solid.msh": lambda: strip(slit=False),
+        "cases/tie/rings.msh": tied_rings,
+        "cases/tie/cut-ring.msh": cut_ring,
+        "cases/tie/slit.msh": lambda: strip(slit=True, named=True),
         "cases/self/pinched.msh": pinched,
         "cases/self/thin.msh": thin,
         "cases/friction/disc.msh": lambda: disc(256, COARSE),

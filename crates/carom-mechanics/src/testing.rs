@@ -4,7 +4,7 @@ use carom_contact::{Boundary, Detection, Kinematics, NodeToFacet, NodeToPatch, S
 use carom_solid::{Law, LoadedSide, Mesh, body};
 
 use crate::model::{
-    AllowedDepths, BodyInstance, Contact, Loads, Mass, Model, Motions, Points, gap_tolerance,
+    AllowedDepths, BodyInstance, Contact, Loads, Mass, Model, Motions, Point, Points, gap_tolerance,
 };
 
 /// Bodies of one material, with consecutive node numbers.
@@ -111,4 +111,27 @@ pub(crate) fn model(
         reference,
         parts,
     }
+}
+
+/// The model with the nodes of a side of one body as the nearest points of a side of another.
+pub(crate) fn tied(mut model: Model, secondary: (usize, &str), primary: (usize, &str)) -> Model {
+    let part = &model.parts[primary.0];
+    let (mesh, d) = (part.body.mesh(), model.dimension);
+    let place = |node: usize| -> [f64; 3] {
+        std::array::from_fn(|i| if i < d { model.reference[node * d + i] } else { 0.0 })
+    };
+    let nearest = |node: usize| {
+        let points = mesh.sides[primary.1].iter().map(|facet| {
+            let nodes: Vec<usize> = facet.nodes.iter().map(|node| part.first_node + node).collect();
+            let places: Vec<[f64; 3]> = nodes.iter().map(|&node| place(node)).collect();
+            (mesh.element.facet_shape().closest(&places, place(node)), nodes)
+        });
+        let (point, nodes) = points.min_by(|a, b| a.0.distance.total_cmp(&b.0.distance)).unwrap();
+        assert!(point.distance < 1e-12);
+        Point { node, weights: nodes.into_iter().zip(point.values).collect() }
+    };
+    let given = nodes(&model.parts[secondary.0], secondary.1).into_iter().map(nearest).collect();
+    model.points = Points::new(d, model.dofs() / d, given).unwrap();
+    [model.free, model.unknown] = Model::unknowns(&model.fixed, d, &model.points);
+    model
 }

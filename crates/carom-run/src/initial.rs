@@ -5,10 +5,12 @@
 //! would not detect a changed mesh.
 
 use carom_case::{Case, ContactSpec, InitialSpec, Problem, Velocities};
-use carom_mechanics::model::{Manufactured, Model};
+use carom_mechanics::model::{Manufactured, Model, Tie};
 use carom_mechanics::{Grid, InitialState, State};
 use carom_record::{Manifest, Status, last_checkpoint};
+use carom_solid::Mesh;
 
+use crate::build;
 use crate::saved_state;
 
 /// The initial state of a manufactured motion.
@@ -78,10 +80,12 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
         InitialState { y: model.reference.clone(), v: vec![0.0; model.dofs()], pairs: Vec::new() };
     let mut meshes = Vec::new();
     let mut first = 0;
-    for body in &old.bodies {
-        let mesh = body
-            .make_mesh(d)
-            .map_err(|why| unreadable(format!("the mesh of its body \"{}\": {why}", body.name)))?;
+    let made = build::tied_meshes(&old).map_err(|problems| {
+        let why =
+            problems.first().map_or_else(String::new, |problem| format!("{}: {}", problem.what, problem.why));
+        unreadable(why)
+    })?;
+    for (body, mesh) in old.bodies.iter().zip(made) {
         let nodes = mesh.nodes.len();
         meshes.push((&body.name, first, mesh));
         first += nodes;
@@ -102,7 +106,10 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
                 "start from a run of the same bodies",
             ));
         };
-        if old.nodes != mesh.nodes || old.cells != mesh.cells || old.element != mesh.element {
+        if !same_nodes(old, mesh, !case.ties.is_empty())
+            || old.cells != mesh.cells
+            || old.element != mesh.element
+        {
             let count = |m: &carom_solid::Mesh| {
                 format!("{} nodes, {} cells {:?}", m.nodes.len(), m.cell_count(), m.element)
             };
@@ -130,6 +137,7 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
             before.v[dof] = 0.0;
         }
     }
+    carry(model, &mut before, &directory.to_string())?;
     for contact in &case.contacts {
         // Pairs of springs are nearly always dependent as constraints; those that touch are found
         // anew.
@@ -138,6 +146,43 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
         before.pairs.push(same.and_then(|k| state.pairs.get(k).cloned()).unwrap_or_default());
     }
     Ok(before)
+}
+
+/// Difference of positions, over L, and of velocities, over the largest, that is round-off.
+const NEAR: f64 = 1e-9;
+
+/// Whether meshes have the same nodes; `tied`: but for the round-off of nodes that a tie moves.
+fn same_nodes(old: &Mesh, mesh: &Mesh, tied: bool) -> bool {
+    let apart = |(a, b): (&f64, &f64)| (a - b).abs() > NEAR * mesh.diameter();
+    let is_near =
+        || old.nodes.len() == mesh.nodes.len() && !old.nodes.flat().iter().zip(mesh.nodes.flat()).any(apart);
+    old.nodes == mesh.nodes || tied && is_near()
+}
+
+/// Gives tied nodes the exact motion of what carries them.
+///
+/// # Errors
+/// The sides of a tie are apart, or move apart, at the end of the run.
+fn carry(model: &Model, before: &mut InitialState, directory: &str) -> Result<(), Vec<Problem>> {
+    let fastest = before.v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let help = "let the other run have the same tie; where only velocities differ, `velocities = \"zero\"` starts at rest";
+    for (values, unit, verb) in [(&mut before.y, model.scale, "are"), (&mut before.v, fastest, "move")] {
+        let given = values.clone();
+        model.points.carry(values);
+        let apart = |(a, b): (&f64, &f64)| (a - b).abs() > NEAR * unit;
+        if let Some(dof) = values.iter().zip(&given).position(apart) {
+            let node = dof / model.dimension;
+            let has = |tie: &&Tie| tie.tied.iter().any(|nodes| nodes.contains(&node));
+            let tie = model.ties.iter().find(has).map_or("", |tie| tie.name.as_str());
+            let what = format!("the sides of tie `{tie}` {verb} apart at the end of the run {directory}");
+            let why = format!(
+                "at a tied node, {} on the secondary side and {} on the primary one",
+                given[dof], values[dof]
+            );
+            return Err(vec![Problem::new("initial.from", what, why, help)]);
+        }
+    }
+    Ok(())
 }
 
 /// The state from which a case continues, if its `[initial]` names a file and not a run.

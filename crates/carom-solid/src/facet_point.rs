@@ -1,5 +1,5 @@
-//! The point of a facet that is closest to a place: the least |x(ξ) − X|² over its reference domain,
-//! by Gauss–Newton's method in the facet, and along its edges where that leaves it.
+//! The point of a facet that is closest to a place: the least |x(ξ) − X|² over its reference
+//! domain, by Gauss–Newton's method in the facet, and along its edges where that leaves it.
 
 use crate::facet::FacetShape;
 

@@ -1,6 +1,6 @@
-//! Bodies of one Gmsh file that have common facets, and neither contact nor tie: every body has nodes of its
-//! own, so that cells of one conforming mesh come apart where two bodies meet. Whether they are to
-//! be one body or two that touch, the file does not say; a contact between them does.
+//! Bodies of one Gmsh file that have common facets, and neither contact nor tie: every body has
+//! nodes of its own, so that cells of one conforming mesh come apart where two bodies meet. Whether
+//! they are to be one body or two that touch, the file does not say; a contact between them does.
 
 use carom_solid::gmsh::{Joint, MshFile};
 

@@ -1,7 +1,7 @@
-//! Checks of ties: two different sides, bodies that both have mass or both none, and a name of
-//! their own.
+//! Checks of ties: two different sides that no contact joins, bodies that both have mass or both
+//! none, and a name of their own.
 
-use super::super::TieSpec;
+use super::super::{PrimarySpec, TieSpec};
 use super::Check;
 
 impl Check<'_> {
@@ -13,6 +13,7 @@ impl Check<'_> {
             let secondary = self.side(&tie.secondary, path("secondary"));
             let primary = self.side(&tie.primary, path("primary"));
             self.different_sides(k, tie);
+            self.not_in_contact(k, tie);
             if let (Some(a), Some(b)) = (secondary, primary)
                 && self.massless(a) != self.massless(b)
                 && !self.is_static()
@@ -34,6 +35,21 @@ impl Check<'_> {
                 let why = "the columns of their forces have their names";
                 self.add(path("name"), what, why, "rename one of them");
             }
+        }
+    }
+
+    /// Reports a contact of the sides of a tie.
+    fn not_in_contact(&mut self, k: usize, tie: &TieSpec) {
+        let contacts = self.draft.contact.iter().flatten();
+        let same = contacts.filter(|contact| {
+            let PrimarySpec::Side(primary) = &contact.primary else { return false };
+            let sides = [&contact.secondary, primary];
+            sides == [&tie.secondary, &tie.primary] || sides == [&tie.primary, &tie.secondary]
+        });
+        if let Some(contact) = same.into_iter().next() {
+            let what = format!("tie `{}` and contact `{}` have the same sides", tie.name, contact.name);
+            let why = "sides that move as one never part or slide: the contact would have no effect";
+            self.add(format!("tie[{k}].name"), what, why, "leave one of them out");
         }
     }
 

@@ -151,7 +151,7 @@ impl Undeclared {
 
 /// What the contacts and ties between two bodies cover.
 struct Covered {
-    /// Nodes of their sides; of a tie, those that it ties and those that carry them.
+    /// Nodes of their sides.
     nodes: HashSet<usize>,
     /// Depth that is allowed to other nodes, over the length of a facet.
     share: f64,
@@ -177,9 +177,10 @@ impl Covered {
             covered.kept = kept_depths(contact).into_values().fold(covered.kept, f64::max);
         }
         for tie in &model.ties {
-            // Tied sides coincide; where they are curved and their meshes differ, their chords cross.
+            // Tied sides coincide; where they are curved and their meshes differ, their chords
+            // cross.
             let [a, b] = tie.bodies;
-            all.entry((a.min(b), a.max(b))).or_default().nodes.extend(model.carrying_tie(tie));
+            all.entry((a.min(b), a.max(b))).or_default().nodes.extend(&tie.surface);
         }
         all
     }

@@ -10,7 +10,7 @@
 //! balance at a tied node is the force of the tie, as the reaction of a support is that of a
 //! constrained dof; it does no work, and T makes force and moment balance.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// A node as a point: the nodes that carry it, with their weights.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +28,8 @@ pub struct Points {
     list: Vec<Point>,
     /// Place in the list of each node, `u32::MAX` of others; empty without points.
     places: Vec<u32>,
+    /// Points that are carried by points, as they were given; each before those that carry it.
+    chained: Vec<Point>,
 }
 
 /// A chain of points that leads back to its first node.
@@ -51,27 +53,31 @@ impl Points {
         if given.is_empty() {
             return Ok(Self { dimension, ..Self::default() });
         }
-        let of: HashMap<usize, &Point> = given.iter().map(|point| (point.node, point)).collect();
-        let mut list = Vec::with_capacity(given.len());
-        for point in &given {
-            let mut weights = point.weights.clone();
-            // Longer chains than there are points repeat one.
-            let mut length = 0;
-            while weights.iter().any(|(node, _)| of.contains_key(node)) {
-                length += 1;
-                if length > given.len() {
-                    return Err(Circular { node: point.node });
-                }
-                weights = weights.iter().flat_map(|&(node, weight)| carriers(&of, node, weight)).collect();
-            }
-            list.push(Point { node: point.node, weights: summed(weights) });
-        }
-        list.sort_unstable_by_key(|point| point.node);
         let mut places = vec![u32::MAX; nodes];
+        let mut list: Vec<Point> = Vec::with_capacity(given.len());
+        let mut chained = Vec::new();
+        for point in carriers_first(given)? {
+            let is_point = |node: usize| places[node] != u32::MAX;
+            let of_carrier = |&(node, weight): &(usize, f64)| -> Vec<(usize, f64)> {
+                if !is_point(node) {
+                    return vec![(node, weight)];
+                }
+                let weights = &list[places[node] as usize].weights;
+                weights.iter().map(|&(carrier, share)| (carrier, weight * share)).collect()
+            };
+            let weights = summed(point.weights.iter().flat_map(of_carrier).collect());
+            if point.weights.iter().any(|(node, _)| is_point(*node)) {
+                chained.push(point.clone());
+            }
+            places[point.node] = list.len() as u32;
+            list.push(Point { node: point.node, weights });
+        }
+        chained.reverse();
+        list.sort_unstable_by_key(|point| point.node);
         for (place, point) in list.iter().enumerate() {
             places[point.node] = place as u32;
         }
-        Ok(Self { dimension, list, places })
+        Ok(Self { dimension, list, places, chained })
     }
 
     /// Whether no node is a point.
@@ -132,6 +138,19 @@ impl Points {
         }
     }
 
+    /// Adds to the forces on points what they carry to the points that carry them: the forces that
+    /// ties transmit, where several meet at a node.
+    pub fn pass_on(&self, forces: &mut [f64]) {
+        let d = self.dimension;
+        for point in &self.chained {
+            for &(carrier, weight) in point.weights.iter().filter(|(node, _)| self.of(*node).is_some()) {
+                for axis in 0..d {
+                    forces[carrier * d + axis] += weight * forces[point.node * d + axis];
+                }
+            }
+        }
+    }
+
     /// Gives the forces on the points to what carries them: f := Tᵀf, zero at the points.
     pub fn gather(&self, forces: &mut [f64]) {
         let d = self.dimension;
@@ -146,12 +165,23 @@ impl Points {
     }
 }
 
-/// What carries a node, times a weight.
-fn carriers(of: &HashMap<usize, &Point>, node: usize, weight: f64) -> Vec<(usize, f64)> {
-    of.get(&node).map_or_else(
-        || vec![(node, weight)],
-        |point| point.weights.iter().map(|&(carrier, share)| (carrier, weight * share)).collect(),
-    )
+/// Points in an order in which each comes after those that carry it.
+///
+/// # Errors
+/// If there is none.
+fn carriers_first(given: Vec<Point>) -> Result<Vec<Point>, Circular> {
+    let mut waiting: BTreeMap<usize, Point> = given.into_iter().map(|point| (point.node, point)).collect();
+    let mut ordered = Vec::with_capacity(waiting.len());
+    while let Some(first) = waiting.keys().next().copied() {
+        let is_ready =
+            |point: &&Point| !point.weights.iter().any(|(carrier, _)| waiting.contains_key(carrier));
+        let ready: Vec<usize> = waiting.values().filter(is_ready).map(|point| point.node).collect();
+        if ready.is_empty() {
+            return Err(Circular { node: first });
+        }
+        ordered.extend(ready.iter().filter_map(|node| waiting.remove(node)));
+    }
+    Ok(ordered)
 }
 
 /// One weight a node, ascending; without those that are round-off.
@@ -181,6 +211,9 @@ mod tests {
         let given = vec![point(3, &[(2, 0.5), (1, 0.5)]), point(2, &[(0, 0.25), (1, 0.75)])];
         let points = Points::new(1, 4, given).unwrap();
         assert_eq!(points.of(3), Some(&[(0, 0.125), (1, 0.875)][..]));
+        let mut forces = [0.0, 0.0, 1.0, 4.0];
+        points.pass_on(&mut forces);
+        assert_eq!(forces, [0.0, 0.0, 3.0, 4.0]);
         let circular = vec![point(0, &[(1, 1.0)]), point(1, &[(0, 1.0)])];
         assert_eq!(Points::new(1, 2, circular).unwrap_err(), Circular { node: 0 });
     }

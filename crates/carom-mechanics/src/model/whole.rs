@@ -30,8 +30,14 @@ pub struct Support {
 pub struct Tie {
     /// Name in the case.
     pub name: String,
-    /// Global numbers of the nodes of its secondary side that it makes points of the primary one.
-    pub nodes: Vec<usize>,
+    /// Global numbers of the nodes of its secondary side that it makes points of the primary one,
+    /// and, where ties meet, of the primary side that it makes points of the secondary one.
+    pub tied: [Vec<usize>; 2],
+    /// Dofs of tied nodes that a support holds on both sides, which takes the force there;
+    /// ascending.
+    pub supported: Vec<usize>,
+    /// Global numbers of the nodes of both sides.
+    pub surface: Vec<usize>,
     /// Bodies of the secondary and of the primary side.
     pub bodies: [usize; 2],
 }
@@ -116,11 +122,6 @@ impl Model {
             places[dof] = place;
         }
         [free, places]
-    }
-
-    /// The nodes of a tie, and those that carry them.
-    pub(crate) fn carrying_tie(&self, tie: &Tie) -> impl Iterator<Item = usize> {
-        tie.nodes.iter().copied().chain(self.points.carrying(&tie.nodes))
     }
 
     /// The unknowns that a dof moves with, with their weights.

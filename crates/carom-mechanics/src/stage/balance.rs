@@ -78,8 +78,8 @@ pub(crate) fn terms(model: &Model, stage: &Stage, forces: &Forces, known: &[f64]
     ]
 }
 
-/// r over all dofs, of points pulled back to what carries them. Returns its norm over the free ones, and the sum of the norms of its terms as
-/// reference.
+/// r over all dofs, of points pulled back to what carries them. Returns its norm over the free
+/// ones, and the sum of the norms of its terms as reference.
 pub(crate) fn residual_into(
     model: &Model,
     stage: &Stage,

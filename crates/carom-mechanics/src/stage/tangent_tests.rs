@@ -8,15 +8,22 @@ use carom_time::schemes::energy_momentum::EnergyMomentum;
 use carom_time::{ForceRule, Kernel, Memory, Scheme, Stage};
 
 use crate::contact::constraints::Constraints;
-use crate::model::{Friction, Load, Loads, Model, Motion, Motions};
+use crate::linear::direct::Direct;
+use crate::linear::iterative::Iterative;
+use crate::linear::matrices::Matrices;
+use crate::linear::preconditioner::Preconditioner;
+use crate::model::{Friction, Load, Loads, LoadsAt, Model, Motion, Motions};
+use crate::settings::{Linear, Settings, Tangent as FactorRule};
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::{Iterate, Spare};
 use crate::stage::linear_problem::LinearProblem;
-use crate::start::press;
+use crate::start::{Inertia, press, start};
 use crate::state::State;
-use crate::testing::{contact, loaded, model, nodes, parts};
+use crate::stepper::{Implicit, Stepper};
+use crate::testing::{contact, loaded, model, nodes, parts, tied};
 use crate::timings::Timings;
 use crate::velocity::active_rows::measure_all;
+use crate::workspace::Workspace;
 
 /// An iterate with its tangent.
 struct Tangent<'a> {
@@ -38,6 +45,7 @@ impl<'a> Tangent<'a> {
         let model = equations.model;
         let (mut spare, mut timings) = (Spare::default(), Timings::default());
         model.free.iter().for_each(|&dof| at.increment[dof] = size * wave(dof, 0.3));
+        model.points.carry(&mut at.increment);
         let now = equations.evaluate(at, &mut spare, &mut timings).unwrap();
         let rows = Constraints::of(equations, &now);
         Self { equations, at: now.at, rows, spare, timings }
@@ -54,8 +62,11 @@ impl<'a> Tangent<'a> {
         let (free, mut change) = (&equations.model.free, vec![0.0; equations.model.dofs()]);
         let (dofs, multipliers) = u.split_at(free.len());
         free.iter().zip(dofs).for_each(|(&dof, u)| change[dof] = *u);
+        equations.model.points.carry(&mut change);
         let now = equations.evaluate(at.clone(), spare, timings).unwrap();
-        let [forces, gaps] = LinearProblem::product(equations, &now, rows, [change, multipliers.to_vec()]);
+        let [mut forces, gaps] =
+            LinearProblem::product(equations, &now, rows, [change, multipliers.to_vec()]);
+        equations.model.points.gather(&mut forces);
         free.iter().map(|&dof| forces[dof]).chain(gaps).collect()
     }
 
@@ -65,6 +76,7 @@ impl<'a> Tangent<'a> {
         let (free, mut at) = (&equations.model.free, at.clone());
         let (dofs, multipliers) = u.split_at(free.len());
         free.iter().zip(dofs).for_each(|(&dof, u)| at.increment[dof] += e * u);
+        equations.model.points.carry(&mut at.increment);
         for (row, u) in rows.list.iter().zip(multipliers) {
             let ((k, p), slip) = (row.place, &row.slip);
             let pair = &mut at.pairings[k].pairs[p];
@@ -424,4 +436,183 @@ fn the_product_of_a_discrete_gradient_is_the_derivative_of_its_force() {
     for (i, ((plus, minus), k)) in force(h).iter().zip(&force(-h)).zip(&product).enumerate() {
         assert!(((plus - minus) / (2.0 * h) - k).abs() < 1e-6 * largest(&product), "{i}");
     }
+}
+
+/// Two unmatched tied blocks, held at the left, under a pressure that follows the right sides,
+/// whose nodes the tie has too, and the tied side itself.
+fn tied_blocks() -> Model {
+    let lower = generate::rectangle(Element::T6, [0.0, 0.0], [1.0, 0.5], [2, 1]).unwrap();
+    let upper = generate::rectangle(Element::T6, [0.0, 0.5], [1.0, 1.0], [3, 2]).unwrap();
+    let parts = parts([lower, upper], Law::NeoHookean { lambda: 20.0, mu: 10.0 }, 1.0);
+    let held = [nodes(&parts[0], "left"), nodes(&parts[1], "left")].concat();
+    let fixed: Vec<usize> = held.into_iter().flat_map(|node| [2 * node, 2 * node + 1]).collect();
+    let mut loads = Loads::default();
+    for (part, side) in [(0, "right"), (1, "right"), (1, "bottom")] {
+        let value = vec![Formula::parse("3*(1 + X^2)", &["X", "Y", "t"]).unwrap()];
+        let on = loaded(&parts[part], side);
+        loads.add_pressure(Load { on, value, label: side.to_owned(), amplitude: None });
+    }
+    tied(model(parts, &fixed, Motions::default(), loads, Vec::new()), (1, "bottom"), (0, "top"))
+}
+
+/// With ties, under pressure on tied facets: of the α family and of a discrete gradient.
+#[test]
+fn the_whole_tangent_with_a_tie_is_the_derivative_of_the_residual() {
+    let model = tied_blocks();
+    let alpha = Scheme::chung_hulbert(0.5).unwrap();
+    for scheme in [&alpha as &dyn Kernel, &EnergyMomentum] {
+        let state = at(&model, model.initial_position.clone());
+        for dt in [0.01, 1e3] {
+            let equations = equations(&model, &state, scheme, dt, 0.1);
+            let mut tangent = Tangent::new(&equations, 1e-2);
+            let u = tangent.direction(0.1);
+            let ku = tangent.product(&u);
+            for (i, (numeric, k)) in tangent.derivative(&u, 1e-4).iter().zip(&ku).enumerate() {
+                assert!((numeric - k).abs() < 1e-7 * largest(&ku), "{dt} {i}: {numeric} {k}");
+            }
+        }
+    }
+}
+
+/// The assembled matrices over the unknowns are TᵀKT, TᵀMT and the symmetric part of TᵀK_ext T.
+#[test]
+fn assembled_matrices_are_those_of_the_unknowns() {
+    let model = tied_blocks();
+    let mut matrices = Matrices::new(&model);
+    let y: Vec<f64> =
+        model.initial_position.iter().enumerate().map(|(i, y)| y + 0.02 * wave(i, 0.3)).collect();
+    let mut at = y.clone();
+    model.points.carry(&mut at);
+    matrices.assemble(&model, &at).unwrap();
+    matrices.assemble_loads(&model, 0.0, &at).unwrap();
+    let [u, w] = [0.1, 0.7].map(|seed| {
+        let values: Vec<f64> = (0..model.free.len()).map(|i| wave(i, seed)).collect();
+        let mut all = vec![0.0; model.dofs()];
+        model.free.iter().zip(&values).for_each(|(dof, x)| all[*dof] = *x);
+        model.points.carry(&mut all);
+        (values, all)
+    });
+    let of_unknowns = |values: &[f64]| {
+        let mut product = vec![0.0; model.free.len()];
+        matrices.pattern.multiply_add(values, &u.0, &mut product);
+        dot(&product, &w.0)
+    };
+    let mut stiff = vec![0.0; model.dofs()];
+    model.internal_product(None, &at, &u.1, &mut stiff).unwrap();
+    let mut heavy = vec![0.0; model.dofs()];
+    model.mass.multiply_into(&u.1, &mut heavy);
+    let loads = |u: &[f64], w: &[f64]| {
+        let force = |e: f64| {
+            let moved: Vec<f64> = at.iter().zip(u).map(|(y, u)| y + e * u).collect();
+            let mut force = vec![0.0; model.dofs()];
+            model.loads_into(0.0, &moved, &mut LoadsAt::default(), &mut force).unwrap();
+            dot(&force, w)
+        };
+        (force(1.0) - force(-1.0)) / 2.0
+    };
+    let follower = 0.5 * (loads(&u.1, &w.1) + loads(&w.1, &u.1));
+    for (name, values, expected) in [
+        ("stiffness", &matrices.stiffness, dot(&stiff, &w.1)),
+        ("mass", &matrices.mass, dot(&heavy, &w.1)),
+        ("loads", &matrices.follower, follower),
+    ] {
+        let found = of_unknowns(values);
+        assert!((found - expected).abs() < 1e-11 * expected.abs(), "{name}: {found} {expected}");
+    }
+}
+
+/// Both solvers find M⁻¹f of the unknowns, M over all nodes pulled back: T(TᵀMT)⁻¹Tᵀf.
+#[test]
+fn solves_with_the_mass_carry_the_points() {
+    let model = tied_blocks();
+    let forces: Vec<f64> = (0..model.dofs()).map(|i| wave(i, 0.4)).collect();
+    let rows = Constraints::none(2);
+    let solvers: [Box<dyn Preconditioner>; 2] =
+        [Box::new(Direct::new(&model)), Box::new(Iterative::new(&model))];
+    for mut solver in solvers {
+        solver.form_mass(&model, &rows).unwrap();
+        let mut x = vec![0.0; model.dofs()];
+        solver.solve(&model, [&forces, &[]], &mut x, &mut Vec::new()).unwrap();
+        let mut carried = x.clone();
+        model.points.carry(&mut carried);
+        assert_eq!(x, carried);
+        let mut left = vec![0.0; model.dofs()];
+        model.mass.multiply_into(&x, &mut left);
+        left.iter_mut().zip(&forces).for_each(|(left, force)| *left -= force);
+        model.points.gather(&mut left);
+        let missing = model.free.iter().map(|dof| left[*dof].abs()).fold(0.0, f64::max);
+        assert!(missing < 1e-12, "{missing:e}");
+    }
+}
+
+/// A tied node strikes: its row acts on what carries it, and solves with the frozen tangent satisfy
+/// the rows.
+#[test]
+fn the_whole_tangent_of_a_tied_node_in_contact_is_the_derivative_of_the_residual() {
+    let left = generate::rectangle(Element::T6, [0.1, 0.005], [0.5, 0.505], [2, 2]).unwrap();
+    let block = generate::rectangle(Element::T6, [0.0, -0.5], [1.0, 0.0], [4, 2]).unwrap();
+    let right = generate::rectangle(Element::T6, [0.5, 0.005], [0.9, 0.505], [2, 3]).unwrap();
+    let parts = parts([left, block, right], Law::NeoHookean { lambda: 200.0, mu: 15.0 }, 0.25);
+    let bottom = nodes(&parts[1], "bottom").into_iter().flat_map(|node| [2 * node, 2 * node + 1]);
+    let fixed: Vec<usize> = bottom.collect();
+    // The nodes of the left block that strike include the lowest one of the tie.
+    let strike = contact(&parts, (0, "bottom"), (1, "top"));
+    let model = model(parts, &fixed, Motions::default(), Loads::default(), vec![strike]);
+    let model = tied(model, (0, "right"), (2, "left"));
+    let mut state = touching(&model, 0.1, |_, y| y);
+    model.points.carry(&mut state.a);
+    let scheme = Scheme::chung_hulbert(0.6).unwrap();
+    let equations = equations(&model, &state, &scheme, DT, DT);
+    let mut tangent = Tangent::new(&equations, 1e-3);
+    let is_tied = |row: &carom_contact::Row| row.nodes.iter().any(|node| model.points.of(*node).is_some());
+    assert!(tangent.rows.rows.iter().any(|row| is_tied(&row)));
+    let u = tangent.direction(0.1);
+    let ku = tangent.product(&u);
+    for (i, (numeric, k)) in tangent.derivative(&u, 2.5e-5).iter().zip(&ku).enumerate() {
+        assert!((numeric - k).abs() < 1e-7 * largest(&ku), "{i}: {numeric} {k}");
+    }
+}
+
+/// Two free unmatched blocks that spin and vibrate: a step of the energy–momentum scheme keeps
+/// energy, momentum and angular momentum.
+#[test]
+fn a_step_of_tied_blocks_keeps_energy_and_momenta() {
+    let lower = generate::rectangle(Element::T6, [0.0, 0.0], [1.0, 0.5], [2, 1]).unwrap();
+    let upper = generate::rectangle(Element::T6, [0.0, 0.5], [1.0, 1.0], [3, 2]).unwrap();
+    let parts = parts([lower, upper], Law::NeoHookean { lambda: 20.0, mu: 10.0 }, 1.0);
+    let mut model =
+        tied(model(parts, &[], Motions::default(), Loads::default(), Vec::new()), (1, "bottom"), (0, "top"));
+    for node in 0..model.dofs() / 2 {
+        let [x, y] = [model.reference[2 * node], model.reference[2 * node + 1]];
+        model.initial_position[2 * node] = 1.1 * x;
+        model.initial_velocity[2 * node] = 0.3 - 2.0 * y;
+        model.initial_velocity[2 * node + 1] = 2.2 * x - 0.5;
+    }
+    let settings = Settings {
+        tolerance: 1e-14,
+        max_iterations: 20,
+        linear: Linear::Direct,
+        tangent: FactorRule::Full,
+        mixing: 0,
+    };
+    let stepper = Implicit::new(Box::new(EnergyMomentum), settings);
+    let mut work = Workspace::new(&model, Linear::Direct);
+    let mut state = start(&model, Inertia::Constrained, None, &mut work.system).unwrap();
+    let sums = |state: &State| {
+        let mut p = vec![0.0; model.dofs()];
+        model.mass.multiply_into(&state.v, &mut p);
+        let nodes = state.y.chunks_exact(2).zip(p.chunks_exact(2));
+        let momenta =
+            nodes.fold([0.0; 3], |s, (y, p)| [s[0] + p[0], s[1] + p[1], s[2] + y[0] * p[1] - y[1] * p[0]]);
+        [momenta[0], momenta[1], momenta[2], state.ledger.total()]
+    };
+    let before = sums(&state);
+    let strain = state.ledger.strain;
+    for step in 1..=10 {
+        state = stepper.step(&model, &state, 0.01, 0.01 * f64::from(step), &mut work).unwrap().into_parts().0;
+        for (now, before) in sums(&state).iter().zip(&before) {
+            assert!((now - before).abs() < 1e-12, "{step}: {:e}", now - before);
+        }
+    }
+    assert!((state.ledger.strain - strain).abs() > 0.1 * strain);
 }

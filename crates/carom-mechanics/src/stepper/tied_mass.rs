@@ -1,5 +1,5 @@
-//! Ties of explicit steps. With a lumped mass, accelerations a = M⁻¹f that points and their carriers
-//! share follow from a correction,
+//! Ties of explicit steps. With a lumped mass, accelerations a = M⁻¹f that points and their
+//! carriers share follow from a correction,
 //!
 //! ```text
 //! a := a − M⁻¹Gᵀ (G M⁻¹Gᵀ)⁻¹ G a,   G a = a_P − Σ w_a a_a   of each point P

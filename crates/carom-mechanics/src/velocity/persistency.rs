@@ -213,10 +213,12 @@ fn bending(model: &Model, state: &State, gaps: &[Rows], pairs: &[Place]) -> Vec<
     pairs.iter().map(of_pair).collect()
 }
 
-/// Accelerations of moving supports, zero elsewhere, if there are any.
+/// Accelerations of moving supports and of points by those that carry them, zero elsewhere, if
+/// there are any.
 fn moved(model: &Model, state: &State) -> Option<Vec<f64>> {
     let mut moved = vec![0.0; model.dofs()];
     model.motions.dofs().for_each(|dof| moved[dof] = state.a[dof]);
+    model.points.carry(&mut moved);
     (!model.motions.is_empty()).then_some(moved)
 }
 

@@ -4,8 +4,8 @@
 use std::collections::HashSet;
 
 use carom_case::{
-    BodySpec, Case, ContactSpec, FormulaSpec, Law, LoadKind, LoadSpec, MaterialSpec, ObstacleMotion, Plane,
-    PrimarySpec, ProbeSpec, SupportSpec, TieSpec, Units,
+    BodySpec, Case, ContactSpec, FormulaSpec, Law, LoadKind, LoadSpec, MaterialSpec, ObstacleMotion,
+    Overhang, Plane, PrimarySpec, ProbeSpec, SupportSpec, TieSpec, Units,
 };
 use carom_record::FieldSet;
 use maud::{Markup, html};
@@ -169,8 +169,9 @@ fn load(load: &LoadSpec, units: &Units) -> Row {
 }
 
 fn tie(tie: &TieSpec) -> Row {
+    let beside = if tie.overhang == Overhang::Free { "; nodes beside it are free" } else { "" };
     let words = html! {
-        (sample(Part::Tied, &tie.secondary)) " (secondary) to " (sample(Part::Tied, &tie.primary)) " (primary)"
+        (sample(Part::Tied, &tie.secondary)) " (secondary) to " (sample(Part::Tied, &tie.primary)) " (primary)" (beside)
     };
     (html! { (tie.name) }, words)
 }

@@ -12,7 +12,9 @@ mod obstacles;
 mod overlaps;
 pub(crate) mod side;
 mod supports;
+mod tie_links;
 mod ties;
+mod tying;
 mod unsolvable;
 mod weights;
 
@@ -27,7 +29,8 @@ use carom_solid::{Constitutive, Law, mean_dilatation_body};
 
 use side::side;
 use supports::Supported;
-use ties::Tying;
+use ties::Ties;
+use tying::Tying;
 use weights::Weights;
 
 pub(crate) use overlaps::overlaps;
@@ -42,16 +45,15 @@ pub(crate) type Materials = BTreeMap<String, Box<dyn Constitutive>>;
 /// cannot be solved.
 pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Problem>> {
     let d = case.dimension;
-    let (mut parts, tied) = parts(case, materials)?;
+    let (mut parts, mut ties) = parts(case, materials)?;
     let scale = parts.iter().map(|p| p.body.mesh().diameter()).fold(0.0, f64::max);
     let obstacles = obstacles::carriers(case, &mut parts, scale)?;
     let mut problems = Vec::new();
     let dofs = parts.last().map_or(0, |p| p.nodes().end) * d;
-    let Placed { reference, initial_position, mut initial_velocity } =
+    let Placed { reference, mut initial_position, mut initial_velocity } =
         placed(case, &parts, &obstacles, &mut problems);
     let Supported { mut fixed, mut supports } = supports::supported(case, &parts, &reference, &mut problems);
-    let tying = Tying { case, parts: &parts, reference: &reference };
-    let (points, ties) = tying.points(tied, &mut problems);
+    let tying = Tying { case, parts: &parts, reference: &reference, ties: &ties };
     for (velocity, _) in initial_velocity.iter_mut().zip(&fixed).filter(|(_, fixed)| **fixed) {
         *velocity = 0.0;
     }
@@ -59,10 +61,11 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     obstacles.iter().flat_map(obstacles::Moving::fixed).for_each(|dof| fixed[dof] = true);
 
     let mut moves = motions::moves(case, &parts, &obstacles, &fixed, &mut problems);
-    tying.release(&points, &mut fixed, &mut moves, &mut problems);
-    tying.check_start(&points, &initial_position, &initial_velocity, &mut problems);
+    let released = tying.release(&mut fixed, &mut moves, &mut problems);
+    tying.start(&mut initial_position, &mut initial_velocity, &mut problems);
     let motions = moves.motions(case, &parts);
     motions.dofs().for_each(|dof| fixed[dof] = true);
+    tying.constrain(&mut fixed);
     let mut loads = loads::loads(case, &parts, &mut problems);
 
     // For redistributed masses the contact nodes are made massless afterwards.
@@ -72,19 +75,23 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let mut massless: Vec<bool> = (0..dofs).map(|dof| mass.is_massless(dof / d)).collect();
     // The force on a prescribed carrier is averaged like that on the nodes that press on it.
     obstacles.iter().flat_map(obstacles::Moving::prescribed).for_each(|dof| massless[dof] = false);
-    tying.check_masses(&points, &massless, &mut problems);
+    tying.check_masses(&massless, &mut problems);
     let weights = Weights { case, parts: &parts, obstacles: &obstacles, mass: &mass };
     let gravity = weights.constant();
     problems.extend(weights.add_varying(&mut loads));
     let contacts = contacts::contacts(case, &parts, &obstacles, [&massless, &fixed], &mut problems);
     let probes = probes(case, &parts, &mut problems);
-    let unconstrained = free_motions(&parts, &fixed, &points);
+    let unconstrained = free_motions(&parts, &fixed, &ties.points);
     if case.time.scheme.is_static() {
         problems.extend(unsolvable::unconstrained(&parts, &unconstrained, &contacts));
     }
     problems.extend(unsolvable::massless(case, &parts, &massless));
 
-    let [free, unknown] = Model::unknowns(&fixed, d, &points);
+    for tie in &mut ties.list {
+        let nodes = tie.tied.concat();
+        tie.supported = released.iter().copied().filter(|dof| nodes.contains(&(dof / d))).collect();
+    }
+    let [free, unknown] = Model::unknowns(&fixed, d, &ties.points);
     if problems.is_empty() {
         Ok(Model {
             dimension: d,
@@ -96,8 +103,8 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
             fixed,
             free,
             unknown,
-            points,
-            ties,
+            points: ties.points,
+            ties: ties.list,
             mass,
             massless,
             gravity,
@@ -182,13 +189,13 @@ fn nodal(
     }
 }
 
-/// The bodies of a case, and the points of its ties.
-fn parts(case: &Case, materials: &Materials) -> Result<(Vec<BodyInstance>, Vec<ties::Found>), Vec<Problem>> {
+/// The bodies of a case, and its ties.
+fn parts(case: &Case, materials: &Materials) -> Result<(Vec<BodyInstance>, Ties), Vec<Problem>> {
     let mut parts = Vec::new();
     let mut problems = Vec::new();
     let mut first_node = 0;
     let mut meshes = meshes(case)?;
-    let tied = ties::found(case, &mut meshes, &mut problems);
+    let ties = ties::ties(case, &mut meshes, &mut problems);
     for ((k, spec), mesh) in case.bodies.iter().enumerate().zip(meshes) {
         let Some(material) = case.material(spec) else { continue };
         let lambda = material.lambda;
@@ -222,7 +229,18 @@ fn parts(case: &Case, materials: &Materials) -> Result<(Vec<BodyInstance>, Vec<t
             Err(error) => problems.push(no_mesh(case, k, error.to_string())),
         }
     }
-    if problems.is_empty() { Ok((parts, tied)) } else { Err(problems) }
+    if problems.is_empty() { Ok((parts, ties)) } else { Err(problems) }
+}
+
+/// The meshes of a case whose ties have moved their nodes.
+///
+/// # Errors
+/// A mesh cannot be made, or a tie has no points.
+pub(crate) fn tied_meshes(case: &Case) -> Result<Vec<carom_solid::Mesh>, Vec<Problem>> {
+    let mut meshes = meshes(case)?;
+    let mut problems = Vec::new();
+    ties::ties(case, &mut meshes, &mut problems);
+    if problems.is_empty() { Ok(meshes) } else { Err(problems) }
 }
 
 /// The meshes of the bodies.

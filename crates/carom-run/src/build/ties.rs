@@ -3,14 +3,12 @@
 //! A node beside the surface, by less than what the tie adjusts, is moved onto it in the mesh,
 //! without stress: the force of a tie at a distance from its point would have a moment.
 
-use std::collections::{BTreeMap, HashMap};
-
 use carom_case::{Case, Overhang, Problem, TieSpec};
-use carom_mechanics::model::{BodyInstance, Circular, Point, Points, Tie};
+use carom_mechanics::model::{Circular, Points, Tie};
 use carom_solid::{Bounds, FacetPoint, FacetShape, Mesh, Tree};
 
-use super::motions::Moves;
 use super::side::coordinates;
+use super::tie_links::Links;
 
 /// Distance that is closed unless the tie says more, over the length of a facet.
 const OFFSET: f64 = 1e-6;
@@ -19,17 +17,28 @@ const OFFSET: f64 = 1e-6;
 const BESIDE: f64 = 0.1;
 /// Part of a facet's size by which a curved one may leave the box of its nodes.
 const BULGE: f64 = 0.5;
+/// Weight of a node that is round-off of a point's place.
+const ROUND_OFF: f64 = 1e-9;
 
-/// A tied node: its body and number there, and the nodes of the primary side's body that carry it.
+/// The ties of a case: nodes that are points, and what is recorded of each tie.
+#[derive(Default)]
+pub(crate) struct Ties {
+    pub(crate) points: Points,
+    pub(crate) list: Vec<Tie>,
+}
+
+/// A tied node, and the nodes of the primary side's body that carry it, in the numbers of their
+/// meshes.
 struct Tied {
     node: usize,
     weights: Vec<(usize, f64)>,
 }
 
 /// The nodes of a tie, in the numbers of the meshes.
-pub(super) struct Found {
+struct Found {
     bodies: [usize; 2],
     tied: Vec<Tied>,
+    sides: [Vec<usize>; 2],
 }
 
 /// The primary side of a tie.
@@ -37,6 +46,8 @@ struct Primary {
     shape: FacetShape,
     facets: Vec<Vec<usize>>,
     places: Vec<Vec<[f64; 3]>>,
+    /// Length of the shortest cell where facets are points.
+    shortest: f64,
     tree: Tree,
 }
 
@@ -52,7 +63,14 @@ impl Primary {
             bounds.grown(BULGE * size)
         };
         let tree = Tree::new(facets.len(), bounds);
-        Some(Self { shape: mesh.element.facet_shape(), facets, places, tree })
+        let size = |cell: usize| {
+            let mut bounds = Bounds::EMPTY;
+            mesh.cell(cell).iter().for_each(|&node| bounds.add(&place_of(mesh, node)));
+            bounds.size()
+        };
+        let cells = if mesh.dimension() == 1 { mesh.cell_count() } else { 0 };
+        let shortest = (0..cells).map(size).fold(f64::INFINITY, f64::min);
+        Some(Self { shape: mesh.element.facet_shape(), facets, places, shortest, tree })
     }
 
     /// The nearest facet and its nearest point.
@@ -62,8 +80,11 @@ impl Primary {
         Some((facet, self.shape.closest(&self.places[facet], place)))
     }
 
-    /// Largest extent of a facet.
+    /// Largest extent of a facet, of a cell if facets are points.
     fn length(&self, facet: usize) -> f64 {
+        if self.shortest.is_finite() {
+            return self.shortest;
+        }
         let mut bounds = Bounds::EMPTY;
         self.places[facet].iter().for_each(|place| bounds.add(place));
         bounds.size()
@@ -76,18 +97,69 @@ fn place_of(mesh: &Mesh, node: usize) -> [f64; 3] {
 }
 
 /// Finds the points of all ties, and moves the nodes of the meshes onto them.
-pub(super) fn found(case: &Case, meshes: &mut [Mesh], problems: &mut Vec<Problem>) -> Vec<Found> {
-    let mut all = Vec::new();
-    for (k, tie) in case.ties.iter().enumerate() {
-        match found_by(case, k, tie, meshes) {
-            Ok(found) => all.push(found),
+pub(crate) fn ties(case: &Case, meshes: &mut [Mesh], problems: &mut Vec<Problem>) -> Ties {
+    let first: Vec<usize> =
+        meshes.iter().scan(0, |next, mesh| Some(std::mem::replace(next, *next + mesh.nodes.len()))).collect();
+    let mut links = Links::default();
+    let mut list = Vec::new();
+    for (k, spec) in case.ties.iter().enumerate() {
+        match found(case, k, spec, meshes) {
+            Ok(Found { bodies, tied, sides }) => {
+                let [secondary, primary] = bodies.map(|body| first[body]);
+                for Tied { node, weights } in tied {
+                    let weights = weights.into_iter().map(|(node, weight)| (primary + node, weight));
+                    links.tie(k, secondary + node, weights.collect());
+                }
+                let [own, other] = &sides;
+                let own = own.iter().map(|node| secondary + node);
+                let surface = own.chain(other.iter().map(|node| primary + node)).collect();
+                list.push(Tie {
+                    name: spec.name.clone(),
+                    tied: Default::default(),
+                    supported: Vec::new(),
+                    surface,
+                    bodies,
+                });
+            }
             Err(problem) => problems.push(problem),
         }
     }
-    all
+    for (k, tie) in list.iter_mut().enumerate() {
+        tie.tied = links.tied(k);
+    }
+    let mut places: Vec<f64> = meshes.iter().flat_map(|mesh| mesh.nodes.flat()).copied().collect();
+    let d = case.dimension;
+    let points = match Points::new(d, places.len() / d, links.points()) {
+        Ok(points) => points,
+        Err(Circular { node }) => {
+            problems.push(circular(&list, node, &places[node * d..(node + 1) * d]));
+            return Ties::default();
+        }
+    };
+    points.carry(&mut places);
+    for point in points.iter() {
+        let body = first.partition_point(|first| *first <= point.node) - 1;
+        let place = &places[point.node * d..(point.node + 1) * d];
+        meshes[body].nodes[point.node - first[body]].copy_from_slice(place);
+    }
+    Ties { points, list }
 }
 
-fn found_by(case: &Case, k: usize, tie: &TieSpec, meshes: &mut [Mesh]) -> Result<Found, Problem> {
+/// The tie that makes a node a point.
+pub(super) fn tie_of(ties: &[Tie], node: usize) -> usize {
+    let has = |tie: &Tie| tie.tied.iter().any(|nodes| nodes.contains(&node));
+    ties.iter().position(has).unwrap_or(0)
+}
+
+fn circular(ties: &[Tie], node: usize, place: &[f64]) -> Problem {
+    let at = coordinates(place);
+    let what = format!("ties make the node at {at} depend on itself");
+    let why = "the points that carry it are in turn tied to facets that it carries";
+    let help = "exchange `secondary` and `primary` of this tie";
+    Problem::new(format!("tie[{}].secondary", tie_of(ties, node)), what, why, help)
+}
+
+fn found(case: &Case, k: usize, tie: &TieSpec, meshes: &[Mesh]) -> Result<Found, Problem> {
     let (secondary, own) = looked_up(case, &tie.secondary, format!("tie[{k}].secondary"))?;
     let (primary, other) = looked_up(case, &tie.primary, format!("tie[{k}].primary"))?;
     let missing = |key: &str, name: &str, mesh: &Mesh| {
@@ -100,15 +172,15 @@ fn found_by(case: &Case, k: usize, tie: &TieSpec, meshes: &mut [Mesh]) -> Result
     let nodes = nodes.ok_or_else(|| missing("secondary", &tie.secondary, &meshes[secondary]))?;
     let target = Primary::new(&meshes[primary], other);
     let target = target.ok_or_else(|| missing("primary", &tie.primary, &meshes[primary]))?;
+    let carriers = meshes[primary].side_nodes(other).unwrap_or_default();
     let mut tied = Vec::new();
-    let mut moved = Vec::new();
-    for node in nodes {
-        let place = place_of(&meshes[secondary], node);
-        let Some((facet, point)) = target.nearest(place) else { continue };
-        if secondary == primary && target.facets.iter().any(|facet| facet.contains(&node)) {
+    for &node in &nodes {
+        if secondary == primary && carriers.contains(&node) {
             // The end of a slit belongs to both of its sides.
             continue;
         }
+        let place = place_of(&meshes[secondary], node);
+        let Some((facet, point)) = target.nearest(place) else { continue };
         let reach = tie.adjust.unwrap_or(OFFSET * target.length(facet));
         if point.distance > reach {
             if point.beside > BESIDE * point.distance {
@@ -119,9 +191,7 @@ fn found_by(case: &Case, k: usize, tie: &TieSpec, meshes: &mut [Mesh]) -> Result
             }
             return Err(apart(case, k, tie, place, &point));
         }
-        let weights = target.facets[facet].iter().copied().zip(point.values.iter().copied()).collect();
-        tied.push(Tied { node, weights });
-        moved.push((node, point.position));
+        tied.push(Tied { node, weights: weights(&target.facets[facet], &point.values) });
     }
     if tied.is_empty() {
         let what = format!("tie `{}` has no nodes", tie.name);
@@ -129,11 +199,16 @@ fn found_by(case: &Case, k: usize, tie: &TieSpec, meshes: &mut [Mesh]) -> Result
         let help = "name the two sides that touch, or move one of the bodies with `at`";
         return Err(Problem::new(format!("tie[{k}].secondary"), what, why, help));
     }
-    let d = case.dimension;
-    for (node, position) in moved {
-        meshes[secondary].nodes[node].copy_from_slice(&position[..d]);
-    }
-    Ok(Found { bodies: [secondary, primary], tied })
+    Ok(Found { bodies: [secondary, primary], tied, sides: [nodes, carriers] })
+}
+
+/// Nodes with their weights of sum 1, without those that are round-off.
+fn weights(nodes: &[usize], values: &[f64]) -> Vec<(usize, f64)> {
+    let mut weights: Vec<(usize, f64)> = nodes.iter().copied().zip(values.iter().copied()).collect();
+    weights.retain(|(_, weight)| weight.abs() > ROUND_OFF);
+    let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
+    weights.iter_mut().for_each(|(_, weight)| *weight /= sum);
+    weights
 }
 
 /// The body and the side of a name.
@@ -169,159 +244,6 @@ fn apart(case: &Case, k: usize, tie: &TieSpec, place: [f64; 3], point: &FacetPoi
          `adjust = {:.2e}`: nodes up to so far away are then moved onto the primary side, without stress",
         1.01 * point.distance
     );
-    Problem::new(format!("tie[{k}].adjust"), what, why, help)
-}
-
-/// The points and ties of a model.
-pub(super) struct Tying<'a> {
-    pub(super) case: &'a Case,
-    pub(super) parts: &'a [BodyInstance],
-    pub(super) reference: &'a [f64],
-}
-
-impl Tying<'_> {
-    /// The points of all ties in the numbers of the model. A node that an earlier tie ties is left
-    /// out of later ones, and so is one whose point an earlier tie ties to the node itself.
-    pub(super) fn points(&self, found: Vec<Found>, problems: &mut Vec<Problem>) -> (Points, Vec<Tie>) {
-        let mut given: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
-        let mut ties = Vec::new();
-        for (tie, Found { bodies, tied }) in self.case.ties.iter().zip(found) {
-            let [first, other] = bodies.map(|body| self.parts[body].first_node);
-            let mut nodes = Vec::new();
-            for Tied { node, weights } in tied {
-                let node = node + first;
-                let weights =
-                    weights.into_iter().map(|(carrier, weight)| (carrier + other, weight)).collect();
-                if given.contains_key(&node) || leads_to(&given, &weights, node) {
-                    continue;
-                }
-                given.insert(node, weights);
-                nodes.push(node);
-            }
-            ties.push(Tie { name: tie.name.clone(), nodes, bodies });
-        }
-        let given = given.into_iter().map(|(node, weights)| Point { node, weights }).collect();
-        let count = self.reference.len() / self.case.dimension;
-        match Points::new(self.case.dimension, count, given) {
-            Ok(points) => (points, ties),
-            Err(Circular { node }) => {
-                let at = coordinates(self.place(node));
-                let what = format!("ties make the node at {at} depend on itself");
-                let why = "its tie leads through the points of other ties back to it";
-                let help = "exchange `secondary` and `primary` of one of these ties";
-                problems.push(Problem::new("tie[0].secondary", what, why, help));
-                (Points::default(), ties)
-            }
-        }
-    }
-
-    fn place(&self, node: usize) -> &[f64] {
-        let d = self.case.dimension;
-        &self.reference[node * d..(node + 1) * d]
-    }
-
-    /// Frees the dofs of points whose carriers have the same support; any other support of a point
-    /// is a problem.
-    pub(super) fn release(
-        &self,
-        points: &Points,
-        fixed: &mut [bool],
-        moves: &mut Moves,
-        problems: &mut Vec<Problem>,
-    ) {
-        let d = self.case.dimension;
-        for point in points.iter() {
-            for axis in 0..d {
-                let support = |node: usize| (fixed[node * d + axis], moves.text(node * d + axis));
-                let own = support(point.node);
-                if own == (false, None) {
-                    continue;
-                }
-                if point.weights.iter().any(|(carrier, _)| support(*carrier) != own) {
-                    problems.push(self.overconstrained(point));
-                    return;
-                }
-                fixed[point.node * d + axis] = false;
-                moves.by_dof.remove(&(point.node * d + axis));
-            }
-        }
-    }
-
-    fn overconstrained(&self, point: &Point) -> Problem {
-        let at = coordinates(self.place(point.node));
-        let part = self.parts.iter().find(|part| part.nodes().contains(&point.node));
-        let body = part.map_or("", |part| part.name.as_str());
-        let k = self.case.ties.iter().position(|tie| tie.secondary.split('.').next() == Some(body));
-        let what = format!("the node of body \"{body}\" at {at} is tied and also on a support");
-        let why = "a tied node moves with the primary side, which this support does not hold in the same way";
-        let help = "exchange `secondary` and `primary`, give the primary side the same support there, or leave \
-            the node's side out of the support";
-        Problem::new(format!("tie[{}].secondary", k.unwrap_or(0)), what, why, help)
-    }
-
-    /// Reports initial positions and velocities that differ across ties.
-    pub(super) fn check_start(
-        &self,
-        points: &Points,
-        position: &[f64],
-        velocity: &[f64],
-        problems: &mut Vec<Problem>,
-    ) {
-        for (what, key, values) in
-            [("initial positions", "position", position), ("initial velocities", "velocity", velocity)]
-        {
-            let largest = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-            let mut carried = values.to_vec();
-            points.carry(&mut carried);
-            let differs = |(a, b): (&f64, &f64)| (a - b).abs() > 1e-9 * largest;
-            if let Some(dof) = carried.iter().zip(values).position(differs) {
-                let node = dof / self.case.dimension;
-                let body = self.parts.iter().position(|part| part.nodes().contains(&node)).unwrap_or(0);
-                let at = coordinates(self.place(node));
-                let what = format!("the {what} of the tied sides differ at {at}");
-                let why = format!("{} there, and {} on the primary side", values[dof], carried[dof]);
-                let help = "give both bodies the same, in the points of the tie at least";
-                problems.push(Problem::new(format!("body[{body}].{key}"), what, why, help));
-            }
-        }
-    }
-
-    /// Reports points of which only one side has mass.
-    pub(super) fn check_masses(&self, points: &Points, massless: &[bool], problems: &mut Vec<Problem>) {
-        let d = self.case.dimension;
-        let has_mass: HashMap<usize, bool> =
-            points.iter().map(|point| (point.node, !massless[point.node * d])).collect();
-        let differs = |point: &&Point| {
-            point.weights.iter().any(|(carrier, _)| massless[carrier * d] == has_mass[&point.node])
-        };
-        if self.case.time.scheme.is_static() {
-            return;
-        }
-        if let Some(point) = points.iter().find(differs) {
-            let at = coordinates(self.place(point.node));
-            let what = format!("only one side of a tie has mass at {at}");
-            let why = "the balance of nodes without mass holds at the end of a step, that of others as a mean over it";
-            let help =
-                "use mass = \"consistent\" for bodies whose contact sides are tied, or density > 0 for both";
-            problems.push(Problem::new("tie[0].secondary", what, why, help));
-        }
-    }
-}
-
-/// Whether a point is carried by one node alone, itself or through other points.
-fn leads_to(given: &BTreeMap<usize, Vec<(usize, f64)>>, weights: &Vec<(usize, f64)>, node: usize) -> bool {
-    let mut weights = weights;
-    for _ in 0..=given.len() {
-        let Some((carrier, _)) = weights.iter().find(|(_, weight)| (weight - 1.0).abs() < 1e-9) else {
-            return false;
-        };
-        if *carrier == node {
-            return true;
-        }
-        match given.get(carrier) {
-            Some(next) => weights = next,
-            None => return false,
-        }
-    }
-    true
+    let key = if tie.adjust.is_some() { "adjust" } else { "secondary" };
+    Problem::new(format!("tie[{k}].{key}"), what, why, help)
 }

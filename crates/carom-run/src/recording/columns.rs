@@ -94,8 +94,16 @@ pub(super) fn row(simulation: &Simulation, since: &Since, weights: &[f64]) -> Ve
     }
     if !model.supports.is_empty() || !model.ties.is_empty() {
         let mut reaction = reactions(model, state);
+        let mut transmitted = reaction.clone();
+        model.points.pass_on(&mut transmitted);
         for tie in &model.ties {
-            row.extend((0..d).map(|i| tie.nodes.iter().map(|node| reaction[node * d + i]).sum::<f64>()));
+            let force = |nodes: &[usize], i: usize| {
+                let dofs = nodes.iter().map(|node| node * d + i);
+                let own = dofs.filter(|dof| tie.supported.binary_search(dof).is_err());
+                own.map(|dof| transmitted[dof]).sum::<f64>()
+            };
+            let [secondary, primary] = &tie.tied;
+            row.extend((0..d).map(|i| force(secondary, i) - force(primary, i)));
         }
         model.points.gather(&mut reaction);
         for support in &model.supports {

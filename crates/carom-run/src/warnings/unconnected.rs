@@ -1,5 +1,5 @@
-//! Warning about bodies that touch along whole facets at the start, without contact or tie: every body
-//! has nodes of its own, so that nodes at one place are not connected.
+//! Warning about bodies that touch along whole facets at the start, without contact or tie: every
+//! body has nodes of its own, so that nodes at one place are not connected.
 
 use std::collections::{BTreeMap, HashMap};
 

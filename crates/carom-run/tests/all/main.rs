@@ -48,6 +48,7 @@ mod space_obstacles;
 mod statics;
 mod substeps;
 mod tangent;
+mod ties;
 mod undeclared;
 mod warnings;
 mod waves;

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use carom_contact::{Row, Rows};
 use carom_run::case::{Case, ContactSpec, Document, MeshSpec, read};
-use carom_run::model::{BodyInstance, LoadsAt, Model};
+use carom_run::model::{LoadsAt, Model};
 use carom_run::{GridReport, LogEvent, Setup, Simulation, State};
 
 use carom_study::Plan;
@@ -21,18 +21,35 @@ use carom_time::{Kernel, Nonsmooth};
 use super::common::{BAR, schemes};
 use super::particle::Particle;
 
-/// Σ over the nodes of a body.
-fn resultant(model: &Model, body: &BodyInstance, vector: &[f64]) -> [f64; 3] {
+/// Σ over the nodes of bodies.
+fn resultant(model: &Model, bodies: &[usize], vector: &[f64]) -> [f64; 3] {
     let d = model.dimension;
     let mut sum = [0.0; 3];
     for (i, sum) in sum.iter_mut().enumerate().take(d) {
-        *sum = body.nodes().map(|node| vector[node * d + i]).sum();
+        *sum = nodes(model, bodies).map(|node| vector[node * d + i]).sum();
     }
     sum
 }
 
+fn nodes(model: &Model, bodies: &[usize]) -> impl Iterator<Item = usize> {
+    bodies.iter().flat_map(|body| model.parts[*body].nodes())
+}
+
+/// The bodies, those together that ties join.
+fn tied(model: &Model) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = (0..model.parts.len()).map(|body| vec![body]).collect();
+    for tie in &model.ties {
+        let [a, b] = tie.bodies.map(|body| groups.iter().position(|group| group.contains(&body)).unwrap());
+        if a != b {
+            let other = groups.remove(a.max(b));
+            groups[a.min(b)].extend(other);
+        }
+    }
+    groups
+}
+
 struct Balance {
-    body: usize,
+    bodies: Vec<usize>,
     /// Directions in which nothing supports it.
     free: Vec<usize>,
     /// P at the start.
@@ -49,17 +66,16 @@ impl Balance {
         let (model, state) = (sim.model(), sim.state());
         let factor = case.time.scheme.kernel().map_or(0.0, |kernel| kernel.carried());
         let d = model.dimension;
-        let free = |body: &BodyInstance, i: usize| body.nodes().all(|node| !model.fixed[node * d + i]);
-        let of_body = |body: usize| {
-            let part = &model.parts[body];
-            let free: Vec<usize> = (0..d).filter(|&i| free(part, i)).collect();
-            let gravity = resultant(model, part, &model.gravity);
-            let loaded = Particle::new(resultant(model, part, &state.f_external), state.time);
-            let mut balance = Self { body, free, start: [0.0; 3], gravity, loaded, factor };
+        let of_bodies = |bodies: Vec<usize>| {
+            let is_free = |&i: &usize| nodes(model, &bodies).all(|node| !model.fixed[node * d + i]);
+            let free: Vec<usize> = (0..d).filter(is_free).collect();
+            let gravity = resultant(model, &bodies, &model.gravity);
+            let loaded = Particle::new(resultant(model, &bodies, &state.f_external), state.time);
+            let mut balance = Self { bodies, free, start: [0.0; 3], gravity, loaded, factor };
             balance.start = balance.momentum(model, state, sim.dt());
             balance
         };
-        let all = (0..model.parts.len()).filter(|_| !case.time.scheme.is_static()).map(of_body);
+        let all = tied(model).into_iter().filter(|_| !case.time.scheme.is_static()).map(of_bodies);
         all.filter(|balance| !balance.free.is_empty()).collect()
     }
 
@@ -69,7 +85,7 @@ impl Balance {
         if model.loads.is_empty() {
             return;
         }
-        let part = &model.parts[self.body];
+        let bodies = &self.bodies;
         let impulsive = match case.time.scheme.nonsmooth() {
             Some(Nonsmooth::Impulse(scheme)) => Some(scheme),
             _ => None,
@@ -82,7 +98,7 @@ impl Balance {
                 assert!(!model.loads.follow_sides(), "{}: pressure within a step", case.title);
                 model.loads_into(time, &state.y, &mut LoadsAt::default(), &mut force).unwrap();
             }
-            resultant(model, part, &force)
+            resultant(model, bodies, &force)
         };
         self.loaded.advance(kernel, state.time - self.loaded.time, before, load_at);
         // A projection replaces all accelerations by those of the balance.
@@ -98,12 +114,12 @@ impl Balance {
 
     /// P without the part of the loads.
     fn momentum(&self, model: &Model, state: &State, dt: f64) -> [f64; 3] {
-        let body = &model.parts[self.body];
+        let bodies = &self.bodies;
         let mut product = vec![0.0; model.dofs()];
         model.mass.multiply_into(&state.v, &mut product);
-        let p = resultant(model, body, &product);
+        let p = resultant(model, bodies, &product);
         model.mass.multiply_into(&state.a, &mut product);
-        let q = resultant(model, body, &product);
+        let q = resultant(model, bodies, &product);
         let Particle { v, a, .. } = &self.loaded;
         std::array::from_fn(|i| p[i] - v[i] + self.factor * dt * (q[i] - self.gravity[i] - a[i]))
     }
@@ -111,12 +127,12 @@ impl Balance {
     /// What is missing in the balance at a state, and the largest term of it.
     fn error(&self, sim: &Simulation) -> [f64; 2] {
         let (model, state) = (sim.model(), sim.state());
-        let body = &model.parts[self.body];
+        let bodies = &self.bodies;
         let dt = state.carried.dt().unwrap_or(sim.dt());
         let now = self.momentum(model, state, dt);
         // Forces that cancel have a momentum over a step.
         let forces = state.pairs.iter().flatten().map(|pair| pair.lambda.abs()).sum::<f64>()
-            + body.nodes().map(|node| state.f_external[node * model.dimension].abs()).sum::<f64>();
+            + nodes(model, bodies).map(|node| state.f_external[node * model.dimension].abs()).sum::<f64>();
         let (mut missing, mut scale) = (0.0_f64, f64::MIN_POSITIVE.max(dt * forces));
         for &i in &self.free {
             let fallen = self.gravity[i] * state.time;
@@ -125,8 +141,9 @@ impl Balance {
                 let of = |is: bool| if is { impulse[i] } else { 0.0 };
                 let secondary = model.contacts[k].kinematics.secondary();
                 // Corners of the primary side, if there are any, follow the secondary nodes.
-                contact += of(secondary.first().is_some_and(|node| body.nodes().contains(node)));
-                contact -= of(model.contacts[k].primary_part == Some(self.body));
+                contact +=
+                    of(secondary.first().is_some_and(|node| nodes(model, bodies).any(|own| own == *node)));
+                contact -= of(model.contacts[k].primary_part.is_some_and(|body| bodies.contains(&body)));
                 // Of all directions: where symmetry leaves none in one, round-off is no error.
                 scale = impulse.iter().fold(scale, |scale, impulse| scale.max(impulse.abs()));
             }
