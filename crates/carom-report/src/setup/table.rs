@@ -95,7 +95,7 @@ fn body(case: &Case, body: &BodySpec, fields: Option<&FieldSet>) -> Row {
             .then(|| html! { "; " (Label(symbol)) " = " code { (components(formulas)) } " " (Label(unit)) })
     };
     let words = html! {
-        (body.material) ", " (format!("{:?}", body.element))
+        (body.material_names().join(", ")) ", " (format!("{:?}", body.element))
         @if let Some(size) = size { ": " (Label(&size)) }
         (moved(&body.gravity, "g", &format!("{length}/{time}^2")).unwrap_or_default())
         (moved(&body.velocity, "v_{0}", &format!("{length}/{time}")).unwrap_or_default())

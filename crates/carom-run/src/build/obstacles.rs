@@ -71,6 +71,7 @@ pub(super) fn carriers<'a>(
             nodes: Positions::new(d, origin.repeat(spec.motion.nodes())),
             cells: Vec::new(),
             sides: std::collections::BTreeMap::new(),
+            regions: Vec::new(),
             repairs: Vec::new(),
         };
         // Without cells the law does not matter.

@@ -242,7 +242,8 @@ fn more(text: &str) -> String {
 fn bodies(case: &Case, facts: &Facts) -> Vec<String> {
     let mut lines = Vec::new();
     for (body, facts) in case.bodies.iter().zip(&facts.bodies) {
-        let what = format!("{:?} of {}: {}", body.element, body.material, counted(facts));
+        let materials = body.material_names().join(" and ");
+        let what = format!("{:?} of {materials}: {}", body.element, counted(facts));
         lines.push(named("body", Some(&body.name), &what));
         // In the plane every built-in cell is well shaped.
         if let Some(quality) = facts.scaled_jacobian.filter(|_| case.dimension == 3) {
