@@ -86,12 +86,8 @@ fn whole() -> usize {
 /// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2,
 /// a volume in space.
 fn group(file: gmsh::MshFile, dimension: usize, of: &FileMesh) -> Result<Mesh, gmsh::MshError> {
-    let mut file = file.with_slits(of.slits).with_regions(of.regions.clone());
-    let mut name = of.surface.clone();
-    if name.is_empty() {
-        name = of.regions.join(" + ");
-        file = file.with_union(dimension, &name)?;
-    }
+    let file = of.with_group(file.with_slits(of.slits), dimension)?.with_regions(of.regions.clone());
+    let name = of.group();
     match dimension {
         1 => file.bar(&name),
         3 => file.volume(&name),
@@ -205,8 +201,7 @@ impl FileMesh {
         let found = if extruded { generate::extruded(mesh.element)? } else { mesh.element };
         if let Some(element) = element.filter(|e| *e != found && e.dimension() == found.dimension()) {
             let extrusion = if extruded { "the extrusion of " } else { "" };
-            let surface = if of.surface.is_empty() { of.regions.join(" + ") } else { of.surface };
-            let body = &surface;
+            let body = of.group();
             let what = format!("{extrusion}\"{body}\" of {name} has {found:?} cells, not {element:?}");
             let wanted = element.degree();
             let in_gmsh = if found.degree() == wanted {
@@ -236,6 +231,24 @@ impl FileMesh {
         let file = gmsh::read(&unchanged(&self.file, &self.hash)?);
         let mesh = file.and_then(|file| group(file, dimension, self)).map_err(none)?;
         Ok(mesh.subdivided(self.parts))
+    }
+
+    /// Name of the physical group that is the body; of one that consists of several, all of them.
+    pub fn group(&self) -> String {
+        if self.surface.is_empty() { self.regions.join(" + ") } else { self.surface.clone() }
+    }
+
+    /// The file with the group of the body, also of one that consists of several.
+    pub(crate) fn with_group(
+        &self,
+        file: gmsh::MshFile,
+        dimension: usize,
+    ) -> Result<gmsh::MshFile, gmsh::MshError> {
+        if self.surface.is_empty() {
+            file.with_union(dimension, &self.group(), &self.regions)
+        } else {
+            Ok(file)
+        }
     }
 
     /// Reads the mesh file again; none if it has changed or cannot be read.

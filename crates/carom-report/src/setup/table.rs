@@ -153,7 +153,10 @@ fn load(load: &LoadSpec, units: &Units) -> Row {
     let (kind, place, value) = match &load.kind {
         LoadKind::Traction { on, value } => ("traction", on.join(", "), components(value)),
         LoadKind::Pressure { on, value } => ("pressure", on.join(", "), value.to_string()),
-        LoadKind::BodyForce { body, value } => ("body force", body.clone(), components(value)),
+        LoadKind::BodyForce { body, material, value } => {
+            let cells = material.as_ref().map_or_else(String::new, |material| format!(", {material}"));
+            ("body force", format!("{body}{cells}"), components(value))
+        }
     };
     let unit = match &load.kind {
         LoadKind::BodyForce { .. } => format!("{}/({}^2 {}^2)", units.mass, units.length, units.time),

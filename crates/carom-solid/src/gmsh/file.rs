@@ -75,16 +75,15 @@ impl MshFile {
         Self { regions, ..self }
     }
 
-    /// The same file, with a further physical group of a dimension that contains the cells of its
-    /// regions.
+    /// The same file, with a further physical group of a dimension that contains the cells of some
+    /// of its groups.
     ///
     /// # Errors
-    /// If a region is not a group of the file.
-    pub fn with_union(mut self, dimension: usize, name: &str) -> Result<Self, MshError> {
-        self.known(dimension, self.regions.iter().map(String::as_str))?;
+    /// If the file has no such group.
+    pub fn with_union(mut self, dimension: usize, name: &str, groups: &[String]) -> Result<Self, MshError> {
+        self.known(dimension, groups.iter().map(String::as_str))?;
         let tag = 1 + self.groups.iter().map(|group| group.tag).max().unwrap_or(0);
-        let parts: Vec<Vec<i64>> =
-            self.regions.iter().map(|region| self.tags(dimension, region).collect()).collect();
+        let parts: Vec<Vec<i64>> = groups.iter().map(|group| self.tags(dimension, group).collect()).collect();
         for block in self.blocks.iter_mut().filter(|block| block.kind.dimension() == dimension as i64) {
             if parts.iter().flatten().any(|tag| block.groups.contains(tag)) {
                 block.groups.push(tag);
