@@ -13,12 +13,12 @@ pub(super) struct Bodies<'a> {
 }
 
 impl Bodies<'_> {
-    /// λ + 2μ of a body.
+    /// λ + 2μ of a body, that of the softest of its materials.
     fn modulus(&self, body: &str) -> f64 {
         let body = self.bodies.iter().flatten().find(|spec| spec.name == body);
-        let material = body
-            .and_then(|body| self.materials.iter().flatten().find(|material| material.name == body.material));
-        material.map_or(0.0, |material| material.lambda + 2.0 * material.mu)
+        let names = body.map_or_else(Vec::new, BodySpec::material_names);
+        let of_body = self.materials.iter().flatten().filter(|m| names.contains(&m.name.as_str()));
+        of_body.map(|material| material.lambda + 2.0 * material.mu).reduce(f64::min).unwrap_or(0.0)
     }
 
     /// The contacts of the table `v` with the key `between`; `one`: its other keys, `declared`: the

@@ -116,6 +116,9 @@ impl Excerpt {
         let mut used = Vec::new();
         each(&mut case, "body", &mut |body| {
             used.extend(body.get("material").and_then(Item::as_str).map(ToOwned::to_owned));
+            let of_groups = body.get("materials").and_then(Item::as_table_like);
+            let names = of_groups.into_iter().flat_map(TableLike::iter);
+            used.extend(names.filter_map(|(_, name)| name.as_str().map(ToOwned::to_owned)));
         });
         retain(&mut case, "material", &mut |material| named(material, &used));
         let end = &mut case["time"]["end"];

@@ -99,6 +99,8 @@ pub enum Kind {
     FormulasOr(&'static [&'static str], &'static Table),
     /// A table of formulas in t, with names of columns as keys.
     ByColumn,
+    /// A table with at least one name, by the name of a physical group.
+    NamesByGroup,
     /// A list of at least one of these words.
     Choices(&'static [&'static str]),
     /// A side `body.side`.
@@ -286,6 +288,7 @@ impl Kind {
             Self::Formulas(_) => format!("{} or formulas in quotes", several(dimension)),
             Self::FormulasOr(..) => format!("{} or formulas in quotes, or a table", several(dimension)),
             Self::ByColumn => "a table of formulas by column".into(),
+            Self::NamesByGroup => "a table of names by physical group".into(),
             Self::Choices(choices) => format!("a list of values from {}", words(choices)),
             Self::Side => "a side \"body.side\"".into(),
             Self::Between => "\"all\", or a list of bodies and sides [\"body\", \"body.side\"]".into(),

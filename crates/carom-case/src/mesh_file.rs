@@ -7,9 +7,11 @@ use std::path::{Path, PathBuf};
 use carom_solid::{Element, Mesh, generate, gmsh};
 use serde::{Deserialize, Serialize};
 
+use super::document::joined;
 use super::keys::Kind::Text;
-use super::keys::{Keys, View};
+use super::keys::{Key, Keys, View};
 use super::no_mesh::NoMesh;
+use super::problem::Problem;
 use carom_record::available_memory;
 
 /// A body from a Gmsh file; its sides are the physical curves (dimension 1: points, dimension 3:
@@ -21,13 +23,17 @@ pub struct FileMesh {
     #[key(Text, example = "\"impact.msh\"")]
     pub file: PathBuf,
     /// Name of the physical surface (dimension 1: curve) that is the body; in dimension 3 give
-    /// `volume`.
-    #[key(unless = "volume", example = "\"cylinder\"", with = group_name)]
+    /// `volume`. A body with `materials` needs neither: it consists of their groups.
+    #[key(Text, unless = "volume", optional = "\"cylinder\"", with = group_name)]
     pub surface: String,
     /// Dimension 3: name of the physical volume that is the body.
     #[key(Text, optional = "\"part\"")]
     #[serde(skip)]
     pub volume: (),
+    /// Physical groups whose cells have a material of their own: the regions of the mesh, in this
+    /// order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regions: Vec<String>,
     /// Whether neighbouring cells may have separate nodes at the same place: a closed slit, or
     /// pieces that touch. Otherwise this is an error.
     #[key(default = "false")]
@@ -48,10 +54,28 @@ pub struct FileMesh {
     pub parts: usize,
 }
 
-/// The physical group of a file that is the body.
+/// The physical group of a file that is the body; empty if the body consists of the groups of its
+/// materials.
 fn group_name(v: &View) -> Option<String> {
     let named = v.keys.iter().map(|key| key.name).filter(|key| ["surface", "volume"].contains(key));
-    named.rev().find_map(|key| v.get::<Option<String>>(key)?)
+    let given = named.rev().find_map(|key| v.get::<Option<String>>(key)?);
+    if given.is_some() || v.materials.is_some() {
+        return Some(given.unwrap_or_default());
+    }
+    // A value of another type, and a key that is probably misspelt, are reported elsewhere.
+    if v.has("surface") || v.has("volume") || v.has_unknown_key() {
+        return None;
+    }
+    let key = if v.dimension == Some(3) && v.keys.iter().any(|key| key.name == "volume") {
+        "volume"
+    } else {
+        "surface"
+    };
+    let meaning = v.keys.iter().find(|known| known.name == key).map_or_else(String::new, Key::meaning);
+    let what = format!("mesh from a file needs `{key}`");
+    let why = format!("`{key}` is required. {meaning}");
+    let example = if key == "volume" { "part" } else { "cylinder" };
+    v.wrong_key("", what, why, format!("add `{key} = \"{example}\"`, for example"))
 }
 
 /// Default of `parts`: edges remain as they are in the file.
@@ -61,12 +85,13 @@ fn whole() -> usize {
 
 /// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2,
 /// a volume in space.
-fn group(file: gmsh::MshFile, dimension: usize, name: &str, slits: bool) -> Result<Mesh, gmsh::MshError> {
-    let file = file.with_slits(slits);
+fn group(file: gmsh::MshFile, dimension: usize, of: &FileMesh) -> Result<Mesh, gmsh::MshError> {
+    let file = of.with_group(file.with_slits(of.slits), dimension)?.with_regions(of.regions.clone());
+    let name = of.group();
     match dimension {
-        1 => file.bar(name),
-        3 => file.volume(name),
-        _ => file.body(name),
+        1 => file.bar(&name),
+        3 => file.volume(&name),
+        _ => file.body(&name),
     }
 }
 
@@ -108,12 +133,39 @@ pub(super) fn bytes(file: &Path) -> Result<Vec<u8>, String> {
     std::fs::read(file).map_err(|e| e.to_string())
 }
 
+/// The region that a fault is about: its name, or an empty one if it is about the division into
+/// regions; none if it is about something else.
+fn region_of<'a>(fault: &gmsh::Fault, regions: &'a [String]) -> Option<&'a str> {
+    match fault {
+        gmsh::Fault::NoName { name, .. } | gmsh::Fault::EmptyRegion { region: name, .. } => {
+            regions.iter().find(|region| *region == name).map(String::as_str)
+        }
+        gmsh::Fault::NoRegion { .. } | gmsh::Fault::SeveralRegions { .. } => Some(""),
+        _ => None,
+    }
+}
+
+/// A problem with the division into materials, at the key `materials` of the body whose mesh `v`
+/// is.
+fn at_materials(v: &View, region: &str, file: &str, error: &gmsh::MshError) -> Problem {
+    let body = v.path.rsplit_once(".mesh").map_or("", |(body, _)| body);
+    let path = format!("{body}.materials");
+    let what = format!("{file}: {error}");
+    if region.is_empty() {
+        return Problem::new(path, what, error.why(), error.help());
+    }
+    Problem::new(joined(&path, region), what, error.why(), error.help()).at_key()
+}
+
 impl FileMesh {
     /// Reads the file and completes the description of the mesh; problems are reported at the keys
     /// of `v`.
     pub(crate) fn resolved(self, v: &View, purpose: Purpose) -> Option<Self> {
         let Purpose { dimension, element, extruded } = purpose;
-        let Self { file, surface, slits, .. } = self;
+        let of_materials = v.materials.map_or(&[][..], |groups| &groups.0);
+        let mut regions: Vec<String> = of_materials.iter().map(|entry| entry.key.clone()).collect();
+        regions.sort_unstable();
+        let mut of = Self { regions, ..self };
         let name: String = v.get("file")?;
         let (named, other) = if dimension == 3 { ("volume", "surface") } else { ("surface", "volume") };
         // The table of an extrusion has no such key.
@@ -129,24 +181,28 @@ impl FileMesh {
             }
             v.wrong(key, what, why, help)
         };
-        let bytes = match bytes(&file) {
+        let bytes = match bytes(&of.file) {
             Ok(bytes) => bytes,
             Err(why) => {
                 let what = format!("the mesh \"{name}\" cannot be read");
                 return wrong("file", what, why, "check the path; it is relative to the folder of the case");
             }
         };
-        let mesh = match gmsh::read(&bytes).and_then(|file| group(file, dimension, &surface, slits)) {
+        let mesh = match gmsh::read(&bytes).and_then(|file| group(file, dimension, &of)) {
             Ok(mesh) => mesh,
             Err(error) => {
+                if let Some(region) = region_of(&error.fault, &of.regions) {
+                    return v.report(at_materials(v, region, &name, &error));
+                }
                 let key = if matches!(error.fault, gmsh::Fault::NoName { .. }) { named } else { "file" };
                 return wrong(key, format!("{name}: {error}"), error.why(), error.help());
             }
         };
         let found = if extruded { generate::extruded(mesh.element)? } else { mesh.element };
         if let Some(element) = element.filter(|e| *e != found && e.dimension() == found.dimension()) {
-            let of = if extruded { "the extrusion of " } else { "" };
-            let what = format!("{of}\"{surface}\" of {name} has {found:?} cells, not {element:?}");
+            let extrusion = if extruded { "the extrusion of " } else { "" };
+            let body = of.group();
+            let what = format!("{extrusion}\"{body}\" of {name} has {found:?} cells, not {element:?}");
             let wanted = element.degree();
             let in_gmsh = if found.degree() == wanted {
                 let cells = if extruded { generate::plane_of(element)? } else { element };
@@ -157,18 +213,13 @@ impl FileMesh {
             let help = format!("write element = \"{found:?}\", or {in_gmsh} in Gmsh");
             return wrong(named, what, "the element of a body must be that of its mesh".into(), &help);
         }
-        Some(Self {
-            file,
-            surface,
-            volume: (),
-            slits,
-            hash: blake3::hash(&bytes).to_hex().to_string(),
-            nodes: mesh.nodes.len(),
-            cells: mesh.cell_count(),
-            sides: mesh.sides.into_keys().collect(),
-            repairs: mesh.repairs,
-            parts: 1,
-        })
+        of.hash = blake3::hash(&bytes).to_hex().to_string();
+        of.nodes = mesh.nodes.len();
+        of.cells = mesh.cell_count();
+        of.sides = mesh.sides.into_keys().collect();
+        of.repairs = mesh.repairs;
+        of.parts = 1;
+        Some(of)
     }
 
     /// The mesh of a resolved case, if its file is still the one the case was resolved with.
@@ -178,8 +229,26 @@ impl FileMesh {
     pub(crate) fn mesh(&self, dimension: usize) -> Result<Mesh, NoMesh> {
         let none = |error: gmsh::MshError| NoMesh::File { file: self.file.clone(), error: Box::new(error) };
         let file = gmsh::read(&unchanged(&self.file, &self.hash)?);
-        let mesh = file.and_then(|file| group(file, dimension, &self.surface, self.slits)).map_err(none)?;
+        let mesh = file.and_then(|file| group(file, dimension, self)).map_err(none)?;
         Ok(mesh.subdivided(self.parts))
+    }
+
+    /// Name of the physical group that is the body; of one that consists of several, all of them.
+    pub fn group(&self) -> String {
+        if self.surface.is_empty() { self.regions.join(" + ") } else { self.surface.clone() }
+    }
+
+    /// The file with the group of the body, also of one that consists of several.
+    pub(crate) fn with_group(
+        &self,
+        file: gmsh::MshFile,
+        dimension: usize,
+    ) -> Result<gmsh::MshFile, gmsh::MshError> {
+        if self.surface.is_empty() {
+            file.with_union(dimension, &self.group(), &self.regions)
+        } else {
+            Ok(file)
+        }
     }
 
     /// Reads the mesh file again; none if it has changed or cannot be read.

@@ -121,6 +121,9 @@ fn values(kind: &Kind) -> Map<String, Value> {
         Kind::ByColumn => {
             json!({ "type": "object", "additionalProperties": { "type": ["number", "string"] } })
         }
+        Kind::NamesByGroup => {
+            json!({ "type": "object", "minProperties": 1, "additionalProperties": { "type": "string" } })
+        }
         Kind::Truth => json!({ "type": "boolean" }),
         Kind::Count(least) => json!({ "type": "integer", "minimum": least }),
         Kind::Counts(least) => {

@@ -58,6 +58,6 @@ pub use recorder::{MemoryRecord, Recorder};
 pub use rows::{ContactCell, ContactRow, ContactValue, Event};
 pub use run::{History, Run};
 pub use stop::{Advice, Stop, StopIteration, StopNode, StopPlace};
-pub use vtu::{Block, Cell, FieldSet, PointArray};
+pub use vtu::{Block, Cell, CellMaterials, FieldSet, PointArray};
 pub use warning::Warning;
 pub use writer::{FLUSH_INTERVAL, Reopened, RunWriter};

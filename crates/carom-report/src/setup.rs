@@ -446,7 +446,7 @@ impl<'a> Drawing<'a> {
                 self.values(value, spot.at)
             }
         };
-        if let LoadKind::BodyForce { body, value } = &load.kind
+        if let LoadKind::BodyForce { body, value, .. } = &load.kind
             && let Some(block) = self.block(body)
         {
             let middle = self.middle(block);

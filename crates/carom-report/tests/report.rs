@@ -120,6 +120,7 @@ fn bar(directory: &Path, rows: usize, with_fields: bool) {
                     connectivity: vec![0, 1, 2, 3],
                 }],
                 arrays: vec![PointArray { name, unit, components: 3, values: displacement }],
+                ..FieldSet::default()
             };
             writer.fields(i as u64, t, &fields).unwrap();
         }
@@ -205,7 +206,9 @@ fn cube(directory: &Path) {
             array("von_mises", "Pa", 1, mises),
             array("stress", "Pa", 6, stress),
         ];
-        writer.fields(u64::from(i), t, &FieldSet { points, blocks: vec![block], arrays }).unwrap();
+        writer
+            .fields(u64::from(i), t, &FieldSet { points, blocks: vec![block], arrays, ..FieldSet::default() })
+            .unwrap();
     }
     writer.finish(&mut manifest).unwrap();
 }
@@ -282,7 +285,9 @@ fn pressed(directory: &Path) {
             };
             writer.contact(&row).unwrap();
         }
-        writer.fields(u64::from(i), t, &FieldSet { points, blocks: vec![block], arrays }).unwrap();
+        writer
+            .fields(u64::from(i), t, &FieldSet { points, blocks: vec![block], arrays, ..FieldSet::default() })
+            .unwrap();
     }
     writer.finish(&mut manifest).unwrap();
 }

@@ -34,7 +34,13 @@ fn write(directory: &Path, case: &str, sides: &[(&str, Vec<usize>)], kind: Cell,
         values: vec![0.0; components * points.len()],
     };
     let arrays = vec![array("displacement", "m", 3), array("stress", "Pa", 6)];
-    writer.fields(0, 0.0, &FieldSet { points: points.to_vec(), blocks: vec![block], arrays }).unwrap();
+    writer
+        .fields(
+            0,
+            0.0,
+            &FieldSet { points: points.to_vec(), blocks: vec![block], arrays, ..FieldSet::default() },
+        )
+        .unwrap();
     writer.finish(&mut manifest).unwrap();
 }
 

@@ -177,7 +177,7 @@ pub(crate) fn floor(case: &Case, model: &Model) -> f64 {
 /// without pressure.
 fn swells(case: &Case, start: &Model, y: &[f64]) -> Option<String> {
     let deepest = depths(start, &start.initial_position).concat().into_iter().fold(0.0, f64::max);
-    let is_small = |spec: &&BodySpec| case.material(spec).is_some_and(|m| m.law == Law::LinearElastic);
+    let is_small = |spec: &&BodySpec| case.materials_of(spec).iter().any(|m| m.law == Law::LinearElastic);
     case.bodies.iter().filter(is_small).find_map(|spec| {
         let part = start.parts.iter().find(|part| part.name == spec.name)?;
         let turn = rotation(start.dimension, part.of(&start.reference), part.of(y));

@@ -16,8 +16,10 @@ pub fn crossing(case: &Case, model: &Model) -> Option<f64> {
     };
     let bodies = model.parts.iter().zip(&case.bodies);
     let times = bodies.filter_map(|(part, spec)| {
-        let material = case.material(spec).filter(|material| material.density > 0.0)?;
-        Some(across(part) / material.wave_speed(case.plane))
+        let materials = case.materials_of(spec).into_iter().filter(|material| material.density > 0.0);
+        // The fastest of its materials crosses it first.
+        let fastest = materials.map(|material| material.wave_speed(case.plane)).reduce(f64::max)?;
+        Some(across(part) / fastest)
     });
     times.reduce(f64::min).filter(|_| !case.time.scheme.is_static())
 }

@@ -24,7 +24,7 @@ pub struct PointState {
     pub strain: [[f64; 3]; 3],
 }
 
-/// A deformable body: a mesh with one material. Node numbers are the body's own; D stands for the
+/// A deformable body: a mesh whose regions have one material each. Node numbers are the body's own; D stands for the
 /// dimension of its mesh and N for the nodes of a cell.
 ///
 /// Units follow the case: forces per unit thickness × thickness. `y` is always the positions of all
@@ -95,12 +95,12 @@ pub trait Body: Send + Sync {
     /// (`D²`, row-major), and the reference volume (× thickness).
     fn each_moved_point(&self, cell: usize, y: &[f64], visit: &mut dyn FnMut(&[f64], &[f64], &[f64], f64));
 
-    /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress of a motion with H = ∂y/∂X − 1
+    /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress that the material of a cell has in a motion with H = ∂y/∂X − 1
     /// (`D²`, row-major) and second derivatives ∂²yₖ/∂Xᴶ∂Xᴸ (`D³`, k first), into `out` (`D`).
     ///
     /// # Errors
     /// The determinant J if it is not positive.
-    fn stress_divergence(&self, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64>;
+    fn stress_divergence(&self, cell: usize, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64>;
 
     /// Smallest J over the quadrature points of a cell.
     fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64;
@@ -149,6 +149,6 @@ pub trait Body: Send + Sync {
     /// `None` if it lies outside.
     fn invert(&self, cell: usize, y: &[f64], point: &[f64]) -> Option<Vec<f64>>;
 
-    /// Density ρ₀.
-    fn density(&self) -> f64;
+    /// Density ρ₀ of a cell.
+    fn density(&self, cell: usize) -> f64;
 }

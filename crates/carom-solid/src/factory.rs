@@ -7,55 +7,60 @@ use crate::material::{
 };
 use crate::mesh::{Element, Mesh};
 use crate::shape::{Hex8, Quad4, Shape};
-use crate::solid::{Solid, SolidError};
+use crate::solid::{Medium, Solid, SolidError};
 
 /// A law that bodies of every shape can be made of: each [`Material`] that is known in every
 /// dimension, your own included.
 pub trait Constitutive: Send + Sync {
-    /// Body of a mesh of any dimension; plane strain in the plane. `thickness` is the area of the
-    /// cross-section in dimension 1; it is not used in space.
-    ///
-    /// # Errors
-    /// If a number is out of range, a cell is degenerate, or the element has another dimension than
-    /// the mesh.
-    fn body(&self, mesh: Mesh, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError>;
+    /// The law in dimension 1: no strain across.
+    fn along_line(&self) -> LawAtPoints<1>;
 
-    /// Body in plane stress. `thickness` is that of the undeformed sheet.
-    ///
-    /// # Errors
-    /// As [`Constitutive::body`], and for a mesh that is not plane.
-    fn plane_stress_body(
-        &self,
-        mesh: Mesh,
-        density: f64,
-        thickness: f64,
-    ) -> Result<Box<dyn Body>, SolidError>;
+    /// The law in plane strain.
+    fn in_plane_strain(&self) -> LawAtPoints<2>;
+
+    /// The law in plane stress.
+    fn in_plane_stress(&self) -> LawAtPoints<2>;
+
+    /// The law in space.
+    fn in_space(&self) -> LawAtPoints<3>;
+}
+
+/// A law compiled for the quadrature points of bodies of one dimension.
+pub struct LawAtPoints<const D: usize>(Box<dyn Pointwise<D>>);
+
+/// Material of the cells of a region of a body.
+#[derive(Clone, Copy, Debug)]
+pub struct RegionMaterial<L> {
+    /// Constitutive law.
+    pub law: L,
+    /// Density ρ₀ ≥ 0.
+    pub density: f64,
+}
+
+/// Plane state of a two-dimensional body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaneState {
+    /// No strain out of the plane.
+    Strain,
+    /// No stress out of the plane.
+    Stress,
 }
 
 impl<L: Material<1> + Material<2> + Thickness + Clone> Constitutive for L {
-    fn body(&self, mesh: Mesh, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
-        let element = mesh.element;
-        match element.dimension() {
-            1 => {
-                let other = SolidError::Dimension { element, dimension: 1 };
-                of_shape!(1, element, solid(mesh, Box::new(self.clone()), density, thickness), Err(other))
-            }
-            2 => plane(mesh, Box::new(self.clone()), density, thickness),
-            // Solids in space have no thickness.
-            _ => {
-                let other = SolidError::Dimension { element, dimension: 3 };
-                of_shape!(3, element, solid(mesh, Box::new(self.clone()), density, 1.0), Err(other))
-            }
-        }
+    fn along_line(&self) -> LawAtPoints<1> {
+        LawAtPoints(Box::new(self.clone()))
     }
 
-    fn plane_stress_body(
-        &self,
-        mesh: Mesh,
-        density: f64,
-        thickness: f64,
-    ) -> Result<Box<dyn Body>, SolidError> {
-        plane(mesh, Box::new(PlaneStress(self.clone())), density, thickness)
+    fn in_plane_strain(&self) -> LawAtPoints<2> {
+        LawAtPoints(Box::new(self.clone()))
+    }
+
+    fn in_plane_stress(&self) -> LawAtPoints<2> {
+        LawAtPoints(Box::new(PlaneStress(self.clone())))
+    }
+
+    fn in_space(&self) -> LawAtPoints<3> {
+        LawAtPoints(Box::new(self.clone()))
     }
 }
 
@@ -65,8 +70,8 @@ impl Law {
     /// ```
     /// use carom_solid::{Element, Law, generate};
     /// let mesh = generate::rectangle(Element::T6, [0.0, 0.0], [2.0, 1.0], [4, 2])?;
-    /// let rubber = Law::NeoHookean { lambda: 200.0, mu: 15.0 }.constitutive();
-    /// assert_eq!(rubber.body(mesh, 0.25, 1.0)?.mesh().cell_count(), 16);
+    /// let rubber = carom_solid::body(mesh, Law::NeoHookean { lambda: 200.0, mu: 15.0 }, 0.25, 1.0)?;
+    /// assert_eq!(rubber.mesh().cell_count(), 16);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn constitutive(self) -> Box<dyn Constitutive> {
@@ -78,62 +83,104 @@ impl Law {
     }
 }
 
-/// [`Constitutive::body`] of a law.
+/// Body of a mesh of any dimension, of one material; plane strain in the plane.
 ///
 /// # Errors
-/// As there.
+/// As [`body_of_regions`].
 pub fn body(mesh: Mesh, law: Law, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
-    law.constitutive().body(mesh, density, thickness)
+    let law = &*law.constitutive();
+    body_of_regions(mesh, &[RegionMaterial { law, density }], PlaneState::Strain, thickness)
 }
 
-/// [`Constitutive::plane_stress_body`] of a law.
+/// Body of one material in plane stress.
 ///
 /// # Errors
-/// As there.
+/// As [`body_of_regions`].
 pub fn plane_stress_body(
     mesh: Mesh,
     law: Law,
     density: f64,
     thickness: f64,
 ) -> Result<Box<dyn Body>, SolidError> {
-    law.constitutive().plane_stress_body(mesh, density, thickness)
+    let law = &*law.constitutive();
+    body_of_regions(mesh, &[RegionMaterial { law, density }], PlaneState::Stress, thickness)
+}
+
+/// Body of a mesh of any dimension, with the materials of its regions. `thickness` is that of the
+/// undeformed sheet in the plane and the area of the cross-section in dimension 1; it is not used
+/// in space.
+///
+/// # Errors
+/// If a number is out of range, a cell is degenerate, a region has no material, the element has
+/// another dimension than the mesh, or a body in plane stress is not plane.
+pub fn body_of_regions(
+    mesh: Mesh,
+    materials: &[RegionMaterial<&dyn Constitutive>],
+    plane: PlaneState,
+    thickness: f64,
+) -> Result<Box<dyn Body>, SolidError> {
+    let element = mesh.element;
+    match (element.dimension(), plane) {
+        (1, PlaneState::Strain) => {
+            let media = media(materials, |law| law.along_line());
+            let other = SolidError::Dimension { element, dimension: 1 };
+            of_shape!(1, element, solid(mesh, media, thickness), Err(other))
+        }
+        (3, PlaneState::Strain) => {
+            let media = media(materials, |law| law.in_space());
+            let other = SolidError::Dimension { element, dimension: 3 };
+            // Solids in space have no thickness.
+            of_shape!(3, element, solid(mesh, media, 1.0), Err(other))
+        }
+        _ => {
+            let media = media(materials, |law| match plane {
+                PlaneState::Strain => law.in_plane_strain(),
+                PlaneState::Stress => law.in_plane_stress(),
+            });
+            let other = SolidError::Dimension { element, dimension: 2 };
+            of_shape!(2, element, solid(mesh, media, thickness), Err(other))
+        }
+    }
 }
 
 /// Body whose volumetric energy depends on one measure of the change of volume of each cell
 /// (`solid/mean.rs`): quadrilaterals and hexahedra of degree 1, in plane strain or in space.
 ///
 /// # Errors
-/// As [`Constitutive::body`]; for another element, of which F is constant in a cell or the pressure
+/// As [`body_of_regions`]; for another element, of which F is constant in a cell or the pressure
 /// would be too coarse.
 pub fn mean_dilatation_body(
     mesh: Mesh,
-    law: Law,
-    density: f64,
+    materials: &[RegionMaterial<Law>],
     thickness: f64,
 ) -> Result<Box<dyn Body>, SolidError> {
     match mesh.element {
-        Element::Q4 => Ok(Box::new(Solid::<2, 4, Quad4>::averaged(mesh, law, density, thickness)?)),
-        Element::Hex8 => Ok(Box::new(Solid::<3, 8, Hex8>::averaged(mesh, law, density, 1.0)?)),
+        Element::Q4 => solid::<2, 4, Quad4>(mesh, averaged(materials), thickness),
+        Element::Hex8 => solid::<3, 8, Hex8>(mesh, averaged(materials), 1.0),
         element => Err(SolidError::NoMeanDilatation { element }),
     }
 }
 
-fn plane(
-    mesh: Mesh,
-    law: Box<dyn Pointwise<2>>,
-    density: f64,
-    thickness: f64,
-) -> Result<Box<dyn Body>, SolidError> {
-    let element = mesh.element;
-    let other = SolidError::Dimension { element, dimension: 2 };
-    of_shape!(2, element, solid(mesh, law, density, thickness), Err(other))
+fn media<const D: usize>(
+    materials: &[RegionMaterial<&dyn Constitutive>],
+    at_points: impl Fn(&dyn Constitutive) -> LawAtPoints<D>,
+) -> Vec<Medium<D>> {
+    let medium = |of: &RegionMaterial<&dyn Constitutive>| Medium {
+        law: at_points(of.law).0,
+        mean: None,
+        density: of.density,
+    };
+    materials.iter().map(medium).collect()
+}
+
+fn averaged<const D: usize>(materials: &[RegionMaterial<Law>]) -> Vec<Medium<D>> {
+    materials.iter().map(|of| Medium::averaged(of.law, of.density)).collect()
 }
 
 fn solid<const D: usize, const N: usize, S: Shape<D, N>>(
     mesh: Mesh,
-    law: Box<dyn Pointwise<D>>,
-    density: f64,
+    media: Vec<Medium<D>>,
     thickness: f64,
 ) -> Result<Box<dyn Body>, SolidError> {
-    Ok(Box::new(Solid::<D, N, S>::new(mesh, law, density, thickness)?))
+    Ok(Box::new(Solid::<D, N, S>::new(mesh, media, thickness)?))
 }

@@ -38,7 +38,10 @@ pub use bounds::Bounds;
 pub use earliest::{Earliest, Piece};
 pub use facet::{FacetFunctions, FacetShape};
 pub use facet_point::FacetPoint;
-pub use factory::{Constitutive, body, mean_dilatation_body, plane_stress_body};
+pub use factory::{
+    Constitutive, LawAtPoints, PlaneState, RegionMaterial, body, body_of_regions, mean_dilatation_body,
+    plane_stress_body,
+};
 pub use loaded_side::LoadedSide;
 pub use lumping::cell_lumped_mass;
 pub use material::Law;

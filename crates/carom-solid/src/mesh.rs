@@ -158,6 +158,9 @@ pub struct Mesh {
     pub nodes: Positions,
     /// Node numbers, cell after cell.
     pub cells: Vec<usize>,
+    /// Region of each cell, of a mesh with several: the cells of a region have one material. Empty
+    /// if there is one region.
+    pub regions: Vec<u16>,
     /// Facets of each named side, in the order of traversal.
     pub sides: BTreeMap<String, Vec<Facet>>,
     /// Repairs made when the mesh was read from a file, as sentences; empty for built-in shapes.
@@ -179,6 +182,19 @@ impl Mesh {
     pub fn cell(&self, cell: usize) -> &[usize] {
         let n = self.element.nodes();
         &self.cells[cell * n..(cell + 1) * n]
+    }
+
+    /// Region of a cell, from 0 on.
+    #[inline]
+    pub fn region(&self, cell: usize) -> usize {
+        self.regions.get(cell).map_or(0, |region| usize::from(*region))
+    }
+
+    /// Regions of the cells that come from those of another mesh, as many from each of them, one
+    /// after the other.
+    pub(crate) fn regions_of_children(&self, children: usize) -> Vec<u16> {
+        let each = children / self.cell_count().max(1);
+        self.regions.iter().flat_map(|region| std::iter::repeat_n(*region, each)).collect()
     }
 
     /// The nodes of a side, each once, in the order of traversal; in space facet by facet.

@@ -49,6 +49,8 @@ pub enum SolidError {
     Degenerate { cell: usize, place: Vec<f64>, jacobian: f64 },
     #[error("element {element:?} has no mean dilatation: it is for Q4 and Hex8")]
     NoMeanDilatation { element: Element },
+    #[error("cell {cell} is of region {region}, but the body has {media} materials")]
+    NoMedium { cell: usize, region: usize, media: usize },
     #[error("density {0} is not a finite number ≥ 0")]
     Density(f64),
     #[error("thickness {0} is not a finite number > 0")]
@@ -65,13 +67,28 @@ struct Place<const D: usize> {
     volume: f64,
 }
 
+/// Material of the cells of a region.
+pub(crate) struct Medium<const D: usize> {
+    pub(crate) law: Box<dyn Pointwise<D>>,
+    /// Mean dilatation: the law is then that without its volumetric part.
+    pub(crate) mean: Option<Mean<D>>,
+    pub(crate) density: f64,
+}
+
+impl<const D: usize> Medium<D> {
+    /// Whether the law permits J ≤ 0.
+    fn may_invert(&self) -> bool {
+        let mut mirrored = Mat::ZERO;
+        mirrored.0[0][0] = -2.0;
+        self.law.state_at(&mirrored).is_ok()
+    }
+}
+
 /// A body of cells of shape `S` (`D` reference coordinates, `N` nodes).
 pub struct Solid<const D: usize, const N: usize, S> {
     mesh: Mesh,
-    law: Box<dyn Pointwise<D>>,
-    /// Mean dilatation: the law is then that without its volumetric part.
-    mean: Option<Mean<D>>,
-    density: f64,
+    /// Materials by region.
+    media: Vec<Medium<D>>,
     thickness: f64,
     /// Quadrature points for forces of each cell.
     places: Vec<Place<D>>,
@@ -84,29 +101,28 @@ pub struct Solid<const D: usize, const N: usize, S> {
     mass_rules: [Rule<D>; 2],
     hull: Hull,
     validity: Validity<D, N>,
-    /// Whether the law permits J ≤ 0.
-    may_invert: bool,
+    /// Whether the law of a region permits J ≤ 0.
+    may_invert: Vec<bool>,
     /// Hierarchy of the cells' boxes in the reference configuration, built on the first query.
     tree: OnceLock<Tree>,
     shape: PhantomData<S>,
 }
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
-    /// Body of a mesh, a law, a density ≥ 0 and a thickness > 0 (dimension 1: the area of the
-    /// cross-section).
+    /// Body of a mesh, the materials of its regions, with densities ≥ 0, and a thickness > 0
+    /// (dimension 1: the area of the cross-section).
     ///
     /// # Errors
-    /// If a number is out of range, or the reference shape of a cell is degenerate or inverted.
-    pub(crate) fn new(
-        mesh: Mesh,
-        law: Box<dyn Pointwise<D>>,
-        density: f64,
-        thickness: f64,
-    ) -> Result<Self, SolidError> {
-        check::<D, N>(&mesh, density, thickness)?;
+    /// If a number is out of range, a region has no material, or the reference shape of a cell is
+    /// degenerate or inverted.
+    pub(crate) fn new(mesh: Mesh, media: Vec<Medium<D>>, thickness: f64) -> Result<Self, SolidError> {
+        check::<D, N>(&mesh, thickness)?;
+        check_media(&mesh, &media)?;
         let k = S::DEGREE;
+        // All cells of one shape share a rule: the one that every law needs.
+        let energy_degree = media.iter().map(|medium| medium.law.energy_degree()).max().unwrap_or(0);
         let rule = |degree: usize| {
-            let exact = degree.max(law.energy_degree() * (k - 1));
+            let exact = degree.max(energy_degree * (k - 1));
             S::Domain::rule(if Self::HAS_CONSTANT_STRAIN { 0 } else { exact })
         };
         let force_rules = [rule(2 * k), rule((2 * k).max(4 * (k - 1)))];
@@ -115,14 +131,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let curved_mass = if S::Domain::TENSOR { (D + 2) * k - 1 } else { (D + 2) * k - D };
         let mass_rules = [S::Domain::rule(2 * k), S::Domain::rule(curved_mass)];
         let cells = mesh.cell_count();
-        let mut mirrored = Mat::ZERO;
-        mirrored.0[0][0] = -2.0;
-        let may_invert = law.state_at(&mirrored).is_ok();
         let mut solid = Self {
             mesh,
-            law,
-            mean: None,
-            density,
+            may_invert: media.iter().map(Medium::may_invert).collect(),
+            media,
             thickness,
             places: Vec::with_capacity(cells),
             packed: Vec::new(),
@@ -131,7 +143,6 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             mass_rules,
             hull: Hull::of::<D, N, S>(),
             validity: Validity::of::<S>(),
-            may_invert,
             tree: OnceLock::new(),
             shape: PhantomData,
         };
@@ -178,6 +189,17 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         Ok(solid)
     }
 
+    /// Material of a cell.
+    #[inline(always)]
+    fn medium(&self, cell: usize) -> &Medium<D> {
+        &self.media[self.mesh.region(cell)]
+    }
+
+    /// Whether the law of a cell permits J ≤ 0.
+    fn may_invert(&self, cell: usize) -> bool {
+        self.may_invert[self.mesh.region(cell)]
+    }
+
     /// Reference positions of a cell's nodes.
     fn reference(&self, cell: usize) -> [Vector<D>; N] {
         let nodes = self.nodes(cell);
@@ -220,16 +242,9 @@ fn pack<const D: usize, const N: usize>(
 }
 
 /// Checks ranges of numbers and completeness of cells.
-fn check<const D: usize, const N: usize>(
-    mesh: &Mesh,
-    density: f64,
-    thickness: f64,
-) -> Result<(), SolidError> {
+fn check<const D: usize, const N: usize>(mesh: &Mesh, thickness: f64) -> Result<(), SolidError> {
     if mesh.element.dimension() != D || mesh.dimension() != D || mesh.element.nodes() != N {
         return Err(SolidError::Dimension { element: mesh.element, dimension: mesh.dimension() });
-    }
-    if !(density.is_finite() && density >= 0.0) {
-        return Err(SolidError::Density(density));
     }
     if !(thickness.is_finite() && thickness > 0.0) {
         return Err(SolidError::Thickness(thickness));
@@ -250,6 +265,19 @@ fn check<const D: usize, const N: usize>(
     }
     match mesh.nodes.iter().position(|x| x.iter().any(|c| !c.is_finite())) {
         Some(node) => Err(SolidError::NotFinite { node }),
+        None => Ok(()),
+    }
+}
+
+/// Checks that every cell has a material, and its density.
+fn check_media<const D: usize>(mesh: &Mesh, media: &[Medium<D>]) -> Result<(), SolidError> {
+    let is_valid = |density: f64| density.is_finite() && density >= 0.0;
+    if let Some(medium) = media.iter().find(|medium| !is_valid(medium.density)) {
+        return Err(SolidError::Density(medium.density));
+    }
+    let media = media.len();
+    match (0..mesh.cell_count()).find(|&cell| mesh.region(cell) >= media) {
+        Some(cell) => Err(SolidError::NoMedium { cell, region: mesh.region(cell), media }),
         None => Ok(()),
     }
 }

@@ -45,9 +45,14 @@ impl Check<'_> {
                     read = b.mesh.again().map(|file| (b.mesh.hash.as_str(), file));
                 }
                 let Some((_, file)) = &read else { continue };
-                if let Ok(Some(joint)) =
-                    file.joint(a.dimension, [&a.mesh.surface, &b.mesh.surface].map(String::as_str))
-                {
+                let groups = [a.mesh.group(), b.mesh.group()];
+                // Bodies of several groups are no groups of the file.
+                let united = [&a, &b].into_iter().filter(|of| of.mesh.surface.is_empty());
+                let united = united.map(|of| of.mesh).collect::<Vec<_>>();
+                let united =
+                    united.iter().try_fold(file.clone(), |file, of| of.with_group(file, a.dimension));
+                let Ok(file) = united else { continue };
+                if let Ok(Some(joint)) = file.joint(a.dimension, groups.each_ref().map(String::as_str)) {
                     self.report(k, [first, second], &b.name, a.dimension, &joint);
                 }
             }
@@ -89,7 +94,7 @@ impl Check<'_> {
             (true, _) => ", where SIDE is a physical surface there",
         };
         let help = format!(
-            "to connect them, put the cells of both into one physical {group}, which is one body, or add a [[tie]] of these sides; to let them touch and part, add a [[contact]] with secondary = \"{a}.{side}\" and primary = \"{b}.{side}\"{unnamed}"
+            "to connect them, put the cells of both into one physical {group}, which is one body, make one body of both groups with `materials`, or add a [[tie]] of these sides; to let them touch and part, add a [[contact]] with secondary = \"{a}.{side}\" and primary = \"{b}.{side}\"{unnamed}"
         );
         self.add(format!("body[{k}].mesh"), what, why, help);
     }

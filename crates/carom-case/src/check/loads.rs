@@ -15,6 +15,9 @@ impl Check<'_> {
             }
             if let Some(body) = table.get("body").and_then(Node::text) {
                 self.reference("body", body, format!("load[{i}].body"));
+                if let Some(material) = table.get("material").and_then(Node::text) {
+                    self.material_of(body, material, format!("load[{i}].material"));
+                }
             }
         }
         let draft = self.draft;
@@ -91,6 +94,11 @@ impl Check<'_> {
         }
         for (i, body) in self.draft.body.iter().enumerate() {
             let Some(body) = body else { continue };
+            if body.material_names().len() > 1 {
+                let what = "several materials cannot be used with [manufactured]";
+                let why = "the tractions of a smooth motion jump where materials meet, and its load lacks the forces there";
+                self.add(format!("body[{i}].materials"), what, why, "give all groups one material");
+            }
             let given = [
                 ("gravity", body.gravity.iter().any(|g| !g.is_zero())),
                 ("velocity", body.starts_moving()),

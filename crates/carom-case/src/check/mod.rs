@@ -15,14 +15,14 @@ mod time;
 use carom_solid::Element;
 
 use super::columns;
-use super::document::Document;
+use super::document::{Document, joined};
 use super::draft::Draft;
 use super::keys::Keys;
 use super::problem::{Problem, is_within};
 use super::spec::SKIN;
 use super::suggest;
 use super::tree::{Node, Table};
-use super::{BodySpec, MeshSpec, SchemeSpec};
+use super::{BodySpec, MaterialSpec, MeshSpec, SchemeSpec};
 
 /// Adds the problems found across tables.
 pub(super) fn problems(document: &Document, draft: &Draft, misspelt: &[String], problems: &mut Vec<Problem>) {
@@ -218,7 +218,58 @@ impl<'a> Check<'a> {
 
     /// Whether a body has no mass.
     fn massless(&self, body: &BodySpec) -> bool {
-        self.draft.material.iter().flatten().any(|m| m.name == body.material && m.density == 0.0)
+        let names = body.material_names();
+        let mut of_body = self.draft.material.iter().flatten().filter(|m| names.contains(&m.name.as_str()));
+        of_body.any(|material| material.density == 0.0)
+    }
+
+    /// Checks the materials of the groups of a body.
+    fn materials(&mut self, i: usize, body: &'a Table) {
+        let Some(groups) = body.get("materials").and_then(Node::table) else { return };
+        for entry in &groups.0 {
+            if let Some(name) = entry.node.text() {
+                self.reference("material", name, joined(&format!("body[{i}].materials"), &entry.key));
+            }
+        }
+        let path = format!("body[{i}].materials");
+        let mesh = body.get("mesh").and_then(Node::table);
+        let of = mesh.and_then(|mesh| mesh.get("of")?.table());
+        if let Some(mesh) = mesh
+            && [Some(mesh), of].into_iter().flatten().all(|mesh| mesh.get("file").is_none())
+        {
+            let what = "a built-in shape has no `materials`";
+            let why = "materials belong to the physical groups of a mesh from a file";
+            self.problems.push(
+                Problem::new(path, what, why, "write `material`, or use `mesh = { file = … }`").at_key(),
+            );
+            return;
+        }
+        let used = |material: &&MaterialSpec| {
+            groups.0.iter().any(|entry| entry.node.text() == Some(material.name.as_str()))
+        };
+        let of_body: Vec<_> = self.draft.material.iter().flatten().filter(used).collect();
+        let [light, heavy] = [true, false].map(|light| of_body.iter().find(|m| (m.density == 0.0) == light));
+        if let (Some(light), Some(heavy)) = (light, heavy) {
+            let what = format!(
+                "the materials `{}` without density and `{}` are in one body",
+                light.name, heavy.name
+            );
+            let why = "a body has mass everywhere or nowhere: without mass its balance has no inertia";
+            self.add(path, what, why, "give both a density > 0, or both density = 0");
+        }
+    }
+
+    /// Reports a material that is none of those of a body.
+    fn material_of(&mut self, body: &str, material: &str, path: String) {
+        let Some(body) = self.body(body) else { return };
+        let names = body.material_names();
+        if names.contains(&material) {
+            return;
+        }
+        let what = format!("body `{}` has no material `{material}`", body.name);
+        let why = format!("its materials are: {}", names.join(", "));
+        let help = suggest::help(material, names.iter().copied());
+        self.add_once(path, what, &why, help);
     }
 
     fn bodies(&mut self) {
@@ -226,6 +277,9 @@ impl<'a> Check<'a> {
             let text = |key| table.table()?.get(key)?.text();
             if let Some(material) = text("material") {
                 self.reference("material", material, format!("body[{i}].material"));
+            }
+            if let Some(table) = table.table() {
+                self.materials(i, table);
             }
             let element: Option<Element> = text("element").and_then(super::keys::word);
             if let (Some(d), Some(element)) = (self.draft.dimension, element)
@@ -337,6 +391,9 @@ impl<'a> Check<'a> {
         for (i, probe) in self.draft.probe.iter().enumerate() {
             let Some(probe) = probe else { continue };
             self.reference("body", &probe.body, format!("probe[{i}].body"));
+            if let Some(material) = &probe.material {
+                self.material_of(&probe.body, material, format!("probe[{i}].material"));
+            }
             for (j, quantity) in probe.record.iter().enumerate() {
                 let name = quantity.word();
                 let path = format!("probe[{i}].record[{j}]");

@@ -79,6 +79,13 @@ impl Check {
                     self.formula(&entry.node, &["t"], key, &joined(path, &entry.key));
                 }
             }
+            (Kind::NamesByGroup, Value::Table(table)) if !table.0.is_empty() => {
+                for entry in &table.0 {
+                    let here = joined(path, &entry.key);
+                    let name = Key { kind: Kind::Name, example: "\"rubber\"", ..*key };
+                    self.value(&entry.node, &name, &here);
+                }
+            }
             (Kind::Formula(variables), _) => self.formula(node, variables, key, path),
             (Kind::Formulas(variables) | Kind::FormulasOr(variables, _), Value::List(list))
                 if self.has_dimension(list.len()) =>

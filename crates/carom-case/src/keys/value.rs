@@ -1,5 +1,6 @@
 //! Values of keys by their Rust types.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use carom_record::Norm;
@@ -45,6 +46,19 @@ impl<T: Value> Value for Vec<T> {
 
     fn of(node: &Node, v: &View<'_>) -> Option<Self> {
         node.list()?.iter().enumerate().map(|(i, node)| T::of(node, &v.element(i))).collect()
+    }
+
+    fn absent(_: &View<'_>) -> Option<Self> {
+        Some(Self::new())
+    }
+}
+
+impl Value for BTreeMap<String, String> {
+    const KIND: Kind = Kind::NamesByGroup;
+
+    fn of(node: &Node, _: &View<'_>) -> Option<Self> {
+        let entries = node.table()?.0.iter();
+        entries.map(|entry| Some((entry.key.clone(), entry.node.text()?.to_owned()))).collect()
     }
 
     fn absent(_: &View<'_>) -> Option<Self> {

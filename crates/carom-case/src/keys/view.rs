@@ -50,6 +50,8 @@ pub struct View<'a> {
     pub(crate) dimension: Option<usize>,
     /// Cell type of the body whose mesh is read, if it is known.
     pub(crate) element: Option<Element>,
+    /// Materials by physical group of the body whose mesh is read, if they are given.
+    pub(crate) materials: Option<&'a Table>,
     /// Where relative paths of files start.
     pub(crate) folder: &'a Path,
     /// Path of the table; empty for the whole document.
@@ -74,6 +76,7 @@ impl<'a> View<'a> {
             is_paper: false,
             dimension: None,
             element: None,
+            materials: None,
             folder: Path::new(""),
             path: String::new(),
             problems,

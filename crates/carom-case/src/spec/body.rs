@@ -1,11 +1,13 @@
 //! Bodies: material, mesh, placement, initial state.
 
+use std::collections::BTreeMap;
+
 use carom_solid::Element;
 use serde::{Deserialize, Serialize};
 
 use super::formula::FormulaSpec;
 use super::mesh::{self, MeshSpec};
-use crate::keys::Kind::{self, Formulas, FormulasOr, Name, Number, Variant, Vector};
+use crate::keys::Kind::{self, Formulas, FormulasOr, Name, NamesByGroup, Number, Variant, Vector};
 use crate::keys::{IN_SPACE, IN_TIME, Keys, NOT_NEGATIVE, POSITIVE, Range, View};
 use crate::place::{self, PlaceKeys, PlaceSpec};
 
@@ -151,9 +153,16 @@ pub struct BodySpec {
     /// Name; its sides are written name.side.
     #[key(Name, example = "\"cylinder\"")]
     pub name: String,
-    /// Name of its material.
-    #[key(Name, example = "\"rubber\"")]
+    /// Name of its material; of a body of several materials give `materials`.
+    #[key(Name, unless = "materials", example = "\"rubber\"", with = single_material)]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub material: String,
+    /// Several materials in one mesh from a file, whose cells share nodes: the name of the material
+    /// of each physical group of cells. Every cell of the body belongs to exactly one of these
+    /// groups; without `surface` or `volume` in `mesh`, the body consists of them.
+    #[key(NamesByGroup, optional = "{ steel = \"plate\", rubber = \"pad\" }")]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub materials: BTreeMap<String, String>,
     /// Cell type: lines (L) in dimension 1, triangles (T) or quadrilaterals (Q) in dimension 2,
     /// tetrahedra (Tet) or hexahedra (Hex) in dimension 3. Of the built-in shapes, Q4 and Q9 fill
     /// rectangles; Hex8 and Hex27 fill those of space, and extrusions of rectangles.
@@ -200,7 +209,31 @@ pub struct BodySpec {
     pub mass: MassKind,
 }
 
+/// The material of a whole body; empty if its groups have materials.
+fn single_material(v: &View) -> Option<String> {
+    if v.has("materials") { Some(String::new()) } else { v.get("material") }
+}
+
 impl BodySpec {
+    /// Names of its materials, each once.
+    pub fn material_names(&self) -> Vec<&str> {
+        let mut names = Vec::new();
+        for name in self.materials.values() {
+            if !names.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+        if names.is_empty() { vec![&self.material] } else { names }
+    }
+
+    /// Index in [`Self::material_names`] of the material of each region of its mesh, in the order
+    /// of regions.
+    pub fn materials_of_regions(&self) -> Vec<usize> {
+        let names = self.material_names();
+        let index = |name: &String| names.iter().position(|known| known == name).unwrap_or(0);
+        self.materials.values().map(index).collect()
+    }
+
     /// Whether it has an initial velocity.
     pub(crate) fn starts_moving(&self) -> bool {
         !self.velocity.iter().all(FormulaSpec::is_zero)

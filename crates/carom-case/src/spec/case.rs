@@ -83,8 +83,9 @@ pub struct Case {
 
 impl Case {
     /// The material of a body.
-    pub fn material(&self, body: &BodySpec) -> Option<&MaterialSpec> {
-        self.materials.iter().find(|material| material.name == body.material)
+    pub fn materials_of(&self, body: &BodySpec) -> Vec<&MaterialSpec> {
+        let named = |name: &str| self.materials.iter().find(|material| material.name == name);
+        body.material_names().into_iter().filter_map(named).collect()
     }
 
     /// An estimate of the work, steps × nodes, used to start long runs before short ones.

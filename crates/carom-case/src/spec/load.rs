@@ -81,6 +81,9 @@ pub(crate) struct LoadKeys {
     /// Loaded body, with `body_force`.
     #[key(Name, example = "\"prism\"")]
     body: Option<String>,
+    /// The material of a body of several in whose cells the `body_force` acts.
+    #[key(Name, example = "\"pad\"")]
+    material: Option<String>,
     /// Dead load per reference area.
     #[key(
         Formulas(IN_SPACE_AND_TIME),
@@ -151,6 +154,9 @@ pub enum LoadKind {
     BodyForce {
         /// Body.
         body: String,
+        /// The material in whose cells it acts; none: everywhere.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        material: Option<String>,
         /// Components, formulas in X, Y, t.
         value: Vec<FormulaSpec>,
     },
@@ -180,11 +186,16 @@ fn load(v: &View) -> Option<LoadSpec> {
         let why = "tractions and pressures act on sides, a body force acts in a body";
         return v.wrong_key("", what, why, help);
     }
-    let LoadKeys { name, on, body, traction, pressure, body_force, table } = LoadKeys::read(v)?;
+    if place == "on" && v.has("material") {
+        let what = "a load on a side has no `material`";
+        let why = "`material` restricts a `body_force` to the cells of one material of its body";
+        return v.wrong_key("material", what, why, "leave it out; name the part of the side in the mesh");
+    }
+    let LoadKeys { name, on, body, material, traction, pressure, body_force, table } = LoadKeys::read(v)?;
     let kind = match given[0] {
         "traction" => LoadKind::Traction { on: on?, value: traction? },
         "pressure" => LoadKind::Pressure { on: on?, value: pressure? },
-        _ => LoadKind::BodyForce { body: body?, value: body_force? },
+        _ => LoadKind::BodyForce { body: body?, material, value: body_force? },
     };
     let table = match table {
         Some(file) => match load_table::read(&v.folder.join(&file), &file) {

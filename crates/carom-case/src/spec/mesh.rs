@@ -320,7 +320,8 @@ pub struct RefineSpec {
 /// Reads the mesh of a body.
 pub(crate) fn of_body(body: &View) -> Option<MeshSpec> {
     let purpose = Purpose { dimension: body.dimension?, element: body.get("element"), extruded: false };
-    read(body, "mesh", purpose)
+    let materials = body.table.get("materials").and_then(Node::table);
+    read(&View { materials, ..body.clone() }, "mesh", purpose)
 }
 
 /// Reads the mesh that is extruded, as far as planes of symmetry leave it.

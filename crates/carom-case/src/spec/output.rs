@@ -18,6 +18,11 @@ pub struct ProbeSpec {
     /// Body it belongs to.
     #[key(Name, example = "\"cylinder\"")]
     pub body: String,
+    /// Where materials of a body meet: the one of which stress and volume ratio are recorded, which
+    /// have a value on each side.
+    #[key(Name, optional = "\"pad\"")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
     /// Recorded quantities: displacement, velocity, acceleration, Cauchy stress, von Mises stress,
     /// volume ratio.
     #[key(Choices(Quantity::WORDS), example = "[\"uy\", \"sigma_yy\"]")]

@@ -15,7 +15,7 @@ import sys
 import tomllib
 
 HERE = pathlib.Path(__file__).parent
-CASES = ["plane", "space", "line", "rigid", "made", "mesh"]
+CASES = ["plane", "space", "line", "rigid", "made", "mesh", "layers"]
 
 
 def main():

@@ -25,13 +25,8 @@ impl BodyInstance {
     /// A body whose nodes are numbered from `first_node` on.
     pub fn new(name: String, first_node: usize, body: Box<dyn Body>) -> Self {
         let mesh = body.mesh();
-        let (d, mut volumes) = (mesh.dimension(), vec![0.0; mesh.element.nodes()]);
-        let mut volume = 0.0;
-        for cell in 0..mesh.cell_count() {
-            body.cell_volumes(cell, &mut volumes);
-            volume += volumes.iter().sum::<f64>();
-        }
-        let total_mass = volume * body.density();
+        let d = mesh.dimension();
+        let total_mass = total_mass(&*body);
         let dofs =
             mesh.cells.iter().flat_map(|node| (0..d).map(move |i| ((first_node + node) * d + i) as u32));
         let dofs = dofs.collect();
@@ -48,9 +43,16 @@ impl BodyInstance {
         self.body.mesh().cells.is_empty()
     }
 
-    /// Whether its density is zero: its balance is enforced at s + 1, without inertia.
+    /// Whether the density of all its cells is zero: its balance is enforced at s + 1, without inertia.
     pub fn is_massless(&self) -> bool {
-        self.body.density() == 0.0 && self.point_mass == 0.0
+        let cells = 0..self.body.mesh().cell_count();
+        self.point_mass == 0.0 && cells.into_iter().all(|cell| self.body.density(cell) == 0.0)
+    }
+
+    /// Its cells, or those of one of its regions.
+    pub(super) fn cells(&self, region: Option<usize>) -> impl Iterator<Item = usize> {
+        let mesh = self.body.mesh();
+        (0..mesh.cell_count()).filter(move |&cell| region.is_none_or(|region| mesh.region(cell) == region))
     }
 
     /// Global numbers of its nodes.
@@ -76,33 +78,36 @@ impl BodyInstance {
         &self.dofs[cell * n..(cell + 1) * n]
     }
 
-    /// The points at which a force per reference volume is evaluated, flat.
-    pub(super) fn volume_points(&self) -> Vec<f64> {
+    /// The points at which a force per reference volume of a region, or of the whole body, is
+    /// evaluated, flat.
+    pub(super) fn volume_points(&self, region: Option<usize>) -> Vec<f64> {
         let mut points = Vec::new();
-        for cell in 0..self.body.mesh().cell_count() {
+        for cell in self.cells(region) {
             self.body.each_volume_point(cell, &mut |_, place, _| points.extend_from_slice(place));
         }
         points
     }
 
-    /// fᵃ += ∫φᵃ b dΩ₀ with b per reference volume, flat over all nodes.
+    /// fᵃ += ∫φᵃ b dΩ₀ over a region or the whole body, with b per reference volume from
+    /// `density(cell, place, b)`, flat over all nodes.
     ///
     /// # Errors
     /// The first point where b has no value.
     pub(super) fn add_body_force(
         &self,
-        mut density: impl FnMut(&[f64], &mut [f64]) -> Result<(), NoValue>,
+        region: Option<usize>,
+        mut density: impl FnMut(usize, &[f64], &mut [f64]) -> Result<(), NoValue>,
         force: &mut [f64],
     ) -> Result<(), NoValue> {
         let mesh = self.body.mesh();
         let d = mesh.dimension();
         let (mut local, mut b) = (vec![0.0; mesh.element.dofs()], vec![0.0; d]);
         let mut failure = Ok(());
-        for cell in 0..mesh.cell_count() {
+        for cell in self.cells(region) {
             local.fill(0.0);
             self.body.each_volume_point(cell, &mut |shape, place, volume| {
                 if failure.is_ok() {
-                    failure = density(place, &mut b);
+                    failure = density(cell, place, &mut b);
                 }
                 for (local, phi) in local.chunks_exact_mut(d).zip(shape) {
                     local.iter_mut().zip(&b).for_each(|(f, b)| *f += phi * volume * b);
@@ -112,4 +117,23 @@ impl BodyInstance {
         }
         failure
     }
+}
+
+/// Total mass of a body. With one density it is the product with the volume.
+fn total_mass(body: &dyn Body) -> f64 {
+    let mesh = body.mesh();
+    let mut volumes = vec![0.0; mesh.element.nodes()];
+    let mut volume = 0.0;
+    let mut mass = 0.0;
+    let first = if mesh.cell_count() > 0 { body.density(0) } else { 0.0 };
+    let mut is_uniform = true;
+    for cell in 0..mesh.cell_count() {
+        body.cell_volumes(cell, &mut volumes);
+        let of_cell = volumes.iter().sum::<f64>();
+        let density = body.density(cell);
+        volume += of_cell;
+        mass += density * of_cell;
+        is_uniform &= density == first;
+    }
+    if is_uniform { volume * first } else { mass }
 }

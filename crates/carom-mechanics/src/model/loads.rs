@@ -17,7 +17,7 @@ pub type Amplitude = Box<dyn Fn(f64) -> f64 + Send + Sync>;
 pub struct Loads {
     tractions: Vec<Load<LoadedSide>>,
     pressures: Vec<Load<LoadedSide>>,
-    body_forces: Vec<Load<usize>>,
+    body_forces: Vec<Load<InBody>>,
     weights: Vec<Load<Weight>>,
     /// The manufactured motion, if any.
     pub manufactured: Option<Manufactured>,
@@ -25,7 +25,7 @@ pub struct Loads {
 
 /// A load: where it acts, its components as formulas of position and time, its label.
 pub struct Load<On> {
-    /// A side, or the index of a body.
+    /// A side, a body, or the masses of one.
     pub on: On,
     /// Components; one for a pressure.
     pub value: Vec<Formula>,
@@ -33,6 +33,15 @@ pub struct Load<On> {
     pub label: String,
     /// Factor over time; none means 1.
     pub amplitude: Option<Amplitude>,
+}
+
+/// A body, or the cells of one of its regions.
+#[derive(Clone, Copy, Debug)]
+pub struct InBody {
+    /// Index of the body.
+    pub part: usize,
+    /// The region; none: the whole body.
+    pub region: Option<usize>,
 }
 
 /// The masses that a varying gravity acts on, from a node onwards: row sums of the mass matrix.
@@ -85,8 +94,8 @@ impl Loads {
         self.pressures.push(load);
     }
 
-    /// Adds a dead force per reference volume of a body, given by index.
-    pub fn add_body_force(&mut self, load: Load<usize>) {
+    /// Adds a dead force per reference volume of a body.
+    pub fn add_body_force(&mut self, load: Load<InBody>) {
         self.body_forces.push(load);
     }
 
@@ -127,15 +136,16 @@ impl Loads {
             load.on.add_traction(tractions.chunks_exact(load.value.len()), &mut out.dead);
         }
         for load in &self.body_forces {
-            let part = &parts[load.on];
-            let (places, d) = (part.volume_points(), load.value.len());
+            let InBody { part, region } = load.on;
+            let part = &parts[part];
+            let (places, d) = (part.volume_points(region), load.value.len());
             let densities = load.vectors(&places.chunks_exact(d), time)?;
             let mut densities = densities.chunks_exact(d);
-            let density = |_: &[f64], out: &mut [f64]| {
+            let density = |_: usize, _: &[f64], out: &mut [f64]| {
                 densities.next().into_iter().for_each(|density| out.copy_from_slice(density));
                 Ok(())
             };
-            part.add_body_force(density, &mut out.dead)?;
+            part.add_body_force(region, density, &mut out.dead)?;
         }
         for load in &self.weights {
             let gravity = load.vectors(&std::iter::once(&[][..]), time)?;

@@ -66,16 +66,17 @@ impl Manufactured {
         Ok(deformation)
     }
 
-    /// Force per reference volume at a point.
+    /// Force per reference volume at a point of a cell.
     fn load_into(
         &self,
         part: &BodyInstance,
+        cell: usize,
         place: &[f64],
         time: f64,
         load: &mut [f64],
     ) -> Result<(), NoValue> {
         let Deformation { h, second, .. } = self.deformation(place, time)?;
-        part.body.stress_divergence(&h, &second, load).map_err(|det_f| {
+        part.body.stress_divergence(cell, &h, &second, load).map_err(|det_f| {
             let formula = self.y.iter().map(Formula::text).collect::<Vec<_>>().join(", ");
             let what = "the strain energy of [manufactured], of the determinant J,".to_owned();
             NoValue { what, formula, place: place.to_vec(), time, value: det_f }
@@ -83,7 +84,7 @@ impl Manufactured {
         for (load, formula) in load.iter_mut().zip(&self.y) {
             let [.., acceleration] =
                 formula.with_derivatives(Arguments::new(place, time).as_slice(), place.len());
-            *load = part.body.density() * finite(acceleration, formula, WHAT, place, time)? - *load;
+            *load = part.body.density(cell) * finite(acceleration, formula, WHAT, place, time)? - *load;
         }
         Ok(())
     }
@@ -99,7 +100,11 @@ impl Manufactured {
         force: &mut [f64],
     ) -> Result<(), NoValue> {
         parts.iter().try_for_each(|part| {
-            part.add_body_force(|place, load| self.load_into(part, place, time, load), force)
+            part.add_body_force(
+                None,
+                |cell, place, load| self.load_into(part, cell, place, time, load),
+                force,
+            )
         })
     }
 

@@ -18,7 +18,7 @@ pub use body_instance::BodyInstance;
 pub use contact::{AllowedDepths, Augmentation, Contact};
 pub use formulas::{NoValue, value};
 pub use friction::Friction;
-pub use loads::{Amplitude, Load, Loads, LoadsAt, Weight};
+pub use loads::{Amplitude, InBody, Load, Loads, LoadsAt, Weight};
 pub use manufactured::Manufactured;
 pub use mass::Mass;
 pub use motion::{Motion, Motions, Prescribed, Turn};

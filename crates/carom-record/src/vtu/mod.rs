@@ -4,7 +4,8 @@
 //! edge, then the interior. Points are the REFERENCE positions; `displacement` is a point array, so
 //! that "Warp By Vector" at scale 1 shows the deformed bodies. Units are stored with VTK's
 //! information key `UNITS_LABEL`. Each body is a number of the field data, named `body NAME`: the
-//! value of the cell array `body` in its cells.
+//! value of the cell array `body` in its cells; where a body has several materials, each is likewise
+//! `material NAME`, and the cell array `material` has its number.
 //!
 //! The version in the header decides who can read a file. VTK takes a Lagrange hexahedron of a file
 //! older than 2.1 for one of VTK 8, in which the edges at nodes 18 and 19 were exchanged, and
@@ -18,6 +19,9 @@ mod write;
 
 /// Beginning of the name of a body's number in the field data.
 const NAMED: &str = "body ";
+
+/// Beginning of the name of a material's number in the field data.
+const MATERIAL: &str = "material ";
 
 /// Shape of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,6 +136,17 @@ pub struct FieldSet {
     pub blocks: Vec<Block>,
     /// Quantities at the points.
     pub arrays: Vec<PointArray>,
+    /// Materials of the cells, where a body has several.
+    pub materials: CellMaterials,
+}
+
+/// Materials of the cells of all blocks.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CellMaterials {
+    /// Names.
+    pub names: Vec<String>,
+    /// Index of the name of each cell, block after block; empty if no body has several materials.
+    pub of_cells: Vec<usize>,
 }
 
 impl FieldSet {
@@ -181,6 +196,10 @@ pub(crate) mod tests {
                 array("stress", "N/m²", 6),
                 array("contact_pressure", "", 1),
             ],
+            materials: CellMaterials {
+                names: vec!["steel".into(), "a \"b\"".into()],
+                of_cells: vec![0, 1, 0],
+            },
         }
     }
 

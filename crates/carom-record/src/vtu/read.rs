@@ -3,7 +3,7 @@
 
 use serde::Deserialize;
 
-use super::{Block, Cell, FieldSet, NAMED, PointArray};
+use super::{Block, Cell, CellMaterials, FieldSet, MATERIAL, NAMED, PointArray};
 use crate::Reason;
 
 const APPENDED: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
@@ -80,12 +80,23 @@ impl FieldSet {
         }
         let types = values::<1>(data, piece.cells.array("types")?)?;
         let bodies = values::<4>(data, piece.cell_data.array("body")?)?;
-        let mut blocks = Blocks { names: field_data.bodies()?, found: Vec::new(), last: None };
+        let cells = bodies.len();
+        let mut blocks = Blocks { names: field_data.names(NAMED)?, found: Vec::new(), last: None };
         let mut start = 0;
         for ((end, [kind]), body) in wholes("offsets")?.into_iter().zip(types).zip(bodies) {
             let nodes = connectivity.get(start..end).ok_or("cells reach beyond the connectivity")?;
             blocks.push(i32::from_le_bytes(body) as usize, kind, nodes)?;
             start = end;
+        }
+        let mut materials = CellMaterials { names: field_data.names(MATERIAL)?, of_cells: Vec::new() };
+        if let Ok(array) = piece.cell_data.array("material") {
+            let numbers = values::<4>(data, array)?.into_iter().map(i32::from_le_bytes);
+            materials.of_cells = numbers.map(|number| number as usize).collect();
+            if materials.of_cells.len() != cells
+                || materials.of_cells.iter().any(|number| *number >= materials.names.len())
+            {
+                return Err("a cell has no material of a name".into());
+            }
         }
         let mut arrays = Vec::new();
         for array in piece.point_data.arrays {
@@ -94,7 +105,7 @@ impl FieldSet {
             let unit = array.unit.unwrap_or_default();
             arrays.push(PointArray { name: array.name, unit, components, values });
         }
-        Ok(Self { points: coordinates.as_chunks::<3>().0.to_vec(), blocks: blocks.found, arrays })
+        Ok(Self { points: coordinates.as_chunks::<3>().0.to_vec(), blocks: blocks.found, arrays, materials })
     }
 }
 
@@ -103,15 +114,15 @@ impl Section {
         self.arrays.iter().find(|a| a.name == name).ok_or_else(|| format!("there is no array {name}").into())
     }
 
-    /// Names of the bodies by number.
-    fn bodies(&self) -> Result<Vec<String>, Reason> {
+    /// Names of the bodies or materials by number, from those that begin with a word.
+    fn names(&self, word: &str) -> Result<Vec<String>, Reason> {
         let mut names = Vec::new();
         for array in &self.arrays {
-            let Some(name) = array.name.strip_prefix(NAMED) else { continue };
+            let Some(name) = array.name.strip_prefix(word) else { continue };
             let number = array.number.as_deref().unwrap_or_default().trim();
             if number.parse() != Ok(names.len()) {
                 return Err(
-                    format!("body `{name}` has the number {number} instead of {}", names.len()).into()
+                    format!("{word}`{name}` has the number {number} instead of {}", names.len()).into()
                 );
             }
             names.push(name.to_owned());

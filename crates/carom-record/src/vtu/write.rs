@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use quick_xml::escape::escape;
 
-use super::{FieldSet, NAMED};
+use super::{CellMaterials, FieldSet, MATERIAL, NAMED};
 use crate::RecordError;
 use crate::decimal::decimal;
 
@@ -69,6 +69,15 @@ impl FieldSet {
                 return error(format!("body `{body}` refers to node {node}, but there are {n} points"));
             }
         }
+        let cells: usize = self.blocks.iter().map(|block| block.cells().count()).sum();
+        let CellMaterials { names, of_cells } = &self.materials;
+        if !of_cells.is_empty() && (of_cells.len() != cells || of_cells.iter().any(|k| *k >= names.len())) {
+            let got = of_cells.len();
+            return error(format!(
+                "{got} cells have one of {} materials, but there are {cells}",
+                names.len()
+            ));
+        }
         Ok(())
     }
 
@@ -93,6 +102,13 @@ impl FieldSet {
             let _ = writeln!(
                 p.head,
                 "<DataArray type=\"Int32\" Name=\"{NAMED}{name}\" NumberOfTuples=\"1\" format=\"ascii\">{number}</DataArray>"
+            );
+        }
+        for (number, name) in self.materials.names.iter().enumerate() {
+            let name = escape(name);
+            let _ = writeln!(
+                p.head,
+                "<DataArray type=\"Int32\" Name=\"{MATERIAL}{name}\" NumberOfTuples=\"1\" format=\"ascii\">{number}</DataArray>"
             );
         }
         p.head.push_str("</FieldData>\n");
@@ -122,6 +138,10 @@ impl FieldSet {
             .enumerate()
             .flat_map(|(i, b)| b.cells().map(move |_| (i as i32).to_le_bytes()));
         p.array("Int32", "Name=\"body\"", "", body);
+        if !self.materials.of_cells.is_empty() {
+            let materials = self.materials.of_cells.iter().map(|&number| (number as i32).to_le_bytes());
+            p.array("Int32", "Name=\"material\"", "", materials);
+        }
         p.head.push_str("</CellData>\n<Points>\n");
         let points = self.points.iter().flatten().map(|x| x.to_le_bytes());
         p.array("Float64", "Name=\"points\" NumberOfComponents=\"3\"", "", points);

@@ -30,7 +30,7 @@ fn flushes_do_not_grow_with_fields_and_checkpoints() {
         writer.flush_interval(interval);
         let body = Block { body: "b".into(), cell: Cell::Curve, degree: 1, connectivity: vec![0, 1] };
         let points = vec![[0.0; 3], [1.0, 0.0, 0.0]];
-        let fields = FieldSet { points, blocks: vec![body], arrays: Vec::new() };
+        let fields = FieldSet { points, blocks: vec![body], arrays: Vec::new(), ..FieldSet::default() };
         for step in 0..FIELDS as u64 {
             writer.history(&[step as f64]).unwrap();
             writer.fields(step, step as f64, &fields).unwrap();

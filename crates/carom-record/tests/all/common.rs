@@ -33,6 +33,7 @@ pub(crate) fn fields(step: u64) -> FieldSet {
             components: 1,
             values: vec![step as f64, -1.0],
         }],
+        ..FieldSet::default()
     }
 }
 

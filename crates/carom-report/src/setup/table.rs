@@ -96,7 +96,7 @@ fn body(case: &Case, body: &BodySpec, fields: Option<&FieldSet>) -> Row {
             .then(|| html! { "; " (Label(symbol)) " = " code { (components(formulas)) } " " (Label(unit)) })
     };
     let words = html! {
-        (body.material) ", " (format!("{:?}", body.element))
+        (body.material_names().join(", ")) ", " (format!("{:?}", body.element))
         @if let Some(size) = size { ": " (Label(&size)) }
         (moved(&body.gravity, "g", &format!("{length}/{time}^2")).unwrap_or_default())
         (moved(&body.velocity, "v_{0}", &format!("{length}/{time}")).unwrap_or_default())
@@ -154,7 +154,10 @@ fn load(load: &LoadSpec, units: &Units) -> Row {
     let (kind, place, value) = match &load.kind {
         LoadKind::Traction { on, value } => ("traction", on.join(", "), components(value)),
         LoadKind::Pressure { on, value } => ("pressure", on.join(", "), value.to_string()),
-        LoadKind::BodyForce { body, value } => ("body force", body.clone(), components(value)),
+        LoadKind::BodyForce { body, material, value } => {
+            let cells = material.as_ref().map_or_else(String::new, |material| format!(", {material}"));
+            ("body force", format!("{body}{cells}"), components(value))
+        }
     };
     let unit = match &load.kind {
         LoadKind::BodyForce { .. } => format!("{}/({}^2 {}^2)", units.mass, units.length, units.time),

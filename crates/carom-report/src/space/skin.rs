@@ -167,6 +167,7 @@ pub(super) mod tests {
             arrays: vec![array("displacement", "m", 3), array("stress", "Pa", 6)],
             blocks: vec![Block { body: "solid".into(), cell: Cell::Tetrahedron, degree, connectivity }],
             points,
+            ..FieldSet::default()
         }
     }
 
@@ -220,7 +221,7 @@ pub(super) mod tests {
         let cell = |x: usize| [0, 4, 6, 2, 1, 5, 7, 3].map(|k| k + 4 * x);
         let connectivity = [cell(0), cell(1)].concat();
         let block = Block { body: "bar".into(), cell: Cell::Hexahedron, degree: 1, connectivity };
-        let fields = FieldSet { points, blocks: vec![block], arrays: Vec::new() };
+        let fields = FieldSet { points, blocks: vec![block], arrays: Vec::new(), ..FieldSet::default() };
         let skin = skin(&fields);
         assert_eq!(skin.len(), 20);
         let mut edges: HashMap<[usize; 2], usize> = HashMap::new();

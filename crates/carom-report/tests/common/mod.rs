@@ -148,6 +148,7 @@ fn fields(t: f64) -> FieldSet {
             array("von_mises", "N/m^2", 1, mises),
             array("stress", "N/m^2", 6, stress),
         ],
+        ..FieldSet::default()
     }
 }
 

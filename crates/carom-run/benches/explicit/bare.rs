@@ -10,7 +10,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use carom_algebra::wide;
-use carom_solid::{Body, Element, Law, Mesh, body, generate, mean_dilatation_body};
+use carom_solid::{Body, Element, Law, Mesh, RegionMaterial, body, generate, mean_dilatation_body};
 
 const LAMBDA: f64 = 200.0;
 const MU: f64 = 15.0;
@@ -288,7 +288,7 @@ pub(crate) fn hexahedra() -> f64 {
     };
     let time = fastest(cells.len(), &mut all);
     let law = Law::NeoHookean { lambda: LAMBDA, mu: MU };
-    let body = mean_dilatation_body(mesh, law, 1.0, 1.0).expect("it is valid");
+    let body = mean_dilatation_body(mesh, &[RegionMaterial { law, density: 1.0 }], 1.0).expect("it is valid");
     forces.iter().enumerate().for_each(|(cell, force)| agrees(&*body, &u, cell, force));
     time
 }

@@ -2,7 +2,7 @@
 
 use carom_case::{Case, LoadKind, LoadSpec, Problem};
 use carom_formula::Formula;
-use carom_mechanics::model::{Amplitude, BodyInstance, Load, Loads, Manufactured};
+use carom_mechanics::model::{Amplitude, BodyInstance, InBody, Load, Loads, Manufactured};
 use carom_solid::LoadedSide;
 
 use super::given::in_space_and_time;
@@ -30,10 +30,13 @@ pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Prob
                 continue;
             }
         };
-        if let LoadKind::BodyForce { body, .. } = &spec.kind
+        if let LoadKind::BodyForce { body, material, .. } = &spec.kind
             && let Some(part) = parts.iter().position(|p| p.name == *body)
         {
-            loads.add_body_force(load(spec, part, value.clone()));
+            let names = case.bodies[part].material_names();
+            let region =
+                material.as_ref().and_then(|material| names.iter().position(|name| name == material));
+            loads.add_body_force(load(spec, InBody { part, region }, value.clone()));
         }
         for (j, name) in spec.sides().iter().enumerate() {
             match loaded(case, parts, name, &format!("load[{k}].on[{j}]")) {

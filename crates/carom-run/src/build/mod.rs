@@ -21,11 +21,16 @@ mod weights;
 use std::collections::BTreeMap;
 
 use carom_algebra::Threads;
-use carom_case::{Case, FormulaSpec, MassKind, Problem, SKIN, Volumetric};
+use carom_case::{
+    BodySpec, Case, FormulaSpec, MassKind, MaterialSpec, Plane, ProbeSpec, Problem, SKIN, Volumetric,
+};
 use carom_mechanics::model::{
     BodyInstance, Mass, Model, Probe, Quantity, free_motions, gap_tolerance, redistribute, value,
 };
-use carom_solid::{Constitutive, Law, mean_dilatation_body};
+use carom_solid::{
+    Body, Constitutive, Law, Mesh, PlaneState, RegionMaterial, SolidError, body_of_regions,
+    mean_dilatation_body,
+};
 
 use side::side;
 use supports::Supported;
@@ -197,30 +202,17 @@ fn parts(case: &Case, materials: &Materials) -> Result<(Vec<BodyInstance>, Ties)
     let mut meshes = meshes(case)?;
     let ties = ties::ties(case, &mut meshes, &mut problems);
     for ((k, spec), mesh) in case.bodies.iter().enumerate().zip(meshes) {
-        let Some(material) = case.material(spec) else { continue };
-        let lambda = material.lambda;
-        let mu = material.mu;
-        let law = match material.law {
-            carom_case::Law::NeoHookean => Law::NeoHookean { lambda, mu },
-            carom_case::Law::SaintVenantKirchhoff => Law::SaintVenantKirchhoff { lambda, mu },
-            carom_case::Law::LinearElastic => Law::LinearElastic { lambda, mu },
-        };
-        let of_case = law.constitutive();
+        let of_body = case.materials_of(spec);
         let averages = spec.volumetric == Volumetric::Mean;
-        if averages && materials.contains_key(&material.name) {
+        let own = of_body.iter().find(|material| materials.contains_key(&material.name));
+        if let Some(material) = own.filter(|_| averages) {
             let what = format!("the law of \"{}\" is your own, and has no mean dilatation", material.name);
             let why = "the volumetric part of a law must be known to be averaged over a cell";
             let help = "leave volumetric out, or use an element of higher degree";
             problems.push(Problem::new(format!("body[{k}].volumetric"), what, why, help));
             continue;
         }
-        let own = materials.get(&material.name).unwrap_or(&of_case);
-        let body = |mesh: carom_solid::Mesh| match (mesh.dimension(), case.plane) {
-            _ if averages => mean_dilatation_body(mesh, law, material.density, case.thickness),
-            (2, carom_case::Plane::Stress) => own.plane_stress_body(mesh, material.density, case.thickness),
-            _ => own.body(mesh, material.density, case.thickness),
-        };
-        match body(mesh) {
+        match body(case, spec, mesh, materials) {
             Ok(body) => {
                 let nodes = body.mesh().nodes.len();
                 parts.push(BodyInstance::new(spec.name.clone(), first_node, body));
@@ -249,7 +241,7 @@ fn meshes(case: &Case) -> Result<Vec<carom_solid::Mesh>, Vec<Problem>> {
     let mut problems = Vec::new();
     for (k, spec) in case.bodies.iter().enumerate() {
         match spec.make_mesh(case.dimension) {
-            Ok(mesh) => meshes.push(with_skin(case, &spec.name, mesh)),
+            Ok(mesh) => meshes.push(with_materials(spec, with_skin(case, &spec.name, mesh))),
             Err(error) => problems.push(no_mesh(case, k, error.to_string())),
         }
     }
@@ -261,8 +253,53 @@ fn no_mesh(case: &Case, k: usize, why: String) -> Problem {
     Problem::new(format!("body[{k}].mesh"), what, why, "change the values of `mesh`")
 }
 
+/// The body of a mesh whose regions are those of the body's materials.
+fn body(
+    case: &Case,
+    spec: &BodySpec,
+    mesh: Mesh,
+    materials: &Materials,
+) -> Result<Box<dyn Body>, SolidError> {
+    let of_body = case.materials_of(spec);
+    if spec.volumetric == Volumetric::Mean {
+        let material = |of: &&MaterialSpec| RegionMaterial { law: law(of), density: of.density };
+        return mean_dilatation_body(mesh, &of_body.iter().map(material).collect::<Vec<_>>(), case.thickness);
+    }
+    let of_case: Vec<_> = of_body.iter().map(|material| law(material).constitutive()).collect();
+    let of_regions = of_body.iter().zip(&of_case).map(|(material, of_case)| RegionMaterial {
+        law: &**materials.get(&material.name).unwrap_or(of_case),
+        density: material.density,
+    });
+    let plane = match (mesh.dimension(), case.plane) {
+        (2, Plane::Stress) => PlaneState::Stress,
+        _ => PlaneState::Strain,
+    };
+    body_of_regions(mesh, &of_regions.collect::<Vec<_>>(), plane, case.thickness)
+}
+
+/// The law of a material of the case.
+fn law(material: &MaterialSpec) -> Law {
+    let lambda = material.lambda;
+    let mu = material.mu;
+    match material.law {
+        carom_case::Law::NeoHookean => Law::NeoHookean { lambda, mu },
+        carom_case::Law::SaintVenantKirchhoff => Law::SaintVenantKirchhoff { lambda, mu },
+        carom_case::Law::LinearElastic => Law::LinearElastic { lambda, mu },
+    }
+}
+
+/// The mesh of a body, with its materials as regions: groups of the same material are one.
+fn with_materials(spec: &BodySpec, mut mesh: Mesh) -> Mesh {
+    let of_regions = spec.materials_of_regions();
+    if spec.material_names().len() == 1 {
+        mesh.regions.clear();
+    }
+    mesh.regions.iter_mut().for_each(|region| *region = of_regions[usize::from(*region)] as u16);
+    mesh
+}
+
 /// The mesh of a body, with its whole boundary as a side if the case refers to that.
-fn with_skin(case: &Case, body: &str, mut mesh: carom_solid::Mesh) -> carom_solid::Mesh {
+fn with_skin(case: &Case, body: &str, mut mesh: Mesh) -> Mesh {
     let name = format!("{body}.{SKIN}");
     let contacts =
         case.contacts.iter().flat_map(|contact| [Some(contact.secondary.as_str()), contact.primary.side()]);
@@ -307,7 +344,7 @@ fn probes(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Problem>) -> V
     let mut probes = Vec::new();
     for (k, spec) in case.probes.iter().enumerate() {
         let Some(part) = parts.iter().position(|p| p.name == spec.body) else { continue };
-        let places = parts[part].body.locate(&spec.at);
+        let mut places = parts[part].body.locate(&spec.at);
         if places.is_empty() {
             let mesh = parts[part].body.mesh();
             let distance = |x: &[f64]| x.iter().zip(&spec.at).map(|(x, p)| (x - p).powi(2)).sum::<f64>();
@@ -319,10 +356,49 @@ fn probes(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Problem>) -> V
                 nearest.map_or(String::new(), |x| format!("the nearest node is at {x:?}")),
             ));
         }
+        let mesh = parts[part].body.mesh();
+        if let Some(problem) = on_one_side(case, k, spec, mesh, &mut places) {
+            problems.push(problem);
+        }
         let record = spec.record.iter().map(|q| quantity(*q)).collect();
         probes.push(Probe { name: spec.name.clone(), part, places, record });
     }
     probes
+}
+
+/// Leaves the cells of the material of a probe; returns what is wrong with a probe where materials
+/// meet, or with its material.
+fn on_one_side(
+    case: &Case,
+    k: usize,
+    spec: &ProbeSpec,
+    mesh: &Mesh,
+    places: &mut Vec<(usize, Vec<f64>)>,
+) -> Option<Problem> {
+    let body = case.bodies.iter().find(|body| body.name == spec.body)?;
+    let names = body.material_names();
+    let mut of_point: Vec<usize> = places.iter().map(|(cell, _)| mesh.region(*cell)).collect();
+    of_point.sort_unstable();
+    of_point.dedup();
+    let there: Vec<&str> = of_point.iter().map(|region| names[*region]).collect();
+    if let Some(material) = &spec.material {
+        places.retain(|(cell, _)| names[mesh.region(*cell)] == material);
+        return (places.is_empty() && !there.is_empty()).then(|| {
+            let what = format!("probe \"{}\" does not lie in its material", spec.name);
+            let why = format!("the point {:?} belongs to {}, not to {material}", spec.at, there.join(", "));
+            let help = "change `at` or `material`";
+            Problem::new(format!("probe[{k}].material"), what, why, help)
+        });
+    }
+    let has_sides = |name: &carom_case::Quantity| {
+        matches!(quantity(*name), Quantity::Stress(..) | Quantity::VonMises | Quantity::DetF)
+    };
+    (there.len() > 1 && spec.record.iter().any(has_sides)).then(|| {
+        let what = format!("probe \"{}\" lies where materials meet", spec.name);
+        let why = format!("stress and volume ratio have a value in each of {} there", there.join(", "));
+        let help = format!("choose one, for example `material = \"{}\"`", there[0]);
+        Problem::new(format!("probe[{k}].at"), what, why, help)
+    })
 }
 
 /// The quantity of a name in the case.

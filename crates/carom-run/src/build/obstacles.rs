@@ -73,11 +73,12 @@ pub(super) fn carriers<'a>(
             nodes: Positions::new(d, carrier.places(d)),
             cells: Vec::new(),
             sides: std::collections::BTreeMap::new(),
+            regions: Vec::new(),
             repairs: Vec::new(),
         };
         // Without cells the law does not matter.
-        let law = Law::LinearElastic { lambda: 0.0, mu: 1.0 }.constitutive();
-        let body = law.body(mesh, 0.0, 1.0).map_err(|error| {
+        let law = Law::LinearElastic { lambda: 0.0, mu: 1.0 };
+        let body = carom_solid::body(mesh, law, 0.0, 1.0).map_err(|error| {
             let what = format!("the obstacle of contact \"{}\" cannot be used", spec.name);
             vec![Problem::new(spec.path("primary"), what, error.to_string(), "")]
         })?;

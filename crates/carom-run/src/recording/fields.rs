@@ -11,7 +11,7 @@ use carom_algebra::principal;
 use carom_case::Case;
 use carom_mechanics::State;
 use carom_mechanics::model::{Model, von_mises};
-use carom_record::{Block, Cell, FieldSet, PointArray};
+use carom_record::{Block, Cell, CellMaterials, FieldSet, PointArray};
 use carom_solid::{Element, Mesh};
 
 use super::pressure::Surfaces;
@@ -43,6 +43,7 @@ pub(super) fn field_set(case: &Case, model: &Model, surfaces: &Surfaces, state: 
             array("principal_log_strain", "", 3, principal_strain),
             array("contact_pressure", &label.stress, 1, pressures(surfaces, model, state)),
         ],
+        materials: materials(case, model),
     };
     set.points.truncate(nodes);
     set.arrays.iter_mut().for_each(|array| array.values.truncate(nodes * array.components));
@@ -63,7 +64,24 @@ pub fn initial_fields(case: &Case, model: &Model) -> FieldSet {
         points: in_space(model, &model.reference).collect(),
         blocks: blocks(model),
         arrays: vec![PointArray { name: "displacement".into(), unit, components: 3, values }],
+        materials: materials(case, model),
     }
+}
+
+/// Materials of the cells of the bodies, if one has several.
+fn materials(case: &Case, model: &Model) -> CellMaterials {
+    if case.bodies.iter().all(|body| body.material_names().len() == 1) {
+        return CellMaterials::default();
+    }
+    let names: Vec<String> = case.materials.iter().map(|material| material.name.clone()).collect();
+    let mut of_cells = Vec::new();
+    for (spec, part) in case.bodies.iter().zip(&model.parts) {
+        let index = |name: &str| names.iter().position(|known| known == name).unwrap_or(0);
+        let of_body: Vec<usize> = spec.material_names().into_iter().map(index).collect();
+        let mesh = part.body.mesh();
+        of_cells.extend((0..mesh.cell_count()).map(|cell| of_body[mesh.region(cell)]));
+    }
+    CellMaterials { names, of_cells }
 }
 
 /// Values per node, with zeros for directions that the model does not have.

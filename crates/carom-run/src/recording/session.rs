@@ -388,7 +388,7 @@ fn rotations(case: &Case, model: &Model) -> BTreeMap<usize, [[f64; 2]; 2]> {
         model.parts[k].nodes().any(|node| model.fixed[node * d..(node + 1) * d].contains(&false))
     };
     let is_linear = |body: &BodySpec| {
-        case.dimension > 1 && case.material(body).is_some_and(|m| m.law == Law::LinearElastic)
+        case.dimension > 1 && case.materials_of(body).iter().any(|m| m.law == Law::LinearElastic)
     };
     let bodies = case.bodies.iter().enumerate().filter(|(k, body)| is_linear(body) && moves(*k));
     bodies.map(|(k, _)| (k, [[0.0; 2]; 2])).collect()

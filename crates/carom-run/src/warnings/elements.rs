@@ -5,7 +5,7 @@
 //! thickness h of a body are the roots of x² − (P/2) x + A = 0, with its area A and its perimeter
 //! P: exact for a rectangle, to first order for a strip or ring that is bent.
 
-use carom_case::{BodySpec, Case, Plane, Volumetric};
+use carom_case::{BodySpec, Case, MaterialSpec, Plane, Volumetric};
 use carom_mechanics::model::{BodyInstance, Model};
 use carom_solid::{Element, Facet};
 
@@ -30,8 +30,8 @@ pub(super) fn locking(case: &Case, _: &Model) -> Vec<Found> {
     };
     let locking = case.bodies.iter().filter(locks).filter(|body| body.volumetric == Volumetric::Pointwise);
     for body in locking {
-        let Some(material) = case.material(body) else { continue };
-        let poisson = material.lambda / (2.0 * (material.lambda + material.mu));
+        let ratio = |of: &MaterialSpec| of.lambda / (2.0 * (of.lambda + of.mu));
+        let Some(poisson) = case.materials_of(body).into_iter().map(ratio).reduce(f64::max) else { continue };
         // A ratio given as 0.45 and recomputed from Λ and μ differs in its last digits.
         if poisson > LOCKING + 1e-9 {
             let poisson = (poisson * 1e4).round() / 1e4;
@@ -47,13 +47,13 @@ pub(super) fn locking(case: &Case, _: &Model) -> Vec<Found> {
 pub(super) fn bar_modulus(case: &Case, _: &Model) -> Vec<Found> {
     let mut found = Vec::new();
     for body in case.bodies.iter().filter(|_| case.dimension == 1 && case.manufactured.is_none()) {
-        let Some(material) = case.material(body) else { continue };
-        let lambda = material.lambda;
-        let mu = material.mu;
-        let young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
-        let confined = lambda + 2.0 * mu;
+        let moduli = |of: &MaterialSpec| {
+            let young = of.mu * (3.0 * of.lambda + 2.0 * of.mu) / (of.lambda + of.mu);
+            [of.lambda + 2.0 * of.mu, young]
+        };
         // Λ computed from a ratio of zero is zero.
-        if (confined - young).abs() > 1e-9 * young.abs() {
+        let differ = |[confined, young]: &[f64; 2]| (confined - young).abs() > 1e-9 * young.abs();
+        if let Some([confined, young]) = case.materials_of(body).into_iter().map(moduli).find(differ) {
             let [confined, young, ratio] = [confined, young, confined / young].map(short);
             let what = format!("its modulus is Λ + 2μ = {confined}, {ratio} times Young's modulus {young}");
             found.push(Found::of_body(&body.name, what));

@@ -84,7 +84,7 @@ fn stopped<'a>(model: &Model, run: &Run, impact: &Impact<'a>) -> Option<Stopped<
     Some(Stopped { body, time: run.times()[row], share })
 }
 
-/// The body of an impact with the least impedance ρc.
+/// The body of an impact with the least impedance ρc, and the material that has it.
 fn softest<'a>(
     case: &'a Case,
     model: &'a Model,
@@ -92,7 +92,8 @@ fn softest<'a>(
 ) -> Option<(&'a BodyInstance, &'a MaterialSpec)> {
     let takes_part = |name: &str| impact.striker == name || impact.others.contains(&Some(name));
     let bodies = model.parts.iter().zip(&case.bodies).filter(|(part, _)| takes_part(&part.name));
-    let materials = bodies.filter_map(|(part, spec)| Some((part, case.material(spec)?)));
+    let materials = bodies
+        .flat_map(|(part, spec)| case.materials_of(spec).into_iter().map(move |material| (part, material)));
     let impedance = |material: &MaterialSpec| material.density * material.wave_speed(case.plane);
     materials
         .filter(|(_, material)| material.density > 0.0)

@@ -50,7 +50,7 @@ pub(super) fn velocity_jump(case: &Case, model: &Model) -> Vec<Found> {
     };
     let bodies = model.parts.iter().zip(&case.bodies);
     let mut found: Vec<Found> = bodies
-        .filter_map(|(part, spec)| moved_at_once(case, model, &start, part, case.material(spec)?))
+        .filter_map(|(part, spec)| moved_at_once(case, model, &start, part, &case.materials_of(spec)))
         .collect();
     found.extend((0..case.contacts.len()).filter_map(|contact| pushed_at_once(case, model, &start, contact)));
     found
@@ -62,7 +62,7 @@ fn moved_at_once(
     model: &Model,
     start: &Start,
     part: &BodyInstance,
-    material: &MaterialSpec,
+    materials: &[&MaterialSpec],
 ) -> Option<Found> {
     let d = model.dimension;
     let own = part.nodes().start * d..part.nodes().end * d;
@@ -74,7 +74,12 @@ fn moved_at_once(
         return None;
     }
     let units = case.labels();
-    let stress = material.density * material.wave_speed(case.plane) * size;
+    let impedance = |of: &MaterialSpec| of.density * of.wave_speed(case.plane);
+    let node = largest.dof / d - part.first_node;
+    let mesh = part.body.mesh();
+    let cells = (0..mesh.cell_count()).filter(|&cell| mesh.cell(cell).contains(&node));
+    let at_node = cells.map(|cell| impedance(materials[mesh.region(cell)])).reduce(f64::max)?;
+    let stress = at_node * size;
     let what = format!(
         "a support moves it along {} with {} {velocity} from the start on, where its initial velocity is {} {velocity}: this jump of {} {velocity} starts a wave of stress ρc·{} = {} {}",
         ["x", "y", "z"][largest.dof % d],
@@ -138,7 +143,7 @@ fn too_fast(case: &Case, model: &Model, start: &Start, contact: &ContactSpec) ->
     };
     let speed = of(body)?.iter().zip(other).fold(0.0, |sum, (v, w)| f64::hypot(sum, v - w));
     let materials = case.bodies.iter().filter(|spec| contact.bodies().any(|name| name == spec.name));
-    let materials = materials.filter_map(|spec| case.material(spec)).filter(|m| m.density > 0.0);
+    let materials = materials.flat_map(|spec| case.materials_of(spec)).filter(|m| m.density > 0.0);
     let bar = |material: &MaterialSpec| (young(material) / material.density).sqrt();
     let softest = materials.min_by(|a, b| (a.density * bar(a)).total_cmp(&(b.density * bar(b))))?;
     let unit = case.labels().velocity;

@@ -1,7 +1,7 @@
 //! Warnings about waves: a speed that no material has, and a run in which none crosses a body.
 //! Either may be a mistake in the units of the case.
 
-use carom_case::Case;
+use carom_case::{Case, MaterialSpec};
 use carom_mechanics::model::{BodyInstance, Model};
 use carom_record::units::metres_per_second;
 
@@ -17,7 +17,7 @@ pub(super) fn wave_speed(case: &Case, _: &Model) -> Vec<Found> {
     let units = &case.units;
     let unit = metres_per_second(&units.length, &units.time).filter(|_| units.declared);
     let Some(unit) = unit else { return Vec::new() };
-    let used = |name: &str| case.bodies.iter().any(|body| body.material == name);
+    let used = |name: &str| case.bodies.iter().any(|body| body.material_names().contains(&name));
     let mut found = Vec::new();
     for material in case.materials.iter().filter(|m| m.density > 0.0 && used(&m.name)) {
         let speed = material.wave_speed(case.plane);
@@ -41,12 +41,15 @@ pub(super) fn short_run(case: &Case, model: &Model) -> Vec<Found> {
     let units = case.labels();
     let mut found = Vec::new();
     for (part, spec) in model.parts.iter().zip(&case.bodies) {
-        let Some(material) = case.material(spec).filter(|material| material.density > 0.0) else { continue };
+        let materials = case.materials_of(spec).into_iter().filter(|material| material.density > 0.0);
+        let speed = |of: &MaterialSpec| of.wave_speed(case.plane);
+        // No wave is faster than that of the fastest of its materials.
+        let Some(speed) = materials.map(speed).reduce(f64::max) else { continue };
         if is_held(model, part) {
             continue;
         }
-        let across = extent::thickness(part, part.total_mass / (material.density * case.thickness));
-        let crossing = across / material.wave_speed(case.plane);
+        let across = extent::thickness(part, volume(part) / case.thickness);
+        let crossing = across / speed;
         if case.time.end < crossing {
             let [end, crossing, across] = [case.time.end, crossing, across].map(short);
             let time = &units.time;
@@ -58,6 +61,17 @@ pub(super) fn short_run(case: &Case, model: &Model) -> Vec<Found> {
         }
     }
     found
+}
+
+/// Volume of a body, × thickness.
+fn volume(part: &BodyInstance) -> f64 {
+    let mesh = part.body.mesh();
+    let mut volumes = vec![0.0; mesh.element.nodes()];
+    let of_cell = |cell: usize| {
+        part.body.cell_volumes(cell, &mut volumes);
+        volumes.iter().sum::<f64>()
+    };
+    (0..mesh.cell_count()).map(of_cell).sum()
 }
 
 /// Whether no node of a body's boundary can move: it serves as an obstacle.

@@ -22,6 +22,7 @@ mod kernels;
 mod ledger;
 mod linear;
 mod loads;
+mod materials;
 mod meeting;
 mod memory;
 mod momentum;

@@ -84,7 +84,7 @@ pub(super) fn filled<const D: usize>(
             }
         }
     }
-    Mesh { element, nodes: nodes.into(), cells: numbers, sides, repairs: Vec::new() }
+    Mesh { element, nodes: nodes.into(), cells: numbers, regions: Vec::new(), sides, repairs: Vec::new() }
 }
 
 /// The cells that fill one box, by their nodes in its lattice.

@@ -104,7 +104,7 @@ pub(super) fn elevate(skeleton: Skeleton, element: Element) -> Mesh {
         (side.name, side.edges.iter().map(facet).collect())
     };
     let sides: BTreeMap<_, _> = sides.into_iter().map(facets).collect();
-    Mesh { element, nodes: nodes.into(), cells, sides, repairs: Vec::new() }
+    Mesh { element, nodes: nodes.into(), cells, regions: Vec::new(), sides, repairs: Vec::new() }
 }
 
 /// The nodes between an edge's corners, in its direction.

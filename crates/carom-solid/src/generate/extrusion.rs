@@ -56,7 +56,7 @@ pub fn extrusion(plane: &Mesh, height: f64, layers: usize) -> Result<Mesh, MeshE
     }
     let free = |name: &'static str, other| if plane.sides.contains_key(name) { other } else { name };
     let (bottom, top) = (free("bottom", "base"), free("top", "lid"));
-    Ok(mesh.into_mesh(|corners: [Key; 3]| {
+    let mut mesh = mesh.into_mesh(|corners: [Key; 3]| {
         let ends = corners.map(|key| key[0]);
         match corners.map(|key| key[1]) {
             [0, 0, 0] => vec![bottom],
@@ -67,7 +67,9 @@ pub fn extrusion(plane: &Mesh, height: f64, layers: usize) -> Result<Mesh, MeshE
                 edge.and_then(|edge| of_edge.get(&edge)).cloned().unwrap_or_default()
             }
         }
-    }))
+    });
+    mesh.regions = plane.regions_of_children(mesh.cell_count());
+    Ok(mesh)
 }
 
 /// The cells of the extrusion of cells of the plane.

@@ -125,8 +125,14 @@ impl<P: Fn(Key) -> [f64; 3]> Lattice<P> {
         sides_of: impl Fn([Key; 3]) -> I,
     ) -> Mesh {
         let Self { element, keys, nodes, cells, .. } = self;
-        let mut mesh =
-            Mesh { element, nodes: nodes.into(), cells, sides: BTreeMap::new(), repairs: Vec::new() };
+        let mut mesh = Mesh {
+            element,
+            nodes: nodes.into(),
+            cells,
+            regions: Vec::new(),
+            sides: BTreeMap::new(),
+            repairs: Vec::new(),
+        };
         let mut sides: BTreeMap<String, Vec<Facet>> = BTreeMap::new();
         for facet in mesh.skin() {
             for name in sides_of([0, 1, 2].map(|c| keys[facet.nodes[c]])) {

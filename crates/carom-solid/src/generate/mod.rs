@@ -95,7 +95,7 @@ pub fn interval(element: Element, min: f64, max: f64, cells: usize) -> Result<Me
     }
     let end = |cell, node| vec![Facet { cell, nodes: vec![node] }];
     let sides = BTreeMap::from([("left".into(), end(0, 0)), ("right".into(), end(cells - 1, cells))]);
-    Ok(Mesh { element, nodes: nodes.into(), cells: numbers, sides, repairs: Vec::new() })
+    Ok(Mesh { element, nodes: nodes.into(), cells: numbers, regions: Vec::new(), sides, repairs: Vec::new() })
 }
 
 /// a + t(b − a), exact at both ends.

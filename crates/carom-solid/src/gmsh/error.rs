@@ -105,8 +105,19 @@ pub enum Fault {
     Pinched { name: String, facets: usize, start: i64, end: i64, cells: Vec<i64>, at: Vec<f64> },
     #[error("cell {cell} of the surface is {kind}")]
     NoTriangle { cell: i64, kind: String },
+    #[error("cell {cell} of \"{name}\" belongs to none of the groups {}", quoted(.groups))]
+    NoRegion { name: String, cell: i64, groups: Vec<String> },
+    #[error("cell {cell} of \"{name}\" belongs to the groups {}", quoted(.groups))]
+    SeveralRegions { name: String, cell: i64, groups: Vec<String> },
+    #[error("no cell of \"{name}\" belongs to the physical {what} \"{region}\"")]
+    EmptyRegion { what: &'static str, name: String, region: String },
     #[error("node {node} of \"{name}\" belongs to {cells} cells")]
     Branching { name: String, node: i64, cells: usize },
+}
+
+/// Names in quotes, separated by commas.
+fn quoted(names: &[String]) -> String {
+    names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
 }
 
 impl MshError {
@@ -170,6 +181,9 @@ impl MshError {
             Fault::EdgeNodes { .. } => "neighbouring cells must share every node of their edge; otherwise the body would have a gap there".into(),
             Fault::NoTriangle { .. } => "a rigid surface consists of triangles of three nodes".into(),
             Fault::Branching { .. } => "a node of a bar joins at most two cells".into(),
+            Fault::NoRegion { .. } => "the group of a cell says of which material it is".into(),
+            Fault::SeveralRegions { .. } => "a cell has one material".into(),
+            Fault::EmptyRegion { .. } => "its material would be nowhere in the body".into(),
         }
     }
 
@@ -227,6 +241,11 @@ impl MshError {
             Fault::EdgeNodes { .. } => "set the order after all surfaces are meshed",
             Fault::NoTriangle { .. } => "set Mesh.ElementOrder = 1 in Gmsh, without Recombine",
             Fault::Branching { .. } => "a bar is one line of cells",
+            Fault::NoRegion { .. } => {
+                "add the group of this cell; or leave out the group of the whole body, which then consists of the listed groups"
+            }
+            Fault::SeveralRegions { .. } => "list one of them, or take the cell out of one of them in Gmsh",
+            Fault::EmptyRegion { .. } => "leave it out, or look which entities the group lists in Gmsh",
             Fault::Partitioned => "save the mesh without partitions",
             _ => "save the mesh again with Gmsh",
         }

@@ -14,6 +14,8 @@ pub struct MshFile {
     pub(super) groups: Vec<Group>,
     /// Whether nodes of one body may be at one place.
     pub(super) slits: bool,
+    /// Groups of which every cell of a body belongs to exactly one; none are asked for if empty.
+    pub(super) regions: Vec<String>,
     pub(super) nodes: Vec<(Row, [f64; 3])>,
     pub(super) blocks: Vec<Block>,
 }
@@ -63,6 +65,77 @@ impl MshFile {
     #[must_use]
     pub fn with_slits(self, slits: bool) -> Self {
         Self { slits, ..self }
+    }
+
+    /// The same file, whose bodies consist of regions: every cell belongs to exactly one of the
+    /// physical groups with these names, and
+    /// [`Mesh::regions`](crate::Mesh::regions) contains its index.
+    #[must_use]
+    pub fn with_regions(self, regions: Vec<String>) -> Self {
+        Self { regions, ..self }
+    }
+
+    /// The same file, with a further physical group of a dimension that contains the cells of some
+    /// of its groups.
+    ///
+    /// # Errors
+    /// If the file has no such group.
+    pub fn with_union(mut self, dimension: usize, name: &str, groups: &[String]) -> Result<Self, MshError> {
+        self.known(dimension, groups.iter().map(String::as_str))?;
+        let tag = 1 + self.groups.iter().map(|group| group.tag).max().unwrap_or(0);
+        let parts: Vec<Vec<i64>> = groups.iter().map(|group| self.tags(dimension, group).collect()).collect();
+        for block in self.blocks.iter_mut().filter(|block| block.kind.dimension() == dimension as i64) {
+            if parts.iter().flatten().any(|tag| block.groups.contains(tag)) {
+                block.groups.push(tag);
+            }
+        }
+        self.groups.push(Group { dimension: dimension as i64, tag, name: name.to_owned() });
+        Ok(self)
+    }
+
+    /// Whether the physical groups of a dimension have these names.
+    ///
+    /// # Errors
+    /// The first that none has.
+    pub(super) fn known<'a>(
+        &self,
+        dimension: usize,
+        mut names: impl Iterator<Item = &'a str>,
+    ) -> Result<(), MshError> {
+        let all = self.names(dimension);
+        match names.find(|name| !all.contains(name)) {
+            Some(unknown) => Err(MshError::whole(self.no_name(dimension, unknown))),
+            None => Ok(()),
+        }
+    }
+
+    /// Tags of the physical groups of a dimension and a name.
+    fn tags(&self, dimension: usize, name: &str) -> impl Iterator<Item = i64> {
+        let same = move |group: &&Group| group.dimension == dimension as i64 && group.name == name;
+        self.groups.iter().filter(same).map(|group| group.tag)
+    }
+
+    /// Index of the only region to which the cells of a block of a body belong; 0 if none are asked
+    /// for.
+    pub(super) fn region(&self, dimension: usize, block: &Block, body: &str) -> Result<u16, MshError> {
+        let mut of_block = (0..self.regions.len()).filter(|&region| {
+            self.tags(dimension, &self.regions[region]).any(|tag| block.groups.contains(&tag))
+        });
+        let found = [of_block.next(), of_block.next()];
+        let wrong =
+            |fault: fn(String, i64, Vec<String>) -> Fault, groups: Vec<String>| match block.rows.first() {
+                Some(row) => Err(self.at(row, fault(body.to_owned(), row.tag, groups))),
+                None => Ok(0),
+            };
+        match found {
+            _ if self.regions.is_empty() => Ok(0),
+            [Some(region), None] => Ok(region as u16),
+            [Some(a), Some(b)] => {
+                let groups = [a, b].map(|region| self.regions[region].clone()).to_vec();
+                wrong(|name, cell, groups| Fault::SeveralRegions { name, cell, groups }, groups)
+            }
+            _ => wrong(|name, cell, groups| Fault::NoRegion { name, cell, groups }, self.regions.clone()),
+        }
     }
 
     /// Names of the physical groups of a dimension: 2 surfaces, 1 curves, 0 points; no duplicates.

@@ -26,17 +26,17 @@ pub(super) struct Group<'a, const D: usize> {
     pub(super) positions: Vec<[f64; D]>,
     pub(super) rows: Vec<Row>,
     pub(super) cells: Vec<usize>,
+    /// Region of each cell; empty if the file has none.
+    pub(super) regions: Vec<u16>,
     pub(super) repairs: Vec<String>,
 }
 
 impl<'a, const D: usize> Group<'a, D> {
     pub(super) fn of(file: &'a MshFile, name: &'a str) -> Result<Self, MshError> {
         let what = GROUPS[D.min(3)];
-        if !file.names(D).contains(&name) {
-            return Err(MshError::whole(file.no_name(D, name)));
-        }
+        file.known(D, std::iter::once(name).chain(file.regions.iter().map(String::as_str)))?;
         let mut element: Option<Element> = None;
-        let (mut rows, mut cells) = (Vec::new(), Vec::new());
+        let (mut rows, mut cells, mut regions) = (Vec::new(), Vec::new(), Vec::new());
         for block in file.blocks(D, name) {
             let Some(row) = block.rows.first() else { continue };
             let name = || name.to_owned();
@@ -52,11 +52,22 @@ impl<'a, const D: usize> Group<'a, D> {
                 let (order, before) = (this.degree(), first.degree());
                 return Err(file.at(row, Fault::MixedOrders { name: name(), cell: row.tag, order, before }));
             }
+            let region = file.region(D, block, &name())?;
+            if !file.regions.is_empty() {
+                regions.extend(std::iter::repeat_n(region, block.rows.len()));
+            }
             rows.extend_from_slice(&block.rows);
             cells.extend_from_slice(&block.nodes);
         }
         let none = || MshError::whole(Fault::NoCells { what, name: name.to_owned() });
         let element = element.ok_or_else(none)?;
+
+        for (k, region) in file.regions.iter().enumerate() {
+            if !regions.contains(&(k as u16)) {
+                let fault = Fault::EmptyRegion { what, name: name.to_owned(), region: region.clone() };
+                return Err(MshError::whole(fault));
+            }
+        }
 
         // Numbered in the order of the file, so that writing and reading preserves it.
         let mut number = vec![usize::MAX; file.nodes.len()];
@@ -71,8 +82,17 @@ impl<'a, const D: usize> Group<'a, D> {
             *n = number[*n];
         }
 
-        let mut group =
-            Self { file, name, element, used, positions: Vec::new(), rows, cells, repairs: Vec::new() };
+        let mut group = Self {
+            file,
+            name,
+            element,
+            used,
+            positions: Vec::new(),
+            rows,
+            cells,
+            regions,
+            repairs: Vec::new(),
+        };
         group.flatten()?;
         if !file.slits {
             group.apart()?;
@@ -187,8 +207,8 @@ impl<'a, const D: usize> Group<'a, D> {
         if elsewhere > 0 {
             self.repairs.push(format!("nodes of the file that belong to no cell were dropped: {elsewhere}"));
         }
-        let Self { element, positions, cells, repairs, .. } = self;
-        Mesh { element, nodes: positions.into(), cells, sides, repairs }
+        let Self { element, positions, cells, regions, repairs, .. } = self;
+        Mesh { element, nodes: positions.into(), cells, regions, sides, repairs }
     }
 }
 

@@ -177,7 +177,7 @@ fn resolved(sections: Sections, text: bool) -> Result<MshFile, MshError> {
         blocks.push(Block { kind: raw.kind, groups, rows: raw.rows, nodes });
     }
     groups.extend(unnamed(&groups, &blocks));
-    Ok(MshFile { text, groups, slits: false, nodes: raw_nodes, blocks })
+    Ok(MshFile { text, groups, slits: false, regions: Vec::new(), nodes: raw_nodes, blocks })
 }
 
 /// Groups that have cells but no name, named by their number unless another one has that name.

@@ -3,7 +3,7 @@
 use carom_algebra::{Mat, Vector, wide};
 
 use super::rotation::{angle, strain};
-use super::{Place, Solid};
+use super::{Medium, Place, Solid};
 use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
 use crate::material::{NotPositive, Pointwise};
@@ -19,9 +19,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     }
 
     fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
-        match &self.mean {
-            None => self.force_of(&*self.law, cell, y, force),
-            Some(mean) => self.mean_force(mean, cell, y, force),
+        let Medium { law, mean, .. } = self.medium(cell);
+        match mean {
+            None => self.force_of(&**law, cell, y, force),
+            Some(mean) => self.mean_force(&**law, mean, cell, y, force),
         }
     }
 
@@ -58,8 +59,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         force: &mut [f64],
         tangent: &mut [f64],
     ) -> Result<f64, Inverted> {
-        let energy = self.tangent_of(&*self.law, cell, y, force, tangent)?;
-        let Some(mean) = &self.mean else { return Ok(energy) };
+        let Medium { law, mean, .. } = self.medium(cell);
+        let energy = self.tangent_of(&**law, cell, y, force, tangent)?;
+        let Some(mean) = mean else { return Ok(energy) };
         Ok(energy + self.add_mean_tangent(mean, cell, y, force, tangent)?)
     }
 
@@ -70,8 +72,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         now: &[f64],
         force: &mut [f64],
     ) -> Result<f64, Inverted> {
-        let energy = self.between_of(&*self.law, cell, [before, now], force)?;
-        let Some(mean) = &self.mean else { return Ok(energy) };
+        let Medium { law, mean, .. } = self.medium(cell);
+        let energy = self.between_of(&**law, cell, [before, now], force)?;
+        let Some(mean) = mean else { return Ok(energy) };
         Ok(energy + self.add_mean_between(mean, cell, [before, now], force)?)
     }
 
@@ -83,17 +86,19 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         change: &[f64],
         product: &mut [f64],
     ) -> Result<(), Inverted> {
-        self.product_of(&*self.law, cell, before, [y, change], product)?;
-        let Some(mean) = &self.mean else { return Ok(()) };
+        let Medium { law, mean, .. } = self.medium(cell);
+        self.product_of(&**law, cell, before, [y, change], product)?;
+        let Some(mean) = mean else { return Ok(()) };
         self.add_mean_product(mean, cell, before, [y, change], product)
     }
 
     fn cell_mass(&self, cell: usize, mass: &mut [f64]) {
         mass.fill(0.0);
+        let density = self.density(cell);
         self.each_mass_point(cell, |values, volume| {
             for a in 0..N {
                 for b in 0..N {
-                    mass[a * N + b] += self.density * volume * values[a] * values[b];
+                    mass[a * N + b] += density * volume * values[a] * values[b];
                 }
             }
         });
@@ -132,8 +137,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         }
     }
 
-    fn stress_divergence(&self, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
-        let law = self.mean.as_ref().map_or(&self.law, |mean| &mean.law);
+    fn stress_divergence(&self, cell: usize, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
+        let Medium { law, mean, .. } = self.medium(cell);
+        let law = mean.as_ref().map_or(law, |mean| &mean.law);
         let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
         out.copy_from_slice(&law.divergence(&h, second).map_err(|NotPositive(det_f)| det_f)?.0);
         Ok(())
@@ -141,10 +147,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
 
     fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
         let u = self.displacements(cell, y);
+        let law = &self.medium(cell).law;
         let Place { points, inverse, .. } = &self.places[cell];
         let ratios = self.points[points.clone()].iter().flat_map(|points| {
             let h = points.gradient(&u, inverse);
-            (0..points.count).map(move |l| self.law.volume_ratio_at(&get(&h, l)))
+            (0..points.count).map(move |l| law.volume_ratio_at(&get(&h, l)))
         });
         ratios.fold(f64::INFINITY, f64::min)
     }
@@ -160,7 +167,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     }
 
     fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted> {
-        if !self.may_invert {
+        if !self.may_invert(cell) {
             let (nodes, y) = (self.nodes(cell), y.as_chunks::<D>().0);
             let nodes = nodes.map(|node| Vector(y[node]));
             let margin = wide(
@@ -177,7 +184,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     }
 
     fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64> {
-        if self.may_invert {
+        if self.may_invert(cell) {
             return None;
         }
         let nodes = self.nodes(cell);
@@ -188,7 +195,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     fn cell_margins(&self, first: usize, y: &[f64], margins: &mut [f64]) -> Result<(), Inverted> {
         for (block, margins) in margins.chunks_mut(LANES).enumerate() {
             let first = first + block * LANES;
-            if Self::HAS_CONSTANT_STRAIN && !self.may_invert && self.constant_margins(first, y, margins) {
+            let certifies = |k: usize| !self.may_invert(first + k);
+            if Self::HAS_CONSTANT_STRAIN
+                && (0..margins.len()).all(certifies)
+                && self.constant_margins(first, y, margins)
+            {
                 continue;
             }
             for (k, margin) in margins.iter_mut().enumerate() {
@@ -199,8 +210,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     }
 
     fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted> {
-        let mut state = self.point_of(&*self.law, cell, xi, y)?;
-        if let Some(mean) = &self.mean {
+        let Medium { law, mean, .. } = self.medium(cell);
+        let mut state = self.point_of(&**law, cell, xi, y)?;
+        if let Some(mean) = mean {
             self.add_mean_stress(mean, cell, xi, y, &mut state)?;
         }
         Ok(state)
@@ -235,8 +247,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         reference::invert::<D, N, S>(&nodes, &vector(point)).map(|xi| xi.0.to_vec())
     }
 
-    fn density(&self) -> f64 {
-        self.density
+    fn density(&self, cell: usize) -> f64 {
+        self.medium(cell).density
     }
 }
 

@@ -5,7 +5,7 @@ use carom_algebra::{Four, Mat, wide};
 
 use super::Solid;
 use crate::body::Inverted;
-use crate::points::{LANES, Packed, set};
+use crate::points::{LANES, Lanes, Mats, Packed, get, set};
 use crate::shape::{Domain, Shape};
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
@@ -81,6 +81,38 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         self.packed = blocks.collect();
     }
 
+    /// Energy densities and stresses of up to four cells, each by the law of its region; none if one
+    /// is inverted.
+    #[inline(always)]
+    fn stresses_of_four(
+        &self,
+        first: usize,
+        count: usize,
+        h: &Mats<D>,
+        stresses: &mut Mats<D>,
+    ) -> Option<Lanes> {
+        let region = self.mesh.region(first);
+        let alike = self.mesh.regions.is_empty()
+            || (first..first + count).all(|cell| self.mesh.region(cell) == region);
+        if alike {
+            return self.media[region].law.stresses(h, count, stresses).ok();
+        }
+        let mut densities = [0.0; LANES];
+        for (region, medium) in self.media.iter().enumerate() {
+            // H = 0, which every law admits, in the lanes of other regions.
+            let mut own = [[[0.0; LANES]; D]; D];
+            let mut of_own = own;
+            let lanes = || (0..count).filter(|l| self.mesh.region(first + l) == region);
+            lanes().for_each(|l| set(&mut own, l, &get(h, l)));
+            let found = medium.law.stresses(&own, count, &mut of_own).ok()?;
+            for l in lanes() {
+                densities[l] = found[l];
+                set(stresses, l, &get(&of_own, l));
+            }
+        }
+        Some(densities)
+    }
+
     /// Forces and energies of up to four cells, those of a packed block; returns false if one is
     /// inverted.
     #[inline(always)]
@@ -121,7 +153,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             }
         }
         let mut stresses = [[[0.0; LANES]; D]; D];
-        let Ok(densities) = self.law.stresses(&h, count, &mut stresses) else { return false };
+        let Some(densities) = self.stresses_of_four(first, count, &h, &mut stresses) else { return false };
         let mut pulled = [[[0.0; LANES]; D]; D];
         for i in 0..D {
             for j in 0..D {

@@ -18,15 +18,23 @@
 use carom_algebra::wide;
 
 use super::integrals::scale;
-use super::{Place, Solid, SolidError};
+use super::{Medium, Place, Solid};
 use crate::body::{Inverted, PointState};
-use crate::material::{Law, Mean, NotPositive};
-use crate::mesh::Mesh;
+use crate::material::{Law, Mean, NotPositive, Pointwise};
 use crate::points::{LANES, sum};
 use crate::shape::Shape;
 
 /// Blocks of quadrature points of a cell: eight points of Hex8, the largest that has this.
 const BLOCKS: usize = 2;
+
+impl<const D: usize> Medium<D> {
+    /// Material of a law whose volumetric energy depends on one measure of the change of volume of
+    /// each cell.
+    pub(crate) fn averaged(law: Law, density: f64) -> Self {
+        let (rest, mean) = law.averaged();
+        Self { law: rest.pointwise(), mean: Some(mean), density }
+    }
+}
 
 /// The volumetric part of a cell: its force without the pressure, g, and m.
 struct Swelling {
@@ -35,15 +43,6 @@ struct Swelling {
 }
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
-    /// Body with mean dilatation of a mesh, a law, a density ≥ 0 and a thickness > 0.
-    ///
-    /// # Errors
-    /// If a number is out of range, or the reference shape of a cell is degenerate or inverted.
-    pub(crate) fn averaged(mesh: Mesh, law: Law, density: f64, thickness: f64) -> Result<Self, SolidError> {
-        let (rest, mean) = law.averaged();
-        Ok(Self { mean: Some(mean), ..Self::new(mesh, rest.pointwise(), density, thickness)? })
-    }
-
     /// Volume of a cell (× thickness) by the rule of the forces.
     fn volume(&self, cell: usize) -> f64 {
         let place = &self.places[cell];
@@ -69,6 +68,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// [`Body::cell_force`](crate::Body::cell_force).
     pub(super) fn mean_force(
         &self,
+        law: &dyn Pointwise<D>,
         mean: &Mean<D>,
         cell: usize,
         y: &[f64],
@@ -76,7 +76,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     ) -> Result<f64, Inverted> {
         wide(
             #[inline(always)]
-            || self.mean_force_in_one_pass(mean, cell, y, force),
+            || self.mean_force_in_one_pass(law, mean, cell, y, force),
         )
     }
 
@@ -84,6 +84,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     #[inline(always)]
     fn mean_force_in_one_pass(
         &self,
+        law: &dyn Pointwise<D>,
         mean: &Mean<D>,
         cell: usize,
         y: &[f64],
@@ -97,7 +98,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         for ((points, stress), cofactor) in points.iter().zip(&mut stresses).zip(&mut cofactors) {
             let (h, count) = (points.gradient(&u, inverse), points.count);
             let inverted = |NotPositive(det_f)| Inverted { cell, det_f };
-            let densities = self.law.stresses(&h, count, stress).map_err(inverted)?;
+            let densities = law.stresses(&h, count, stress).map_err(inverted)?;
             let measures = mean.measure.stresses(&h, count, cofactor).map_err(inverted)?;
             let weights = points.weights.map(|weight| volume * weight);
             for l in 0..count {

@@ -42,6 +42,7 @@ impl<'a> Nodes<'a> {
         Mesh {
             element: mesh.element,
             nodes: Positions::new(mesh.dimension(), coordinates),
+            regions: mesh.regions_of_children(cells.len() / mesh.element.nodes()),
             cells,
             sides: sides.collect(),
             repairs: mesh.repairs.clone(),

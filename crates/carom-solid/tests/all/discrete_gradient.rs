@@ -16,6 +16,7 @@ fn triangle() -> Mesh {
         nodes: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].into(),
         cells: vec![0, 1, 2],
         sides: BTreeMap::new(),
+        regions: Vec::new(),
         repairs: Vec::new(),
     }
 }

@@ -255,3 +255,45 @@ fn byte_orders() {
         }
     }
 }
+
+fn laminate(regions: &[&str]) -> gmsh::MshFile {
+    let bytes = include_bytes!("../../../../cases/materials/laminate.msh");
+    gmsh::read(bytes).unwrap().with_regions(regions.iter().map(|&name| name.to_owned()).collect())
+}
+
+/// Cells know the group that they come from, also after they are divided and extruded.
+#[test]
+fn cells_belong_to_regions() {
+    let mesh = laminate(&["soft", "stiff"]).body("laminate").unwrap();
+    let is_soft = |x: f64| (0.4..1.2).contains(&x);
+    let check = |mesh: &Mesh| {
+        for cell in 0..mesh.cell_count() {
+            let nodes = mesh.cell(cell);
+            let middle = nodes.iter().map(|&n| mesh.nodes[n][0]).sum::<f64>() / nodes.len() as f64;
+            assert_eq!(mesh.region(cell), usize::from(!is_soft(middle)), "cell {cell} at {middle}");
+        }
+    };
+    check(&mesh);
+    check(&mesh.subdivided(3));
+    check(&carom_solid::generate::extrusion(&mesh, 0.3, 2).unwrap());
+    let groups = ["soft".to_owned(), "stiff".to_owned()];
+    let united = laminate(&["soft", "stiff"]).with_union(2, "both", &groups).unwrap();
+    assert_eq!(united.body("both").unwrap(), mesh);
+    assert!(laminate(&[]).body("laminate").unwrap().regions.is_empty());
+}
+
+#[test]
+fn a_cell_has_one_region() {
+    let fault = |regions: &[&str], body: &str| {
+        let error = laminate(regions).body(body).unwrap_err();
+        format!("{error}; {}; {}", error.why(), error.help())
+    };
+    let none = fault(&["soft"], "laminate");
+    assert!(none.contains("belongs to none of the groups \"soft\""), "{none}");
+    let two = fault(&["stiff", "soft", "laminate"], "laminate");
+    assert!(two.contains("belongs to the groups \"stiff\", \"laminate\""), "{two}");
+    let empty = fault(&["stiff", "soft"], "soft");
+    assert!(empty.contains("no cell of \"soft\" belongs to the physical surface \"stiff\""), "{empty}");
+    let unknown = fault(&["stiff", "weak"], "laminate");
+    assert!(unknown.contains("no physical surface \"weak\"") && unknown.contains("stiff, soft"), "{unknown}");
+}

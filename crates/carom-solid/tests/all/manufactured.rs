@@ -76,7 +76,7 @@ fn the_divergence_of_the_stress_by_differences() {
                 std::array::from_fn(|i| std::array::from_fn(|j| (after[i][j] - before[i][j]) / (2.0 * step)))
             });
             let mut found = [0.0; 2];
-            body.stress_divergence(gradient(place(xi)).as_flattened(), &SECOND, &mut found).unwrap();
+            body.stress_divergence(0, gradient(place(xi)).as_flattened(), &SECOND, &mut found).unwrap();
             for i in 0..2 {
                 // ∂/∂Xᴶ = Σ (∂ξ_axis/∂Xᴶ) ∂/∂ξ_axis.
                 let expected: f64 = (0..2)
@@ -88,7 +88,7 @@ fn the_divergence_of_the_stress_by_differences() {
     }
     let unit = generate::rectangle(Element::T3, [0.0, 0.0], [1.0, 1.0], [1, 1]).unwrap();
     let rubber = body(unit, laws[0], 1.0, 1.0).unwrap();
-    assert_eq!(rubber.stress_divergence(&[-2.0, 0.0, 0.0, 0.0], &SECOND, &mut [0.0; 2]), Err(-1.0));
+    assert_eq!(rubber.stress_divergence(0, &[-2.0, 0.0, 0.0, 0.0], &SECOND, &mut [0.0; 2]), Err(-1.0));
 }
 
 /// T6 represents a quadratic motion exactly at all points, and the points fill the volume.

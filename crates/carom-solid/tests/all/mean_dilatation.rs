@@ -1,7 +1,7 @@
 //! Mean dilatation: derivatives, work of the discrete gradient, invariance, and what a cell keeps.
 
 use carom_algebra::jacobian_error;
-use carom_solid::{Body, Element, Law, Mesh, body, generate, mean_dilatation_body};
+use carom_solid::{Body, Element, Law, Mesh, RegionMaterial, body, generate, mean_dilatation_body};
 
 const LAWS: [Law; 3] = [
     Law::NeoHookean { lambda: 40.0, mu: 1.5 },
@@ -27,10 +27,14 @@ fn moved(mesh: &Mesh, by: f64) -> Vec<f64> {
     places.map(|(i, x)| x + by * (2.3 * i as f64 + 10.0 * by).cos()).collect()
 }
 
+fn averaged(mesh: Mesh, law: Law) -> Box<dyn Body> {
+    mean_dilatation_body(mesh, &[RegionMaterial { law, density: 0.7 }], 2.0).unwrap()
+}
+
 fn bodies() -> impl Iterator<Item = (Law, Box<dyn Body>)> {
-    [Element::Q4, Element::Hex8].into_iter().flat_map(|element| {
-        LAWS.into_iter().map(move |law| (law, mean_dilatation_body(mesh(element), law, 0.7, 2.0).unwrap()))
-    })
+    [Element::Q4, Element::Hex8]
+        .into_iter()
+        .flat_map(|element| LAWS.into_iter().map(move |law| (law, averaged(mesh(element), law))))
 }
 
 /// The vector of a body of one cell from that of the cell, and back.
@@ -124,7 +128,7 @@ fn a_homogeneous_deformation_is_that_of_the_law() {
     for element in [Element::Q4, Element::Hex8] {
         for law in LAWS {
             let plain = body(mesh(element), law, 0.7, 2.0).unwrap();
-            let mean = mean_dilatation_body(mesh(element), law, 0.7, 2.0).unwrap();
+            let mean = averaged(mesh(element), law);
             let d = element.dimension();
             let bent = |x: &[f64]| -> Vec<f64> {
                 (0..d).map(|i| 1.1 * x[i] + 0.2 * x[(i + 1) % d] - 0.05 * i as f64 * x[i]).collect()
@@ -144,6 +148,7 @@ fn a_homogeneous_deformation_is_that_of_the_law() {
 #[test]
 fn other_elements_are_refused() {
     let mesh = generate::rectangle(Element::T3, [0.0; 2], [1.0; 2], [1, 1]).unwrap();
-    let refused = mean_dilatation_body(mesh, LAWS[0], 1.0, 1.0).err().unwrap();
+    let refused =
+        mean_dilatation_body(mesh, &[RegionMaterial { law: LAWS[0], density: 1.0 }], 1.0).err().unwrap();
     assert_eq!(refused.to_string(), "element T3 has no mean dilatation: it is for Q4 and Hex8");
 }

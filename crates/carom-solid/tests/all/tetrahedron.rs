@@ -12,6 +12,7 @@ fn tetrahedron() -> Box<dyn Body> {
         nodes,
         cells: vec![0, 1, 2, 3],
         sides: BTreeMap::new(),
+        regions: Vec::new(),
         repairs: Vec::new(),
     };
     body(mesh, Law::NeoHookean { lambda: 2.0, mu: 1.5 }, 3.0, 1.0).unwrap()

@@ -1,7 +1,10 @@
 //! Cells that are computed together, four in lanes where strain is constant, have the forces,
 //! energies and margins of each alone to the last bit.
 
-use carom_solid::{Body, Element, Inverted, Law, Mesh, body, generate, plane_stress_body};
+use carom_solid::{
+    Body, Constitutive, Element, Inverted, Law, Mesh, PlaneState, RegionMaterial, body, body_of_regions,
+    generate, mean_dilatation_body, plane_stress_body,
+};
 
 const LAWS: [Law; 3] = [
     Law::NeoHookean { lambda: 2.0, mu: 1.5 },
@@ -78,4 +81,71 @@ fn the_first_inverted_cell_among_several_is_named() {
         let together = body.cell_margins(0, &y, &mut vec![0.0; count]).err();
         assert_eq!(together, first(&|c| body.cell_margin(c, &y)), "{:?}", mesh.element);
     }
+}
+
+/// Laws of regions, which a mesh mixes cell by cell.
+fn regions(mesh: &mut Mesh, laws: &[Law], plane: PlaneState) -> Box<dyn Body> {
+    mesh.regions = (0..mesh.cell_count()).map(|cell| ((cell * cell / 3) % laws.len()) as u16).collect();
+    let laws: Vec<Box<dyn Constitutive>> = laws.iter().map(|law| law.constitutive()).collect();
+    let materials: Vec<_> = laws.iter().map(|law| RegionMaterial { law: &**law, density: 1.0 }).collect();
+    body_of_regions(mesh.clone(), &materials, plane, 0.7).unwrap()
+}
+
+/// Each cell of a body of several materials has the bits that it has in a body of its material.
+#[test]
+fn cells_of_several_materials_have_the_bits_of_their_own() {
+    for mut mesh in meshes() {
+        let y = moved(&mesh);
+        for plane in [PlaneState::Strain, PlaneState::Stress] {
+            if plane == PlaneState::Stress && mesh.dimension() != 2 {
+                continue;
+            }
+            let mixed = regions(&mut mesh, &LAWS, plane);
+            check(&*mixed, &y, &format!("{:?} of several materials", mesh.element));
+            // The rule of the quadrature is the one that all laws need.
+            let alone = LAWS.map(|law| regions(&mut mesh.clone(), &[law, LAWS[1]], plane));
+            let dofs = mesh.element.dofs();
+            let [mut one, mut other] = [(); 2].map(|()| vec![0.0; dofs]);
+            for cell in 0..mesh.cell_count() {
+                let single = &alone[mesh.region(cell)];
+                if single.mesh().region(cell) == 0 {
+                    let energies = [
+                        mixed.cell_force(cell, &y, &mut one).unwrap(),
+                        single.cell_force(cell, &y, &mut other).unwrap(),
+                    ];
+                    assert_eq!((energies[0], &one), (energies[1], &other));
+                }
+            }
+        }
+    }
+}
+
+/// Regions of the same law are no difference, to the last bit.
+#[test]
+fn regions_of_one_law_are_one_material() {
+    for mut mesh in meshes() {
+        let (y, count) = (moved(&mesh), mesh.cell_count());
+        let numbers = count * mesh.element.dofs();
+        for law in LAWS {
+            let bodies = [
+                body(mesh.clone(), law, 1.0, 0.7).unwrap(),
+                regions(&mut mesh.clone(), &[law, law, law], PlaneState::Strain),
+            ];
+            let found = bodies.each_ref().map(|body| {
+                let (mut forces, mut energies) = (vec![0.0; numbers], vec![0.0; count]);
+                body.cell_forces(0, &y, &mut forces, &mut energies).unwrap();
+                (forces, energies)
+            });
+            assert_eq!(found[0], found[1], "{:?} {law:?}", mesh.element);
+        }
+        mesh.regions.clear();
+    }
+}
+
+#[test]
+fn a_region_without_a_material_is_refused() {
+    let mut mesh = generate::rectangle(Element::Q4, [0.0; 2], [1.0; 2], [2, 1]).unwrap();
+    mesh.regions = vec![0, 1];
+    let refused = mean_dilatation_body(mesh, &[RegionMaterial { law: LAWS[0], density: 1.0 }], 1.0);
+    assert_eq!(refused.err().unwrap().to_string(), "cell 1 is of region 1, but the body has 1 materials");
 }

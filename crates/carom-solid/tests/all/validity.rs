@@ -17,6 +17,7 @@ pub(crate) fn cell<const D: usize, const N: usize, S: Shape<D, N>>(element: Elem
         nodes: S::NODES.map(|xi| xi.0).to_vec().into(),
         cells: (0..N).collect(),
         sides: BTreeMap::new(),
+        regions: Vec::new(),
         repairs: Vec::new(),
     };
     body(mesh, Law::NeoHookean { lambda: 1.0, mu: 1.0 }, 1.0, 1.0).unwrap()

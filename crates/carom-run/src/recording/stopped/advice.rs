@@ -185,7 +185,7 @@ impl<'a> There<'a> {
     }
 
     fn has_law(&self, law: Law) -> bool {
-        let mut materials = self.bodies.iter().filter_map(|body| self.case.material(body));
+        let mut materials = self.bodies.iter().flat_map(|body| self.case.materials_of(body));
         materials.any(|material| material.law == law)
     }
 

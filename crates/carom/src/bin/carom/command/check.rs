@@ -245,7 +245,8 @@ fn more(text: &str) -> String {
 fn bodies(case: &Case, facts: &Facts) -> Vec<String> {
     let mut lines = Vec::new();
     for (body, facts) in case.bodies.iter().zip(&facts.bodies) {
-        let what = format!("{:?} of {}: {}", body.element, body.material, counted(facts));
+        let materials = body.material_names().join(" and ");
+        let what = format!("{:?} of {materials}: {}", body.element, counted(facts));
         lines.push(named("body", Some(&body.name), &what));
         // In the plane every built-in cell is well shaped.
         if let Some(quality) = facts.scaled_jacobian.filter(|_| case.dimension == 3) {
@@ -321,7 +322,12 @@ fn load_text(load: &LoadSpec) -> String {
     let what = match &load.kind {
         LoadKind::Traction { on, value } => format!("traction [{}] on {}", list(value), on.join(", ")),
         LoadKind::Pressure { on, value } => format!("pressure {value} on {}", on.join(", ")),
-        LoadKind::BodyForce { body, value } => format!("force per volume [{}] in {body}", list(value)),
+        LoadKind::BodyForce { body, value, material } => {
+            let of = material
+                .as_ref()
+                .map_or_else(String::new, |material| format!(", in its cells of {material}"));
+            format!("force per volume [{}] in {body}{of}", list(value))
+        }
     };
     load.table.as_ref().map_or(what.clone(), |table| format!("{what}, times {}", table.file))
 }
