@@ -3,7 +3,7 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-use super::Kind;
+use super::kind::Kind;
 
 /// Corrections of directions, and a force across one, relative to the largest of those that slip,
 /// that is round-off.

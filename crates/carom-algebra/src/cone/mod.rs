@@ -12,29 +12,15 @@
 //! exactly (`exact.rs`).
 
 mod exact;
+mod kind;
 mod pivoting;
 mod sweeps;
 
 use crate::LinearError;
+pub use kind::Kind;
 
 /// ε of the proximal step.
 const PROXIMAL: f64 = 1e-10;
-
-/// The law of an unknown.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// P ≥ 0.
-    Normal,
-    /// Q. Two in a row with the same normal force are the components of a vector.
-    Tangential {
-        /// Index of P.
-        of: usize,
-        /// μ ≥ 0.
-        coefficient: f64,
-        /// Largest Q; may be infinite.
-        limit: f64,
-    },
-}
 
 /// A problem of unilateral contact with friction.
 #[derive(Clone, Debug, PartialEq)]

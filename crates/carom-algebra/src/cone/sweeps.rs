@@ -13,8 +13,8 @@
 //! e·u + (d·u/r) s = 0,   δd = −e s/r
 //! ```
 
-use super::Kind;
 use super::exact::{State, second, settle};
+use super::kind::Kind;
 use crate::linear::LinearError;
 
 /// Sweeps between two attempts, and attempts.
