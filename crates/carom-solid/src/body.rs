@@ -24,8 +24,8 @@ pub struct PointState {
     pub strain: [[f64; 3]; 3],
 }
 
-/// A deformable body: a mesh whose regions have one material each. Node numbers are the body's own; D stands for the
-/// dimension of its mesh and N for the nodes of a cell.
+/// A deformable body: a mesh whose regions have one material each. Node numbers are the body's own;
+/// D stands for the dimension of its mesh and N for the nodes of a cell.
 ///
 /// Units follow the case: forces per unit thickness × thickness. `y` is always the positions of all
 /// nodes of the body, flat and node-major, as every vector over nodes.
@@ -95,8 +95,9 @@ pub trait Body: Send + Sync {
     /// (`D²`, row-major), and the reference volume (× thickness).
     fn each_moved_point(&self, cell: usize, y: &[f64], visit: &mut dyn FnMut(&[f64], &[f64], &[f64], f64));
 
-    /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress that the material of a cell has in a motion with H = ∂y/∂X − 1
-    /// (`D²`, row-major) and second derivatives ∂²yₖ/∂Xᴶ∂Xᴸ (`D³`, k first), into `out` (`D`).
+    /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress that the material of a cell has in a
+    /// motion with H = ∂y/∂X − 1 (`D²`, row-major) and second derivatives ∂²yₖ/∂Xᴶ∂Xᴸ (`D³`, k
+    /// first), into `out` (`D`).
     ///
     /// # Errors
     /// The determinant J if it is not positive.

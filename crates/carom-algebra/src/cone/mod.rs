@@ -6,10 +6,10 @@
 //! |Q_j| ≤ r_j,   Q_j = −r_j u_j/|u_j| where u_j ≠ 0,   r_j = min(μ_j P_j, limit_j)
 //! ```
 //!
-//! A symmetric and positive semi-definite. Without tangential forces principal pivoting solves it in
-//! finitely many steps (`pivoting.rs`); with them sweeps of the nonlinear Gauss–Seidel method find
-//! which contacts are open, stick or slip (`sweeps.rs`), for which the problem is linear and is solved
-//! exactly (`exact.rs`).
+//! A symmetric and positive semi-definite. Without tangential forces principal pivoting solves it
+//! in finitely many steps (`pivoting.rs`); with them sweeps of the nonlinear Gauss–Seidel method
+//! find which contacts are open, stick or slip (`sweeps.rs`), for which the problem is linear and
+//! is solved exactly (`exact.rs`).
 
 mod exact;
 mod kind;
@@ -32,8 +32,8 @@ pub struct Cone<'a> {
     /// The law of each unknown.
     pub kinds: &'a [Kind],
     /// Whether A is singular, because rows of contacts depend on each other. The solution is then
-    /// that of a proximal step from the guess: ε D_ii is added to the diagonal and −ε D_ii z_i to b,
-    /// ε = 1e-10. Each inequality still counts, and repeated steps converge to a solution of the
+    /// that of a proximal step from the guess: ε D_ii is added to the diagonal and −ε D_ii z_i to
+    /// b, ε = 1e-10. Each inequality still counts, and repeated steps converge to a solution of the
     /// problem itself.
     pub is_dependent: bool,
 }
@@ -116,8 +116,8 @@ mod tests {
         }
     }
 
-    /// Every solution of two contacts in the plane: of 4 × 4 ways, open, sticking or slipping either
-    /// way, those whose forces and motions obey the law.
+    /// Every solution of two contacts in the plane: of 4 × 4 ways, open, sticking or slipping
+    /// either way, those whose forces and motions obey the law.
     fn brute_force(a: &[f64], b: &[f64], mu: f64) -> Vec<[f64; 4]> {
         let mut solutions = Vec::new();
         for ways in 0..16 {

@@ -362,8 +362,8 @@ impl ObstacleMotion {
         *self == Self::Fixed
     }
 
-    /// Number of nodes that carry the obstacle in a space of some dimension: those of a simplex if it
-    /// turns, otherwise one; 0 if it is fixed.
+    /// Number of nodes that carry the obstacle in a space of some dimension: those of a simplex if
+    /// it turns, otherwise one; 0 if it is fixed.
     pub fn nodes(&self, dimension: usize) -> usize {
         match self {
             Self::Fixed => 0,

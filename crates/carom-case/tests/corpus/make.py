@@ -136,7 +136,8 @@ def table_at(schema, path, given):
             tables = [one for one in table["oneOf"] if one.get("properties")]
             if len(tables) > 1:
                 return variant(tables, given, name, path) if path.endswith(name) else variant_with(tables, path.split(name + ".", 1)[1])
-            table = tables[0] if tables else None
+            # Without tables they say which keys replace each other.
+            table = tables[0] if tables else table
         if table is None or "properties" not in table:
             return None
     return table

@@ -5,9 +5,9 @@
 //! x(p) = Σ w_a(p) y_a,   w_a = ω_a·(p − X₀) (a ≥ 1),   w₀ = 1 − Σ w_a,   F = ∂x/∂p = Σ y_a ω_aᵀ
 //! ```
 //!
-//! with the nodes of a simplex of edges ℓ along the axes, X_a = X₀ + ℓ e_a, ω_a = e_a/ℓ, if it may turn,
-//! or of one node X₀ with which it only moves along, F = 1. Motion of an obstacle is motion of nodes:
-//! supports prescribe it, masses make it free, and reactions and works are theirs.
+//! with the nodes of a simplex of edges ℓ along the axes, X_a = X₀ + ℓ e_a, ω_a = e_a/ℓ, if it may
+//! turn, or of one node X₀ with which it only moves along, F = 1. Motion of an obstacle is motion
+//! of nodes: supports prescribe it, masses make it free, and reactions and works are theirs.
 
 use carom_algebra::{Mat, Vector};
 

@@ -1,15 +1,15 @@
 //! Secondary nodes against a rigid obstacle, fixed or carried by nodes (`carrier.rs`).
 //!
-//! With the signed distance G(p) of the shape (`obstacle/`), n = ∇G and H = ∇²G, the place p of a node x
-//! in the coordinates of the shape, and γ = (1, −w₁, −w₂, …) over the node and the carrier,
+//! With the signed distance G(p) of the shape (`obstacle/`), n = ∇G and H = ∇²G, the place p of a
+//! node x in the coordinates of the shape, and γ = (1, −w₁, −w₂, …) over the node and the carrier,
 //!
 //! ```text
 //! g = G(p)      δp = F⁻¹ r,   r = Σ γ_k δy_k      ∂g/∂y_k = γ_k N,   N = F⁻ᵀ n
 //! ∂²g/∂y_k∂y_l = γ_k γ_l F⁻ᵀ H F⁻¹ − N ⊗ Ω_k γ_l − γ_k Ω_l ⊗ N      Ω_a = F⁻ᵀ ω_a of the carrier, 0 of the node
 //! ```
 //!
-//! The rows of the slip are γ_k τ of every tangent τ ⊥ N, so that it is zero for every rigid motion of
-//! node and obstacle: weights at the middle of a step are those of its ends. With m = N/|N|,
+//! The rows of the slip are γ_k τ of every tangent τ ⊥ N, so that it is zero for every rigid motion
+//! of node and obstacle: weights at the middle of a step are those of its ends. With m = N/|N|,
 //!
 //! ```text
 //! ∂(γ_k τ)/∂y_l = −γ_k m ⊗ (γ_l F⁻ᵀ H F⁻¹ τ − (τ·Ω_l) N)/|N| − τ ⊗ Ω_k γ_l
@@ -118,7 +118,8 @@ impl NodeToObstacle {
         rows.push(gap, nodes.zip(self.factors(local)).map(|(node, factor)| (node, v.map(|x| factor * x))));
     }
 
-    /// Overwrites the matrix over a node and the carrier, and over axes, with `entry([k, l], [i, j])`.
+    /// Overwrites the matrix over a node and the carrier, and over axes, with `entry([k, l], [i,
+    /// j])`.
     fn fill(&self, matrix: &mut [f64], entry: impl Fn([usize; 2], [usize; 2]) -> f64) {
         let d = self.dimension;
         let blocks = 1 + self.carrier.as_ref().map_or(0, |carrier| carrier.nodes.len());

@@ -7,8 +7,8 @@ use carom_contact::{
 };
 use carom_solid::FacetShape;
 
-/// A contact of node 0, and positions: three facets, three obstacles that move along with a node, and
-/// these on a simplex.
+/// A contact of node 0, and positions: three facets, three obstacles that move along with a node,
+/// and these on a simplex.
 fn scenes(height: f64) -> Vec<(Box<dyn Kinematics>, Vec<f64>)> {
     let mut scenes: Vec<(Box<dyn Kinematics>, Vec<f64>)> = Vec::new();
     for shape in [FacetShape::L2, FacetShape::L3, FacetShape::L4] {

@@ -43,7 +43,8 @@ impl BodyInstance {
         self.body.mesh().cells.is_empty()
     }
 
-    /// Whether the density of all its cells is zero: its balance is enforced at s + 1, without inertia.
+    /// Whether the density of all its cells is zero: its balance is enforced at s + 1, without
+    /// inertia.
     pub fn is_massless(&self) -> bool {
         let cells = 0..self.body.mesh().cell_count();
         self.point_mass == 0.0 && cells.into_iter().all(|cell| self.body.density(cell) == 0.0)

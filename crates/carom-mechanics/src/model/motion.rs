@@ -1,5 +1,5 @@
-//! Prescribed motions: y = X + u(X, t) with v = u̇ and a = ü from the formulas' own derivatives. The
-//! scheme's relations between d, v and a are not used for these dofs, so they cannot ring, and
+//! Prescribed motions: y = X + u(X, t) with v = u̇ and a = ü from the formulas' own derivatives.
+//! The scheme's relations between d, v and a are not used for these dofs, so they cannot ring, and
 //! their inertia M a acts on their neighbours.
 
 use carom_formula::Formula;
@@ -20,8 +20,8 @@ pub enum Motion {
     Rigid(Turn),
 }
 
-/// A rigid motion: with the centre c, the displacement m of the centre and the rotation R by an angle
-/// θ about an axis k,
+/// A rigid motion: with the centre c, the displacement m of the centre and the rotation R by an
+/// angle θ about an axis k,
 ///
 /// ```text
 /// u = m + R r − r,   u̇ = ṁ + θ̇ k × R r,   ü = m̈ + θ̈ k × R r + θ̇² k × (k × R r),   r = X − c
@@ -66,8 +66,8 @@ pub struct Prescribed {
 }
 
 impl Motions {
-    /// Prescribed motions, and each prescribed dof once, ascending, with the index of its motion and
-    /// its reference position.
+    /// Prescribed motions, and each prescribed dof once, ascending, with the index of its motion
+    /// and its reference position.
     pub fn new(motions: Vec<Motion>, moved: impl IntoIterator<Item = (usize, usize, Vec<f64>)>) -> Self {
         let moved = moved.into_iter().map(|(dof, motion, place)| Moved { dof, motion, place }).collect();
         Self { motions, moved }

@@ -4,8 +4,8 @@
 //! edge, then the interior. Points are the REFERENCE positions; `displacement` is a point array, so
 //! that "Warp By Vector" at scale 1 shows the deformed bodies. Units are stored with VTK's
 //! information key `UNITS_LABEL`. Each body is a number of the field data, named `body NAME`: the
-//! value of the cell array `body` in its cells; where a body has several materials, each is likewise
-//! `material NAME`, and the cell array `material` has its number.
+//! value of the cell array `body` in its cells; where a body has several materials, each is
+//! likewise `material NAME`, and the cell array `material` has its number.
 //!
 //! The version in the header decides who can read a file. VTK takes a Lagrange hexahedron of a file
 //! older than 2.1 for one of VTK 8, in which the edges at nodes 18 and 19 were exchanged, and

@@ -81,8 +81,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         self.packed = blocks.collect();
     }
 
-    /// Energy densities and stresses of up to four cells, each by the law of its region; none if one
-    /// is inverted.
+    /// Energy densities and stresses of up to four cells, each by the law of its region; none if
+    /// one is inverted.
     #[inline(always)]
     fn stresses_of_four(
         &self,

@@ -322,11 +322,9 @@ fn load_text(load: &LoadSpec) -> String {
     let what = match &load.kind {
         LoadKind::Traction { on, value } => format!("traction [{}] on {}", list(value), on.join(", ")),
         LoadKind::Pressure { on, value } => format!("pressure {value} on {}", on.join(", ")),
-        LoadKind::BodyForce { body, value, material } => {
-            let of = material
-                .as_ref()
-                .map_or_else(String::new, |material| format!(", in its cells of {material}"));
-            format!("force per volume [{}] in {body}{of}", list(value))
+        LoadKind::BodyForce { body, material, value } => {
+            let cells = material.as_ref().map_or_else(String::new, |material| format!(" of {material}"));
+            format!("force per volume [{}] in {body}{cells}", list(value))
         }
     };
     load.table.as_ref().map_or(what.clone(), |table| format!("{what}, times {}", table.file))
