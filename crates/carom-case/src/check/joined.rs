@@ -57,7 +57,7 @@ impl Check<'_> {
     fn in_contact(&self, a: &BodySpec, b: &BodySpec) -> bool {
         let contacts =
             self.draft.contact.iter().flatten().map(|contact| contact.bodies().collect::<Vec<_>>());
-        let ties = self.draft.tie.iter().flatten().map(|tie| tie.bodies().collect::<Vec<_>>());
+        let ties = self.draft.tie.iter().flatten().map(|tie| tie.bodies().to_vec());
         let has = |bodies: &[&str], body: &BodySpec| bodies.contains(&body.name.as_str());
         contacts.chain(ties).any(|bodies| has(&bodies, a) && has(&bodies, b))
     }

@@ -635,9 +635,9 @@ fn a_laminate_falls_on_a_floor_and_on_another_body() {
     }
 }
 
-/// A plane of symmetry and a moving support cross a tie: both sides have them. With meshes that match
-/// the tied blocks are one block, in what supports and ledger say as well, on a support and where they
-/// fall on a floor while the other support accelerates.
+/// A plane of symmetry and a moving support cross a tie: both sides have them. With meshes that
+/// match the tied blocks are one block, in what supports and ledger say as well, on a support and
+/// where they fall on a floor while the other support accelerates.
 #[test]
 fn supports_cross_a_tie() {
     let sides = |names: &[&str], side: &str| -> String {
@@ -738,8 +738,8 @@ fn the_explicit_ledger_closes() {
     }
 }
 
-/// A plate bends up against the side of a block that is tied to it: contact elsewhere on the primary
-/// side, beside the tie.
+/// A plate bends up against the side of a block that is tied to it: contact elsewhere on the
+/// primary side, beside the tie.
 #[test]
 fn contact_acts_beside_a_tie_on_the_same_side() {
     let body = |name: &str, max: [f64; 2], low: f64, cells: [usize; 2]| {
@@ -768,7 +768,8 @@ fn contact_acts_beside_a_tie_on_the_same_side() {
     }
 }
 
-/// A tie takes what a mesh file, an extruded shape and refined meshes give, and a case that refines.
+/// A tie takes what a mesh file, an extruded shape and refined meshes give, and a case that
+/// refines.
 #[test]
 fn refined_meshes_are_tied() {
     for factor in ["1.0", "2.0"] {
