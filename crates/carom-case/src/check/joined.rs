@@ -24,9 +24,9 @@ impl<'a> Source<'a> {
 
 impl Check<'_> {
     pub(super) fn joined(&mut self) {
-        // A contact that cannot be read may be the one between them.
+        // A contact or tie that cannot be read may be the one between them.
         let Some(dimension) = self.draft.dimension else { return };
-        if self.draft.contact.iter().any(Option::is_none) {
+        if self.draft.contact.iter().any(Option::is_none) || self.draft.tie.iter().any(Option::is_none) {
             return;
         }
         let bodies: Vec<(usize, &BodySpec)> =
