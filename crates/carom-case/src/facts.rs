@@ -17,12 +17,27 @@ impl Case {
             end: self.time.end,
             refine: self.refine,
             contacts: self.contacts.iter().map(contact).collect(),
+            tied: self.tied(),
             held: self.supports.iter().flat_map(held).collect(),
             probes: self.probes.iter().map(|probe| probe.name.clone()).collect(),
             exact: self.exact.clone(),
             overlays: self.overlays.iter().map(overlay).collect(),
             expects: self.expects.clone(),
         }
+    }
+
+    /// Names of the bodies that ties join to another one, each once.
+    fn tied(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        for tie in &self.ties {
+            let [a, b] = tie.bodies();
+            if a != b {
+                names.extend([a, b].map(str::to_owned));
+            }
+        }
+        names.sort_unstable();
+        names.dedup();
+        names
     }
 }
 

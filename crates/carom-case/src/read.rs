@@ -123,7 +123,7 @@ impl Draft {
         let contacts = given.iter().flatten().filter(|contact| !contact.between);
         let of_contacts = contacts.map(|contact| owned(contact.bodies().collect()));
         // The rest of a body with a tie of two of its sides may still meet itself.
-        let of_ties = self.tie.iter().flatten().map(|tie| owned(tie.bodies().collect()));
+        let of_ties = self.tie.iter().flatten().map(|tie| owned(tie.bodies().to_vec()));
         let of_ties = of_ties.filter(|bodies| bodies[0] != bodies[1]);
         let declared: Vec<Vec<String>> = of_contacts.chain(of_ties).collect();
         let bodies = Bodies { bodies: &self.body, materials: &self.material };

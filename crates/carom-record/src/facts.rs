@@ -21,6 +21,9 @@ pub struct Facts {
     pub refine: f64,
     /// Contacts.
     pub contacts: Vec<ContactFacts>,
+    /// Names of bodies that ties join to another body.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tied: Vec<String>,
     /// Axes along which supports hold or move bodies.
     pub held: Vec<Held>,
     /// Names of the probes.

@@ -224,7 +224,7 @@ fn without(candidate: &Candidate, what: &Removable) -> Option<Candidate> {
             let touches = |side: &str| side.split('.').next() == Some(name);
             case.bodies.retain(|body| body.name != *name);
             case.contacts.retain(|contact| contact.bodies().all(|body| body != name));
-            case.ties.retain(|tie| tie.bodies().all(|body| body != name));
+            case.ties.retain(|tie| !tie.bodies().contains(&name.as_str()));
             for support in &mut case.supports {
                 support.on.retain(|side| !touches(side));
             }

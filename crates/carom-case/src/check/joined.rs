@@ -24,9 +24,9 @@ impl<'a> Source<'a> {
 
 impl Check<'_> {
     pub(super) fn joined(&mut self) {
-        // A contact that cannot be read may be the one between them.
+        // A contact or tie that cannot be read may be the one between them.
         let Some(dimension) = self.draft.dimension else { return };
-        if self.draft.contact.iter().any(Option::is_none) {
+        if self.draft.contact.iter().any(Option::is_none) || self.draft.tie.iter().any(Option::is_none) {
             return;
         }
         let bodies: Vec<(usize, &BodySpec)> =
@@ -62,7 +62,7 @@ impl Check<'_> {
     fn in_contact(&self, a: &BodySpec, b: &BodySpec) -> bool {
         let contacts =
             self.draft.contact.iter().flatten().map(|contact| contact.bodies().collect::<Vec<_>>());
-        let ties = self.draft.tie.iter().flatten().map(|tie| tie.bodies().collect::<Vec<_>>());
+        let ties = self.draft.tie.iter().flatten().map(|tie| tie.bodies().to_vec());
         let has = |bodies: &[&str], body: &BodySpec| bodies.contains(&body.name.as_str());
         contacts.chain(ties).any(|bodies| has(&bodies, a) && has(&bodies, b))
     }

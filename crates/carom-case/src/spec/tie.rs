@@ -17,11 +17,12 @@ pub struct TieSpec {
     /// softer body.
     #[key(Side, example = "\"tread.inner\"")]
     pub secondary: String,
-    /// Primary side.
+    /// Primary side, whose points the tied nodes are.
     #[key(Side, example = "\"rim.outer\"")]
     pub primary: String,
     /// Largest distance of a secondary node from the primary side that is closed, without stress:
-    /// the node is moved in the mesh. Default: a millionth of the length of the nearest facet.
+    /// the node is moved in the mesh. Default: a millionth of the length of the nearest facet, in
+    /// dimension 1 of the shortest cell.
     #[key(Number(NOT_NEGATIVE), unit = "length", example = "0.01")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adjust: Option<f64>,
@@ -44,7 +45,7 @@ pub enum Overhang {
 
 impl TieSpec {
     /// Names of the bodies of its sides, the secondary one first.
-    pub fn bodies(&self) -> impl Iterator<Item = &str> {
-        [&self.secondary, &self.primary].into_iter().map(|side| carom_record::body_of(side))
+    pub fn bodies(&self) -> [&str; 2] {
+        [&self.secondary, &self.primary].map(|side| carom_record::body_of(side))
     }
 }

@@ -41,13 +41,18 @@ pub struct Impact<'a> {
 
 impl<'a> Impact<'a> {
     /// The first impact of a run. None without contact, where the striker did not approach before
-    /// it, where it strikes nothing but itself or several parties of different velocities, and
-    /// where the velocity of a support is not known.
+    /// it, where it strikes nothing but itself or several parties of different velocities, where
+    /// one of them is tied to another body, with which it moves, and where the velocity of a
+    /// support is not known.
     pub fn first(run: &'a Run) -> Option<Self> {
         let episode = first_episode(&run.history)?;
         let striker = striker(&run.history)?;
         let before = episode.start.checked_sub(1)?;
         let (others, normal) = struck(striker, run, episode)?;
+        let is_tied = |body: &str| run.manifest.facts.tied.iter().any(|tied| tied == body);
+        if is_tied(striker) || others.iter().flatten().any(|other| is_tied(other)) {
+            return None;
+        }
         let along = |row: usize| {
             let of_striker = velocity(run, Some(striker), row)?;
             let others: Option<Vec<_>> = others.iter().map(|other| velocity(run, *other, row)).collect();

@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 
 use carom_algebra::Threads;
 use carom_case::{
-    BodySpec, Case, FormulaSpec, MassKind, MaterialSpec, Plane, ProbeSpec, Problem, SKIN, Volumetric,
+    BodySpec, Case, FormulaSpec, MassKind, MaterialSpec, Plane, ProbeSpec, Problem, SKIN, TieSpec, Volumetric,
 };
 use carom_mechanics::model::{
     BodyInstance, Mass, Model, Probe, Quantity, free_motions, gap_tolerance, redistribute, value,
@@ -249,8 +249,14 @@ fn meshes(case: &Case) -> Result<Vec<carom_solid::Mesh>, Vec<Problem>> {
 }
 
 fn no_mesh(case: &Case, k: usize, why: String) -> Problem {
-    let what = format!("the mesh of body \"{}\" cannot be generated", case.bodies[k].name);
-    Problem::new(format!("body[{k}].mesh"), what, why, "change the values of `mesh`")
+    let name = &case.bodies[k].name;
+    let what = format!("the mesh of body \"{name}\" cannot be generated");
+    let is_adjusted = |tie: &TieSpec| tie.adjust.is_some() && tie.bodies()[0] == name;
+    let help = match case.ties.iter().find(|tie| is_adjusted(tie)) {
+        Some(tie) => format!("change the values of `mesh`, or give tie `{}` a smaller `adjust`", tie.name),
+        None => "change the values of `mesh`".to_owned(),
+    };
+    Problem::new(format!("body[{k}].mesh"), what, why, help)
 }
 
 /// The body of a mesh whose regions are those of the body's materials.

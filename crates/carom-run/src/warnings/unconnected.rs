@@ -17,7 +17,7 @@ pub(super) fn unconnected_bodies(case: &Case, model: &Model) -> Vec<Found> {
         return Vec::new();
     }
     let contacts = case.contacts.iter().map(|contact| contact.bodies().collect::<Vec<_>>());
-    let ties = case.ties.iter().map(|tie| tie.bodies().collect::<Vec<_>>());
+    let ties = case.ties.iter().map(|tie| tie.bodies().to_vec());
     let connected: Vec<Vec<&str>> = contacts.chain(ties).collect();
     let in_contact = |a: &BodyInstance, b: &BodyInstance| {
         let has = |bodies: &[&str], part: &BodyInstance| bodies.contains(&part.name.as_str());
