@@ -317,7 +317,7 @@ fn variants(path: &Path, turn: usize, at_night: bool) -> Vec<(String, Case)> {
 
 #[test]
 fn booked_works_leave_what_the_scheme_dissipates() {
-    assert!(judged_pairs(false) > 200);
+    assert!(judged_pairs(false) > 100);
 }
 
 #[test]
@@ -326,12 +326,14 @@ fn booked_works_leave_what_every_scheme_dissipates() {
     assert!(judged_pairs(true) > 300);
 }
 
-/// Judges every case of `cases/friction`; returns the number of pairs that rubbed.
+/// Judges the cases of `cases/friction`, by day every other one; returns the number of pairs that
+/// rubbed.
 fn judged_pairs(at_night: bool) -> usize {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/friction");
     let mut cases: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     cases.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     cases.sort();
+    let cases: Vec<_> = cases.into_iter().step_by(if at_night { 1 } else { 2 }).collect();
     let (next, rubbed) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let missed = Mutex::new(Vec::new());
     let work = || {
