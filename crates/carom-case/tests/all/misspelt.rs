@@ -1,6 +1,6 @@
-//! Every key of every shipped case, misspelt: each gives one error, whose help suggests the right
+//! Every key of the shipped cases, misspelt: each gives one error, whose help suggests the right
 //! key. The first of the keys with one path is misspelt in three ways, the others in one of them in
-//! turn, because the suggestion depends on the keys of the table alone.
+//! turn, because the suggestion depends on the keys of the table alone; by day three of each path.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -54,9 +54,9 @@ fn shipped(directory: &Path) -> Vec<(String, String)> {
     found
 }
 
-/// Misspells every key of a case; returns the number of misspellings. `met` counts the keys of
-/// every path.
-fn misspellings(name: &str, text: &str, met: &Mutex<HashMap<String, usize>>) -> usize {
+/// Misspells keys of a case, as long as fewer than `most` with the same path are met; returns the
+/// number of misspellings. `met` counts the keys of every path.
+fn misspellings(name: &str, text: &str, most: usize, met: &Mutex<HashMap<String, usize>>) -> usize {
     let document = Document::parse(text).unwrap();
     let mut found = Vec::new();
     keys(document.as_table(), "", &mut found);
@@ -69,6 +69,9 @@ fn misspellings(name: &str, text: &str, met: &Mutex<HashMap<String, usize>>) -> 
             *count += 1;
             *count - 1
         };
+        if before >= most {
+            continue;
+        }
         let doubled = format!("{key}{}", &key[key.len() - 1..]);
         // Keys of one letter, `x` and `y`, have no letters to swap.
         let swapped = key
@@ -92,20 +95,34 @@ fn misspellings(name: &str, text: &str, met: &Mutex<HashMap<String, usize>>) -> 
     checked
 }
 
-#[test]
-fn every_misspelt_key_is_recognised() {
+/// Misspells keys of all shipped cases, at most so many of one path; returns the number of
+/// misspellings.
+fn recognised(most: usize) -> usize {
     let mut shipped = shipped(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases"));
     assert!(shipped.len() >= 2);
     shipped.push(("bars.toml".to_owned(), BARS.to_owned()));
-    let (next, checked, met) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::default());
+    let next = AtomicUsize::new(0);
+    let checked = AtomicUsize::new(0);
+    let met = Mutex::default();
     let work = || {
         while let Some((name, text)) = shipped.get(next.fetch_add(1, Ordering::Relaxed)) {
-            checked.fetch_add(misspellings(name, text, &met), Ordering::Relaxed);
+            checked.fetch_add(misspellings(name, text, most, &met), Ordering::Relaxed);
         }
     };
     std::thread::scope(|scope| {
         scope.spawn(work);
         work();
     });
-    assert!(checked.into_inner() > 400);
+    checked.into_inner()
+}
+
+#[test]
+fn misspelt_keys_are_recognised() {
+    assert!(recognised(3) > 400);
+}
+
+#[test]
+#[ignore = "every key of every case: .ci/nightly"]
+fn every_misspelt_key_is_recognised() {
+    assert!(recognised(usize::MAX) > 4000);
 }

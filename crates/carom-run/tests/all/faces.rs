@@ -93,11 +93,19 @@ fn exchange_in_every_scheme(elements: &[&str]) {
     }
 }
 
-#[test]
-fn flush_boundaries_exchange_them_like_the_sides_that_meet() {
-    for element in ["T3", "T6", "Q4", "Q9", "Tet4", "Tet10", "Hex8", "Hex27"] {
+/// One element after the other in every other scheme, beginning with the next one.
+fn exchange_in_turn(elements: &[&str]) {
+    for (k, element) in elements.iter().enumerate() {
+        for scheme in SCHEMES.into_iter().skip(k % 2).step_by(2) {
+            exchange(element, scheme, &[]);
+        }
+    }
+}
+
+fn exchange_between_skins(elements: &[&str]) {
+    for element in elements {
         // Of the elements that take longest one scheme is enough.
-        let schemes = if ["Tet10", "Hex27"].contains(&element) { &[0][..] } else { &[0, 4] };
+        let schemes = if ["Tet10", "Hex27"].contains(element) { &[0][..] } else { &[0, 4] };
         for scheme in schemes.iter().map(|&k| SCHEMES[k]) {
             let [named, whole] = [&[][..], &SKINS].map(|sides| exchange(element, scheme, sides));
             assert!((whole / named - 1.0).abs() < 1e-9, "{element}, {}: {named} {whole}", scheme.0);
@@ -105,21 +113,45 @@ fn flush_boundaries_exchange_them_like_the_sides_that_meet() {
     }
 }
 
+const PLANE: [&str; 8] = ["L2", "L3", "L4", "T3", "T6", "T10", "Q4", "Q9"];
+
 #[test]
-fn bars_and_plane_blocks_exchange_their_velocities() {
-    exchange_in_every_scheme(&["L2", "L3", "L4", "T3", "T6", "T10", "Q4", "Q9"]);
+fn flush_boundaries_exchange_them_like_the_sides_that_meet() {
+    exchange_between_skins(&["T6", "Q4", "Tet4", "Hex8"]);
 }
 
 #[test]
-fn solid_blocks_exchange_their_velocities_in_every_scheme() {
+#[ignore = "other elements: .ci/nightly"]
+fn other_flush_boundaries_exchange_them_like_the_sides_that_meet() {
+    exchange_between_skins(&["T3", "Q9", "Tet10", "Hex27"]);
+}
+
+#[test]
+fn bars_and_plane_blocks_exchange_their_velocities() {
+    exchange_in_turn(&PLANE);
+}
+
+#[test]
+fn solid_blocks_exchange_their_velocities() {
+    exchange_in_turn(&["Tet4", "Hex8"]);
+}
+
+#[test]
+#[ignore = "every element in every scheme: .ci/nightly"]
+fn blocks_exchange_their_velocities_in_every_scheme() {
+    exchange_in_every_scheme(&PLANE);
     exchange_in_every_scheme(&["Tet4", "Hex8"]);
 }
 
 #[test]
 fn curved_solids_exchange_their_velocities() {
-    for element in ["Tet10", "Hex27"] {
-        for scheme in &SCHEMES[2..4] {
-            exchange(element, *scheme, &[]);
-        }
-    }
+    exchange("Tet10", SCHEMES[2], &[]);
+    exchange("Hex27", SCHEMES[3], &[]);
+}
+
+#[test]
+#[ignore = "each in the scheme of the other: .ci/nightly"]
+fn curved_solids_exchange_their_velocities_in_other_schemes() {
+    exchange("Tet10", SCHEMES[3], &[]);
+    exchange("Hex27", SCHEMES[2], &[]);
 }

@@ -1,7 +1,7 @@
 //! Every misspelling of a key in the cases and studies of the repository is an error that names it.
 //! `scripts/check_schema.py` checks the same for the schema.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -91,18 +91,39 @@ fn misspellings(
     wrong.len()
 }
 
-#[test]
-fn no_misspelt_key_of_a_case_passes() {
-    let mut checked = (0, 0);
-    for (path, text) in shipped().iter().filter(|(_, text)| !is_study(text)) {
+/// Misspells the keys of all cases except those to skip; returns the number of misspellings.
+fn refused_in_cases(skips: &dyn Fn(&str) -> bool) -> usize {
+    let shipped = shipped();
+    let cases: Vec<_> = shipped.iter().filter(|(_, text)| !is_study(text)).collect();
+    assert!(cases.len() >= 8);
+    let refused = |(path, text): &&(PathBuf, String)| {
         let reads = |text: &str| {
             let document =
                 Document::parse(path.to_str().unwrap(), text, &[]).map_err(|e| format!("{e:?}"))?;
             read(&document).map(|_| ()).map_err(|problems| format!("{problems:#?}"))
         };
-        checked = (checked.0 + 1, checked.1 + misspellings(path, text, &reads, &|_| false));
-    }
-    assert!(checked.0 >= 8 && checked.1 > 300, "{checked:?}");
+        misspellings(path, text, &reads, skips)
+    };
+    cases.iter().map(refused).sum()
+}
+
+#[test]
+fn no_misspelt_key_of_a_case_passes() {
+    // A key may be read in the first case only because of another key of its table.
+    let met = Mutex::new(HashMap::<String, usize>::new());
+    let skips = |key: &str| {
+        let mut met = met.lock().unwrap();
+        let count = met.entry(key.to_owned()).or_default();
+        *count += 1;
+        *count > 3
+    };
+    assert!(refused_in_cases(&skips) > 300);
+}
+
+#[test]
+#[ignore = "every key of every case: .ci/nightly"]
+fn no_misspelt_key_of_any_case_passes() {
+    assert!(refused_in_cases(&|_| false) > 3000);
 }
 
 /// Copies the folders of a folder, with the files in them.
