@@ -236,6 +236,7 @@ impl<'a> Check<'a> {
         let of = mesh.and_then(|mesh| mesh.get("of")?.table());
         if let Some(mesh) = mesh
             && [Some(mesh), of].into_iter().flatten().all(|mesh| mesh.get("file").is_none())
+            && !self.misspelt.iter().any(|table| is_within(table, &format!("body[{i}].mesh")))
         {
             let what = "a built-in shape has no `materials`";
             let why = "materials belong to the physical groups of a mesh from a file";
