@@ -35,7 +35,8 @@ pub struct Elimination {
     pub(crate) local: Vec<u32>,
     /// Entries of the pattern, supernode by supernode; those between last unknowns come at the end.
     pub(crate) entries: Vec<u32>,
-    /// Index of each of these entries in the values of its supernode, or in the Schur complement.
+    /// Index of each entry of the pattern in the values of its supernode, or in the Schur
+    /// complement.
     pub(crate) slots: Vec<u32>,
     /// The part of the forest that contains all others.
     pub(crate) root: Subtree,
@@ -59,7 +60,7 @@ pub(crate) struct Node {
     pub(crate) values: usize,
 }
 
-/// Parent of a supernode without one: the unknowns eliminated last.
+/// Stands for the parent of a supernode whose update goes to the unknowns eliminated last.
 pub(crate) const LAST: u32 = u32::MAX;
 
 /// A part of the forest of supernodes. Its section of a vector holds the sections of its child

@@ -20,7 +20,7 @@ const BLOCK: usize = 2048;
 /// others.
 const DEPENDENT: f64 = 1e-8;
 
-/// Positions and multipliers.
+/// An iterate or its change: positions and multipliers.
 type Iterate = [Vec<f64>; 2];
 
 /// Changes of correction and iterate in one iteration of the history.

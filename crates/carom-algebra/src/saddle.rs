@@ -63,7 +63,7 @@ pub struct Saddle {
     directions: Vec<f64>,
     /// Lower triangle of TᵀT, then its Cholesky factor.
     small: Vec<f64>,
-    /// LU factor of TᵀU.
+    /// LU factor of the product TᵀU.
     skew: Option<PartialPivLu<f64>>,
     /// Penalty κ of each row of G.
     penalties: Vec<f64>,
@@ -130,12 +130,12 @@ impl Saddle {
         }
     }
 
-    /// Adds to the entry S(i, j); only the lower triangle i ≥ j is used.
+    /// Adds a value to the entry S(i, j); only the lower triangle i ≥ j is used.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
         self.stiffness[j * self.size + i] += value;
     }
 
-    /// Adds to the entry G(row, j).
+    /// Adds a value to the entry G(row, j).
     pub fn add_row(&mut self, row: usize, j: usize, value: f64) {
         self.rows[row * self.size + j] += value;
     }
@@ -145,7 +145,7 @@ impl Saddle {
         self.directions.resize(self.rows.len(), 0.0);
     }
 
-    /// Adds to the entry F(row, j), after [`direct`](Self::direct).
+    /// Adds a value to the entry F(row, j), after [`direct`](Self::direct).
     pub fn add_direction(&mut self, row: usize, j: usize, value: f64) {
         self.directions[row * self.size + j] += value;
     }

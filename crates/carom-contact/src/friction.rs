@@ -25,7 +25,8 @@ use crate::visited::Visited;
 /// Excess of a traction over the cone, relative to the largest cone, that still sticks.
 const EDGE: f64 = 1e-10;
 
-/// Components along the tangents of a pair, of which the plane has one: the second is zero there.
+/// Components of a tangential vector along the two tangents of a pair; in the plane there is one
+/// tangent, and the second component is zero.
 pub type Along = [f64; 2];
 
 /// Euclidean length |x| of a tangential vector.

@@ -185,7 +185,7 @@ impl Folds {
 }
 
 impl Turns {
-    /// Updates the turns to the positions `y`.
+    /// Recomputes the turns of the tangent at the positions `y`.
     pub(crate) fn update(&mut self, folds: &Folds, surface: &Surface, y: Places) {
         self.update_loops(&folds.order, &folds.starts, surface, y);
     }

@@ -20,7 +20,7 @@ pub struct Passed {
     pub node: usize,
     /// Largest depth on the path, known to within an eighth.
     pub depth: f64,
-    /// Allowed depth.
+    /// Depth that is allowed on the path.
     pub limit: f64,
 }
 

@@ -87,7 +87,7 @@ impl Surface {
         (self.side..self.siblings).contains(&facet)
     }
 
-    /// Whether the rest of the body's boundary is known, or there is none.
+    /// Whether the facets form closed loops: the whole boundary of the body is known.
     pub(crate) fn is_whole(&self) -> bool {
         self.is_whole
     }

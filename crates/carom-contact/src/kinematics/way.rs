@@ -33,7 +33,7 @@ const LEAST: f64 = 0.05;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub theta: f64,
-    /// Nearest facet.
+    /// Facet nearest to the node.
     pub facet: usize,
     /// Coordinates of the nearest point on its facet.
     pub xi: [f64; 2],

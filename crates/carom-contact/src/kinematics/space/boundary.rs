@@ -50,7 +50,7 @@ pub(crate) struct EdgeOfFacet {
 
 /// A point relative to the nearest point of a facet.
 pub(super) struct Height {
-    /// Distance between both points.
+    /// Distance of the point from the nearest point of the facet.
     pub(super) distance: f64,
     /// Component of the offset along the normal of the boundary; zero at the tip of a slit.
     pub(super) height: f64,
@@ -112,7 +112,7 @@ impl Boundary {
         self.side
     }
 
-    /// Whether the rest of the body's boundary is known, or there is none.
+    /// Whether the facets form a closed surface: the whole boundary of the body is known.
     pub(crate) fn is_whole(&self) -> bool {
         self.is_whole
     }

@@ -233,7 +233,8 @@ impl EdgeToEdge {
         (came || self.crossing(&mut self.swept(), edges, before, now).is_some()).then_some(gap)
     }
 
-    /// Points of the edges that continue those past whose ends these points lie, if there are any.
+    /// The point on the next edge for each of two edges past whose end its coordinate ξ lies, if
+    /// another edge continues one of them.
     pub(super) fn beyond(&self, edges: [usize; 2], xi: [f64; 2]) -> Option<OnEdges> {
         let mut to = OnEdges { edges, xi };
         for i in (0..2).filter(|&i| xi[i].abs() > 1.0 + PAST) {

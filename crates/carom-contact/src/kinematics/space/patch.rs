@@ -32,7 +32,7 @@ pub(crate) struct PatchPoint {
     pub(crate) tangents: [Vector<3>; 2],
     /// Second derivatives of the position by ξξ, ξη and ηη.
     pub(crate) second: [Vector<3>; 3],
-    /// Outward unit normal.
+    /// Outward unit normal of the facet.
     pub(crate) normal: Vector<3>,
 }
 

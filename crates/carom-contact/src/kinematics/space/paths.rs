@@ -15,14 +15,14 @@ const MEETS: f64 = 1e-5;
 /// Bounding boxes of the paths of all facets in a step, in memory that searches reuse.
 #[derive(Debug, Default)]
 pub(super) struct Paths {
-    /// Boxes with a margin.
+    /// Hierarchy of the boxes of the paths of facets, with a margin.
     tree: Tree,
-    /// Boxes without a margin.
+    /// Boxes of the paths of facets without a margin.
     tight: Vec<Bounds>,
     start: Start,
 }
 
-/// The facets at the start of a step, which several searches share.
+/// Positions and boxes of all facets at the start of a step, which several searches share.
 #[derive(Debug, Default)]
 struct Start {
     /// Coordinates of the nodes of all facets.

@@ -30,9 +30,9 @@ type Points = [Vector<3>; 4];
 /// Difference f of the positions on two moving edges over a box of (a, b, θ).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EdgePath {
-    /// Control points of A and B at both ends of the interval of θ.
+    /// Control points of the edges A and B at both ends of the interval of θ.
     points: [[Points; 2]; 2],
-    /// Polynomial degrees of A and B.
+    /// Polynomial degrees of the edges A and B.
     degrees: [usize; 2],
     along: [Interval; 2],
     theta: Interval,
