@@ -86,8 +86,9 @@ fn factor(bencher: Bencher, (edge, precision, threads): (usize, Precision, usize
 fn solve(bencher: Bencher, (edge, precision, threads): (usize, Precision, usize)) {
     let grid = grid(edge);
     let mut condensed = condensed(&grid, precision, threads);
-    let (right, mut x, mut out) =
-        (vec![1.0; grid.pattern.size()], Vec::new(), vec![0.0; grid.pattern.size()]);
+    let right = vec![1.0; grid.pattern.size()];
+    let mut x = Vec::new();
+    let mut out = vec![0.0; grid.pattern.size()];
     bencher.bench_local(|| {
         condensed.eliminate_into(black_box(&right), &mut x);
         condensed.substitute_into(&mut x, &mut out);
@@ -101,7 +102,8 @@ fn saddle_factor_and_solve(bencher: Bencher, contacts: usize) {
     let stiffness: Vec<f64> =
         (0..size * size).map(|k| if k / size == k % size { 40.0 } else { -30.0 / size as f64 }).collect();
     let mut saddle = Saddle::default();
-    let (mut x, mut multipliers) = (vec![0.0; size], vec![0.0; contacts]);
+    let mut x = vec![0.0; size];
+    let mut multipliers = vec![0.0; contacts];
     bencher.bench_local(|| {
         saddle.begin(black_box(&stiffness), size, contacts);
         for row in 0..contacts {
@@ -125,7 +127,8 @@ fn complementarity_problem(bencher: Bencher, contacts: usize) {
     let kinds = vec![Kind::Normal; n];
     let mut z = Vec::new();
     bencher.bench_local(|| {
-        let (matrix, right) = (black_box(&d).clone(), b.clone());
+        let matrix = black_box(&d).clone();
+        let right = b.clone();
         Cone { matrix, right, kinds: &kinds, is_dependent: false }.solve(&mut z).is_ok()
     });
 }

@@ -24,12 +24,12 @@ use crate::precision::{Entry, Precision};
 use crate::substitution::Solver;
 use crate::threads::Threads;
 
-/// The factor of a matrix multiplied by the square of `scale`.
+/// The entries of a factor, for the matrix multiplied by the square of `scale`.
 struct Entries<T> {
     factors: Aligned<T>,
-    /// Reciprocals of its diagonal.
+    /// Reciprocals of the diagonal of the factor.
     inverse: Vec<f64>,
-    /// J; empty if it is the identity.
+    /// Signs J between L and Lᵀ; empty if all are positive.
     signs: Vec<f64>,
     scale: f64,
 }
@@ -71,7 +71,8 @@ impl<T: Entry> Entries<T> {
         matrix.factor(self.factors.get_mut(), schur).map_err(singular)?;
         schur.iter_mut().for_each(|value| *value /= square);
         for s in 0..elimination.nodes.len() - 1 {
-            let (columns, first) = (elimination.columns(s), elimination.nodes[s].values);
+            let columns = elimination.columns(s);
+            let first = elimination.nodes[s].values;
             let height = columns.len() + elimination.rows(s).len();
             let diagonal = self.factors.get()[first..].iter().step_by(height + 1);
             for (inverse, value) in self.inverse[columns].iter_mut().zip(diagonal) {
@@ -86,7 +87,8 @@ impl<T: Entry> Entries<T> {
     }
 }
 
-/// A factor whose last unknowns are left for a dense solve.
+/// Sparse factor of a matrix whose last unknowns are left for a dense solve on their Schur
+/// complement.
 pub struct Condensed {
     elimination: Arc<Elimination>,
     numbers: Numbers,
@@ -105,17 +107,17 @@ impl Condensed {
         Self { elimination, numbers, threads: Threads::one(), schur: Vec::new() }
     }
 
-    /// Shares the work among these threads. The result does not depend on them.
+    /// Shares the work among threads, on whose number the result does not depend.
     pub fn on(self, threads: &Threads) -> Self {
         Self { threads: threads.clone(), ..self }
     }
 
-    /// The structure.
+    /// Elimination order and structure of the factor.
     pub fn elimination(&self) -> &Arc<Elimination> {
         &self.elimination
     }
 
-    /// Precision of its entries.
+    /// Precision of the entries of the factor.
     pub fn precision(&self) -> Precision {
         match self.numbers {
             Numbers::Double(_) => Precision::Double,
@@ -132,7 +134,9 @@ impl Condensed {
     }
 
     fn factor_values(&mut self, value: Value) -> Result<bool, LinearError> {
-        let (elimination, threads, schur) = (&*self.elimination, &self.threads, &mut self.schur);
+        let elimination = &*self.elimination;
+        let threads = &self.threads;
+        let schur = &mut self.schur;
         let mut factor = |signed: bool| match &mut self.numbers {
             Numbers::Double(entries) => entries.factor(elimination, value, signed, threads, schur),
             Numbers::Single(entries) => entries.factor(elimination, value, signed, threads, schur),
@@ -151,7 +155,7 @@ impl Condensed {
         Ok(Room::default().cholesky(square, size).is_ok())
     }
 
-    /// S, column by column; only the lower triangle is filled.
+    /// The Schur complement S, column by column; only the lower triangle is filled.
     pub fn schur(&self) -> &[f64] {
         &self.schur
     }

@@ -21,9 +21,11 @@ pub fn jacobian_error(x: &[f64], h: f64, mut f: impl FnMut(&[f64]) -> Vec<f64>, 
         at[j] = x[j];
         plus.iter().zip(&minus).map(|(p, m)| (p - m) / (2.0 * h)).collect()
     };
-    let (mut error, mut size) = (0.0_f64, 0.0_f64);
+    let mut error = 0.0_f64;
+    let mut size = 0.0_f64;
     for j in 0..n {
-        let (fine, coarse) = (slope(j, 0.5 * h), slope(j, h));
+        let fine = slope(j, 0.5 * h);
+        let coarse = slope(j, h);
         for i in 0..fine.len() {
             let numeric = (4.0 * fine[i] - coarse[i]) / 3.0;
             error = error.max((numeric - jacobian[i * n + j]).abs());

@@ -9,74 +9,79 @@ use std::ops::Range;
 use faer::sparse::FaerError;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 
-use crate::forest::{Cut, cut};
+use crate::forest::{Cut, Partition, cut};
 use crate::linear::LinearError;
 use crate::pattern::Pattern;
-use crate::symbolic::{Upper, grouped_ordering};
+use crate::symbolic::{EliminationTree, Upper, grouped_ordering};
 
-/// Symbolic factor: depends on the pattern and the last unknowns, and serves several matrices.
+/// Symbolic factor of a sparse matrix. It depends on the pattern and the last unknowns, and serves
+/// several matrices.
 #[derive(Debug)]
 pub struct Elimination {
     /// Place of each unknown in the elimination order.
     pub(crate) place: Vec<u32>,
-    /// The unknown at each place.
+    /// The unknown at each place of the elimination order.
     pub(crate) order: Vec<u32>,
     /// Index of each unknown in the vector of a solve.
     pub(crate) positions: Vec<u32>,
-    /// Number of unknowns that are not last.
+    /// Number of inner unknowns: those that are not eliminated last.
     pub(crate) inner: usize,
-    /// Nodes in elimination order, and a sentinel that ends the ranges of the last.
+    /// Supernodes in elimination order, and a sentinel that ends the ranges of the last one.
     pub(crate) nodes: Vec<Node>,
-    /// Rows below each node, as places, ascending.
+    /// Rows below the columns of each supernode, as places in the elimination order, ascending.
     pub(crate) below: Vec<u32>,
-    /// The same rows, in the numbering of the node's part.
+    /// Rows below the columns of each supernode, in the numbering of the part to which the
+    /// supernode belongs.
     pub(crate) local: Vec<u32>,
-    /// Entries of the pattern, node by node, those between last unknowns at the end; and the index
-    /// of each in the node's values (in the Schur complement for the last).
+    /// Entries of the pattern, supernode by supernode; those between last unknowns come at the end.
     pub(crate) entries: Vec<u32>,
+    /// Index of each entry of the pattern in the values of its supernode, or in the Schur
+    /// complement.
     pub(crate) slots: Vec<u32>,
-    /// The part that contains all others.
+    /// The part of the forest that contains all others.
     pub(crate) root: Subtree,
     /// Indices of the pattern's diagonal entries.
     pub(crate) diagonal: Vec<u32>,
 }
 
-/// Consecutive columns with the same rows below them.
+/// A supernode: consecutive columns with the same rows below them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Node {
-    /// First column.
+    /// First column of the supernode.
     pub(crate) first: u32,
-    /// Start of its rows in [`Elimination::below`].
+    /// Start of the rows of the supernode in [`Elimination::below`].
     pub(crate) rows: u32,
-    /// Start of its entries in [`Elimination::entries`].
+    /// Start of the entries of the supernode in [`Elimination::entries`].
     pub(crate) entries: u32,
-    /// The node of its first row below; [`LAST`] if that is one of the last unknowns, or there is
-    /// none.
+    /// The supernode that contains the first row below the columns; [`LAST`] if that is one of the
+    /// last unknowns, or there is none.
     pub(crate) parent: u32,
-    /// Start of its values: columns of all its rows, one after the other.
+    /// Start of the values of the supernode: its columns with all their rows, one after the other.
     pub(crate) values: usize,
 }
 
-/// No node: the last unknowns.
+/// Stands for the parent of a supernode whose update goes to the unknowns eliminated last.
 pub(crate) const LAST: u32 = u32::MAX;
 
-/// A part of the forest. Its section of a vector holds the sections of its child parts, its own
-/// columns, and the outer rows that they couple to. Local row numbers refer to the latter two.
+/// A part of the forest of supernodes. Its section of a vector holds the sections of its child
+/// parts, its own columns, and the outer rows that they couple to. Local row numbers refer to the
+/// latter two.
 #[derive(Debug)]
 pub(crate) struct Subtree {
     pub(crate) parts: Option<Box<[Subtree; 2]>>,
-    /// Its own nodes and columns.
+    /// Supernodes of the part without those of its child parts.
     pub(crate) nodes: Range<usize>,
+    /// Columns of the part without those of its child parts.
     pub(crate) columns: Range<usize>,
-    /// The outer rows in the numbering of the parent part; the last unknowns for the root.
+    /// Outer rows of the part in the numbering of its parent part; the last unknowns for the root.
     pub(crate) outer: Vec<u32>,
-    /// Length of its section of a vector.
+    /// Length of the section of the part in a vector.
     pub(crate) length: usize,
-    /// Start of its values, including those of its child parts.
+    /// Start of the values of the part, including those of its child parts.
     pub(crate) values: usize,
-    /// Stack size for the update matrices of its own nodes.
+    /// Size of the stack of update matrices for the part's own supernodes.
     pub(crate) room: usize,
-    /// Largest number of rows of one of its nodes.
+    /// Largest number of rows of a supernode of the part.
     pub(crate) height: usize,
 }
 
@@ -104,9 +109,10 @@ impl Elimination {
         let mut order: Vec<u32> = forward.iter().filter(|&&i| !is_last[i]).map(|&i| i as u32).collect();
         order.extend(forward.iter().filter(|&&i| is_last[i]).map(|&i| i as u32));
 
-        let (parents, counts) = Upper::new(pattern, &inverse(&order), inner).tree().map_err(engine)?;
+        let EliminationTree { parents, counts } =
+            Upper::new(pattern, &inverse(&order), inner).tree().map_err(engine)?;
         let parent = |j: usize| usize::try_from(parents[j]).ok().filter(|&p| p < inner);
-        let (sorted, tree) = cut(inner, parent, |j| u64::from(counts[j]));
+        let Partition { order: sorted, tree } = cut(inner, parent, |j| u64::from(counts[j]));
         let moved: Vec<u32> = sorted.iter().map(|&k| order[k as usize]).collect();
         order[..inner].copy_from_slice(&moved);
         let place = inverse(&order);
@@ -145,7 +151,7 @@ impl Elimination {
         self.place.len() - self.inner
     }
 
-    /// Place of an unknown among those eliminated last.
+    /// Place of an unknown among those eliminated last; none for an inner unknown.
     pub fn schur_place(&self, unknown: usize) -> Option<usize> {
         (self.place[unknown] as usize).checked_sub(self.inner)
     }
@@ -160,24 +166,26 @@ impl Elimination {
         self.nodes.last().map_or(0, |end| end.values)
     }
 
-    /// Columns of a node, and its rows below.
+    /// Columns of a supernode.
     #[inline(always)]
     pub(crate) fn columns(&self, s: usize) -> Range<usize> {
         self.nodes[s].first as usize..self.nodes[s + 1].first as usize
     }
 
+    /// Range of the rows below the columns of a supernode.
     #[inline(always)]
     pub(crate) fn rows(&self, s: usize) -> Range<usize> {
         self.nodes[s].rows as usize..self.nodes[s + 1].rows as usize
     }
 
-    /// Collects the columns before the last unknowns into nodes.
+    /// Collects the columns of the inner unknowns into supernodes.
     fn collect_nodes(&mut self, raw: &SymbolicSupernodalCholesky<u32>) {
         let inner = self.inner;
         let mut node_of = vec![LAST; self.place.len()];
         let mut values = 0;
         for s in 0..raw.n_supernodes() {
-            let (first, end) = (raw.supernode_begin()[s] as usize, raw.supernode_end()[s] as usize);
+            let first = raw.supernode_begin()[s] as usize;
+            let end = raw.supernode_end()[s] as usize;
             if first >= inner {
                 break;
             }
@@ -207,9 +215,11 @@ impl Elimination {
         }
     }
 
-    /// Index of each pattern entry in the factor.
+    /// Determines the index of each entry of the pattern in the factor.
     fn collect_entries(&mut self, pattern: &Pattern) {
-        let (n, inner, place) = (pattern.size(), self.inner, &self.place);
+        let n = pattern.size();
+        let inner = self.inner;
+        let place = &self.place;
         let entry = |i: usize, j: usize| (place[i].max(place[j]), place[i].min(place[j]));
         // Sorted by columns first.
         let mut fill = vec![0_u32; n + 1];
@@ -218,19 +228,22 @@ impl Elimination {
         }
         (0..n).for_each(|j| fill[j + 1] += fill[j]);
         let starts = fill.clone();
-        let (mut rows, mut entries) = (vec![0_u32; pattern.len()], vec![0_u32; pattern.len()]);
+        let mut rows = vec![0_u32; pattern.len()];
+        let mut entries = vec![0_u32; pattern.len()];
         for j in 0..n {
             for k in pattern.starts[j]..pattern.starts[j + 1] {
                 let (row, column) = entry(pattern.rows[k], j);
                 let target = fill[column as usize] as usize;
                 fill[column as usize] += 1;
-                (rows[target], entries[target]) = (row, k as u32);
+                rows[target] = row;
+                entries[target] = k as u32;
             }
         }
         let mut slots = rows;
         let mut row_of = vec![0_u32; n];
         for s in 0..self.nodes.len() - 1 {
-            let (columns, below) = (self.columns(s), &self.below[self.rows(s)]);
+            let columns = self.columns(s);
+            let below = &self.below[self.rows(s)];
             let height = columns.len() + below.len();
             columns.clone().for_each(|row| row_of[row] = (row - columns.start) as u32);
             below.iter().enumerate().for_each(|(k, &row)| row_of[row as usize] = (columns.len() + k) as u32);
@@ -249,11 +262,12 @@ impl Elimination {
                 *slot = ((j - inner) * (n - inner) + *slot as usize - inner) as u32;
             }
         }
-        (self.entries, self.slots) = (entries, slots);
+        self.entries = entries;
+        self.slots = slots;
     }
 
-    /// Builds a part and its children, beginning at node and column `begin`. Also returns its outer
-    /// rows, unless they are given.
+    /// Builds a part and its child parts, beginning at supernode and column `begin`. Also returns
+    /// the outer rows, unless they are given.
     fn part(
         &mut self,
         tree: &Cut,
@@ -305,9 +319,11 @@ impl Elimination {
         )
     }
 
-    /// Peak size of the stack of update matrices.
+    /// Largest size of the stack of update matrices while supernodes are factored in order.
     fn room(&self, nodes: Range<usize>) -> usize {
-        let (mut waiting, mut stacked, mut room): (Vec<(u32, usize)>, usize, usize) = (Vec::new(), 0, 0);
+        let mut waiting: Vec<(u32, usize)> = Vec::new();
+        let mut stacked = 0;
+        let mut room = 0;
         for s in nodes {
             let square = self.rows(s).len().pow(2);
             room = room.max(stacked + square);
@@ -320,7 +336,8 @@ impl Elimination {
         room
     }
 
-    /// Sets the indices of a part's unknowns in the vector, its section beginning at `start`.
+    /// Sets the indices of the unknowns of a part in a vector in which its section begins at
+    /// `start`.
     fn locate(&self, part: &Subtree, start: usize, positions: &mut [u32]) {
         let mut own = start;
         for part in part.parts.iter().flat_map(|parts| parts.iter()) {

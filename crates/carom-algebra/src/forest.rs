@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 
 /// Weight (entries of the factor) below which a part is not worth its own thread.
 const LEAF: u64 = 50_000;
-/// Levels of parts.
+/// Largest number of levels of parts.
 const DEPTH: usize = 4;
 /// Largest share of the heavier of two balanced parts.
 const BALANCED: f64 = 0.53;
@@ -18,8 +18,15 @@ const OWN: f64 = 0.4;
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Cut {
     pub(crate) parts: Option<Box<[Cut; 2]>>,
-    /// One past its last column.
+    /// Index one past the last column of the part.
     pub(crate) end: usize,
+}
+
+/// A forest cut into independent parts.
+pub(crate) struct Partition {
+    /// The node at each place of the new order.
+    pub(crate) order: Vec<u32>,
+    pub(crate) tree: Cut,
 }
 
 /// A forest in postorder.
@@ -28,21 +35,22 @@ struct Forest {
     sizes: Vec<u32>,
     /// Weight of each subtree.
     weights: Vec<u64>,
-    /// First child and next sibling.
+    /// First child of each node.
     child: Vec<u32>,
+    /// Next sibling of each node.
     sibling: Vec<u32>,
 }
 
 const NONE: u32 = u32::MAX;
 
-/// Permutes the nodes of a forest so that those of each part are contiguous and follow those of its
-/// child parts. `parent(j)` > j, or none for a root; `weight(j)` is the weight of node j. Returns
-/// the new order, as old numbers, and the tree of parts.
+/// Divides a forest into parts and permutes its nodes so that those of each part are contiguous and
+/// follow those of its child parts. `parent(j)` > j, or none for a root; `weight(j)` is the weight
+/// of node j.
 pub(crate) fn cut(
     count: usize,
     parent: impl Fn(usize) -> Option<usize>,
     weight: impl Fn(usize) -> u64,
-) -> (Vec<u32>, Cut) {
+) -> Partition {
     let (post, roots) = postorder(count, &parent);
     let mut rank = vec![0; count];
     post.iter().enumerate().for_each(|(k, &j)| rank[j as usize] = k as u32);
@@ -64,12 +72,15 @@ pub(crate) fn cut(
     let mut order = Vec::with_capacity(count);
     let tree = forest.part(roots, 0, &mut order);
     order.iter_mut().for_each(|k| *k = post[*k as usize]);
-    (order, tree)
+    Partition { order, tree }
 }
 
-/// Postorder: every subtree is contiguous; roots and children ascend.
+/// Postorder of a forest, in which every subtree is contiguous, and its roots; roots and children
+/// ascend.
 fn postorder(count: usize, parent: &impl Fn(usize) -> Option<usize>) -> (Vec<u32>, Vec<u32>) {
-    let (mut child, mut sibling, mut roots) = (vec![NONE; count], vec![NONE; count], Vec::new());
+    let mut child = vec![NONE; count];
+    let mut sibling = vec![NONE; count];
+    let mut roots = Vec::new();
     for j in (0..count).rev() {
         match parent(j) {
             Some(p) => sibling[j] = std::mem::replace(&mut child[p], j as u32),
@@ -77,7 +88,8 @@ fn postorder(count: usize, parent: &impl Fn(usize) -> Option<usize>) -> (Vec<u32
         }
     }
     roots.reverse();
-    let (mut post, mut path) = (Vec::with_capacity(count), Vec::new());
+    let mut post = Vec::with_capacity(count);
+    let mut path = Vec::new();
     for &root in &roots {
         path.push(root);
         while let Some(&j) = path.last() {
@@ -101,7 +113,7 @@ impl Forest {
         roots.iter().map(|&r| self.weights[r as usize]).sum()
     }
 
-    /// Builds the part of these subtrees and appends its nodes to `order`.
+    /// Builds the part that consists of the given subtrees and appends its nodes to `order`.
     fn part(&self, mut roots: Vec<u32>, depth: usize, order: &mut Vec<u32>) -> Cut {
         if depth < DEPTH
             && self.weight(&roots) >= 2 * LEAF
@@ -119,18 +131,20 @@ impl Forest {
         Cut { parts: None, end: order.len() }
     }
 
-    /// Moves nodes from the heaviest subtrees to the part until the remaining ones split into
-    /// balanced halves. Returns none if that moves too many.
+    /// Moves nodes from the heaviest subtrees to the part itself until the remaining ones split
+    /// into balanced halves. Returns none if that moves too many.
     fn halves(&self, roots: &[u32]) -> Option<(Vec<u32>, [Vec<u32>; 2])> {
         let total = self.weight(roots) as f64;
         let mut heap: BinaryHeap<(u64, u32)> = roots.iter().map(|&r| (self.weights[r as usize], r)).collect();
-        let (mut own, mut left) = (Vec::new(), total);
+        let mut own = Vec::new();
+        let mut left = total;
         loop {
             let heaviest = heap.peek()?.0 as f64;
             if heaviest <= BALANCED * left {
                 // Heaviest first, each to the lighter half.
                 let mut sorted = heap.clone().into_sorted_vec();
-                let (mut halves, mut weights) = ([Vec::new(), Vec::new()], [0, 0]);
+                let mut halves = [Vec::new(), Vec::new()];
+                let mut weights = [0, 0];
                 while let Some((weight, root)) = sorted.pop() {
                     let lighter = usize::from(weights[1] < weights[0]);
                     halves[lighter].push(root);
@@ -198,20 +212,20 @@ mod tests {
         // A reversed binary heap; a chain; a forest of stars.
         let n = 4095;
         let binary = |j: usize| (j + 1 < n).then(|| n - 1 - (n - 1 - j - 1) / 2);
-        let (order, tree) = cut(n, binary, |_| 1000);
+        let Partition { order, tree } = cut(n, binary, |_| 1000);
         check(n, binary, &order, &tree);
         let [a, b] = &**tree.parts.as_ref().unwrap();
         assert!(a.parts.is_some() && b.parts.is_some());
         assert!((a.end as f64 / (n / 2) as f64 - 1.0).abs() < 0.1);
         let chain = |j: usize| (j + 1 < n).then_some(j + 1);
-        let (order, tree) = cut(n, chain, |_| 1000);
+        let Partition { order, tree } = cut(n, chain, |_| 1000);
         check(n, chain, &order, &tree);
         assert!(tree.parts.is_none());
         let stars = |j: usize| (j % 10 != 9 && j / 10 * 10 + 9 < n).then_some(j / 10 * 10 + 9);
-        let (order, tree) = cut(n, stars, |j| 1 + j as u64 % 7 * 300);
+        let Partition { order, tree } = cut(n, stars, |j| 1 + j as u64 % 7 * 300);
         check(n, stars, &order, &tree);
         assert!(tree.parts.is_some());
-        let (order, tree) = cut(0, |_| None, |_| 1);
+        let Partition { order, tree } = cut(0, |_| None, |_| 1);
         assert!(order.is_empty() && tree == Cut { parts: None, end: 0 });
     }
 }

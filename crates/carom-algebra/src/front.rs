@@ -16,9 +16,9 @@ use crate::pivots::{Room, diagonal_size};
 use crate::precision::Entry;
 use crate::threads::Threads;
 
-/// Columns of a block.
+/// Number of columns of a block.
 const BLOCK: usize = 128;
-/// Multiplications that are worth another thread.
+/// Number of multiplications above which work is shared among threads.
 const SHARED: usize = 1_000_000;
 
 /// A buffer aligned to a cache line, so that results never depend on how kernels group entries by
@@ -45,16 +45,16 @@ impl<T: Entry> Aligned<T> {
     }
 }
 
-/// The update matrix that a node passes to its parent or to the last unknowns: column-major, lower
-/// triangle.
+/// The update matrix that a supernode passes to its parent or to the last unknowns: column-major,
+/// lower triangle.
 struct Update<T> {
     node: usize,
     squares: Arc<Aligned<T>>,
     begin: usize,
 }
 
-/// The entries of a matrix. Not a type of its own for every matrix: the factorisation would be
-/// compiled for each, in every crate that factors one.
+/// The entries of a matrix as a function of their index. A trait object, since the factorisation
+/// would otherwise be compiled for every matrix, in every crate that factors one.
 pub(crate) type Value<'a> = &'a (dyn Fn(usize) -> f64 + Sync);
 
 /// A matrix to be factored: `scale` times `value(k)` for entry k of the pattern.
@@ -63,12 +63,13 @@ pub(crate) struct Matrix<'a> {
     pub(crate) value: Value<'a>,
     pub(crate) scale: f64,
     pub(crate) threads: &'a Threads,
-    /// Whether pivots may be negative, and the places of those that are.
+    /// Whether pivots may be negative.
     pub(crate) signed: bool,
+    /// Places of the negative pivots.
     pub(crate) negative: Mutex<Vec<usize>>,
 }
 
-/// Workspace of a part.
+/// Workspace of the factorisation of a part.
 struct Work<T> {
     squares: Aligned<T>,
     room: Room,
@@ -76,8 +77,8 @@ struct Work<T> {
 }
 
 impl Matrix<'_> {
-    /// Factors all columns before the last unknowns; `schur` becomes the lower triangle of their
-    /// Schur complement.
+    /// Factors the columns of all inner unknowns; `schur` becomes the lower triangle of the Schur
+    /// complement on the last unknowns.
     ///
     /// # Errors
     /// The place of a pivot that is not positive or, with signs, not finite.
@@ -105,7 +106,8 @@ impl Matrix<'_> {
     }
 
     fn part<T: Entry>(&self, part: &Subtree, values: &mut [T]) -> Result<Vec<Update<T>>, usize> {
-        let (mut below, mut values) = (Vec::new(), values);
+        let mut below = Vec::new();
+        let mut values = values;
         if let Some(parts) = &part.parts {
             let [a, b] = &**parts;
             let begin = self.elimination.nodes[part.nodes.start].values - part.values;
@@ -119,7 +121,18 @@ impl Matrix<'_> {
         self.own(part, values, below)
     }
 
-    /// Factors the part's own nodes; `below` are the updates of its child parts.
+    /// Overwrites the columns of supernode s with the entries of the matrix.
+    fn fill<T: Entry>(&self, s: usize, panel: &mut [T]) {
+        let all = self.elimination;
+        panel.fill(T::rounded(0.0));
+        let entries = all.nodes[s].entries as usize..all.nodes[s + 1].entries as usize;
+        for (&entry, &slot) in all.entries[entries.clone()].iter().zip(&all.slots[entries]) {
+            panel[slot as usize] = T::rounded(self.scale * (self.value)(entry as usize));
+        }
+    }
+
+    /// Factors the supernodes of a part without those of its child parts, whose updates are
+    /// `below`.
     fn own<T: Entry>(
         &self,
         part: &Subtree,
@@ -136,14 +149,11 @@ impl Matrix<'_> {
         let mut top = 0;
         let mut remaining = values;
         for s in part.nodes.clone() {
-            let (columns, count) = (all.columns(s), all.rows(s).len());
+            let columns = all.columns(s);
+            let count = all.rows(s).len();
             let (panel, after) = remaining.split_at_mut(all.nodes[s + 1].values - all.nodes[s].values);
             remaining = after;
-            panel.fill(T::rounded(0.0));
-            let entries = all.nodes[s].entries as usize..all.nodes[s + 1].entries as usize;
-            for (&entry, &slot) in all.entries[entries.clone()].iter().zip(&all.slots[entries]) {
-                panel[slot as usize] = T::rounded(self.scale * (self.value)(entry as usize));
-            }
+            self.fill(s, panel);
             let height = columns.len() + count;
             let size = diagonal_size(panel.iter().step_by(height + 1).take(columns.len()).copied());
             let (stacked, free) = work.squares.get_mut().split_at_mut(top);
@@ -166,8 +176,8 @@ impl Matrix<'_> {
             let mut signs = vec![1.0; if self.signed { columns.len() } else { 0 }];
             eliminate(panel, target, size, &mut signs, self.threads, &mut work.room)
                 .map_err(|index| columns.start + index)?;
-            let negative = columns.zip(&signs).filter(|(_, sign)| **sign < 0.0).map(|(place, _)| place);
             if self.signed {
+                let negative = columns.zip(&signs).filter(|(_, sign)| **sign < 0.0).map(|(place, _)| place);
                 self.negative.lock().unwrap_or_else(PoisonError::into_inner).extend(negative);
             }
             if count > 0 {
@@ -178,25 +188,24 @@ impl Matrix<'_> {
         }
         let squares = Arc::new(work.squares);
         let mut passing: Vec<Update<T>> = below.into_iter().rev().collect();
-        passing.extend(waiting.into_iter().map(|(node, begin)| Update {
-            node,
-            squares: squares.clone(),
-            begin,
-        }));
+        let passed = |(node, begin)| Update { node, squares: squares.clone(), begin };
+        passing.extend(waiting.into_iter().map(passed));
         Ok(passing)
     }
 }
 
 impl Elimination {
-    /// Adds the update of `node` to the columns and the update matrix of node s.
+    /// Adds the update matrix of a supernode `node` to the columns and the update matrix of
+    /// supernode s.
     fn extend_add<T: Entry>(
         &self,
         (node, update): (usize, &[T]),
         (s, panel, square): (usize, &mut [T], &mut [T]),
         runs: &mut Vec<[usize; 3]>,
     ) {
-        let (rows, columns, below) =
-            (&self.below[self.rows(node)], self.columns(s), &self.below[self.rows(s)]);
+        let rows = &self.below[self.rows(node)];
+        let columns = self.columns(s);
+        let below = &self.below[self.rows(s)];
         // Runs of rows contiguous in both: start in the source, start in the target, length.
         runs.clear();
         let mut place = 0;
@@ -214,7 +223,8 @@ impl Elimination {
                 _ => runs.push([k, target, 1]),
             }
         }
-        let (height, own) = (columns.len() + below.len(), columns.len());
+        let height = columns.len() + below.len();
+        let own = columns.len();
         let mut first = 0;
         for j in 0..rows.len() {
             while runs[first][0] + runs[first][2] <= j {
@@ -238,14 +248,14 @@ impl Elimination {
     }
 }
 
-/// Factors a node's columns and subtracts their product from its update matrix. Pivots may be
-/// negative if `signs` is not empty.
+/// Factors the columns of a supernode and subtracts their product from its update matrix. Pivots
+/// may be negative if `signs` is not empty.
 ///
 /// # Errors
 /// The index of a pivot that is not positive, or not finite.
 fn eliminate<T: Entry>(
-    mut panel: MatMut<'_, T>,
-    mut square: MatMut<'_, T>,
+    mut panel: MatMut<T>,
+    mut square: MatMut<T>,
     size: f64,
     signs: &mut [f64],
     threads: &Threads,
@@ -296,15 +306,17 @@ fn eliminate<T: Entry>(
     Ok(())
 }
 
-/// target −= L Mᵀ, symmetric, in the lower triangle. The target is the columns of a square matrix
-/// from `first` on.
+/// Subtracts the symmetric product L Mᵀ from the lower triangle of the target, which is the columns
+/// of a square matrix from `first` on.
 fn subtract_product<T: Entry>(target: MatMut<'_, T>, rows: [MatRef<'_, T>; 2], first: usize) {
     let (height, width) = target.shape();
     let [lower, other] = rows.map(|rows| rows.subrows(first, height - first));
     let (_, target) = target.split_at_row_mut(first);
     let (square, below) = target.split_at_row_mut(width);
-    let ((top, bottom), other) = (lower.split_at_row(width), other.subrows(0, width).transpose());
-    let (half, whole) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
+    let (top, bottom) = lower.split_at_row(width);
+    let other = other.subrows(0, width).transpose();
+    let half = BlockStructure::TriangularLower;
+    let whole = BlockStructure::Rectangular;
     let minus = T::rounded(-1.0);
     triangular::matmul(square, half, Accum::Add, top, whole, other, whole, minus, Par::Seq);
     if below.nrows() > 0 {

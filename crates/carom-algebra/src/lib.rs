@@ -33,7 +33,9 @@ pub use node_matrix::NodeMatrix;
 pub use pattern::Pattern;
 pub use precision::Precision;
 pub use principal::principal;
-pub use projected::{ConjugateGradients, ConstraintRows, DiagonalBlocks, Ended};
+pub use projected::{
+    ConjugateGradients, ConstraintPreconditioner, ConstraintRows, DiagonalBlocks, Ended, Goal,
+};
 pub use real::{Four, Real};
 pub use saddle::Saddle;
 pub use simd::wide;

@@ -6,19 +6,19 @@ pub enum LinearError {
     /// A pivot vanished or is not finite.
     #[error("the matrix of {size} unknowns is singular: pivot {pivot} is {value:e}")]
     Singular {
-        /// Unknowns.
+        /// Number of unknowns.
         size: usize,
         /// Place of the pivot in the elimination order.
         pivot: usize,
-        /// Its value.
+        /// Value of the pivot.
         value: f64,
     },
     /// The solution is not finite or its residual stays large.
     #[error("the solution of {size} unknowns is not usable: relative residual {residual:e}")]
     Inaccurate {
-        /// Unknowns.
+        /// Number of unknowns.
         size: usize,
-        /// Residual after refinement.
+        /// Relative residual after refinement.
         residual: f64,
     },
     /// No states of open, stick and slip agree with each other.
@@ -26,9 +26,9 @@ pub enum LinearError {
         "no states of stick and slip agree with each other: {forces} forces, {sweeps} sweeps; use a smaller step or a smaller mu, for a large one there may be none"
     )]
     NoStates {
-        /// Forces, normal and tangential.
+        /// Number of forces, normal and tangential.
         forces: usize,
-        /// Sweeps over them.
+        /// Number of sweeps over the forces.
         sweeps: usize,
     },
     /// Conjugate gradients do not converge.
@@ -36,25 +36,25 @@ pub enum LinearError {
         "conjugate gradients do not converge: {iterations} iterations reduced the residual of {size} unknowns to {reduction:.1e}; use a smaller step, or solve directly"
     )]
     Stalled {
-        /// Unknowns.
+        /// Number of unknowns.
         size: usize,
-        /// Iterations.
+        /// Number of iterations.
         iterations: usize,
-        /// Residual relative to the first.
+        /// Residual relative to that before the first iteration.
         reduction: f64,
     },
     /// There is not enough memory for the factorisation.
     #[error("there is not enough memory to factorise a matrix of {size} unknowns")]
     Memory {
-        /// Unknowns.
+        /// Number of unknowns.
         size: usize,
     },
-    /// The engine ran out of indices, or did not end.
+    /// The factorisation ran out of indices, or did not terminate.
     #[error("the factorisation of {size} unknowns failed: {reason}")]
     Engine {
-        /// Unknowns.
+        /// Number of unknowns.
         size: usize,
-        /// The engine's message.
+        /// Message of the factorisation library.
         reason: String,
     },
 }

@@ -14,46 +14,48 @@ use std::collections::VecDeque;
 
 use crate::sums::dot;
 
-/// Numbers per block.
+/// Length of the blocks in which vectors are traversed.
 const BLOCK: usize = 2048;
-/// Pivot, relative to the direction's own square, below which it depends on the others.
+/// Pivot, relative to the square of a direction, below which the direction depends linearly on the
+/// others.
 const DEPENDENT: f64 = 1e-8;
 
-/// Positions and multipliers.
+/// An iterate or its change: positions and multipliers.
 type Iterate = [Vec<f64>; 2];
 
-/// One iteration of the history.
+/// Changes of correction and iterate in one iteration of the history.
 #[derive(Debug, Default)]
 struct Change {
-    /// Column of ΔC.
+    /// Change of the correction: a column of ΔC.
     correction: Iterate,
-    /// Column of ΔZ + ΔC.
+    /// Change of the iterate and the correction together: a column of ΔZ + ΔC.
     both: Iterate,
     /// Products of the correction's change with itself and with older ones, latest first.
     products: Vec<f64>,
 }
 
-/// The history of iterations with one factor and one set of contacts.
+/// Anderson's acceleration: the history of iterations with one factor and one set of contacts.
 #[derive(Debug, Default)]
 pub struct Mixing {
-    /// The last correction and the step taken for it, if any.
+    /// The last correction.
     last: Iterate,
+    /// The step taken for the last correction.
     taken: Iterate,
     begun: bool,
-    /// Latest first.
+    /// Changes of the last iterations, latest first.
     changes: VecDeque<Change>,
-    /// Memory for reuse.
+    /// Memory of discarded changes, for reuse.
     spare: Vec<Change>,
 }
 
 impl Mixing {
-    /// Clears the history: with another factor or other contacts it is meaningless.
+    /// Clears the history, which is meaningless for another factor or other contacts.
     pub fn restart(&mut self) {
         self.begun = false;
         self.spare.extend(self.changes.drain(..));
     }
 
-    /// Replaces a correction by the step to take; `depth` changes are stored.
+    /// Replaces a correction by the accelerated step, with at most `depth` stored changes.
     pub fn improve(&mut self, correction: [&mut [f64]; 2], depth: usize) {
         if depth == 0 {
             return;
@@ -81,7 +83,8 @@ impl Mixing {
         let full = self.changes.len() == depth;
         let oldest = if self.begun && full { self.changes.pop_back() } else { self.spare.pop() };
         let mut new = oldest.unwrap_or_default();
-        let (mut products, mut right) = ([0.0, 0.0], vec![[0.0, 0.0]; self.changes.len()]);
+        let mut products = [0.0, 0.0];
+        let mut right = vec![[0.0, 0.0]; self.changes.len()];
         new.products.clear();
         for (k, now) in correction.iter().enumerate() {
             self.last[k].resize(now.len(), 0.0);
@@ -89,8 +92,10 @@ impl Mixing {
             new.correction[k].resize(now.len(), 0.0);
             new.both[k].resize(now.len(), 0.0);
             for range in blocks(now.len()) {
-                let (now, last) = (&now[range.clone()], &mut self.last[k][range.clone()]);
-                let (change, both) = (&mut new.correction[k][range.clone()], &mut new.both[k][range.clone()]);
+                let now = &now[range.clone()];
+                let last = &mut self.last[k][range.clone()];
+                let change = &mut new.correction[k][range.clone()];
+                let both = &mut new.both[k][range.clone()];
                 let taken = &self.taken[k][range.clone()];
                 for i in 0..now.len() {
                     change[i] = now[i] - last[i];
@@ -117,12 +122,13 @@ impl Mixing {
     }
 }
 
-/// Blocks that fit into the processor's caches: each vector is read once.
+/// Ranges of blocks of a vector that fit into the processor's caches, so that each vector is read
+/// once.
 fn blocks(length: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
     (0..length).step_by(BLOCK).map(move |first| first..(first + BLOCK).min(length))
 }
 
-/// Adds a·b and a·c.
+/// Adds the scalar products a·b and a·c to two sums.
 fn add(sums: &mut [f64; 2], a: &[f64], b: &[f64], c: &[f64]) {
     sums[0] += dot(a, b);
     sums[1] += dot(a, c);
@@ -169,7 +175,8 @@ mod tests {
                 let away: Vec<f64> = y.iter().zip(&solution).map(|(y, s)| s - y).collect();
                 let correction: Vec<f64> =
                     (0..3).map(|i| away[i] - (0..3).map(|j| old[i][j] * away[j]).sum::<f64>()).collect();
-                let (mut step, mut multiplier) = (correction.clone(), [2.0 * correction[0]]);
+                let mut step = correction.clone();
+                let mut multiplier = [2.0 * correction[0]];
                 mixing.improve([&mut step, &mut multiplier], depth);
                 // Quantities linear in the positions remain so.
                 assert!((multiplier[0] - 2.0 * step[0]).abs() < 1e-12);
@@ -183,7 +190,8 @@ mod tests {
     #[test]
     fn a_direction_that_repeats_another_is_left_out() {
         let products = [[2.0, 2.0, 1.0], [2.0, 2.0, 1.0], [1.0, 1.0, 5.0]];
-        let (mut right, mut of_nothing) = ([2.0, 2.0, 10.0], [0.0]);
+        let mut right = [2.0, 2.0, 10.0];
+        let mut of_nothing = [0.0];
         least_squares(|i, j| products[i][j], &mut right);
         least_squares(|_, _| 0.0, &mut of_nothing);
         assert_eq!((right, of_nothing), ([0.0, 0.0, 2.0], [0.0]));

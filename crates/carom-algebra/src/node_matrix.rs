@@ -15,30 +15,31 @@
 use crate::simd::wide;
 use crate::threads::Threads;
 
-/// Nodes of a section.
+/// Number of nodes of a section.
 const SECTION: usize = 2048;
 
-/// Blocks by rows of nodes, each row beginning with its diagonal block, later columns ascending.
+/// A sparse symmetric matrix of blocks between nodes in single precision, stored by rows of nodes;
+/// each row begins with its diagonal block, later columns ascending.
 #[derive(Clone, Debug, Default)]
 pub struct NodeMatrix {
     dimension: usize,
     nodes: usize,
     starts: Vec<usize>,
     columns: Vec<u32>,
-    /// Blocks one after the other, each by rows.
+    /// Entries of the blocks, one block after the other, each by rows.
     values: Vec<f32>,
     sections: Vec<Section>,
     threads: Threads,
 }
 
-/// Rows of consecutive nodes.
+/// A section of the matrix: the rows of consecutive nodes.
 #[derive(Clone, Debug, Default)]
 struct Section {
     first: usize,
     rows: usize,
-    /// Later nodes that they are coupled with, ascending.
+    /// Later nodes that the nodes of the section are coupled with, ascending.
     halo: Vec<u32>,
-    /// Columns as positions among the rows and the halo behind them, block after block.
+    /// Column of each block, as a position among the nodes of the section and its halo behind them.
     columns: Vec<u32>,
     x: Vec<[f32; 4]>,
     out: Vec<[f32; 4]>,
@@ -59,7 +60,7 @@ impl Section {
         Self { first, rows, columns, x: vec![[0.0; 4]; size], out: vec![[0.0; 4]; size], halo }
     }
 
-    /// The rows' share of a product, into `out` of rows and halo.
+    /// Computes the share of the section in a product, for its own nodes and those of its halo.
     fn multiply<const D: usize, const DD: usize>(
         &mut self,
         starts: &[usize],
@@ -81,7 +82,8 @@ impl Section {
                 let mut sums: [f32; DD] = std::array::from_fn(|k| values[range.start][k] * own[k % D]);
                 let others = range.start + 1..range.end;
                 for (&column, a) in columns[others.clone()].iter().zip(&values[others]) {
-                    let (other, out) = (&x[column as usize], &mut out[column as usize]);
+                    let other = &x[column as usize];
+                    let out = &mut out[column as usize];
                     for k in 0..DD {
                         sums[k] += a[k] * other[k % D];
                     }
@@ -102,7 +104,8 @@ impl NodeMatrix {
     /// node is coupled with, in any order and possibly repeated; every node is coupled with itself.
     pub fn new(dimension: usize, mut coupled: Vec<Vec<u32>>) -> Self {
         let nodes = coupled.len();
-        let (mut starts, mut columns) = (vec![0], Vec::new());
+        let mut starts = vec![0];
+        let mut columns = Vec::new();
         for (node, others) in coupled.iter_mut().enumerate() {
             others.push(node as u32);
             others.sort_unstable();
@@ -121,7 +124,7 @@ impl NodeMatrix {
         Self { dimension, nodes, starts, columns, values, sections, threads: Threads::one() }
     }
 
-    /// Shares products among these threads. The result does not depend on them.
+    /// Shares products among threads, on whose number the result does not depend.
     #[must_use]
     pub fn on(self, threads: &Threads) -> Self {
         Self { threads: threads.clone(), ..self }
@@ -132,7 +135,7 @@ impl NodeMatrix {
         self.nodes
     }
 
-    /// Position of the block of two nodes, of which the first is not the later one.
+    /// Position of the block that couples two nodes, `row` ≤ `column`, if they are coupled.
     pub fn slot(&self, row: usize, column: usize) -> Option<usize> {
         let start = self.starts[row];
         let columns = &self.columns[start..self.starts[row + 1]];
@@ -150,13 +153,13 @@ impl NodeMatrix {
         &self.values[slot * size..(slot + 1) * size]
     }
 
-    /// The same, mutable.
+    /// The entries of a block, by rows, for changes.
     pub fn block_mut(&mut self, slot: usize) -> &mut [f32] {
         let size = self.dimension * self.dimension;
         &mut self.values[slot * size..(slot + 1) * size]
     }
 
-    /// out = A x, both with all components of all nodes, to single precision.
+    /// Computes the product A x to single precision; both vectors have all components of all nodes.
     pub fn multiply_into(&mut self, x: &[f64], out: &mut [f64]) {
         match self.dimension {
             1 => self.multiply::<1, 1>(x, out),
@@ -167,8 +170,10 @@ impl NodeMatrix {
     }
 
     fn multiply<const D: usize, const DD: usize>(&mut self, x: &[f64], out: &mut [f64]) {
-        let (x, out) = (x.as_chunks::<D>().0, out.as_chunks_mut::<D>().0);
-        let (starts, values) = (&self.starts, self.values.as_chunks::<DD>().0);
+        let x = x.as_chunks::<D>().0;
+        let out = out.as_chunks_mut::<D>().0;
+        let starts = &self.starts;
+        let values = self.values.as_chunks::<DD>().0;
         self.threads.for_each(self.sections.iter_mut().zip(out.chunks_mut(SECTION)), |_, (section, out)| {
             let starts = &starts[section.first..=section.first + section.rows];
             section.multiply(starts, &values[starts[0]..], x);

@@ -1,7 +1,7 @@
 //! Lower triangle of a sparse symmetric matrix, column by column.
 
-/// Positions of the stored entries: the lower triangle with its full diagonal, compressed by
-/// columns, rows ascending.
+/// Positions of the stored entries of a sparse symmetric matrix: the lower triangle with its full
+/// diagonal, compressed by columns, rows ascending.
 ///
 /// ```
 /// use carom_algebra::Pattern;
@@ -36,7 +36,7 @@ impl Pattern {
         pattern
     }
 
-    /// Number of unknowns.
+    /// Number of rows and columns.
     pub fn size(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
@@ -61,16 +61,19 @@ impl Pattern {
         &self.rows[self.starts[j]..self.starts[j + 1]]
     }
 
-    /// Index of entry (i, j) or (j, i) among the values.
+    /// Index of the entry (i, j) or (j, i) among the stored ones, if it is stored.
     pub fn slot(&self, i: usize, j: usize) -> Option<usize> {
-        let (row, column) = (i.max(j), i.min(j));
+        let row = i.max(j);
+        let column = i.min(j);
         self.column(column).binary_search(&row).ok().map(|k| self.starts[column] + k)
     }
 
-    /// out += A x for the symmetric matrix with these values in its lower triangle.
+    /// Adds the product A x to `out`, for the symmetric matrix A with these values in its lower
+    /// triangle.
     pub fn multiply_add(&self, values: &[f64], x: &[f64], out: &mut [f64]) {
         for j in 0..self.size() {
-            let (start, end) = (self.starts[j], self.starts[j + 1]);
+            let start = self.starts[j];
+            let end = self.starts[j + 1];
             out[j] += values[start] * x[j];
             let mut sum = 0.0;
             for k in start + 1..end {

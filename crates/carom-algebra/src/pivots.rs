@@ -15,15 +15,15 @@ use faer::{MatMut, Par, Spec};
 
 use crate::precision::Entry;
 
-/// A pivot below this fraction of the diagonal means a linearly dependent unknown.
+/// Pivot, as a fraction of the diagonal, below which an unknown depends linearly on others.
 const NOTHING: f64 = 1e-13;
 
-/// Magnitude of the diagonal that pivots are compared with.
+/// Largest absolute value on the diagonal, with which pivots are compared.
 pub(crate) fn diagonal_size(diagonal: impl Iterator<Item = impl Into<f64>>) -> f64 {
     diagonal.fold(0.0, |most, value| f64::max(most, value.into().abs()))
 }
 
-/// Workspace of a factorisation.
+/// Workspace of a dense factorisation.
 #[derive(Default)]
 pub(crate) struct Room {
     scratch: Option<MemBuffer>,
@@ -33,7 +33,8 @@ pub(crate) struct Room {
 impl Room {
     fn stack<T: Entry>(&mut self, size: usize) -> &mut MemStack {
         if self.bytes < size * size_of::<T>() {
-            (self.scratch, self.bytes) = (None, 2 * size * size_of::<T>());
+            self.scratch = None;
+            self.bytes = 2 * size * size_of::<T>();
         }
         let scratch = self.scratch.get_or_insert_with(|| {
             let one = llt::factor::cholesky_in_place_scratch::<T>(2 * size, Par::Seq, Spec::default());

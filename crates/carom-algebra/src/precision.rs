@@ -6,13 +6,13 @@ use faer::traits::RealField;
 /// the factor loses nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
-    /// 53 bits.
+    /// Double precision, 53 bits.
     Double,
-    /// 24 bits.
+    /// Single precision, 24 bits.
     Single,
 }
 
-/// An entry of the factor.
+/// Type of the entries of a factor.
 pub(crate) trait Entry: RealField + Copy + Into<f64> {
     /// Exponent of two to which the largest entry of the matrix is scaled; none if the range is
     /// wide enough.

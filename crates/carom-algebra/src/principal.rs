@@ -1,7 +1,7 @@
 //! Eigenvalues of a symmetric tensor by Jacobi's rotations (C. G. J. Jacobi, J. reine angew. Math.
 //! 30, 1846; the stable formulas of G. H. Golub and C. F. Van Loan, *Matrix Computations*, § 8.5).
 
-/// More than are ever needed: convergence is quadratic.
+/// Largest number of sweeps, more than are ever needed: convergence is quadratic.
 const SWEEPS: usize = 12;
 
 /// The eigenvalues of a symmetric 3 × 3 tensor in descending order, in its unit; NaN if a component
@@ -29,12 +29,14 @@ pub fn principal(mut a: [[f64; 3]; 3]) -> [f64; 3] {
     values
 }
 
-/// The rotation in the plane p, q after which its off-diagonal component is zero.
+/// Applies the rotation in the plane of axes p and q after which the off-diagonal component of a
+/// symmetric tensor in that plane is zero.
 fn rotate(a: &mut [[f64; 3]; 3], p: usize, q: usize) {
     let off = a[p][q];
     // What no longer changes the diagonal is zero.
     if off.abs() <= 1e-18 * (a[p][p].abs() + a[q][q].abs()) || off.abs() < f64::MIN_POSITIVE {
-        (a[p][q], a[q][p]) = (0.0, 0.0);
+        a[p][q] = 0.0;
+        a[q][p] = 0.0;
         return;
     }
     let tau = (a[q][q] - a[p][p]) / (2.0 * off);
@@ -42,12 +44,16 @@ fn rotate(a: &mut [[f64; 3]; 3], p: usize, q: usize) {
     let cos = 1.0 / tan.hypot(1.0);
     let sin = tan * cos;
     let r = 3 - p - q;
-    let (rp, rq) = (a[r][p], a[r][q]);
+    let rp = a[r][p];
+    let rq = a[r][q];
     a[p][p] -= tan * off;
     a[q][q] += tan * off;
-    (a[p][q], a[q][p]) = (0.0, 0.0);
-    (a[r][p], a[r][q]) = (cos * rp - sin * rq, sin * rp + cos * rq);
-    (a[p][r], a[q][r]) = (a[r][p], a[r][q]);
+    a[p][q] = 0.0;
+    a[q][p] = 0.0;
+    a[r][p] = cos * rp - sin * rq;
+    a[r][q] = sin * rp + cos * rq;
+    a[p][r] = a[r][p];
+    a[q][r] = a[r][q];
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ use crate::pattern::Pattern;
 use crate::precision::Precision;
 use crate::threads::Threads;
 
-/// Numbers per block of a sum.
+/// Length of the blocks into which sums are divided.
 const BLOCK: usize = 3 * 1024;
 /// Fraction of the largest diagonal entry that replaces a block which is not positive definite.
 const NONE: f64 = 1e-12;
@@ -33,7 +33,7 @@ const NONE: f64 = 1e-12;
 #[derive(Clone, Debug, Default)]
 pub struct DiagonalBlocks {
     dimension: usize,
-    /// By rows, one after the other.
+    /// Inverse blocks by rows, one after the other.
     inverses: Vec<f64>,
 }
 
@@ -65,7 +65,8 @@ impl DiagonalBlocks {
         &self.inverses[node * size..(node + 1) * size]
     }
 
-    /// out = D⁻¹ x for the nodes of a section that begins with the component `first`.
+    /// Computes D⁻¹ x for the nodes of a section of a vector that begins with the component
+    /// `first`.
     fn apply(&self, first: usize, x: &[f64], out: &mut [f64]) {
         match self.dimension {
             1 => self.apply_to::<1, 1>(first, x, out),
@@ -120,12 +121,13 @@ pub struct ConstraintRows {
     dofs: Vec<usize>,
     slopes: Vec<f64>,
     compliances: Vec<f64>,
-    /// Entries of the complement below its diagonal, and its structure.
+    /// Entries of the complement G D⁻¹Gᵀ below its diagonal.
     coupled: Vec<(usize, usize)>,
+    /// Pattern of the complement and its elimination order.
     structure: Option<(Pattern, Arc<Elimination>)>,
     values: Vec<f64>,
     factor: Option<Condensed>,
-    /// Node, row, and the place of the entries of that row at the node.
+    /// Node, row, and place of the first entry of that row at the node, for all rows at all nodes.
     at_nodes: Vec<(usize, usize, usize)>,
     inner: Vec<f64>,
 }
@@ -141,7 +143,8 @@ impl ConstraintRows {
         self.factor = None;
     }
 
-    /// Adds a row with these entries; a compliance of zero for a constraint.
+    /// Adds a row of G, given by its degrees of freedom and their coefficients; its compliance is
+    /// zero for a constraint.
     pub fn push(&mut self, compliance: f64, entries: impl IntoIterator<Item = (usize, f64)>) {
         for (dof, slope) in entries {
             self.dofs.push(dof);
@@ -156,7 +159,7 @@ impl ConstraintRows {
         self.compliances.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.compliances.is_empty()
     }
@@ -166,14 +169,14 @@ impl ConstraintRows {
         self.compliances[row] != 0.0
     }
 
-    /// Adds Gᵀc/C of a spring: what its row contributes to the right-hand side of the balance if it
-    /// is G x − C λ = c.
+    /// Adds the force Gᵀc/C of a spring with the row G x − C λ = c to the right-hand side of the
+    /// balance.
     pub fn pull(&self, row: usize, gap: f64, right: &mut [f64]) {
         let multiplier = gap / self.compliances[row];
         self.row(row).for_each(|(dof, slope)| right[dof] += multiplier * slope);
     }
 
-    /// λ = (G x − c)/C of such a row.
+    /// Multiplier λ = (G x − c)/C of a spring with the row G x − C λ = c.
     pub fn pulled(&self, row: usize, gap: f64, x: &[f64]) -> f64 {
         (self.along(row, x) - gap) / self.compliances[row]
     }
@@ -183,12 +186,12 @@ impl ConstraintRows {
         self.dofs[range.clone()].iter().copied().zip(self.slopes[range].iter().copied())
     }
 
-    /// G x of a row.
+    /// Product G x for a row.
     fn along(&self, row: usize, x: &[f64]) -> f64 {
         self.row(row).map(|(dof, slope)| slope * x[dof]).sum()
     }
 
-    /// Factors G D⁻¹Gᵀ + C.
+    /// Factors the complement G D⁻¹Gᵀ + C.
     ///
     /// # Errors
     /// If the rows are linearly dependent.
@@ -196,7 +199,21 @@ impl ConstraintRows {
         if self.is_empty() {
             return Ok(());
         }
-        let d = blocks.dimension;
+        self.group_by_nodes(blocks.dimension);
+        self.update_structure()?;
+        self.assemble(blocks);
+        let Some((_, elimination)) = &self.structure else { return Ok(()) };
+        let mut factor = Condensed::new(elimination, Precision::Double);
+        let values = &self.values;
+        if !factor.factor(|k| values[k])? {
+            return Err(LinearError::Singular { size: self.len(), pivot: 0, value: 0.0 });
+        }
+        self.factor = Some(factor);
+        Ok(())
+    }
+
+    /// Lists the rows that have entries at each node.
+    fn group_by_nodes(&mut self, d: usize) {
         self.at_nodes.clear();
         for row in 0..self.len() {
             let mut last = usize::MAX;
@@ -207,11 +224,14 @@ impl ConstraintRows {
             }
         }
         self.at_nodes.sort_unstable();
-        let groups = || self.at_nodes.chunk_by(|a, b| a.0 == b.0);
+    }
+
+    /// Analyses the pattern of the complement G D⁻¹Gᵀ, unless it is that of the last call.
+    fn update_structure(&mut self) -> Result<(), LinearError> {
         let mut coupled = std::mem::take(&mut self.coupled);
         let before = coupled.clone();
         coupled.clear();
-        for group in groups() {
+        for group in self.at_nodes.chunk_by(|a, b| a.0 == b.0) {
             for (i, a) in group.iter().enumerate() {
                 coupled.extend(group[..i].iter().map(|b| (a.1, b.1)));
             }
@@ -226,7 +246,13 @@ impl ConstraintRows {
             self.structure = Some((pattern, elimination));
         }
         self.coupled = coupled;
-        let Some((pattern, elimination)) = &self.structure else { return Ok(()) };
+        Ok(())
+    }
+
+    /// Fills the lower triangle of the complement G D⁻¹Gᵀ + C.
+    fn assemble(&mut self, blocks: &DiagonalBlocks) {
+        let d = blocks.dimension;
+        let Some((pattern, _)) = &self.structure else { return };
         self.values.clear();
         self.values.resize(pattern.len(), 0.0);
         for (row, compliance) in self.compliances.iter().enumerate() {
@@ -257,16 +283,9 @@ impl ConstraintRows {
                 }
             }
         }
-        let mut factor = Condensed::new(elimination, Precision::Double);
-        let values = &self.values;
-        if !factor.factor(|k| values[k])? {
-            return Err(LinearError::Singular { size: self.len(), pivot: 0, value: 0.0 });
-        }
-        self.factor = Some(factor);
-        Ok(())
     }
 
-    /// Overwrites right-hand sides with μ.
+    /// Overwrites right-hand sides with the solution μ of the system with the complement.
     fn solve(&mut self, x: &mut [f64]) {
         if let Some(factor) = &mut self.factor {
             factor.eliminate_into(x, &mut self.inner);
@@ -274,12 +293,14 @@ impl ConstraintRows {
         }
     }
 
-    /// z −= D⁻¹Gᵀμ, and r −= Gᵀμ for constraints.
+    /// Subtracts the forces Gᵀμ of all rows, as motions D⁻¹Gᵀμ, from z, and those of constraints
+    /// from the residual r.
     fn subtract(&self, blocks: &DiagonalBlocks, mu: &[f64], z: &mut [f64], r: &mut [f64]) {
         let d = blocks.dimension;
         for (row, mu) in mu.iter().enumerate() {
             for (dof, slope) in self.row(row) {
-                let (node, i) = (dof / d, dof % d);
+                let node = dof / d;
+                let i = dof % d;
                 let inverse = blocks.of(node);
                 for j in 0..d {
                     z[node * d + j] -= mu * slope * inverse[j * d + i];
@@ -292,18 +313,36 @@ impl ConstraintRows {
     }
 }
 
-/// How a solve ended.
+/// The diagonal blocks D and the factored rows G of a preconditioner.
+pub struct ConstraintPreconditioner<'a> {
+    /// Inverses of the diagonal blocks D.
+    pub blocks: &'a DiagonalBlocks,
+    /// Rows G, factored with the same diagonal blocks.
+    pub rows: &'a mut ConstraintRows,
+}
+
+/// Accuracy and cost at which conjugate gradients end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// Residual relative to the first, both in the norm of the preconditioner, at which to end.
+    pub reduction: f64,
+    /// Largest number of iterations.
+    pub iterations: usize,
+}
+
+/// How conjugate gradients ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ended {
-    /// Number of products with A.
+    /// Number of iterations: of products with A.
     pub iterations: usize,
     /// Residual relative to the first, both in the norm of the preconditioner.
     pub reduction: f64,
-    /// A is not positive definite where G x = 0; the solution is that before.
+    /// Whether A was found not to be positive definite where G x = 0; the solution is then that of
+    /// the iteration before.
     pub is_indefinite: bool,
 }
 
-/// Buffers of the method.
+/// The method of conjugate gradients under linear constraints, with its buffers.
 #[derive(Debug, Default)]
 pub struct ConjugateGradients {
     residual: Vec<f64>,
@@ -316,18 +355,16 @@ pub struct ConjugateGradients {
 
 impl ConjugateGradients {
     /// Overwrites `x` and `multipliers` (zero for springs) with the solution for `forces` and
-    /// `gaps`, whose residual is at most `reduction` times the first, or which took `most`
-    /// iterations. `product(x, out)`: A x. Where a component is constrained, forces, entries of G
-    /// and products are zero.
+    /// `gaps`, to the accuracy of `goal`. `product(x, out)`: A x. Where a component is constrained,
+    /// forces, entries of G and products are zero.
     pub fn solve(
         &mut self,
         threads: &Threads,
         mut product: impl FnMut(&[f64], &mut [f64]),
-        blocks: &DiagonalBlocks,
-        rows: &mut ConstraintRows,
+        ConstraintPreconditioner { blocks, rows }: ConstraintPreconditioner,
         [forces, gaps]: [&[f64]; 2],
         [x, multipliers]: [&mut [f64]; 2],
-        (reduction, most): (f64, usize),
+        goal: Goal,
     ) -> Ended {
         let n = forces.len();
         for buffer in [&mut self.residual, &mut self.direction, &mut self.preconditioned, &mut self.product] {
@@ -338,20 +375,14 @@ impl ConjugateGradients {
         x.fill(0.0);
         self.residual.copy_from_slice(forces);
         if gaps.iter().any(|gap| *gap != 0.0) {
-            // A first solution of the constraints.
-            self.right.iter_mut().zip(gaps).for_each(|(right, gap)| *right = -gap);
-            rows.solve(&mut self.right);
-            self.product.fill(0.0);
-            rows.subtract(blocks, &self.right, x, &mut self.product);
-            product(x, &mut self.product);
-            self.residual.iter_mut().zip(&self.product).for_each(|(r, q)| *r -= q);
+            self.satisfy(&mut product, blocks, rows, gaps, x);
         }
         let mut size = self.precondition(threads, blocks, rows, multipliers);
         self.direction.copy_from_slice(&self.preconditioned);
-        let goal = reduction * reduction * size;
+        let enough = goal.reduction * goal.reduction * size;
         let mut ended = Ended { iterations: 0, reduction: 0.0, is_indefinite: false };
         let first = size;
-        while size > goal && size > 0.0 && ended.iterations < most {
+        while size > enough && size > 0.0 && ended.iterations < goal.iterations {
             product(&self.direction, &mut self.product);
             ended.iterations += 1;
             let curvature = dot(threads, &mut self.sums, &self.direction, &self.product);
@@ -360,7 +391,8 @@ impl ConjugateGradients {
                 break;
             }
             let length = size / curvature;
-            let (direction, products) = (&self.direction, &self.product);
+            let direction = &self.direction;
+            let products = &self.product;
             let both = x.chunks_mut(BLOCK).zip(self.residual.chunks_mut(BLOCK));
             threads.for_each(both, |k, (x, r)| {
                 let range = k * BLOCK..k * BLOCK + x.len();
@@ -385,7 +417,25 @@ impl ConjugateGradients {
         ended
     }
 
-    /// z from r, moving Gᵀμ of the constraints from r to the multipliers; returns r·z.
+    /// Overwrites x = 0 with a solution of the constraints, and updates the residual.
+    fn satisfy(
+        &mut self,
+        product: &mut impl FnMut(&[f64], &mut [f64]),
+        blocks: &DiagonalBlocks,
+        rows: &mut ConstraintRows,
+        gaps: &[f64],
+        x: &mut [f64],
+    ) {
+        self.right.iter_mut().zip(gaps).for_each(|(right, gap)| *right = -gap);
+        rows.solve(&mut self.right);
+        self.product.fill(0.0);
+        rows.subtract(blocks, &self.right, x, &mut self.product);
+        product(x, &mut self.product);
+        self.residual.iter_mut().zip(&self.product).for_each(|(r, q)| *r -= q);
+    }
+
+    /// Applies the preconditioner to the residual r, moves the forces Gᵀμ of constraints from r to
+    /// the multipliers, and returns r·z of the result z.
     fn precondition(
         &mut self,
         threads: &Threads,
@@ -413,7 +463,7 @@ impl ConjugateGradients {
     }
 }
 
-/// Scalar product, by blocks that do not depend on the threads.
+/// Scalar product of two vectors, summed by blocks that do not depend on the number of threads.
 fn dot(threads: &Threads, sums: &mut Vec<f64>, a: &[f64], b: &[f64]) -> f64 {
     sums.resize(a.len().div_ceil(BLOCK), 0.0);
     threads.for_each(sums.iter_mut(), |k, sum| {

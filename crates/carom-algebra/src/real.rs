@@ -3,25 +3,25 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number, or several in lanes.
+/// A number, or several numbers in lanes.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// 0 in every lane.
+    /// Zero in every lane.
     const ZERO: Self;
 
-    /// The same number in every lane.
+    /// A number copied to every lane.
     fn of(number: f64) -> Self;
 
-    /// A function of each lane.
+    /// Applies a function to the number in each lane.
     #[must_use]
     fn map(self, function: impl Fn(f64) -> f64) -> Self;
 
-    /// The larger number of each lane.
+    /// The larger one of two numbers, lane by lane.
     #[must_use]
     fn max(self, other: Self) -> Self;
 
-    /// The first lane with a property.
+    /// The number in the first lane that has a property, if there is one.
     fn find(self, has: impl Fn(f64) -> bool) -> Option<f64>;
 }
 

@@ -27,9 +27,10 @@ use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 use crate::linear::LinearError;
 use crate::pivots::{Room, diagonal_size};
 
-/// Fraction of a row's square below which it depends on the others.
+/// Pivot, as a fraction of the square of a row of G, below which the row depends linearly on the
+/// others.
 const DEPENDENT: f64 = 1e-14;
-/// Inverse iterations for the smallest singular value.
+/// Number of inverse iterations for the smallest singular value.
 const INVERSE_ITERATIONS: usize = 8;
 
 /// The factor of a square matrix that need not be positive definite.
@@ -49,36 +50,39 @@ impl Whole {
     }
 }
 
-/// Buffers and factors of the saddle point.
+/// A small dense saddle point: its matrices, buffers and factors.
 #[derive(Default)]
 pub struct Saddle {
     size: usize,
     count: usize,
-    /// S, then L; column-major.
+    /// Matrix S, then its factor L; column-major.
     stiffness: Vec<f64>,
-    /// Gᵀ, then T; a column per row of G.
+    /// Transposed rows Gᵀ, then T = L⁻¹Gᵀ; a column per row of G.
     rows: Vec<f64>,
-    /// Fᵀ, then U; empty where F = G.
+    /// Transposed directions Fᵀ, then U = L⁻¹Fᵀ; empty where F = G.
     directions: Vec<f64>,
-    /// The lower triangle of TᵀT, then its factor.
+    /// Lower triangle of TᵀT, then its Cholesky factor.
     small: Vec<f64>,
-    /// The factor of TᵀU.
+    /// LU factor of the product TᵀU.
     skew: Option<PartialPivLu<f64>>,
-    /// κ of each row.
+    /// Penalty κ of each row of G.
     penalties: Vec<f64>,
-    /// C and σ of each row.
+    /// Compliance C of each row of G.
     yields: Vec<f64>,
+    /// Scale σ of each row of G.
     scales: Vec<f64>,
     nonzeros: Vec<usize>,
     room: Room,
-    /// Factor of the whole matrix if S is not positive definite.
+    /// Factor of the whole saddle-point matrix if S is not positive definite.
     indefinite: Option<Whole>,
 }
 
 impl Saddle {
-    /// Starts with S (column-major, its lower triangle) and `count` empty rows.
+    /// Starts a saddle point with the matrix S (column-major, its lower triangle) and `count` empty
+    /// rows of G.
     pub fn begin(&mut self, stiffness: &[f64], size: usize, count: usize) {
-        (self.size, self.count) = (size, count);
+        self.size = size;
+        self.count = count;
         self.stiffness.clear();
         self.stiffness.extend_from_slice(stiffness);
         self.rows.clear();
@@ -92,14 +96,15 @@ impl Saddle {
         self.scales.resize(count, 1.0);
     }
 
-    /// C of a row, which then has a direction ([`direct`](Self::direct)).
+    /// Sets the compliance C of a row of G, which then needs a direction of its own
+    /// ([`direct`](Self::direct)).
     pub fn yields(&mut self, row: usize, compliance: f64) {
         self.yields[row] = compliance;
     }
 
-    /// S += κ gᵀg for every row g of G, with `share` times the stiffness of S along g, and f −= κ C
-    /// g. The solution does not change. An S that is positive definite only where G x = 0 becomes
-    /// so everywhere.
+    /// Adds κ gᵀg to S for every row g of G, where κ is `share` times the stiffness of S along g,
+    /// and subtracts κ C g from its direction. The solution does not change; an S that is positive
+    /// definite only where G x = 0 becomes so everywhere.
     pub fn augment(&mut self, share: f64) {
         let n = self.size.max(1);
         for (r, (row, penalty)) in self.rows.chunks_exact(n).zip(&mut self.penalties).enumerate() {
@@ -125,85 +130,55 @@ impl Saddle {
         }
     }
 
-    /// S(i, j) += value; only the lower triangle i ≥ j counts.
+    /// Adds a value to the entry S(i, j); only the lower triangle i ≥ j is used.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
         self.stiffness[j * self.size + i] += value;
     }
 
-    /// G(row, j) += value.
+    /// Adds a value to the entry G(row, j).
     pub fn add_row(&mut self, row: usize, j: usize, value: f64) {
         self.rows[row * self.size + j] += value;
     }
 
-    /// Gives forces directions of their own; F = 0 so far.
+    /// Gives forces directions F of their own, which are zero at first.
     pub fn direct(&mut self) {
         self.directions.resize(self.rows.len(), 0.0);
     }
 
-    /// F(row, j) += value, after [`direct`](Self::direct).
+    /// Adds a value to the entry F(row, j), after [`direct`](Self::direct).
     pub fn add_direction(&mut self, row: usize, j: usize, value: f64) {
         self.directions[row * self.size + j] += value;
     }
 
-    /// Factors; returns whether S is positive definite.
+    /// Factors the saddle point and returns whether S is positive definite.
     ///
     /// # Errors
     /// The rows are linearly dependent.
     pub fn factor(&mut self) -> Result<bool, LinearError> {
-        let (n, m) = (self.size, self.count);
+        let n = self.size;
+        let m = self.count;
         let stiffness = self.stiffness.clone();
-        (self.indefinite, self.skew) = (None, None);
-        let is_skew = !self.directions.is_empty();
+        self.indefinite = None;
+        self.skew = None;
         if cholesky(&mut self.stiffness, n, &mut self.room).is_err() {
             self.stiffness = stiffness;
-            let entry = |i: usize, j: usize| match (i < n, j < n) {
-                (true, true) => self.stiffness[i.min(j) * n + i.max(j)],
-                (false, true) => self.rows[(i - n) * n + j],
-                (true, false) if is_skew => self.directions[(j - n) * n + i],
-                (false, false) if i == j => -self.yields[i - n],
-                _ => 0.0,
-            };
-            let whole = Mat::from_fn(n + m, n + m, entry);
-            self.indefinite = Some(if is_skew {
-                Whole::General(whole.partial_piv_lu())
-            } else {
-                Whole::Symmetric(whole.lblt(Side::Lower))
-            });
+            self.indefinite = Some(self.whole());
             return Ok(false);
         }
+        self.substitute_rows();
         let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
-        let mut t = MatMut::from_column_major_slice_mut(&mut self.rows, n, m);
-        solve_lower_triangular_in_place(lower, t.rb_mut(), Par::Seq);
-        for r in 0..m {
-            let square: f64 = (0..n).map(|j| t[(j, r)] * t[(j, r)]).sum();
-            if self.yields[r] != 0.0 && square > 0.0 {
-                let scale = (1.0 + self.yields[r] / square).sqrt().recip();
-                (0..n).for_each(|j| t[(j, r)] *= scale);
-                self.directions[r * n..(r + 1) * n].iter_mut().for_each(|slope| *slope *= scale);
-                (self.scales[r], self.yields[r]) = (scale, self.yields[r] * scale * scale);
-                self.penalties[r] /= scale * scale;
-            }
-        }
+        let t = MatRef::from_column_major_slice(&self.rows, n, m);
         self.small.clear();
         self.small.resize(m * m, 0.0);
         let product = MatMut::from_column_major_slice_mut(&mut self.small, m, m);
-        let (half, whole) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
-        triangular::matmul(
-            product,
-            half,
-            Accum::Replace,
-            t.rb().transpose(),
-            whole,
-            t.rb(),
-            whole,
-            1.0,
-            Par::Seq,
-        );
-        if is_skew {
+        let half = BlockStructure::TriangularLower;
+        let whole = BlockStructure::Rectangular;
+        triangular::matmul(product, half, Accum::Replace, t.transpose(), whole, t, whole, 1.0, Par::Seq);
+        if !self.directions.is_empty() {
             let mut u = MatMut::from_column_major_slice_mut(&mut self.directions, n, m);
             solve_lower_triangular_in_place(lower, u.rb_mut(), Par::Seq);
             let mut product = Mat::zeros(m, m);
-            matmul(product.as_mut(), Accum::Replace, t.rb().transpose(), u.rb(), 1.0, Par::Seq);
+            matmul(product.as_mut(), Accum::Replace, t.transpose(), u.rb(), 1.0, Par::Seq);
             (0..m).for_each(|i| product[(i, i)] += self.yields[i]);
             self.skew = Some(product.partial_piv_lu());
         }
@@ -215,18 +190,61 @@ impl Saddle {
         (0..m).find(repeats).map_or(Ok(true), |i| Err(dependent(i)))
     }
 
-    /// The smallest singular value of R with the sign of its determinant, by inverse iteration;
-    /// none if F = G. Where it is not positive, a solution for other states of the contacts exists
-    /// for some forces, or none does.
+    /// Factors the whole saddle-point matrix with pivoting.
+    fn whole(&self) -> Whole {
+        let n = self.size;
+        let m = self.count;
+        let is_skew = !self.directions.is_empty();
+        let entry = |i: usize, j: usize| match (i < n, j < n) {
+            (true, true) => self.stiffness[i.min(j) * n + i.max(j)],
+            (false, true) => self.rows[(i - n) * n + j],
+            (true, false) if is_skew => self.directions[(j - n) * n + i],
+            (false, false) if i == j => -self.yields[i - n],
+            _ => 0.0,
+        };
+        let whole = Mat::from_fn(n + m, n + m, entry);
+        if is_skew {
+            Whole::General(whole.partial_piv_lu())
+        } else {
+            Whole::Symmetric(whole.lblt(Side::Lower))
+        }
+    }
+
+    /// Replaces Gᵀ by T = L⁻¹Gᵀ, and scales the rows that yield by σ.
+    fn substitute_rows(&mut self) {
+        let n = self.size;
+        let m = self.count;
+        let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
+        let mut t = MatMut::from_column_major_slice_mut(&mut self.rows, n, m);
+        solve_lower_triangular_in_place(lower, t.rb_mut(), Par::Seq);
+        for r in 0..m {
+            let square: f64 = (0..n).map(|j| t[(j, r)] * t[(j, r)]).sum();
+            if self.yields[r] != 0.0 && square > 0.0 {
+                let scale = (1.0 + self.yields[r] / square).sqrt().recip();
+                (0..n).for_each(|j| t[(j, r)] *= scale);
+                self.directions[r * n..(r + 1) * n].iter_mut().for_each(|slope| *slope *= scale);
+                self.scales[r] = scale;
+                self.yields[r] = self.yields[r] * scale * scale;
+                self.penalties[r] /= scale * scale;
+            }
+        }
+    }
+
+    /// Smallest singular value of R = K⁻¹TᵀU K⁻ᵀ with the sign of its determinant, by inverse
+    /// iteration; none if F = G. Where it is not positive, a solution for other states of the
+    /// contacts exists for some forces, or none does.
     pub fn regularity(&self) -> Option<f64> {
-        let (skew, m) = (self.skew.as_ref()?, self.count);
+        let skew = self.skew.as_ref()?;
+        let m = self.count;
         let turns = |places: &[usize]| {
             let mut seen = vec![false; places.len()];
             let mut count = 0;
             for first in 0..places.len() {
-                let (mut next, mut length) = (first, 0);
+                let mut next = first;
+                let mut length = 0;
                 while !std::mem::replace(&mut seen[next], true) {
-                    (next, length) = (places[next], length + 1);
+                    next = places[next];
+                    length += 1;
                 }
                 count += usize::from(length > 0 && length % 2 == 0);
             }
@@ -254,9 +272,11 @@ impl Saddle {
         Some(if smallest.is_finite() { sign * smallest } else { 0.0 })
     }
 
-    /// Overwrites `b` with x and `c` with λ.
+    /// Solves the saddle point: overwrites the right-hand side `b` with x and `c` with the
+    /// multipliers λ.
     pub fn solve(&self, b: &mut [f64], c: &mut [f64]) {
-        let (n, m) = (self.size, self.count);
+        let n = self.size;
+        let m = self.count;
         if let Some(indefinite) = &self.indefinite {
             for (i, row) in self.rows.chunks_exact(n.max(1)).enumerate() {
                 let pull = self.penalties[i] * c[i];
@@ -299,7 +319,7 @@ impl Saddle {
     }
 }
 
-/// x := A x for a triangle A.
+/// Overwrites x with A x for a triangular matrix A.
 fn multiply(triangle: MatRef<f64>, structure: BlockStructure, x: &mut Mat<f64>) {
     let mut product = Mat::zeros(x.nrows(), 1);
     let whole = BlockStructure::Rectangular;
@@ -317,7 +337,7 @@ fn multiply(triangle: MatRef<f64>, structure: BlockStructure, x: &mut Mat<f64>) 
     *x = product;
 }
 
-/// Overwrites a lower triangle with its factor.
+/// Overwrites the lower triangle of a positive definite matrix with its Cholesky factor.
 fn cholesky(matrix: &mut [f64], n: usize, room: &mut Room) -> Result<(), usize> {
     let size = diagonal_size(matrix.iter().step_by(n + 1).copied());
     room.cholesky(MatMut::from_column_major_slice_mut(matrix, n, n), size)

@@ -1,7 +1,7 @@
 //! Loops in the widest registers of the machine. Lanes do not depend on the width, so results are
 //! bitwise equal on every machine.
 
-/// Lanes of a reduction; constant, so that the order of summation is.
+/// Number of lanes of a sum; constant, so that the order of summation is.
 const LANES: usize = 8;
 
 /// Calls `work` compiled for the widest vector instructions of this processor.
@@ -10,7 +10,7 @@ pub fn wide<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
 }
 
-/// y −= a x; x may be of single precision.
+/// Subtracts a x from y; x may be of single precision.
 #[inline(always)]
 pub(crate) fn subtract<T: Copy + Into<f64>>(y: &mut [f64], a: f64, x: &[T]) {
     for (y, x) in y.iter_mut().zip(x) {
@@ -18,7 +18,7 @@ pub(crate) fn subtract<T: Copy + Into<f64>>(y: &mut [f64], a: f64, x: &[T]) {
     }
 }
 
-/// y −= a₀ x₀ and then a₁ x₁; x may be of single precision.
+/// Subtracts a₀ x₀ and then a₁ x₁ from y; both x may be of single precision.
 #[inline(always)]
 pub(crate) fn subtract_both<T: Copy + Into<f64>>(y: &mut [f64], a: [f64; 2], x: [&[T]; 2]) {
     for ((y, x0), x1) in y.iter_mut().zip(x[0]).zip(x[1]) {
@@ -26,7 +26,7 @@ pub(crate) fn subtract_both<T: Copy + Into<f64>>(y: &mut [f64], a: [f64; 2], x: 
     }
 }
 
-/// x·y, summed in eight lanes; x may be of single precision.
+/// Scalar product x·y, summed in eight lanes; x may be of single precision.
 #[inline(always)]
 pub(crate) fn dot<T: Copy + Into<f64>>(x: &[T], y: &[f64]) -> f64 {
     let (x, x_tail) = x.as_chunks::<LANES>();

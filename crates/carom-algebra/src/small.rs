@@ -26,7 +26,7 @@ pub struct Vector<const D: usize>(pub [f64; D]);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mat<const D: usize, T = f64>(pub [[T; D]; D]);
 
-/// Σ aᵢ b(i).
+/// Sum Σ aᵢ b(i) in ascending order.
 #[inline(always)]
 fn product<const D: usize, T: Real>(a: &[T; D], b: impl Fn(usize) -> T) -> T {
     let mut sum = T::ZERO;
@@ -40,8 +40,8 @@ impl<const D: usize> Vector<D> {
     /// The zero vector.
     pub const ZERO: Self = Self([0.0; D]);
 
-    /// From its components. A loop, because `std::array::from_fn` is not always inlined, and this
-    /// arithmetic runs in the innermost loops.
+    /// A vector from its components. A loop, because `std::array::from_fn` is not always inlined,
+    /// and this arithmetic runs in the innermost loops.
     #[inline(always)]
     fn of(component: impl Fn(usize) -> f64) -> Self {
         let mut vector = Self::ZERO;
@@ -51,13 +51,13 @@ impl<const D: usize> Vector<D> {
         vector
     }
 
-    /// Scalar product.
+    /// Scalar product of two vectors.
     #[inline(always)]
     pub fn dot(&self, other: &Self) -> f64 {
         product(&self.0, |i| other.0[i])
     }
 
-    /// Euclidean length.
+    /// Euclidean length of the vector.
     #[inline(always)]
     pub fn norm(&self) -> f64 {
         self.dot(self).sqrt()
@@ -83,7 +83,7 @@ impl<const D: usize, T: Real> Mat<D, T> {
     /// The zero matrix.
     pub const ZERO: Self = Self([[T::ZERO; D]; D]);
 
-    /// From its components.
+    /// A matrix from its components.
     #[inline(always)]
     fn of(component: impl Fn(usize, usize) -> T) -> Self {
         let mut mat = Self::ZERO;
@@ -95,19 +95,19 @@ impl<const D: usize, T: Real> Mat<D, T> {
         mat
     }
 
-    /// The identity.
+    /// The identity matrix.
     #[inline(always)]
     pub fn identity() -> Self {
         Self::of(|i, j| T::of(f64::from(u8::from(i == j))))
     }
 
-    /// Transpose.
+    /// Transposed matrix.
     #[inline(always)]
     pub fn transposed(&self) -> Self {
         Self::of(|i, j| self.0[j][i])
     }
 
-    /// Sum of the diagonal.
+    /// Trace: the sum of the diagonal entries.
     #[inline(always)]
     pub fn trace(&self) -> T {
         let mut sum = self.0[0][0];
@@ -117,7 +117,7 @@ impl<const D: usize, T: Real> Mat<D, T> {
         sum
     }
 
-    /// Double contraction `A : B`.
+    /// Double contraction `A : B` = Σ A_ij B_ij of two matrices.
     #[inline(always)]
     pub fn double_dot(&self, other: &Self) -> T {
         let mut sum = T::ZERO;
@@ -143,7 +143,10 @@ impl<const D: usize, T: Real> Mat<D, T> {
             _ => {
                 for i in 0..D {
                     for j in 0..D {
-                        let (i1, i2, j1, j2) = ((i + 1) % D, (i + 2) % D, (j + 1) % D, (j + 2) % D);
+                        let i1 = (i + 1) % D;
+                        let i2 = (i + 2) % D;
+                        let j1 = (j + 1) % D;
+                        let j2 = (j + 2) % D;
                         c.0[i][j] = a[i1][j1] * a[i2][j2] - a[i1][j2] * a[i2][j1];
                     }
                 }
@@ -152,7 +155,7 @@ impl<const D: usize, T: Real> Mat<D, T> {
         c
     }
 
-    /// Determinant.
+    /// Determinant of the matrix.
     #[inline(always)]
     pub fn det(&self) -> T {
         let c = self.cofactor();
@@ -161,13 +164,13 @@ impl<const D: usize, T: Real> Mat<D, T> {
 }
 
 impl<const D: usize> Mat<D> {
-    /// Matrix times vector.
+    /// Product of the matrix with a vector.
     #[inline(always)]
     pub fn apply(&self, v: &Vector<D>) -> Vector<D> {
         Vector::of(|i| product(&self.0[i], |j| v.0[j]))
     }
 
-    /// Inverse; its entries are not finite if the determinant is zero.
+    /// Inverse matrix; its entries are not finite if the determinant is zero.
     #[inline(always)]
     pub fn inverse(&self) -> Self {
         self.cofactor().transposed() * (1.0 / self.det())
@@ -295,7 +298,8 @@ mod tests {
         let h = 1e-6;
         for i in 0..3 {
             for j in 0..3 {
-                let (mut p, mut m) = (a, a);
+                let mut p = a;
+                let mut m = a;
                 p.0[i][j] += h;
                 m.0[i][j] -= h;
                 let slope = (p.det() - m.det()) / (2.0 * h);

@@ -6,14 +6,15 @@ use crate::precision::Entry;
 use crate::simd::{dot, subtract, subtract_both, wide};
 use crate::threads::Threads;
 
-/// Parts exchange values only at their outer rows, in a fixed order.
+/// Triangular solves with the inner part of a factor, part by part. Parts exchange values only at
+/// their outer rows, in a fixed order.
 pub(crate) struct Solver<'a, T> {
     pub(crate) elimination: &'a Elimination,
     pub(crate) factors: &'a [T],
     pub(crate) inverse: &'a [f64],
-    /// J; empty if it is the identity.
+    /// Signs J between L and Lᵀ; empty if all are positive.
     pub(crate) signs: &'a [f64],
-    /// The square of the scale.
+    /// Square of the scale of the factor.
     pub(crate) square: f64,
     pub(crate) threads: &'a Threads,
 }
@@ -47,7 +48,8 @@ impl<T: Entry> Solver<'_, T> {
         );
     }
 
-    /// Sets the right-hand side on a part's own columns and zero on its outer rows.
+    /// Sets the section of a part in a vector to the right-hand side on its own columns and to zero
+    /// on its outer rows.
     fn take(&self, part: &Subtree, rhs: &[f64], x: &mut [f64]) {
         let (own, outside) = x.split_at_mut(part.columns.len());
         for (value, &i) in own.iter_mut().zip(&self.elimination.order[part.columns.clone()]) {
@@ -83,11 +85,12 @@ impl<T: Entry> Solver<'_, T> {
         }
     }
 
-    /// First column in the part's numbering, rows below in that numbering, values (column-major,
-    /// all rows), and the reciprocal diagonal.
+    /// Data of a supernode: its first column and its rows below in the numbering of the part, its
+    /// values (column-major, all rows), and the reciprocals of its diagonal.
     #[inline(always)]
     fn node(&self, s: usize, start: usize) -> (usize, &[u32], &[T], &[f64]) {
-        let (columns, all) = (self.elimination.columns(s), self.elimination);
+        let columns = self.elimination.columns(s);
+        let all = self.elimination;
         let values = &self.factors[all.nodes[s].values..all.nodes[s + 1].values];
         (columns.start - start, &all.local[all.rows(s)], values, &self.inverse[columns])
     }
@@ -95,7 +98,8 @@ impl<T: Entry> Solver<'_, T> {
     #[inline(always)]
     fn forward_node(&self, s: usize, start: usize, rows: &mut [f64], x: &mut [f64]) {
         let (first, below, values, inverse) = self.node(s, start);
-        let (columns, height) = (inverse.len(), inverse.len() + below.len());
+        let columns = inverse.len();
+        let height = inverse.len() + below.len();
         let rows = &mut rows[..height];
         rows[..columns].copy_from_slice(&x[first..first + columns]);
         for (value, &row) in rows[columns..].iter_mut().zip(below) {
@@ -105,7 +109,8 @@ impl<T: Entry> Solver<'_, T> {
             let (a, b) = values[c * height..(c + 2) * height].split_at(height);
             let first = inverse[c] * rows[c];
             let second = inverse[c + 1] * (rows[c + 1] - first * a[c + 1].into());
-            (rows[c], rows[c + 1]) = (first, second);
+            rows[c] = first;
+            rows[c + 1] = second;
             subtract_both(&mut rows[c + 2..], [first, second], [&a[c + 2..], &b[c + 2..]]);
         }
         if columns % 2 == 1 {
@@ -120,11 +125,13 @@ impl<T: Entry> Solver<'_, T> {
         }
     }
 
-    /// `forward` left z/σ; this solves L'ᵀx = σ²(z/σ) − L'_BIᵀ x_B.
+    /// Backward substitution of a supernode, L'ᵀx = σ²(z/σ) − L'_BIᵀ x_B, from the z/σ of the
+    /// forward substitution.
     #[inline(always)]
     fn backward_node(&self, s: usize, start: usize, rows: &mut [f64], x: &mut [f64]) {
         let (first, below, values, inverse) = self.node(s, start);
-        let (columns, height) = (inverse.len(), inverse.len() + below.len());
+        let columns = inverse.len();
+        let height = inverse.len() + below.len();
         let outside = &mut rows[..below.len()];
         for (value, &row) in outside.iter_mut().zip(below) {
             *value = x[row as usize];

@@ -1,17 +1,18 @@
 //! Sums of fixed order, in parallel lanes that processors add at once.
 
-/// Number of lanes.
+/// Number of lanes in which sums are evaluated.
 const LANES: usize = 8;
 
-/// Scalar product.
+/// Scalar product of two vectors.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sum([a, b], |[a, b]| a * b)
 }
 
-/// Σ term(aᵢ, bᵢ, …) over vectors of the same length.
+/// Sum of a term of the i-th components, Σ term(aᵢ, bᵢ, …), over vectors of the same length.
 #[inline(always)]
 pub fn sum<const K: usize>(of: [&[f64]; K], term: impl Fn([f64; K]) -> f64) -> f64 {
-    let (whole, tails) = (of.map(|x| x.as_chunks::<LANES>().0), of.map(|x| x.as_chunks::<LANES>().1));
+    let whole = of.map(|x| x.as_chunks::<LANES>().0);
+    let tails = of.map(|x| x.as_chunks::<LANES>().1);
     let mut sums = [0.0; LANES];
     for i in 0..whole[0].len() {
         let at = whole.map(|x| &x[i]);
@@ -23,10 +24,11 @@ pub fn sum<const K: usize>(of: [&[f64]; K], term: impl Fn([f64; K]) -> f64) -> f
     sums.iter().sum::<f64>() + tail
 }
 
-/// Largest absolute value; infinite if a number is not finite.
+/// Largest absolute value of a vector; infinite if a component is not finite.
 pub fn max_abs(x: &[f64]) -> f64 {
     let (whole, tail) = x.as_chunks::<LANES>();
-    let (mut most, mut zeros) = ([0.0_f64; LANES], [0.0; LANES]);
+    let mut most = [0.0_f64; LANES];
+    let mut zeros = [0.0; LANES];
     for x in whole {
         for l in 0..LANES {
             most[l] = if x[l].abs() > most[l] { x[l].abs() } else { most[l] };

@@ -1,6 +1,6 @@
-//! What faer computes of a pattern: an elimination order by approximate minimum degree (P. Amestoy,
-//! T. Davis, I. Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886–905), the elimination tree, and the
-//! supernodes of the factor.
+//! Symbolic analysis of a pattern by faer: an elimination order by approximate minimum degree (P.
+//! Amestoy, T. Davis, I. Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886–905), the elimination tree,
+//! and the supernodes of the factor.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::sparse::linalg::cholesky::simplicial::{
@@ -15,8 +15,16 @@ use faer::sparse::{FaerError, SymbolicSparseColMatRef};
 
 use crate::pattern::Pattern;
 
-/// The upper triangle of a permuted pattern. Last columns store only rows before them, which is
-/// what the earlier columns depend on.
+/// The elimination tree of a permuted pattern.
+pub(crate) struct EliminationTree {
+    /// Parent of each column; negative for a root.
+    pub(crate) parents: Vec<i32>,
+    /// Number of entries in each column of the factor.
+    pub(crate) counts: Vec<u32>,
+}
+
+/// The upper triangle of a permuted pattern. The columns of unknowns eliminated last store only
+/// rows before them, on which the earlier columns depend.
 pub(crate) struct Upper {
     starts: Vec<u32>,
     rows: Vec<u32>,
@@ -50,19 +58,19 @@ impl Upper {
         SymbolicSparseColMatRef::new_unsorted_checked(n, n, &self.starts, None, &self.rows)
     }
 
-    /// Parent of each column in the elimination tree (negative: none), and the column counts of the
-    /// factor.
-    pub(crate) fn tree(&self) -> Result<(Vec<i32>, Vec<u32>), FaerError> {
+    pub(crate) fn tree(&self) -> Result<EliminationTree, FaerError> {
         let n = self.starts.len() - 1;
-        let (mut parents, mut counts) = (vec![0; n], vec![0; n]);
+        let mut parents = vec![0; n];
+        let mut counts = vec![0; n];
         let mut scratch = memory(prefactorize_symbolic_cholesky_scratch::<u32>(n, self.rows.len()))?;
         prefactorize_symbolic_cholesky(&mut parents, &mut counts, self.view(), MemStack::new(&mut scratch));
-        Ok((parents, counts))
+        Ok(EliminationTree { parents, counts })
     }
 
     pub(crate) fn supernodes(&self) -> Result<SymbolicSupernodalCholesky<u32>, FaerError> {
         let n = self.starts.len() - 1;
-        let (mut parents, mut counts) = (vec![0; n], vec![0; n]);
+        let mut parents = vec![0; n];
+        let mut counts = vec![0; n];
         let mut scratch = memory(
             prefactorize_symbolic_cholesky_scratch::<u32>(n, self.rows.len())
                 .or(factorize_supernodal_symbolic_cholesky_scratch::<u32>(n)),
@@ -79,14 +87,16 @@ impl Upper {
     }
 }
 
-/// Elimination order: AMD on the graph of groups, each group expanded in ascending order.
+/// Elimination order by approximate minimum degree on the graph of groups, each group expanded in
+/// ascending order.
 pub(crate) fn grouped_ordering(pattern: &Pattern, groups: &[usize]) -> Result<Vec<usize>, FaerError> {
     let count = groups.iter().max().map_or(0, |g| g + 1);
     let entries =
         (0..pattern.size()).flat_map(|j| pattern.column(j).iter().map(move |&i| (groups[i], groups[j])));
     let quotient = Pattern::from_entries(count, entries);
     let graph = SymbolicSparseColMatRef::new_checked(count, count, &quotient.starts, None, &quotient.rows);
-    let (mut order, mut inverse) = (vec![0_usize; count], vec![0_usize; count]);
+    let mut order = vec![0_usize; count];
+    let mut inverse = vec![0_usize; count];
     let mut scratch = memory(amd::order_maybe_unsorted_scratch::<usize>(count, quotient.len()))?;
     amd::order_maybe_unsorted(
         &mut order,

@@ -25,12 +25,12 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// The calling thread alone.
+    /// Runs all work on the calling thread.
     pub fn one() -> Self {
         Self::default()
     }
 
-    /// `count` threads; one if no more can be started.
+    /// A pool of `count` threads; one thread if no more can be started.
     pub fn new(count: usize) -> Self {
         let pool = || rayon::ThreadPoolBuilder::new().num_threads(count).build().ok().map(Arc::new);
         Self { pool: if count > 1 { pool() } else { None } }
@@ -49,7 +49,7 @@ impl Threads {
         }
     }
 
-    /// Runs both, in parallel if there is a second thread.
+    /// Runs two functions, in parallel if there is a second thread, and returns both results.
     pub fn join<A: Send, B: Send>(
         &self,
         first: impl FnOnce() -> A + Send,

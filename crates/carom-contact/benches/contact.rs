@@ -76,7 +76,8 @@ fn search_of_a_long_side(bencher: Bencher, facets: usize) {
     let secondary = (points + 1..points + 1 + facets).collect();
     let surface = Surface::new(FacetShape::L3, &nodes, &vec![1.0; facets]);
     let contact = NodeToFacet::new(secondary, surface, Detection::ClosestPoint);
-    let (before, now) = (at(length), at(0.177 * length));
+    let before = at(length);
+    let now = at(0.177 * length);
     let mut pairing = found(&contact, &before, &now);
     bencher.counter(ItemsCount::new(facets)).bench_local(|| {
         pairing.pairs.clear();

@@ -7,40 +7,41 @@
 
 use crate::visited::Visited;
 
-/// A release needs λ above this fraction of the largest multiplier: ties stay active.
+/// Tension, as a fraction of the largest multiplier, above which an active pair is released: ties
+/// stay active.
 const RELEASE: f64 = 1e-10;
 
 /// Gap and multiplier of one pair, and whether it is active.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contender {
-    /// Whether its gap is constrained to zero.
+    /// Whether the gap of the pair is constrained to zero.
     pub active: bool,
-    /// Gap.
+    /// Gap g of the pair; negative for penetration.
     pub gap: f64,
-    /// Multiplier.
+    /// Multiplier λ of the pair; negative for pressure.
     pub lambda: f64,
     /// Diagonal of the stage's tangent, a force per gap: makes gaps and multipliers comparable.
     pub stiffness: f64,
 }
 
-/// History of the sets visited in one step.
+/// Primal–dual active set of the pairs of a contact, with the sets that it has visited in one step.
 #[derive(Clone, Debug)]
 pub struct ActiveSet {
     visited: Visited<Vec<usize>>,
     gap_tolerance: f64,
 }
 
-/// The set returns to a visited one in spite of all restrictions.
+/// Error: the active set returns to a visited one in spite of all restrictions.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the active set cycles: pairs {pairs:?} alternate between open and closed")]
 pub struct Cycle {
-    /// Indices of the pairs that would change.
+    /// Indices of the pairs that alternate between open and closed.
     pub pairs: Vec<usize>,
 }
 
 impl ActiveSet {
-    /// `gap_tolerance`: penetration that still counts as contact. `within`: changes are allowed
-    /// before Newton has converged.
+    /// Starts with no visited sets. `gap_tolerance`: penetration that still counts as contact;
+    /// `within`: whether pairs may change before Newton's method has converged.
     pub fn new(gap_tolerance: f64, within: bool) -> Self {
         Self { visited: Visited::new(within), gap_tolerance }
     }
@@ -50,8 +51,8 @@ impl ActiveSet {
         self.visited.is_cautious()
     }
 
-    /// Indices of the pairs to change, given the state of an iteration. Empty if the set is correct
-    /// or must not change yet.
+    /// Indices of the pairs to activate or release, given the state of an iteration; empty if the
+    /// set is correct or must not change yet.
     pub fn changes(&mut self, pairs: &[Contender], converged: bool) -> Result<Vec<usize>, Cycle> {
         if self.visited.waits(converged) {
             return Ok(Vec::new());
@@ -86,7 +87,7 @@ impl ActiveSet {
         Ok(wrong)
     }
 
-    /// Clears the visited sets: the pairs themselves have changed.
+    /// Clears the visited sets, for pairs that have changed themselves.
     pub fn restart(&mut self) {
         self.visited.restart();
     }

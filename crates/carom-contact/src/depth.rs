@@ -10,15 +10,22 @@ use carom_solid::FacetShape;
 use crate::kinematics::{Depth, Facets, Surface};
 use crate::places::Places;
 
+/// The point of a facet in the plane that is nearest to a given point.
+#[derive(Clone, Copy)]
+pub(crate) struct NearestOnFacet {
+    pub(crate) xi: f64,
+    pub(crate) distance: f64,
+}
+
 impl Surface {
-    /// ξ of a facet's point nearest to a point, and its distance.
-    pub(crate) fn nearest(&self, facet: usize, point: Vector<2>, y: Places) -> (f64, f64) {
+    /// The point of a facet, with its ends, that is nearest to a given point.
+    pub(crate) fn nearest(&self, facet: usize, point: Vector<2>, y: Places) -> NearestOnFacet {
         let side = self.facet(facet);
-        let distance = |xi: f64| (point - side.at(y, xi).position).norm();
-        let ends = [-1.0, 1.0].map(|xi| (xi, distance(xi)));
-        let inner = side.closest_point(y, point, 1.0).map(|xi| (xi, distance(xi)));
-        let first = if ends[1].1 < ends[0].1 { ends[1] } else { ends[0] };
-        inner.filter(|inner| inner.1 < first.1).unwrap_or(first)
+        let at = |xi: f64| NearestOnFacet { xi, distance: (point - side.at(y, xi).position).norm() };
+        let ends = [-1.0, 1.0].map(at);
+        let inner = side.closest_point(y, point, 1.0).map(at);
+        let first = if ends[1].distance < ends[0].distance { ends[1] } else { ends[0] };
+        inner.filter(|inner| inner.distance < first.distance).unwrap_or(first)
     }
 
     fn is_outside(&self, facet: usize, xi: f64, point: Vector<2>, y: Places) -> bool {
@@ -26,15 +33,15 @@ impl Surface {
         (point - at.position).dot(&at.normal) >= 0.0
     }
 
-    /// The same where the nearest point is an end of the facet: in front of either facet at a
-    /// convex joint, of both at a concave one, which is nearest to a remote point by round-off
-    /// only.
+    /// Whether a point is outside a body where the nearest point is a joint of two facets: in front
+    /// of either facet at a convex joint, in front of both at a concave one, which is nearest to a
+    /// remote point by round-off only.
     fn is_outside_joint(&self, facet: usize, xi: f64, point: Vector<2>, y: Places) -> bool {
         let Some(neighbour) = self.neighbour(facet, xi > 0.0) else {
             return self.is_outside(facet, xi, point, y);
         };
         let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
-        let (_, sine) = self.kink(first, second, y);
+        let sine = self.kink(first, second, y).sine;
         let [before, after] = [(first, 1.0), (second, -1.0)].map(|(f, xi)| self.is_outside(f, xi, point, y));
         if sine > 0.0 { before || after } else { before && after }
     }
@@ -54,12 +61,12 @@ impl Facets<2> for Surface {
     }
 
     fn distance(&self, facet: usize, point: Vector<2>, y: &[f64]) -> f64 {
-        self.nearest(facet, point, Places::new(y, 2)).1
+        self.nearest(facet, point, Places::new(y, 2)).distance
     }
 
     fn depth(&self, facet: usize, point: Vector<2>, y: &[f64]) -> Depth {
         let y = Places::new(y, 2);
-        let (xi, distance) = self.nearest(facet, point, y);
+        let NearestOnFacet { xi, distance } = self.nearest(facet, point, y);
         let joint = xi.abs() >= 1.0;
         let outside =
             if joint { Self::is_outside_joint } else { Self::is_outside }(self, facet, xi, point, y);

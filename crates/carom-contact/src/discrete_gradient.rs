@@ -29,39 +29,43 @@
 
 use crate::rows::Row;
 
-/// ε, relative to the size of the stencil.
+/// Regularisation ε of the discrete gradient, relative to the size of the stencil.
 const ROUND_OFF: f64 = 1e-7;
 
 /// The discrete gradient of one gap, and buffers. All vectors are over the dofs of the gap's row.
 #[derive(Clone, Debug, Default)]
 pub struct DiscreteGradient {
     dimension: usize,
-    /// ∇G(y_½).
+    /// Gradient ∇G(y_½) of the gap at the midpoint.
     middle: Vec<f64>,
     gradient: Vec<f64>,
-    /// Δy, then Δy − t.
+    /// Increment Δy of the nodes of the gap.
     moved: Vec<f64>,
+    /// Increment without its mean, Δy − t.
     centred: Vec<f64>,
-    /// x.
+    /// Midpoint positions x of the nodes relative to their mean.
     arms: Vec<f64>,
-    /// r_i, one after the other.
+    /// Arms turned by each rotation, r_i = G_i x, one vector after the other.
     turned: Vec<f64>,
-    /// d.
+    /// Increment without its rigid part, d.
     deforming: Vec<f64>,
-    /// ω and M⁻¹.
+    /// Rigid rotation ω in the increment, by components.
     rotation: [f64; 3],
+    /// Inverse M⁻¹ of the matrix of the arms' scalar products.
     inverse: [[f64; 3]; 3],
-    /// ω_i', one after the other.
+    /// Derivatives ω' of the rotation by the end positions, one vector per component.
     spins: Vec<f64>,
-    /// α and |d|² + ε².
+    /// Factor α of the correction along d.
     factor: f64,
+    /// Denominator |d|² + ε² of the factor α.
     size: f64,
-    /// Gradient of α.
+    /// Gradient of the factor α by the end positions.
     slope: Vec<f64>,
 }
 
 impl DiscreteGradient {
-    /// Evaluates it from the row at y_½ and the change ΔG, with y_½ and Δy flat over all dofs.
+    /// Evaluates the discrete gradient from the row of the gap at the midpoint y_½ and the change
+    /// ΔG of the gap over the step, with y_½ and Δy flat over all dofs.
     pub fn evaluate(&mut self, middle: Row, change: f64, y: &[f64], increment: &[f64]) {
         let d = middle.dimension();
         self.dimension = d;
@@ -86,10 +90,11 @@ impl DiscreteGradient {
         self.gradient.extend(self.middle.iter().zip(&self.deforming).map(corrected));
     }
 
-    /// ω, and d with the rigid rotation removed.
+    /// Determines the rotation ω of the increment, and d, the increment without it.
     fn rotate(&mut self) {
         let Self { dimension, arms, turned, centred, deforming, rotation, inverse, .. } = self;
-        let (count, n) = (rotations(*dimension), arms.len());
+        let count = rotations(*dimension);
+        let n = arms.len();
         turned.clear();
         for i in 0..count {
             turned.extend((0..n).map(|q| turned_entry(arms, *dimension, i, q)));
@@ -108,17 +113,20 @@ impl DiscreteGradient {
         }
     }
 
-    /// ∇̄G, node-major as the gradient of the row.
+    /// The discrete gradient ∇̄G, node-major as the gradient of a row.
     pub fn gradient(&self) -> &[f64] {
         &self.gradient
     }
 
-    /// Replaces ∇²G(y_½), row-major in `matrix`, by ∂∇̄G/∂y_{n+1}; `end`: the row at y_{n+1}. It is
-    /// not symmetric.
+    /// Replaces the second derivative ∇²G(y_½) of the gap, row-major in `matrix`, by the derivative
+    /// ∂∇̄G/∂y_{n+1} of its discrete gradient, which is not symmetric; `end`: the row at y_{n+1}.
     pub fn derivative_into(&mut self, end: Row, matrix: &mut [f64]) {
-        let (n, d) = (self.middle.len(), self.dimension);
+        let n = self.middle.len();
+        let d = self.dimension;
         let Self { turned, deforming, middle, moved, slope, spins, rotation, inverse, .. } = self;
-        let (count, factor, size) = (rotations(d), self.factor, self.size);
+        let count = rotations(d);
+        let factor = self.factor;
+        let size = self.size;
         // Σ ω_j G_j of a vector.
         let spun = |vector: &[f64], q: usize| -> f64 {
             (0..count).map(|j| rotation[j] * turned_entry(vector, d, j, q)).sum()
@@ -156,12 +164,12 @@ impl DiscreteGradient {
     }
 }
 
-/// Number of rotations.
+/// Number of independent rotations in a space of `d` dimensions.
 fn rotations(d: usize) -> usize {
     [0, 0, 1, 3][d.min(3)]
 }
 
-/// Entry of the i-th rotation at row `p` and column `q` of one node.
+/// Entry of the i-th generator of rotations, a d × d matrix, at row `p` and column `q`.
 fn generator(d: usize, i: usize, p: usize, q: usize) -> f64 {
     // About the i-th axis; in the plane about the third one.
     let axis = if d == 2 { 2 } else { i };
@@ -172,7 +180,7 @@ fn generator(d: usize, i: usize, p: usize, q: usize) -> f64 {
     }
 }
 
-/// Entry `q` of the i-th rotation of a vector, node by node.
+/// Entry `q` of a nodal vector to whose nodes the i-th generator of rotations is applied.
 fn turned_entry(vector: &[f64], d: usize, i: usize, q: usize) -> f64 {
     let first = q - q % d;
     (0..d).map(|k| generator(d, i, q % d, k) * vector[first + k]).sum()
@@ -216,13 +224,13 @@ fn inverted(mut matrix: [[f64; 3]; 3], count: usize) -> [[f64; 3]; 3] {
     inverse
 }
 
-/// The entries of a vector over all dofs at the nodes of a row.
+/// Collects the entries of a vector over all dofs at the nodes of a row.
 fn gather(row: Row, all: &[f64], part: &mut Vec<f64>) {
     part.clear();
     part.extend(row.entries().map(|(dof, _)| all[dof]));
 }
 
-/// Subtracts the mean over the nodes.
+/// Subtracts the mean over the nodes from a nodal vector with `d` components per node.
 fn remove_mean(vector: &mut [f64], d: usize) {
     let nodes = (vector.len() / d.max(1)) as f64;
     for i in 0..d {

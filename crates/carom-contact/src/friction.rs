@@ -25,15 +25,16 @@ use crate::visited::Visited;
 /// Excess of a traction over the cone, relative to the largest cone, that still sticks.
 const EDGE: f64 = 1e-10;
 
-/// Components along the tangents of a pair, of which the plane has one: the second is zero there.
+/// Components of a tangential vector along the two tangents of a pair; in the plane there is one
+/// tangent, and the second component is zero.
 pub type Along = [f64; 2];
 
-/// |x|.
+/// Euclidean length |x| of a tangential vector.
 pub fn length(x: Along) -> f64 {
     x[0].hypot(x[1])
 }
 
-/// a·b.
+/// Scalar product a·b of two tangential vectors.
 pub fn inner(a: Along, b: Along) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
@@ -41,27 +42,28 @@ pub fn inner(a: Along, b: Along) -> f64 {
 /// Whether a closed pair sticks, or in which direction it slips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum FrictionState {
-    /// S = 0.
+    /// Stick: the slip of the step is zero.
     #[default]
     Stick,
-    /// S = |S| d, with d of length one: a sign in the plane.
+    /// Slip in the direction d, a unit vector in the tangent plane; in the plane a sign.
     Slip(Along),
 }
 
 impl FrictionState {
-    /// The state in which a closing pair starts, from its slip in the iterate: the projection onto
-    /// the cone of a pressure that is still zero.
+    /// The state in which a closing pair starts, from its slip in the iterate: the projection of
+    /// the traction onto the cone of a pressure that is still zero.
     pub fn of(slip: Along, tolerance: f64) -> Self {
         let size = length(slip);
         if size > tolerance { Self::Slip(slip.map(|s| s / size)) } else { Self::Stick }
     }
 
-    /// The state of a closing pair under a law, from its slip: without friction any slip.
+    /// The state in which a closing pair starts under a law, from its slip: without friction it
+    /// slips in any direction.
     pub fn under(law: &Law, slip: Along, tolerance: f64) -> Self {
         if law.is_none() { Self::Slip([1.0, 0.0]) } else { Self::of(slip, tolerance) }
     }
 
-    /// d; zero in stick.
+    /// Direction d of the slip; zero in stick.
     pub fn direction(self) -> Along {
         match self {
             Self::Stick => [0.0; 2],
@@ -69,32 +71,32 @@ impl FrictionState {
         }
     }
 
-    /// The state with directions rounded, to recognise one that was visited: in the plane exact.
+    /// The state with its direction rounded, to recognise a visited one; exact in the plane.
     fn rounded(self) -> [i8; 2] {
         self.direction().map(|d| (2.0 * d).round() as i8)
     }
 }
 
-/// The tangential state of a pair; of no meaning without friction.
+/// Tangential state and history of a pair; not used without friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tangential {
-    /// Stick or slip.
+    /// Whether the pair sticks or slips.
     pub friction_state: FrictionState,
-    /// In space the tangents where the pair was last evaluated, which turn with the normal. Zero
-    /// before that.
+    /// Tangents at the point where the pair was last evaluated, which turn with the normal; zero
+    /// before the first evaluation, and in the plane.
     pub tangents: [[f64; 3]; 2],
-    /// Traction q.
+    /// Tangential traction q.
     pub traction: Along,
-    /// Slip since the pair closed.
+    /// Accumulated slip since the pair closed.
     pub slip: Along,
-    /// Traction at the start of the step, from which a spring is stretched further; that of the
-    /// last round of an augmented Lagrangian.
+    /// Traction at the start of the step, from which a tangential spring is stretched further; in
+    /// an augmented Lagrangian the traction of the last round.
     pub before: Along,
 }
 
 impl Tangential {
-    /// Adds to the traction of a stick, or turns the direction of a slip by as much traction across
-    /// it.
+    /// Adds a traction along a tangential vector to a pair that sticks; turns the direction of a
+    /// pair that slips as if that traction were added to it.
     pub fn pull(&mut self, along: Along, traction: f64) {
         let pulled = [0, 1].map(|i| self.traction[i] + traction * along[i]);
         match self.friction_state {
@@ -104,27 +106,38 @@ impl Tangential {
     }
 }
 
-/// The law of a node at an instant.
+/// Law of friction of a node at an instant: Coulomb's, with a coefficient that may decay with the
+/// rate of slip, or Tresca's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
-    /// μ_s ≥ 0; infinite in Tresca's law.
+    /// Static coefficient of friction μ_s ≥ 0; infinite in Tresca's law.
     pub stick: f64,
-    /// μ_d ≥ 0.
+    /// Dynamic coefficient of friction μ_d ≥ 0.
     pub slip: f64,
-    /// c: time per length of slip; infinite if slip has μ_d at once.
+    /// Decay c of the coefficient with the rate of slip, a time per length; infinite if slip has
+    /// μ_d at once.
     pub decay: f64,
-    /// Largest traction; infinite in Coulomb's law.
+    /// Largest tangential traction; infinite in Coulomb's law.
     pub limit: f64,
 }
 
-/// The traction of a slip, and its derivatives.
+/// Size of the traction of a slip, the radius of the friction cone, with its derivatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Radius {
-    /// r.
+    /// Radius r of the friction cone.
     pub value: f64,
-    /// ∂r/∂|λ|.
+    /// Derivative ∂r/∂|λ| of the radius by the pressure.
     pub by_pressure: f64,
-    /// ∂r/∂|Ṡ|.
+    /// Derivative ∂r/∂|Ṡ| of the radius by the rate of slip.
+    pub by_rate: f64,
+}
+
+/// The coefficient of friction at a rate of slip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficient {
+    /// Coefficient of friction μ.
+    pub value: f64,
+    /// Derivative ∂μ/∂|Ṡ| by the rate of slip.
     pub by_rate: f64,
 }
 
@@ -134,54 +147,83 @@ impl Law {
         Self { stick: coefficient, slip: coefficient, decay: 0.0, limit: f64::INFINITY }
     }
 
-    /// Whether its traction is zero under any pressure: there is no friction.
+    /// Whether there is no friction: the traction is zero under any pressure.
     pub fn is_none(&self) -> bool {
         self.limit == 0.0 || self.stick == 0.0 && self.slip == 0.0
     }
 
-    /// Largest traction in stick under a pressure |λ|.
+    /// Largest tangential traction of a pair that sticks under a pressure |λ|.
     pub fn grip(&self, pressure: f64) -> f64 {
         if pressure > 0.0 { (self.stick * pressure).min(self.limit) } else { 0.0 }
     }
 
-    /// The traction of a slip under a pressure |λ| at a rate |Ṡ|.
+    /// Size of the traction in slip under a pressure |λ| at a rate of slip |Ṡ|.
     pub fn slip(&self, pressure: f64, rate: f64) -> Radius {
         if pressure <= 0.0 {
             return Radius::default();
         }
-        let (coefficient, slope) = self.coefficient(rate);
-        let value = coefficient * pressure;
+        let coefficient = self.coefficient(rate);
+        let value = coefficient.value * pressure;
         if value < self.limit {
-            Radius { value, by_pressure: coefficient, by_rate: slope * pressure }
+            Radius { value, by_pressure: coefficient.value, by_rate: coefficient.by_rate * pressure }
         } else {
             Radius { value: self.limit, ..Radius::default() }
         }
     }
 
-    /// μ at a rate of slip, and its derivative.
-    pub fn coefficient(&self, rate: f64) -> (f64, f64) {
+    /// Coefficient of friction at a rate of slip, with its derivative.
+    pub fn coefficient(&self, rate: f64) -> Coefficient {
         if self.stick == self.slip || self.decay.is_infinite() {
-            return (self.slip, 0.0);
+            return Coefficient { value: self.slip, by_rate: 0.0 };
         }
         let rest = (self.stick - self.slip) * (-self.decay * rate).exp();
-        (self.slip + rest, -self.decay * rest)
+        Coefficient { value: self.slip + rest, by_rate: -self.decay * rest }
     }
 }
 
-/// A closed pair as the law sees it.
+/// State of a closed pair that decides whether it sticks or slips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionPair {
-    /// Its state.
+    /// Whether the pair sticks or slips.
     pub friction_state: FrictionState,
-    /// Traction q.
+    /// Tangential traction q.
     pub traction: Along,
-    /// Slip S of the step.
+    /// Slip S of the pair in the step.
     pub slip: Along,
-    /// Largest traction in stick.
+    /// Largest tangential traction while the pair sticks.
     pub cone: f64,
 }
 
-/// History of the states visited in one step.
+/// A pair that changes between stick and slip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StateChange {
+    /// Index of the pair.
+    pub pair: usize,
+    /// State to which the pair changes.
+    pub friction_state: FrictionState,
+}
+
+/// A change of a pair whose present state violates the law, with the size of the violation: a
+/// traction over the largest cone for stick, a length for slip.
+#[derive(Clone, Copy)]
+struct Wrong {
+    change: StateChange,
+    violation: f64,
+}
+
+impl Wrong {
+    fn new(pair: usize, friction_state: FrictionState, violation: f64) -> Self {
+        Self { change: StateChange { pair, friction_state }, violation }
+    }
+
+    /// Whether the pair changes to stick.
+    fn sticks(&self) -> bool {
+        self.change.friction_state == FrictionState::Stick
+    }
+}
+
+/// Primal–dual active set over stick and slip of the pairs of a contact, with the states that it
+/// has visited in one step.
 #[derive(Clone, Debug)]
 pub struct StickSlip {
     visited: Visited<Vec<Option<[i8; 2]>>>,
@@ -189,14 +231,14 @@ pub struct StickSlip {
 }
 
 impl StickSlip {
-    /// `slip_tolerance`: slip in the wrong direction that does not count. `within`: changes are
-    /// allowed before Newton has converged.
+    /// Starts with no visited states. `slip_tolerance`: slip in the wrong direction that does not
+    /// count; `within`: whether pairs may change before Newton's method has converged.
     pub fn new(slip_tolerance: f64, within: bool) -> Self {
         Self { visited: Visited::new(within), slip_tolerance }
     }
 
-    /// Pairs to change, with their new states; none for an open pair, or one that has no traction
-    /// yet.
+    /// Pairs that change between stick and slip, with their new states; an open pair, or one
+    /// without a traction yet, is given as `None`.
     ///
     /// # Errors
     /// If the states return to those visited before in spite of all restrictions.
@@ -204,31 +246,33 @@ impl StickSlip {
         &mut self,
         pairs: &[Option<FrictionPair>],
         converged: bool,
-    ) -> Result<Vec<(usize, FrictionState)>, Cycle> {
+    ) -> Result<Vec<StateChange>, Cycle> {
         if self.visited.waits(converged) {
             return Ok(Vec::new());
         }
         let widest = pairs.iter().flatten().map(|pair| pair.cone).fold(0.0, f64::max);
-        let mut wrong: Vec<(usize, FrictionState, f64)> = Vec::new();
+        let mut wrong: Vec<Wrong> = Vec::new();
         for (p, pair) in pairs.iter().enumerate() {
             let Some(pair) = pair else { continue };
             let backwards = -inner(pair.friction_state.direction(), pair.slip);
             if pair.friction_state == FrictionState::Stick {
                 let excess = length(pair.traction) - pair.cone;
                 if excess > EDGE * widest {
-                    wrong.push((p, FrictionState::of(pair.traction, 0.0), excess / widest));
+                    wrong.push(Wrong::new(p, FrictionState::of(pair.traction, 0.0), excess / widest));
                 }
             } else if backwards > self.slip_tolerance {
-                wrong.push((p, FrictionState::Stick, backwards));
+                wrong.push(Wrong::new(p, FrictionState::Stick, backwards));
             }
         }
         if wrong.is_empty() {
             return Ok(Vec::new());
         }
-        let after = |wrong: &[(usize, FrictionState, f64)]| -> Vec<Option<[i8; 2]>> {
+        let after = |wrong: &[Wrong]| -> Vec<Option<[i8; 2]>> {
             let mut states: Vec<_> =
                 pairs.iter().map(|pair| pair.map(|pair| pair.friction_state.rounded())).collect();
-            wrong.iter().for_each(|&(p, friction_state, _)| states[p] = Some(friction_state.rounded()));
+            for Wrong { change, .. } in wrong {
+                states[change.pair] = Some(change.friction_state.rounded());
+            }
             states
         };
         self.visited.visit(after(&[]), &after(&wrong), converged);
@@ -237,19 +281,17 @@ impl StickSlip {
         }
         if self.visited.is_cautious() {
             // Sticks that leave the cone before slips in the wrong direction, the worst first.
-            wrong.sort_by(|a, b| {
-                (a.1 == FrictionState::Stick).cmp(&(b.1 == FrictionState::Stick)).then(b.2.total_cmp(&a.2))
-            });
-            let untried = wrong.iter().find(|change| !self.visited.contains(&after(&[**change])));
+            wrong.sort_by(|a, b| a.sticks().cmp(&b.sticks()).then(b.violation.total_cmp(&a.violation)));
+            let untried = wrong.iter().find(|wrong| !self.visited.contains(&after(&[**wrong])));
             return match untried {
-                Some(&(p, friction_state, _)) => Ok(vec![(p, friction_state)]),
-                None => Err(Cycle { pairs: wrong.iter().map(|change| change.0).collect() }),
+                Some(wrong) => Ok(vec![wrong.change]),
+                None => Err(Cycle { pairs: wrong.iter().map(|wrong| wrong.change.pair).collect() }),
             };
         }
-        Ok(wrong.into_iter().map(|(p, friction_state, _)| (p, friction_state)).collect())
+        Ok(wrong.into_iter().map(|wrong| wrong.change).collect())
     }
 
-    /// Clears the visited states: the pairs themselves have changed.
+    /// Clears the visited states, for pairs that have changed themselves.
     pub fn restart(&mut self) {
         self.visited.restart();
     }
@@ -261,6 +303,10 @@ mod tests {
 
     const FORWARD: FrictionState = FrictionState::Slip([1.0, 0.0]);
     const BACKWARD: FrictionState = FrictionState::Slip([-1.0, 0.0]);
+
+    fn change(pair: usize, friction_state: FrictionState) -> StateChange {
+        StateChange { pair, friction_state }
+    }
 
     #[allow(clippy::unnecessary_wraps)]
     fn rub(friction_state: FrictionState, traction: f64, slip: f64) -> Option<FrictionPair> {
@@ -283,7 +329,12 @@ mod tests {
         let changes = StickSlip::new(1e-12, true).changes(&pairs, false).unwrap();
         assert_eq!(
             changes,
-            [(1, FORWARD), (2, BACKWARD), (6, FrictionState::Stick), (7, FrictionState::Stick)]
+            [
+                change(1, FORWARD),
+                change(2, BACKWARD),
+                change(6, FrictionState::Stick),
+                change(7, FrictionState::Stick)
+            ]
         );
     }
 
@@ -299,7 +350,11 @@ mod tests {
             pair(oblique, [0.6, -0.8], [0.8, 0.61]),
         ];
         let changes = StickSlip::new(1e-12, true).changes(&pairs, false).unwrap();
-        let [(0, FrictionState::Slip(d)), (3, FrictionState::Stick)] = changes[..] else {
+        let [
+            StateChange { pair: 0, friction_state: FrictionState::Slip(d) },
+            StateChange { pair: 3, friction_state: FrictionState::Stick },
+        ] = changes[..]
+        else {
             panic!("{changes:?}")
         };
         assert!((d[0] - 0.6).abs() < 1e-15 && (d[1] + 0.8).abs() < 1e-15, "{d:?}");
@@ -331,10 +386,11 @@ mod tests {
     #[test]
     fn a_two_cycle_is_named_in_the_end() {
         let mut set = StickSlip::new(0.0, true);
-        let (stick, slip) = ([rub(FrictionState::Stick, 2.0, 0.0)], [rub(FORWARD, 1.0, -1.0)]);
-        assert_eq!(set.changes(&stick, false).unwrap(), [(0, FORWARD)]);
+        let stick = [rub(FrictionState::Stick, 2.0, 0.0)];
+        let slip = [rub(FORWARD, 1.0, -1.0)];
+        assert_eq!(set.changes(&stick, false).unwrap(), [change(0, FORWARD)]);
         assert!(set.changes(&slip, false).unwrap().is_empty());
-        assert_eq!(set.changes(&slip, true).unwrap(), [(0, FrictionState::Stick)]);
+        assert_eq!(set.changes(&slip, true).unwrap(), [change(0, FrictionState::Stick)]);
         let mut named = false;
         for k in 0..6 {
             named |= set.changes(if k % 2 == 0 { &stick } else { &slip }, true).is_err();

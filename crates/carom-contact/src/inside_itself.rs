@@ -12,16 +12,28 @@ use crate::kinematics::Facets;
 use crate::places::Places;
 use crate::skin::{CHORDS, Skin};
 
-/// Smallest angle of a body at a node that is told from the angle of a fold, 30°.
+/// Angle of a body at a node, 30°, below which a node on the boundary cannot be told from one
+/// inside a fold.
 const SHARPEST: f64 = PI / 6.0;
 
+/// A node of a boundary that lies inside its own body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InsideItself {
+    /// Global number of the node.
+    pub node: usize,
+    /// The nearest facet that does not contain the node; on the flank of a slit, one of the other
+    /// flank.
+    pub facet: usize,
+    /// Distance between the node and the nearest facet.
+    pub depth: f64,
+}
+
 impl Skin {
-    /// The node that lies deepest inside its own body at positions `y`, the nearest facet that does
-    /// not contain it, and the distance to it: on the flank of a slit, that to the other flank.
-    pub fn deepest_in_itself(&self, y: &[f64]) -> Option<(usize, usize, f64)> {
+    /// The node that lies deepest inside its own body at positions `y`, if one does.
+    pub fn deepest_in_itself(&self, y: &[f64]) -> Option<InsideItself> {
         let at = Places::new(y, 2);
         let surface = self.surface();
-        let mut deepest: Option<(usize, usize, f64)> = None;
+        let mut deepest: Option<InsideItself> = None;
         for facet in 0..surface.all() {
             let nodes = surface.facet(facet).nodes;
             // The last node is the first of another facet.
@@ -31,19 +43,22 @@ impl Skin {
                 }
                 let nearest = (0..surface.all())
                     .filter(|&other| !self.facet_nodes(other).contains(&node))
-                    .map(|other| (other, surface.nearest(other, at.at(node), at).1))
-                    .min_by(|a, b| a.1.total_cmp(&b.1));
-                if let Some((other, distance)) = nearest
-                    && deepest.is_none_or(|(.., most)| distance > most)
+                    .map(|other| {
+                        let depth = surface.nearest(other, at.at(node), at).distance;
+                        InsideItself { node, facet: other, depth }
+                    })
+                    .min_by(|a, b| a.depth.total_cmp(&b.depth));
+                if let Some(found) = nearest
+                    && deepest.is_none_or(|most| found.depth > most.depth)
                 {
-                    deepest = Some((node, other, distance));
+                    deepest = Some(found);
                 }
             }
         }
         deepest
     }
 
-    /// The angle under which a node sees the facets that do not contain it.
+    /// Angle under which a node sees the facets of its own boundary that do not contain it.
     fn seen_from(&self, node: usize, y: Places) -> f64 {
         let from: Vector<2> = y.at(node);
         let surface = self.surface();
@@ -76,10 +91,11 @@ mod tests {
         let mut skin = Skin::new(Surface::new(FacetShape::L2, &facets, &[1.0; 8]));
         skin.update(&y);
         assert_eq!(skin.deepest_in_itself(&y), None);
-        (y[11], y[13]) = (0.7, 1.7);
+        y[11] = 0.7;
+        y[13] = 1.7;
         skin.update(&y);
-        let (node, facet, distance) = skin.deepest_in_itself(&y).unwrap();
-        assert_eq!((node, facet), (5, 2));
-        assert!((distance - 0.3).abs() < 1e-15, "{distance}");
+        let found = skin.deepest_in_itself(&y).unwrap();
+        assert_eq!((found.node, found.facet), (5, 2));
+        assert!((found.depth - 0.3).abs() < 1e-15, "{}", found.depth);
     }
 }

@@ -17,15 +17,20 @@ mod visited;
 
 pub use active_set::{ActiveSet, Contender, Cycle};
 pub use discrete_gradient::DiscreteGradient;
-pub use friction::{Along, FrictionPair, FrictionState, Law, Radius, StickSlip, Tangential, inner, length};
+pub use friction::{
+    Along, Coefficient, FrictionPair, FrictionState, Law, Radius, StateChange, StickSlip, Tangential, inner,
+    length,
+};
+pub use inside_itself::InsideItself;
 pub use interface::{
     Answer, Augmented, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point,
     Unilateral,
 };
 pub use kinematics::{
     BothSides, Boundary, Carrier, ClosedSurface, ContactPoint, Crossings, Depth, Detection, EdgeToEdge,
-    Faceted, Kinematics, NodeToFacet, NodeToObstacle, NodeToPatch, Obstacle, OneWay, Passed, Polyline,
-    PolylineError, Side, SpaceHit, Surface, Swept, SweptEdges, SweptPatch, SweptTest, WithEdges,
+    Faceted, Kinematics, NodeToFacet, NodeToObstacle, NodeToPatch, NodesWithDepth, Obstacle, OnFacet, OneWay,
+    Passed, Polyline, PolylineError, Side, SpaceHit, Surface, Swept, SweptEdges, SweptPatch, SweptTest, Tip,
+    WithEdges,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

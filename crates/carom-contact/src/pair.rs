@@ -6,8 +6,9 @@ use educe::Educe;
 use serde::{Deserialize, Serialize};
 
 use crate::friction::Tangential;
+use crate::kinematics::OnFacet;
 
-/// One secondary node against one facet of the primary side, or a sharp edge against a sharp edge:
+/// A secondary node and a facet of the primary side, or two sharp edges, that may be in contact:
 /// contact point and history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
@@ -20,12 +21,12 @@ pub struct Pair {
     pub facet: usize,
     /// Contact point on the facet, −1 … 1; 0 if the facet is a point or a plane.
     pub xi: f64,
-    /// Its second coordinate on a facet in space; 0 in the plane. Of two edges, ξ is that on the
-    /// edge of the secondary side and η that on the other one.
+    /// Second coordinate of the contact point on a facet in space; 0 in the plane. For two edges, ξ
+    /// is the coordinate on the edge of the secondary side and η that on the other one.
     pub eta: f64,
-    /// Whether it is active: for a constraint, whether its gap is constrained to zero.
+    /// Whether the pair is active: for a constraint, whether its gap is constrained to zero.
     pub active: bool,
-    /// Whether it has been active since the start of the run.
+    /// Whether the pair has been active since the start of the run.
     pub rests: bool,
     /// Multiplier λ ≤ 0; zero unless active.
     pub lambda: f64,
@@ -34,7 +35,7 @@ pub struct Pair {
     /// Gap at the step's start for an energy-conserving penalty. It is stored, since Δg = ∇g·Δy at
     /// the midpoint holds to second order only.
     pub start: Option<f64>,
-    /// State of friction.
+    /// Tangential state and history, for friction.
     pub tangential: Tangential,
 }
 
@@ -55,8 +56,8 @@ impl Pair {
         }
     }
 
-    /// The same of a facet with two coordinates.
-    pub(crate) fn opened(node: usize, facet: usize, [xi, eta]: [f64; 2]) -> Self {
+    /// An inactive pair at a point of a facet in space, or of one in the plane with η = 0.
+    pub(crate) fn opened(node: usize, OnFacet { facet, xi: [xi, eta] }: OnFacet<[f64; 2]>) -> Self {
         Self { eta, ..Self::open(node, facet, xi) }
     }
 }
@@ -64,7 +65,8 @@ impl Pair {
 /// Margin around a facet's path within which a node is tracked, relative to the path's size: before
 /// contact, and as far as facets are extrapolated.
 const WATCHED: f64 = 0.35;
-/// The same when only contacts within the step matter.
+/// Margin around a facet's path within which a node is tracked, relative to the path's size, when
+/// only contacts within the step matter.
 const NEAR: f64 = 0.01;
 
 /// Orders pairs by their nodes; those of one node remain in their order.
@@ -76,25 +78,25 @@ pub(crate) fn in_order(pairs: &mut [Pair]) {
 #[derive(Debug, Educe, PartialEq)]
 #[educe(Clone)]
 pub struct Pairing {
-    /// The pairs.
+    /// The pairs, ascending by node.
     pub pairs: Vec<Pair>,
     /// Margin around facets within which nodes are tracked.
     pub(crate) margin: f64,
-    /// Facet from which a node was handed over in this step: one that would return lies in a
-    /// concave corner.
+    /// Facet from which each node was handed over in this step: a node that would return to it lies
+    /// in a concave corner.
     pub(crate) left: BTreeMap<usize, usize>,
-    /// Whether no search has been made in this solve.
+    /// Whether no search has been made yet in this solve.
     pub(crate) fresh: bool,
 }
 
 impl Pairing {
-    /// Pairs at the start of a solve: each may change facets again.
+    /// Pairs at the start of a solve, in which each may change facets again.
     pub fn new(pairs: Vec<Pair>) -> Self {
         Self { pairs, margin: WATCHED, left: BTreeMap::new(), fresh: true }
     }
 
-    /// The same for an explicit step, which moves no further than predicted: only nodes that may
-    /// come into contact within it are tracked.
+    /// Pairs at the start of an explicit step, which moves no further than predicted: only nodes
+    /// that may come into contact within it are tracked.
     pub fn near(pairs: Vec<Pair>) -> Self {
         Self { margin: NEAR, ..Self::new(pairs) }
     }
@@ -115,7 +117,8 @@ impl Pairing {
         Self { pairs, margin: self.margin, left, fresh: self.fresh }
     }
 
-    /// Reverses [`split_off`](Self::split_off).
+    /// Adds pairs whose nodes are numbered from `node` on, the inverse of
+    /// [`split_off`](Self::split_off).
     pub(crate) fn append(&mut self, other: Self, node: usize) {
         self.pairs.extend(other.pairs.into_iter().map(|pair| Pair { node: pair.node + node, ..pair }));
         self.left.extend(other.left.into_iter().map(|(k, facet)| (k + node, facet)));
@@ -136,21 +139,21 @@ pub enum PairEvent {
     HandOver {
         /// Global number of the secondary node.
         node: usize,
-        /// Old facet.
+        /// Facet from which the node slid.
         from: usize,
-        /// New facet.
+        /// Facet to which the node slid.
         to: usize,
     },
     /// The node slid off the end of the side.
     SlidOff {
         /// Global number of the secondary node.
         node: usize,
-        /// Facet it left.
+        /// Facet that the node left.
         facet: usize,
     },
 }
 
-/// Why a gap is not usable.
+/// Why the gap of a pair cannot be measured.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ContactError {
     /// The node is as far behind the facet as the facet's radius of curvature: no unique closest
@@ -161,11 +164,11 @@ pub enum ContactError {
     Focal {
         /// Global number of the secondary node.
         node: usize,
-        /// Facet.
+        /// Facet of the pair.
         facet: usize,
-        /// Contact point.
+        /// Coordinate ξ of the contact point on the facet.
         xi: f64,
-        /// J² − gκ.
+        /// Second derivative a = J² − gκ of half the squared distance by ξ, which is not positive.
         a: f64,
     },
     /// The node is inside a rigid obstacle, at the centre of a circle.
@@ -176,7 +179,8 @@ pub enum ContactError {
         /// Global number of the secondary node.
         node: usize,
     },
-    /// Two edges run along each other, or have left each other: no closest points.
+    /// Two edges run along each other, or have left each other, so that there are no closest
+    /// points.
     #[error(
         "the sharp edge at secondary node {node} does not cross edge {facet} of the primary: they run along each other, or are far past their ends"
     )]
@@ -191,15 +195,16 @@ pub enum ContactError {
     Lost {
         /// Global number of the secondary node.
         node: usize,
-        /// Facet.
+        /// Facet of the pair.
         facet: usize,
-        /// Last contact point.
+        /// Coordinate ξ of the last contact point on the facet.
         xi: f64,
     },
 }
 
 impl ContactError {
-    /// An error for a node, given by its global number, and a pair without a unique closest point.
+    /// Reports an error for a pair without a unique closest point, a ≤ 0; `node`: global number of
+    /// the secondary node.
     pub(crate) fn unless_regular(node: usize, pair: &Pair, a: f64) -> Result<(), Self> {
         if a > 0.0 && a.is_finite() {
             return Ok(());

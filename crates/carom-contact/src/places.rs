@@ -11,13 +11,13 @@ pub(crate) struct Places<'a> {
 }
 
 impl<'a> Places<'a> {
-    /// Positions flat over nodes, in one dimension or in the plane.
+    /// Positions from components flat over all nodes, in one dimension or in the plane.
     pub(crate) fn new(y: &'a [f64], dimension: usize) -> Self {
         debug_assert!(dimension <= 2, "positions in space are those of `space/`");
         Self { y, dimension }
     }
 
-    /// The positions as given.
+    /// The positions as given, flat over all nodes.
     pub(crate) fn flat(&self) -> &'a [f64] {
         self.y
     }
@@ -28,7 +28,7 @@ impl<'a> Places<'a> {
         &self.y[node * self.dimension..(node + 1) * self.dimension]
     }
 
-    /// Position of a node.
+    /// Position of a node, padded with zeros to the plane.
     #[inline]
     pub(crate) fn at(&self, node: usize) -> Vector<2> {
         match self.dimension {

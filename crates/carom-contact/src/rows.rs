@@ -6,7 +6,7 @@
 
 use carom_algebra::Vector;
 
-/// Constraint rows, all of one dimension.
+/// Constraint rows: gaps with their gradients, all over positions of one dimension.
 #[derive(Clone, Debug)]
 pub struct Rows {
     dimension: usize,
@@ -14,31 +14,33 @@ pub struct Rows {
     /// Start of the nodes of each row, and end of the last.
     starts: Vec<usize>,
     nodes: Vec<usize>,
-    /// ∂g/∂y of each of these nodes.
+    /// Gradient ∂g/∂y of each gap by each node of its row.
     gradients: Vec<f64>,
     /// Whether the first node of each row belongs to the primary side.
     reversed: Vec<bool>,
-    /// Number of the first nodes of each row that belong to one side.
+    /// For each row, the number of its first nodes that belong to one side.
     own: Vec<usize>,
 }
 
-/// One row.
+/// A constraint row: a gap with its gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row<'a> {
-    /// Gap g; infinite without a unique closest point, for a remote pair.
+    /// Gap g; infinite for a remote pair without a unique closest point.
     pub gap: f64,
-    /// Global numbers of the nodes it depends on; the node that faces a facet comes first.
+    /// Global numbers of the nodes on which the gap depends; the node that faces a facet comes
+    /// first.
     pub nodes: &'a [usize],
-    /// ∂g/∂y of each node, node-major.
+    /// Gradient ∂g/∂y of the gap, node-major.
     pub gradient: &'a [f64],
-    /// Whether the first node belongs to the primary side and the others to the secondary one.
+    /// Whether the first node of the row belongs to the primary side and the others to the
+    /// secondary one.
     pub reversed: bool,
-    /// Number of the first nodes that belong to one side: one, or those of an edge.
+    /// Number of the first nodes of the row that belong to one side: one, or those of an edge.
     pub own: usize,
 }
 
 impl Rows {
-    /// No rows yet, for positions of a dimension.
+    /// An empty set of rows, for positions of a dimension.
     pub fn new(dimension: usize) -> Self {
         Self {
             dimension,
@@ -76,8 +78,8 @@ impl Rows {
         self.own.clear();
     }
 
-    /// Adds a row from its nodes with their ∂g/∂y, of which as many components are used as there
-    /// are dimensions.
+    /// Adds a row from its gap and its nodes with their gradients ∂g/∂y, of which as many
+    /// components are used as there are dimensions.
     pub fn push<const P: usize>(&mut self, gap: f64, nodes: impl IntoIterator<Item = (usize, [f64; P])>) {
         self.gaps.push(gap);
         self.reversed.push(false);
@@ -89,7 +91,8 @@ impl Rows {
         self.starts.push(self.nodes.len());
     }
 
-    /// Adds a row over the nodes of both sides from their ∂g/∂y in turn.
+    /// Adds a row from its gap and the gradients ∂g/∂y for the nodes of one side, then for those of
+    /// the other.
     pub(crate) fn push_both<const P: usize>(
         &mut self,
         gap: f64,
@@ -127,7 +130,8 @@ impl Rows {
         self.starts.push(self.nodes.len());
     }
 
-    /// Adds Σ c_i times consecutive rows over the same nodes, from the row `first` of `rows` on.
+    /// Adds a linear combination, with these factors, of consecutive rows over the same nodes, from
+    /// the row `first` of `rows` on.
     pub fn push_combined(&mut self, rows: &Self, first: usize, factors: &[f64]) {
         self.push_row(rows.row(first));
         let last = self.len() - 1;
@@ -143,13 +147,13 @@ impl Rows {
         }
     }
 
-    /// The tangents of a slip in space, whose rows are those from `first` on: their gradients of
-    /// the first node. Zero in the plane, where the normal gives the tangent.
+    /// The tangents of a slip in space, whose rows begin with `first`: their gradients for the
+    /// first node. Zero in the plane, where the normal gives the tangent.
     pub fn tangents(&self, first: usize) -> [[f64; 3]; 2] {
         if self.dimension == 3 { [first, first + 1].map(|row| self.row(row).first()) } else { [[0.0; 3]; 2] }
     }
 
-    /// A row.
+    /// The row with a given index.
     pub fn row(&self, row: usize) -> Row<'_> {
         let range = self.starts[row]..self.starts[row + 1];
         let gradients = range.start * self.dimension..range.end * self.dimension;
@@ -180,12 +184,12 @@ impl Rows {
         (0..self.len()).map(|row| self.row(row))
     }
 
-    /// The gradient of a row, mutable: a discrete gradient replaces that at the midpoint.
+    /// The gradient of a row for changes: a discrete gradient replaces that at the midpoint.
     pub fn gradient_mut(&mut self, row: usize) -> &mut [f64] {
         &mut self.gradients[self.starts[row] * self.dimension..self.starts[row + 1] * self.dimension]
     }
 
-    /// The gap of a row, mutable: springs have their own.
+    /// The gap of a row for changes: conserving springs accumulate their own.
     pub fn gap_mut(&mut self, row: usize) -> &mut f64 {
         &mut self.gaps[row]
     }
@@ -197,19 +201,19 @@ impl Row<'_> {
         if self.nodes.is_empty() { 0 } else { self.gradient.len() / self.nodes.len() }
     }
 
-    /// Global dofs with their ∂g/∂y.
+    /// Global dofs of the row with the components of ∂g/∂y, in order.
     pub fn entries(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let d = self.dimension();
         let dofs = self.nodes.iter().flat_map(move |node| (0..d).map(move |i| node * d + i));
         dofs.zip(self.gradient.iter().copied())
     }
 
-    /// ∇g·x, x flat over all dofs.
+    /// Scalar product ∇g·x of the gradient with a vector over all dofs.
     pub fn along(&self, x: &[f64]) -> f64 {
         self.entries().map(|(dof, slope)| slope * x[dof]).sum()
     }
 
-    /// force += factor ∇g, flat over all dofs.
+    /// Adds a multiple of the gradient ∇g to a force over all dofs.
     pub fn add_to(&self, factor: f64, force: &mut [f64]) {
         for (dof, slope) in self.entries() {
             force[dof] += factor * slope;
@@ -226,15 +230,17 @@ impl Row<'_> {
         std::array::from_fn(|i| if i < d { of(i) } else { 0.0 })
     }
 
-    /// Shares of the nodes of the first edge in its contact point; one of a node.
+    /// Nodes of the first edge with their shares in its contact point; for a node, the node itself
+    /// with the share one.
     pub fn shares(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let (d, whole) = (self.dimension(), self.first());
+        let d = self.dimension();
+        let whole = self.first();
         let share = move |node: usize| (0..d).map(|i| self.gradient[node * d + i] * whole[i]).sum::<f64>();
         (0..self.own).map(move |k| (self.nodes[k], if self.own == 1 { 1.0 } else { share(k) }))
     }
 
-    /// The primary's outward unit normal, padded with zeros to space: ∂g/∂y of the first node, with
-    /// the other sign if that belongs to the primary.
+    /// Outward unit normal of the primary side, padded with zeros to space: the gradient ∂g/∂y for
+    /// the first node, with the other sign if that node belongs to the primary.
     pub fn normal(&self) -> [f64; 3] {
         let sign = if self.reversed { -1.0 } else { 1.0 };
         self.first().map(|slope| sign * slope)

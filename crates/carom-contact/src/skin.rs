@@ -6,29 +6,30 @@
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull, Tree};
 
+use crate::depth::NearestOnFacet;
 use crate::kinematics::{Depth, Facets, Folds, Side, Surface, Turns, amplification};
 use crate::places::Places;
 
-/// The boundary of a body at given positions.
+/// The whole boundary of a body in the plane, to tell how deep a point lies inside.
 #[derive(Debug)]
 pub struct Skin {
     surface: Surface,
     hull: Hull,
     tree: Tree,
-    /// For its own nodes.
+    /// For nodes of the boundary itself: the order of the facets and the turns of the boundary.
     folds: Option<(Folds, Turns)>,
 }
 
 impl Skin {
-    /// All facets of a body's boundary, in the plane.
+    /// A closed boundary of all facets of a body in the plane.
     pub fn new(surface: Surface) -> Self {
         let hull = Hull::facet(surface.shape());
         Self { surface, hull, tree: Tree::default(), folds: None }
     }
 
-    /// The same, to measure its own nodes too; `piece`: the connected piece of the body to which
-    /// each node belongs, from `first_node` on; `reference`: the reference positions, flat over all
-    /// nodes.
+    /// Allows nodes of the boundary itself to be measured; `piece`: the connected piece of the body
+    /// to which each node belongs, from `first_node` on; `reference`: the reference positions, flat
+    /// over all nodes.
     #[must_use]
     pub fn with_pieces(self, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
         let folds = Folds::new(&self.surface, piece, first_node, reference);
@@ -44,30 +45,32 @@ impl Skin {
         self.surface.nodes_of(facet)
     }
 
-    /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵅ|.
+    /// Largest ratio of the motion of a point of a facet to that of its nodes: the largest Σ |φᵅ|.
     pub fn amplification(&self) -> f64 {
         amplification(self.surface.shape())
     }
 
     /// Moves the boundary to positions `y`, flat over all nodes.
     pub fn update(&mut self, y: &[f64]) {
-        let (surface, hull) = (&self.surface, &self.hull);
+        let surface = &self.surface;
+        let hull = &self.hull;
         if let Some((folds, turns)) = &mut self.folds {
             turns.update(folds, surface, Places::new(y, 2));
         }
         self.tree.place(surface.all(), |facet| surface.bounds(hull, facet, y));
     }
 
-    /// Where a point lies at the positions of the last update, searched from a facet near it if one
-    /// is known; `None` without a boundary.
+    /// Position relative to the boundary of a point, at the positions of the last update, searched
+    /// from a facet near it if one is known; `None` without a boundary.
     pub fn depth(&self, point: [f64; 2], from: Option<usize>, y: &[f64]) -> Option<Depth> {
-        let (surface, at) = (&self.surface, Vector(point));
+        let surface = &self.surface;
+        let at = Vector(point);
         let (facet, _) = self.tree.nearest(&point, from, |facet| Some(surface.distance(facet, at, y)))?;
         Some(surface.depth(facet, at, y))
     }
 
-    /// Where a node of the boundary lies relative to those parts of it that it may meet and that
-    /// lie on one side of it in the order of the boundary, if one is nearer than `reach`.
+    /// Position of a node of the boundary relative to those parts of the boundary that it may meet
+    /// and that lie on the given side of it in the order of facets, if one is nearer than `reach`.
     pub fn depth_of(&self, node: usize, side: Side, reach: f64, y: &[f64]) -> Option<Depth> {
         let (folds, turns) = self.folds.as_ref()?;
         let places = Places::new(y, 2);
@@ -75,7 +78,7 @@ impl Skin {
         let meets = |facet: usize| folds.admits(side, node, facet) && folds.face(turns, node, facet);
         let mut nearest: Option<(usize, f64)> = None;
         for facet in self.tree.meeting(&Bounds::of(&point.0).grown(reach)).filter(|&facet| meets(facet)) {
-            let (xi, distance) = self.surface.nearest(facet, point, places);
+            let NearestOnFacet { xi, distance } = self.surface.nearest(facet, point, places);
             // An end next to what the node cannot meet, such as its own facet, is no place to
             // enter.
             let beyond = || self.surface.neighbour(facet, xi > 0.0);
@@ -91,7 +94,7 @@ impl Skin {
         nearest.map(|(facet, _)| self.surface.depth(facet, point, y))
     }
 
-    /// Distance between a point and the boundary at ξ of a facet, which may lie elsewhere.
+    /// Distance between a point and the point ξ of a facet, which need not be the nearest one.
     pub fn distance(&self, facet: usize, xi: f64, point: [f64; 2], y: &[f64]) -> f64 {
         (Vector(point) - self.surface.facet(facet).at(Places::new(y, 2), xi).position).norm()
     }
@@ -116,21 +119,22 @@ impl Skin {
         })
     }
 
-    /// How far a coordinate of a node may change, apart from a motion of all nodes together, before
-    /// two facets that do not meet at a joint can cross; 0 where two are near at the positions of
-    /// the last update.
+    /// Change of a coordinate of a node, apart from a motion of all nodes together, before two
+    /// facets that do not meet at a joint can cross; 0 where two are near at the positions of the
+    /// last update.
     pub fn clearance_to_itself(&self, y: &[f64]) -> f64 {
         self.surface.clearance(&self.hull, &self.tree, y)
     }
 }
 
-/// Chords of a curved facet.
+/// Number of chords by which a curved facet is approximated.
 pub(crate) const CHORDS: usize = 4;
 
 /// Whether two segments cross, their ends not included.
 fn cross(a: [Vector<2>; 2], b: [Vector<2>; 2]) -> bool {
     let side = |[p, q]: [Vector<2>; 2], r: Vector<2>| {
-        let (u, v) = (q - p, r - p);
+        let u = q - p;
+        let v = r - p;
         u[0] * v[1] - u[1] * v[0]
     };
     side(a, b[0]) * side(a, b[1]) < 0.0 && side(b, a[0]) * side(b, a[1]) < 0.0
@@ -158,7 +162,8 @@ mod tests {
         // The shortest facets are 1 long; two may approach each other.
         assert_eq!(skin.clearance_to_itself(&y), 0.125);
         // The arm to the right is bent down to 0.2 above the lower side, which is 2 long.
-        (y[5], y[7]) = (0.2, 0.2);
+        y[5] = 0.2;
+        y[7] = 0.2;
         skin.update(&y);
         assert_eq!(skin.clearance_to_itself(&y), 0.0);
         assert!(!skin.crosses_itself(&y, |_, _| false));
@@ -198,7 +203,8 @@ mod tests {
         let (mut skin, mut y) = bracket();
         assert!(!skin.crosses_itself(&y, |_, _| false));
         // The end of the upright arm is pushed through the lower side.
-        (y[9], y[11]) = (-0.5, -0.5);
+        y[9] = -0.5;
+        y[11] = -0.5;
         skin.update(&y);
         assert!(skin.crosses_itself(&y, |_, _| false));
     }

@@ -9,7 +9,7 @@ use carom_algebra::Vector;
 
 use crate::kinematics::cross;
 
-/// Solid angle of a triangle seen from the origin, negative from its outer side.
+/// Solid angle under which a triangle is seen from the origin; negative from its outer side.
 pub fn solid_angle([a, b, c]: [Vector<3>; 3]) -> f64 {
     let [p, q, r] = [a.norm(), b.norm(), c.norm()];
     let across = p * q * r + a.dot(&b) * r + b.dot(&c) * p + c.dot(&a) * q;

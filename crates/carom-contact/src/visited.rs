@@ -5,7 +5,7 @@
 use std::collections::HashSet;
 use std::hash::Hash;
 
-/// How often the set may change.
+/// How often a set of pairs may change within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Caution {
     EveryIteration,
@@ -13,7 +13,7 @@ enum Caution {
     OneAtATime,
 }
 
-/// The sets visited in one step.
+/// The sets of pairs visited in one step, and the restriction of further changes.
 #[derive(Clone, Debug)]
 pub(crate) struct Visited<S> {
     sets: HashSet<S>,
@@ -21,7 +21,8 @@ pub(crate) struct Visited<S> {
 }
 
 impl<S: Eq + Hash> Visited<S> {
-    /// None yet; `within`: changes are allowed before Newton's method has converged.
+    /// Starts with no visited sets; `within`: whether changes are allowed before Newton's method
+    /// has converged.
     pub(crate) fn new(within: bool) -> Self {
         let caution = if within { Caution::EveryIteration } else { Caution::AfterConvergence };
         Self { sets: HashSet::new(), caution }
@@ -32,7 +33,7 @@ impl<S: Eq + Hash> Visited<S> {
         self.caution == Caution::OneAtATime
     }
 
-    /// Whether no change is allowed yet.
+    /// Whether a set must not change before Newton's method has converged.
     pub(crate) fn waits(&self, converged: bool) -> bool {
         self.caution > Caution::EveryIteration && !converged
     }
@@ -41,7 +42,8 @@ impl<S: Eq + Hash> Visited<S> {
         self.sets.contains(set)
     }
 
-    /// Visits a set that is to change into `next`, another one: restricts changes if that recurs.
+    /// Records a set that is to change into another one, `next`, and restricts changes if `next`
+    /// was visited before.
     pub(crate) fn visit(&mut self, set: S, next: &S, converged: bool) {
         if self.contains(next) && !self.is_cautious() {
             self.sets.clear();
@@ -57,7 +59,7 @@ impl<S: Eq + Hash> Visited<S> {
         self.sets.insert(set);
     }
 
-    /// Forgets the sets: the pairs themselves have changed.
+    /// Clears the visited sets, for pairs that have changed themselves.
     pub(crate) fn restart(&mut self) {
         self.sets.clear();
     }

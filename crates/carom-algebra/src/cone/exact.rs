@@ -5,24 +5,26 @@ use faer::linalg::solvers::Solve;
 
 use super::kind::Kind;
 
-/// Corrections of directions, and a force across one, relative to the largest of those that slip,
-/// that is round-off.
+/// Largest number of corrections of the directions of slips.
 const CORRECTIONS: usize = 40;
+/// Force across a slip, relative to the largest force that slips, that is round-off.
 const TURN: f64 = 1e-13;
 
-/// What an unknown does.
+/// State of an unknown force: open, preventing its motion, or slipping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum State {
     Zero,
-    /// Its motion is zero.
+    /// The motion along the force is zero: a closed or sticking contact.
     Fixed,
-    /// −μ P d, or −limit d; of a vector, in the state of its first component.
+    /// A slip with the force −μ P d or, where the flag is set, −limit d; for a vector in the state
+    /// of its first component.
     Slips([f64; 2], bool),
     /// The second component of a vector that slips.
     Follows,
 }
 
-/// The second component of the vector whose first one this is.
+/// Index of the second component of a tangential vector whose first component is i; none if i is
+/// not the first component of a vector.
 pub(super) fn second(kinds: &[Kind], i: usize) -> Option<usize> {
     let of = |i: usize| match kinds.get(i) {
         Some(Kind::Tangential { of, .. }) => Some(*of),
@@ -32,7 +34,7 @@ pub(super) fn second(kinds: &[Kind], i: usize) -> Option<usize> {
     (is_first && of(i) == of(i + 1)).then_some(i + 1)
 }
 
-/// The solution for given states, with the directions of vectors that slip, which are corrected.
+/// The exact solution for given states, in which the directions of vectors that slip are corrected.
 pub(super) fn settle(
     a: &[f64],
     b: &[f64],
@@ -45,14 +47,15 @@ pub(super) fn settle(
     let mut now = z.to_vec();
     for _ in 0..CORRECTIONS {
         for i in 0..n {
-            let (Some(j), State::Slips(direction, limited)) = (second(kinds, i), states[i]) else { continue };
+            let Some(j) = second(kinds, i) else { continue };
+            let State::Slips(direction, limited) = states[i] else { continue };
             let Kind::Tangential { of, coefficient, limit } = kinds[i] else { continue };
             let [u, v] = [i, j].map(|row| b[row] + (0..n).map(|k| a[row * n + k] * now[k]).sum::<f64>());
             let radius = if limited { limit } else { coefficient * now[of] };
             let along = direction[0] * u + direction[1] * v;
             worth[i] = if radius > 0.0 { along.max(0.0) / radius } else { f64::INFINITY };
         }
-        let (exact, turns) = solve(a, b, kinds, states, &worth)?;
+        let Solution { z: exact, turns } = solve(a, b, kinds, states, &worth)?;
         let radius = |i: usize| match (kinds[i], states[i]) {
             (Kind::Tangential { limit, .. }, State::Slips(_, true)) => limit,
             (Kind::Tangential { of, coefficient, .. }, _) => coefficient * exact[of],
@@ -76,63 +79,88 @@ pub(super) fn settle(
     None
 }
 
-/// The solution of the linear problem for given states, and the forces s across the directions of
-/// vectors that slip. `worth`: d·u/r of these.
-#[allow(clippy::type_complexity)]
-fn solve(
-    a: &[f64],
-    b: &[f64],
-    kinds: &[Kind],
-    states: &[State],
-    worth: &[f64],
-) -> Option<(Vec<f64>, Vec<(usize, f64)>)> {
+/// Solution of the linear problem for given states.
+struct Solution {
+    z: Vec<f64>,
+    /// Vectors that slip, by their first component, with the force s across their direction.
+    turns: Vec<(usize, f64)>,
+}
+
+/// The linear problem for given states. Its unknowns are the forces of motions that are prevented,
+/// and those across the directions of slips; its equations are that these motions vanish.
+struct Reduced {
+    /// Components of z that each unknown contributes to, with factors.
+    forces: Vec<Vec<(usize, f64)>>,
+    /// The motion that each unknown prevents, as components of u with factors.
+    motions: Vec<Vec<(usize, f64)>>,
+    /// Component that each unknown belongs to, and whether it is the force across a slip.
+    names: Vec<(usize, bool)>,
+    /// Additions to the diagonal of the linear problem.
+    diagonal: Vec<f64>,
+    /// Components of z that are known: slips at their limit.
+    fixed: Vec<f64>,
+}
+
+impl Reduced {
+    /// The linear problem for given states; `worth`: d·u/r of the vectors that slip.
+    fn new(a: &[f64], kinds: &[Kind], states: &[State], worth: &[f64]) -> Self {
+        let n = kinds.len();
+        let mut reduced = Self {
+            forces: Vec::new(),
+            motions: Vec::new(),
+            names: Vec::new(),
+            diagonal: Vec::new(),
+            fixed: vec![0.0; n],
+        };
+        // What moves nothing across the direction does not turn it.
+        let is_turned = |i: usize, j: usize, [x, y]: [f64; 2]| {
+            let moved = y * y * a[i * n + i] - 2.0 * x * y * a[i * n + j] + x * x * a[j * n + j];
+            moved + worth[i] > 0.0
+        };
+        for i in 0..n {
+            match (states[i], second(kinds, i)) {
+                (State::Fixed, _) => reduced.add(i, false, vec![(i, 1.0)], 0.0),
+                (State::Slips([x, y], _), Some(j)) if worth[i].is_finite() && is_turned(i, j, [x, y]) => {
+                    reduced.add(i, true, vec![(i, -y), (j, x)], worth[i]);
+                }
+                _ => {}
+            }
+        }
+        reduced.add_slips(kinds, states);
+        reduced
+    }
+
+    /// Adds an unknown of component i whose force acts along the motion that it prevents.
+    fn add(&mut self, i: usize, across: bool, motion: Vec<(usize, f64)>, diagonal: f64) {
+        self.forces.push(motion.clone());
+        self.motions.push(motion);
+        self.names.push((i, across));
+        self.diagonal.push(diagonal);
+    }
+
+    /// Makes every slip follow its normal force, or fixes it at its limit.
+    fn add_slips(&mut self, kinds: &[Kind], states: &[State]) {
+        for j in 0..kinds.len() {
+            let Kind::Tangential { of, coefficient, limit } = kinds[j] else { continue };
+            let State::Slips(direction, limited) = states[j] else { continue };
+            let normal = self.names.iter().position(|&(i, across)| i == of && !across);
+            let (coefficient, limit) = if limited { (0.0, limit) } else { (coefficient, 0.0) };
+            for (k, direction) in [Some(j), second(kinds, j)].into_iter().flatten().zip(direction) {
+                if let Some(column) = normal.filter(|_| coefficient != 0.0) {
+                    self.forces[column].push((k, -direction * coefficient));
+                }
+                if limit != 0.0 {
+                    self.fixed[k] = -direction * limit;
+                }
+            }
+        }
+    }
+}
+
+/// Solves the linear problem for given states; none if the solution is not finite.
+fn solve(a: &[f64], b: &[f64], kinds: &[Kind], states: &[State], worth: &[f64]) -> Option<Solution> {
     let n = kinds.len();
-    // The forces and the motions of the unknowns: those that are prevented, and those across a
-    // slip.
-    let (mut forces, mut motions) = (Vec::new(), Vec::new());
-    let (mut names, mut diagonal) = (Vec::new(), Vec::new());
-    // What moves nothing across the direction does not turn it.
-    let is_turned = |i: usize, j: usize, [x, y]: [f64; 2]| {
-        let moved = y * y * a[i * n + i] - 2.0 * x * y * a[i * n + j] + x * x * a[j * n + j];
-        moved + worth[i] > 0.0
-    };
-    for i in 0..n {
-        match (states[i], second(kinds, i)) {
-            (State::Fixed, _) => {
-                forces.push(vec![(i, 1.0)]);
-                motions.push(vec![(i, 1.0)]);
-                names.push((i, false));
-                diagonal.push(0.0);
-            }
-            (State::Slips([x, y], _), Some(j)) if worth[i].is_finite() && is_turned(i, j, [x, y]) => {
-                forces.push(vec![(i, -y), (j, x)]);
-                motions.push(vec![(i, -y), (j, x)]);
-                names.push((i, true));
-                diagonal.push(worth[i]);
-            }
-            _ => {}
-        }
-    }
-    // A slip carries its normal force with it.
-    let slip = |j: usize| match (kinds[j], states[j]) {
-        (Kind::Tangential { of, coefficient, limit }, State::Slips(direction, limited)) => {
-            let components = [Some(j), second(kinds, j)].into_iter().flatten().zip(direction);
-            Some((of, components, if limited { (0.0, limit) } else { (coefficient, 0.0) }))
-        }
-        _ => None,
-    };
-    let mut fixed = vec![0.0; n];
-    for (of, components, (coefficient, limit)) in (0..n).filter_map(slip) {
-        let normal = names.iter().position(|&(i, across)| i == of && !across);
-        for (k, direction) in components {
-            if let Some(column) = normal.filter(|_| coefficient != 0.0) {
-                forces[column].push((k, -direction * coefficient));
-            }
-            if limit != 0.0 {
-                fixed[k] = -direction * limit;
-            }
-        }
-    }
+    let Reduced { forces, motions, names, diagonal, fixed } = Reduced::new(a, kinds, states, worth);
     let size = names.len();
     let along = |motion: &[(usize, f64)], of: &dyn Fn(usize) -> f64| -> f64 {
         motion.iter().map(|&(row, factor)| factor * of(row)).sum()
@@ -145,7 +173,8 @@ fn solve(
     let known = |row: usize| b[row] + (0..n).map(|j| a[row * n + j] * fixed[j]).sum::<f64>();
     let mut right = Mat::from_fn(size, 1, |r, _| -along(&motions[r], &known));
     matrix.partial_piv_lu().solve_in_place(right.as_mut());
-    let (mut z, mut turns) = (fixed, Vec::new());
+    let mut z = fixed;
+    let mut turns = Vec::new();
     for (r, &(i, across)) in names.iter().enumerate() {
         if across {
             turns.push((i, right[(r, 0)]));
@@ -153,5 +182,5 @@ fn solve(
             forces[r].iter().for_each(|&(j, factor)| z[j] = factor * right[(r, 0)]);
         }
     }
-    z.iter().all(|value| value.is_finite()).then_some((z, turns))
+    z.iter().all(|value| value.is_finite()).then_some(Solution { z, turns })
 }

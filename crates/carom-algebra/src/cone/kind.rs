@@ -1,17 +1,18 @@
-//! The laws of the unknowns of a problem of contact.
+//! Laws of the forces of a contact problem.
 
-/// The law of an unknown.
+/// Law that an unknown force obeys.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// P ≥ 0.
+    /// A normal force P ≥ 0.
     Normal,
-    /// Q. Two in a row with the same normal force are the components of a vector.
+    /// A tangential force Q; two in a row with the same normal force are the components of a
+    /// vector.
     Tangential {
-        /// Index of P.
+        /// Index of the normal force P.
         of: usize,
-        /// μ ≥ 0.
+        /// Coefficient of friction μ ≥ 0.
         coefficient: f64,
-        /// Largest Q; may be infinite.
+        /// Largest tangential force; may be infinite.
         limit: f64,
     },
 }

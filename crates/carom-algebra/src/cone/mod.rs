@@ -16,20 +16,22 @@ mod kind;
 mod pivoting;
 mod sweeps;
 
+pub use kind::Kind;
+
 use crate::LinearError;
 pub use kind::Kind;
 
-/// ε of the proximal step.
+/// Weight ε of the proximal step, relative to the diagonal of the matrix.
 const PROXIMAL: f64 = 1e-10;
 
-/// A problem of unilateral contact with friction.
+/// A problem of unilateral contact with friction for the forces z: motions u = A z + b.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cone<'a> {
-    /// A, row by row.
+    /// Matrix A, row by row.
     pub matrix: Vec<f64>,
-    /// b.
+    /// Right-hand side b: the motions without forces.
     pub right: Vec<f64>,
-    /// The law of each unknown.
+    /// Law of each unknown force.
     pub kinds: &'a [Kind],
     /// Whether A is singular, because rows of contacts depend on each other. The solution is then
     /// that of a proximal step from the guess: ε D_ii is added to the diagonal and −ε D_ii z_i to
@@ -48,7 +50,8 @@ impl Cone<'_> {
     /// ```
     /// use carom_algebra::{Cone, Kind};
     /// let kinds = [Kind::Normal, Kind::Tangential { of: 0, coefficient: 0.5, limit: f64::INFINITY }];
-    /// let (matrix, right) = (vec![2.0, 0.0, 0.0, 1.0], vec![-4.0, 3.0]);
+    /// let matrix = vec![2.0, 0.0, 0.0, 1.0];
+    /// let right = vec![-4.0, 3.0];
     /// let mut z = Vec::new();
     /// Cone { matrix, right, kinds: &kinds, is_dependent: false }.solve(&mut z)?;
     /// assert_eq!(z, [2.0, -1.0]); // P = 2; it slips against 0.5 P
@@ -82,7 +85,8 @@ mod tests {
         let kinds = [Kind::Normal; 2];
         let mut z = Vec::new();
         for _ in 0..2 {
-            let (matrix, right) = (vec![1.0; 4], vec![-1.0, -2.0]);
+            let matrix = vec![1.0; 4];
+            let right = vec![-1.0, -2.0];
             Cone { matrix, right, kinds: &kinds, is_dependent: true }.solve(&mut z).unwrap();
         }
         assert!((z[0] + z[1] - 2.0).abs() < 1e-15);
@@ -126,7 +130,8 @@ mod tests {
             let mut system = faer::Mat::<f64>::identity(4, 4);
             let mut right = faer::Mat::<f64>::zeros(4, 1);
             for contact in 0..2 {
-                let (normal, slip) = (contact, contact + 2);
+                let normal = contact;
+                let slip = contact + 2;
                 if way[contact] > 0 {
                     (0..4).for_each(|j| system[(normal, j)] = a[4 * normal + j]);
                     right[(normal, 0)] = -b[normal];

@@ -7,11 +7,11 @@
 
 use crate::LinearError;
 
-/// Block pivots without progress before single pivots.
+/// Number of block pivots without progress after which single pivots follow.
 const PATIENCE: usize = 10;
-/// D z + b above minus this fraction of |b| counts as zero: ties stay open.
+/// Violation of D z + b ≥ 0, as a fraction of |b|, that counts as zero: ties stay open.
 const TIE: f64 = 1e-14;
-/// A pivot below this fraction of its diagonal entry is rejected.
+/// Pivot, as a fraction of its diagonal entry, below which the matrix counts as singular.
 const PIVOT: f64 = 1e-13;
 
 /// Solves 0 ≤ z ⊥ D z + b ≥ 0 into `z`. `d` is the square matrix D, row by row; only its lower
@@ -24,8 +24,11 @@ pub(super) fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<
     let entry = |i: usize, j: usize| d[i.max(j) * n + i.min(j)];
     let tie = TIE * b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let mut positive: Vec<bool> = b.iter().map(|&b| b < -tie).collect();
-    let (mut fewest, mut patience) = (n + 1, PATIENCE);
-    let (mut factor, mut part, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
+    let mut fewest = n + 1;
+    let mut patience = PATIENCE;
+    let mut factor = Vec::new();
+    let mut part = Vec::new();
+    let mut wrong = Vec::new();
     for _ in 0..1000 + 100 * n {
         let chosen: Vec<usize> = (0..n).filter(|&i| positive[i]).collect();
         cholesky(&chosen, entry, &mut factor)?;
@@ -50,7 +53,8 @@ pub(super) fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<
         }
         let Some(&last) = wrong.last() else { return Ok(()) };
         if wrong.len() < fewest {
-            (fewest, patience) = (wrong.len(), PATIENCE);
+            fewest = wrong.len();
+            patience = PATIENCE;
         } else {
             patience = patience.saturating_sub(1);
         }
@@ -66,7 +70,7 @@ pub(super) fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<
     })
 }
 
-/// L of the submatrix of the chosen indices, D = L Lᵀ, packed row by row.
+/// Cholesky factor L of the submatrix of the chosen indices, packed row by row.
 fn cholesky(
     chosen: &[usize],
     entry: impl Fn(usize, usize) -> f64,
@@ -91,7 +95,7 @@ fn cholesky(
     Ok(())
 }
 
-/// x := (L Lᵀ)⁻¹ x.
+/// Overwrites x with (L Lᵀ)⁻¹ x.
 fn substitute(factor: &[f64], x: &mut [f64]) {
     let n = x.len();
     let at = |i: usize, j: usize| factor[i * (i + 1) / 2 + j];

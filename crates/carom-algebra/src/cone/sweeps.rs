@@ -17,17 +17,19 @@ use super::exact::{State, second, settle};
 use super::kind::Kind;
 use crate::linear::LinearError;
 
-/// Sweeps between two attempts, and attempts.
+/// Number of sweeps between two attempts to solve the problem exactly.
 const SWEEPS: usize = 10;
+/// Largest number of attempts to solve the problem exactly.
 const ATTEMPTS: usize = 200;
-/// Contradiction, relative to the largest force or motion, that is round-off.
+/// Violation of the law, relative to the largest force or motion, that is round-off.
 const ROUND_OFF: f64 = 1e-11;
-/// Projections of a vector in a sweep.
+/// Number of projections of a tangential vector in each sweep.
 const PROJECTIONS: usize = 4;
-/// Distance from the edge of the cone, relative to its radius, at which a vector slips.
+/// Distance from the edge of the friction cone, relative to its radius, at which a vector slips.
 const EDGE: f64 = 1e-12;
 
-/// r and whether it is the limit.
+/// Radius of the friction cone for a normal force, and whether it is the limit of the tangential
+/// force.
 fn radius(coefficient: f64, limit: f64, normal: f64) -> (f64, bool) {
     let cone = coefficient * normal;
     if normal <= 0.0 {
@@ -39,8 +41,8 @@ fn radius(coefficient: f64, limit: f64, normal: f64) -> (f64, bool) {
     }
 }
 
-/// Overwrites `z`, a first guess if it has the size, with the solution for a matrix by rows.
-/// Contacts that do not feel each other are solved apart.
+/// Overwrites `z`, a first guess if it has the size of the problem, with the solution for a matrix
+/// by rows. Contacts that are not coupled are solved separately.
 ///
 /// # Errors
 /// If none is found, as for large μ, where there may be none.
@@ -52,7 +54,8 @@ pub(super) fn coulomb(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) ->
         if group[first].is_some() {
             continue;
         }
-        let (mut members, mut next) = (vec![first], 0);
+        let mut members = vec![first];
+        let mut next = 0;
         group[first] = Some(first);
         while let Some(&i) = members.get(next) {
             next += 1;
@@ -77,57 +80,101 @@ pub(super) fn coulomb(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) ->
         };
         let of_part: Vec<Kind> = members.iter().map(local).collect();
         let mut solution: Vec<f64> = members.iter().map(|&i| z[i]).collect();
-        coupled(&part, &right, &of_part, &mut solution)?;
+        Coupled { a: &part, b: &right, kinds: &of_part }.solve(&mut solution)?;
         members.iter().zip(solution).for_each(|(&i, value)| z[i] = value);
     }
     Ok(())
 }
 
-/// The problem of contacts that feel each other.
-fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(), LinearError> {
-    let n = kinds.len();
-    let motion = |z: &[f64], i: usize| b[i] + (0..n).map(|j| a[i * n + j] * z[j]).sum::<f64>();
-    let project = |z: &[f64], i: usize, value: f64| match kinds[i] {
-        Kind::Normal => value.max(0.0),
-        Kind::Tangential { of, coefficient, limit } => {
-            let (radius, _) = radius(coefficient, limit, z[of]);
-            value.clamp(-radius, radius)
+/// The problem of contacts that are coupled with each other.
+struct Coupled<'a> {
+    /// Matrix A, row by row.
+    a: &'a [f64],
+    b: &'a [f64],
+    kinds: &'a [Kind],
+}
+
+impl Coupled<'_> {
+    /// Overwrites `z`, a first guess, with the solution of the coupled problem.
+    fn solve(&self, z: &mut Vec<f64>) -> Result<(), LinearError> {
+        let n = self.kinds.len();
+        for _ in 0..ATTEMPTS {
+            (0..SWEEPS).for_each(|_| self.sweep(z));
+            let mut states: Vec<State> = (0..n).map(|i| self.state(z, i)).collect();
+            let Some(exact) = settle(self.a, self.b, self.kinds, &mut states, z) else { continue };
+            if self.obeys(&exact, &states) {
+                *z = exact;
+                self.remove_round_off(z);
+                return Ok(());
+            }
         }
-    };
-    let is_second = |i: usize| i > 0 && second(kinds, i - 1).is_some();
-    let sweep = |z: &mut [f64]| {
-        for i in (0..n).filter(|&i| !is_second(i)) {
-            if let Some(other) = second(kinds, i) {
-                sweep_vector(a, b, kinds, z, [i, other]);
+        Err(LinearError::NoStates { forces: n, sweeps: ATTEMPTS * SWEEPS })
+    }
+
+    /// Motion u_i along the i-th force for forces z.
+    fn motion(&self, z: &[f64], i: usize) -> f64 {
+        let n = self.kinds.len();
+        self.b[i] + (0..n).map(|j| self.a[i * n + j] * z[j]).sum::<f64>()
+    }
+
+    /// Diagonal entry of the matrix for a force.
+    fn diagonal(&self, i: usize) -> f64 {
+        self.a[i * self.kinds.len() + i]
+    }
+
+    /// Whether a force is the second component of a tangential vector.
+    fn is_second(&self, i: usize) -> bool {
+        i > 0 && second(self.kinds, i - 1).is_some()
+    }
+
+    /// The admissible value of a force that is nearest to `value`.
+    fn project(&self, z: &[f64], i: usize, value: f64) -> f64 {
+        match self.kinds[i] {
+            Kind::Normal => value.max(0.0),
+            Kind::Tangential { of, coefficient, limit } => {
+                let (radius, _) = radius(coefficient, limit, z[of]);
+                value.clamp(-radius, radius)
+            }
+        }
+    }
+
+    /// A sweep of the nonlinear Gauss–Seidel method over all forces.
+    fn sweep(&self, z: &mut [f64]) {
+        for i in (0..self.kinds.len()).filter(|&i| !self.is_second(i)) {
+            if let Some(other) = second(self.kinds, i) {
+                self.sweep_vector(z, [i, other]);
                 continue;
             }
-            let value = z[i] - motion(z, i) / a[i * n + i];
-            z[i] = if a[i * n + i] > 0.0 { project(z, i, value) } else { 0.0 };
+            let value = z[i] - self.motion(z, i) / self.diagonal(i);
+            z[i] = if self.diagonal(i) > 0.0 { self.project(z, i, value) } else { 0.0 };
         }
-    };
-    for _ in 0..ATTEMPTS {
-        (0..SWEEPS).for_each(|_| sweep(z));
-        let state = |i: usize| match kinds[i] {
-            Kind::Tangential { of, coefficient, limit } if second(kinds, i).is_some() || is_second(i) => {
-                let first = i - usize::from(is_second(i));
-                let [x, y] = [z[first], z[first + 1]];
-                let (radius, limited) = radius(coefficient, limit, z[of]);
-                let size = x.hypot(y);
-                let is_driven = [first, first + 1].iter().any(|&k| a[k * n + k] <= 0.0 && b[k] != 0.0);
-                if z[of] <= 0.0 || stiffness(a, n, [first, first + 1]) <= 0.0 {
-                    State::Zero
-                } else if size < radius * (1.0 - EDGE) && !is_driven {
-                    if a[i * n + i] > 0.0 { State::Fixed } else { State::Zero }
-                } else if i > first {
-                    State::Follows
-                } else if size > 0.0 {
-                    State::Slips([-x / size, -y / size], limited)
-                } else {
-                    // Without a cone the direction has no effect.
-                    State::Slips([1.0, 0.0], limited)
-                }
+    }
+
+    /// The projections of a tangential vector onto its friction cone in a sweep.
+    fn sweep_vector(&self, z: &mut [f64], [i, j]: [usize; 2]) {
+        let stiffness = stiffness(self.a, self.kinds.len(), [i, j]);
+        let Kind::Tangential { of, coefficient, limit } = self.kinds[i] else { return };
+        let (radius, _) = radius(coefficient, limit, z[of]);
+        if stiffness <= 0.0 || radius == 0.0 {
+            z[i] = 0.0;
+            z[j] = 0.0;
+            return;
+        }
+        let moves = [i, j].map(|row| self.diagonal(row) > 0.0 || self.b[row] != 0.0);
+        for _ in 0..PROJECTIONS {
+            let [u, v] = [i, j].map(|row| self.motion(z, row));
+            let pulled = |row: usize, u: f64, moves: bool| if moves { z[row] - u / stiffness } else { 0.0 };
+            [z[i], z[j]] = on_disc([pulled(i, u, moves[0]), pulled(j, v, moves[1])], radius);
+        }
+    }
+
+    /// State of a force as the sweeps have left it: open, sticking or slipping.
+    fn state(&self, z: &[f64], i: usize) -> State {
+        match self.kinds[i] {
+            Kind::Tangential { .. } if second(self.kinds, i).is_some() || self.is_second(i) => {
+                self.state_in_vector(z, i)
             }
-            _ if a[i * n + i] <= 0.0 => State::Zero,
+            _ if self.diagonal(i) <= 0.0 => State::Zero,
             Kind::Normal if z[i] > 0.0 => State::Fixed,
             Kind::Normal => State::Zero,
             Kind::Tangential { of, .. } if z[of] <= 0.0 => State::Zero,
@@ -135,47 +182,76 @@ fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(),
                 (radius, _) if z[i].abs() < radius => State::Fixed,
                 (_, limited) => State::Slips([-z[i].signum(), 0.0], limited),
             },
-        };
-        let mut states: Vec<State> = (0..n).map(state).collect();
-        let Some(exact) = settle(a, b, kinds, &mut states, z) else { continue };
-        let motions: Vec<f64> = (0..n).map(|i| motion(&exact, i)).collect();
+        }
+    }
+
+    /// State of a component of a tangential vector as the sweeps have left it.
+    fn state_in_vector(&self, z: &[f64], i: usize) -> State {
+        let Kind::Tangential { of, coefficient, limit } = self.kinds[i] else { return State::Zero };
+        let first = i - usize::from(self.is_second(i));
+        let x = z[first];
+        let y = z[first + 1];
+        let (radius, limited) = radius(coefficient, limit, z[of]);
+        let size = x.hypot(y);
+        let is_driven = [first, first + 1].iter().any(|&k| self.diagonal(k) <= 0.0 && self.b[k] != 0.0);
+        if z[of] <= 0.0 || stiffness(self.a, self.kinds.len(), [first, first + 1]) <= 0.0 {
+            State::Zero
+        } else if size < radius * (1.0 - EDGE) && !is_driven {
+            if self.diagonal(i) > 0.0 { State::Fixed } else { State::Zero }
+        } else if i > first {
+            State::Follows
+        } else if size > 0.0 {
+            State::Slips([-x / size, -y / size], limited)
+        } else {
+            // Without a cone the direction has no effect.
+            State::Slips([1.0, 0.0], limited)
+        }
+    }
+
+    /// Whether the forces of an exact solution obey the law in the states for which it was
+    /// computed, to round-off.
+    fn obeys(&self, exact: &[f64], states: &[State]) -> bool {
+        let n = self.kinds.len();
+        let motions: Vec<f64> = (0..n).map(|i| self.motion(exact, i)).collect();
         let size = |values: &[f64]| ROUND_OFF * values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let (force, moved) = (size(&exact), size(b).max(size(&motions)));
-        let pair = |values: &[f64], i: usize| match second(kinds, i) {
+        let force = size(exact);
+        let moved = size(self.b).max(size(&motions));
+        let pair = |values: &[f64], i: usize| match second(self.kinds, i) {
             Some(j) => [values[i], values[j]],
-            None if is_second(i) => [values[i - 1], values[i]],
+            None if self.is_second(i) => [values[i - 1], values[i]],
             None => [values[i], 0.0],
         };
-        let holds = |i: usize| match (kinds[i], states[i]) {
+        let holds = |i: usize| match (self.kinds[i], states[i]) {
             (Kind::Normal, State::Fixed) => exact[i] >= -force,
             (Kind::Normal, _) => motions[i] >= -moved,
             (Kind::Tangential { of, coefficient, limit }, State::Fixed) => {
-                let [x, y] = pair(&exact, i);
+                let [x, y] = pair(exact, i);
                 x.hypot(y) <= radius(coefficient, limit, exact[of]).0 + force
             }
             (Kind::Tangential { of, coefficient, limit }, State::Slips(direction, limited)) => {
-                let ([x, y], (radius, is_limit)) = (pair(&motions, i), radius(coefficient, limit, exact[of]));
+                let [x, y] = pair(&motions, i);
+                let (radius, is_limit) = radius(coefficient, limit, exact[of]);
                 // Without a cone the direction of a vector has no effect.
                 let forward = direction[0] * x + direction[1] * y >= -moved;
-                is_limit == limited && (forward || radius <= force && second(kinds, i).is_some())
+                is_limit == limited && (forward || radius <= force && second(self.kinds, i).is_some())
             }
             (Kind::Tangential { .. }, State::Zero | State::Follows) => true,
         };
-        if (0..n).all(holds) {
-            *z = exact;
-            // What is negative by round-off is none.
-            for i in (0..n).filter(|&i| second(kinds, i).is_none() && !is_second(i)) {
-                z[i] = project(z, i, z[i]);
-            }
-            for i in 0..n {
-                if let (Kind::Tangential { of, coefficient, limit }, Some(j)) = (kinds[i], second(kinds, i)) {
-                    [z[i], z[j]] = on_disc([z[i], z[j]], radius(coefficient, limit, z[of]).0);
-                }
-            }
-            return Ok(());
+        (0..n).all(holds)
+    }
+
+    /// Projects forces that violate the law by round-off onto admissible ones.
+    fn remove_round_off(&self, z: &mut [f64]) {
+        let n = self.kinds.len();
+        for i in (0..n).filter(|&i| second(self.kinds, i).is_none() && !self.is_second(i)) {
+            z[i] = self.project(z, i, z[i]);
+        }
+        for i in 0..n {
+            let Kind::Tangential { of, coefficient, limit } = self.kinds[i] else { continue };
+            let Some(j) = second(self.kinds, i) else { continue };
+            [z[i], z[j]] = on_disc([z[i], z[j]], radius(coefficient, limit, z[of]).0);
         }
     }
-    Err(LinearError::NoStates { forces: n, sweeps: ATTEMPTS * SWEEPS })
 }
 
 /// The point of a disc nearest to a given one.
@@ -184,29 +260,12 @@ fn on_disc(point: [f64; 2], radius: f64) -> [f64; 2] {
     if size > radius { point.map(|x| x * (radius / size)) } else { point }
 }
 
-/// The largest eigenvalue of a block of two unknowns.
+/// Largest eigenvalue of the diagonal block of two unknowns.
 fn stiffness(a: &[f64], n: usize, [i, j]: [usize; 2]) -> f64 {
-    let (x, y, mixed) = (a[i * n + i], a[j * n + j], a[i * n + j]);
+    let x = a[i * n + i];
+    let y = a[j * n + j];
+    let mixed = a[i * n + j];
     0.5 * (x + y) + (0.5 * (x - y)).hypot(mixed)
-}
-
-/// Projections of a tangential vector in a sweep.
-fn sweep_vector(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut [f64], [i, j]: [usize; 2]) {
-    let n = kinds.len();
-    let (stiffness, Kind::Tangential { of, coefficient, limit }) = (stiffness(a, n, [i, j]), kinds[i]) else {
-        return;
-    };
-    let (radius, _) = radius(coefficient, limit, z[of]);
-    if stiffness <= 0.0 || radius == 0.0 {
-        (z[i], z[j]) = (0.0, 0.0);
-        return;
-    }
-    let moves = [i, j].map(|row| a[row * n + row] > 0.0 || b[row] != 0.0);
-    for _ in 0..PROJECTIONS {
-        let [u, v] = [i, j].map(|row| b[row] + (0..n).map(|k| a[row * n + k] * z[k]).sum::<f64>());
-        let pulled = |row: usize, u: f64, moves: bool| if moves { z[row] - u / stiffness } else { 0.0 };
-        [z[i], z[j]] = on_disc([pulled(i, u, moves[0]), pulled(j, v, moves[1])], radius);
-    }
 }
 
 #[cfg(test)]
@@ -231,7 +290,9 @@ mod tests {
             let u: Vec<f64> =
                 (0..4).map(|i| b[i] + (0..4).map(|j| A[i * 4 + j] * z[j]).sum::<f64>()).collect();
             for i in 0..2 {
-                let (p, q, radius) = (z[i], z[i + 2], (0.4 * z[i]).min(limit));
+                let p = z[i];
+                let q = z[i + 2];
+                let radius = (0.4 * z[i]).min(limit);
                 assert!(p >= 0.0 && u[i] >= -1e-12 && p * u[i].abs() < 1e-12, "{k}");
                 assert!(q.abs() <= radius + 1e-12, "{k}");
                 if p == 0.0 {
@@ -261,7 +322,9 @@ mod tests {
 
     /// Whether it is open, sticks, or slips, of a contact whose forces and motions obey the law.
     fn checked(k: i32, limit: f64, [p, u]: [f64; 2], q: [f64; 2], v: [f64; 2]) -> usize {
-        let (radius, size, rate) = ((0.3 * p).min(limit), q[0].hypot(q[1]), v[0].hypot(v[1]));
+        let radius = (0.3 * p).min(limit);
+        let size = q[0].hypot(q[1]);
+        let rate = v[0].hypot(v[1]);
         assert!(p >= 0.0 && u >= -1e-11 && p * u.abs() < 1e-11, "{k}");
         assert!(size <= radius + 1e-12, "{k}: {size} {radius}");
         if p == 0.0 {
@@ -314,7 +377,10 @@ mod tests {
     /// Rows and columns of tangents along which supports constrain a node.
     fn without(a: &mut [f64; 36], rows: &[usize]) {
         for &row in rows {
-            (0..6).for_each(|i| (a[row * 6 + i], a[i * 6 + row]) = (0.0, 0.0));
+            for i in 0..6 {
+                a[row * 6 + i] = 0.0;
+                a[i * 6 + row] = 0.0;
+            }
         }
     }
 
@@ -343,7 +409,8 @@ mod tests {
         let (a, kinds) = in_space(f64::INFINITY);
         for k in 0..400 {
             let wave = |i: usize| (f64::from(k) * 1.7 + i as f64 * 2.3).sin();
-            let (p, v) = ([2.0, 1e-16 * f64::from(k % 7)], [[wave(0), wave(1)], [wave(2), wave(3)]]);
+            let p = [2.0, 1e-16 * f64::from(k % 7)];
+            let v = [[wave(0), wave(1)], [wave(2), wave(3)]];
             let q = |i: usize| v[i].map(|v_a| -0.3 * p[i] * v_a / v[i][0].hypot(v[i][1]));
             let z = [p[0], p[1], q(0)[0], q(0)[1], q(1)[0], q(1)[1]];
             let u = [0.0, 0.0, v[0][0], v[0][1], v[1][0], v[1][1]];
@@ -360,7 +427,8 @@ mod tests {
     #[test]
     fn without_friction_it_is_the_complementarity_of_normal_forces() {
         let b = [-1.0, 0.5, 2.0, -0.3];
-        let (mut z, mut normal) = (Vec::new(), Vec::new());
+        let mut z = Vec::new();
+        let mut normal = Vec::new();
         coulomb(&A, &b, &KINDS(0.0, f64::INFINITY), &mut z).unwrap();
         super::super::pivoting::complementarity(&[4.0, 1.0, 1.0, 3.0], &b[..2], &mut normal).unwrap();
         assert!((z[0] - normal[0]).abs() < 1e-15 && (z[1] - normal[1]).abs() < 1e-15);

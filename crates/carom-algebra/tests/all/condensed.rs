@@ -34,7 +34,8 @@ fn solves_with_any_choice_of_last_unknowns() {
         for (precision, digits) in [(Precision::Double, 1e-13), (Precision::Single, 1e-5)] {
             let mut condensed = Condensed::new(&elimination, precision);
             condensed.factor(|k| values[k]).unwrap();
-            let (mut x, mut out) = (Vec::new(), vec![0.0; n]);
+            let mut x = Vec::new();
+            let mut out = vec![0.0; n];
             condensed.eliminate_into(&rhs, &mut x);
             let mut saddle = Saddle::default();
             saddle.begin(condensed.schur(), elimination.schur_size(), 0);
@@ -58,7 +59,8 @@ fn single_precision_has_the_range_it_needs() {
             column.for_each(|k| values[k] *= if pattern.rows[k] == j { factor } else { factor * coupling });
         }
         let exact: Vec<f64> = (0..pattern.size()).map(|i| (i as f64 * 0.7).sin()).collect();
-        let (mut rhs, mut out) = (vec![0.0; exact.len()], vec![0.0; exact.len()]);
+        let mut rhs = vec![0.0; exact.len()];
+        let mut out = vec![0.0; exact.len()];
         pattern.multiply_add(&values, &exact, &mut rhs);
         let elimination = Arc::new(Elimination::new(&pattern, &groups, &[]).unwrap());
         let mut condensed = Condensed::new(&elimination, Precision::Single);
@@ -91,7 +93,8 @@ fn same_bits_with_any_number_of_threads() {
             let solve = |threads: usize| {
                 let mut condensed = Condensed::new(&elimination, precision).on(&Threads::new(threads));
                 condensed.factor(|k| values[k]).unwrap();
-                let (mut x, mut out) = (Vec::new(), vec![0.0; n]);
+                let mut x = Vec::new();
+                let mut out = vec![0.0; n];
                 condensed.eliminate_into(&rhs, &mut x);
                 let mut saddle = Saddle::default();
                 saddle.begin(condensed.schur(), elimination.schur_size(), 0);
@@ -125,7 +128,9 @@ fn an_indefinite_matrix_has_a_factor_with_signs() {
         }
         let n = pattern.size();
         let exact: Vec<f64> = (0..n).map(|i| (i as f64 * 0.7).sin()).collect();
-        let (mut rhs, mut x, mut out) = (vec![0.0; n], Vec::new(), vec![0.0; n]);
+        let mut rhs = vec![0.0; n];
+        let mut x = Vec::new();
+        let mut out = vec![0.0; n];
         pattern.multiply_add(&values, &exact, &mut rhs);
         let elimination = Arc::new(Elimination::new(&pattern, &groups, &last).unwrap());
         let mut condensed = Condensed::new(&elimination, Precision::Double);

@@ -1,7 +1,10 @@
 //! Conjugate gradients under constraints against a dense elimination of the whole saddle point, and
 //! the blocks of their preconditioner against a product with the blocks themselves.
 
-use carom_algebra::{ConjugateGradients, ConstraintRows, DiagonalBlocks, LinearError, NodeMatrix, Threads};
+use carom_algebra::{
+    ConjugateGradients, ConstraintPreconditioner, ConstraintRows, DiagonalBlocks, Goal, LinearError,
+    NodeMatrix, Threads,
+};
 
 /// A symmetric matrix over m × m nodes with d components: dominant blocks on the diagonal, others
 /// to the neighbours of a grid; and the same entries, dense by rows.
@@ -93,14 +96,16 @@ fn eliminate(mut matrix: Vec<f64>, right: &mut [f64]) {
 
 fn solve(d: usize, threads: usize) -> (Vec<f64>, Vec<f64>, usize) {
     let (matrix, dense) = grid(6, d);
-    let (threads, blocks) = (Threads::new(threads), blocks(&matrix, d));
+    let threads = Threads::new(threads);
+    let blocks = blocks(&matrix, d);
     let mut constraints = ConstraintRows::default();
     constraints.clear();
     rows(d).into_iter().for_each(|(compliance, entries)| constraints.push(compliance, entries));
     constraints.factor(&blocks).unwrap();
     let forces: Vec<f64> = (0..36 * d).map(|i| wave(3 * i)).collect();
     let gaps = [0.3, -0.2, 0.0, 0.1];
-    let (mut x, mut multipliers) = (vec![0.0; forces.len()], vec![0.0; gaps.len()]);
+    let mut x = vec![0.0; forces.len()];
+    let mut multipliers = vec![0.0; gaps.len()];
     let product = |x: &[f64], out: &mut [f64]| {
         let rows_of_matrix = dense.chunks_exact(x.len());
         out.iter_mut().zip(rows_of_matrix).for_each(|(out, row)| *out = dot(row, x));
@@ -111,11 +116,10 @@ fn solve(d: usize, threads: usize) -> (Vec<f64>, Vec<f64>, usize) {
     let ended = ConjugateGradients::default().solve(
         &threads,
         product,
-        &blocks,
-        &mut constraints,
+        ConstraintPreconditioner { blocks: &blocks, rows: &mut constraints },
         [&forces, &gaps],
         [&mut x, &mut multipliers],
-        (1e-13, 500),
+        Goal { reduction: 1e-13, iterations: 500 },
     );
     assert!(!ended.is_indefinite && ended.reduction <= 1e-13, "{ended:?}");
     (x, multipliers, ended.iterations)
@@ -124,8 +128,10 @@ fn solve(d: usize, threads: usize) -> (Vec<f64>, Vec<f64>, usize) {
 #[test]
 fn solutions_are_those_of_the_whole_saddle_point() {
     for d in 1..=3 {
-        let ((_, dense), rows) = (grid(6, d), rows(d));
-        let (n, m) = (36 * d, rows.len());
+        let (_, dense) = grid(6, d);
+        let rows = rows(d);
+        let n = 36 * d;
+        let m = rows.len();
         let mut whole = vec![0.0; (n + m) * (n + m)];
         (0..n * n).for_each(|k| whole[k / n * (n + m) + k % n] = dense[k]);
         for (r, (compliance, entries)) in rows.iter().enumerate() {
@@ -170,20 +176,21 @@ fn the_preconditioner_of_a_block_diagonal_matrix_is_its_inverse() {
                 *entry = if k % (d + 1) == 0 { 3.0 + node as f32 } else { -0.75 };
             }
         }
-        let (mut constraints, blocks) = (ConstraintRows::default(), blocks(&matrix, d));
+        let mut constraints = ConstraintRows::default();
+        let blocks = blocks(&matrix, d);
         constraints.clear();
         constraints.factor(&blocks).unwrap();
         let exact: Vec<f64> = (0..7 * d).map(wave).collect();
-        let (mut forces, mut x) = (vec![0.0; exact.len()], vec![0.0; exact.len()]);
+        let mut forces = vec![0.0; exact.len()];
+        let mut x = vec![0.0; exact.len()];
         matrix.multiply_into(&exact, &mut forces);
         let ended = ConjugateGradients::default().solve(
             &Threads::one(),
             |x, out| matrix.multiply_into(x, out),
-            &blocks,
-            &mut constraints,
+            ConstraintPreconditioner { blocks: &blocks, rows: &mut constraints },
             [&forces, &[]],
             [&mut x, &mut []],
-            (1e-6, 9),
+            Goal { reduction: 1e-6, iterations: 9 },
         );
         assert_eq!(ended.iterations, 1);
         assert!(x.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-6));
@@ -202,15 +209,15 @@ fn dependent_rows_and_indefinite_matrices_are_reported() {
     constraints.clear();
     let slot = matrix.slot(4, 4).unwrap();
     matrix.block_mut(slot)[0] = -50.0;
-    let (forces, mut x) = (vec![1.0; 18], vec![0.0; 18]);
+    let forces = vec![1.0; 18];
+    let mut x = vec![0.0; 18];
     let ended = ConjugateGradients::default().solve(
         &Threads::one(),
         |x, out| matrix.multiply_into(x, out),
-        &good,
-        &mut constraints,
+        ConstraintPreconditioner { blocks: &good, rows: &mut constraints },
         [&forces, &[]],
         [&mut x, &mut []],
-        (1e-12, 50),
+        Goal { reduction: 1e-12, iterations: 50 },
     );
     assert!(ended.is_indefinite);
 }
@@ -230,7 +237,8 @@ fn a_product_with_the_stored_half_is_that_of_the_matrix() {
         }
         let mut matrix = NodeMatrix::new(d, coupled.clone());
         let x: Vec<f64> = (0..NODES * d).map(wave).collect();
-        let (mut exact, mut scale) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+        let mut exact = vec![0.0; x.len()];
+        let mut scale = vec![0.0; x.len()];
         for (a, others) in coupled.iter_mut().enumerate() {
             others.push(a as u32);
             others.sort_unstable();

@@ -4,7 +4,8 @@ use carom_algebra::Saddle;
 
 #[test]
 fn meets_both_lines_of_the_system_and_refuses_dependent_rows() {
-    let (n, m) = (7, 3);
+    let n = 7;
+    let m = 3;
     let entry = |i: usize, j: usize| if i == j { 4.0 } else { 1.0 / (1.0 + (i as f64 - j as f64).abs()) };
     let stiffness: Vec<f64> = (0..n * n).map(|k| entry(k % n, k / n)).collect();
     let row = |r: usize, j: usize| ((r * 5 + j).pow(2) as f64 * 1.3).sin();
@@ -17,7 +18,8 @@ fn meets_both_lines_of_the_system_and_refuses_dependent_rows() {
     saddle.factor().unwrap();
     let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
     let c = [0.3, -0.1, 0.7];
-    let (mut x, mut multipliers) = (b.clone(), c.to_vec());
+    let mut x = b.clone();
+    let mut multipliers = c.to_vec();
     saddle.solve(&mut x, &mut multipliers);
     for i in 0..n {
         let changed = |j: usize| if (i, j) == (4, 2) || (i, j) == (2, 4) { 0.25 } else { 0.0 };
@@ -38,7 +40,8 @@ fn meets_both_lines_of_the_system_and_refuses_dependent_rows() {
         saddle.add(2, 2, push);
         saddle.augment(share);
         assert_eq!(saddle.factor(), Ok(share > 0.0));
-        let (mut x, mut multiplier) = (b.clone(), [0.5]);
+        let mut x = b.clone();
+        let mut multiplier = [0.5];
         saddle.solve(&mut x, &mut multiplier);
         assert!((2.0 * x[2] - 0.5).abs() < 1e-13);
         for i in 0..n {
@@ -54,7 +57,8 @@ fn meets_both_lines_of_the_system_and_refuses_dependent_rows() {
 /// Forces along other directions, with S positive definite, only on the kernel, or not at all.
 #[test]
 fn forces_may_act_along_other_directions() {
-    let (n, m) = (6, 2);
+    let n = 6;
+    let m = 2;
     let row = |r: usize, j: usize| ((r * 5 + j).pow(2) as f64 * 1.3).sin();
     let direction = |r: usize, j: usize| row(r, j) - 0.4 * ((r * 7 + 3 * j) as f64).cos();
     for (push, share) in [(0.0, 0.0), (0.0, 10.0), (-30.0, 10.0), (-30.0, 0.0)] {
@@ -75,7 +79,8 @@ fn forces_may_act_along_other_directions() {
         saddle.factor().unwrap();
         let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
         let c = [0.3, -0.1];
-        let (mut x, mut multipliers) = (b.clone(), c.to_vec());
+        let mut x = b.clone();
+        let mut multipliers = c.to_vec();
         saddle.solve(&mut x, &mut multipliers);
         for i in 0..n {
             let upper: f64 = (0..n).map(|j| entry(i, j) * x[j]).sum();
@@ -110,7 +115,8 @@ fn dense(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
 /// g x − C λ = c, with S positive definite, only on the kernel, or not at all.
 #[test]
 fn rows_that_yield_have_the_solution_of_the_dense_matrix() {
-    let (n, m) = (6, 3);
+    let n = 6;
+    let m = 3;
     let row = |r: usize, j: usize| ((r * 5 + j).pow(2) as f64 * 1.3).sin();
     let direction = |r: usize, j: usize| row(r, j) - 0.4 * ((r * 7 + 3 * j) as f64).cos();
     let mut seen = [0, 0];
@@ -134,7 +140,8 @@ fn rows_that_yield_have_the_solution_of_the_dense_matrix() {
             seen[usize::from(saddle.factor().unwrap())] += 1;
             let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
             let c = [0.3, -0.1, 0.7];
-            let (mut x, mut multipliers) = (b.clone(), c.to_vec());
+            let mut x = b.clone();
+            let mut multipliers = c.to_vec();
             saddle.solve(&mut x, &mut multipliers);
             let whole = |i: usize, j: usize| match (i < n, j < n) {
                 (true, true) => entry(i, j),
@@ -168,7 +175,8 @@ fn rows_that_yield_have_the_solution_of_the_dense_matrix() {
 #[test]
 fn large_friction_is_singular_where_the_springs_of_a_node_say() {
     let regularity = |coefficients: &[f64], order: &[usize]| {
-        let (m, n) = (coefficients.len(), 2 * coefficients.len());
+        let m = coefficients.len();
+        let n = 2 * coefficients.len();
         let entry = |i: usize, j: usize| match (i / 2 == j / 2, i % 2, j % 2) {
             (true, 0, 0) => 2.0,
             (true, 1, 1) => 3.0,

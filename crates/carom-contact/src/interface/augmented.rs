@@ -12,14 +12,14 @@
 
 use super::{Answer, Direction, Interface, Point};
 
-/// Unilateral contact by multipliers that are found in rounds.
+/// Unilateral contact by an augmented Lagrangian, whose multipliers are found in rounds.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Augmented {
     direction: Direction,
 }
 
 impl Augmented {
-    /// With a force in this direction.
+    /// Augmented Lagrangian with a contact force in the given direction.
     pub fn along(direction: Direction) -> Self {
         Self { direction }
     }
@@ -48,8 +48,11 @@ mod tests {
     fn rounds_find_the_multiplier_of_a_node_on_a_spring() {
         // A spring of stiffness K presses a node with the force f onto a plane: K g = f − λ with
         // g = 0 has λ = f = −3, whatever r.
-        let (interface, stiffness, force) = (Augmented::default(), 7.0, -3.0);
-        let (mut multiplier, augmentation) = (0.0, 14.0);
+        let interface = Augmented::default();
+        let stiffness = 7.0;
+        let force = -3.0;
+        let mut multiplier = 0.0;
+        let augmentation = 14.0;
         for round in 0..40 {
             // The root of the row and of the balance.
             let gap: f64 = (force - multiplier) / (stiffness + augmentation);

@@ -12,14 +12,14 @@
 
 use super::{Answer, Direction, Interface, Point};
 
-/// Energy-conserving springs with a stiffness per secondary node.
+/// Energy-conserving penalty contact with a stiffness for each secondary node.
 #[derive(Clone, Debug)]
 pub struct ConservingPenalty {
     stiffness: Vec<f64>,
 }
 
 impl ConservingPenalty {
-    /// `stiffness`: force per gap, > 0, of each secondary node.
+    /// Energy-conserving springs with a stiffness (force per gap, > 0) for each secondary node.
     pub fn new(stiffness: Vec<f64>) -> Self {
         Self { stiffness }
     }
@@ -53,7 +53,8 @@ impl Interface for ConservingPenalty {
     }
 }
 
-/// λ = ΔU/Δg of U = k/2 min(g, 0)² from `start` to `start + moved`, and ∂λ/∂g₁.
+/// Discrete gradient λ = ΔU/Δg of the potential U = k/2 min(g, 0)² between the gaps `start` and
+/// `start + moved`, and its derivative by the gap at the end.
 fn discrete_gradient(k: f64, start: f64, moved: f64) -> (f64, f64) {
     let end = start + moved;
     match (start < 0.0, end < 0.0) {

@@ -9,7 +9,7 @@
 
 use super::{Answer, Direction, Interface, Point, Unilateral};
 
-/// Unilateral contact by multipliers that do no work on a closed gap.
+/// Unilateral contact by Lagrange multipliers that do no work on a closed gap.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ConservingUnilateral;
 

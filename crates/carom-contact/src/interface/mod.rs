@@ -18,59 +18,59 @@ pub use conserving_unilateral::ConservingUnilateral;
 pub use penalty::Penalty;
 pub use unilateral::Unilateral;
 
-/// Input of an interface.
+/// State of a pair at which a contact law is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Index of the secondary node.
     pub node: usize,
     /// Gap at the end of the step; infinite for a remote pair.
     pub gap: f64,
-    /// Gap at its start, for an interface whose force depends on the [path](Direction).
+    /// Gap at the start of the step, for a law whose force depends on the [path](Direction).
     pub start: f64,
-    /// Multiplier and activity in the current iteration.
+    /// Multiplier of the pair in the current iteration.
     pub lambda: f64,
-    /// See `lambda`.
+    /// Whether the pair is active in the current iteration.
     pub active: bool,
-    /// λ̂ and r of an augmented Lagrangian.
+    /// Multiplier λ̂ of the last round of an augmented Lagrangian.
     pub multiplier: f64,
-    /// See `multiplier`.
+    /// Stiffness r of the spring of an augmented Lagrangian.
     pub stiffness: f64,
 }
 
-/// Response of an interface.
+/// Response of a contact law at a pair.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Answer {
-    /// Whether the pair is active: it is a row of the linear system.
+    /// Whether the pair is active, and so has a row in the linear system.
     pub active: bool,
-    /// Traction λ ≤ 0 on the gap.
+    /// Contact traction λ ≤ 0, the force conjugate to the gap.
     pub lambda: f64,
-    /// Residual of the row: the gap of a constraint; zero if the traction already corresponds to
-    /// the gap.
+    /// Residual of the row of the linear system: the gap of a constraint, zero for a spring, whose
+    /// traction corresponds to the gap.
     pub open: f64,
-    /// ∂g/∂λ of a spring, whose traction follows from its gap, so that its row is eliminated; 0 for
-    /// a constraint.
+    /// Compliance ∂g/∂λ of a spring whose row is eliminated, because the traction follows from the
+    /// gap; 0 for a constraint.
     pub compliance: f64,
-    /// ∂g/∂λ of a row that remains, with λ as an unknown.
+    /// Compliance ∂g/∂λ of a row that remains in the linear system with λ as an unknown.
     pub yields: f64,
-    /// Stored energy.
+    /// Energy stored in the contact spring.
     pub energy: f64,
 }
 
 /// Direction of the contact force over a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Direction {
-    /// ∇g at the end of the step.
+    /// Gradient ∇g of the gap at the end of the step.
     #[default]
     End,
-    /// ∇g at the midpoint; the gap is accumulated along it, g₁ = g₀ + ∇g·Δy.
+    /// Gradient ∇g at the midpoint of the step; the gap is accumulated along it, g₁ = g₀ + ∇g·Δy.
     Midpoint,
     /// The [discrete gradient](crate::DiscreteGradient) of the gap over the step.
     DiscreteGradient,
 }
 
 impl Direction {
-    /// Whether gaps are accumulated over steps, along the midpoint of each: the force is a quotient
-    /// of differences, which is not linear in the gap.
+    /// Whether the gap is accumulated over steps along the gradient at each midpoint; the force is
+    /// then a quotient of differences, not linear in the gap.
     pub fn accumulates(self) -> bool {
         self == Self::Midpoint
     }
@@ -78,20 +78,20 @@ impl Direction {
 
 /// A contact law with its enforcement.
 pub trait Interface: Send + Sync {
-    /// Whether its pairs are constraints: an active set decides which of them are active.
+    /// Whether pairs are constraints, so that an active set decides which of them are active.
     fn is_constraint(&self) -> bool {
         true
     }
 
-    /// Direction of its force.
+    /// Direction of the contact force over a step.
     fn direction(&self) -> Direction {
         Direction::End
     }
 
-    /// The response at a point.
+    /// The traction, residual and compliance of a pair in a given state.
     fn respond(&self, at: &Point) -> Answer;
 
-    /// Spring stiffness of a secondary node; none for a constraint.
+    /// Stiffness of the contact spring of a secondary node; none for a constraint.
     fn stiffness(&self, _node: usize) -> Option<f64> {
         None
     }

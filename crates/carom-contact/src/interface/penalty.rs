@@ -2,14 +2,14 @@
 
 use super::{Answer, Interface, Point};
 
-/// Springs with a stiffness per secondary node.
+/// Penalty contact: a spring for each secondary node.
 #[derive(Clone, Debug)]
 pub struct Penalty {
     stiffness: Vec<f64>,
 }
 
 impl Penalty {
-    /// `stiffness`: force per gap, > 0, of each secondary node.
+    /// Penalty springs with a stiffness (force per gap, > 0) for each secondary node.
     pub fn new(stiffness: Vec<f64>) -> Self {
         Self { stiffness }
     }

@@ -3,7 +3,7 @@
 
 use super::{Answer, Interface, Point};
 
-/// Unilateral contact by multipliers.
+/// Unilateral contact by Lagrange multipliers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Unilateral;
 

@@ -12,26 +12,29 @@
 
 use carom_solid::Bounds;
 
-/// Slack for round-off, relative to the clearance.
+/// Allowance for round-off, relative to the clearance between two sets of nodes.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Nodes of both sets, and how far they may move.
+/// The nodes of two sets that are far from each other, and how far they may move before a search is
+/// needed.
 #[derive(Clone, Debug)]
 pub(crate) struct Apart {
     nodes: Vec<usize>,
     dimension: usize,
-    /// A.
+    /// Bound A of the sum of the weights of a facet's nodes in the points around it.
     weight: f64,
-    /// Their coordinates at the last search.
+    /// Coordinates of the nodes at the last search.
     places: Vec<f64>,
-    /// Largest δ with nothing near; ≤ 0 if there was something.
+    /// Largest change of a coordinate with which the two sets stay apart; ≤ 0 if they were near
+    /// each other.
     clearance: f64,
-    /// m of the last search.
+    /// Margin around facets in the last search, relative to their size.
     margin: f64,
 }
 
 impl Apart {
-    /// Of the nodes of both sets, with A.
+    /// Two sets of nodes before the first search; `weight`: a bound of the sum of the weights of a
+    /// facet's nodes in the points around it.
     pub(crate) fn new(nodes: impl IntoIterator<Item = usize>, dimension: usize, weight: f64) -> Self {
         let mut nodes: Vec<usize> = nodes.into_iter().collect();
         nodes.sort_unstable();
@@ -39,13 +42,13 @@ impl Apart {
         Self { nodes, dimension, weight, places: Vec::new(), clearance: 0.0, margin: 0.0 }
     }
 
-    /// The nodes of both sets, ascending.
+    /// All nodes of both sets, ascending.
     pub(crate) fn nodes(&self) -> &[usize] {
         &self.nodes
     }
 
-    /// Whether nothing is near in a motion between these positions, flat over all nodes, with this
-    /// margin around facets.
+    /// Whether the two sets certainly stay apart in a motion between two positions, flat over all
+    /// nodes, with a margin around facets relative to their size.
     pub(crate) fn holds(&self, margin: f64, [before, now]: [&[f64]; 2]) -> bool {
         if self.clearance <= 0.0 || margin > self.margin {
             return false;
@@ -62,10 +65,11 @@ impl Apart {
         within
     }
 
-    /// After a search up to these positions with boxes of facets and of nodes, grown by m and n of
-    /// their sizes.
+    /// Stores the clearance after a search up to the positions `now`, from the boxes of all facets
+    /// and of all nodes, which were grown by m and n of their sizes.
     pub(crate) fn searched(&mut self, [facets, nodes]: [&Bounds; 2], [m, n]: [f64; 2], now: &[f64]) {
-        let (low, high) = (facets.low(), facets.high());
+        let low = facets.low();
+        let high = facets.high();
         let between = |i: usize| (nodes.low()[i] - high[i]).max(low[i] - nodes.high()[i]);
         let between = (0..self.dimension).map(between).fold(0.0, f64::max);
         let growth = self.weight * (1.0 + 2.0 * m) + 1.0 + 2.0 * n;
@@ -89,7 +93,8 @@ mod tests {
     #[test]
     fn holds_until_the_boxes_may_meet() {
         let mut apart = Apart::new([2, 0, 2], 2, 1.0);
-        let (facet, node) = (Bounds::of(&[0.0, 0.0]), Bounds::of(&[3.0, 1.0]));
+        let facet = Bounds::of(&[0.0, 0.0]);
+        let node = Bounds::of(&[3.0, 1.0]);
         let y = [0.0, 0.0, 9.0, 9.0, 3.0, 1.0];
         assert!(!apart.holds(0.0, [&y, &y]));
         apart.searched([&facet, &node], [0.0; 2], &y);

@@ -25,6 +25,7 @@
 use std::sync::Arc;
 
 use super::Kinematics;
+use super::facets::OnFacet;
 use super::folds::{Folds, Side};
 use super::node_to_facet::{Detection, NodeToFacet};
 use super::one_way::OneWay;
@@ -33,27 +34,39 @@ use super::surface::Surface;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
-/// Cosine of the angle up to which two facets are parallel: 10°.
+/// Cosine of the angle, 10°, up to which two facets count as parallel.
 const PARALLEL: f64 = 0.985;
 
-/// Contact in both directions.
+/// Nodes of a side with the depth that each may have without contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodesWithDepth {
+    /// Global numbers of the nodes.
+    pub nodes: Vec<usize>,
+    /// Allowed depth ≥ 0 of each node.
+    pub depths: Vec<f64>,
+}
+
+/// Contact in both directions: secondary nodes against the primary side, and nodes of the primary
+/// side against the secondary one.
 #[derive(Debug)]
 pub struct BothSides<K> {
     forward: K,
     reverse: K,
-    /// Facets of the primary side at each of its nodes that is a corner, with the corner's ξ.
-    corners: Vec<Vec<(usize, [f64; 2])>>,
+    /// Facets of the primary side at each of its corners, with the coordinates of the corner on
+    /// them; none at its other nodes.
+    corners: Vec<Vec<OnFacet<[f64; 2]>>>,
     all: Vec<usize>,
 }
 
 impl BothSides<NodeToFacet> {
-    /// A side against itself: its nodes, and the same with the depth that each may have where it
-    /// comes earlier, none at corners; `piece`: the connected piece of its body to which each node
-    /// belongs, from `first_node` on; `reference`: the reference positions, flat over all nodes.
+    /// A side against itself: its nodes in the role of the later place, and those in the role of
+    /// the earlier one, whose depth is zero at corners; `piece`: the connected piece of its body to
+    /// which each node belongs, from `first_node` on; `reference`: the reference positions, flat
+    /// over all nodes.
     pub fn of_itself(
         side: &Surface,
         nodes: Vec<usize>,
-        (earlier, allowed): (Vec<usize>, Vec<f64>),
+        earlier: NodesWithDepth,
         piece: &[usize],
         first_node: usize,
         reference: &[f64],
@@ -63,13 +76,14 @@ impl BothSides<NodeToFacet> {
             let nodes = NodeToFacet::new(nodes, side.clone(), Detection::ClosestPoint);
             nodes.of_body(side.clone()).folding(folds.clone(), which)
         };
-        Self::new(of(nodes, Side::Later), of(earlier, Side::Earlier).with_allowed(allowed))
+        Self::new(of(nodes, Side::Later), of(earlier.nodes, Side::Earlier).with_allowed(earlier.depths))
     }
 }
 
 impl<K: OneWay> BothSides<K> {
-    /// `forward`: secondary nodes against the primary side; `reverse`: nodes of the primary against
-    /// the secondary side, corners without an allowed depth.
+    /// Contact in both directions; `forward`: secondary nodes against the primary side; `reverse`:
+    /// nodes of the primary side, of which corners have no allowed depth, against the secondary
+    /// side.
     pub fn new(forward: K, reverse: K) -> Self {
         let all = [forward.secondary(), reverse.secondary()].concat();
         let corner = |(k, &node): (usize, &usize)| match reverse.allowed(k) {
@@ -80,19 +94,19 @@ impl<K: OneWay> BothSides<K> {
         Self { forward, reverse, corners, all }
     }
 
-    /// The direction to which a node belongs, and its number there.
+    /// The direction of contact to which a node belongs, and the index of the node in it.
     fn direction(&self, node: usize) -> (&K, usize) {
         let count = self.forward.secondary().len();
         if node < count { (&self.forward, node) } else { (&self.reverse, node - count) }
     }
 
-    /// Whether a corner meets a node of the secondary facet that it faces, and has a facet parallel
-    /// to that.
+    /// Whether a corner of the primary meets a node of the secondary facet that it faces and has a
+    /// facet parallel to that one, so that the node alone prevents penetration.
     fn is_left_to_node(&self, corner: &Pair, y: &[f64]) -> bool {
         let node = self.reverse.secondary()[corner.node];
         let normal = self.reverse.normal(corner.facet, [corner.xi, corner.eta], y);
         let faced = self.reverse.nodes_of(corner.facet);
-        self.corners[corner.node].iter().any(|&(facet, xi)| {
+        self.corners[corner.node].iter().any(|&OnFacet { facet, xi }| {
             let own = self.forward.normal(facet, xi, y);
             // Where an overlap is kept, they meet at that distance.
             let near = K::NEAR_END * self.forward.length(facet, y) + self.reverse.kept(corner.node);
@@ -101,7 +115,8 @@ impl<K: OneWay> BothSides<K> {
         })
     }
 
-    /// Applies `of` to the pairs of either direction in its own numbering.
+    /// Applies a function to the pairs of each direction of contact, numbered within that
+    /// direction.
     fn each(&self, pairing: &mut Pairing, mut of: impl FnMut(&K, &mut Pairing) -> bool) -> bool {
         let count = self.forward.secondary().len();
         let mut reverse = pairing.split_off(count);
@@ -168,8 +183,8 @@ impl<K: OneWay> Kinematics for BothSides<K> {
                 nodes.iter().filter(|n| range.contains(*n)).map(|n| n - range.start).collect();
             if own.is_empty() { Vec::new() } else { direction.met(&own, before, now) }
         };
-        let (mut forward, mut reverse) =
-            (of(&self.forward, 0..count).into_iter(), of(&self.reverse, count..self.all.len()).into_iter());
+        let mut forward = of(&self.forward, 0..count).into_iter();
+        let mut reverse = of(&self.reverse, count..self.all.len()).into_iter();
         let next = |&node: &usize| if node < count { forward.next() } else { reverse.next() };
         nodes.iter().map(next).map(Option::flatten).collect()
     }
@@ -191,7 +206,8 @@ impl<K: OneWay> Kinematics for BothSides<K> {
             return Ok(());
         }
         direction.measure(&mut local, y, rows)?;
-        (pair.xi, pair.eta) = (local.xi, local.eta);
+        pair.xi = local.xi;
+        pair.eta = local.eta;
         if is_reverse {
             rows.reverse_from(rows.len() - 1);
         }

@@ -1,27 +1,31 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the closest one that it was not behind before.
 
-use super::facing::{Closest, REACH};
+use super::facets::OnFacet;
+use super::facing::{Closest, REACH, Reached};
 use super::node_to_facet::{Detection, NodeToFacet, Tools};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
+use super::way::Met;
 use crate::kinematics::{Kinematics, OneWay};
 use crate::pair::Pair;
 use crate::places::Places;
 
-/// A node this far behind a facet (relative to its length) at the start of a step has not crossed
-/// the facet.
+/// Distance behind a facet at the start of a step, relative to the length of the facet, beyond
+/// which a node has not crossed it.
 const BEHIND: f64 = 1e-6;
-/// The same where the whole boundary is known: a node whose nearest facet is of the side has
-/// entered the body there.
+/// Distance behind a facet at the start of a step, relative to its length, beyond which a node has
+/// not crossed it, if the whole boundary of the body is known: a node whose nearest facet is of the
+/// side has then entered the body there.
 const RECAPTURED: f64 = 0.02;
-/// The same for a node past the end of the side, relative to its distance from the end, or that at
-/// which a corner is left to a node: the sine of 10°, the angle up to which facets that meet there
-/// are parallel (`both_sides.rs`).
+/// Distance behind a facet at the start of a step, relative to the distance from the end of the
+/// side, beyond which a node past that end has not crossed the facet, or to the distance at which a
+/// corner is left to a node: the sine of 10°, the angle up to which facets that meet there count as
+/// parallel (`both_sides.rs`).
 pub(super) const AROUND: f64 = 0.17;
 
 impl NodeToFacet {
-    /// Finds the facets that a node may meet.
+    /// Finds the facets that a node may meet on its path.
     fn find(&self, tools: &mut Tools, node: usize, before: Places, now: Places) {
         tools.search.find(node, before, now);
         if let Some((folds, side)) = &self.folds {
@@ -31,14 +35,14 @@ impl NodeToFacet {
         tools.search.retain(|facet| self.may_press(node, facet, before));
     }
 
-    /// θ, facet and ξ of the first crossing of trajectories of a node.
+    /// The first crossing of a node's path with the path of a facet.
     pub(super) fn first(
         &self,
         tools: &mut Tools,
         place: usize,
         before: Places,
         now: Places,
-    ) -> Option<(f64, usize, f64)> {
+    ) -> Option<Met<f64>> {
         let node = self.secondary[place];
         self.find(tools, node, before, now);
         self.first_of(&mut tools.swept, tools.search.found(), node, before, now)
@@ -51,28 +55,30 @@ impl NodeToFacet {
         node: usize,
         before: Places,
         now: Places,
-    ) -> Option<(f64, usize, f64)> {
-        let mut first: Option<(f64, usize, f64)> = None;
+    ) -> Option<Met<f64>> {
+        let mut first: Option<Met<f64>> = None;
         for &facet in near {
             if let Some(c) = crossing(swept, self.primary.facet(facet), before, now, node)
-                && first.is_none_or(|(theta, ..)| c.theta < theta)
+                && first.is_none_or(|first| c.theta < first.theta)
             {
-                first = Some((c.theta, facet, c.xi));
+                first = Some(Met { theta: c.theta, facet, xi: c.xi });
             }
         }
         first
     }
 
-    /// Facet and ξ of possible contact of a node: the first crossing of trajectories, else the
-    /// closest facet at `now` that the node was not behind before.
+    /// Possible contact of a node without a pair: the first crossing of paths, else the closest
+    /// facet at `now` that the node was not behind before.
     pub(super) fn candidate(
         &self,
         tools: &mut Tools,
         place: usize,
         before: Places,
         now: Places,
-    ) -> Option<(usize, f64, bool)> {
-        let (node, allowed, slack) = (self.secondary[place], self.allowed(place), self.slack(place));
+    ) -> Option<Reached> {
+        let node = self.secondary[place];
+        let allowed = self.allowed(place);
+        let slack = self.slack(place);
         self.find(tools, node, before, now);
         let near = tools.search.found();
         let ends = |c: &Closest| self.ends_at(node, c.facet, c.xi);
@@ -86,20 +92,20 @@ impl NodeToFacet {
             }
         }
         let first = self.first_of(&mut tools.swept, near, node, before, now);
-        let entered_elsewhere = first.is_some_and(|(_, facet, _)| !self.primary.is_of_side(facet));
+        let entered_elsewhere = first.is_some_and(|first| !self.primary.is_of_side(first.facet));
         // A node that has entered near the end of a facet may be in front of another one now.
         let still_faced = |facet: usize| {
             let xi = self.primary.facet(facet).closest_point(now, now.at(node), REACH);
             self.detection == Detection::Trajectory
                 || xi.is_some_and(|xi| !self.primary.faces_nothing(facet, xi, now))
         };
-        let entered = first.filter(|&(_, facet, _)| !entered_elsewhere && still_faced(facet));
-        if let Some((_, facet, xi)) = entered {
-            return Some((facet, xi, true));
+        let entered = first.filter(|first| !entered_elsewhere && still_faced(first.facet));
+        if let Some(Met { facet, xi, .. }) = entered {
+            return Some(Reached { facet, xi, crossed: true });
         }
         let beside = || {
             let of_sides = |facet| self.primary.is_of_side(facet) || self.primary.is_of_sibling(facet);
-            if first.is_some_and(|(_, facet, _)| of_sides(facet)) {
+            if first.is_some_and(|first| of_sides(first.facet)) {
                 return None;
             }
             self.around_end(near, place, before, now)
@@ -107,17 +113,21 @@ impl NodeToFacet {
         let of_side = closest.filter(|c| self.primary.is_of_side(c.facet));
         let Some(Closest { facet, xi, .. }) = of_side else { return beside() };
         if first.is_some() && !entered_elsewhere {
-            return Some((facet, xi, true));
+            return Some(Reached { facet, xi, crossed: true });
         }
         let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
         let behind_by = if self.primary.is_whole() { RECAPTURED } else { BEHIND };
         let depth = |length: f64| slack + behind_by * length;
         let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
-        if start.map_or(entered_elsewhere, behind) { beside() } else { Some((facet, xi, false)) }
+        if start.map_or(entered_elsewhere, behind) {
+            beside()
+        } else {
+            Some(Reached { facet, xi, crossed: false })
+        }
     }
 
-    /// Facet and ξ where a node that has pairs enters the side elsewhere: neither at their facets
-    /// nor at those next to them, which hand pairs over.
+    /// Where a node that has pairs enters the side at another place: neither at the facets of its
+    /// pairs nor at those next to them, to which a pair is handed over.
     pub(super) fn elsewhere(
         &self,
         tools: &mut Tools,
@@ -125,35 +135,31 @@ impl NodeToFacet {
         held: &[Pair],
         before: Places,
         now: Places,
-    ) -> Option<(usize, f64)> {
-        let (node, side) = (self.secondary[place], &self.primary);
+    ) -> Option<OnFacet<f64>> {
+        let node = self.secondary[place];
+        let side = &self.primary;
         self.find(tools, node, before, now);
         let is_next = |pair: &Pair, facet: usize| {
             [false, true].iter().any(|&forward| side.neighbour(pair.facet, forward) == Some(facet))
         };
         let is_held = |facet: usize| held.iter().any(|pair| pair.facet == facet || is_next(pair, facet));
         tools.search.retain(|facet| !is_held(facet));
-        let (_, facet, _) = self.first_of(&mut tools.swept, tools.search.found(), node, before, now)?;
+        let Met { facet, .. } = self.first_of(&mut tools.swept, tools.search.found(), node, before, now)?;
         let xi = side.facet(facet).closest_point(now, now.at(node), REACH)?;
         let faces = side.is_of_side(facet) && !side.faces_nothing(facet, xi, now);
         let enters = faces
             && !self.ends_at(node, facet, xi)
             && self.gap(node, facet, xi, now) + self.slack(place) < 0.0;
-        enters.then_some((facet, xi))
+        enters.then_some(OnFacet { facet, xi })
     }
 
-    /// The same of a node that has entered through the rest of the boundary, from past an end of
-    /// the side and in front of its facet there, or is nearest to the rest and was just behind the
-    /// side. Where the ends of two sides meet, nodes move to and fro between being past the end and
-    /// facing the side, and corners between being left to a node or not.
-    fn around_end(
-        &self,
-        near: &[usize],
-        place: usize,
-        before: Places,
-        now: Places,
-    ) -> Option<(usize, f64, bool)> {
-        let (node, slack) = (self.secondary[place], self.slack(place));
+    /// Possible contact of a node that has entered the body through the rest of the boundary, from
+    /// past an end of the side and in front of its facet there, or that is nearest to the rest and
+    /// was just behind the side. Where the ends of two sides meet, nodes change between being past
+    /// the end and facing the side, and corners between being left to a node or not.
+    fn around_end(&self, near: &[usize], place: usize, before: Places, now: Places) -> Option<Reached> {
+        let node = self.secondary[place];
+        let slack = self.slack(place);
         near.iter().filter(|&&facet| self.primary.is_of_side(facet)).find_map(|&facet| {
             let shape = self.primary.facet(facet);
             let xi = shape.closest_point(now, now.at(node), REACH)?;
@@ -163,7 +169,7 @@ impl NodeToFacet {
             let enters = !self.primary.faces_nothing(facet, xi, now)
                 && self.gap(node, facet, xi, now) + slack < 0.0
                 && self.gap(node, facet, start, before) + slack >= -AROUND * past;
-            enters.then_some((facet, xi, false))
+            enters.then_some(Reached { facet, xi, crossed: false })
         })
     }
 }

@@ -1,5 +1,5 @@
-//! What carries a rigid obstacle: nodes that move with it. Every point p of the obstacle, in the
-//! coordinates in which its shape is given, is a constant combination of them,
+//! Nodes that carry a rigid obstacle and move with it. Every point p of the obstacle, in the
+//! coordinates in which its shape is given, is a constant combination of their positions,
 //!
 //! ```text
 //! x(p) = Σ w_a(p) y_a,   w_a = ω_a·(p − X₀) (a ≥ 1),   w₀ = 1 − Σ w_a,   F = ∂x/∂p = Σ y_a ω_aᵀ
@@ -13,32 +13,34 @@ use carom_algebra::{Mat, Vector};
 
 use super::obstacle::Point;
 
-/// The nodes that carry an obstacle.
+/// The nodes that carry a rigid obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Carrier {
-    /// Global numbers of its nodes: one, or one more than there are dimensions.
+    /// Global numbers of the carrying nodes: one if the obstacle only translates, d + 1 in d
+    /// dimensions if it may turn.
     pub nodes: Vec<usize>,
-    /// Position X₀ of the first for which the shape is given.
+    /// Position X₀ of the first carrying node in the coordinates in which the shape is given.
     pub origin: [f64; 3],
-    /// Length ℓ of the edges of the simplex.
+    /// Length ℓ of the edges of the simplex that the carrying nodes form.
     pub length: f64,
 }
 
-/// A point of space in the coordinates of the shape.
+/// A point of space in the coordinates in which the shape of an obstacle is given.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Local {
-    /// p.
+    /// Position p in the coordinates of the shape.
     pub at: Point,
-    /// w_a(p) of each node of the carrier.
+    /// Weight w_a(p) of each carrying node in the position of the point.
     pub weights: [f64; 4],
-    /// F⁻¹; none of an obstacle that does not turn.
+    /// Inverse F⁻¹ of the deformation of the carrying simplex; none if the obstacle does not turn.
     inverse: Option<Mat<3>>,
-    /// F⁻ᵀ ω_a, zero where it does not turn.
+    /// Spatial gradient F⁻ᵀ ω_a of the weight of each carrying node; zero if the obstacle does not
+    /// turn.
     slopes: [Point; 4],
 }
 
 impl Carrier {
-    /// Reference positions of its nodes, flat, in a space of some dimension.
+    /// Reference positions of the carrying nodes, flat, with `dimension` components each.
     pub fn places(&self, dimension: usize) -> Vec<f64> {
         let mut places = Vec::new();
         for a in 0..self.nodes.len() {
@@ -49,12 +51,12 @@ impl Carrier {
         places
     }
 
-    /// Whether it may turn.
+    /// Whether the obstacle may turn.
     pub fn turns(&self) -> bool {
         self.nodes.len() > 1
     }
 
-    /// The point of the obstacle at a place, `y` the positions of all nodes.
+    /// The point of the obstacle that lies at a place in space, at the positions `y` of all nodes.
     pub(super) fn local(&self, place: Point, y: &[f64], dimension: usize) -> Local {
         let node = |a: usize| -> Point {
             let first = self.nodes[a] * dimension;
@@ -85,7 +87,7 @@ impl Carrier {
         Local { at, weights, inverse, slopes }
     }
 
-    /// x(p).
+    /// Position x(p) in space of a point p of the obstacle.
     pub(super) fn placed(&self, p: Point, y: &[f64], dimension: usize) -> Point {
         let coordinate = |a: usize, i: usize| {
             if i < dimension { y[self.nodes[a] * dimension + i] } else { 0.0 }
@@ -103,22 +105,22 @@ impl Carrier {
 }
 
 impl Local {
-    /// A point of an obstacle that does not move.
+    /// A point of an obstacle that is fixed in space.
     pub(super) fn fixed(at: Point) -> Self {
         Self { at, weights: [0.0; 4], inverse: None, slopes: [[0.0; 3]; 4] }
     }
 
-    /// F⁻¹ v.
+    /// A vector v of space in the coordinates of the shape, F⁻¹ v.
     pub(super) fn back(&self, v: Point) -> Point {
         self.inverse.map_or(v, |inverse| inverse.apply(&Vector(v)).0)
     }
 
-    /// F⁻ᵀ v.
+    /// A gradient v in the coordinates of the shape as a gradient in space, F⁻ᵀ v.
     pub(super) fn forth(&self, v: Point) -> Point {
         self.inverse.map_or(v, |inverse| inverse.transposed().apply(&Vector(v)).0)
     }
 
-    /// F⁻ᵀ ω_a of a node of the carrier.
+    /// Spatial gradient F⁻ᵀ ω_a of the weight of a carrying node.
     pub(super) fn slope(&self, a: usize) -> Point {
         self.slopes[a]
     }

@@ -1,38 +1,49 @@
-//! What the boundaries of bodies in the plane and in space have in common.
+//! Common interface of the boundaries of bodies in the plane and in space.
 
 use carom_algebra::Vector;
 use carom_solid::{Bounds, FacetShape, Hull, Tree};
 
-/// Distance up to which a facet is near another one, over its size.
+/// Distance, relative to the size of a facet, up to which another facet is near it.
 const NEAR: f64 = 0.25;
 
-/// A point relative to a boundary.
+/// Position of a point relative to the boundary of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Depth {
     /// Distance to the boundary, positive outside.
     pub distance: f64,
-    /// Nearest facet, and its point.
+    /// Facet nearest to the point.
     pub facet: usize,
-    /// ξ of that point, one coordinate in the plane.
+    /// Coordinates ξ of the nearest point on its facet; in the plane only the first is used.
     pub xi: [f64; 2],
 }
 
-/// Facets of one shape; positions `y` are flat over all nodes, `D` components each.
+/// A point of a facet, given by its coordinates ξ: one number in the plane, two in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnFacet<X> {
+    /// Number of the facet.
+    pub facet: usize,
+    /// Coordinates on the facet.
+    pub xi: X,
+}
+
+/// The facets of a boundary, all of one shape; positions `y` are flat over all nodes, `D`
+/// components each.
 pub(crate) trait Facets<const D: usize> {
     /// Shape of every facet.
     fn shape(&self) -> FacetShape;
 
-    /// Nodes of all facets, those of the side and then those of the rest of the boundary, facet by
-    /// facet.
+    /// Nodes of all facets, facet by facet: the facets of the side, then those of the rest of the
+    /// boundary.
     fn nodes(&self) -> &[usize];
 
-    /// Facets whose positions tell, with those of a facet itself, where a point near that lies.
+    /// Neighbours of a facet whose positions, with its own, decide on which side of the boundary a
+    /// nearby point lies.
     fn beside(&self, facet: usize) -> impl Iterator<Item = usize>;
 
     /// Distance between a facet, with its edges and corners, and a point.
     fn distance(&self, facet: usize, point: Vector<D>, y: &[f64]) -> f64;
 
-    /// Where a point lies whose nearest facet is known.
+    /// Position relative to the boundary of a point whose nearest facet is known.
     fn depth(&self, facet: usize, point: Vector<D>, y: &[f64]) -> Depth;
 
     /// Outward unit normal of a facet at ξ, padded with zeros to space.
@@ -44,24 +55,26 @@ pub(crate) trait Facets<const D: usize> {
         &self.nodes()[facet * n..(facet + 1) * n]
     }
 
-    /// Number of facets with those of the rest of the boundary.
+    /// Number of all facets: those of the side and those of the rest of the boundary.
     fn all(&self) -> usize {
         self.nodes().len() / self.shape().nodes()
     }
 
-    /// Distance between the first corners of a facet.
+    /// Length of a facet: the distance between its first two corners.
     fn length(&self, facet: usize, y: &[f64]) -> f64 {
-        let (nodes, y) = (self.nodes_of(facet), y.as_chunks::<D>().0);
+        let nodes = self.nodes_of(facet);
+        let y = y.as_chunks::<D>().0;
         (Vector(y[nodes[1]]) - Vector(y[nodes[0]])).norm()
     }
 
-    /// Box around a facet.
+    /// Bounding box of a facet.
     fn bounds(&self, hull: &Hull, facet: usize, y: &[f64]) -> Bounds {
-        let (nodes, y) = (self.nodes_of(facet), y.as_chunks::<D>().0);
+        let nodes = self.nodes_of(facet);
+        let y = y.as_chunks::<D>().0;
         hull.bounds(|a| &y[nodes[a]])
     }
 
-    /// The facets without a node of this one whose boxes meet another box.
+    /// Facets that have no node in common with a facet and whose bounding boxes meet another box.
     fn apart_from(&self, facet: usize, bounds: &Bounds, tree: &Tree) -> impl Iterator<Item = usize> {
         let nodes = self.nodes_of(facet);
         let joined = |b: usize| self.nodes_of(b).iter().any(|node| nodes.contains(node));

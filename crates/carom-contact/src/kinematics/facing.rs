@@ -16,16 +16,16 @@ use super::surface::Surface;
 use crate::pair::Pair;
 use crate::places::Places;
 
-/// |ξ| up to which a facet is extrapolated.
+/// |ξ| up to which a facet in the plane is extrapolated beyond its ends.
 pub(super) const REACH: f64 = 1.2;
-/// |ξ| − 1 above which a closest point is past the end of its facet.
+/// Excess |ξ| − 1 above which a closest point lies past the end of its facet.
 pub(super) const PAST: f64 = 1e-9;
-/// The same at a corner or at the end of a side: where sides of equal length are pressed together,
-/// their ends bulge differently.
+/// Excess |ξ| − 1 above which a closest point lies past a corner or the end of a side: where sides
+/// of equal length are pressed together, their ends bulge differently.
 pub(super) const PAST_SIDE: f64 = 1e-3;
 
 impl Surface {
-    /// The closest of some facets that a node at `from` faces at positions `y`.
+    /// The closest of the given facets that a node at the position `from` faces.
     pub(super) fn closest_facet(&self, facets: &[usize], from: Vector<2>, y: Places) -> Option<Closest> {
         let mut closest: Option<Closest> = None;
         for &facet in facets {
@@ -47,7 +47,7 @@ impl Surface {
         closest
     }
 
-    /// The next facet of a pair that is past the end of its facet.
+    /// Facet to which a pair whose closest point lies past the end of its facet is handed over.
     pub(super) fn next_facet(
         &self,
         pair: &Pair,
@@ -76,13 +76,14 @@ impl Surface {
         if bridged { Next::Stay } else { Next::Leave }
     }
 
-    /// Distance of a point along the normal of a facet at ξ.
+    /// Gap of a point over a facet at ξ: its distance along the normal there.
     pub(super) fn gap(&self, facet: usize, xi: f64, from: Vector<2>, y: Places) -> f64 {
         let c = self.facet(facet).seen_from(from, y, xi);
         -c.position.dot(&c.normal)
     }
 
-    /// Whether ξ lies past a facet's end and no blunt joint with the side follows there.
+    /// Whether ξ lies past an end of a facet at which no blunt joint with another facet of the side
+    /// follows.
     pub(super) fn faces_nothing(&self, facet: usize, xi: f64, y: Places) -> bool {
         if xi.abs() < 1.0 - PAST {
             return false;
@@ -102,12 +103,20 @@ impl Surface {
     }
 }
 
-/// The closest facet of a node.
+/// The closest facet that a node faces.
 #[derive(Clone, Copy)]
 pub(super) struct Closest {
     pub(super) facet: usize,
     pub(super) xi: f64,
     pub(super) gap: f64,
-    /// Distance from the facet, with the distance past its end.
+    /// Distance of the node from the facet, increased by the distance past its end.
     distance: f64,
+}
+
+/// The point of possible contact of a node without a pair.
+pub(super) struct Reached {
+    pub(super) facet: usize,
+    pub(super) xi: f64,
+    /// Whether the path of the node has crossed the side.
+    pub(super) crossed: bool,
 }

@@ -18,7 +18,7 @@
 //! The boundaries of a hole and of its body are separated by material and cannot meet; pieces
 //! without a common cell always can.
 //!
-//! Of two places that meet, one is the secondary: that which comes later along the boundary. Each
+//! The secondary one of two places that meet is that which comes later along the boundary. Each
 //! loop begins where it is least likely to meet itself: the boundary turns back least to the right
 //! after the beginning, and least to the right before it. At a beginning within a zone of contact
 //! the roles would change there. Any place of a hole may meet another one.
@@ -30,30 +30,31 @@ use super::facets::Facets;
 use super::surface::Surface;
 use crate::places::Places;
 
-/// |T + 180°| up to which two places may meet.
+/// Deviation of the turn of the tangent from −180° up to which two places of a boundary may meet.
 const WINDOW: f64 = 80.0 * PI / 180.0;
-/// A joint that turns left by more is a closed slit: a body has no corner as sharp as 10°.
+/// Left turn of a joint above which it is a closed slit: a body has no corner as sharp as 10°.
 const SHARPEST: f64 = 170.0 * PI / 180.0;
 
-/// The order of a body's facets along its boundary.
+/// The order of the facets of a body along the loops of its boundary.
 #[derive(Clone, Debug)]
 pub(crate) struct Folds {
-    /// Facets in the order of traversal, loop by loop.
+    /// All facets in the order of traversal, loop by loop.
     order: Vec<usize>,
-    /// Place of each facet in `order`.
+    /// Place of each facet in the order of traversal.
     place: Vec<usize>,
-    /// First place of each loop, and the end of the last one.
+    /// First place of each loop in the order of traversal, and the end of the last loop.
     starts: Vec<usize>,
-    /// Loop of each facet.
+    /// Number of the loop to which each facet belongs.
     of: Vec<usize>,
-    /// Connected piece of each loop.
+    /// Connected piece of the body that each loop bounds.
     pieces: Vec<usize>,
-    /// Smallest node, and the places of the facets before and after each node from that on.
+    /// Smallest global number of a node of the boundary.
     first: usize,
+    /// For each node from the smallest on, the places of the facets before and after it.
     around: Vec<[usize; 2]>,
 }
 
-/// Which of the two places is the node's.
+/// Order of a node and a facet of one boundary along that boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// The node comes later than the facet.
@@ -62,30 +63,36 @@ pub enum Side {
     Earlier,
 }
 
-/// Turns of a boundary at given positions.
+/// Turns of the tangent along the boundary of a body at given positions.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns {
-    /// Turn from the start of the loop to the start of each facet, by place.
+    /// Turn of the tangent from the start of the loop to the start of each facet, in the order of
+    /// traversal.
     start: Vec<f64>,
-    /// Turn from the start of each facet to its end.
+    /// Turn of the tangent from the start of each facet to its end, in the order of traversal.
     within: Vec<f64>,
-    /// Turn of each whole loop.
+    /// Turn of the tangent along each whole loop.
     total: Vec<f64>,
 }
 
 impl Folds {
-    /// Of all facets of a surface at reference positions; `piece` of a node: the number of its
-    /// connected piece of the body. The order does not depend on that of the facets.
+    /// Orders all facets of a surface at reference positions, independently of the order in which
+    /// they are given; `piece`: number of the connected piece of the body to which each node
+    /// belongs, from `first_node` on.
     pub(crate) fn new(surface: &Surface, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
         let count = surface.all();
-        let (mut order, mut starts, mut pieces) = (Vec::with_capacity(count), vec![0], Vec::new());
-        let (mut place, mut of) = (vec![usize::MAX; count], vec![0; count]);
+        let mut order = Vec::with_capacity(count);
+        let mut starts = vec![0];
+        let mut pieces = Vec::new();
+        let mut place = vec![usize::MAX; count];
+        let mut of = vec![0; count];
         let mut begins: Vec<usize> = (0..count).collect();
         begins.sort_unstable_by_key(|&facet| surface.facet(facet).nodes[0]);
         for begin in begins {
             let mut next = Some(begin);
             while let Some(facet) = next.filter(|&facet| place[facet] == usize::MAX) {
-                (place[facet], of[facet]) = (order.len(), pieces.len());
+                place[facet] = order.len();
+                of[facet] = pieces.len();
                 order.push(facet);
                 next = surface.neighbour(facet, true);
             }
@@ -102,7 +109,8 @@ impl Folds {
         order.iter().enumerate().for_each(|(at, &facet)| place[facet] = at);
         let nodes = |facet: usize| surface.facet(facet).nodes;
         let all = || (0..count).flat_map(nodes).copied();
-        let (first, end) = (all().min().unwrap_or(0), all().max().map_or(0, |last| last + 1));
+        let first = all().min().unwrap_or(0);
+        let end = all().max().map_or(0, |last| last + 1);
         let mut around = vec![[usize::MAX; 2]; end - first];
         for (at, &facet) in order.iter().enumerate() {
             for (k, &node) in nodes(facet).iter().enumerate() {
@@ -117,45 +125,50 @@ impl Folds {
         Self { order, place, starts, of, pieces, first, around }
     }
 
-    /// Places of the facets before and after a node; the same where it is inside a facet.
+    /// Places, in the order of traversal, of the facets before and after a node; both are equal for
+    /// a node inside a facet.
     fn around(&self, node: usize) -> Option<[usize; 2]> {
         let around = *node.checked_sub(self.first).and_then(|k| self.around.get(k))?;
         (!around.contains(&usize::MAX)).then_some(around)
     }
 
-    /// Whether a pair of a node and a facet is possible and has the node on that side.
+    /// Whether a node and a facet may form a pair in which the node comes on the given side of the
+    /// facet.
     pub(crate) fn admits(&self, side: Side, node: usize, facet: usize) -> bool {
         let Some(around) = self.around(node) else { return false };
         let at = self.place[facet];
         // At the joint that closes a loop, a node belongs to the end.
         let later = around[0] >= at;
-        let [own, other] = [self.of[self.order[around[0]]], self.of[facet]];
+        let own = self.of[self.order[around[0]]];
+        let other = self.of[facet];
         !around.contains(&at)
             && later == (side == Side::Later)
             && (own == other || self.pieces[own] != self.pieces[other])
     }
 
-    /// Whether there are several pieces.
+    /// Whether the body consists of several connected pieces.
     pub(crate) fn has_pieces(&self) -> bool {
         self.pieces.iter().any(|piece| *piece != self.pieces[0])
     }
 
-    /// Whether a facet bounds another piece than that of a node.
+    /// Whether a facet bounds another connected piece of the body than that of a node.
     pub(crate) fn is_of_another_piece(&self, node: usize, facet: usize) -> bool {
         self.around(node).is_some_and(|[before, _]| {
             self.pieces[self.of[self.order[before]]] != self.pieces[self.of[facet]]
         })
     }
 
-    /// Whether a node and a facet meet where the boundary folds: an admissible pair is compared
-    /// only then.
+    /// Whether the boundary folds such that a node faces a facet; only then is an admissible pair
+    /// compared.
     pub(crate) fn face(&self, turns: &Turns, node: usize, facet: usize) -> bool {
         let Some([before, after]) = self.around(node) else { return false };
-        let (run, at) = (self.of[facet], self.place[facet]);
+        let run = self.of[facet];
+        let at = self.place[facet];
         if self.of[self.order[before]] != run {
             return true;
         }
-        let (total, middle) = (turns.total[run], turns.start[at] + 0.5 * turns.within[at]);
+        let total = turns.total[run];
+        let middle = turns.start[at] + 0.5 * turns.within[at];
         let (arriving, leaving) = if before == after {
             let own = turns.start[before] + 0.5 * turns.within[before];
             (own, own)
@@ -172,7 +185,7 @@ impl Folds {
 }
 
 impl Turns {
-    /// Updates to positions.
+    /// Recomputes the turns of the tangent at the positions `y`.
     pub(crate) fn update(&mut self, folds: &Folds, surface: &Surface, y: Places) {
         self.update_loops(&folds.order, &folds.starts, surface, y);
     }
@@ -191,25 +204,28 @@ impl Turns {
                 self.start.push(turn);
                 self.within.push(within);
                 turn += within;
-                let (cosine, sine) = surface.kink(facet, facets[(k + 1) % facets.len()], y);
-                let joint = sine.atan2(cosine);
+                let kink = surface.kink(facet, facets[(k + 1) % facets.len()], y);
+                let joint = kink.sine.atan2(kink.cosine);
                 turn += if joint > SHARPEST { joint - 2.0 * PI } else { joint };
             }
             self.total.push(turn);
         }
     }
 
-    /// The facet of a loop, counted from its first one, at which to begin.
+    /// Index within a loop of the facet at which its order should begin.
     fn best_start(&self, run: usize, places: Range<usize>) -> usize {
-        let (start, within) = (&self.start[places.clone()], &self.within[places]);
-        let (total, n) = (self.total[run], start.len());
+        let start = &self.start[places.clone()];
+        let within = &self.within[places];
+        let total = self.total[run];
+        let n = start.len();
         let end = |k: usize| start[k] + within[k];
         // Least and largest angles from each facet on, and those before the current one.
         let mut on = vec![[f64::INFINITY, f64::NEG_INFINITY]; n + 1];
         for k in (0..n).rev() {
             on[k] = [on[k + 1][0].min(start[k]).min(end(k)), on[k + 1][1].max(start[k]).max(end(k))];
         }
-        let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut least = f64::INFINITY;
+        let mut largest = f64::NEG_INFINITY;
         let mut best = (0, f64::NEG_INFINITY);
         for k in 0..n {
             let arriving = if k == 0 { end(n - 1) - total } else { end(k - 1) };
@@ -219,7 +235,8 @@ impl Turns {
             if ahead.min(behind) > best.1 + 1e-6 {
                 best = (k, ahead.min(behind));
             }
-            (least, largest) = (least.min(start[k]).min(end(k)), largest.max(start[k]).max(end(k)));
+            least = least.min(start[k]).min(end(k));
+            largest = largest.max(start[k]).max(end(k));
         }
         best.0
     }

@@ -28,47 +28,49 @@ use carom_solid::LineShape;
 use super::projection::{Facet, FacetPoint};
 use crate::places::Places;
 
-/// A node over a facet at ξ.
+/// Gap of a node over the point ξ of a facet in the plane, with its derivatives.
 pub(crate) struct Gap {
     at: FacetPoint,
     shape: LineShape,
-    /// The gap g.
+    /// Gap g.
     pub(crate) distance: f64,
     tau: f64,
     kappa: f64,
-    /// a; a unique closest point has a > 0.
+    /// Second derivative a of half the squared distance by ξ; positive at a unique closest point.
     pub(crate) a: f64,
 }
 
 impl Gap {
-    /// At the closest point ξ, which follows the positions.
+    /// Gap at the closest point ξ, which follows the positions.
     pub(crate) fn closest(facet: Facet, y: Places, from: Vector<2>, xi: f64) -> Self {
         let at = facet.seen_from(from, y, xi);
-        let (gap, kappa) = (-at.position.dot(&at.normal), at.normal.dot(&at.second));
+        let gap = -at.position.dot(&at.normal);
+        let kappa = at.normal.dot(&at.second);
         let a = at.measure * at.measure - gap * kappa;
         Self { at, shape: facet.shape.at(xi), distance: gap, tau: 0.0, kappa, a }
     }
 
-    /// At a fixed ξ.
+    /// Gap at a fixed ξ.
     pub(crate) fn fixed(facet: Facet, y: Places, from: Vector<2>, xi: f64) -> Self {
         let at = facet.seen_from(from, y, xi);
-        let (from_point, a) = (-at.position, at.measure * at.measure);
+        let from_point = -at.position;
+        let a = at.measure * at.measure;
         let tau = from_point.dot(&at.tangent) / a;
         Self { at, shape: facet.shape.at(xi), distance: from_point.dot(&at.normal), tau, kappa: 0.0, a }
     }
 
-    /// ψᵅ of a node of the facet.
+    /// Weight ψᵅ of a node of the facet in the gradient of the gap.
     fn weight(&self, node: usize) -> f64 {
         self.shape.values[node] + self.tau * self.shape.first[node]
     }
 
-    /// ∂g/∂y of the node and of `count` nodes of the facet.
+    /// Gradient ∂g/∂y of the gap: for the node, then for `count` nodes of the facet.
     pub(crate) fn gradient(&self, count: usize) -> impl Iterator<Item = Vector<2>> {
         let of_facet = (0..count).map(|k| self.at.normal * -self.weight(k));
         std::iter::once(self.at.normal).chain(of_facet)
     }
 
-    /// H of the node and of `count` nodes of the facet.
+    /// Row H of the slip: for the node, then for `count` nodes of the facet.
     pub(crate) fn slip(&self, count: usize) -> impl Iterator<Item = Vector<2>> {
         let FacetPoint { tangent, normal, measure, .. } = self.at;
         let along = tangent * measure.recip();
@@ -78,11 +80,13 @@ impl Gap {
         std::iter::once(along).chain((0..count).map(of_facet))
     }
 
-    /// ∂H/∂y of the node and of `count` nodes of the facet in the plane: overwrites the first
-    /// (2 + 2 `count`)² entries, row-major.
+    /// Derivative ∂H/∂y of the row of the slip by the node and `count` nodes of the facet in the
+    /// plane: overwrites the first (2 + 2 `count`)² entries, row-major.
     pub(crate) fn slip_derivative_into(&self, count: usize, matrix: &mut [f64]) {
         let FacetPoint { tangent: t, normal: n, measure: j, second, .. } = self.at;
-        let (gap, along, size) = (self.distance, t * j.recip(), 2 * (1 + count));
+        let gap = self.distance;
+        let along = t * j.recip();
+        let size = 2 * (1 + count);
         // φ, φ' and φ'' of the facet's nodes; those of the node itself are −1, 0 and 0.
         let of = |p: usize, values: &[f64; 4], own: f64| if p == 0 { own } else { values[p - 1] };
         let phi = |p: usize| of(p, &self.shape.values, -1.0);
@@ -95,7 +99,8 @@ impl Gap {
                 let turn = (first(q) * n.0[k] + self.kappa * xi) / j;
                 let longer = first(q) * along.0[k] + along.dot(&second) * xi;
                 let opening = -phi(q) * n.0[k];
-                let (along_changed, normal_changed) = (n * turn, along * -turn);
+                let along_changed = n * turn;
+                let normal_changed = along * -turn;
                 let share_changed = opening / j - gap * longer / (j * j);
                 for p in 0..=count {
                     let changed = along * (-first(p) * xi)
@@ -109,8 +114,8 @@ impl Gap {
         }
     }
 
-    /// ∂²g/∂y∂y of the node and of `count` nodes of the facet, `d` components each: overwrites the
-    /// first ((1 + `count`) `d`)² entries, row-major.
+    /// Second derivative ∂²g/∂y∂y of the gap by the node and `count` nodes of the facet, `d`
+    /// components each: overwrites the first ((1 + `count`) `d`)² entries, row-major.
     pub(crate) fn curvature_into(&self, count: usize, d: usize, curvature: &mut [f64]) {
         let Self {
             at: FacetPoint { tangent: t, normal: n, measure: j, .. }, distance: gap, kappa, a, ..
@@ -119,7 +124,10 @@ impl Gap {
         // Every vector of the stencil is a scalar per node times n or t.
         let phi = |p: usize| if p == 0 { 1.0 } else { -self.weight(p - 1) };
         let slope = |p: usize| if p == 0 { 0.0 } else { self.shape.first[p - 1] };
-        let (nn, tt, tn, nt) = (n.outer(&n), t.outer(&t), t.outer(&n), n.outer(&t));
+        let nn = n.outer(&n);
+        let tt = t.outer(&t);
+        let tn = t.outer(&n);
+        let nt = n.outer(&t);
         for p in 0..count {
             for q in 0..count {
                 let mut block: Mat<2> = tn * (-phi(p) * slope(q) / a);

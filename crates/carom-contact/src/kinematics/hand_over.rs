@@ -1,31 +1,34 @@
 //! Pairs that slide off their facet, in the plane and in space: between searches to the next facet
 //! on which the closest point lies, during the iteration well past the end.
 
+use std::collections::BTreeMap;
+
+use super::facets::OnFacet;
 use crate::pair::{Pair, PairEvent, Pairing, in_order};
 
-/// Where a pair past the end of its facet belongs.
+/// The facet to which a pair belongs whose closest point is past the end of its facet.
 pub(super) enum Next {
     Stay,
-    /// On the neighbour, at ξ.
+    /// Handed over to a facet, at the coordinates ξ on it.
     HandOver(usize, [f64; 2]),
-    /// On the neighbour too, at ξ.
+    /// A second pair of the node, in a concave corner: with a facet, at the coordinates ξ on it.
     Concave(usize, [f64; 2]),
     Leave,
 }
 
-/// Nodes with facets of their pairs: no node has two pairs with one facet.
+/// The nodes and facets of known pairs, so that no node gets two pairs with one facet.
 pub(super) struct Held {
     pairs: Vec<(usize, usize)>,
     follows: bool,
 }
 
 impl Held {
-    /// Of all nodes, kept up to date.
+    /// The pairs of all nodes, kept up to date.
     pub(super) fn all(pairs: &[Pair]) -> Self {
         Self { pairs: pairs.iter().map(|pair| (pair.node, pair.facet)).collect(), follows: true }
     }
 
-    /// Of nodes with several pairs, in concave corners, as these are at first.
+    /// The pairs of nodes that have several, in concave corners, as they are at first.
     pub(super) fn several(pairs: &[Pair]) -> Self {
         let twice = pairs.windows(2).filter(|two| two[0].node == two[1].node);
         let pairs = twice.flat_map(|two| [two[0], two[1]].map(|pair| (pair.node, pair.facet)));
@@ -49,84 +52,105 @@ impl Held {
     }
 }
 
-/// The pairs of nodes with the facets of a primary side.
+/// The changes that a search has made so far.
+struct Moves<'a> {
+    held: Held,
+    /// Facet from which each node was handed over.
+    left: &'a mut BTreeMap<usize, usize>,
+    events: &'a mut Vec<PairEvent>,
+    /// Second pairs of nodes in concave corners.
+    concave: Vec<Pair>,
+    /// Whether anything but an inactive pair has changed.
+    changed: bool,
+}
+
+impl Moves<'_> {
+    /// Moves a pair to the point ξ of another facet.
+    fn hand_over(&mut self, pair: &mut Pair, facet: usize, xi: [f64; 2]) {
+        self.left.insert(pair.node, pair.facet);
+        self.held.leave(pair);
+        self.held.take(pair.node, facet);
+        pair.facet = facet;
+        [pair.xi, pair.eta] = xi;
+    }
+
+    /// Forgets a pair that is about to be removed, with an event if it is active.
+    fn drop_pair(&mut self, pair: &Pair, event: PairEvent) {
+        if pair.active {
+            self.events.push(event);
+            self.changed = true;
+        }
+        self.left.remove(&pair.node);
+        self.held.leave(pair);
+    }
+}
+
+/// A rule for pairs that slide over the facets of a primary side.
 pub(super) struct Sliding<'a, N> {
     pub nodes: &'a [usize],
-    /// Number of facets.
+    /// Number of facets of the primary side.
     pub facets: usize,
-    /// Where a pair belongs, which may have come from a facet.
+    /// Facet to which a pair belongs, given the facet from which it was handed over last, if any.
     pub next: N,
 }
 
 impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
-    /// Hands over, adds or drops pairs in a search. `is_near`: whether a pair is within the reach
-    /// of its facet; `enters`: whether a node is inside a facet at ξ. Returns whether anything but
-    /// an inactive pair changed.
+    /// Hands over, adds or drops pairs between solves. `is_near`: whether a pair is within the
+    /// reach of its facet; `enters`: whether a node is inside a facet at ξ. Returns whether
+    /// anything but an inactive pair changed.
     pub(super) fn search(
         &self,
         pairing: &mut Pairing,
-        mut held: Held,
+        held: Held,
         is_near: impl Fn(&Pair) -> bool,
         enters: impl Fn(usize, usize, [f64; 2]) -> bool,
         events: &mut Vec<PairEvent>,
     ) -> bool {
         let Pairing { pairs, left, fresh, .. } = pairing;
         let starts = std::mem::replace(fresh, false);
-        let (mut changed, mut concave) = (false, Vec::new());
+        let mut moves = Moves { held, left, events, concave: Vec::new(), changed: false };
         pairs.retain_mut(|pair| {
             let node = self.nodes[pair.node];
             // Moves on to neighbours until the closest point lies on the facet, at most as many
             // times as there are facets.
             for _ in 0..=self.facets {
-                match (self.next)(pair, left.get(&pair.node).copied()) {
+                match (self.next)(pair, moves.left.get(&pair.node).copied()) {
                     Next::Stay => return true,
-                    Next::HandOver(facet, _) | Next::Concave(facet, _) if held.contains(pair.node, facet) => {
+                    Next::HandOver(to, _) | Next::Concave(to, _) if moves.held.contains(pair.node, to) => {
                         // In the joint the node has both pairs. Beyond the reach of this facet that
                         // of the other one is responsible: an extrapolated facet is not the
                         // surface.
                         if is_near(pair) || pair.active && !starts {
                             return true;
                         }
-                        if pair.active {
-                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
-                            changed = true;
-                        }
-                        left.remove(&pair.node);
-                        held.leave(pair);
+                        moves.drop_pair(pair, PairEvent::HandOver { node, from: pair.facet, to });
                         return false;
                     }
                     Next::Concave(facet, xi) => {
-                        changed |= pair.active;
-                        held.take(pair.node, facet);
-                        concave.push(Pair::opened(pair.node, facet, xi));
+                        moves.changed |= pair.active;
+                        moves.held.take(pair.node, facet);
+                        moves.concave.push(Pair::opened(pair.node, OnFacet { facet, xi }));
                         return true;
                     }
-                    Next::HandOver(facet, xi) => {
+                    Next::HandOver(to, xi) => {
                         if pair.active {
-                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
+                            moves.events.push(PairEvent::HandOver { node, from: pair.facet, to });
                         }
                         // At a concave joint an inactive pair may be in front of one facet and
                         // behind the other.
-                        changed |= pair.active || enters(pair.node, facet, xi);
-                        left.insert(pair.node, pair.facet);
-                        held.leave(pair);
-                        held.take(pair.node, facet);
-                        (pair.facet, [pair.xi, pair.eta]) = (facet, xi);
+                        moves.changed |= pair.active || enters(pair.node, to, xi);
+                        moves.hand_over(pair, to, xi);
                     }
                     Next::Leave if pair.active && !starts => return true,
                     Next::Leave => {
-                        if pair.active {
-                            events.push(PairEvent::SlidOff { node, facet: pair.facet });
-                            changed = true;
-                        }
-                        left.remove(&pair.node);
-                        held.leave(pair);
+                        moves.drop_pair(pair, PairEvent::SlidOff { node, facet: pair.facet });
                         return false;
                     }
                 }
             }
             true
         });
+        let Moves { mut concave, changed, .. } = moves;
         if !concave.is_empty() {
             pairs.append(&mut concave);
             in_order(pairs);
@@ -134,9 +158,9 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
         changed
     }
 
-    /// Hands over active pairs before Newton's method has converged, but for those of a node with
-    /// several; `is_near`: whether a pair is within the reach of its facet, which may depend on
-    /// whether it was handed over before. Returns whether there was one.
+    /// Hands over active pairs before Newton's method has converged, except those of a node with
+    /// several pairs; `is_near`: whether a pair is within the reach of its facet, which may depend
+    /// on whether it was handed over before. Returns whether a pair was handed over.
     pub(super) fn update(
         &self,
         pairing: &mut Pairing,
@@ -150,11 +174,13 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
             if is_near(pair, left.contains_key(&pair.node)) {
                 continue;
             }
-            let (from, mut previous) = (pair.facet, None);
+            let from = pair.facet;
+            let mut previous = None;
             for _ in 0..self.facets {
                 let Next::HandOver(facet, xi) = (self.next)(pair, previous) else { break };
                 previous = Some(pair.facet);
-                (pair.facet, [pair.xi, pair.eta]) = (facet, xi);
+                pair.facet = facet;
+                [pair.xi, pair.eta] = xi;
             }
             if pair.facet != from {
                 left.extend(previous.map(|facet| (pair.node, facet)));

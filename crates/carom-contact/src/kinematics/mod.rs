@@ -27,15 +27,15 @@ mod tangents;
 mod trajectory;
 mod way;
 
-pub use both_sides::BothSides;
+pub use both_sides::{BothSides, NodesWithDepth};
 pub use carrier::Carrier;
-pub use facets::Depth;
 pub(crate) use facets::Facets;
+pub use facets::{Depth, OnFacet};
 pub use folds::Side;
 pub(crate) use folds::{Folds, Turns};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_obstacle::NodeToObstacle;
-pub use obstacle::{Faceted, Obstacle, Polyline, PolylineError};
+pub use obstacle::{Faceted, Obstacle, Polyline, PolylineError, Tip};
 pub use one_way::OneWay;
 pub use passed::Passed;
 pub(crate) use space::cross;
@@ -47,29 +47,29 @@ pub(crate) use way::amplification;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
-/// A way to measure gaps between two sides.
+/// A method to find pairs of two sides and to measure their gaps.
 pub trait Kinematics: Send + Sync {
-    /// Global numbers of the secondary nodes. In contact of a side with itself all occur twice: as
-    /// nodes of the later place, then as nodes of the earlier one.
+    /// Global numbers of the secondary nodes. In contact of a side with itself all nodes occur
+    /// twice: as nodes of the later place, then as nodes of the earlier one.
     fn secondary(&self) -> &[usize];
 
-    /// Number of nodes among these: the edges that follow them have the number of one of their
-    /// nodes.
+    /// Number of secondary nodes. Sharp edges follow the nodes in [`secondary`](Self::secondary),
+    /// each represented by one of its nodes.
     fn nodes(&self) -> usize {
         self.secondary().len()
     }
 
-    /// Depth that a secondary node, given by index, may have without contact: its gap is larger by
-    /// that.
+    /// Depth to which a secondary node, given by index, may penetrate without contact; its gap is
+    /// larger by that depth.
     fn allowed(&self, _node: usize) -> f64 {
         0.0
     }
 
-    /// Adds to the gap of every secondary node, by index, a depth that it has at the start: an
-    /// overlap that is kept, or not yet closed.
+    /// Adds to the gap of every secondary node, by index, an initial depth: an overlap that is
+    /// kept, or not yet closed.
     fn keep(&mut self, depths: &[f64]);
 
-    /// The depth that a secondary node, given by index, keeps.
+    /// Initial depth that is kept as an overlap of a secondary node, given by index.
     fn kept(&self, node: usize) -> f64;
 
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
@@ -80,7 +80,7 @@ pub trait Kinematics: Send + Sync {
         pair.xi.abs() <= 1.0
     }
 
-    /// Number of facets that a pair of a secondary node, given by index, may name.
+    /// Number of facets with which a secondary node, given by index, can form pairs.
     fn facets(&self, node: usize) -> usize;
 
     /// Signed distance of a secondary node, given by index, to the nearest point of the primary
@@ -93,9 +93,9 @@ pub trait Kinematics: Send + Sync {
         None
     }
 
-    /// Convex round parts of a rigid obstacle, which can lie between nodes, as centres and radii;
-    /// none of other primary sides.
-    fn tips(&self, _y: &[f64]) -> Vec<([f64; 3], f64)> {
+    /// Convex round parts of a rigid obstacle, which can lie between nodes; none of other primary
+    /// sides.
+    fn tips(&self, _y: &[f64]) -> Vec<Tip> {
         Vec::new()
     }
 
@@ -112,14 +112,14 @@ pub trait Kinematics: Send + Sync {
         None
     }
 
-    /// For secondary nodes, given by index: the first θ, from 0 at `before` to 1 at `now`, at which
-    /// the node meets the primary side while all nodes move on straight lines; none if it does not,
-    /// or has a depth without contact.
+    /// First instant θ, from 0 at `before` to 1 at `now`, at which each of the secondary nodes,
+    /// given by index, meets the primary side while all nodes move on straight lines; none for a
+    /// node that does not meet it, or has a depth without contact.
     fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>>;
 
     /// Hands over active pairs that have slid well past the end of their facet during the
-    /// iteration: a facet's extrapolation is not the surface. Unlike [`search`](Self::search), it
-    /// allows a pair to return. Returns whether there was one.
+    /// iteration: the extrapolation of a facet is not the surface. Unlike [`search`](Self::search),
+    /// a pair may return. Returns whether a pair was handed over.
     fn update_facets(&self, _now: &[f64], _pairing: &mut Pairing, _events: &mut Vec<PairEvent>) -> bool {
         false
     }
@@ -135,8 +135,8 @@ pub trait Kinematics: Send + Sync {
     /// If there is no unique closest point; no row is added.
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError>;
 
-    /// ∂²g/∂y∂y of a pair measured at `y`, over the nodes of its row: overwrites the first `(n·D)²`
-    /// entries of `curvature`, row-major.
+    /// Second derivative ∂²g/∂y∂y of the gap of a pair measured at `y`, over the nodes of its row:
+    /// overwrites the first `(n·D)²` entries of `curvature`, row-major.
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]);
 
     /// Adds the rows H_α of the slip of a pair measured at `y`, over the nodes of its gap, one per
@@ -150,18 +150,20 @@ pub trait Kinematics: Send + Sync {
     /// If there is no unique closest point; no row is added.
     fn slip(&self, pair: &Pair, y: &[f64], moved: &[f64], rows: &mut Rows) -> Result<(), ContactError>;
 
-    /// ∂H_α/∂y of a pair measured at `y`, with tangents that turn with the normal only and y₀ (see
-    /// [`slip`](Self::slip)) fixed: overwrites the first `(n·D)²` entries of `matrix`, row-major,
-    /// not symmetric. In space `pair` has the tangent of these positions.
+    /// Derivative ∂H_α/∂y of a slip row of a pair measured at `y`, with tangents that turn with the
+    /// normal only and y₀ (see [`slip`](Self::slip)) fixed: overwrites the first `(n·D)²` entries
+    /// of `matrix`, row-major, not symmetric. In space `pair` has the tangents of these positions.
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], moved: &[f64], tangent: usize, matrix: &mut [f64]);
 }
 
-/// θ at which a gap that is linear in θ becomes negative; none if it does not.
+/// Instant θ at which a gap that varies linearly from `before` to `now` becomes negative; none if
+/// it does not.
 fn zero(before: f64, now: f64) -> Option<f64> {
     (now < 0.0).then(|| if before > 0.0 { before / (before - now) } else { 0.0 })
 }
 
-/// If gaps cost nothing, every node is tracked in every step.
+/// Gives every node a pair, for primary sides whose gaps are cheap enough to track all nodes in
+/// every step.
 fn watch_every_node(nodes: usize, pairs: &mut Vec<Pair>) {
     if pairs.len() == nodes {
         return;

@@ -14,8 +14,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use carom_solid::FacetShape;
 
-use super::facets::Facets;
-use super::facing::{PAST, REACH};
+use super::facets::{Facets, OnFacet};
+use super::facing::{PAST, REACH, Reached};
 use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
 use super::hand_over::{Held, Next, Sliding};
@@ -30,10 +30,12 @@ use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
 
-/// |ξ| allowed for the closest point before Newton has converged.
+/// |ξ| up to which the closest point of a pair is followed before Newton's method has converged.
 const WANDER: f64 = 3.0;
-/// |ξ| beyond which a pair is handed over, or back, before Newton has converged.
+/// |ξ| beyond which a pair is handed over to the next facet before Newton's method has converged.
 const HAND_OVER: f64 = 1.02;
+/// |ξ| beyond which a pair is handed back to the facet that it came from before Newton's method has
+/// converged.
 const HAND_BACK: f64 = 1.1;
 
 /// The gap that decides that a node has reached the primary side.
@@ -63,17 +65,18 @@ pub struct NodeToFacet {
     point: ContactPoint,
     /// Depth that each node may have without contact; empty if none may have any.
     allowed: Vec<f64>,
-    /// Depth that each node keeps; empty if none does.
+    /// Initial depth that is kept for each node; empty if all are zero.
     kept: Vec<f64>,
-    /// Of nodes of the primary side itself: where its boundary folds, and which of two places that
-    /// meet is the node's.
+    /// For contact of a side with itself: where its boundary folds, and which of two places that
+    /// meet is that of the nodes.
     pub(super) folds: Option<(Arc<Folds>, Side)>,
-    /// The boundary of the nodes' own body, and its facets at their ends.
+    /// The boundary of the body to which the secondary nodes belong, and the facets at each of its
+    /// nodes.
     own: Option<(Surface, HashMap<usize, Vec<usize>>)>,
     tools: Mutex<Tools>,
 }
 
-/// Reused memory; results do not depend on its content.
+/// Memory that searches reuse; results do not depend on its content.
 #[derive(Debug)]
 pub(super) struct Tools {
     pub(super) search: Search,
@@ -82,8 +85,7 @@ pub(super) struct Tools {
 }
 
 impl NodeToFacet {
-    /// Secondary nodes and primary surface in global node numbers; nodes of the primary are removed
-    /// from the secondary.
+    /// Contact of secondary nodes with a primary surface, in global node numbers.
     pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
         let swept = SweptTest::new(primary.shape());
         let tools = Tools { search: Search::new(&primary, &secondary), swept, turns: Turns::default() };
@@ -100,21 +102,21 @@ impl NodeToFacet {
         }
     }
 
-    /// The same with another rule for the contact point. Only [`Detection::Trajectory`] finds a
+    /// Contact with another rule for the contact point; only [`Detection::Trajectory`] finds a
     /// point that can be frozen.
     #[must_use]
     pub fn with_point(self, point: ContactPoint) -> Self {
         Self { point, ..self }
     }
 
-    /// The same with a depth for each node that it may have without contact: its gap is larger by
-    /// that.
+    /// Contact in which each node may have a depth without contact; its gap is larger by that
+    /// depth.
     #[must_use]
     pub fn with_allowed(self, allowed: Vec<f64>) -> Self {
         Self { allowed, ..self }
     }
 
-    /// The same for nodes of a body with this boundary.
+    /// Contact of nodes that belong to a body with the boundary `own`.
     #[must_use]
     pub fn of_body(self, own: Surface) -> Self {
         let mut around: HashMap<usize, Vec<usize>> = HashMap::new();
@@ -140,24 +142,25 @@ impl NodeToFacet {
         !is_left(&facet, height, || self.primary.across_corners(facet, y).map(sized), most_opposed)
     }
 
-    /// The same for nodes of the primary side itself.
+    /// Contact of nodes of the primary side with that side itself.
     pub(super) fn folding(self, folds: Arc<Folds>, side: Side) -> Self {
         Self { folds: Some((folds, side)), ..self }
     }
 
-    /// Whether a node has no business on a facet: one of its own, or one that is the node's in the
-    /// other direction.
+    /// Whether a node must not form a pair with a facet: one that contains the node, or one that
+    /// the other direction of contact compares it with.
     fn excludes(&self, node: usize, facet: usize) -> bool {
         self.folds.as_ref().is_some_and(|(folds, side)| !folds.admits(*side, node, facet))
     }
 
-    /// Whether ξ lies past an end of a facet where an excluded one follows.
+    /// Whether ξ lies past an end of a facet at which a facet follows that the node must not form a
+    /// pair with.
     pub(super) fn ends_at(&self, node: usize, facet: usize, xi: f64) -> bool {
         let next = || self.primary.neighbour(facet, xi > 0.0);
         self.folds.is_some() && xi.abs() > 1.0 + PAST && next().is_some_and(|next| self.excludes(node, next))
     }
 
-    /// Depth of a node at which its gap is zero.
+    /// Depth at which the gap of a node is zero: its allowed and its kept depth.
     pub(super) fn slack(&self, place: usize) -> f64 {
         self.allowed(place) + self.kept(place)
     }
@@ -174,19 +177,94 @@ impl NodeToFacet {
         self.primary.gap(facet, xi, y.at(node), y)
     }
 
-    /// ξ of the point of a pair's facet closest to its node, from the last one.
+    /// Coordinate ξ of the point of a pair's facet that is closest to its node, searched from the
+    /// last one.
     fn closest(&self, pair: &Pair, y: Places) -> Option<f64> {
-        let (facet, from) = (self.primary.facet(pair.facet), y.at(self.secondary[pair.node]));
+        let facet = self.primary.facet(pair.facet);
+        let from = y.at(self.secondary[pair.node]);
         facet.closest_from(y, from, pair.xi, WANDER).or_else(|| facet.closest_point(y, from, REACH))
     }
 
-    /// The gap of a pair at its ξ.
+    /// Gap of a pair at its contact point.
     fn gap_of(&self, pair: &Pair, y: Places) -> Gap {
-        let (facet, from) = (self.primary.facet(pair.facet), y.at(self.secondary[pair.node]));
+        let facet = self.primary.facet(pair.facet);
+        let from = y.at(self.secondary[pair.node]);
         match self.point {
             ContactPoint::Closest => Gap::closest(facet, y, from, pair.xi),
             ContactPoint::Frozen => Gap::fixed(facet, y, from, pair.xi),
         }
+    }
+
+    /// Hands over, adds or drops pairs past the ends of their facets. Returns whether anything but
+    /// an inactive pair changed.
+    fn slide(&self, before: Places, now: Places, pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
+        // A frozen contact point belongs to the positions at the start of the step.
+        let placed = if self.is_frozen() { before } else { now };
+        let next = |pair: &Pair, came_from: Option<usize>| {
+            let node = self.secondary[pair.node];
+            if self.ends_at(node, pair.facet, pair.xi) {
+                return Next::Leave;
+            }
+            match self.primary.next_facet(pair, placed.at(node), came_from, placed) {
+                Next::HandOver(facet, _) if !self.may_press(node, facet, placed) => {
+                    let leaves = self.primary.faces_nothing(pair.facet, pair.xi, placed);
+                    if leaves { Next::Leave } else { Next::Stay }
+                }
+                next => next,
+            }
+        };
+        let enters = |place: usize, facet: usize, [xi, _]: [f64; 2]| {
+            self.gap(self.secondary[place], facet, xi, now) + self.slack(place) < 0.0
+        };
+        let held = Held::several(&pairing.pairs);
+        let is_near = |pair: &Pair| pair.xi.abs() <= REACH;
+        let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
+        sliding.search(pairing, held, is_near, enters, events)
+    }
+
+    /// Adds a pair for every node that may have reached a facet, and for nodes with pairs that
+    /// enter the side elsewhere. Returns whether one of them penetrates.
+    fn find_pairs(&self, tools: &mut Tools, pairs: &mut Vec<Pair>, before: Places, now: Places) -> bool {
+        let mut changed = false;
+        let known = pairs.len();
+        let mut next = 0;
+        for (k, &node) in self.secondary.iter().enumerate() {
+            let first = next;
+            while next < known && pairs[next].node == k {
+                next += 1;
+            }
+            if next > first {
+                if self.detection == Detection::ClosestPoint
+                    && let Some(OnFacet { facet, xi }) =
+                        self.elsewhere(tools, k, &pairs[first..next], before, now)
+                {
+                    changed = true;
+                    pairs.push(Pair::open(k, facet, xi));
+                }
+                continue;
+            }
+            let Some(Reached { facet, xi, crossed }) = self.candidate(tools, k, before, now) else {
+                continue;
+            };
+            let pair = Pair::open(k, facet, xi);
+            let gap = self.gap(node, facet, xi, now) + self.slack(k);
+            match self.detection {
+                Detection::ClosestPoint if self.allowed(k) > 0.0 && gap >= 0.0 => {}
+                Detection::ClosestPoint => {
+                    // A candidate that already penetrates must be rechecked by the solver.
+                    changed |= gap < 0.0;
+                    pairs.push(pair);
+                }
+                // Eq. (8) decides at the crossing. A node inside by round-off crosses nothing: its
+                // closest point decides.
+                Detection::Trajectory if gap < 0.0 || (crossed && gap == 0.0) => {
+                    changed = true;
+                    pairs.push(Pair { active: true, ..pair });
+                }
+                Detection::Trajectory => {}
+            }
+        }
+        changed
     }
 }
 
@@ -204,7 +282,9 @@ impl Kinematics for NodeToFacet {
     }
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
-        let (kept, node, y) = (self.kept(node), self.secondary[node], self.places(y));
+        let kept = self.kept(node);
+        let node = self.secondary[node];
+        let y = self.places(y);
         (0..self.primary.facets())
             .filter_map(|f| {
                 let xi = self.primary.facet(f).closest_point(y, y.at(node), 1.0 + 1e-9)?;
@@ -238,75 +318,20 @@ impl Kinematics for NodeToFacet {
             watch_every_node(self.secondary.len(), &mut pairing.pairs);
             return false;
         }
-        let (before, now) = (self.places(before), self.places(now));
-        // A frozen contact point belongs to the positions at the start of the step.
-        let placed = if self.is_frozen() { before } else { now };
-        let next = |pair: &Pair, came_from: Option<usize>| {
-            let node = self.secondary[pair.node];
-            if self.ends_at(node, pair.facet, pair.xi) {
-                return Next::Leave;
-            }
-            match self.primary.next_facet(pair, placed.at(node), came_from, placed) {
-                Next::HandOver(facet, _) if !self.may_press(node, facet, placed) => {
-                    let leaves = self.primary.faces_nothing(pair.facet, pair.xi, placed);
-                    if leaves { Next::Leave } else { Next::Stay }
-                }
-                next => next,
-            }
-        };
-        let enters = |place: usize, facet: usize, [xi, _]: [f64; 2]| {
-            self.gap(self.secondary[place], facet, xi, now) + self.slack(place) < 0.0
-        };
-        let (held, is_near) = (Held::several(&pairing.pairs), |pair: &Pair| pair.xi.abs() <= REACH);
-        let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
-        let mut changed = sliding.search(pairing, held, is_near, enters, events);
+        let before = self.places(before);
+        let now = self.places(now);
+        let slid = self.slide(before, now, pairing, events);
         let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        if tools.search.update(&self.primary, &self.secondary, *margin, before, now) {
-            if let Some((folds, _)) = &self.folds {
-                tools.turns.update(folds, &self.primary, before);
-            }
-            let known = pairs.len();
-            let mut next = 0;
-            for (k, &node) in self.secondary.iter().enumerate() {
-                let first = next;
-                while next < known && pairs[next].node == k {
-                    next += 1;
-                }
-                if next > first {
-                    if self.detection == Detection::ClosestPoint
-                        && let Some((facet, xi)) =
-                            self.elsewhere(&mut tools, k, &pairs[first..next], before, now)
-                    {
-                        changed = true;
-                        pairs.push(Pair::open(k, facet, xi));
-                    }
-                    continue;
-                }
-                let Some((facet, xi, crossed)) = self.candidate(&mut tools, k, before, now) else {
-                    continue;
-                };
-                let pair = Pair::open(k, facet, xi);
-                let gap = self.gap(node, facet, xi, now) + self.slack(k);
-                match self.detection {
-                    Detection::ClosestPoint if self.allowed(k) > 0.0 && gap >= 0.0 => {}
-                    Detection::ClosestPoint => {
-                        // A candidate that already penetrates must be rechecked by the solver.
-                        changed |= gap < 0.0;
-                        pairs.push(pair);
-                    }
-                    // Eq. (8) decides at the crossing. A node inside by round-off crosses nothing:
-                    // its closest point decides.
-                    Detection::Trajectory if gap < 0.0 || (crossed && gap == 0.0) => {
-                        changed = true;
-                        pairs.push(Pair { active: true, ..pair });
-                    }
-                    Detection::Trajectory => {}
-                }
-            }
-            in_order(pairs);
+        if !tools.search.update(&self.primary, &self.secondary, *margin, before, now) {
+            return slid;
         }
-        changed
+        if let Some((folds, _)) = &self.folds {
+            tools.turns.update(folds, &self.primary, before);
+        }
+        let found = self.find_pairs(&mut tools, pairs, before, now);
+        in_order(pairs);
+        slid || found
     }
 
     fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
@@ -324,7 +349,7 @@ impl Kinematics for NodeToFacet {
             tools.turns.update(folds, &self.primary, before);
         }
         let mut met = |&node: &usize| {
-            let (theta, facet, _) = self.first(&mut tools, node, before, now)?;
+            let Met { theta, facet, .. } = self.first(&mut tools, node, before, now)?;
             let counts = self.primary.is_of_side(facet) && self.slack(node) == 0.0;
             counts.then(|| theta.clamp(0.0, 1.0))
         };
@@ -394,7 +419,8 @@ impl Kinematics for NodeToFacet {
     }
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        let (node, y) = (self.secondary[pair.node], self.places(y));
+        let node = self.secondary[pair.node];
+        let y = self.places(y);
         let facet = self.primary.facet(pair.facet);
         if !self.is_frozen() {
             let lost = ContactError::Lost { node, facet: pair.facet, xi: pair.xi };
@@ -421,7 +447,8 @@ impl Kinematics for NodeToFacet {
     }
 
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        let (node, facet) = (self.secondary[pair.node], self.primary.facet(pair.facet));
+        let node = self.secondary[pair.node];
+        let facet = self.primary.facet(pair.facet);
         let gap = self.gap_of(pair, self.places(y));
         ContactError::unless_regular(node, pair, gap.a)?;
         rows.push_both(0.0, [&[node], facet.nodes], gap.slip(facet.nodes.len()));

@@ -18,7 +18,7 @@
 use carom_algebra::Vector;
 
 use super::carrier::{Carrier, Local};
-use super::obstacle::{AtCorner, Near, Obstacle, Point, dot};
+use super::obstacle::{AtCorner, Near, Obstacle, Point, Through, Tip, dot};
 use super::passed::Passed;
 use super::tangents::tangents;
 use super::way::{SHARE, share};
@@ -26,33 +26,33 @@ use super::{Kinematics, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
-/// A rigid obstacle as primary.
+/// Secondary nodes against a rigid obstacle.
 #[derive(Clone, Debug)]
 pub struct NodeToObstacle {
     secondary: Vec<usize>,
     dimension: usize,
     shape: Obstacle,
     carrier: Option<Carrier>,
-    /// Length of each node's facets; empty if they have none.
+    /// Length of the facets at each secondary node; empty if the nodes have no facets.
     lengths: Vec<f64>,
-    /// Depth that each node keeps; empty if none does.
+    /// Initial depth that is kept for each node; empty if all are zero.
     kept: Vec<f64>,
 }
 
 impl NodeToObstacle {
-    /// Keeps the secondary nodes out of a fixed obstacle.
+    /// Contact of secondary nodes with an obstacle that is fixed in space.
     pub fn new(secondary: Vec<usize>, dimension: usize, shape: Obstacle) -> Self {
         Self { secondary, dimension, shape, carrier: None, lengths: Vec::new(), kept: Vec::new() }
     }
 
-    /// The same for an obstacle that moves with nodes.
+    /// Contact with an obstacle that moves with the nodes of a carrier.
     #[must_use]
     pub fn carried_by(self, carrier: Carrier) -> Self {
         Self { carrier: Some(carrier), ..self }
     }
 
-    /// The same with the length of each node's facets, by which a path through the obstacle is
-    /// judged.
+    /// Contact with the length of the facets at each secondary node, relative to which the depth of
+    /// a path through the obstacle is judged.
     #[must_use]
     pub fn with_lengths(self, lengths: Vec<f64>) -> Self {
         Self { lengths, ..self }
@@ -68,17 +68,17 @@ impl NodeToObstacle {
         self.carrier.as_ref().map_or(Local::fixed(place), |carrier| carrier.local(place, y, self.dimension))
     }
 
-    /// The piece that an inactive node faces: the closest one outside, and inside that through
-    /// which it entered; searched from the last one.
+    /// The piece of the obstacle that an inactive node faces: the closest one if the node is
+    /// outside, that through which it entered if it is inside; searched from the last one.
     fn facing(&self, last: usize, before: Point, now: Point) -> usize {
         let nearest = self.shape.nearest(now, Some(last));
         if self.shape.near(nearest, now).is_some_and(|near| near.gap >= 0.0) {
             return nearest;
         }
-        self.shape.entered(before, now).map_or(nearest, |(_, piece)| piece)
+        self.shape.entered(before, now).map_or(nearest, |entry| entry.piece)
     }
 
-    /// The piece on which a pair is measured.
+    /// The piece of the obstacle on which the gap of a pair is measured.
     fn measured(&self, pair: &Pair, at: Point) -> usize {
         if self.shape.pieces() == 1 {
             return 0;
@@ -91,7 +91,7 @@ impl NodeToObstacle {
         if is_inside(nearest) && is_inside(pair.facet) { pair.facet } else { nearest }
     }
 
-    /// The tangents of a pair, of which the plane has one.
+    /// The tangents of a pair: two in space, one in the plane.
     fn tangents(&self, pair: &Pair, normal: Point) -> [Point; 2] {
         if self.dimension == 2 {
             return [turned(normal), [0.0; 3]];
@@ -99,27 +99,28 @@ impl NodeToObstacle {
         tangents(Vector(normal), pair.tangential.tangents).map(|tangent| tangent.0)
     }
 
-    /// γ of the node of a pair and of those of the carrier.
+    /// Weights γ of the node of a pair, 1, and of the nodes of the carrier, −w_a, in the gap.
     fn factors(&self, local: &Local) -> Vec<f64> {
         let carrier = self.carrier.as_ref().map_or(0, |carrier| carrier.nodes.len());
         std::iter::once(1.0).chain(local.weights[..carrier].iter().map(|weight| -weight)).collect()
     }
 
-    /// Ω of the same nodes.
+    /// Spatial gradients Ω of the weights of the node of a pair, 0, and of the nodes of the
+    /// carrier.
     fn slopes(&self, local: &Local) -> Vec<Point> {
         let carrier = self.carrier.as_ref().map_or(0, |carrier| carrier.nodes.len());
         std::iter::once([0.0; 3]).chain((0..carrier).map(|a| local.slope(a))).collect()
     }
 
-    /// Adds the row γ_k v over a node and the carrier.
+    /// Adds a row with the gradients γ_k v over a secondary node and the nodes of the carrier.
     fn push(&self, gap: f64, node: usize, local: &Local, v: Point, rows: &mut Rows) {
         let carrier = self.carrier.iter().flat_map(|carrier| carrier.nodes.iter().copied());
         let nodes = std::iter::once(node).chain(carrier);
         rows.push(gap, nodes.zip(self.factors(local)).map(|(node, factor)| (node, v.map(|x| factor * x))));
     }
 
-    /// Overwrites the matrix over a node and the carrier, and over axes, with `entry([k, l], [i,
-    /// j])`.
+    /// Overwrites a matrix over a secondary node and the nodes of the carrier with `entry([k, l],
+    /// [i, j])` for nodes k, l and axes i, j.
     fn fill(&self, matrix: &mut [f64], entry: impl Fn([usize; 2], [usize; 2]) -> f64) {
         let d = self.dimension;
         let blocks = 1 + self.carrier.as_ref().map_or(0, |carrier| carrier.nodes.len());
@@ -158,10 +159,10 @@ impl Kinematics for NodeToObstacle {
         self.shape.near(self.shape.nearest(at, None), at).map(|near| near.gap)
     }
 
-    fn tips(&self, y: &[f64]) -> Vec<([f64; 3], f64)> {
-        let placed = |(at, radius): (Point, f64)| {
-            let moved = self.carrier.as_ref().map(|carrier| carrier.placed(at, y, self.dimension));
-            (moved.unwrap_or(at), radius)
+    fn tips(&self, y: &[f64]) -> Vec<Tip> {
+        let placed = |tip: Tip| {
+            let moved = self.carrier.as_ref().map(|carrier| carrier.placed(tip.center, y, self.dimension));
+            Tip { center: moved.unwrap_or(tip.center), ..tip }
         };
         self.shape.tips().into_iter().map(placed).collect()
     }
@@ -202,7 +203,8 @@ impl Kinematics for NodeToObstacle {
                 AtCorner::Goes(next) if left.get(&pair.node) != Some(&next) => {
                     events.push(PairEvent::HandOver { node, from: pair.facet, to: next });
                     left.insert(pair.node, pair.facet);
-                    (pair.facet, changed) = (next, true);
+                    pair.facet = next;
+                    changed = true;
                 }
                 AtCorner::Leaves => {
                     events.push(PairEvent::SlidOff { node, facet: pair.facet });
@@ -225,13 +227,13 @@ impl Kinematics for NodeToObstacle {
         nodes.iter().map(met).collect()
     }
 
-    /// Along straight paths relative to the obstacle, also if it turns.
+    /// Examines straight paths relative to the obstacle, also if it turns.
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         let through = |(place, length): (usize, &f64)| {
             let node = self.secondary[place];
             let limit = |share: f64| self.kept(place) + share * length;
             let [from, to] = [before, now].map(|y| self.local(node, y).at);
-            let (depth, normals) = self.shape.deepest_between(from, to, limit(SHARE))?;
+            let Through { depth, normals } = self.shape.deepest_between(from, to, limit(SHARE))?;
             let limit = limit(share(normals, bounce));
             (depth > limit).then_some(Passed { what: "node", node, depth, limit })
         };
@@ -304,13 +306,13 @@ impl Kinematics for NodeToObstacle {
     }
 }
 
-/// A vector as one of length one; the same bits if it has that length.
+/// A vector scaled to length one; unchanged bitwise if it has that length to round-off.
 fn unit(v: Point) -> Point {
     let size = dot(v, v).sqrt();
     if (size - 1.0).abs() <= f64::EPSILON { v } else { v.map(|x| x / size) }
 }
 
-/// J v.
+/// A vector of the plane rotated by 90°.
 fn turned(v: Point) -> Point {
     [-v[1], v[0], 0.0]
 }
@@ -322,7 +324,8 @@ mod tests {
     #[test]
     fn gap_is_the_signed_distance() {
         let plane = NodeToObstacle::new(vec![0], 2, Obstacle::plane(&[0.0, 1.0], &[0.0, 4.0]));
-        let (mut pairing, mut rows) = (Pairing::default(), Rows::new(2));
+        let mut pairing = Pairing::default();
+        let mut rows = Rows::new(2);
         plane.search(&[], &[], &mut pairing, &mut Vec::new());
         plane.measure(&mut pairing.pairs[0], &[7.0, 0.25], &mut rows).unwrap();
         assert_eq!((rows.row(0).gap, rows.row(0).gradient), (-0.75, &[0.0, 1.0][..]));

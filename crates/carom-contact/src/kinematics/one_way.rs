@@ -1,19 +1,22 @@
-//! What contact in both directions asks of either of them.
+//! Interface of one of the two directions of contact between two deformable sides.
 
 use super::Kinematics;
+use super::facets::OnFacet;
 use super::facing::PAST_SIDE;
 use super::node_to_facet::NodeToFacet;
 
-/// Secondary nodes against the facets of a primary side, one of the two directions.
+/// Secondary nodes against the facets of a primary side, as one of the two directions of contact.
 pub trait OneWay: Kinematics {
     /// Distance along the surface between a corner and a node of the other side, relative to the
-    /// corner's facet, below which the node's own pair is responsible: just where the node begins
-    /// to face this side. Where all nodes of both sides meet, a corner's row depends on those of
-    /// the nodes around it to second order in this distance.
+    /// facet of the corner, below which the pair of the node prevents penetration instead of that
+    /// of the corner: just where the node begins to face the side. Where all nodes of both sides
+    /// meet, the row of a corner depends on those of the nodes around it to second order in this
+    /// distance.
     const NEAR_END: f64;
 
-    /// Facets of the primary side of which a node is a corner, with its ξ there.
-    fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])>;
+    /// Facets of the primary side of which a node is a corner, with the coordinates of the corner
+    /// on them.
+    fn facets_at(&self, node: usize) -> Vec<OnFacet<[f64; 2]>>;
 
     /// Global numbers of the nodes of a primary facet.
     fn nodes_of(&self, facet: usize) -> &[usize];
@@ -21,21 +24,22 @@ pub trait OneWay: Kinematics {
     /// Outward unit normal of a primary facet at ξ, padded with zeros to space.
     fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> [f64; 3];
 
-    /// Distance between the first corners of a primary facet.
+    /// Length of a primary facet: the distance between its first two corners.
     fn length(&self, facet: usize, y: &[f64]) -> f64;
 
-    /// Distance between two nodes across a `normal`: before convergence they may lie deep.
+    /// Distance between two nodes perpendicular to a `normal`, without regard to their depth, which
+    /// may be large before convergence.
     fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64;
 }
 
 impl OneWay for NodeToFacet {
     const NEAR_END: f64 = 0.5 * PAST_SIDE;
 
-    fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
+    fn facets_at(&self, node: usize) -> Vec<OnFacet<[f64; 2]>> {
         let end = |facet: usize| {
             let nodes = self.primary.facet(facet).nodes;
             let xi = if nodes[0] == node { Some(-1.0) } else { (nodes[1] == node).then_some(1.0) };
-            xi.map(|xi| (facet, [xi, 0.0]))
+            xi.map(|xi| OnFacet { facet, xi: [xi, 0.0] })
         };
         (0..self.primary.facets()).filter_map(end).collect()
     }

@@ -12,17 +12,19 @@
 //! of the node opposes the first, one opposes the second, and the node is not clearly in front of
 //! the first.
 
-/// Cosine above which a normal does not oppose another one: 11° from perpendicular.
+/// Cosine of the angle between two normals above which they do not oppose each other: 11° from
+/// perpendicular.
 const ASIDE: f64 = -0.2;
-/// Cosine below which it does: within 45° of opposite.
+/// Cosine of the angle between two normals below which they oppose each other: within 45° of
+/// opposite.
 const OPPOSED: f64 = -0.7;
-/// Height over a facet, in lengths of the one beside it, up to which the node may be before that
-/// one.
+/// Height of a node over a facet, relative to the length of the facet across the sharp edge, up to
+/// which the node is left to that other facet.
 const FLUSH: f64 = 0.02;
 
-/// Whether a facet over which a node has this height is left to one beside it. `beside` gives those
-/// across sharp edges, each with its length; `most_opposed` is the least nᵢ·n for the normal of a
-/// facet.
+/// Whether contact of a node at a height over a facet is left to a facet across a sharp edge.
+/// `beside` gives those facets, each with its length; `most_opposed` is the least nᵢ·n of the
+/// normals nᵢ at the node for the normal n of a facet.
 pub(super) fn is_left<F, I: Iterator<Item = (F, f64)>>(
     facet: &F,
     height: f64,

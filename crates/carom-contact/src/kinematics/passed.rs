@@ -14,39 +14,40 @@ use super::way::{Allowed, Between, Met, SHARE, Seen, Way, amplification, through
 /// A node, or an edge, that was inside a body between the start and the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passed {
-    /// What it is, in words that the number follows.
+    /// Kind of the object, in words that its number follows: a node or an edge.
     pub what: &'static str,
-    /// Its global number, or that of a node of the edge.
+    /// Global number of the node, or of a node of the edge.
     pub node: usize,
-    /// Its largest depth on its way, within an eighth.
+    /// Largest depth on the path, known to within an eighth.
     pub depth: f64,
-    /// The depth that is allowed.
+    /// Depth that is allowed on the path.
     pub limit: f64,
 }
 
-/// Nodes that may pass through a body.
+/// Search for nodes that pass through a body within a step.
 pub(super) struct Paths<'a, B> {
     /// The whole boundary of the body.
     pub boundary: &'a B,
     pub nodes: &'a [usize],
-    /// Depth that each node may have in any case.
+    /// Depth that each node may have without contact.
     pub allowed: &'a dyn Fn(usize) -> f64,
-    /// Whether a node enters through a facet, and whether the facet bounds what it enters.
+    /// Whether a node can enter the body through a facet.
     pub enters: &'a dyn Fn(usize, usize) -> bool,
+    /// Whether a facet bounds a body that a node can enter.
     pub bounds: &'a dyn Fn(usize, usize) -> bool,
     /// Allowed depth of a node that leaves where it entered, over the length of a facet.
     pub bounce: f64,
 }
 
-/// How far the nodes of a body move, and its shortest facet.
+/// Largest motion of the nodes of a body in a step, and the length of its shortest facet.
 pub(super) struct Motion {
     of_body: f64,
     shortest: f64,
 }
 
 impl<B> Paths<'_, B> {
-    /// The motion of a step; none if it is too short: entry, depth and exit need a path of twice
-    /// the depth.
+    /// Largest motion of the nodes in a step; none if it is too short to enter and leave the body,
+    /// which needs a path of twice the depth.
     pub(super) fn motion<const D: usize>(&self, ends: [&[f64]; 2]) -> Option<Motion>
     where
         B: Facets<D>,
@@ -54,14 +55,26 @@ impl<B> Paths<'_, B> {
         let Self { boundary, nodes, .. } = *self;
         let first = *nodes.first()?;
         let most = |nodes: &[usize]| nodes.iter().map(|&n| relative::<D>(ends, n, first)).fold(0.0, f64::max);
-        let (of_body, of_nodes) = (most(boundary.nodes()).sqrt(), most(nodes).sqrt());
+        let of_body = most(boundary.nodes()).sqrt();
+        let of_nodes = most(nodes).sqrt();
         let lengths = (0..boundary.all()).map(|facet| boundary.length(facet, ends[0]));
         let shortest = lengths.fold(f64::INFINITY, f64::min);
         (of_body + of_nodes > 2.0 * SHARE * shortest).then_some(Motion { of_body, shortest })
     }
 
-    /// The node that was deepest beyond its limit, if any, from the boxes of the facets' paths, the
-    /// box of a node's, and the crossing of both up to some θ.
+    /// Whether a node moves far enough relative to a facet to enter and leave the body there.
+    fn moves_far<const D: usize>(&self, node: usize, facet: usize, ends: [&[f64]; 2]) -> bool
+    where
+        B: Facets<D>,
+    {
+        let moved = |&other: &usize| relative::<D>(ends, node, other).sqrt();
+        let most = self.boundary.nodes_of(facet).iter().map(moved).fold(0.0, f64::max);
+        most > 2.0 * SHARE * self.boundary.length(facet, ends[0])
+    }
+
+    /// The node that was deepest beyond its limit, if any. `tree`: boxes of the paths of the
+    /// facets; `path`: box of the path of a node; `crossing`: where a node first crosses a facet,
+    /// up to a given instant.
     pub(super) fn deepest<const D: usize>(
         &self,
         Motion { of_body, shortest }: Motion,
@@ -74,17 +87,13 @@ impl<B> Paths<'_, B> {
         B: Facets<D>,
     {
         let Self { boundary, nodes, bounds, .. } = *self;
-        let (mut between, mut near) = (None, Vec::new());
+        let mut between = None;
+        let mut near = Vec::new();
         let mut worst: Option<Passed> = None;
         for (place, &node) in nodes.iter().enumerate() {
             tree.find_into(&path(node), &mut near);
             near.retain(|&facet| bounds(node, facet));
-            let far = near.iter().any(|&facet| {
-                let moved = |&other: &usize| relative::<D>([before, now], node, other).sqrt();
-                let most = boundary.nodes_of(facet).iter().map(moved).fold(0.0, f64::max);
-                most > 2.0 * SHARE * boundary.length(facet, before)
-            });
-            if !far {
+            if !near.iter().any(|&facet| self.moves_far(node, facet, [before, now])) {
                 continue;
             }
             let moved = relative::<D>([before, now], node, nodes[0]).sqrt();
@@ -115,7 +124,8 @@ impl<B> Paths<'_, B> {
                 from: entry.or(exit).map(|met| met.facet),
             };
             let Some(found) = through(&mut way, [entry, exit], self.bounce, fastest) else { continue };
-            let (depth, limit) = (found.depth, found.limit);
+            let depth = found.depth;
+            let limit = found.limit;
             if worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
                 worst = Some(Passed { what: "node", node, depth, limit });
             }
@@ -124,8 +134,8 @@ impl<B> Paths<'_, B> {
     }
 }
 
-/// Square of the motion of a node relative to another one, so that bodies that fly together do not
-/// count as moving.
+/// Squared motion of a node relative to another one: bodies that fly together do not move relative
+/// to each other.
 fn relative<const D: usize>([before, now]: [&[f64]; 2], node: usize, other: usize) -> f64 {
     let [before, now] = [before, now].map(|y| y.as_chunks::<D>().0);
     let path = |node: usize| Vector(now[node]) - Vector(before[node]);
@@ -133,7 +143,7 @@ fn relative<const D: usize>([before, now]: [&[f64]; 2], node: usize, other: usiz
     apart.dot(&apart)
 }
 
-/// A node between entry and exit.
+/// Path of a node through a body between entry and exit.
 struct OnWay<'a, 'b, const D: usize, B> {
     boundary: &'a B,
     bounds: &'a dyn Fn(usize, usize) -> bool,
@@ -143,7 +153,7 @@ struct OnWay<'a, 'b, const D: usize, B> {
     node: usize,
     slack: f64,
     allowed: Allowed,
-    /// A facet near the node.
+    /// A facet near the node, where the search for the nearest one begins.
     from: Option<usize>,
 }
 
@@ -307,7 +317,8 @@ mod tests {
         let surface = surface.bounded_by(&[facet(0), facet(1), facet(2), facet(5)], 0);
         let contact = NodeToFacet::new(vec![6], surface, Detection::ClosestPoint).with_allowed(vec![0.02]);
         let at = |x: f64, y: f64| [plate.as_flattened(), &[x, y]].concat();
-        let [inside, below] = [at(0.2, -0.015), at(0.4, -0.5)];
+        let inside = at(0.2, -0.015);
+        let below = at(0.4, -0.5);
         for [from, to] in [[&inside, &below], [&below, &inside]] {
             let found = contact.passed(from, to, 0.01).unwrap();
             assert!((0.044..0.0501).contains(&found.depth), "{found:?}");

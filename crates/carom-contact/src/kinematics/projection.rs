@@ -8,7 +8,7 @@ use carom_solid::FacetShape;
 
 use crate::places::Places;
 
-/// A facet: its shape, its nodes, and the sign of its normal if it is a point.
+/// A facet in the plane: its shape, its nodes, and the sign of its normal if it is a point.
 #[derive(Clone, Copy)]
 pub(crate) struct Facet<'a> {
     pub(crate) shape: FacetShape,
@@ -16,28 +16,30 @@ pub(crate) struct Facet<'a> {
     pub(crate) orientation: f64,
 }
 
-/// Position, y_S', y_S'' and unit normal of a facet at ξ.
+/// Position of a facet in the plane at ξ, with its first two derivatives and its unit normal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FacetPoint {
     pub(crate) position: Vector<2>,
     pub(crate) tangent: Vector<2>,
     pub(crate) second: Vector<2>,
     pub(crate) normal: Vector<2>,
-    /// Length of y_S'; 1 for a point.
+    /// Length of the derivative of the position by ξ; 1 for a point.
     pub(crate) measure: f64,
 }
 
 impl Facet<'_> {
-    /// The facet at ξ.
+    /// Position of the facet at ξ, with its derivatives.
     pub(crate) fn at(&self, y: Places, xi: f64) -> FacetPoint {
         self.seen_from(Vector::ZERO, y, xi)
     }
 
-    /// The facet at ξ with positions relative to a place. Near a facet these are exact differences,
-    /// however far from the origin both are.
+    /// Position of the facet at ξ relative to a place, with its derivatives. Near a facet these are
+    /// exact differences, however far from the origin both are.
     pub(crate) fn seen_from(&self, from: Vector<2>, y: Places, xi: f64) -> FacetPoint {
         let shape = self.shape.at(xi);
-        let (mut position, mut tangent, mut second) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
+        let mut position = Vector::ZERO;
+        let mut tangent = Vector::ZERO;
+        let mut second = Vector::ZERO;
         for (k, &n) in self.nodes.iter().enumerate() {
             let x = y.at(n) - from;
             position += x * shape.values[k];
@@ -49,19 +51,20 @@ impl Facet<'_> {
         FacetPoint { position, tangent, second, normal: normal * measure.recip(), measure }
     }
 
-    /// Whether it is a point, which has no coordinate and is its own closest point.
+    /// Whether the facet is a point, which has no coordinate and is its own closest point.
     fn is_point(&self) -> bool {
         self.shape == FacetShape::Point
     }
 
-    /// Derivative of half the squared distance, and its derivative a.
+    /// First and second derivative by ξ of half the squared distance between the facet and a point.
     fn distance_slope(&self, y: Places, from: Vector<2>, xi: f64) -> (f64, f64) {
         let c = self.seen_from(from, y, xi);
         let d = -c.position;
         (-d.dot(&c.tangent), c.tangent.dot(&c.tangent) - d.dot(&c.second))
     }
 
-    /// Newton from a good guess; `None` if it does not converge to a minimum within |ξ| ≤ `reach`.
+    /// Coordinate ξ of the closest point by Newton's method from a good guess; `None` if it does
+    /// not converge to a minimum within |ξ| ≤ `reach`.
     pub(crate) fn closest_from(&self, y: Places, from: Vector<2>, start: f64, reach: f64) -> Option<f64> {
         if self.is_point() {
             return Some(0.0);
@@ -85,8 +88,8 @@ impl Facet<'_> {
         None
     }
 
-    /// Closest stationary point within |ξ| ≤ `reach`, by sampling and refinement; `None` if the
-    /// distance decreases towards an end.
+    /// Coordinate ξ of the closest stationary point within |ξ| ≤ `reach`, by sampling and
+    /// refinement; `None` if the distance decreases towards an end.
     pub(crate) fn closest_point(&self, y: Places, from: Vector<2>, reach: f64) -> Option<f64> {
         const SAMPLES: usize = 12;
         if self.is_point() {
@@ -94,8 +97,11 @@ impl Facet<'_> {
         }
         let at = |k: usize| reach * (2.0 * k as f64 / SAMPLES as f64 - 1.0);
         // The curve relative to `from` in powers of ξ, up to the cubic one: samples only bracket.
-        let (middle, end) = (self.seen_from(from, y, 0.0), self.seen_from(from, y, 1.0));
-        let (p, q, r) = (middle.position, middle.tangent, middle.second * 0.5);
+        let middle = self.seen_from(from, y, 0.0);
+        let end = self.seen_from(from, y, 1.0);
+        let p = middle.position;
+        let q = middle.tangent;
+        let r = middle.second * 0.5;
         let s = (end.second - middle.second) * (1.0 / 6.0);
         let slope_at = |xi: f64| {
             let position = p + (q + (r + s * xi) * xi) * xi;
@@ -107,7 +113,8 @@ impl Facet<'_> {
         for k in 1..=SAMPLES {
             let slope = slope_at(at(k));
             if last <= 0.0 && slope > 0.0 {
-                let (low, high) = (at(k - 1), at(k));
+                let low = at(k - 1);
+                let high = at(k);
                 let slope = |xi: f64| self.distance_slope(y, from, xi);
                 let xi = bisected(low, high, 0.5 * (low + high), slope);
                 let distance = self.seen_from(from, y, xi).position.norm();
@@ -121,8 +128,8 @@ impl Facet<'_> {
     }
 }
 
-/// Root of a slope in [low, high], where it changes from − to +: Newton from a start, guarded by
-/// bisection; `slope` also returns its derivative.
+/// Root of a function in [low, high], where it changes sign from − to +, by Newton's method from a
+/// start, guarded by bisection; `slope` returns the function and its derivative.
 pub(super) fn bisected(mut low: f64, mut high: f64, start: f64, slope: impl Fn(f64) -> (f64, f64)) -> f64 {
     let mut xi = start;
     for _ in 0..60 {

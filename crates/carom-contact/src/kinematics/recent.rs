@@ -12,33 +12,39 @@
 //! found at one repetition and is used at another. No search outlives its solve, so that results do
 //! not depend on where a run was resumed.
 
-/// Facet and ξ of possible contact of a node, if there is one.
-pub(crate) type Candidate<X> = Option<(usize, X)>;
+use super::facets::OnFacet;
 
-/// Nodes of both sides, and what a search found, with coordinates X of a facet.
+/// The point of possible contact of a node, if there is one.
+pub(crate) type Candidate<X> = Option<OnFacet<X>>;
+
+/// Cache of the last search of a solve: the positions of the nodes of both sides and the candidates
+/// found, with coordinates of type X on a facet.
 #[derive(Clone, Debug)]
 pub(crate) struct Recent<X> {
     nodes: Vec<usize>,
     dimension: usize,
-    /// 2√3 (1 + A).
+    /// Factor 2√3 (1 + A) by which a change of a coordinate may reduce the distance of a node from
+    /// a facet.
     weight: f64,
     margin: f64,
     /// Coordinates at the start and at the end of the step.
     places: [Vec<f64>; 2],
-    /// Of each secondary node without a pair: a candidate that is open by more than the separation,
-    /// or that there is none.
+    /// Result for each secondary node without a pair: a candidate that is open by more than the
+    /// separation, or that there is none; nothing if it has to be searched again.
     found: Vec<Option<Candidate<X>>>,
 }
 
 impl<X: Copy> Recent<X> {
-    /// Of the nodes of both sides, ascending, with A; `secondary`: number of secondary nodes.
+    /// An empty cache for the nodes of both sides, ascending; `weight`: bound A of the sum of the
+    /// weights of a facet's nodes; `secondary`: number of secondary nodes.
     pub(crate) fn new(nodes: Vec<usize>, dimension: usize, weight: f64, secondary: usize) -> Self {
         let weight = 2.0 * 3.0_f64.sqrt() * (1.0 + weight);
         let places = [Vec::new(), Vec::new()];
         Self { nodes, dimension, weight, margin: f64::NAN, places, found: vec![None; secondary] }
     }
 
-    /// Whether a search between these positions repeats the last one, up to `separation`.
+    /// Whether a search between two positions is so close to the last one that its results hold,
+    /// given the separation of the certified test.
     pub(crate) fn repeats(&self, margin: f64, [before, now]: [&[f64]; 2], separation: f64) -> bool {
         let reach = separation / self.weight;
         // A NaN is not within.
@@ -49,7 +55,7 @@ impl<X: Copy> Recent<X> {
             && self.of_nodes(now).zip(&self.places[1]).all(|(x, at)| close(at, x))
     }
 
-    /// A search between these positions begins: nothing is known of it.
+    /// Begins a search between two positions, without results.
     pub(crate) fn begin(&mut self, margin: f64, ends: [&[f64]; 2]) {
         self.margin = margin;
         for (k, y) in ends.into_iter().enumerate() {
@@ -61,17 +67,18 @@ impl<X: Copy> Recent<X> {
         self.found.fill(None);
     }
 
-    /// Forgets the search.
+    /// Forgets the last search.
     pub(crate) fn forget(&mut self) {
         self.places[0].clear();
     }
 
-    /// What was found of a secondary node.
+    /// Stores the candidate of a secondary node, or that there is none.
     pub(crate) fn set(&mut self, node: usize, candidate: Candidate<X>) {
         self.found[node] = Some(candidate);
     }
 
-    /// What the last search found of a secondary node.
+    /// Candidate of a secondary node in the last search, or that there is none; nothing if it was
+    /// not stored.
     pub(crate) fn get(&self, node: usize) -> Option<Candidate<X>> {
         self.found[node]
     }
@@ -90,8 +97,10 @@ mod tests {
     #[test]
     fn a_search_is_repeated_up_to_what_certificates_leave() {
         let mut recent: Recent<f64> = Recent::new(vec![0, 2], 2, 1.0, 1);
-        let (before, now) = ([0.0, 0.0, 9.0, 9.0, 3.0, 1.0], [0.1, 0.0, 9.0, 9.0, 3.0, 1.0]);
-        let (separation, margin) = (4.0 * 3.0_f64.sqrt(), 0.5);
+        let before = [0.0, 0.0, 9.0, 9.0, 3.0, 1.0];
+        let now = [0.1, 0.0, 9.0, 9.0, 3.0, 1.0];
+        let separation = 4.0 * 3.0_f64.sqrt();
+        let margin = 0.5;
         let with = |dof: usize, by: f64| {
             let mut moved = now;
             moved[dof] += by;
@@ -100,7 +109,7 @@ mod tests {
         assert!(!recent.repeats(margin, [&before, &now], separation));
         recent.begin(margin, [&before, &now]);
         assert_eq!(recent.get(0), None);
-        recent.set(0, Some((7, 0.5)));
+        recent.set(0, Some(OnFacet { facet: 7, xi: 0.5 }));
         assert!(recent.repeats(margin, [&before, &with(4, 0.99)], separation));
         assert!(!recent.repeats(margin, [&before, &with(4, 1.01)], separation));
         assert!(!recent.repeats(margin, [&before, &with(0, f64::NAN)], separation));
@@ -108,7 +117,7 @@ mod tests {
         assert!(recent.repeats(margin, [&before, &with(3, 5.0)], separation));
         assert!(!recent.repeats(margin, [&with(0, -0.1 + 1e-16), &now], separation));
         assert!(!recent.repeats(0.4, [&before, &now], separation));
-        assert_eq!(recent.get(0), Some(Some((7, 0.5))));
+        assert_eq!(recent.get(0), Some(Some(OnFacet { facet: 7, xi: 0.5 })));
         recent.forget();
         assert!(!recent.repeats(margin, [&before, &now], separation));
         recent.begin(margin, [&before, &now]);

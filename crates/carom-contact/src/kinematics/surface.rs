@@ -13,28 +13,36 @@ use crate::places::Places;
 /// Cosine of the kink between neighbouring facets that marks a corner: 30°.
 const CORNER_COSINE: f64 = 0.87;
 
-/// Facets of a side, all of one shape, and their neighbours. The rest of the body's boundary may
-/// follow them, so that a node near the end of the side is told from one that is behind it.
+/// The facets of a side in the plane, all of one shape, and their neighbours. The rest of the
+/// boundary of the body may follow them, so that a node near the end of the side is told from one
+/// that is behind it.
 #[derive(Clone, Debug)]
 pub struct Surface {
     pub(crate) shape: FacetShape,
     pub(crate) nodes: Vec<usize>,
     orientations: Vec<f64>,
     neighbours: Vec<[Option<usize>; 2]>,
-    /// Number of facets of the side; those of the rest come after them.
+    /// Number of facets of the side, which come before those of the rest of the boundary.
     side: usize,
-    /// Number of facets of the side and its siblings: the adjoining sides, which come next.
+    /// Number of facets of the side and of its siblings, the adjoining sides, which come next.
     siblings: usize,
     is_whole: bool,
 }
 
+/// The turn of the tangent at the joint of two facets, as the cosine and the sine of its angle;
+/// left turns are positive.
+pub(crate) struct Kink {
+    pub(crate) cosine: f64,
+    pub(crate) sine: f64,
+}
+
 impl Surface {
-    /// Facets as lists of global nodes (start, end, interior), traversed with the body on their
-    /// left; `orientations` only matters for points
+    /// A side from its facets, given as lists of global nodes (start, end, interior), traversed
+    /// with the body on their left; `orientations` only matters for points
     /// ([`Mesh::orientation`](carom_solid::Mesh::orientation)).
     ///
     /// # Panics
-    /// For facets in space, whose sides are boundaries.
+    /// For facets in space, whose sides are of type [`Boundary`](crate::Boundary).
     pub fn new(shape: FacetShape, facets: &[Vec<usize>], orientations: &[f64]) -> Self {
         assert!(shape.dimension() < 3, "contact of surfaces in space");
         let end = |facet: &[usize]| facet[shape.nodes().min(2) - 1];
@@ -46,15 +54,16 @@ impl Surface {
             FacetShape::Point => facets.iter().map(none).collect(),
             _ => facets.iter().map(neighbours_of).collect(),
         };
-        let (nodes, orientations) = (facets.concat(), orientations.to_vec());
+        let nodes = facets.concat();
+        let orientations = orientations.to_vec();
         let is_whole = neighbours.iter().flatten().all(Option::is_some);
         Self { shape, nodes, orientations, neighbours, side: facets.len(), siblings: facets.len(), is_whole }
     }
 
-    /// The same side with the `rest` of its body's boundary, whose facets are traversed with the
-    /// body on their left. They only say where the side ends. The first `siblings` of them belong
-    /// to sides that other contacts keep the same nodes away from: a joint with one belongs to the
-    /// facet that ends there.
+    /// Adds the `rest` of the boundary of the body, whose facets are traversed with the body on
+    /// their left and only tell where the side ends. The first `siblings` of them belong to sides
+    /// that other contacts keep the same nodes away from: a joint with one belongs to the facet
+    /// that ends there.
     #[must_use]
     pub fn bounded_by(self, rest: &[Vec<usize>], siblings: usize) -> Self {
         let of_side = self.nodes.chunks_exact(self.shape.nodes()).map(<[usize]>::to_vec);
@@ -78,7 +87,7 @@ impl Surface {
         (self.side..self.siblings).contains(&facet)
     }
 
-    /// Whether the rest of the body's boundary is known, or there is none.
+    /// Whether the facets form closed loops: the whole boundary of the body is known.
     pub(crate) fn is_whole(&self) -> bool {
         self.is_whole
     }
@@ -88,17 +97,18 @@ impl Surface {
         facet < self.side
     }
 
-    /// A facet.
+    /// A facet of the boundary.
     pub(crate) fn facet(&self, facet: usize) -> Facet<'_> {
         Facet { shape: self.shape, nodes: self.nodes_of(facet), orientation: self.orientations[facet] }
     }
 
-    /// The facet that follows (or precedes) it in the direction of traversal.
+    /// The facet that follows (or precedes) a facet in the direction of traversal.
     pub fn neighbour(&self, facet: usize, forward: bool) -> Option<usize> {
         self.neighbours[facet][usize::from(forward)]
     }
 
-    /// The same if it belongs to the side.
+    /// The facet that follows (or precedes) a facet in the direction of traversal, if it belongs to
+    /// the side.
     pub(crate) fn neighbour_of_side(&self, facet: usize, forward: bool) -> Option<usize> {
         self.neighbour(facet, forward).filter(|&neighbour| self.is_of_side(neighbour))
     }
@@ -121,9 +131,9 @@ impl Surface {
 
     /// Whether the joint of a facet and the one that follows it is a convex corner.
     pub(crate) fn is_corner(&self, facet: usize, next: usize, y: Places) -> bool {
-        let (cosine, sine) = self.kink(facet, next, y);
+        let kink = self.kink(facet, next, y);
         // With the body on the left, a convex joint turns left.
-        sine > 0.0 && cosine < CORNER_COSINE
+        kink.sine > 0.0 && kink.cosine < CORNER_COSINE
     }
 
     /// The facets next to a facet at a convex corner.
@@ -139,12 +149,13 @@ impl Surface {
         })
     }
 
-    /// Cosine and sine of the turn from a facet to the one that follows it.
-    pub(crate) fn kink(&self, facet: usize, next: usize, y: Places) -> (f64, f64) {
+    /// The kink between a facet and the one that follows it.
+    pub(crate) fn kink(&self, facet: usize, next: usize, y: Places) -> Kink {
         let here = self.facet(facet).at(y, 1.0).tangent;
         let there = self.facet(next).at(y, -1.0).tangent;
         let size = here.norm() * there.norm();
-        (here.dot(&there) / size, (here[0] * there[1] - here[1] * there[0]) / size)
+        let sine = (here[0] * there[1] - here[1] * there[0]) / size;
+        Kink { cosine: here.dot(&there) / size, sine }
     }
 
     /// Distance between a facet's ends.
@@ -165,7 +176,7 @@ pub(crate) struct Search {
 }
 
 impl Search {
-    /// For the facets of a surface and the nodes that are searched for.
+    /// A search for facets of a surface that come near the given nodes.
     pub(crate) fn new(surface: &Surface, nodes: &[usize]) -> Self {
         let hull = Hull::line(surface.shape.nodes(), 1.0);
         let both = surface.nodes.iter().chain(nodes).copied();
@@ -173,13 +184,14 @@ impl Search {
         Self { hull, tree: Tree::default(), found: Vec::new(), apart }
     }
 
-    /// Whether [`Self::update`] would find no node near, known without it.
+    /// Whether no node comes near a facet, as far as it is known without [`Self::update`].
     pub(crate) fn is_apart(&self, margin: f64, before: Places, now: Places) -> bool {
         self.apart.holds(margin, [before.flat(), now.flat()])
     }
 
-    /// Updates to the motion from `before` to `now`, with a `margin` around facets relative to
-    /// their size. Returns whether any of these nodes' paths is near the path of a facet.
+    /// Updates the boxes to the motion from `before` to `now`, with a `margin` around facets
+    /// relative to their size. Returns whether the path of one of the given nodes may be near that
+    /// of a facet.
     pub(crate) fn update(
         &mut self,
         surface: &Surface,
@@ -199,9 +211,11 @@ impl Search {
             bounds.grown(margin * bounds.size())
         };
         self.tree.place(surface.all(), swept);
-        let (mut all, mut longest) = (Bounds::EMPTY, 0.0_f64);
+        let mut all = Bounds::EMPTY;
+        let mut longest = 0.0_f64;
         for &node in nodes {
-            let (from, to) = (before.coordinates(node), now.coordinates(node));
+            let from = before.coordinates(node);
+            let to = now.coordinates(node);
             all.add(from);
             all.add(to);
             longest = from.iter().zip(to).fold(longest, |most, (from, to)| most.max((to - from).abs()));
@@ -217,17 +231,17 @@ impl Search {
         self.tree.find_into(&path([before, now].map(|y| y.coordinates(node))), &mut self.found);
     }
 
-    /// The hierarchy of the boxes.
+    /// The hierarchy of the bounding boxes of the paths of facets.
     pub(crate) fn tree(&self) -> &Tree {
         &self.tree
     }
 
-    /// Forgets found facets that are not possible.
+    /// Removes those of the found facets that do not meet a condition.
     pub(crate) fn retain(&mut self, mut possible: impl FnMut(usize) -> bool) {
         self.found.retain(|&facet| possible(facet));
     }
 
-    /// The facets that were found.
+    /// The facets that the last search found near the path of a node, ascending.
     pub(crate) fn found(&self) -> &[usize] {
         &self.found
     }

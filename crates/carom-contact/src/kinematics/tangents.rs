@@ -1,4 +1,4 @@
-//! The tangents of a pair in space: the last ones of the pair, turned with the normal by the
+//! The tangents of a pair in space are the last ones of the pair, turned with the normal by the
 //! smallest rotation,
 //!
 //! ```text
@@ -12,10 +12,12 @@ use carom_algebra::Vector;
 
 use super::space::cross;
 
-/// 1 + n₀·n below which other tangents are taken.
+/// Value of 1 + n₀·n, for the last normal n₀ and the present one n, below which new tangents are
+/// chosen.
 const TURNED: f64 = 0.1;
 
-/// The tangents at a normal, from the last ones, which may be zero.
+/// The unit tangents at a normal, turned from the last ones of the pair; chosen freely if those are
+/// zero.
 pub(super) fn tangents(normal: Vector<3>, last: [[f64; 3]; 2]) -> [Vector<3>; 2] {
     let [first, second] = last.map(Vector);
     let before = cross(first, second);

@@ -10,16 +10,16 @@ use super::projection::Facet;
 use super::swept::{Crossings, Swept, SweptTest};
 use crate::places::Places;
 
-/// θ may lie outside [0, 1], and |ξ| above 1, by this much: a node exactly on the surface must be
-/// detected.
+/// Excess of θ over [0, 1], and of |ξ| over 1, up to which a crossing counts, so that a node
+/// exactly on the surface is detected.
 const TOLERANCE: f64 = 1e-6;
-/// A node this close to the facet, relative to its length, meets it: a node that starts behind by
-/// round-off must be detected.
+/// Distance between a node and a facet, relative to the length of the facet, at which they meet: a
+/// node that starts behind by round-off must be detected.
 const SEPARATION: f64 = 1e-6;
-/// Distance in θ and ξ from the isolated crossing at which Newton's method found another one.
+/// Change of θ and ξ from the isolated crossing, above which Newton's method has found another one.
 const ASTRAY: f64 = 0.05;
 
-/// Intersection of a node's path with a facet's.
+/// Crossing of the path of a node with that of a facet in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crossing {
     pub theta: f64,
@@ -30,7 +30,7 @@ fn lerp(a: Vector<2>, b: Vector<2>, t: f64) -> Vector<2> {
     a * (1.0 - t) + b * t
 }
 
-/// First crossing from the outer to the inner side of the facet, if any.
+/// First crossing of a node from the outer to the inner side of a facet in a step, if there is one.
 pub(crate) fn crossing(
     swept: &mut SweptTest,
     facet: Facet,
@@ -58,13 +58,15 @@ pub(crate) fn crossing(
     }
 }
 
-/// Newton on the curve from a chord's root. Only inward crossings count: the node's velocity
-/// relative to the surface is opposite to its normal.
+/// Crossing refined by Newton's method on the curve. Only inward crossings count: the velocity of
+/// the node relative to the surface is opposite to its normal.
 fn polished(facet: Facet, before: Places, now: Places, node: usize, start: Crossing) -> Option<Crossing> {
     let Crossing { mut theta, mut xi } = start;
     for _ in 0..20 {
         let shape = facet.shape.at(xi);
-        let (mut position, mut tangent, mut velocity) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
+        let mut position = Vector::ZERO;
+        let mut tangent = Vector::ZERO;
+        let mut velocity = Vector::ZERO;
         for (k, &n) in facet.nodes.iter().enumerate() {
             let y = lerp(before.at(n), now.at(n), theta);
             position += y * shape.values[k];

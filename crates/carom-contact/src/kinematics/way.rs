@@ -18,59 +18,63 @@
 use carom_algebra::Vector;
 use carom_solid::FacetShape;
 
-/// Depth, relative to the facet, that a path may have.
+/// Depth, relative to the length of a facet, that a node may have on its path.
 pub(super) const SHARE: f64 = 0.01;
 
-/// Depth relative to the allowed one, or to the largest that was found, within which it is known.
+/// Accuracy of the largest depth, as a ratio to the allowed depth or to the largest one found.
 const KNOWN: f64 = 1.125;
-/// Divisions after which what is undecided counts as deep, for boundaries that no longer have a
-/// size.
+/// Number of divisions after which an undecided interval counts as deep, for boundaries that no
+/// longer have a size.
 const MOST: usize = 10_000;
-/// Share of an interval that a division leaves on either side at least.
+/// Smallest share of an interval on either side of its division.
 const LEAST: f64 = 0.05;
 
-/// A node at an instant of its way.
+/// A node relative to a boundary at an instant of its path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub theta: f64,
-    /// The nearest facet, and its point.
+    /// Facet nearest to the node.
     pub facet: usize,
+    /// Coordinates of the nearest point on its facet.
     pub xi: [f64; 2],
-    /// Negative outside.
+    /// Depth of the node inside the boundary; negative outside.
     pub depth: f64,
-    /// Speed relative to that point, over the step.
+    /// Speed of the node relative to the nearest point of the boundary, per step.
     pub speed: f64,
-    /// Allowed depth there.
+    /// Allowed depth of the node at that instant.
     pub limit: f64,
 }
 
-/// Where a node crosses the boundary.
+/// Where a node crosses the boundary: the instant, the facet and the coordinates ξ on it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Met {
+pub(super) struct Met<X = [f64; 2]> {
     pub theta: f64,
     pub facet: usize,
-    pub xi: [f64; 2],
+    pub xi: X,
 }
 
-/// Allowed depths on a way: a share of the length of a facet, or what the node has at an end.
+/// Allowed depths on a path: a share of the length of a facet, or the depth that the node has at an
+/// end of its path.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Allowed {
     pub share: f64,
     pub at_end: f64,
 }
 
-/// What is asked about a way.
+/// The path of a node, or of an edge, relative to a boundary.
 pub(super) trait Way {
-    /// The node at an instant.
+    /// The node relative to the boundary at an instant.
     fn seen(&mut self, theta: f64) -> Option<Seen>;
 
-    /// The same where the nearest point is known.
+    /// The node relative to the boundary at an instant at which the nearest point and the depth are
+    /// known.
     fn on(&self, theta: f64, facet: usize, xi: [f64; 2], depth: f64) -> Seen;
 
-    /// A bound of the distance to the facet that is nearest at both instants, between them.
+    /// Bound of the distance of the node, between two instants, to the facet that is nearest at
+    /// both.
     fn between(&self, from: &Seen, to: &Seen) -> f64;
 
-    /// The outward normal at an instant.
+    /// Outward normal of the boundary at the nearest point, at an instant.
     fn normal(&mut self, at: &Seen) -> Vector<3>;
 
     /// Sets the allowed depths.
@@ -78,15 +82,17 @@ pub(super) trait Way {
 }
 
 /// The instant at which a node exceeds the allowed depth most, if it does, between its first entry
-/// and its last exit, or the end of the step at which it is inside; `bounce`: allowed depth over
-/// the length of a facet if it leaves on the side on which it entered; `fastest`: V.
+/// and its last exit, or an end of the step at which it is inside; `bounce`: allowed depth,
+/// relative to the length of a facet, if it leaves on the side on which it entered; `fastest`:
+/// bound of the speed relative to every point of the boundary.
 pub(super) fn through(
     way: &mut impl Way,
     [entry, exit]: [Option<Met>; 2],
     bounce: f64,
     fastest: f64,
 ) -> Option<Seen> {
-    let (first, last) = (entry.map_or(0.0, |met| met.theta), exit.map_or(1.0, |met| met.theta));
+    let first = entry.map_or(0.0, |met| met.theta);
+    let last = exit.map_or(1.0, |met| met.theta);
     let known = entry.or(exit)?;
     if last <= first {
         return None;
@@ -107,8 +113,8 @@ pub(super) fn through(
     deepest(way, ends, fastest)
 }
 
-/// The instant between the `ends` of a way at which the node exceeds the allowed depth most, if it
-/// does; `fastest`: V.
+/// The instant between the `ends` of a path at which the node exceeds the allowed depth most, if it
+/// does; `fastest`: bound of the speed relative to every point of the boundary.
 pub(super) fn deepest(way: &mut impl Way, ends: [Seen; 2], fastest: f64) -> Option<Seen> {
     let mut worst: Option<Seen> = None;
     let mut open = vec![ends];
@@ -133,16 +139,19 @@ pub(super) fn deepest(way: &mut impl Way, ends: [Seen; 2], fastest: f64) -> Opti
     worst.or(undecided)
 }
 
-/// Where the bounds from both ends of an interval meet, and the bound there.
+/// Instant at which the bounds of the depth from both ends of an interval meet, and the bound
+/// there.
 fn bound(from: &Seen, to: &Seen, fastest: f64) -> (f64, f64) {
     let slope = |seen: &Seen| if seen.depth < 0.0 { fastest } else { seen.speed };
-    let (length, [up, down]) = (to.theta - from.theta, [slope(from), slope(to)]);
+    let length = to.theta - from.theta;
+    let up = slope(from);
+    let down = slope(to);
     let along = ((to.depth - from.depth + down * length) / (up + down)).clamp(0.0, length);
     let bound = (from.depth + up * along).min(to.depth + down * (length - along));
     (from.theta + along.clamp(LEAST * length, (1.0 - LEAST) * length), bound)
 }
 
-/// The largest Σ |φᵃ| of a facet: how much further one of its points may move than each node.
+/// Largest ratio of the motion of a point of a facet to that of its nodes: the largest Σ |φᵃ|.
 pub(crate) fn amplification(shape: FacetShape) -> f64 {
     match shape {
         FacetShape::L3 => 1.25,
@@ -154,9 +163,9 @@ pub(crate) fn amplification(shape: FacetShape) -> f64 {
     }
 }
 
-/// A bound of the length of a node's offset from a point of a facet that moves along it, from ξ₀ to
-/// ξ₁ of `ends`, while all nodes move on straight lines; `offset(end, ξ)`: from the point at ξ, at
-/// either end of the interval.
+/// Bound of the distance between a node and a point that moves along a facet, from ξ₀ to ξ₁ of
+/// `ends`, while all nodes move on straight lines; `offset(end, ξ)`: offset of the node from the
+/// point at ξ, at either end of the interval.
 pub(super) fn most_between<const D: usize>(
     shape: FacetShape,
     ends: [[f64; 2]; 2],
@@ -213,10 +222,10 @@ fn bernstein<const D: usize>(degree: usize, f: &[Vector<D>; 5]) -> [Vector<D>; 5
     c
 }
 
-/// Positions between the ends of a step.
+/// Positions between the ends of a step, on straight lines.
 pub(super) struct Between<'a, const D: usize> {
     ends: [&'a [f64]; 2],
-    /// At one instant, those of some nodes alone.
+    /// Positions at the last instant asked for, valid for the nodes asked for only.
     y: Vec<f64>,
 }
 
@@ -225,7 +234,7 @@ impl<'a, const D: usize> Between<'a, D> {
         Self { ends: [before, now], y: vec![0.0; now.len()] }
     }
 
-    /// A node at an instant.
+    /// Position of a node at an instant.
     pub(super) fn at(&self, theta: f64, node: usize) -> Vector<D> {
         let [before, now] = self.ends;
         Vector(std::array::from_fn(|i| {
@@ -234,7 +243,7 @@ impl<'a, const D: usize> Between<'a, D> {
         }))
     }
 
-    /// Flat positions that contain some nodes at an instant.
+    /// Positions, flat over all nodes, in which the given nodes are at an instant.
     pub(super) fn with(&mut self, theta: f64, nodes: &[usize]) -> &[f64] {
         for &node in nodes {
             let at = self.at(theta, node);
@@ -243,20 +252,21 @@ impl<'a, const D: usize> Between<'a, D> {
         &self.y
     }
 
-    /// The same without more of them.
+    /// Positions, flat over all nodes, in which only the nodes asked for before are valid.
     pub(super) fn flat(&self) -> &[f64] {
         &self.y
     }
 
-    /// Speed of a node relative to the point ξ of a facet, over the step.
+    /// Speed of a node relative to the point ξ of a facet, per step.
     pub(super) fn speed(&self, node: usize, shape: FacetShape, nodes: &[usize], xi: [f64; 2]) -> f64 {
         let moved = |node: usize| self.at(1.0, node) - self.at(0.0, node);
-        let (own, functions) = (moved(node), shape.functions(xi));
+        let own = moved(node);
+        let functions = shape.functions(xi);
         let each = nodes.iter().zip(functions.values);
         each.fold(Vector::ZERO, |sum, (&other, value)| sum + (own - moved(other)) * value).norm()
     }
 
-    /// The bound of [`Way::between`].
+    /// Bound of the distance of a node, between two instants, to the facet that is nearest at both.
     pub(super) fn most(
         &self,
         node: usize,
@@ -267,7 +277,8 @@ impl<'a, const D: usize> Between<'a, D> {
     ) -> f64 {
         let thetas = [from.theta, to.theta];
         most_between(shape, [from.xi, to.xi], |end, xi| {
-            let (own, functions) = (self.at(thetas[end], node), shape.functions(xi));
+            let own = self.at(thetas[end], node);
+            let functions = shape.functions(xi);
             let each = nodes.iter().zip(functions.values);
             each.fold(Vector::ZERO, |sum: Vector<D>, (&other, value)| {
                 sum + (own - self.at(thetas[end], other)) * value
@@ -276,8 +287,8 @@ impl<'a, const D: usize> Between<'a, D> {
     }
 }
 
-/// Allowed depth over the length of a facet, from the normals where a node enters and leaves: on
-/// the same side it has bounced, and may be as deep as at the end of a step.
+/// Allowed depth, relative to the length of a facet, from the normals where a node enters and
+/// leaves: on the same side it has bounced, and may be as deep as at the end of a step.
 pub(super) fn share<const D: usize>([entered, left]: [Vector<D>; 2], bounce: f64) -> f64 {
     if entered.dot(&left) > 0.0 { bounce.max(SHARE) } else { SHARE }
 }
@@ -362,7 +373,8 @@ mod tests {
                 (0..=500).map(|k| offset(at(k), xi(at(k))).norm()).fold(0.0, f64::max)
             };
             assert!(scan(0.0, 1.0) <= most([0.0, 1.0]) * (1.0 + 1e-12), "{shape:?}");
-            let (near, bound) = (scan(0.4, 0.41), most([0.4, 0.41]));
+            let near = scan(0.4, 0.41);
+            let bound = most([0.4, 0.41]);
             assert!(near <= bound * (1.0 + 1e-12) && bound < near * (1.0 + 1e-3), "{shape:?} {near} {bound}");
         }
     }

@@ -30,7 +30,8 @@ fn pair() -> Pair {
 
 /// The row of the scene's pair, and the pair at its contact point.
 fn measured(contact: &NodeToFacet, y: &[f64]) -> (Rows, Pair) {
-    let (mut rows, mut pair) = (Rows::new(2), pair());
+    let mut rows = Rows::new(2);
+    let mut pair = pair();
     contact.measure(&mut pair, y, &mut rows).unwrap();
     (rows, pair)
 }
@@ -50,8 +51,10 @@ fn force(contact: &NodeToFacet, y: &[f64], lambda: f64) -> Vec<f64> {
 fn stiffness(contact: &NodeToFacet, y: &[f64], lambda: f64) -> Vec<f64> {
     let (rows, pair) = measured(contact, y);
     let dofs: Vec<usize> = rows.row(0).entries().map(|(dof, _)| dof).collect();
-    let (m, n) = (dofs.len(), y.len());
-    let (mut curvature, mut full) = (vec![0.0; m * m], vec![0.0; n * n]);
+    let m = dofs.len();
+    let n = y.len();
+    let mut curvature = vec![0.0; m * m];
+    let mut full = vec![0.0; n * n];
     contact.curvature_into(&pair, y, &mut curvature);
     for (a, row) in dofs.iter().enumerate() {
         for (b, column) in dofs.iter().enumerate() {
@@ -69,7 +72,8 @@ fn gradient_and_second_derivative_agree_with_differences() {
             let error = jacobian_error(&y, 1e-3, |y| vec![gap(&contact, y)], &force(&contact, &y, 1.0));
             assert!(error < 1e-9, "{shape:?} {point:?}: gradient {error:e}");
 
-            let (lambda, n) = (-2.5, y.len());
+            let lambda = -2.5;
+            let n = y.len();
             let hessian = stiffness(&contact, &y, lambda);
             let error = jacobian_error(&y, 1e-3, |y| force(&contact, y, lambda), &hessian);
             assert!(error < 1e-8, "{shape:?} {point:?}: second derivative {error:e}");
@@ -89,7 +93,8 @@ fn force_and_moment_balance() {
     for (shape, point) in SHAPES.into_iter().flat_map(|shape| POINTS.map(|point| (shape, point))) {
         let (contact, y) = scene(shape, point, 0.05);
         let f = force(&contact, &y, -7.0);
-        let (mut sum, mut moment) = (Vector::ZERO, 0.0);
+        let mut sum = Vector::ZERO;
+        let mut moment = 0.0;
         for (y, f) in y.as_chunks::<2>().0.iter().zip(f.as_chunks::<2>().0) {
             sum += Vector(*f);
             moment += y[0] * f[1] - y[1] * f[0];

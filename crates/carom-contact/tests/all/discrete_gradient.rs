@@ -46,14 +46,18 @@ fn gap(contact: &dyn Kinematics, y: &[f64]) -> f64 {
 fn discrete_gradient(contact: &dyn Kinematics, start: &[f64], end: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let middle: Vec<f64> = start.iter().zip(end).map(|(a, b)| 0.5 * (a + b)).collect();
     let moved: Vec<f64> = start.iter().zip(end).map(|(a, b)| b - a).collect();
-    let (mut rows, mut pair) = (Rows::new(2), Pair::open(0, 0, 0.1));
+    let mut rows = Rows::new(2);
+    let mut pair = Pair::open(0, 0, 0.1);
     contact.measure(&mut pair.clone(), end, &mut rows).unwrap();
     contact.measure(&mut pair, &middle, &mut rows).unwrap();
     let mut gradient = DiscreteGradient::default();
     gradient.evaluate(rows.row(1), rows.row(0).gap - gap(contact, start), &middle, &moved);
     let dofs: Vec<usize> = rows.row(1).entries().map(|(dof, _)| dof).collect();
-    let (n, all) = (dofs.len(), start.len());
-    let (mut matrix, mut force, mut full) = (vec![0.0; n * n], vec![0.0; all], vec![0.0; all * all]);
+    let n = dofs.len();
+    let all = start.len();
+    let mut matrix = vec![0.0; n * n];
+    let mut force = vec![0.0; all];
+    let mut full = vec![0.0; all * all];
     contact.curvature_into(&pair, &middle, &mut matrix);
     gradient.derivative_into(rows.row(0), &mut matrix);
     for (a, &row) in dofs.iter().enumerate() {
@@ -68,7 +72,8 @@ fn discrete_gradient(contact: &dyn Kinematics, start: &[f64], end: &[f64]) -> (V
 #[test]
 fn it_does_the_work_of_the_gap_and_balances_force_and_moment() {
     for shape in SHAPES {
-        let (contact, y) = (contact(shape), start(shape));
+        let contact = contact(shape);
+        let y = start(shape);
         for angle in [0.0, 0.2, -0.7] {
             for size in [0.1, 1e-3] {
                 let end = end(&y, angle, size);
@@ -78,7 +83,8 @@ fn it_does_the_work_of_the_gap_and_balances_force_and_moment() {
                 // ε leaves its share (ε/|d|)² of the correction.
                 let bound = if size > 0.01 { 1e-13 } else { 1e-9 };
                 assert!((work - change).abs() < bound, "{shape:?} {angle} {size}: {work} {change}");
-                let (mut sums, mut moment) = ([0.0; 2], 0.0);
+                let mut sums = [0.0; 2];
+                let mut moment = 0.0;
                 for (f, (a, b)) in force.chunks(2).zip(y.chunks(2).zip(end.chunks(2))) {
                     let arm = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
                     (0..2).for_each(|i| sums[i] += f[i]);
@@ -93,7 +99,8 @@ fn it_does_the_work_of_the_gap_and_balances_force_and_moment() {
 #[test]
 fn its_derivative_agrees_with_differences() {
     for shape in SHAPES {
-        let (contact, y) = (contact(shape), start(shape));
+        let contact = contact(shape);
+        let y = start(shape);
         for (angle, size) in [(0.0, 0.1), (0.3, 0.1), (-0.1, 0.02)] {
             let end = end(&y, angle, size);
             let (_, derivative) = discrete_gradient(&contact, &y, &end);
@@ -108,7 +115,8 @@ fn its_derivative_agrees_with_differences() {
 #[test]
 fn it_is_the_gradient_at_the_midpoint_in_rigid_motion_and_against_a_plane() {
     for shape in SHAPES {
-        let (contact, y) = (contact(shape), start(shape));
+        let contact = contact(shape);
+        let y = start(shape);
         for angle in [0.0, 1e-4, 0.5] {
             let end = end(&y, angle, 0.0);
             let middle: Vec<f64> = y.iter().zip(&end).map(|(a, b)| 0.5 * (a + b)).collect();
@@ -138,7 +146,8 @@ fn it_keeps_the_force_of_a_node_that_slides_on_a_closed_facet() {
         }
         y
     };
-    let (before, after) = (on_facet(-0.2), on_facet(0.4));
+    let before = on_facet(-0.2);
+    let after = on_facet(0.4);
     assert!(gap(&contact, &before).abs() + gap(&contact, &after).abs() < 1e-15);
     let (force, _) = discrete_gradient(&contact, &before, &after);
     let work: f64 = force.iter().zip(after.iter().zip(&before)).map(|(f, (b, a))| f * (b - a)).sum();

@@ -20,7 +20,8 @@ fn roofs(
     height: f64,
     bend: impl Fn([f64; 3]) -> [f64; 3],
 ) -> (WithEdges, Vec<f64>) {
-    let (mut y, mut sides) = (Vec::<f64>::new(), Vec::new());
+    let mut y = Vec::<f64>::new();
+    let mut sides = Vec::new();
     for is_upper in [false, true] {
         let first = y.len() / 3;
         let mut facets = Vec::new();
@@ -44,7 +45,8 @@ fn roofs(
         }
         sides.push(facets);
     }
-    let (lower, upper) = (&sides[0], &sides[1]);
+    let lower = &sides[0];
+    let upper = &sides[1];
     let [below, above] = [lower, upper].map(|facets| Boundary::new(shape, facets, &[], 0));
     let nodes = |facets: &Vec<Vec<usize>>| -> Vec<usize> {
         let mut nodes = facets.concat();
@@ -70,7 +72,8 @@ fn bent([x, y, z]: [f64; 3]) -> [f64; 3] {
 /// The pair of the only edges, at its closest points.
 fn measured(contact: &WithEdges, y: &[f64]) -> (Rows, Pair) {
     let pair = Pair { active: true, eta: -0.1, ..Pair::open(contact.nodes(), 2, 0.1) };
-    let (mut rows, mut pair) = (Rows::new(3), pair);
+    let mut rows = Rows::new(3);
+    let mut pair = pair;
     contact.measure(&mut pair, y, &mut rows).unwrap();
     (rows, pair)
 }
@@ -119,11 +122,13 @@ fn force_and_moment_balance_and_rigid_motions_neither_open_nor_slip() {
     for shape in SHAPES {
         let (contact, y) = roofs(shape, 1, 0.15, bent);
         let f = force(&contact, &y, -7.0);
-        let (mut sum, mut moment) = (Vector::<3>::ZERO, Vector::<3>::ZERO);
+        let mut sum = Vector::<3>::ZERO;
+        let mut moment = Vector::<3>::ZERO;
         for (y, f) in y.as_chunks::<3>().0.iter().zip(f.as_chunks::<3>().0) {
             sum += Vector(*f);
             moment += Vector(std::array::from_fn(|i| {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let j = (i + 1) % 3;
+                let k = (i + 2) % 3;
                 y[j] * f[k] - y[k] * f[j]
             }));
         }
@@ -170,7 +175,8 @@ fn the_discrete_gradient_does_the_work_of_the_gap_without_force_or_moment() {
     assert!((work - change).abs() < 1e-13, "{work} {change}");
     let mut worst = 0.0_f64;
     for i in 0..3 {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let j = (i + 1) % 3;
+        let k = (i + 2) % 3;
         let nodes = || force.as_chunks::<3>().0.iter().zip(middle.as_chunks::<3>().0);
         worst = worst.max(nodes().map(|(f, _)| f[i]).sum::<f64>().abs());
         worst = worst.max(nodes().map(|(f, y)| y[j] * f[k] - y[k] * f[j]).sum::<f64>().abs());
@@ -249,7 +255,9 @@ fn a_pair_goes_on_along_the_edges_and_leaves_at_their_end() {
     // It goes on from where it is at the start of a step.
     let at = |x: f64, z: f64| placed(&y, upper, [x - 1.45, 0.0, z], 0.0);
     let mut last = at(0.4, 0.01);
-    let (mut pairs, mut events, mut edges) = (Vec::new(), Vec::new(), Vec::new());
+    let mut pairs = Vec::new();
+    let mut events = Vec::new();
+    let mut edges = Vec::new();
     for (x, z) in
         [(0.5, -0.01), (0.8, 0.0), (1.3, 0.0), (1.9, 0.0), (2.2, 0.0), (2.9, 0.0), (3.2, 0.0), (3.3, 0.0)]
     {

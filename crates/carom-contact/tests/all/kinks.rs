@@ -35,7 +35,8 @@ fn a_node_beside_a_corner_is_not_behind_the_extension_of_the_side() {
         // It sinks into the top.
         ([0.1, 1.05], [0.1, 0.9], true),
     ] {
-        let (before, now) = (positions(&[from]), positions(&[to]));
+        let before = positions(&[from]);
+        let now = positions(&[to]);
         let pairs = found(&contact, &before, &now, &mut Pairing::default());
         assert_eq!(pairs.iter().any(|(_, gap)| *gap < 0.0), touches, "{from:?} {to:?}");
     }
@@ -71,7 +72,8 @@ fn a_corner_of_the_primary_does_not_cut_into_an_edge_of_the_secondary() {
     let others = NodeToFacet::new(vec![2, 3], edge, Detection::ClosestPoint).with_allowed(vec![0.0, 0.02]);
     let contact = BothSides::new(NodeToFacet::new(vec![4, 5], top(), Detection::ClosestPoint), others);
     let sloped = |height: f64| positions(&[[-1.0, height + 1.0], [2.0, height - 0.5]]);
-    let (before, now) = (sloped(1.1), sloped(0.97));
+    let before = sloped(1.1);
+    let now = sloped(0.97);
     let pairs = found(&contact, &before, &now, &mut Pairing::default());
     // Node 2, at (1, 1), lies 0.03/√1.25 inside; node 3 is free.
     let inside: Vec<_> = pairs.iter().filter(|(_, gap)| *gap < 0.0).collect();

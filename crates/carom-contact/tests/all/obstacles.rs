@@ -29,7 +29,8 @@ fn close(a: f64, b: f64) {
 #[test]
 fn distances_to_a_square_are_elementary() {
     // Counter-clockwise: the square is rigid. Clockwise: it is a box.
-    let (block, mut reversed) = (polyline(&SQUARE, 0.0), SQUARE);
+    let block = polyline(&SQUARE, 0.0);
+    let mut reversed = SQUARE;
     reversed.reverse();
     let room = polyline(&reversed, 0.0);
     for (x, y, d) in
@@ -39,7 +40,8 @@ fn distances_to_a_square_are_elementary() {
         close(distance(&room, x, y), -d);
     }
     // Rounding moves the corner by (√2 − 1) r along its bisector, inside as outside.
-    let (round, hollow) = (polyline(&SQUARE, 0.5), polyline(&reversed, 0.5));
+    let round = polyline(&SQUARE, 0.5);
+    let hollow = polyline(&reversed, 0.5);
     let gap = (2.0_f64.sqrt() - 1.0) * 0.5;
     close(distance(&round, 2.0, 2.0), gap);
     close(distance(&hollow, 2.0, 2.0), -gap);
@@ -105,7 +107,8 @@ fn the_gap_does_not_see_a_rigid_motion() {
 }
 
 fn searched(contact: &NodeToObstacle, pair: Pair, before: [f64; 2], now: [f64; 2]) -> (Pair, Vec<PairEvent>) {
-    let (mut pairing, mut events) = (Pairing::new(vec![pair]), Vec::new());
+    let mut pairing = Pairing::new(vec![pair]);
+    let mut events = Vec::new();
     contact.search(&before, &now, &mut pairing, &mut events);
     (pairing.pairs[0], events)
 }

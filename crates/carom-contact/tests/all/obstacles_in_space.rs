@@ -168,7 +168,8 @@ fn gradient_and_second_derivative_agree_with_differences() {
 }
 
 fn searched(contact: &NodeToObstacle, pair: Pair, before: [f64; 3], now: [f64; 3]) -> (Pair, Vec<PairEvent>) {
-    let (mut pairing, mut events) = (Pairing::new(vec![pair]), Vec::new());
+    let mut pairing = Pairing::new(vec![pair]);
+    let mut events = Vec::new();
     contact.search(&before, &now, &mut pairing, &mut events);
     (pairing.pairs[0], events)
 }

@@ -43,7 +43,8 @@ fn scenes(height: f64) -> Vec<(Box<dyn Kinematics>, Vec<f64>)> {
 
 /// The pair at its contact point, and H over all dofs at the middle of a motion.
 fn slip(contact: &dyn Kinematics, y: &[f64], moved: &[f64]) -> (Pair, Vec<f64>) {
-    let (mut rows, mut pair) = (Rows::new(2), Pair { active: true, ..Pair::open(0, 0, 0.1) });
+    let mut rows = Rows::new(2);
+    let mut pair = Pair { active: true, ..Pair::open(0, 0, 0.1) };
     contact.measure(&mut pair, y, &mut rows).unwrap();
     let mut row = vec![0.0; y.len()];
     rows.clear();

@@ -35,7 +35,8 @@ const START: [[f64; 3]; 2] = [[0.6, 0.8, 0.0], [0.0, 0.0, 1.0]];
 
 /// The pair at its contact point with its tangent there, and both H over all dofs.
 fn slip(contact: &dyn Kinematics, y: &[f64], tangents: [[f64; 3]; 2]) -> (Pair, [Vec<f64>; 2]) {
-    let (mut rows, mut pair) = (Rows::new(3), Pair { active: true, ..Pair::open(0, 0, 0.2) });
+    let mut rows = Rows::new(3);
+    let mut pair = Pair { active: true, ..Pair::open(0, 0, 0.2) };
     contact.measure(&mut pair, y, &mut rows).unwrap();
     pair.tangential.tangents = tangents;
     rows.clear();
@@ -97,7 +98,8 @@ fn friction_has_neither_a_resultant_nor_a_moment_and_unit_forces_on_the_node() {
             assert!((dot(parts[i], parts[j]) - expected).abs() < 1e-14, "{k} {i} {j}");
         }
         for row in &rows {
-            let (mut sum, mut moment) = (Vector::<3>::ZERO, Vector::<3>::ZERO);
+            let mut sum = Vector::<3>::ZERO;
+            let mut moment = Vector::<3>::ZERO;
             for (y, f) in y.as_chunks::<3>().0.iter().zip(row.as_chunks::<3>().0) {
                 sum += Vector(*f);
                 moment += Vector(cross(*y, *f));
@@ -131,7 +133,8 @@ fn the_derivatives_of_the_rows_are_those_of_differences() {
 fn any_tangent_is_a_start() {
     for (contact, y, _) in scenes(0.35) {
         let normal = {
-            let (mut rows, mut pair) = (Rows::new(3), Pair::open(0, 0, 0.2));
+            let mut rows = Rows::new(3);
+            let mut pair = Pair::open(0, 0, 0.2);
             contact.measure(&mut pair, &y, &mut rows).unwrap();
             rows.row(0).first()
         };

@@ -45,7 +45,8 @@ pub(crate) fn scene(shape: FacetShape, height: f64) -> (NodeToPatch, Vec<f64>) {
 }
 
 fn measured(contact: &NodeToPatch, y: &[f64]) -> (Rows, Pair) {
-    let (mut rows, mut pair) = (Rows::new(3), Pair { active: true, ..Pair::open(0, 0, 0.2) });
+    let mut rows = Rows::new(3);
+    let mut pair = Pair { active: true, ..Pair::open(0, 0, 0.2) };
     contact.measure(&mut pair, y, &mut rows).unwrap();
     (rows, pair)
 }
@@ -79,11 +80,13 @@ fn force_and_moment_balance_and_the_gap_sees_no_rigid_motion() {
     for shape in SHAPES {
         let (contact, y) = scene(shape, 0.4);
         let f = force(&contact, &y, -7.0);
-        let (mut sum, mut moment) = (Vector::<3>::ZERO, Vector::<3>::ZERO);
+        let mut sum = Vector::<3>::ZERO;
+        let mut moment = Vector::<3>::ZERO;
         for (y, f) in y.as_chunks::<3>().0.iter().zip(f.as_chunks::<3>().0) {
             sum += Vector(*f);
             moment += Vector(std::array::from_fn(|i| {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let j = (i + 1) % 3;
+                let k = (i + 2) % 3;
                 y[j] * f[k] - y[k] * f[j]
             }));
         }
@@ -128,7 +131,8 @@ fn strip(count: usize, height: impl Fn(f64) -> f64) -> (Boundary, Vec<f64>) {
     }
     let node = |x: usize, z: usize| 1 + 3 * x + z;
     let facet = |k: usize| {
-        let (x, z) = (k / 2, k % 2);
+        let x = k / 2;
+        let z = k % 2;
         vec![node(x, z), node(x + 1, z), node(x + 1, z + 1), node(x, z + 1)]
     };
     let facets: Vec<Vec<usize>> = (0..2 * count).map(facet).collect();
@@ -141,11 +145,13 @@ fn a_node_that_slides_is_handed_over_and_leaves_at_the_end() {
     let contact = NodeToPatch::new(vec![0], surface);
     let at = |x: f64, z: f64| {
         let mut y = y.clone();
-        (y[0], y[1], y[2]) = (x, 0.3, z);
+        y[..3].copy_from_slice(&[x, 0.3, z]);
         y
     };
-    let (mut pairing, mut events) = (Pairing::default(), Vec::new());
-    let (before, now) = (at(0.5, 0.1), at(0.6, -0.01));
+    let mut pairing = Pairing::default();
+    let mut events = Vec::new();
+    let before = at(0.5, 0.1);
+    let now = at(0.6, -0.01);
     assert!(contact.search(&before, &now, &mut pairing, &mut events));
     assert_eq!((pairing.pairs.len(), pairing.pairs[0].facet), (1, 1));
     let mut last = now;
@@ -170,13 +176,15 @@ fn a_node_that_crosses_a_thin_body_in_one_step_is_found() {
     let contact = NodeToPatch::new(vec![0], surface);
     let at = |z: f64| {
         let mut y = y.clone();
-        (y[0], y[1], y[2]) = (0.4, 0.4, z);
+        y[..3].copy_from_slice(&[0.4, 0.4, z]);
         y
     };
-    let (mut pairing, mut events) = (Pairing::default(), Vec::new());
+    let mut pairing = Pairing::default();
+    let mut events = Vec::new();
     assert!(contact.search(&at(3.0), &at(-5.0), &mut pairing, &mut events));
     assert_eq!(pairing.pairs.len(), 1);
-    let (mut pairing, mut events) = (Pairing::default(), Vec::new());
+    let mut pairing = Pairing::default();
+    let mut events = Vec::new();
     assert!(!contact.search(&at(-5.0), &at(3.0), &mut pairing, &mut events));
 }
 
@@ -184,7 +192,8 @@ fn a_node_that_crosses_a_thin_body_in_one_step_is_found() {
 /// equality.
 fn projected(target: [f64; 3], planes: &[Vector<3>]) -> Vector<3> {
     let of = |set: usize| {
-        let (mut x, mut basis) = (Vector(target), Vec::<Vector<3>>::new());
+        let mut x = Vector(target);
+        let mut basis = Vec::<Vector<3>>::new();
         for (_, plane) in planes.iter().enumerate().filter(|(i, _)| set >> i & 1 == 1) {
             let rest = basis.iter().fold(*plane, |rest, axis| rest - *axis * rest.dot(axis));
             if rest.norm() > 1e-9 {
@@ -220,7 +229,8 @@ fn a_node_in_a_hollow_of_four_facets_is_held_by_those_that_it_would_enter() {
     let at = |x: [f64; 3]| [&x[..], &y[3..]].concat();
     for k in 0..400 {
         let wave = |w: f64| 0.12 * (f64::from(k) * w).sin();
-        let (mut last, target) = (at([wave(0.7), wave(1.1), 0.5]), [wave(1.9), wave(2.3), wave(3.1) - 0.08]);
+        let mut last = at([wave(0.7), wave(1.1), 0.5]);
+        let target = [wave(1.9), wave(2.3), wave(3.1) - 0.08];
         let mut pairing = Pairing::default();
         let mut now = at(target);
         // It is pulled below the hollow by up to a fifth of a facet, until it rests.
@@ -254,7 +264,8 @@ fn a_node_in_a_hollow_of_four_facets_is_held_by_those_that_it_would_enter() {
 fn discrete_gradient(contact: &dyn Kinematics, start: &[f64], end: &[f64]) -> (Vec<f64>, Vec<f64>, f64) {
     let middle: Vec<f64> = start.iter().zip(end).map(|(a, b)| 0.5 * (a + b)).collect();
     let moved: Vec<f64> = start.iter().zip(end).map(|(a, b)| b - a).collect();
-    let (mut rows, mut pair) = (Rows::new(3), Pair { active: true, ..Pair::open(0, 0, 0.2) });
+    let mut rows = Rows::new(3);
+    let mut pair = Pair { active: true, ..Pair::open(0, 0, 0.2) };
     contact.measure(&mut pair.clone(), start, &mut rows).unwrap();
     contact.measure(&mut pair.clone(), end, &mut rows).unwrap();
     contact.measure(&mut pair, &middle, &mut rows).unwrap();
@@ -262,7 +273,8 @@ fn discrete_gradient(contact: &dyn Kinematics, start: &[f64], end: &[f64]) -> (V
     let mut gradient = DiscreteGradient::default();
     gradient.evaluate(rows.row(2), change, &middle, &moved);
     let n = rows.row(2).gradient.len();
-    let (mut matrix, mut force) = (vec![0.0; n * n], vec![0.0; start.len()]);
+    let mut matrix = vec![0.0; n * n];
+    let mut force = vec![0.0; start.len()];
     contact.curvature_into(&pair, &middle, &mut matrix);
     gradient.derivative_into(rows.row(1), &mut matrix);
     for ((dof, _), slope) in rows.row(2).entries().zip(gradient.gradient()) {
@@ -278,7 +290,8 @@ fn end(y: &[f64], angle: f64, size: f64) -> Vec<f64> {
     let turned = |x: &[f64; 3]| -> [f64; 3] {
         let along: f64 = (0..3).map(|i| axis[i] * x[i]).sum();
         std::array::from_fn(|i| {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let j = (i + 1) % 3;
+            let k = (i + 2) % 3;
             cos * x[i] + sin * (axis[j] * x[k] - axis[k] * x[j]) + (1.0 - cos) * along * axis[i]
         })
     };
@@ -296,12 +309,14 @@ fn the_discrete_gradient_does_the_work_of_the_gap_without_force_or_moment() {
             let work: f64 = force.iter().zip(end.iter().zip(&y)).map(|(f, (b, a))| f * (b - a)).sum();
             let bound = if size > 0.01 { 1e-13 } else { 1e-9 };
             assert!((work - change).abs() < bound, "{shape:?} {angle} {size}: {work} {change}");
-            let (mut sum, mut moment) = ([0.0; 3], [0.0; 3]);
+            let mut sum = [0.0; 3];
+            let mut moment = [0.0; 3];
             let nodes = y.as_chunks::<3>().0.iter().zip(end.as_chunks::<3>().0);
             for (f, (a, b)) in force.as_chunks::<3>().0.iter().zip(nodes) {
                 let arm: [f64; 3] = std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
                 for i in 0..3 {
-                    let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                    let j = (i + 1) % 3;
+                    let k = (i + 2) % 3;
                     sum[i] += f[i];
                     moment[i] += arm[j] * f[k] - arm[k] * f[j];
                 }

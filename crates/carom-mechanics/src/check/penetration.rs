@@ -5,7 +5,7 @@
 //! A node outside, at a distance d from a body, cannot be inside before the two have moved by d
 //! together. Until then it is not measured; no result depends on when it was.
 
-use carom_contact::{Rows, Side};
+use carom_contact::{InsideItself, Rows, Side};
 use serde::{Deserialize, Serialize};
 
 use crate::check::skins::{BodySkin, folding_skin, kinks, length, part_of, skin};
@@ -202,7 +202,7 @@ impl Penetration {
         if !skin.crosses_itself(y, |_, _| false) {
             return None;
         }
-        let (node, facet, depth) = skin.deepest_in_itself(y)?;
+        let InsideItself { node, facet, depth } = skin.deepest_in_itself(y)?;
         let length = length(model, skin.facet_nodes(facet));
         // Chords do not tell smaller depths from none.
         (depth > CHORDS * length).then_some((

@@ -1,6 +1,6 @@
 //! Boundaries of the bodies of a model, in global node numbers.
 
-use carom_contact::{Boundary, ClosedSurface, Depth, Side, Skin, Surface};
+use carom_contact::{Boundary, ClosedSurface, Depth, InsideItself, Side, Skin, Surface};
 
 use crate::model::{BodyInstance, Model};
 
@@ -78,8 +78,8 @@ impl BodySkin {
         }
     }
 
-    /// The node that lies deepest inside its own body, the nearest facet and the distance to it.
-    pub(crate) fn deepest_in_itself(&self, y: &[f64]) -> Option<(usize, usize, f64)> {
+    /// The node that lies deepest inside its own body, if one does.
+    pub(crate) fn deepest_in_itself(&self, y: &[f64]) -> Option<InsideItself> {
         match self {
             Self::Plane(skin) => skin.deepest_in_itself(y),
             Self::Space(surface) => surface.deepest_in_itself(y),

@@ -47,12 +47,12 @@ impl Tip {
             let Some(part) = first.and_then(|node| part_of(model, *node)) else { continue };
             let tips = of.kinematics.tips(&model.initial_position);
             let boundary: Arc<[usize]> = skin_nodes(&model.parts[part]).into();
-            all.extend(tips.into_iter().enumerate().map(|(number, (at, _))| Self {
+            all.extend(tips.into_iter().enumerate().map(|(number, tip)| Self {
                 contact,
                 number,
                 part,
                 boundary: boundary.clone(),
-                at,
+                at: tip.center,
                 clearance: 0.0,
                 near: None,
             }));
@@ -77,7 +77,7 @@ impl Tip {
         y: &[f64],
     ) -> Option<Pierced> {
         let contact = &model.contacts[self.contact];
-        let (at, radius) = *contact.kinematics.tips(y).get(self.number)?;
+        let carom_contact::Tip { center: at, radius } = *contact.kinematics.tips(y).get(self.number)?;
         let square: f64 = (0..3).map(|i| (at[i] - self.at[i]).powi(2)).sum();
         (self.clearance, self.at) = (self.clearance - square.sqrt(), at);
         if self.clearance > 0.0 {

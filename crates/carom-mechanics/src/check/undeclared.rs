@@ -8,6 +8,8 @@
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
+use carom_contact::InsideItself;
+
 use crate::check::overlapping::Overlap;
 use crate::check::penetration::Penetration;
 use crate::check::skins::{BodySkin, length, part_of, skin, skin_facets};
@@ -52,7 +54,7 @@ struct Own {
 impl Own {
     /// Whether the node that is deepest inside the body lies where no contact keeps it out.
     fn is_inside(&self, model: &Model, y: &[f64]) -> bool {
-        let Some((node, facet, depth)) = self.skin.deepest_in_itself(y) else { return false };
+        let Some(InsideItself { node, facet, depth }) = self.skin.deepest_in_itself(y) else { return false };
         let facet = self.skin.facet_nodes(facet);
         let covers =
             |side: &HashSet<usize>| side.contains(&node) && facet.iter().any(|other| side.contains(other));

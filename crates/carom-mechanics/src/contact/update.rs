@@ -294,8 +294,9 @@ impl<'a> ContactUpdate<'a> {
                     nodes: cycle.pairs.iter().map(|&p| contact.node(&pairs[p])).collect(),
                     regularity: self.regularity,
                 })?;
-            for (p, friction_state) in changes {
-                (pairs[p].tangential.friction_state, changed) = (friction_state, true);
+            for change in changes {
+                pairs[change.pair].tangential.friction_state = change.friction_state;
+                changed = true;
             }
         }
         Ok(changed)

@@ -8,7 +8,10 @@
 
 use std::sync::Arc;
 
-use carom_algebra::{ConjugateGradients, ConstraintRows, DiagonalBlocks, LinearError, NodeMatrix};
+use carom_algebra::{
+    ConjugateGradients, ConstraintPreconditioner, ConstraintRows, DiagonalBlocks, Goal, LinearError,
+    NodeMatrix,
+};
 
 use crate::contact::constraints::Constraints;
 use crate::linear::preconditioner::Preconditioner;
@@ -252,11 +255,10 @@ impl Preconditioner for Iterative {
             let ended = self.method.solve(
                 &model.threads,
                 product,
-                &self.blocks[usize::from(*of_mass)],
-                rows,
+                ConstraintPreconditioner { blocks: &self.blocks[usize::from(*of_mass)], rows },
                 [&self.forces, &self.gaps],
                 [increment, multipliers],
-                (if *of_mass { ROUND_OFF } else { REDUCTION }, MOST),
+                Goal { reduction: if *of_mass { ROUND_OFF } else { REDUCTION }, iterations: MOST },
             );
             self.iterations += ended.iterations as u64;
             if ended.is_indefinite && std::mem::take(curved) {

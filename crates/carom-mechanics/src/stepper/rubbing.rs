@@ -30,7 +30,7 @@ pub(super) fn kind(
     let friction_state =
         if touches { FrictionState::of(rate, AT_REST * max_abs(v)) } else { pair.tangential.friction_state };
     let coefficient =
-        if friction_state == FrictionState::Stick { law.stick } else { law.coefficient(length(rate)).0 };
+        if friction_state == FrictionState::Stick { law.stick } else { law.coefficient(length(rate)).value };
     Kind::Tangential { of, coefficient, limit: law.limit }
 }
 

@@ -304,7 +304,7 @@ impl Closed {
             let rate = length(before[i]);
             let radius = law.slip(pressure, rate);
             let is_limited = law.limit.is_finite() && radius.by_pressure == 0.0;
-            if is_limited { [0.0, radius.value] } else { [law.coefficient(rate).0, 0.0] }
+            if is_limited { [0.0, radius.value] } else { [law.coefficient(rate).value, 0.0] }
         };
         for (i, law) in laws.iter().enumerate() {
             let pressure = -state.pairs[self.places[i].0][self.places[i].1].lambda;
@@ -345,8 +345,9 @@ impl Closed {
                 let rate = [0, 1].map(|a| rates[i][a] - right.slips[i][a]);
                 changed |= way.turn(&motion, i, rate, widest);
             }
-            for &(i, friction_state) in &changes {
-                (ways[i].friction_state, ways[i].turns) = (friction_state, None);
+            for change in &changes {
+                ways[change.pair].friction_state = change.friction_state;
+                ways[change.pair].turns = None;
             }
             if changes.is_empty() && !changed {
                 for ((&(k, p), way), traction) in self.places.iter().zip(&ways).zip(&motion.tangential) {

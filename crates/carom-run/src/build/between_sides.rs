@@ -5,8 +5,8 @@ use std::collections::{HashMap, HashSet};
 
 use carom_case::{self as case, Case, ContactSpec};
 use carom_contact::{
-    BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Kinematics, NodeToFacet, NodeToPatch, Surface,
-    WithEdges,
+    BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Kinematics, NodeToFacet, NodeToPatch,
+    NodesWithDepth, Surface, WithEdges,
 };
 use carom_mechanics::model::BodyInstance;
 
@@ -61,10 +61,9 @@ impl Bodies<'_> {
         if self.case.dimension == 1 || point == ContactPoint::Frozen {
             return Box::new(nodes);
         }
-        let (others, allowed) =
-            self.others(primary, &of_primary[0], secondary, &side.corners(self.reference));
-        let others = NodeToFacet::new(others, opposite, Detection::ClosestPoint);
-        Box::new(BothSides::new(nodes, others.with_allowed(allowed).of_body(side)))
+        let own = self.others(primary, &of_primary[0], secondary, &side.corners(self.reference));
+        let others = NodeToFacet::new(own.nodes, opposite, Detection::ClosestPoint);
+        Box::new(BothSides::new(nodes, others.with_allowed(own.depths).of_body(side)))
     }
 
     fn in_space(&self, k: usize, secondary: &Side, primary: &Side) -> WithEdges {
@@ -73,13 +72,13 @@ impl Bodies<'_> {
         let side = self.boundary(primary, &of_primary.concat());
         let opposite = self.boundary(secondary, &of_secondary.concat());
         let corners = side.nodes_of_sharp_edges(self.reference, self.is_fixed());
-        let (others, allowed) = self.others(primary, &of_primary[0], secondary, &corners);
+        let own = self.others(primary, &of_primary[0], secondary, &corners);
         let earlier =
             [&of_secondary, &of_primary].map(|of| of[0].iter().flat_map(|s| s.nodes.clone()).collect());
         let edges = EdgeToEdge::new([opposite.clone(), side.clone()], &earlier, self.reference);
         let nodes = NodeToPatch::new(without(&secondary.nodes, &of_secondary[0]), side.clone())
             .of_body(opposite.clone());
-        let others = NodeToPatch::new(others, opposite).with_allowed(allowed).of_body(side);
+        let others = NodeToPatch::new(own.nodes, opposite).with_allowed(own.depths).of_body(side);
         WithEdges::new(BothSides::new(nodes, others), edges, primary.facets.len())
     }
 
@@ -112,14 +111,14 @@ impl Bodies<'_> {
         earlier: &[Side],
         secondary: &Side,
         corners: &[usize],
-    ) -> (Vec<usize>, Vec<f64>) {
+    ) -> NodesWithDepth {
         let lengths = lengths(&secondary.facets, self.reference, self.case.dimension);
         let shortest = lengths.map(|(_, length)| length).fold(f64::INFINITY, f64::min);
         let mut nodes = without(&primary.nodes, earlier);
         nodes.sort_unstable();
         let allowed = |node| if corners.contains(node) { 0.0 } else { ALLOWED * shortest };
-        let allowed = nodes.iter().map(allowed).collect();
-        (nodes, allowed)
+        let depths = nodes.iter().map(allowed).collect();
+        NodesWithDepth { nodes, depths }
     }
 
     /// The sides of a body that other contacts have in the place of this one's, with the same

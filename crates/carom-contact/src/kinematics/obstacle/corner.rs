@@ -1,15 +1,15 @@
-//! What becomes of a node in contact that slides past the end of its piece.
+//! Pieces of an obstacle and nodes in contact that slide past their ends.
 
-/// Cosine of the largest turn at a sharp corner across which a node keeps its contact: as for
-/// facets.
+/// Cosine of the largest turn at a sharp corner of an obstacle across which a node keeps its
+/// contact; the same as for facets.
 pub(super) const CORNER_COSINE: f64 = 0.87;
 
-/// What becomes of such a node.
+/// The next piece of a node in contact that slides past the end of its piece of an obstacle.
 pub(in super::super) enum AtCorner {
-    /// It keeps its piece.
+    /// The node keeps its piece.
     Stays,
-    /// It moves to another one.
+    /// The node moves to another piece, given by its number.
     Goes(usize),
-    /// It loses its contact.
+    /// The node loses its contact.
     Leaves,
 }

@@ -20,25 +20,27 @@ use std::sync::Arc;
 use carom_solid::{Bounds, Tree, Triangles};
 
 use super::corner::{AtCorner, CORNER_COSINE};
-use super::near::{Near, Point, around, cross, distance, dot, minus};
+use super::near::{Entry, Near, Point, around, cross, distance, dot, minus};
 use crate::kinematics::space::Feature;
 
-/// Barycentric coordinate below zero by which a point counts as beyond an edge.
+/// Negative barycentric coordinate, in absolute value, from which on a point lies beyond an edge of
+/// a face.
 const BEYOND: f64 = 1e-9;
 
-/// Triangles with their normals and a hierarchy of their boxes.
+/// A rigid triangulated surface: triangles with their normals and a hierarchy of bounding boxes.
 #[derive(Clone, Debug)]
 pub struct Faceted(Arc<Surface>);
 
 #[derive(Debug)]
 struct Surface {
     triangles: Triangles,
-    /// Unit normals of faces; sums of those around edges, weighted with angles around vertices.
+    /// Normals of all pieces: unit normals of faces, their sums at edges, their sums weighted with
+    /// angles at vertices.
     normals: Vec<Point>,
     edges: Vec<Edge>,
-    /// The edges of every face.
+    /// Numbers of the three edges of every face.
     edges_of: Vec<[usize; 3]>,
-    /// A face at every vertex, and whether the vertex is on a rim.
+    /// For every vertex, one of its faces and whether the vertex is on a rim.
     corners: Vec<(usize, bool)>,
     tree: Tree,
 }
@@ -52,7 +54,7 @@ struct Edge {
 }
 
 impl Faceted {
-    /// The surface that triangles make.
+    /// The rigid surface that triangles form.
     pub fn new(triangles: Triangles) -> Self {
         let points = triangles.points();
         let faces = triangles.corners().len();
@@ -62,7 +64,8 @@ impl Faceted {
             unit(cross(minus(b, a), minus(c, a)))
         };
         let mut normals: Vec<Point> = triangles.corners().iter().map(normal).collect();
-        let (mut edges, mut edges_of) = (Vec::new(), vec![[0; 3]; faces]);
+        let mut edges = Vec::new();
+        let mut edges_of = vec![[0; 3]; faces];
         let mut number = HashMap::new();
         let mut of_vertices = vec![[0.0; 3]; points.len()];
         let mut corners = vec![(0, false); points.len()];
@@ -77,7 +80,8 @@ impl Faceted {
                     edges.len() - 1
                 });
                 let c = triangles.edge(face, (edge + 1) % 3)[1];
-                let (out, back) = (minus(points[b], points[a]), minus(points[c], points[a]));
+                let out = minus(points[b], points[a]);
+                let back = minus(points[c], points[a]);
                 let turn = cross(out, back);
                 let angle = dot(turn, turn).sqrt().atan2(dot(out, back));
                 (0..3).for_each(|i| of_vertices[a][i] += angle * normals[face][i]);
@@ -102,13 +106,13 @@ impl Faceted {
         Self(Arc::new(Surface { triangles, normals, edges, edges_of, corners, tree }))
     }
 
-    /// Number of faces, edges and vertices.
+    /// Number of pieces of the surface: faces, edges and vertices.
     pub(in super::super) fn pieces(&self) -> usize {
         self.0.normals.len()
     }
 
-    /// The piece closest to a point, searched from one near it if it is known: a face for a point
-    /// inside.
+    /// The piece of the surface closest to a point, searched from a piece near it if one is known;
+    /// always a face for a point inside.
     pub(in super::super) fn nearest(&self, at: Point, from: Option<usize>) -> usize {
         let from = from.map(|piece| self.0.face(piece));
         let Some((face, _)) = self.0.tree.nearest(&at, from, |face| Some(self.0.closest(face, at).1)) else {
@@ -120,10 +124,11 @@ impl Faceted {
         if away > 0.0 && (outward || is_rim) { piece } else { self.followed(piece, at) }
     }
 
-    /// A piece as a point sees it.
+    /// Signed distance from a piece of the surface to a point, with its derivatives.
     pub(in super::super) fn near(&self, piece: usize, at: Point) -> Option<Near> {
         let Surface { triangles, edges, normals, .. } = &*self.0;
-        let (faces, points) = (triangles.corners(), triangles.points());
+        let faces = triangles.corners();
+        let points = triangles.points();
         if let Some(nodes) = faces.get(piece) {
             let normal = normals[piece];
             return Some(Near::flat(dot(minus(at, points[nodes[0]]), normal), normal));
@@ -134,7 +139,7 @@ impl Faceted {
         }
     }
 
-    /// The face on which a node in contact is measured.
+    /// The face on which the gap of a node in contact with a piece is measured.
     pub(in super::super) fn followed(&self, piece: usize, at: Point) -> usize {
         match piece.checked_sub(self.0.faces()) {
             None => piece,
@@ -142,7 +147,8 @@ impl Faceted {
         }
     }
 
-    /// What becomes of a node in contact with a face at its edges.
+    /// The next piece of a node in contact with a face, which may lie beyond the edges of that
+    /// face.
     pub(in super::super) fn at_corner(&self, face: usize, at: Point) -> AtCorner {
         let surface = &*self.0;
         for edge in 0..3 {
@@ -174,12 +180,13 @@ impl Faceted {
         if here == face { AtCorner::Stays } else { AtCorner::Goes(here) }
     }
 
-    /// θ and the face at which a point entered on a straight path.
-    pub(in super::super) fn entered(&self, before: Point, now: Point) -> Option<(f64, usize)> {
+    /// Where a point on a straight path first enters through a face; of faces at the same instant
+    /// the one with the lowest number.
+    pub(in super::super) fn entered(&self, before: Point, now: Point) -> Option<Entry> {
         let surface = &*self.0;
         let mut path = Bounds::of(&before);
         path.add(&now);
-        let mut first: Option<(f64, usize)> = None;
+        let mut first: Option<Entry> = None;
         for face in surface.tree.meeting(&path) {
             let [from, to] = [before, now].map(|at| surface.height(face, at));
             if from < 0.0 || to >= 0.0 {
@@ -187,10 +194,9 @@ impl Faceted {
             }
             let theta = from / (from - to);
             let at = std::array::from_fn(|i| before[i] + theta * (now[i] - before[i]));
-            let earlier =
-                |(earliest, other): (f64, usize)| theta < earliest || theta == earliest && face < other;
+            let earlier = |first: Entry| theta < first.theta || theta == first.theta && face < first.piece;
             if surface.beyond(face, at).is_none() && first.is_none_or(earlier) {
-                first = Some((theta, face));
+                first = Some(Entry { theta, piece: face });
             }
         }
         first
@@ -202,7 +208,7 @@ impl Surface {
         self.triangles.corners().len()
     }
 
-    /// A face of a piece.
+    /// A face that contains a piece: the face itself, or one at an edge or vertex.
     fn face(&self, piece: usize) -> usize {
         match piece.checked_sub(self.faces()) {
             None => piece,
@@ -211,7 +217,8 @@ impl Surface {
         }
     }
 
-    /// The piece that a feature of a face is, and whether it is on a rim.
+    /// Number of the piece that is the inside, an edge or a corner of a face, and whether it lies
+    /// on a rim.
     fn piece(&self, face: usize, feature: Feature) -> (usize, bool) {
         match feature {
             Feature::Inside => (face, false),
@@ -226,13 +233,13 @@ impl Surface {
         }
     }
 
-    /// Distance from the plane of a face.
+    /// Signed distance of a point from the plane of a face.
     fn height(&self, face: usize, at: Point) -> f64 {
         let start = self.triangles.points()[self.triangles.corners()[face][0]];
         dot(minus(at, start), self.normals[face])
     }
 
-    /// Whether the faces at an edge of a face turn away from its outside.
+    /// Whether the surface is convex at an edge of a face.
     fn is_convex(&self, face: usize, edge: usize) -> bool {
         let Some(next) = self.triangles.across(face, edge) else { return true };
         let ends = self.triangles.edge(face, edge);
@@ -256,8 +263,8 @@ impl Surface {
         (shares[least] < -BEYOND).then_some(least)
     }
 
-    /// Of the faces around an edge, or a vertex after the edges, that which a point behind it sees
-    /// most directly.
+    /// The face that a point behind an edge or a vertex sees most directly, of those that meet
+    /// there; vertices are numbered after edges.
     fn steepest(&self, edge: usize, at: Point) -> usize {
         let order = |a: &usize, b: &usize| self.height(*a, at).total_cmp(&self.height(*b, at)).then(a.cmp(b));
         let faces = if let Some(edge) = self.edges.get(edge) {
@@ -273,7 +280,8 @@ impl Surface {
     /// (Ericson, Real-Time Collision Detection, §5.1.5).
     fn closest(&self, face: usize, at: Point) -> (Feature, f64, Point) {
         let [a, b, c] = self.triangles.corners()[face].map(|node| self.triangles.points()[node]);
-        let (ab, ac) = (minus(b, a), minus(c, a));
+        let ab = minus(b, a);
+        let ac = minus(c, a);
         let on = |from: Point, along: Point, share: f64| -> Point {
             std::array::from_fn(|i| from[i] + share * along[i])
         };

@@ -20,36 +20,39 @@ mod polyline;
 
 pub(super) use corner::AtCorner;
 pub use faceted::Faceted;
+use near::Entry;
+pub use near::Tip;
 pub(super) use near::{Near, Point, dot};
+pub(super) use path::Through;
 pub use polyline::{Polyline, PolylineError};
 
 use super::zero;
 use near::{across, around, minus};
 
-/// A rigid shape. All its data are in the coordinates of the body that carries it.
+/// Shape of a rigid obstacle, in the coordinates of the body that carries it.
 #[derive(Clone, Debug)]
 pub enum Obstacle {
     /// A half-space, in any dimension.
     Plane {
-        /// A point of its boundary.
+        /// A point of the bounding plane.
         point: [f64; 3],
-        /// Unit normal out of the rigid side.
+        /// Unit normal of the bounding plane, out of the rigid half-space.
         normal: [f64; 3],
     },
     /// A circle; in space a sphere or a cylinder.
     Circle {
-        /// Its centre, or a point of its axis.
+        /// Centre of the circle or sphere; a point on the axis of a cylinder.
         center: [f64; 3],
         /// The axis of a cylinder, of length one; zero for a circle or a sphere.
         axis: [f64; 3],
-        /// Its radius, > 0.
+        /// Radius > 0 of the circle, sphere or cylinder.
         radius: f64,
-        /// Whether bodies are inside it.
+        /// Whether bodies are inside the circle, sphere or cylinder.
         inside: bool,
     },
     /// A chain of segments and arcs in the plane.
     Polyline(Polyline),
-    /// Triangles in space.
+    /// A triangulated surface in space.
     Faceted(Faceted),
 }
 
@@ -70,7 +73,7 @@ impl Obstacle {
         Self::Circle { center: padded(point), axis: unit(axis), radius, inside }
     }
 
-    /// Number of pieces of the surface.
+    /// Number of pieces of the surface of the obstacle.
     pub(crate) fn pieces(&self) -> usize {
         match self {
             Self::Polyline(line) => line.pieces(),
@@ -79,17 +82,19 @@ impl Obstacle {
         }
     }
 
-    /// Its convex round parts, as centres and radii: what can lie between the nodes of a body.
-    pub(crate) fn tips(&self) -> Vec<(Point, f64)> {
+    /// The convex round parts of the obstacle, which can lie between the nodes of a body.
+    pub(crate) fn tips(&self) -> Vec<Tip> {
         match self {
-            Self::Circle { center, radius, inside: false, .. } => vec![(*center, *radius)],
+            Self::Circle { center, radius, inside: false, .. } => {
+                vec![Tip { center: *center, radius: *radius }]
+            }
             Self::Polyline(line) => line.tips().collect(),
             _ => Vec::new(),
         }
     }
 
-    /// The piece of the surface that is closest to a point, searched from one near it if it is
-    /// known.
+    /// The piece of the obstacle that is closest to a point, searched from a piece near it if one
+    /// is known.
     pub(crate) fn nearest(&self, at: Point, from: Option<usize>) -> usize {
         match self {
             Self::Polyline(line) => line.nearest(at),
@@ -98,8 +103,8 @@ impl Obstacle {
         }
     }
 
-    /// θ and the piece at which a point entered on a straight path, of several pieces.
-    pub(super) fn entered(&self, before: Point, now: Point) -> Option<(f64, usize)> {
+    /// Where a point on a straight path enters a polyline or a triangulated surface, if it does.
+    pub(super) fn entered(&self, before: Point, now: Point) -> Option<Entry> {
         match self {
             Self::Polyline(line) => line.entered(before, now),
             Self::Faceted(surface) => surface.entered(before, now),
@@ -107,7 +112,7 @@ impl Obstacle {
         }
     }
 
-    /// The piece on which a node in contact with a piece is measured.
+    /// The piece of the obstacle on which the gap of a node in contact with a piece is measured.
     pub(super) fn followed(&self, piece: usize, at: Point) -> usize {
         match self {
             Self::Polyline(line) => line.followed(piece, at),
@@ -116,7 +121,8 @@ impl Obstacle {
         }
     }
 
-    /// What becomes of a node in contact at the end of its piece.
+    /// The next piece of a node in contact, which may have slid past the end of its piece of the
+    /// obstacle.
     pub(super) fn at_corner(&self, piece: usize, at: Point) -> AtCorner {
         match self {
             Self::Polyline(line) => line.at_corner(piece, at),
@@ -125,11 +131,12 @@ impl Obstacle {
         }
     }
 
-    /// The first θ at which a point on a straight path from `before` to `now` meets the surface;
-    /// none if it is outside at the end.
+    /// First instant θ at which a point on a straight path from `before`, θ = 0, to `now`, θ = 1,
+    /// meets the obstacle; none if it is outside at the end.
     pub(crate) fn met(&self, before: Point, now: Point) -> Option<f64> {
         let [from, to] = [before, now].map(|at| self.near(self.nearest(at, None), at));
-        let (from, to) = (from?.gap, to?.gap);
+        let from = from?.gap;
+        let to = to?.gap;
         let linear = zero(from, to)?;
         match self {
             _ if from <= 0.0 => Some(0.0),
@@ -137,16 +144,19 @@ impl Obstacle {
             Self::Circle { center, axis, radius, inside } => {
                 // |b + θ d|² = r²: into a circle at the earlier root, out of it at the later one.
                 let [arm, path] = [[before, *center], [now, before]].map(|[a, b]| across(minus(a, b), *axis));
-                let (a, b, c) = (dot(path, path), dot(arm, path), dot(arm, arm) - radius * radius);
+                let a = dot(path, path);
+                let b = dot(arm, path);
+                let c = dot(arm, arm) - radius * radius;
                 let root = (b * b - a * c).max(0.0).sqrt();
                 Some((-b + if *inside { root } else { -root }) / a)
             }
-            Self::Polyline(_) | Self::Faceted(_) => self.entered(before, now).map(|(theta, _)| theta),
+            Self::Polyline(_) | Self::Faceted(_) => self.entered(before, now).map(|entry| entry.theta),
         }
     }
 
-    /// A piece of the surface as a point sees it; none from the centre of a circle, where every
-    /// direction is the same, if the point has to leave it.
+    /// Signed distance from a piece of the obstacle to a point, with its derivatives; none at the
+    /// centre of a circle or sphere that the point has to leave, where no direction is
+    /// distinguished.
     pub(crate) fn near(&self, piece: usize, at: Point) -> Option<Near> {
         match self {
             Self::Plane { point, normal } => {
@@ -162,7 +172,7 @@ impl Obstacle {
     }
 }
 
-/// A vector over its length.
+/// A vector scaled to length one.
 fn unit(x: &[f64]) -> Point {
     let length = x.iter().map(|x| x * x).sum::<f64>().sqrt();
     padded(x).map(|x| x * length.recip())

@@ -3,34 +3,53 @@
 /// A point of up to three components; unused ones are zero.
 pub(crate) type Point = [f64; 3];
 
-/// The surface as a point sees it.
+/// Signed distance from a piece of an obstacle to a point, with its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Near {
     /// Signed distance g.
     pub(crate) gap: f64,
-    /// ∇g, of unit length.
+    /// Gradient ∇g of the distance, of length one.
     pub(crate) normal: Point,
-    /// h of ∇²g = h (1 − n nᵀ − a aᵀ).
+    /// Curvature h in the second derivative ∇²g = h (1 − n nᵀ − a aᵀ) of the distance.
     pub(crate) bend: f64,
-    /// a, a direction across n in which the surface is straight; zero: there is none.
+    /// Direction a, perpendicular to the normal, in which the surface is straight; zero if there is
+    /// none.
     pub(crate) straight: Point,
 }
 
+/// A convex round part of a rigid obstacle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tip {
+    /// Centre of the circle or sphere.
+    pub center: [f64; 3],
+    /// Radius ≥ 0.
+    pub radius: f64,
+}
+
+/// Where a point on a straight path enters an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Entry {
+    /// Share of the path before the entry, 0 … 1.
+    pub(crate) theta: f64,
+    /// The piece of the surface that is crossed.
+    pub(crate) piece: usize,
+}
+
 impl Near {
-    /// A straight piece.
+    /// Distance from a plane piece.
     pub(crate) fn flat(gap: f64, normal: Point) -> Self {
         Self { gap, normal, bend: 0.0, straight: [0.0; 3] }
     }
 
-    /// ∇²g v of a vector across n.
+    /// Product ∇²g v of the second derivative with a vector v perpendicular to the normal.
     pub(crate) fn bent(&self, v: Point) -> Point {
         let along = dot(self.straight, v);
         std::array::from_fn(|i| self.bend * (v[i] - along * self.straight[i]))
     }
 }
 
-/// A circle around the origin, or a line through it along a direction of length one, seen from
-/// outside (`side` = 1) or inside (−1).
+/// Distance from a circle or sphere around the origin, or from a cylinder around an axis of length
+/// one through it, to the point `arm`, seen from outside (`side` = 1) or inside (−1).
 pub(crate) fn around(arm: Point, axis: Point, radius: f64, side: f64) -> Option<Near> {
     let arm = across(arm, axis);
     let length = dot(arm, arm).sqrt();
@@ -50,7 +69,7 @@ pub(crate) fn around(arm: Point, axis: Point, radius: f64, side: f64) -> Option<
     (gap > 0.0).then_some(Near { straight: axis, ..Near::flat(gap, normal.map(|n| n / length)) })
 }
 
-/// v without its part along a direction of length one, or zero.
+/// Part of v perpendicular to a direction of length one; v itself for the zero direction.
 pub(crate) fn across(v: Point, axis: Point) -> Point {
     let along = dot(v, axis);
     std::array::from_fn(|i| v[i] - along * axis[i])

@@ -5,22 +5,26 @@ use carom_algebra::Vector;
 use super::Obstacle;
 use super::near::{Near, Point, distance};
 
-/// Smallest part of a path between two points at which the distance is taken.
+/// Smallest step, relative to the length of a path, between two points at which the distance is
+/// evaluated.
 const SHORTEST: f64 = 1.0 / 1024.0;
 
+/// A straight path of a point through an obstacle.
+pub(in super::super) struct Through {
+    /// Largest depth on the path.
+    pub(in super::super) depth: f64,
+    /// Normals of the obstacle where the point enters and where it leaves.
+    pub(in super::super) normals: [Vector<3>; 2],
+}
+
 impl Obstacle {
-    /// The largest depth on the way between two points that are no deeper than `limit`, if it is
-    /// deeper, and the normals where the point enters and leaves.
+    /// The largest depth on a straight path between two points that are no deeper than `limit`,
+    /// with the normals where the point enters and leaves; none if it is not deeper than `limit`.
     ///
-    /// At a distance s the signed distance is less by s at most: where it is g, a greater depth
-    /// than the largest so far is not nearer than g plus that. No depth is missed by more than the
-    /// shortest step, the limit or 1/1024 of the path.
-    pub(in super::super) fn deepest_between(
-        &self,
-        from: Point,
-        to: Point,
-        limit: f64,
-    ) -> Option<(f64, [Vector<3>; 2])> {
+    /// The signed distance changes by at most s over a path of length s: from a point where it is
+    /// g, no depth greater than the largest so far is nearer than g plus that depth. No depth is
+    /// missed by more than the shortest step, the limit or 1/1024 of the path.
+    pub(in super::super) fn deepest_between(&self, from: Point, to: Point, limit: f64) -> Option<Through> {
         let seen = |at: Point| self.near(self.nearest(at, None), at);
         let [start, end] = [from, to].map(|at| seen(at).map_or(f64::NEG_INFINITY, |near| near.gap));
         let length = distance(from, to);
@@ -29,7 +33,8 @@ impl Obstacle {
             return None;
         }
         let shortest = limit.max(SHORTEST * length);
-        let (mut done, mut deepest) = (0.0, limit);
+        let mut done = 0.0;
+        let mut deepest = limit;
         let mut normals: Option<[Vector<3>; 2]> = None;
         while done < length {
             let at = std::array::from_fn(|i| from[i] + done / length * (to[i] - from[i]));
@@ -45,6 +50,6 @@ impl Obstacle {
             deepest = f64::max(deepest, -gap);
             done += (gap + deepest).max(shortest);
         }
-        normals.filter(|_| deepest > limit).map(|normals| (deepest, normals))
+        normals.filter(|_| deepest > limit).map(|normals| Through { depth: deepest, normals })
     }
 }

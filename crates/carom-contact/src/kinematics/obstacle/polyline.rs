@@ -13,9 +13,9 @@
 //! The first and last segment of an open chain continue to infinity.
 
 use super::corner::{AtCorner, CORNER_COSINE};
-use super::near::{Near, Point, around, distance};
+use super::near::{Entry, Near, Point, Tip, around, distance};
 
-/// A piece of the chain.
+/// A piece of a polyline.
 #[derive(Clone, Copy, Debug)]
 enum Piece {
     Segment { start: Point, tangent: Point, normal: Point, length: f64, ends: [bool; 2] },
@@ -25,12 +25,12 @@ enum Piece {
 /// A polyline as a rigid surface.
 #[derive(Clone, Debug)]
 pub struct Polyline {
-    /// Segments and corners in turn.
+    /// Segments and corners of the polyline, alternately.
     pieces: Vec<Piece>,
     closed: bool,
 }
 
-/// Why points do not make a polyline; points are numbered from 1.
+/// Why points do not form a polyline; points are numbered from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PolylineError {
     /// Fewer than two points.
@@ -49,11 +49,11 @@ pub enum PolylineError {
     TooRound {
         /// First point of the segment.
         first: usize,
-        /// Its second point.
+        /// Second point of the segment.
         second: usize,
-        /// r tan(φ/2), summed over its ends.
+        /// Length that the arcs remove from the segment, r tan(φ/2) summed over both ends.
         taken: f64,
-        /// Its length.
+        /// Length of the segment.
         length: f64,
     },
 }
@@ -77,14 +77,16 @@ impl Polyline {
             if length <= 0.0 {
                 return Err(PolylineError::Coincident(k + 1, k + 2));
             }
-            let (a, b) = (point(k), point(k + 1));
+            let a = point(k);
+            let b = point(k + 1);
             tangents.push(([(b[0] - a[0]) / length, (b[1] - a[1]) / length, 0.0], length));
         }
         let segments = tangents.len();
         // What the corner before each segment removes from it.
         let mut removed = vec![0.0; segments + 1];
         for k in usize::from(!closed)..segments {
-            let (before, after) = (tangents[(k + segments - 1) % segments].0, tangents[k].0);
+            let before = tangents[(k + segments - 1) % segments].0;
+            let after = tangents[k].0;
             let cosine = dot(before, after);
             if 1.0 + cosine < 1e-9 {
                 return Err(PolylineError::TurnsBack(k + 1));
@@ -118,20 +120,22 @@ impl Polyline {
         Ok(Self { pieces, closed })
     }
 
-    /// Centres and radii of its convex corners.
-    pub(crate) fn tips(&self) -> impl Iterator<Item = (Point, f64)> + '_ {
+    /// The convex corners of the polyline.
+    pub(crate) fn tips(&self) -> impl Iterator<Item = Tip> + '_ {
         self.pieces.iter().filter_map(|piece| match piece {
-            Piece::Corner { center, radius, side, .. } if *side > 0.0 => Some((*center, *radius)),
+            Piece::Corner { center, radius, side, .. } if *side > 0.0 => {
+                Some(Tip { center: *center, radius: *radius })
+            }
             _ => None,
         })
     }
 
-    /// Number of segments and corners.
+    /// Number of pieces of the polyline: segments and corners.
     pub(in super::super) fn pieces(&self) -> usize {
         self.pieces.len()
     }
 
-    /// The neighbour of a piece, if there is one.
+    /// The next or previous piece of a polyline, if there is one.
     fn neighbour(&self, piece: usize, forward: bool) -> Option<usize> {
         let count = self.pieces.len();
         match (forward, self.closed) {
@@ -142,7 +146,7 @@ impl Polyline {
         }
     }
 
-    /// Whether a piece is the closest one of its line or circle to a point.
+    /// Whether the point of a piece's line or circle that is closest to a point lies on the piece.
     fn faces(&self, piece: usize, at: Point) -> bool {
         match &self.pieces[piece] {
             Piece::Segment { start, tangent, length, ends, .. } => {
@@ -158,7 +162,7 @@ impl Polyline {
         }
     }
 
-    /// The piece closest to a point; the first one if there are several.
+    /// The piece of the polyline closest to a point; the first one if there are several.
     pub(in super::super) fn nearest(&self, at: Point) -> usize {
         let facing = (0..self.pieces.len()).filter(|&piece| self.faces(piece, at));
         let distance = |piece: usize| self.near(piece, at).map_or(f64::INFINITY, |near| near.gap.abs());
@@ -167,7 +171,7 @@ impl Polyline {
         facing.min_by(|a, b| order(a).0.total_cmp(&order(b).0).then(order(a).1.cmp(&order(b).1))).unwrap_or(0)
     }
 
-    /// A piece as a point sees it.
+    /// Signed distance from a piece of the polyline to a point, with its derivatives.
     pub(in super::super) fn near(&self, piece: usize, at: Point) -> Option<Near> {
         match self.pieces[piece] {
             Piece::Segment { start, normal, .. } => Some(Near::flat(dot(minus(at, start), normal), normal)),
@@ -183,7 +187,7 @@ impl Polyline {
         matches!(self.pieces[piece], Piece::Corner { radius: 0.0, .. })
     }
 
-    /// The neighbour on whose side of a piece a point lies.
+    /// The neighbouring piece past whose common end with a piece a point lies, if any.
     fn beyond(&self, piece: usize, at: Point) -> Option<usize> {
         match &self.pieces[piece] {
             _ if self.faces(piece, at) => None,
@@ -197,8 +201,9 @@ impl Polyline {
         }
     }
 
-    /// The piece on which a node in contact is measured: it slides through rounded corners, and
-    /// past a sharp one on the line of its segment, since a vertex has no normal.
+    /// The piece of the polyline on which the gap of a node in contact is measured: the node slides
+    /// through rounded corners, and past a sharp one on the line of its segment, since a vertex has
+    /// no normal.
     pub(in super::super) fn followed(&self, mut piece: usize, at: Point) -> usize {
         for _ in 0..self.pieces.len() {
             let Some(next) = self.beyond(piece, at) else { break };
@@ -215,17 +220,14 @@ impl Polyline {
         piece
     }
 
-    /// What becomes of a node in contact at a sharp corner.
+    /// The next piece of a node in contact with a segment, which may lie past a sharp corner.
     pub(in super::super) fn at_corner(&self, piece: usize, at: Point) -> AtCorner {
         let Piece::Segment { tangent, .. } = self.pieces[piece] else { return AtCorner::Stays };
         for forward in [true, false] {
             let Some(corner) = self.neighbour(piece, forward).filter(|&c| self.is_sharp(c)) else { continue };
             let Some(next) = self.neighbour(corner, forward) else { continue };
-            let (Piece::Corner { side, .. }, Piece::Segment { tangent: other, .. }) =
-                (self.pieces[corner], self.pieces[next])
-            else {
-                continue;
-            };
+            let Piece::Corner { side, .. } = self.pieces[corner] else { continue };
+            let Piece::Segment { tangent: other, .. } = self.pieces[next] else { continue };
             let past = self.beyond(piece, at) == Some(corner);
             if side < 0.0 {
                 // In a concave corner the deeper wall constrains it.
@@ -244,15 +246,16 @@ impl Polyline {
         AtCorner::Stays
     }
 
-    /// θ and the piece at which a point entered on a straight path.
-    pub(in super::super) fn entered(&self, before: Point, now: Point) -> Option<(f64, usize)> {
+    /// Where a point on a straight path first enters through a segment or an arc.
+    pub(in super::super) fn entered(&self, before: Point, now: Point) -> Option<Entry> {
         let path = minus(now, before);
         let at = |theta: f64| plus(before, theta, path);
-        let mut first: Option<(f64, usize)> = None;
+        let mut first: Option<Entry> = None;
         for piece in 0..self.pieces.len() {
             let theta = match self.pieces[piece] {
                 Piece::Segment { .. } => {
-                    let (from, to) = (self.gap(piece, before), self.gap(piece, now));
+                    let from = self.gap(piece, before);
+                    let to = self.gap(piece, now);
                     if from < 0.0 || to >= 0.0 {
                         continue;
                     }
@@ -262,7 +265,9 @@ impl Polyline {
                 Piece::Corner { center, radius, side, .. } => {
                     // |b + θ d|² = r²: outwards the later root, inwards the earlier one.
                     let arm = minus(before, center);
-                    let (a, b, c) = (dot(path, path), dot(arm, path), dot(arm, arm) - radius * radius);
+                    let a = dot(path, path);
+                    let b = dot(arm, path);
+                    let c = dot(arm, arm) - radius * radius;
                     let root = b * b - a * c;
                     if root < 0.0 || a == 0.0 {
                         continue;
@@ -272,9 +277,9 @@ impl Polyline {
             };
             if (0.0..=1.0).contains(&theta)
                 && self.faces(piece, at(theta))
-                && first.is_none_or(|(earliest, _)| theta < earliest)
+                && first.is_none_or(|first| theta < first.theta)
             {
-                first = Some((theta, piece));
+                first = Some(Entry { theta, piece });
             }
         }
         first

@@ -12,32 +12,56 @@ use carom_algebra::Vector;
 use carom_solid::FacetShape;
 
 use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
-use crate::kinematics::{Depth, Facets};
+use crate::kinematics::{Depth, Facets, OnFacet};
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
 pub(super) const SHARP: f64 = 0.87;
-/// Component of a unit normal along an axis from which on a facet is a plane across it.
+/// Component of a unit normal along an axis above which a facet is perpendicular to that axis.
 const ALONG: f64 = 1.0 - 1e-9;
-/// Length of the sum of two normals, or of several with their angles, below which they cancel: at
-/// the tip of a slit.
+/// Length of a sum of unit normals, or of normals weighted with angles, below which they cancel, as
+/// at the tip of a slit.
 const FOLDED: f64 = 1e-6;
-/// Pieces into which points divide a sharp edge.
+/// Number of pieces into which points between its ends divide a sharp edge.
 const PIECES: usize = 8;
 
-/// Facets of a side, all of one shape, which may be followed by the rest of the body's boundary.
+/// The facets of a side in space, all of one shape, which may be followed by the rest of the
+/// boundary of its body.
 #[derive(Clone, Debug)]
 pub struct Boundary {
     shape: FacetShape,
     nodes: Vec<usize>,
-    /// Across each edge: the facet there, and the number of the edge on it.
-    neighbours: Vec<[Option<(usize, usize)>; 4]>,
-    /// Facets at each node of an edge.
+    /// Across each edge of each facet: the same edge as one of the neighbouring facet.
+    neighbours: Vec<[Option<EdgeOfFacet>; 4]>,
+    /// Facets that meet at each node that lies on an edge.
     around: HashMap<usize, Vec<usize>>,
-    /// Around each facet.
+    /// Facets that share a corner with each facet, without itself, ascending.
     rings: Vec<Vec<usize>>,
     side: usize,
     siblings: usize,
     is_whole: bool,
+}
+
+/// An edge of a facet; edge k runs from corner k to the next one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EdgeOfFacet {
+    pub(crate) facet: usize,
+    pub(crate) edge: usize,
+}
+
+/// A point relative to the nearest point of a facet.
+pub(super) struct Height {
+    /// Distance of the point from the nearest point of the facet.
+    pub(super) distance: f64,
+    /// Component of the offset along the normal of the boundary; zero at the tip of a slit.
+    pub(super) height: f64,
+}
+
+/// A point as seen from the nearest point of a facet.
+struct Offset {
+    /// Vector from the nearest point to the given one.
+    vector: Vector<3>,
+    /// Normal of the boundary at the nearest point, not of length one.
+    normal: Vector<3>,
 }
 
 impl Boundary {
@@ -47,11 +71,11 @@ impl Boundary {
     pub fn new(shape: FacetShape, side: &[Vec<usize>], rest: &[Vec<usize>], siblings: usize) -> Self {
         let facets: Vec<&Vec<usize>> = side.iter().chain(rest).collect();
         let count = shape.corners();
-        let mut edges: HashMap<(usize, usize), (usize, usize)> = HashMap::new();
+        let mut edges: HashMap<[usize; 2], EdgeOfFacet> = HashMap::new();
         let mut around: HashMap<usize, Vec<usize>> = HashMap::new();
         for (facet, nodes) in facets.iter().enumerate() {
-            for e in 0..count {
-                edges.insert((nodes[e], nodes[(e + 1) % count]), (facet, e));
+            for edge in 0..count {
+                edges.insert([nodes[edge], nodes[(edge + 1) % count]], EdgeOfFacet { facet, edge });
             }
             for &node in &nodes[..count * shape.degree()] {
                 around.entry(node).or_default().push(facet);
@@ -59,10 +83,10 @@ impl Boundary {
         }
         let neighbours = |nodes: &&Vec<usize>| {
             std::array::from_fn(|e| {
-                if e < count { edges.get(&(nodes[(e + 1) % count], nodes[e])).copied() } else { None }
+                if e < count { edges.get(&[nodes[(e + 1) % count], nodes[e]]).copied() } else { None }
             })
         };
-        let neighbours: Vec<[Option<(usize, usize)>; 4]> = facets.iter().map(neighbours).collect();
+        let neighbours: Vec<[Option<EdgeOfFacet>; 4]> = facets.iter().map(neighbours).collect();
         let ring = |(facet, nodes): (usize, &&Vec<usize>)| {
             let around = nodes[..count].iter().flat_map(|corner| &around[corner]);
             let mut ring: Vec<usize> = around.copied().filter(|&other| other != facet).collect();
@@ -88,7 +112,7 @@ impl Boundary {
         self.side
     }
 
-    /// Whether the rest of the body's boundary is known, or there is none.
+    /// Whether the facets form a closed surface: the whole boundary of the body is known.
     pub(crate) fn is_whole(&self) -> bool {
         self.is_whole
     }
@@ -101,53 +125,55 @@ impl Boundary {
         (self.side..self.siblings).contains(&facet)
     }
 
-    /// A facet.
+    /// A facet of the boundary.
     pub(crate) fn patch(&self, facet: usize) -> Patch<'_> {
         Patch { shape: self.shape, nodes: self.nodes_of(facet) }
     }
 
-    /// The smallest length of a facet.
+    /// Length of the shortest facet.
     pub(super) fn shortest(&self, y: &[f64]) -> f64 {
         (0..self.all()).map(|facet| self.length(facet, y)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The middle of a facet.
+    /// Position and normal in the middle of a facet.
     pub(super) fn middle(&self, facet: usize, y: &[f64]) -> PatchPoint {
         let patch = self.patch(facet);
         patch.at(y, if patch.corners() == 3 { [1.0 / 3.0; 2] } else { [0.0; 2] })
     }
 
-    /// Facets of the side with a node on their edges, with its ξ there.
-    pub(crate) fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
+    /// The facets of the side on whose edges a node lies, with its coordinates on them.
+    pub(crate) fn facets_at(&self, node: usize) -> Vec<OnFacet<[f64; 2]>> {
         let around = self.around.get(&node).into_iter().flatten().filter(|&&facet| self.is_of_side(facet));
         let at = |&facet: &usize| {
             let patch = self.patch(facet);
-            let (count, degree) = (patch.corners(), self.shape.degree());
+            let count = patch.corners();
+            let degree = self.shape.degree();
             let place = patch.nodes[..count * degree].iter().position(|&n| n == node)?;
             // Behind the corners come the inner nodes of edge after edge.
             let xi = match place.checked_sub(count) {
                 None => patch.corner(place),
                 Some(inner) => {
-                    let (edge, k) = (inner / (degree - 1), inner % (degree - 1));
+                    let edge = inner / (degree - 1);
+                    let k = inner % (degree - 1);
                     patch.along(edge, (k + 1) as f64 / degree as f64)
                 }
             };
-            Some((facet, xi))
+            Some(OnFacet { facet, xi })
         };
         around.filter_map(at).collect()
     }
 
-    /// The facet across an edge.
+    /// The facet across an edge of a facet, if there is one.
     pub(crate) fn across(&self, facet: usize, edge: usize) -> Option<usize> {
-        self.neighbours[facet][edge].map(|(neighbour, _)| neighbour)
+        self.neighbours[facet][edge].map(|neighbour| neighbour.facet)
     }
 
-    /// The facets at a node of an edge.
+    /// The facets that meet at a node on an edge.
     pub(super) fn facets_around(&self, node: usize) -> &[usize] {
         self.around.get(&node).map_or(&[], Vec::as_slice)
     }
 
-    /// The facets at a corner of a facet.
+    /// The facets that meet at a corner of a facet, with itself.
     pub(super) fn around(&self, facet: usize, corner: usize) -> &[usize] {
         self.facets_around(self.patch(facet).nodes[corner])
     }
@@ -157,18 +183,19 @@ impl Boundary {
         &self.rings[facet]
     }
 
-    /// Outward normals on both sides of an edge, at s from its first corner.
+    /// Outward normals on both sides of an edge of a facet, at the share s of its length from its
+    /// first corner.
     pub(crate) fn normals_at_edge(&self, facet: usize, edge: usize, s: f64, y: &[f64]) -> [Vector<3>; 2] {
         let own = self.patch(facet);
         let here = own.at(y, own.along(edge, s)).normal;
-        let there = self.neighbours[facet][edge].map(|(neighbour, other)| {
-            let patch = self.patch(neighbour);
-            patch.at(y, patch.along(other, 1.0 - s)).normal
+        let there = self.neighbours[facet][edge].map(|neighbour| {
+            let patch = self.patch(neighbour.facet);
+            patch.at(y, patch.along(neighbour.edge, 1.0 - s)).normal
         });
         [here, there.unwrap_or(here)]
     }
 
-    /// Whether an edge is convex with a kink of more than 30°.
+    /// Whether an edge of a facet is sharp: convex, with a kink of more than 30°.
     pub(crate) fn is_sharp(&self, facet: usize, edge: usize, y: &[f64]) -> bool {
         let [here, there] = self.normals_at_edge(facet, edge, 0.5, y);
         let nodes = self.patch(facet).nodes;
@@ -210,7 +237,7 @@ impl Boundary {
     /// between the side and a plane of symmetry: the mirror image continues the side there. Such
     /// nodes are fixed across the plane, `is_fixed(node, axis)`, and free along it.
     pub fn nodes_of_sharp_edges(&self, y: &[f64], is_fixed: impl Fn(usize, usize) -> bool) -> Vec<usize> {
-        let of_edge = |(facet, edge): (usize, usize)| {
+        let of_edge = |EdgeOfFacet { facet, edge }: EdgeOfFacet| {
             let (nodes, count) = self.shape.edge(edge);
             let nodes = nodes[..count].iter().map(|&node| self.patch(facet).nodes[node]);
             let nodes: Vec<usize> = nodes.collect();
@@ -232,19 +259,22 @@ impl Boundary {
         nodes
     }
 
-    /// The side's sharp convex edges, as facets with the numbers of their edges: each from one of
-    /// its facets.
-    pub(crate) fn sharp_edges(&self, y: &[f64]) -> Vec<(usize, usize)> {
+    /// The sharp convex edges of the side, each once, as an edge of the first facet that contains
+    /// it.
+    pub(crate) fn sharp_edges(&self, y: &[f64]) -> Vec<EdgeOfFacet> {
         let count = self.shape.corners();
-        let all = (0..self.side).flat_map(|facet| (0..count).map(move |edge| (facet, edge)));
+        let all = (0..self.side).flat_map(|facet| (0..count).map(move |edge| EdgeOfFacet { facet, edge }));
         let is_first = |facet: usize, edge: usize| self.across(facet, edge).is_none_or(|other| facet < other);
-        all.filter(|&(facet, edge)| is_first(facet, edge) && self.is_sharp(facet, edge, y)).collect()
+        let is_sharp = |&EdgeOfFacet { facet, edge }: &EdgeOfFacet| {
+            is_first(facet, edge) && self.is_sharp(facet, edge, y)
+        };
+        all.filter(is_sharp).collect()
     }
 
     /// Points between the ends of the side's sharp convex edges, each as nodes with weights.
     pub fn points_of_sharp_edges(&self, y: &[f64]) -> Vec<Vec<(usize, f64)>> {
         let mut points = Vec::new();
-        for (facet, edge) in self.sharp_edges(y) {
+        for EdgeOfFacet { facet, edge } in self.sharp_edges(y) {
             let patch = self.patch(facet);
             for k in 1..PIECES {
                 let values =
@@ -256,29 +286,28 @@ impl Boundary {
         points
     }
 
-    /// Where a point lies whose nearest facet, and the nearest point of that, are known.
+    /// Position relative to the boundary of a point whose nearest facet, and the nearest point of
+    /// that facet, are known.
     pub(super) fn depth_from(&self, facet: usize, nearest: Nearest, point: Vector<3>, y: &[f64]) -> Depth {
-        let (d, normal) = self.way(facet, nearest, point, y);
-        let distance = if d.dot(&normal) >= 0.0 { nearest.distance } else { -nearest.distance };
+        let Offset { vector, normal } = self.offset(facet, nearest, point, y);
+        let distance = if vector.dot(&normal) >= 0.0 { nearest.distance } else { -nearest.distance };
         Depth { distance, facet, xi: nearest.xi }
     }
 
-    /// Distance between a point and a facet, and its height along the normal of the boundary at the
-    /// nearest point.
-    pub(super) fn height(&self, facet: usize, point: Vector<3>, y: &[f64]) -> (f64, f64) {
+    /// Height of a point over the boundary at the nearest point of a facet.
+    pub(super) fn height(&self, facet: usize, point: Vector<3>, y: &[f64]) -> Height {
         let nearest = self.patch(facet).nearest(y, point);
-        let (d, normal) = self.way(facet, nearest, point, y);
+        let Offset { vector, normal } = self.offset(facet, nearest, point, y);
         let size = normal.norm();
         // Where two normals are opposite, none points outwards.
-        (nearest.distance, if size > FOLDED { d.dot(&normal) / size } else { 0.0 })
+        let height = if size > FOLDED { vector.dot(&normal) / size } else { 0.0 };
+        Height { distance: nearest.distance, height }
     }
 
-    /// The way from the nearest point of a facet to a given one, and the normal of the boundary
-    /// there, not of length one.
-    fn way(&self, facet: usize, nearest: Nearest, point: Vector<3>, y: &[f64]) -> (Vector<3>, Vector<3>) {
+    /// The offset of a point from the nearest point of a facet.
+    fn offset(&self, facet: usize, nearest: Nearest, point: Vector<3>, y: &[f64]) -> Offset {
         let patch = self.patch(facet);
         let at = patch.at(y, nearest.xi);
-        let d = point - at.position;
         let normal = match nearest.at {
             Feature::Inside => at.normal,
             Feature::Edge(edge) => {
@@ -292,7 +321,7 @@ impl Boundary {
             }
             Feature::Corner(corner) => self.normal_at_corner(patch.nodes[corner], y),
         };
-        (d, normal)
+        Offset { vector: point - at.position, normal }
     }
 
     /// Sum of the normals at a corner, weighted with the facets' angles.

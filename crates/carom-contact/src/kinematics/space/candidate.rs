@@ -6,128 +6,151 @@ use super::node_to_patch::{NodeToPatch, PAST, REACH};
 use super::patch::place;
 use super::paths::{NOISE, Paths, path};
 use crate::kinematics::candidate::AROUND;
-use crate::kinematics::{Kinematics, OneWay, SweptPatch};
+use crate::kinematics::way::Met;
+use crate::kinematics::{Kinematics, OnFacet, OneWay, SpaceHit, SweptPatch};
 use crate::pair::Pair;
 
-/// A node this far behind a facet, relative to its length, at the start of a step has not crossed
-/// it.
+/// Distance behind a facet at the start of a step, relative to the length of the facet, beyond
+/// which a node has not crossed it.
 const BEHIND: f64 = 0.02;
 /// Difference in θ below which facets are reached together: where they meet, and a path lies in the
 /// neighbouring side.
 const TOGETHER: f64 = 1e-4;
 
-/// Facets near a node, ascending, and the paths of all facets.
-pub(super) type Near<'a> = (&'a [usize], &'a Paths);
+/// The closest facet in space that a node faces.
+#[derive(Clone, Copy)]
+struct Closest {
+    facet: usize,
+    xi: [f64; 2],
+    gap: f64,
+    /// Distance of the node from the facet, increased by the distance past its edges.
+    distance: f64,
+}
 
 impl NodeToPatch {
-    /// θ and facet of the first crossing of trajectories of a node, of those near it; of facets
-    /// that are reached together, one of the side.
+    /// The first crossing of a node's path with the path of a facet near it; of facets that are
+    /// reached together, one of the side.
     pub(super) fn first(
         &self,
         swept: &mut SweptPatch,
-        (near, paths): Near,
+        near: &[usize],
+        paths: &Paths,
         node: usize,
         before: &[f64],
         now: &[f64],
-    ) -> Option<(f64, usize)> {
-        let (mut first, path) = ([None; 2], path(node, [before, now]));
+    ) -> Option<Met> {
+        let mut first: [Option<Met>; 2] = [None; 2];
+        let path = path(node, [before, now]);
         for &facet in near.iter().filter(|&&facet| paths.may_cross(&path, facet)) {
             let first = &mut first[usize::from(self.is_met(node, facet, paths))];
-            if let Some((theta, _)) = crossing(swept, self.primary.patch(facet), [before, now], 1.0, node)
-                && first.is_none_or(|(least, _)| theta < least)
+            if let Some(SpaceHit { theta, xi }) =
+                crossing(swept, self.primary.patch(facet), [before, now], 1.0, node)
+                && first.is_none_or(|least| theta < least.theta)
             {
-                *first = Some((theta, facet));
+                *first = Some(Met { theta, facet, xi });
             }
         }
         match first {
-            [Some((other, _)), Some((side, _))] if other < side - TOGETHER => first[0],
+            [Some(other), Some(side)] if other.theta < side.theta - TOGETHER => first[0],
             [other, side] => side.or(other),
         }
     }
 
-    /// Facet and ξ of possible contact of a node without a pair.
-    pub(super) fn candidate(
-        &self,
-        swept: &mut SweptPatch,
-        (near, paths): (&mut Vec<usize>, &Paths),
-        place_of: usize,
-        before: &[f64],
-        now: &[f64],
-    ) -> Option<(usize, [f64; 2])> {
-        let (node, slack) = (self.secondary[place_of], self.slack(place_of));
-        self.retain_pressed(node, before, paths, near);
-        if near.is_empty() {
-            return None;
-        }
-        let (near, near_by): (&[usize], Near) = (near, (near, paths));
-        let [start, end] = [before, now].map(|y| place(y, node));
-        let is_met = |facet: usize| self.is_met(node, facet, paths);
-        let mut closest: Option<(f64, usize, [f64; 2], f64)> = None;
+    /// The closest of the facets near a node that it faces at the end of a step.
+    fn closest_faced(&self, near: &[usize], paths: &Paths, node: usize, now: &[f64]) -> Option<Closest> {
+        let end = place(now, node);
+        let mut closest: Option<Closest> = None;
         for &facet in near {
             let patch = self.primary.patch(facet);
             let Some(xi) = patch.closest_point(now, end, REACH) else { continue };
             let gap = self.gap(facet, xi, end, now);
-            let (of_side, length) = (is_met(facet), patch.length(now));
-            let beyond = patch.furthest(xi).1.max(0.0);
+            let of_side = self.is_met(node, facet, paths);
+            let length = patch.length(now);
+            let beyond = patch.furthest(xi).max(0.0);
             let is_other = !of_side && (gap >= -NOISE * length || beyond > 0.0);
             let is_past = || self.faces_nothing(facet, xi, now) || self.ends_at(node, facet, xi, now);
             if is_other || of_side && is_past() {
                 continue;
             }
             let distance = gap.abs() + beyond * length;
-            let least = closest.map_or(f64::INFINITY, |(least, ..)| least);
+            let least = closest.map_or(f64::INFINITY, |closest| closest.distance);
             if distance < if of_side { least } else { (1.0 - PAST) * least } {
-                closest = Some((distance, facet, xi, gap));
+                closest = Some(Closest { facet, xi, gap, distance });
             }
         }
+        closest
+    }
+
+    /// The point of possible contact of a node without a pair.
+    pub(super) fn candidate(
+        &self,
+        swept: &mut SweptPatch,
+        near: &mut Vec<usize>,
+        paths: &Paths,
+        place_of: usize,
+        before: &[f64],
+        now: &[f64],
+    ) -> Option<OnFacet<[f64; 2]>> {
+        let node = self.secondary[place_of];
+        let slack = self.slack(place_of);
+        self.retain_pressed(node, before, paths, near);
+        if near.is_empty() {
+            return None;
+        }
+        let [start, end] = [before, now].map(|y| place(y, node));
+        let is_met = |facet: usize| self.is_met(node, facet, paths);
+        let closest = self.closest_faced(near, paths, node, now);
         if self.allowed(place_of) > 0.0 {
             // It may be inside, and is no candidate before it is too deep.
             let moved = (end - start).norm();
-            if moved < self.allowed(place_of) && closest.is_none_or(|(.., gap)| gap + slack >= 0.0) {
+            if moved < self.allowed(place_of) && closest.is_none_or(|closest| closest.gap + slack >= 0.0) {
                 return None;
             }
         }
-        let first = self.first(swept, near_by, node, before, now);
+        let first = self.first(swept, near, paths, node, before, now);
         let faced = |facet: usize| {
             let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
             (!self.faces_nothing(facet, xi, now) && !self.ends_at(node, facet, xi, now)).then_some(xi)
         };
-        let entered = first.filter(|&(_, facet)| is_met(facet));
-        if let Some((facet, xi)) = entered.and_then(|(_, facet)| Some((facet, faced(facet)?))) {
-            return Some((facet, xi));
+        let entered = first.filter(|first| is_met(first.facet));
+        if let Some(Met { facet, .. }) = entered
+            && let Some(xi) = faced(facet)
+        {
+            return Some(OnFacet { facet, xi });
         }
         let beside = || {
             let of_sides = |facet| {
                 self.folds.is_some() || self.primary.is_of_side(facet) || self.primary.is_of_sibling(facet)
             };
-            if first.is_some_and(|(_, facet)| of_sides(facet)) {
+            if first.is_some_and(|first| of_sides(first.facet)) {
                 return None;
             }
-            self.around_end(near_by, place_of, before, now)
+            self.around_end(near, paths, place_of, before, now)
         };
-        let of_side = closest.filter(|&(_, facet, ..)| is_met(facet));
-        let Some((_, facet, xi, _)) = of_side else { return beside() };
+        let of_side = closest.filter(|closest| is_met(closest.facet));
+        let Some(Closest { facet, xi, .. }) = of_side else { return beside() };
         let patch = self.primary.patch(facet);
         let limit = slack + BEHIND * patch.length(before);
         let behind = match patch.closest_point(before, start, REACH) {
             Some(xi) => self.gap(facet, xi, start, before) < -limit,
             // Of its own boundary a node is beside most facets that it may meet, or behind them.
-            None if self.folds.is_some() => self.primary.height(facet, start, before).1 < -limit,
+            None if self.folds.is_some() => self.primary.height(facet, start, before).height < -limit,
             None => entered.is_none() && first.is_some(),
         };
-        if entered.is_none() && behind { beside() } else { Some((facet, xi)) }
+        if entered.is_none() && behind { beside() } else { Some(OnFacet { facet, xi }) }
     }
 
-    /// Facet and ξ where a node that has pairs enters the side elsewhere: neither at their facets
-    /// nor at those around them, which hand pairs over.
+    /// Where a node that has pairs enters the side at another place: neither at the facets of its
+    /// pairs nor at those around them, to which a pair is handed over.
     pub(super) fn elsewhere(
         &self,
         swept: &mut SweptPatch,
-        (near, paths): (&mut Vec<usize>, &Paths),
+        near: &mut Vec<usize>,
+        paths: &Paths,
         place_of: usize,
         held: &[Pair],
         [before, now]: [&[f64]; 2],
-    ) -> Option<(usize, [f64; 2])> {
+    ) -> Option<OnFacet<[f64; 2]>> {
         let node = self.secondary[place_of];
         let path = path(node, [before, now]);
         near.retain(|&facet| held.iter().all(|pair| pair.facet != facet) && paths.may_cross(&path, facet));
@@ -136,27 +159,29 @@ impl NodeToPatch {
         }
         near.retain(|facet| held.iter().all(|pair| !self.primary.ring(pair.facet).contains(facet)));
         self.retain_pressed(node, before, paths, near);
-        let (_, facet) = self.first(swept, (near, paths), node, before, now)?;
+        let Met { facet, .. } = self.first(swept, near, paths, node, before, now)?;
         let end = place(now, node);
         let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
         let enters = self.is_met(node, facet, paths)
             && !self.faces_nothing(facet, xi, now)
             && !self.ends_at(node, facet, xi, now)
             && self.gap(facet, xi, end, now) + self.slack(place_of) < 0.0;
-        enters.then_some((facet, xi))
+        enters.then_some(OnFacet { facet, xi })
     }
 
-    /// The same of a node that has entered through the rest of the boundary, from past an end of
-    /// the side and in front of its facet there, or is nearest to the rest and was just behind the
-    /// side, as in the plane.
+    /// Possible contact of a node that has entered the body through the rest of the boundary, from
+    /// past an end of the side and in front of its facet there, or that is nearest to the rest and
+    /// was just behind the side, as in the plane.
     fn around_end(
         &self,
-        (near, paths): Near,
+        near: &[usize],
+        paths: &Paths,
         place_of: usize,
         before: &[f64],
         now: &[f64],
-    ) -> Option<(usize, [f64; 2])> {
-        let (node, slack) = (self.secondary[place_of], self.slack(place_of));
+    ) -> Option<OnFacet<[f64; 2]>> {
+        let node = self.secondary[place_of];
+        let slack = self.slack(place_of);
         let [start, end] = [before, now].map(|y| place(y, node));
         near.iter().filter(|&&facet| self.is_met(node, facet, paths)).find_map(|&facet| {
             let patch = self.primary.patch(facet);
@@ -166,7 +191,7 @@ impl NodeToPatch {
             let enters = !self.faces_nothing(facet, xi, now)
                 && self.gap(facet, xi, end, now) + slack < 0.0
                 && self.gap(facet, from, start, before) + slack >= -AROUND * past;
-            enters.then_some((facet, xi))
+            enters.then_some(OnFacet { facet, xi })
         })
     }
 }
@@ -193,13 +218,15 @@ mod tests {
             [grid.clone(), nodes.collect()].concat()
         };
         let before = at([0.3, 0.2, 5.0, 5.0]);
-        let (now, again) = (at([0.05, -0.1, 4.9, 4.9]), at([0.05 + 1e-9, -0.1, 4.9, 4.9]));
+        let now = at([0.05, -0.1, 4.9, 4.9]);
+        let again = at([0.05 + 1e-9, -0.1, 4.9, 4.9]);
         let search = |contact: &NodeToPatch, now: &[f64], fresh: bool| {
             let mut pairing = Pairing { fresh, ..Pairing::new(Vec::new()) };
             let changed = contact.search(&before, now, &mut pairing, &mut Vec::new());
             (changed, pairing.pairs)
         };
-        let (first, other) = (contact(), contact());
+        let first = contact();
+        let other = contact();
         let known = search(&first, &now, true);
         assert_eq!(known.1.iter().map(|pair| (pair.node, pair.facet)).collect::<Vec<_>>(), [(0, 0), (1, 3)]);
         assert_eq!(search(&first, &again, false), search(&other, &again, true));

@@ -15,12 +15,12 @@ pub struct ClosedSurface {
     pub(super) boundary: Boundary,
     pub(super) hull: Hull,
     pub(super) tree: Tree,
-    /// For its own nodes: which of them meet which facets, and the facets' normals.
+    /// For nodes of the boundary itself: which facets they may meet, and the normals of the facets.
     pub(super) folds: Option<(PatchFolds, Vec<Vector<3>>)>,
 }
 
 impl ClosedSurface {
-    /// All facets of a body's boundary.
+    /// A closed surface of all facets of the boundary of a body.
     pub fn new(boundary: Boundary) -> Self {
         let hull = Hull::facet(boundary.shape());
         Self { boundary, hull, tree: Tree::default(), folds: None }
@@ -33,17 +33,19 @@ impl ClosedSurface {
 
     /// Moves the boundary to positions `y`, flat over all nodes.
     pub fn update(&mut self, y: &[f64]) {
-        let (boundary, hull) = (&self.boundary, &self.hull);
+        let boundary = &self.boundary;
+        let hull = &self.hull;
         self.tree.place(boundary.all(), |facet| boundary.bounds(hull, facet, y));
         if let Some((_, normals)) = &mut self.folds {
             update_normals(&self.boundary, y, normals);
         }
     }
 
-    /// Where a point lies at the positions of the last update, searched from a facet near it if one
-    /// is known; `None` without a boundary.
+    /// Position relative to the boundary of a point, at the positions of the last update, searched
+    /// from a facet near it if one is known; `None` without a boundary.
     pub fn depth(&self, point: [f64; 3], from: Option<usize>, y: &[f64]) -> Option<Depth> {
-        let (at, mut last) = (Vector(point), None::<(usize, Nearest)>);
+        let at = Vector(point);
+        let mut last = None::<(usize, Nearest)>;
         let (facet, _) = self.tree.nearest(&at.0, from, |facet| {
             let nearest = self.boundary.patch(facet).nearest(y, at);
             if last.is_none_or(|(_, least)| nearest.distance < least.distance) {
@@ -63,7 +65,7 @@ impl ClosedSurface {
         (Vector(point) - self.boundary.patch(facet).at(y, xi).position).norm()
     }
 
-    /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵃ|.
+    /// Largest ratio of the motion of a point of a facet to that of its nodes: the largest Σ |φᵃ|.
     pub fn amplification(&self) -> f64 {
         amplification(self.boundary.shape())
     }

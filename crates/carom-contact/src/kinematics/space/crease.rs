@@ -4,13 +4,13 @@
 use super::node_to_patch::{NodeToPatch, REACH};
 use super::patch::{WANDER, place};
 use super::paths::NOISE;
-use crate::kinematics::Facets;
+use crate::kinematics::{Facets, OnFacet};
 
 impl NodeToPatch {
-    /// Of a node below a crease, where its nearest point is on an edge: the facet of which it is
-    /// deepest, of those that face its own one. On the extrapolation of its own it would sink into
-    /// them.
-    pub(super) fn in_crease(&self, node: usize, own: usize, y: &[f64]) -> Option<(usize, [f64; 2])> {
+    /// The facet of which a node below a crease is deepest, of those that face its own facet, if
+    /// the nearest point of the primary is on an edge. On the extrapolation of its own facet the
+    /// node would sink into the others.
+    pub(super) fn in_crease(&self, node: usize, own: usize, y: &[f64]) -> Option<OnFacet<[f64; 2]>> {
         let from = place(y, node);
         if self.primary.depth(own, from, y).distance >= 0.0 {
             return None;
@@ -24,13 +24,14 @@ impl NodeToPatch {
             let Some(xi) = patch.closest_point(y, from, REACH) else { continue };
             let gap = self.gap(facet, xi, from, y);
             if gap < least && self.rises(own, facet, y) && self.rises(facet, own, y) {
-                (least, deepest) = (gap, Some((facet, xi)));
+                least = gap;
+                deepest = Some(OnFacet { facet, xi });
             }
         }
         deepest
     }
 
-    /// Whether the middle of a facet lies in front of another one.
+    /// Whether the middle of `facet` lies in front of the facet `behind`.
     fn rises(&self, behind: usize, facet: usize, y: &[f64]) -> bool {
         let base = self.primary.middle(behind, y);
         (self.primary.middle(facet, y).position - base.position).dot(&base.normal) > 0.0

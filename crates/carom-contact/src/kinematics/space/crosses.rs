@@ -13,26 +13,28 @@ use carom_solid::Bounds;
 use super::closed_surface::ClosedSurface;
 use super::folds::PatchFolds;
 use super::patch::{Feature, cross, place};
+use crate::inside_itself::InsideItself;
 use crate::kinematics::{Depth, Facets, Side};
 use crate::solid_angle::solid_angle;
 
-/// Smallest solid angle of a body at a node that is told from that of a fold.
+/// Solid angle of a body at a node below which a node on the boundary cannot be told from one
+/// inside a fold.
 const SHARPEST: f64 = 0.2;
 type Triangle = [Vector<3>; 3];
 
 impl ClosedSurface {
-    /// The same, to measure its own nodes too; `piece`: the connected piece of the body to which
-    /// each node belongs, from `first_node` on; `reference`: the reference positions, flat over all
-    /// nodes.
+    /// Allows nodes of the boundary itself to be measured; `piece`: the connected piece of the body
+    /// to which each node belongs, from `first_node` on; `reference`: the reference positions, flat
+    /// over all nodes.
     #[must_use]
     pub fn with_pieces(self, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
         let folds = PatchFolds::new(&self.boundary, piece, first_node, reference);
         Self { folds: Some((folds, Vec::new())), ..self }
     }
 
-    /// Where a node of the boundary lies relative to those parts of it that it may meet and that
-    /// lie on one side of it in the order of its places, if one is nearer than `reach`. Where the
-    /// nearest part lies on the other side, or ends there, the node counts as outside.
+    /// Position of a node of the boundary relative to those parts of the boundary that it may meet
+    /// and that lie on the given side of it in the order of places, if one is nearer than `reach`.
+    /// Where the nearest part lies on the other side, or ends there, the node counts as outside.
     pub fn depth_of(&self, node: usize, side: Side, reach: f64, y: &[f64]) -> Option<Depth> {
         let (folds, normals) = self.folds.as_ref()?;
         let point = place(y, node);
@@ -64,32 +66,32 @@ impl ClosedSurface {
         self.crossings(y, known).next().is_some()
     }
 
-    /// The node that lies deepest inside its own body, of those of facets that cross others; the
-    /// nearest facet that does not contain it, and the distance to it.
-    pub fn deepest_in_itself(&self, y: &[f64]) -> Option<(usize, usize, f64)> {
+    /// The node that lies deepest inside its own body, of the nodes of facets that cross others, if
+    /// one does.
+    pub fn deepest_in_itself(&self, y: &[f64]) -> Option<InsideItself> {
         let facets = self.crossings(y, |_, _| false).flat_map(|(a, b)| [a, b]);
         let mut nodes: Vec<usize> = facets.flat_map(|facet| self.facet_nodes(facet)).copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let mut deepest: Option<(usize, usize, f64)> = None;
+        let mut deepest: Option<InsideItself> = None;
         for node in nodes.into_iter().filter(|&node| self.seen_from(node, y) >= 4.0 * PI + SHARPEST) {
             let point = place(y, node);
             let distance = |facet: usize| {
                 let is_other = !self.facet_nodes(facet).contains(&node);
                 is_other.then(|| self.boundary.patch(facet).nearest(y, point).distance)
             };
-            if let Some((facet, distance)) = self.tree.nearest(&point.0, None, distance)
-                && deepest.is_none_or(|(.., most)| distance > most)
+            if let Some((facet, depth)) = self.tree.nearest(&point.0, None, distance)
+                && deepest.is_none_or(|most| depth > most.depth)
             {
-                deepest = Some((node, facet, distance));
+                deepest = Some(InsideItself { node, facet, depth });
             }
         }
         deepest
     }
 
-    /// How far a coordinate of a node may change, apart from a motion of all nodes together, before
-    /// two facets without a common node can cross; 0 where two are near at the positions of the
-    /// last update.
+    /// Change of a coordinate of a node, apart from a motion of all nodes together, before two
+    /// facets without a common node can cross; 0 where two are near at the positions of the last
+    /// update.
     pub fn clearance_to_itself(&self, y: &[f64]) -> f64 {
         self.boundary.clearance(&self.hull, &self.tree, y)
     }
@@ -115,7 +117,7 @@ impl ClosedSurface {
         (0..self.boundary.all()).flat_map(of_facet)
     }
 
-    /// The solid angle under which a node sees the facets that do not contain it.
+    /// Solid angle under which a node sees the facets of its own boundary that do not contain it.
     fn seen_from(&self, node: usize, y: &[f64]) -> f64 {
         let from = place(y, node);
         let others = (0..self.boundary.all()).filter(|&facet| !self.facet_nodes(facet).contains(&node));
@@ -126,10 +128,11 @@ impl ClosedSurface {
         others.map(of_facet).sum()
     }
 
-    /// The triangles of a facet between its nodes.
+    /// Divides a facet into triangles between its nodes.
     fn triangles(&self, facet: usize, y: &[f64]) -> Triangles {
         let patch = self.boundary.patch(facet);
-        let (count, is_square) = (patch.shape.degree(), patch.corners() == 4);
+        let count = patch.shape.degree();
+        let is_square = patch.corners() == 4;
         let at = |i: usize, j: usize| {
             let [s, t] = [i, j].map(|k| k as f64 / count as f64);
             patch.at(y, if is_square { [2.0 * s - 1.0, 2.0 * t - 1.0] } else { [s, t] }).position
@@ -147,7 +150,7 @@ impl ClosedSurface {
     }
 }
 
-/// The triangles of a facet, of which a cubic triangle has most.
+/// The triangles into which a facet is divided, at most nine for a cubic triangle.
 #[derive(Clone, Copy, Default)]
 struct Triangles {
     all: [Option<Triangle>; 9],
@@ -175,7 +178,8 @@ fn crosses(one: &Triangle, other: &Triangle) -> bool {
 fn pierces(edges: &Triangle, [a, b, c]: &Triangle) -> bool {
     let normal = cross(*b - *a, *c - *a);
     (0..3).any(|k| {
-        let [p, q] = [edges[k], edges[(k + 1) % 3]];
+        let p = edges[k];
+        let q = edges[(k + 1) % 3];
         let [from, to] = [p, q].map(|x| (x - *a).dot(&normal));
         if from * to >= 0.0 {
             return false;
@@ -224,17 +228,17 @@ mod tests {
         }
         surface.update(&y);
         assert!(surface.crosses_itself(&y, |_, _| false));
-        let (node, facet, distance) = surface.deepest_in_itself(&y).unwrap();
+        let InsideItself { node, facet, depth } = surface.deepest_in_itself(&y).unwrap();
         // The sides of both arms lie in the same planes, where no depth is larger than zero.
-        assert!([5, 13].contains(&node) && distance < 1e-12, "{node} {facet} {distance}");
+        assert!([5, 13].contains(&node) && depth < 1e-12, "{node} {facet} {depth}");
         // Moved inwards, the arm is as deep as it is below the face of the lower one.
         for (node, z) in [(5, 0.35), (6, 0.35), (13, 0.65), (14, 0.65)] {
             y[3 * node + 2] = z;
         }
         surface.update(&y);
-        let (node, facet, distance) = surface.deepest_in_itself(&y).unwrap();
+        let InsideItself { node, facet, depth } = surface.deepest_in_itself(&y).unwrap();
         assert!([5, 13].contains(&node) && facet == 2, "{node} {facet}");
-        assert!((distance - 0.3).abs() < 1e-15, "{distance}");
+        assert!((depth - 0.3).abs() < 1e-15, "{depth}");
     }
 
     #[test]

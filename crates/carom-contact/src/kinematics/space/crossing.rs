@@ -10,25 +10,27 @@ use carom_solid::Net;
 use super::patch::{Patch, WANDER, cross, place};
 use crate::kinematics::swept::{SpaceHit, SweptPatch};
 
-/// θ and ξ beyond their ranges: a node exactly on the surface has crossed it.
+/// Excess of θ and ξ over their ranges up to which a crossing counts, so that a node exactly on the
+/// surface has crossed it.
 const TOLERANCE: f64 = 1e-6;
-/// A node this close to the facet, relative to its length, meets it: a node that starts behind by
-/// round-off must be detected.
+/// Distance between a node and a facet, relative to the length of the facet, at which they meet: a
+/// node that starts behind by round-off must be detected.
 pub(super) const SEPARATION: f64 = 1e-6;
-/// Distance in θ and ξ from the isolated crossing at which Newton's method found another one.
+/// Change of θ and ξ from the isolated crossing, above which Newton's method has found another one.
 const ASTRAY: f64 = 0.05;
 
-/// Instant θ in [0, until] at which a node's path first meets a facet's from outside, and ξ there,
-/// if it does.
+/// First crossing of the path of a node with that of a facet from outside, at an instant θ in [0,
+/// `until`], if there is one.
 pub(super) fn crossing(
     swept: &mut SweptPatch,
     patch: Patch,
     [before, now]: [&[f64]; 2],
     until: f64,
     node: usize,
-) -> Option<(f64, [f64; 2])> {
+) -> Option<SpaceHit> {
     let ends = |n: usize| {
-        let (from, to) = (place(before, n), place(now, n));
+        let from = place(before, n);
+        let to = place(now, n);
         [from, if until < 1.0 { from + (to - from) * until } else { to }]
     };
     let mut places = [[Vector::ZERO; Net::POINTS]; 2];
@@ -38,17 +40,12 @@ pub(super) fn crossing(
     let facet = places.each_ref().map(|places| &places[..patch.nodes.len()]);
     let hit = swept.first(ends(node), facet, SEPARATION * patch.length(before))?;
     let hit = SpaceHit { theta: until * hit.theta, ..hit };
-    Some(polished(patch, before, now, node, hit).unwrap_or((hit.theta, hit.xi)))
+    Some(polished(patch, before, now, node, hit).unwrap_or(hit))
 }
 
-/// Newton's method from an isolated crossing; none if it does not lead to one near it.
-fn polished(
-    patch: Patch,
-    before: &[f64],
-    now: &[f64],
-    node: usize,
-    hit: SpaceHit,
-) -> Option<(f64, [f64; 2])> {
+/// Crossing of a node and a facet refined by Newton's method from an isolated one; none if that
+/// does not lead to a crossing near it.
+fn polished(patch: Patch, before: &[f64], now: &[f64], node: usize, hit: SpaceHit) -> Option<SpaceHit> {
     let SpaceHit { mut theta, mut xi } = hit;
     // Relative to the node: exact differences, however far from the origin.
     let [from, to] = [before, now].map(|y| place(y, node));
@@ -56,7 +53,8 @@ fn polished(
         |n: usize, theta: f64| (place(before, n) - from) * (1.0 - theta) + (place(now, n) - to) * theta;
     for _ in 0..20 {
         let functions = patch.shape.functions(xi);
-        let (mut miss, mut relative) = (Vector::ZERO, Vector::ZERO);
+        let mut miss = Vector::ZERO;
+        let mut relative = Vector::ZERO;
         let mut tangents = [Vector::ZERO; 2];
         for (k, &n) in patch.nodes.iter().enumerate() {
             let x = lerp(n, theta);
@@ -67,17 +65,18 @@ fn polished(
         // miss + relative dθ − τ_α dξ_α = 0
         let matrix = Mat([relative.0, (-tangents[0]).0, (-tangents[1]).0]).transposed();
         let step = matrix.inverse().apply(&-miss);
-        (theta, xi) = (theta + step[0], [xi[0] + step[1], xi[1] + step[2]]);
+        theta += step[0];
+        xi = [xi[0] + step[1], xi[1] + step[2]];
         let size = step.0.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        if !size.is_finite() || theta.abs() > 3.0 || patch.furthest(xi).1 > WANDER {
+        if !size.is_finite() || theta.abs() > 3.0 || patch.furthest(xi) > WANDER {
             return None;
         }
         if size <= 1e-12 {
             let inwards = relative.dot(&cross(tangents[0], tangents[1])) < 0.0;
-            let valid = (-TOLERANCE..=1.0 + TOLERANCE).contains(&theta) && patch.furthest(xi).1 <= TOLERANCE;
+            let valid = (-TOLERANCE..=1.0 + TOLERANCE).contains(&theta) && patch.furthest(xi) <= TOLERANCE;
             let moved = [theta - hit.theta, xi[0] - hit.xi[0], xi[1] - hit.xi[1]];
             let near = moved.iter().all(|x| x.abs() < ASTRAY);
-            return (inwards && valid && near).then_some((theta, xi));
+            return (inwards && valid && near).then_some(SpaceHit { theta, xi });
         }
     }
     None

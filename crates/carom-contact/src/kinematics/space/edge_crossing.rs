@@ -14,27 +14,29 @@ use super::patch::{cross, place};
 use crate::kinematics::way::{Allowed, Between, Seen, Way, deepest};
 use crate::kinematics::{Passed, SpaceHit, SweptEdges};
 
-/// Edges this close to each other, relative to the shorter one, meet.
+/// Distance between two edges, relative to the shorter one, at which they meet.
 const SEPARATION: f64 = 1e-6;
-/// Sine of the angle between the chords below which edges are not tested: they form no pair.
+/// Sine of the angle between the chords of two edges below which their crossing is not tested,
+/// since they form no pair.
 const ALONG: f64 = 0.1;
-/// Distance in θ and ξ from the isolated crossing at which Newton's method found another one.
+/// Change of θ and ξ from the isolated crossing, above which Newton's method has found another one.
 const ASTRAY: f64 = 0.05;
-/// Depth on the way over the length of the shorter edge that is allowed, as at the end of a step.
+/// Allowed depth of two edges on their path, relative to the length of the shorter one, as at the
+/// end of a step.
 const DEEP: f64 = 0.1;
-/// By how much points of an edge move at most, over the motion of its nodes.
+/// Largest ratio of the motion of a point of an edge to that of its nodes.
 const AMPLIFIED: f64 = 1.6312;
 
-/// Edges along which closest points are followed.
+/// Largest number of edges along which closest points are followed.
 const MOST: usize = 100;
-/// |ξ| − 1 up to which a point is on its edge.
+/// Excess |ξ| − 1 up to which a closest point lies on its edge.
 const PAST: f64 = 0.02;
 
-/// Nodes of an edge, and their places at either end of a step.
+/// Places of the nodes of an edge at the start and at the end of a step.
 type Path = [Vec<Vector<3>>; 2];
 
 impl EdgeToEdge {
-    /// The first crossing of two edges into each other's bodies.
+    /// First crossing of two edges in a step by which each enters the body of the other.
     pub(super) fn crossing(
         &self,
         swept: &mut SweptEdges,
@@ -47,7 +49,8 @@ impl EdgeToEdge {
         });
         let chord = |of: usize, end: usize| paths[of][end][1] - paths[of][end][0];
         let crosses = |end: usize| {
-            let [a, b] = [chord(0, end), chord(1, end)];
+            let a = chord(0, end);
+            let b = chord(1, end);
             cross(a, b).norm() >= ALONG * a.norm() * b.norm()
         };
         if !crosses(0) && !crosses(1) {
@@ -60,11 +63,12 @@ impl EdgeToEdge {
         Some(polished(&paths, hit).unwrap_or(hit))
     }
 
-    /// The edge that was deepest beyond its limit in the body of another one; `bounce`: allowed
-    /// depth of a node, over the length of a facet.
+    /// The edge that was deepest beyond its limit in the body of another edge within a step;
+    /// `bounce`: allowed depth of a node, relative to the length of a facet.
     pub(super) fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         let mut swept = self.swept();
-        let (mut between, mut worst): (Option<Between<3>>, Option<Passed>) = (None, None);
+        let mut between: Option<Between<3>> = None;
+        let mut worst: Option<Passed> = None;
         self.each_near(before, now, |edges| {
             if !self.may_pass(edges) {
                 return;
@@ -96,18 +100,22 @@ impl EdgeToEdge {
     }
 }
 
-/// Newton's method from an isolated crossing; none if it does not lead to one near it.
+/// Crossing of two edges refined by Newton's method from an isolated one; none if that does not
+/// lead to a crossing near it.
 fn polished(paths: &[Path; 2], hit: SpaceHit) -> Option<SpaceHit> {
     let SpaceHit { mut theta, mut xi } = hit;
     for _ in 0..20 {
         // Relative to a node of B: exact differences, however far from the origin.
-        let (mut miss, mut moved) = (Vector::ZERO, Vector::ZERO);
+        let mut miss = Vector::ZERO;
+        let mut moved = Vector::ZERO;
         let mut tangents = [Vector::ZERO; 2];
         for of in 0..2 {
-            let ([before, now], sign) = (&paths[of], [1.0, -1.0][of]);
+            let [before, now] = &paths[of];
+            let sign = [1.0, -1.0][of];
             let shape = line_shape(before.len(), xi[of]);
             for (k, (before, now)) in before.iter().zip(now).enumerate() {
-                let [start, end] = [*before - paths[1][0][0], *now - paths[1][1][0]];
+                let start = *before - paths[1][0][0];
+                let end = *now - paths[1][1][0];
                 let x = start * (1.0 - theta) + end * theta;
                 miss += x * (sign * shape.values[k]);
                 moved += (end - start) * (sign * shape.values[k]);
@@ -116,7 +124,8 @@ fn polished(paths: &[Path; 2], hit: SpaceHit) -> Option<SpaceHit> {
         }
         let matrix = Mat([moved.0, tangents[0].0, tangents[1].0]).transposed();
         let step = matrix.inverse().apply(&-miss);
-        (theta, xi) = (theta + step[0], [xi[0] + step[1], xi[1] + step[2]]);
+        theta += step[0];
+        xi = [xi[0] + step[1], xi[1] + step[2]];
         let size = step.0.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         let astray = [theta - hit.theta, xi[0] - hit.xi[0], xi[1] - hit.xi[1]];
         let near = astray.iter().all(|x| x.abs() < ASTRAY);
@@ -132,22 +141,23 @@ fn polished(paths: &[Path; 2], hit: SpaceHit) -> Option<SpaceHit> {
     None
 }
 
-/// Two edges after they have crossed.
+/// Path of two edges after they have crossed each other.
 struct OnWay<'a, 'b> {
     contact: &'a EdgeToEdge,
     edges: [usize; 2],
     between: &'a mut Between<'b, 3>,
-    /// Where the search for the closest points begins.
+    /// Coordinates on both edges where the search for their closest points begins.
     xi: [f64; 2],
     fastest: f64,
     limit: f64,
 }
 
 impl Way for OnWay<'_, '_> {
-    /// Outside where a body does not meet the other one with these edges or those that continue
-    /// them.
+    /// Depth of the edges at an instant; zero where the bodies do not meet with these edges or
+    /// those that continue them.
     fn seen(&mut self, theta: f64) -> Option<Seen> {
-        let (mut edges, mut xi) = (self.edges, self.xi);
+        let mut edges = self.edges;
+        let mut xi = self.xi;
         for _ in 0..MOST {
             for of in 0..2 {
                 for node in self.contact.around(edges, of) {
@@ -156,14 +166,16 @@ impl Way for OnWay<'_, '_> {
             }
             let y = self.between.flat();
             let Some(gap) = self.contact.closest(edges, xi, y) else { break };
-            if let Some((next, start)) = self.contact.beyond(edges, gap.xi) {
-                (edges, xi) = (next, start);
+            if let Some(next) = self.contact.beyond(edges, gap.xi) {
+                edges = next.edges;
+                xi = next.xi;
                 continue;
             }
             if gap.xi.iter().any(|xi| xi.abs() > 1.0 + PAST) || !self.contact.cross(edges, &gap, 0.0, y) {
                 break;
             }
-            (self.edges, self.xi) = (edges, gap.xi);
+            self.edges = edges;
+            self.xi = gap.xi;
             return Some(self.on(theta, 0, gap.xi, -gap.distance));
         }
         Some(self.on(theta, 0, self.xi, 0.0))

@@ -20,18 +20,19 @@ use carom_solid::shape::{LineShape, line_shape};
 
 use super::patch::{cross, place};
 
-/// Steps of Newton's method; straight edges need two.
+/// Largest number of steps of Newton's method for closest points; straight edges need two.
 const STEPS: usize = 40;
-/// Largest |ξ| before it has converged.
+/// Largest |ξ| before Newton's method for closest points has converged.
 const WANDER: f64 = 5.0;
-/// Change of ξ that is round-off, and the same where it no longer becomes smaller.
+/// Change of ξ in a step of Newton's method that is round-off.
 const ROUND_OFF: f64 = 4e-15;
+/// Change of ξ that is round-off once it no longer becomes smaller from step to step.
 const SETTLED: f64 = 1e-9;
 /// Sine of the angle between edges below which they run along each other.
 const ALONG: f64 = 1e-3;
 
-/// A line at one of its points, relative to a place near it: differences are exact there, however
-/// far from the origin.
+/// Position of a line at one of its points, with derivatives, relative to a place near it:
+/// differences are exact there, however far from the origin.
 #[derive(Clone, Copy, Debug)]
 struct LinePoint {
     position: Vector<3>,
@@ -52,32 +53,35 @@ impl LinePoint {
     }
 }
 
-/// Two edges at their closest points.
+/// Gap between two edges A and B at their closest points, with its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EdgeGap {
     counts: [usize; 2],
     shapes: [LineShape; 2],
-    /// The place that the lines are relative to.
+    /// Place relative to which the positions of both lines are given.
     from: Vector<3>,
     lines: [LinePoint; 2],
-    /// ξ on A and η on B.
+    /// Coordinates of the closest points: ξ on A and η on B.
     pub(super) xi: [f64; 2],
-    /// n.
+    /// Unit normal n out of the body of B.
     pub(super) normal: Vector<3>,
-    /// g.
+    /// Gap g along the normal.
     pub(super) distance: f64,
 }
 
 impl EdgeGap {
-    /// Newton's method from `start`, for the nodes of A and of B, ends first; n has a positive part
-    /// along `outwards`. None if they run along each other, or it does not converge.
+    /// Closest points of two edges A and B, given by their nodes, ends first, by Newton's method
+    /// from `start`; the normal has a positive part along `outwards`. None if the edges run along
+    /// each other, or the method does not converge.
     pub(super) fn closest(
         nodes: [&[usize]; 2],
         start: [f64; 2],
         y: &[f64],
         outwards: Vector<3>,
     ) -> Option<Self> {
-        let (mut xi, mut last, from) = (start, f64::INFINITY, place(y, nodes[0][0]));
+        let mut xi = start;
+        let mut last = f64::INFINITY;
+        let from = place(y, nodes[0][0]);
         for _ in 0..STEPS {
             let shapes = [0, 1].map(|i| line_shape(nodes[i].len(), xi[i]));
             let lines = [0, 1].map(|i| LinePoint::new(nodes[i], &shapes[i], from, y));
@@ -121,42 +125,45 @@ impl EdgeGap {
         cross(a, b).norm() / (a.norm() * b.norm())
     }
 
-    /// The closest point on A or on B.
+    /// Position of the closest point on edge A (`of` = 0) or B (1).
     pub(super) fn point(&self, of: usize) -> Vector<3> {
         self.from + self.lines[of].position
     }
 
-    /// The tangent of A or B, of length one.
+    /// Unit tangent of edge A (`of` = 0) or B (1) at its closest point.
     pub(super) fn tangent(&self, of: usize) -> Vector<3> {
         let tangent = self.lines[of].tangent;
         tangent * tangent.norm().recip()
     }
 
-    /// Number of nodes of both.
+    /// Number of nodes of both edges.
     fn count(&self) -> usize {
         self.counts[0] + self.counts[1]
     }
 
-    /// The edge to which a node of the row belongs, its number there, and the sign of its weights.
+    /// The edge to which the p-th node of the row belongs, the number of the node on that edge, and
+    /// the sign of its weights.
     fn node(&self, p: usize) -> (usize, usize, f64) {
         if p < self.counts[0] { (0, p, 1.0) } else { (1, p - self.counts[0], -1.0) }
     }
 
-    /// w.
+    /// Weight w of the p-th node of the row in r = x_A(ξ) − x_B(η).
     fn weight(&self, p: usize) -> f64 {
         let (edge, k, sign) = self.node(p);
         sign * self.shapes[edge].values[k]
     }
 
-    /// ∂g/∂y of the nodes of A and then of B.
+    /// Gradient ∂g/∂y of the gap: for the nodes of A, then for those of B.
     pub(super) fn gradient(&self) -> impl Iterator<Item = Vector<3>> {
         (0..self.count()).map(|p| self.normal * self.weight(p))
     }
 
-    /// ∂(ξ, η) and ∂n with one component of a node.
+    /// Derivatives of the coordinates (ξ, η) and of the normal n by the k-th component of the q-th
+    /// node of the row.
     fn changes(&self, q: usize, k: usize) -> ([f64; 2], Vector<3>) {
         let (edge, node, _) = self.node(q);
-        let (n, g) = (self.normal, self.distance);
+        let n = self.normal;
+        let g = self.distance;
         let [a, b] = self.lines.map(|line| line.tangent);
         let mut driven = Vector([a, b].map(|tangent| -self.weight(q) * tangent[k]));
         let stretched = self.shapes[edge].first[node] * n[k];
@@ -171,7 +178,8 @@ impl EdgeGap {
         (xi.0, a * -raised[0] + b * -raised[1])
     }
 
-    /// ∂²g/∂y∂y of all nodes: overwrites the first (3 count)² entries, row-major.
+    /// Second derivative ∂²g/∂y∂y of the gap by all nodes: overwrites the first (3 count)² entries,
+    /// row-major.
     pub(super) fn curvature_into(&self, curvature: &mut [f64]) {
         let size = 3 * self.count();
         for (q, k) in (0..self.count()).flat_map(|q| (0..3).map(move |k| (q, k))) {
@@ -185,7 +193,7 @@ impl EdgeGap {
         }
     }
 
-    /// H of a tangent, of the nodes of A and then of B.
+    /// Row H of the slip along a tangent: for the nodes of A, then for those of B.
     pub(super) fn slip(&self, along: Vector<3>) -> impl Iterator<Item = Vector<3>> {
         (0..self.count()).map(move |q| {
             let turned = Vector([0, 1, 2].map(|k| self.changes(q, k).1.dot(&along)));

@@ -26,54 +26,65 @@ use crate::rows::Rows;
 
 /// Sine of the angle between edges below which they form no pair.
 const ALONG: f64 = 0.1;
-/// Sine of the angle by which the normal of a new pair lies between the facets' normals, and by
-/// which that of a known one may lie outside them: an edge that lies on a facet is constrained at
-/// its end by the edge of the facet.
+/// Sine of the angle by which the normal of a new pair lies between the facets' normals at least.
 const BETWEEN: f64 = 0.02;
+/// Negative sine of the angle by which the normal of a known pair may lie outside the facets'
+/// normals: an edge that lies on a facet is constrained at its end by the edge of the facet.
 const OUTSIDE: f64 = -0.4;
-/// Depth over the length of the shorter edge that two edges may have before the step in which they
-/// meet, if they approach by as much in it, and after it.
+/// Largest depth of two edges, relative to the length of the shorter one, before the step in which
+/// they meet, if they approach by as much in that step.
 const BEHIND: f64 = 0.05;
+/// Largest depth of two edges, relative to the length of the shorter one, at the end of the step in
+/// which they meet.
 const DEEP: f64 = 0.25;
-/// |ξ| beyond 1 at which a pair is handed over to the next edge, up to which an edge is
-/// extrapolated if there is none, and by which a new pair is before a corner.
+/// Excess |ξ| − 1 above which a pair of edges is handed over to the next edge.
 const PAST: f64 = 0.02;
+/// Excess |ξ| − 1 up to which an edge is extrapolated past an end that another edge continues.
 const REACH: f64 = 0.2;
+/// Distance 1 − |ξ| from a corner that the contact point of a new pair has at least.
 const CORNER: f64 = 0.04;
-/// The same from a corner at which two corners meet.
+/// Distance 1 − |ξ| from a corner, on both edges, up to which two edges meet at their corners.
 const NEAR_CORNER: f64 = 0.2;
-/// Distance over the length of an edge of contact points of edges that continue each other, and the
-/// cosine of the angle between their normals, below and above which one pair constrains both.
+/// Distance between the contact points of edges that continue each other, relative to the length of
+/// an edge, below which one pair constrains both if their normals are parallel.
 const TOGETHER: f64 = 0.1;
+/// Cosine of the angle between the normals of two pairs above which they are parallel.
 const PARALLEL: f64 = 0.985;
-/// Share of its size by which the box of an edge's path is larger than it.
+/// Growth of the bounding box of an edge's path, relative to its size.
 const NOISE: f64 = 1e-9;
 
-/// Numbers of the edges of a pair, and its gap if it has one.
+/// Numbers of the two edges of a known pair, and its gap if it has one.
 type Held = ([usize; 2], Option<EdgeGap>);
 
-/// Edges against edges.
+/// A point of an edge of the secondary side and one of an edge of the primary.
+pub(super) struct OnEdges {
+    pub(super) edges: [usize; 2],
+    pub(super) xi: [f64; 2],
+}
+
+/// Sharp edges of the secondary side against sharp edges of the primary side.
 #[derive(Debug)]
 pub struct EdgeToEdge {
-    /// Of the secondary side and of the primary.
+    /// Sharp edges of the secondary side and of the primary side.
     sides: [Edges; 2],
-    /// Of a side against itself: the order of its places.
+    /// For contact of a side with itself: the order of its places.
     folds: Option<Arc<PatchFolds>>,
     tools: Mutex<Tools>,
     swept: Mutex<SweptEdges>,
 }
 
-/// Reused memory; results do not depend on its content.
+/// Memory that searches for edges reuse; results do not depend on its content.
 #[derive(Debug)]
 struct Tools {
-    /// Boxes of the paths of the primary's edges.
+    /// Bounding boxes of the paths of the edges of the primary side.
     tree: Tree,
     apart: Apart,
 }
 
 impl EdgeToEdge {
-    /// Of both sides, the secondary one first, at reference positions; `others`: the nodes of sides
-    /// whose contacts constrain the edges that they share with these.
+    /// Contact of the sharp edges of two sides, the secondary one first, at reference positions;
+    /// `others`: the nodes of sides whose own contacts constrain the edges that they share with
+    /// these.
     pub fn new(sides: [Boundary; 2], others: &[BTreeSet<usize>; 2], reference: &[f64]) -> Self {
         let [one, other] = sides;
         let sides = [Edges::new(one, &others[0], reference), Edges::new(other, &others[1], reference)];
@@ -85,13 +96,14 @@ impl EdgeToEdge {
         Self { sides, folds: None, tools, swept: Mutex::default() }
     }
 
-    /// The same for a side against itself: both sides are equal.
+    /// Contact of the edges of a side with each other; both sides are equal.
     pub(super) fn folding(self, folds: Arc<PatchFolds>) -> Self {
         Self { folds: Some(folds), ..self }
     }
 
-    /// Whether two edges may meet, in this order: always, but for those of one body. Of these the
-    /// first is the later one, and no facet has nodes of both.
+    /// Whether two edges may form a pair in this order: always if they belong to different bodies;
+    /// in one body if the first is the later one in the order of places, and no facet has nodes of
+    /// both.
     pub(super) fn may_meet(&self, [own, other]: [usize; 2]) -> bool {
         let Some(folds) = &self.folds else { return true };
         let [here, there] = [own, other].map(|edge| self.sides[0].facet(edge));
@@ -108,22 +120,22 @@ impl EdgeToEdge {
         })
     }
 
-    /// A node of every edge of the secondary side.
+    /// A node of every edge of the secondary side, which represents the edge.
     pub(super) fn names(&self) -> impl Iterator<Item = usize> {
         (0..self.sides[0].len()).map(|edge| self.sides[0].nodes(edge)[0])
     }
 
-    /// Number of edges of the primary.
+    /// Number of sharp edges of the primary side.
     pub(super) fn count(&self) -> usize {
         self.sides[1].len()
     }
 
-    /// Nodes of the primary's edge of a pair, ends first.
+    /// Nodes of the edge of the primary side in a pair, ends first.
     pub(super) fn nodes_of(&self, pair: &Pair) -> &[usize] {
         self.sides[1].nodes(self.of(pair)[1])
     }
 
-    /// Numbers of the edges of a pair.
+    /// Numbers of the two edges of a pair, each on its side.
     fn of(&self, pair: &Pair) -> [usize; 2] {
         [pair.node, pair.facet - self.sides[1].facets()]
     }
@@ -137,22 +149,24 @@ impl EdgeToEdge {
         pair
     }
 
-    /// The certified test of crossings.
+    /// The certified test for crossings of edges.
     pub(super) fn swept(&self) -> MutexGuard<'_, SweptEdges> {
         self.swept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Nodes of one of two edges, ends first.
+    /// Nodes of one of two edges, ends first: that of the secondary side (`of` = 0) or of the
+    /// primary (1).
     pub(super) fn nodes(&self, edges: [usize; 2], of: usize) -> &[usize] {
         self.sides[of].nodes(edges[of])
     }
 
-    /// Nodes of the facets that meet at one of two edges.
+    /// Nodes of the facets that meet at one of two edges: that of the secondary side (`of` = 0) or
+    /// of the primary (1).
     pub(super) fn around(&self, edges: [usize; 2], of: usize) -> impl Iterator<Item = usize> {
         self.sides[of].around(edges[of])
     }
 
-    /// Out of the body of the primary's edge and into that of the other one.
+    /// A direction out of the body of the edge of the primary side and into that of the other edge.
     pub(super) fn outwards(&self, edges: [usize; 2], xi: [f64; 2], y: &[f64]) -> Vector<3> {
         let sum = |i: usize| {
             let [here, there] = self.sides[i].normals(edges[i], xi[i], y);
@@ -170,8 +184,8 @@ impl EdgeToEdge {
         self.closest(self.of(pair), [pair.xi, pair.eta], y)
     }
 
-    /// Whether the normal lies between those of the facets on both sides, with this margin, and the
-    /// edges do not run along each other.
+    /// Whether two edges cross: their normal lies between those of the facets at either edge, with
+    /// a margin, and the edges do not run along each other.
     pub(super) fn cross(&self, edges: [usize; 2], gap: &EdgeGap, margin: f64, y: &[f64]) -> bool {
         let out = |i: usize| {
             let direction = if i == 1 { gap.normal } else { -gap.normal };
@@ -185,8 +199,8 @@ impl EdgeToEdge {
         a.min(b)
     }
 
-    /// Whether the closest points lie on both edges: `past` an end that another edge continues, and
-    /// `corner` past one where none does.
+    /// Whether the closest points lie on both edges, with the tolerance `past` at an end that
+    /// another edge continues and `corner` at one where none does.
     fn is_on(&self, edges: [usize; 2], xi: [f64; 2], past: f64, corner: f64) -> bool {
         [0, 1].into_iter().all(|i| {
             let continues = self.sides[i].beyond(edges[i], xi[i]).is_some();
@@ -194,14 +208,14 @@ impl EdgeToEdge {
         })
     }
 
-    /// Whether both closest points are near corners: each corner is past an edge of the other
-    /// body's facet there, and neither faces it, however nearly the normal is a facet's.
+    /// Whether both closest points are near corners. Each corner is then past an edge of the other
+    /// body's facet, and neither faces that facet, however nearly the normal is the facet's.
     fn at_corners(&self, edges: [usize; 2], xi: [f64; 2]) -> bool {
         let ends = |i: usize| self.sides[i].beyond(edges[i], xi[i].signum() * (1.0 + PAST)).is_none();
         [0, 1].into_iter().all(|i| xi[i].abs() > 1.0 - NEAR_CORNER && ends(i))
     }
 
-    /// The gap of two edges that have met between these positions.
+    /// Gap of two edges without a pair that have met between two positions, if they have.
     fn candidate(&self, edges: [usize; 2], before: &[f64], now: &[f64]) -> Option<EdgeGap> {
         let gap = self.closest(edges, [0.0; 2], now)?;
         let length = self.shorter(edges, now);
@@ -219,28 +233,31 @@ impl EdgeToEdge {
         (came || self.crossing(&mut self.swept(), edges, before, now).is_some()).then_some(gap)
     }
 
-    /// The edges that continue those of which these points are past an end, if there are any.
-    pub(super) fn beyond(&self, edges: [usize; 2], xi: [f64; 2]) -> Option<([usize; 2], [f64; 2])> {
-        let (mut to, mut start) = (edges, xi);
+    /// The point on the next edge for each of two edges past whose end its coordinate ξ lies, if
+    /// another edge continues one of them.
+    pub(super) fn beyond(&self, edges: [usize; 2], xi: [f64; 2]) -> Option<OnEdges> {
+        let mut to = OnEdges { edges, xi };
         for i in (0..2).filter(|&i| xi[i].abs() > 1.0 + PAST) {
-            if let Some((next, there)) = self.sides[i].beyond(edges[i], xi[i]) {
-                (to[i], start[i]) = (next, there);
+            if let Some(next) = self.sides[i].beyond(edges[i], xi[i]) {
+                to.edges[i] = next.edge;
+                to.xi[i] = next.xi;
             }
         }
-        (to != edges).then_some((to, start))
+        (to.edges != edges).then_some(to)
     }
 
-    /// Where a pair past an end is handed over, if an edge continues there.
+    /// The edges to which a pair whose contact point is past an end is handed over, with their gap,
+    /// if an edge continues there.
     fn next(&self, edges: [usize; 2], xi: [f64; 2], y: &[f64]) -> Option<([usize; 2], EdgeGap)> {
-        let (to, start) = self.beyond(edges, xi)?;
-        let gap = self.closest(to, start, y)?;
-        let goes_on = self.may_meet(to) && self.is_on(to, gap.xi, PAST, PAST);
-        (goes_on && self.cross(to, &gap, OUTSIDE, y)).then_some((to, gap))
+        let OnEdges { edges, xi } = self.beyond(edges, xi)?;
+        let gap = self.closest(edges, xi, y)?;
+        let goes_on = self.may_meet(edges) && self.is_on(edges, gap.xi, PAST, PAST);
+        (goes_on && self.cross(edges, &gap, OUTSIDE, y)).then_some((edges, gap))
     }
 
-    /// Pairs are handed over to the next edges, or removed: at the start of a step from where they
-    /// are, not from where they would be without contact. Those that remain, at the positions
-    /// `now`.
+    /// Hands pairs over to the next edges, or removes them: at the start of a step from where they
+    /// are, not from where they would be without contact. Returns whether anything but an inactive
+    /// pair changed, and the remaining pairs with their gaps at the positions `now`.
     fn follow(
         &self,
         [before, now]: [&[f64]; 2],
@@ -340,8 +357,9 @@ impl EdgeToEdge {
         }
     }
 
-    /// θ at which an edge of the secondary side first meets one of the primary: of the certified
-    /// crossing or, of edges that were in contact before, with gaps that are linear in θ.
+    /// First instant θ at which an edge of the secondary side meets one of the primary: that of the
+    /// certified crossing or, for edges that were in contact before, that at which a linear gap
+    /// vanishes.
     pub(super) fn met(&self, edge: usize, before: &[f64], now: &[f64]) -> Option<f64> {
         let mut first: Option<f64> = None;
         self.each_near(before, now, |edges| {

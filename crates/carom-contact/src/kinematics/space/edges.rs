@@ -6,32 +6,40 @@ use std::collections::{BTreeSet, HashMap};
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull};
 
-use super::boundary::Boundary;
+use super::boundary::{Boundary, EdgeOfFacet};
 use super::patch::{cross, place};
 use crate::kinematics::Facets;
 
 /// Cosine of the angle up to which an edge continues another one.
 const STRAIGHT: f64 = 0.87;
 
-/// The sharp edges of a side.
+/// The sharp convex edges of a side.
 #[derive(Debug)]
 pub(super) struct Edges {
     boundary: Boundary,
-    /// Facet and edge of the facet.
-    places: Vec<(usize, usize)>,
-    /// Nodes of each, ends first.
+    /// Every sharp edge as an edge of the first facet that contains it.
+    places: Vec<EdgeOfFacet>,
+    /// Nodes of every edge, ends first.
     nodes: Vec<Vec<usize>>,
-    /// The edge that continues it at its start and at its end, and whether it does so with its end.
+    /// The edges that continue every edge at its start and at its end, and whether they do so with
+    /// their own end.
     next: Vec<[Option<(usize, bool)>; 2]>,
     hull: Hull,
 }
 
+/// A point of a sharp edge.
+pub(super) struct OnEdge {
+    pub(super) edge: usize,
+    /// Coordinate along the edge, −1 … 1 between its ends.
+    pub(super) xi: f64,
+}
+
 impl Edges {
-    /// Of the side of a boundary at its reference positions; without those between nodes of other
-    /// sides, which constrain them.
+    /// The sharp edges of a side at its reference positions, without those between nodes of other
+    /// sides, whose contacts constrain them.
     pub(super) fn new(boundary: Boundary, others: &BTreeSet<usize>, reference: &[f64]) -> Self {
         let shape = boundary.shape();
-        let nodes_of = |&(facet, edge): &(usize, usize)| {
+        let nodes_of = |&EdgeOfFacet { facet, edge }: &EdgeOfFacet| {
             let (local, count) = shape.edge(edge);
             local[..count].iter().map(|&k| boundary.nodes_of(facet)[k]).collect::<Vec<usize>>()
         };
@@ -64,7 +72,7 @@ impl Edges {
         Self { boundary, places, nodes, next, hull }
     }
 
-    /// Number of edges.
+    /// Number of sharp edges.
     pub(super) fn len(&self) -> usize {
         self.places.len()
     }
@@ -79,54 +87,56 @@ impl Edges {
         &self.nodes[edge]
     }
 
-    /// One of the facets that meet at an edge.
+    /// The first of the facets that meet at an edge.
     pub(super) fn facet(&self, edge: usize) -> usize {
-        self.places[edge].0
+        self.places[edge].facet
     }
 
     /// Nodes of the facets that meet at an edge.
     pub(super) fn around(&self, edge: usize) -> impl Iterator<Item = usize> {
-        let (facet, of_facet) = self.places[edge];
-        let facets = std::iter::once(facet).chain(self.boundary.across(facet, of_facet));
+        let place = self.places[edge];
+        let facets = std::iter::once(place.facet).chain(self.boundary.across(place.facet, place.edge));
         facets.flat_map(|facet| self.boundary.nodes_of(facet).iter().copied())
     }
 
-    /// What bounds the sum of weights of an edge's nodes in the points of its box.
+    /// Bound of the sum of the weights of an edge's nodes in the points of its bounding box.
     pub(super) fn weight(&self) -> f64 {
         self.hull.weight()
     }
 
-    /// Box around an edge.
+    /// Bounding box of an edge.
     pub(super) fn bounds(&self, edge: usize, y: &[f64]) -> Bounds {
         let nodes = &self.nodes[edge];
         self.hull.bounds(|a| &y[3 * nodes[a]..3 * nodes[a] + 3])
     }
 
-    /// Distance between the ends.
+    /// Distance between the ends of an edge.
     pub(super) fn length(&self, edge: usize, y: &[f64]) -> f64 {
         (place(y, self.nodes[edge][1]) - place(y, self.nodes[edge][0])).norm()
     }
 
-    /// The edge that continues it beyond ξ, and ξ there of the same distance from the joint.
-    pub(super) fn beyond(&self, edge: usize, xi: f64) -> Option<(usize, f64)> {
+    /// The point of the next edge that lies as far from the common joint as ξ lies past the end of
+    /// an edge, if another edge continues it.
+    pub(super) fn beyond(&self, edge: usize, xi: f64) -> Option<OnEdge> {
         let (next, is_end) = self.next[edge][usize::from(xi > 0.0)]?;
         let excess = xi.abs() - 1.0;
-        Some((next, if is_end { 1.0 - excess } else { excess - 1.0 }))
+        Some(OnEdge { edge: next, xi: if is_end { 1.0 - excess } else { excess - 1.0 } })
     }
 
-    /// Whether another edge is the same or continues it.
+    /// Whether two edges are equal or one continues the other.
     pub(super) fn is_near(&self, edge: usize, other: usize) -> bool {
         edge == other || self.next[edge].iter().flatten().any(|&(next, _)| next == other)
     }
 
-    /// Outward normals of the facets that meet at ξ.
+    /// Outward normals of the two facets that meet at an edge, at ξ.
     pub(super) fn normals(&self, edge: usize, xi: f64, y: &[f64]) -> [Vector<3>; 2] {
-        let (facet, of_facet) = self.places[edge];
-        self.boundary.normals_at_edge(facet, of_facet, 0.5 * (1.0 + xi.clamp(-1.0, 1.0)), y)
+        let place = self.places[edge];
+        self.boundary.normals_at_edge(place.facet, place.edge, 0.5 * (1.0 + xi.clamp(-1.0, 1.0)), y)
     }
 
-    /// How far a direction points out of the body at ξ of an edge with this tangent: the smaller
-    /// sine of its angles to the planes across the facets; positive between the facets' normals.
+    /// Sine of the angle by which a direction points out of the body at ξ of an edge with this
+    /// tangent: the smaller one of its angles to the planes perpendicular to the two facets;
+    /// positive between the normals of the facets.
     pub(super) fn outwards(
         &self,
         edge: usize,
@@ -137,7 +147,8 @@ impl Edges {
     ) -> f64 {
         let [here, there] = self.normals(edge, xi, y);
         // Into the facets: counter-clockwise seen from outside.
-        let [first, second] = [cross(here, tangent), cross(tangent, there)];
+        let first = cross(here, tangent);
+        let second = cross(tangent, there);
         -first.dot(&direction).max(second.dot(&direction))
     }
 }

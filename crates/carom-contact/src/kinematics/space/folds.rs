@@ -15,45 +15,50 @@
 //! the two faces of a wall from the reference configuration. Unconnected pieces can always meet, by
 //! the rules of two bodies.
 //!
-//! Of two places that meet, one is the secondary: that of the later piece; within a piece that of
-//! the later smooth part of the boundary, parts being separated by kinks of more than 30°; within a
+//! The secondary one of two places that meet is that of the later piece; within a piece that of the
+//! later smooth part of the boundary, parts being separated by kinks of more than 30°; within a
 //! part that which lies further along a direction in which no symmetry of a usual mesh lies.
 
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull, Tree};
 
-use super::boundary::{Boundary, SHARP};
+use super::boundary::{Boundary, Height, SHARP};
 use super::patch::place;
 use crate::kinematics::{Facets, Side};
 
-/// −cos 60°.
+/// Cosine of the angle between two outward normals, −cos 60°, below which two places face each
+/// other.
 const OPPOSED: f64 = -0.5;
-/// Distance up to which what lies behind a facet is its own wall, over its length.
+/// Distance, relative to the length of a facet, up to which facets behind it are the other face of
+/// the same wall.
 const WALL: f64 = 3.0;
-/// Height over the length of a facet below which a node is behind it: flanks of a slit coincide.
+/// Depth behind a facet, relative to its length, from which on a point is behind it: the flanks of
+/// a slit coincide.
 const BEHIND: f64 = 1e-6;
-/// Cosine between the normals of a node and of a facet above which a wall has no such two faces.
+/// Cosine of the angle between two outward normals above which they do not belong to the two faces
+/// of a wall.
 const ALIKE: f64 = 0.5;
-/// The direction that orders the places of a smooth part.
+/// The direction along which the places of a smooth part of a boundary are ordered.
 const ALONG: Vector<3> = Vector([1.0, 0.618, 0.382]);
 
 /// The order of the places of a boundary, and the faces of its walls, in global node numbers.
 #[derive(Debug)]
 pub(super) struct PatchFolds {
-    /// Smallest node.
+    /// Smallest global number of a node of the boundary.
     first: usize,
-    /// Facets that contain each node, ascending.
+    /// Facets that contain each node, ascending, for all nodes from the smallest on.
     own: Vec<Vec<usize>>,
     /// Facets behind the middle of each facet, across its wall, ascending.
     walls: Vec<Vec<usize>>,
-    /// Piece and smooth part of each facet, and how far along the direction of the order it lies.
+    /// Connected piece and smooth part of each facet, and the coordinate of its middle along the
+    /// direction of the order.
     places: Vec<(usize, usize, f64)>,
-    /// The last of each node.
+    /// Coordinate of each node along the direction of the order.
     along: Vec<f64>,
 }
 
 impl PatchFolds {
-    /// Of all facets of a boundary at reference positions, flat over all nodes; `piece`: the
+    /// Orders the places of a boundary at reference positions, flat over all nodes; `piece`: the
     /// connected piece of the body to which each node belongs, from `first_node` on.
     pub(super) fn new(boundary: &Boundary, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
         let nodes = boundary.nodes();
@@ -77,7 +82,7 @@ impl PatchFolds {
         folds
     }
 
-    /// The facets behind the middle of every facet.
+    /// Finds the facets behind the middle of every facet across its wall.
     fn walls_of(&self, boundary: &Boundary, reference: &[f64]) -> Vec<Vec<usize>> {
         let hull = Hull::facet(boundary.shape());
         let tree = Tree::new(boundary.all(), |facet| boundary.bounds(&hull, facet, reference));
@@ -91,7 +96,7 @@ impl PatchFolds {
                 if facet == own || alike || self.are_of_different_pieces(own, facet) {
                     return false;
                 }
-                let (distance, height) = boundary.height(facet, point, reference);
+                let Height { distance, height } = boundary.height(facet, point, reference);
                 distance < reach && height < -BEHIND * boundary.patch(facet).length(reference)
             };
             let mut walls = Vec::new();
@@ -107,29 +112,32 @@ impl PatchFolds {
         node.checked_sub(self.first).and_then(|k| self.own.get(k)).map_or(&[], Vec::as_slice)
     }
 
-    /// Whether a facet lies behind another one across its wall.
+    /// Whether a facet lies behind the facet `own` across its wall.
     fn is_behind(&self, own: usize, facet: usize) -> bool {
         self.walls[own].binary_search(&facet).is_ok()
     }
 
-    /// Which of two places is that of a node on a facet `own` when it meets another facet.
+    /// Side in the order of places on which a node of the facet `own` is when it meets another
+    /// facet.
     fn side(&self, node: usize, own: usize, facet: usize) -> Side {
-        let (here, there) = (self.places[own], self.places[facet]);
+        let here = self.places[own];
+        let there = self.places[facet];
         let order = (here.0, here.1).cmp(&(there.0, there.1));
         let later = order.then(self.along[node - self.first].total_cmp(&there.2)).is_ge();
         if later { Side::Later } else { Side::Earlier }
     }
 
-    /// Whether a pair of a node and a facet is possible with the node on that side, as far as the
-    /// reference configuration tells.
+    /// Whether a node and a facet may form a pair in which the node is on the given side, as far as
+    /// the reference configuration tells.
     pub(super) fn admits(&self, side: Side, node: usize, facet: usize) -> bool {
         let own = self.own(node);
         own.binary_search(&facet).is_err()
             && own.iter().any(|&own| self.side(node, own, facet) == side && !self.is_behind(own, facet))
     }
 
-    /// The side of a node that may meet a facet at positions with this normal of every facet's
-    /// middle; none if the two places cannot meet, or do not face each other.
+    /// Side in the order of places on which a node is that may meet a facet, at positions with the
+    /// given normals of the facets' middles; none if the two places cannot meet, or do not face
+    /// each other.
     pub(super) fn met(&self, node: usize, facet: usize, normal: impl Fn(usize) -> Vector<3>) -> Option<Side> {
         let own = self.own(node);
         let &one = own.first()?;
@@ -140,7 +148,8 @@ impl PatchFolds {
             return Some(self.side(node, one, facet));
         }
         let mut most = (one, f64::INFINITY);
-        let (mut mean, there) = (Vector::ZERO, normal(facet));
+        let mut mean = Vector::ZERO;
+        let there = normal(facet);
         for &own in own {
             let cosine = normal(own).dot(&there);
             mean += normal(own);
@@ -152,35 +161,36 @@ impl PatchFolds {
         (opposed && !self.is_behind(most.0, facet)).then(|| self.side(node, most.0, facet))
     }
 
-    /// Whether two facets bound different pieces.
+    /// Whether two facets bound different connected pieces of the body.
     pub(super) fn are_of_different_pieces(&self, one: usize, other: usize) -> bool {
         self.places[one].0 != self.places[other].0
     }
 
-    /// Whether a facet bounds another piece than that of a node.
+    /// Whether a facet bounds another connected piece of the body than that of a node.
     pub(super) fn is_of_another_piece(&self, node: usize, facet: usize) -> bool {
         self.own(node).first().is_some_and(|&own| self.are_of_different_pieces(own, facet))
     }
 
-    /// Whether there are several pieces.
+    /// Whether the body consists of several connected pieces.
     pub(super) fn has_pieces(&self) -> bool {
         self.places.iter().any(|place| place.0 != self.places[0].0)
     }
 
-    /// Whether the place of a facet comes later than that of another one.
+    /// Whether a facet comes later in the order of places than another one.
     pub(super) fn is_later(&self, facet: usize, other: usize) -> bool {
-        let (here, there) = (self.places[facet], self.places[other]);
+        let here = self.places[facet];
+        let there = self.places[other];
         (here.0, here.1).cmp(&(there.0, there.1)).then(here.2.total_cmp(&there.2)).is_gt()
     }
 }
 
-/// Outward normals at the middles of all facets.
+/// Updates the outward normals at the middles of all facets.
 pub(super) fn update_normals(boundary: &Boundary, y: &[f64], normals: &mut Vec<Vector<3>>) {
     normals.clear();
     normals.extend((0..boundary.all()).map(|facet| boundary.middle(facet, y).normal));
 }
 
-/// The smooth part of each facet, named by its first one.
+/// Smooth part of the boundary to which each facet belongs, named by the first facet of that part.
 fn smooth_parts(boundary: &Boundary, reference: &[f64]) -> Vec<usize> {
     let mut part = vec![usize::MAX; boundary.all()];
     let mut next = Vec::new();

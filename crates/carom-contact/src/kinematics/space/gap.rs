@@ -23,18 +23,18 @@ use carom_solid::FacetFunctions;
 
 use super::patch::{Patch, PatchPoint, is_positive};
 
-/// A node over a facet at its closest point.
+/// Gap of a node over a facet in space at its closest point, with its derivatives.
 pub(crate) struct PatchGap {
     at: PatchPoint,
     functions: FacetFunctions,
-    /// The gap g.
+    /// Gap g.
     pub(crate) distance: f64,
     bend: Mat<2>,
     a: Mat<2>,
 }
 
 impl PatchGap {
-    /// At the closest point ξ.
+    /// Gap of a node at `from` over the closest point ξ of a facet.
     pub(crate) fn new(patch: Patch, y: &[f64], from: Vector<3>, xi: [f64; 2]) -> Self {
         let at = patch.seen_from(from, y, xi);
         let distance = -at.position.dot(&at.normal);
@@ -43,21 +43,23 @@ impl PatchGap {
         Self { at, functions: patch.shape.functions(xi), distance, bend, a }
     }
 
-    /// det A, if A > 0; else a number that is not positive.
+    /// Determinant of the second derivative A of half the squared distance if the closest point is
+    /// unique, A > 0; otherwise a number that is not positive.
     pub(crate) fn regularity(&self) -> f64 {
         if is_positive(&self.a) { self.a.det() } else { self.a.det().min(0.0) }
     }
 
-    /// ∂g/∂y of the node and of `count` nodes of the facet.
+    /// Gradient ∂g/∂y of the gap: for the node, then for `count` nodes of the facet.
     pub(crate) fn gradient(&self, count: usize) -> impl Iterator<Item = Vector<3>> {
         let of_facet = (0..count).map(|k| self.at.normal * -self.functions.values[k]);
         std::iter::once(self.at.normal).chain(of_facet)
     }
 
-    /// ∂²g/∂y∂y of the node and of `count` nodes of the facet: overwrites the first
-    /// (3 + 3 `count`)² entries, row-major.
+    /// Second derivative ∂²g/∂y∂y of the gap by the node and `count` nodes of the facet: overwrites
+    /// the first (3 + 3 `count`)² entries, row-major.
     pub(crate) fn curvature_into(&self, count: usize, curvature: &mut [f64]) {
-        let (n, t) = (self.at.normal, self.at.tangents);
+        let n = self.at.normal;
+        let t = self.at.tangents;
         let inverse = self.a.inverse();
         let turned = self.at.metric().inverse() * self.bend * inverse;
         let weight = |p: usize| if p == 0 { 1.0 } else { -self.functions.values[p - 1] };
@@ -86,19 +88,21 @@ impl PatchGap {
         }
     }
 
-    /// n.
+    /// Unit normal n of the facet at the closest point.
     pub(crate) fn normal(&self) -> Vector<3> {
         self.at.normal
     }
 
-    /// c of a tangent.
+    /// Components c of a tangent vector e = Σ c_β τ_β in the tangents of the facet.
     fn components(&self, along: Vector<3>) -> Vector<2> {
         self.at.metric().inverse().apply(&Vector(self.at.tangents.map(|t| t.dot(&along))))
     }
 
-    /// H of a tangent, of the node and of `count` nodes of the facet.
+    /// Row H of the slip along a tangent: for the node, then for `count` nodes of the facet.
     pub(crate) fn slip(&self, along: Vector<3>, count: usize) -> impl Iterator<Item = Vector<3>> {
-        let (n, c, slopes) = (self.at.normal, self.components(along), &self.functions.slopes);
+        let n = self.at.normal;
+        let c = self.components(along);
+        let slopes = &self.functions.slopes;
         let of_facet = move |k: usize| {
             let turned = self.distance * (c[0] * slopes[0][k] + c[1] * slopes[1][k]);
             along * -self.functions.values[k] + n * turned
@@ -106,9 +110,9 @@ impl PatchGap {
         std::iter::once(along).chain((0..count).map(of_facet))
     }
 
-    /// ∂H/∂y of a tangent, of the node and of `count` nodes of the facet, whose functions have
-    /// these second derivatives by ξξ, ξη and ηη: overwrites the first (3 + 3 `count`)² entries,
-    /// row-major.
+    /// Derivative ∂H/∂y of the row of the slip along a tangent by the node and `count` nodes of the
+    /// facet, whose shape functions have the second derivatives `second` by ξξ, ξη and ηη:
+    /// overwrites the first (3 + 3 `count`)² entries, row-major.
     pub(crate) fn slip_derivative_into<T: AsRef<[f64]>>(
         &self,
         along: Vector<3>,
@@ -117,8 +121,11 @@ impl PatchGap {
         matrix: &mut [f64],
     ) {
         let PatchPoint { tangents: t, normal: n, second: bent, .. } = self.at;
-        let (gap, size, c) = (self.distance, 3 * (1 + count), self.components(along));
-        let (inverse, lifted) = (self.a.inverse(), self.at.metric().inverse());
+        let gap = self.distance;
+        let size = 3 * (1 + count);
+        let c = self.components(along);
+        let inverse = self.a.inverse();
+        let lifted = self.at.metric().inverse();
         let dual: [Vector<3>; 2] = std::array::from_fn(|i| t[0] * lifted.0[i][0] + t[1] * lifted.0[i][1]);
         // φ, its slopes and its second derivatives; those of the node itself are −1 and 0.
         let phi = |p: usize| if p == 0 { -1.0 } else { self.functions.values[p - 1] };

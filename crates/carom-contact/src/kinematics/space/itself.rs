@@ -11,17 +11,17 @@ use super::folds::PatchFolds;
 use super::node_to_patch::{NodeToPatch, PAST};
 use super::paths::Paths;
 use super::with_edges::WithEdges;
-use crate::kinematics::{BothSides, Side};
+use crate::kinematics::{BothSides, NodesWithDepth, Side};
 
 impl WithEdges {
-    /// A side against itself: its nodes, and the same with the depth that each may have where its
-    /// place is the earlier one, none at sharp edges; `piece`: the connected piece of its body to
-    /// which each node belongs, from `first_node` on; `reference`: the reference positions, flat
-    /// over all nodes.
+    /// A side against itself: its nodes in the role of the later place, and those in the role of
+    /// the earlier one, whose depth is zero at sharp edges; `piece`: the connected piece of its
+    /// body to which each node belongs, from `first_node` on; `reference`: the reference positions,
+    /// flat over all nodes.
     pub fn of_itself(
         side: &Boundary,
         nodes: Vec<usize>,
-        (earlier, allowed): (Vec<usize>, Vec<f64>),
+        earlier: NodesWithDepth,
         piece: &[usize],
         first_node: usize,
         reference: &[f64],
@@ -32,20 +32,21 @@ impl WithEdges {
         };
         let others = [BTreeSet::new(), BTreeSet::new()];
         let edges = EdgeToEdge::new([side.clone(), side.clone()], &others, reference).folding(folds.clone());
-        let both = BothSides::new(of(nodes, Side::Later), of(earlier, Side::Earlier).with_allowed(allowed));
+        let reverse = of(earlier.nodes, Side::Earlier).with_allowed(earlier.depths);
+        let both = BothSides::new(of(nodes, Side::Later), reverse);
         Self::new(both, edges, side.facets())
     }
 }
 
 impl NodeToPatch {
-    /// Whether a node has no business on a facet: one of its own, one across its wall, or one that
-    /// is the node's in the other direction.
+    /// Whether a node must not form a pair with a facet: one that contains the node, one across its
+    /// wall, or one that the other direction of contact compares it with.
     pub(super) fn excludes(&self, node: usize, facet: usize) -> bool {
         self.folds.as_ref().is_some_and(|(folds, side)| !folds.admits(*side, node, facet))
     }
 
-    /// Whether ξ lies past an edge of a facet across which an excluded one follows. Sharp edges
-    /// have their own tolerance, whatever follows.
+    /// Whether ξ lies past an edge of a facet across which a facet follows that the node must not
+    /// form a pair with. Sharp edges have their own tolerance, whatever follows.
     pub(super) fn ends_at(&self, node: usize, facet: usize, xi: [f64; 2], y: &[f64]) -> bool {
         let patch = self.primary.patch(facet);
         self.folds.is_some()
@@ -64,15 +65,15 @@ impl NodeToPatch {
             && self.may_press(node, y, |facet| self.primary.middle(facet, y))(facet)
     }
 
-    /// Of facets near a node, those that it may meet as they are at the start of the step, in
-    /// either direction: those of the other one tell where it enters.
+    /// Keeps those of the facets near a node that it may meet at the start of the step, in either
+    /// direction of contact: those of the other direction tell where it enters.
     pub(super) fn retain_met(&self, node: usize, paths: &Paths, near: &mut Vec<usize>) {
         if let Some((folds, _)) = &self.folds {
             near.retain(|&facet| folds.met(node, facet, |facet| paths.middle(facet).normal).is_some());
         }
     }
 
-    /// Whether a node may have a pair with a facet near it.
+    /// Whether a node may have a pair with a facet near it, at the start of the step.
     pub(super) fn is_met(&self, node: usize, facet: usize, paths: &Paths) -> bool {
         let of_fold = |(folds, side): &(Arc<PatchFolds>, Side)| {
             folds.met(node, facet, |facet| paths.middle(facet).normal) == Some(*side)

@@ -30,19 +30,24 @@ use crate::kinematics::hand_over::{Held, Next, Sliding};
 use crate::kinematics::opposed::is_left;
 use crate::kinematics::recent::Recent;
 use crate::kinematics::tangents::tangents;
-use crate::kinematics::{Facets, Kinematics, OneWay, Passed, Side, SweptPatch};
+use crate::kinematics::{Facets, Kinematics, OnFacet, OneWay, Passed, Side, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::rows::Rows;
 
-/// Distance past an edge, over the height of the facet, up to which a facet is extrapolated.
+/// Distance past an edge, relative to the height of the facet, up to which a facet is extrapolated.
 pub(super) const REACH: f64 = 0.2;
-/// The same beyond which a pair is handed over before Newton's method has converged.
+/// Distance past an edge, relative to the height of the facet, beyond which a pair is handed over
+/// to the next facet before Newton's method has converged.
 const HAND_OVER: f64 = 0.02;
+/// Distance past an edge, relative to the height of the facet, beyond which a pair is handed back
+/// to the facet that it came from before Newton's method has converged.
 const HAND_BACK: f64 = 0.1;
-/// The same above which a closest point is past an edge.
+/// Distance past an edge, relative to the height of the facet, above which a closest point is past
+/// it.
 pub(super) const PAST: f64 = 1e-9;
-/// The same at a sharp edge or the end of a side: blocks that are pressed together edge to edge
-/// bulge differently, and where two edges of either meet neither corner faces the other block.
+/// Distance past a sharp edge or the end of a side, relative to the height of the facet, above
+/// which a closest point is past it: blocks that are pressed together edge to edge bulge
+/// differently, and where two edges of either meet neither corner faces the other block.
 const PAST_SIDE: f64 = 2e-2;
 /// Difference between the gaps of two facets, relative to their length, up to which either keeps a
 /// node out that would be handed to and fro between them: two rows would depend on each other.
@@ -56,17 +61,17 @@ pub struct NodeToPatch {
     pub(super) hull: Hull,
     /// Depth that each node may have without contact; empty if none may have any.
     allowed: Vec<f64>,
-    /// Depth that each node keeps; empty if none does.
+    /// Initial depth that is kept for each node; empty if all are zero.
     kept: Vec<f64>,
-    /// Of nodes of the primary side itself: which facets they may meet, and which of two places
-    /// that meet is the node's.
+    /// For contact of a side with itself: which facets a node may meet, and which of two places
+    /// that meet is that of the nodes.
     pub(super) folds: Option<(Arc<PatchFolds>, Side)>,
-    /// The boundary of the nodes' own body.
+    /// The boundary of the body to which the secondary nodes belong.
     own: Option<Boundary>,
     tools: Mutex<Tools>,
 }
 
-/// Reused memory; results do not depend on its content.
+/// Memory that searches reuse; results do not depend on its content.
 #[derive(Debug)]
 pub(super) struct Tools {
     pub(super) paths: Paths,
@@ -76,7 +81,7 @@ pub(super) struct Tools {
 }
 
 impl NodeToPatch {
-    /// Secondary nodes and primary boundary in global node numbers.
+    /// Contact of secondary nodes with a primary boundary, in global node numbers.
     pub fn new(secondary: Vec<usize>, primary: Boundary) -> Self {
         let hull = Hull::facet(primary.shape());
         let apart = Apart::new(primary.nodes().iter().chain(&secondary).copied(), 3, hull.weight());
@@ -95,20 +100,21 @@ impl NodeToPatch {
         }
     }
 
-    /// The same with a depth for each node that it may have without contact.
+    /// Contact in which each node may have a depth without contact; its gap is larger by that
+    /// depth.
     #[must_use]
     pub fn with_allowed(self, allowed: Vec<f64>) -> Self {
         Self { allowed, ..self }
     }
 
-    /// The same for nodes of a body with this boundary.
+    /// Contact of nodes that belong to a body with the boundary `own`.
     #[must_use]
     pub fn of_body(self, own: Boundary) -> Self {
         Self { own: Some(own), ..self }
     }
 
-    /// The facets with these middles on which a node can press, rather than on one beside them
-    /// (`opposed.rs`).
+    /// A test whether a node can press on a facet, rather than on one beside it (`opposed.rs`),
+    /// given the middles of all facets.
     pub(super) fn may_press<'a>(
         &'a self,
         node: usize,
@@ -130,7 +136,7 @@ impl NodeToPatch {
         }
     }
 
-    /// Of facets near a node, those on which it can press at the start of a step.
+    /// Keeps those of the facets near a node on which it can press at the start of a step.
     pub(super) fn retain_pressed(&self, node: usize, before: &[f64], paths: &Paths, near: &mut Vec<usize>) {
         if !near.is_empty() {
             let may_press = self.may_press(node, before, |facet| paths.middle(facet));
@@ -138,7 +144,7 @@ impl NodeToPatch {
         }
     }
 
-    /// The same for nodes of the primary side itself.
+    /// Contact of nodes of the primary side with that side itself.
     pub(super) fn folding(self, folds: Arc<PatchFolds>, side: Side) -> Self {
         Self { folds: Some((folds, side)), ..self }
     }
@@ -153,12 +159,14 @@ impl NodeToPatch {
     }
 
     fn closest(&self, pair: &Pair, y: &[f64]) -> Option<[f64; 2]> {
-        let (patch, from) = (self.primary.patch(pair.facet), place(y, self.secondary[pair.node]));
+        let patch = self.primary.patch(pair.facet);
+        let from = place(y, self.secondary[pair.node]);
         let start = [pair.xi, pair.eta];
         patch.closest_from(y, from, start, WANDER).or_else(|| patch.closest_point(y, from, REACH))
     }
 
-    /// Whether ξ lies past an edge of a facet across which no blunt joint with the side follows.
+    /// Whether ξ lies past an edge of a facet at which no blunt joint with another facet of the
+    /// side follows.
     pub(super) fn faces_nothing(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> bool {
         let patch = self.primary.patch(facet);
         (0..patch.corners()).zip(patch.beyond(xi)).any(|(edge, beyond)| {
@@ -173,11 +181,11 @@ impl NodeToPatch {
         })
     }
 
-    /// The next facet of a pair that is past an edge of its facet.
+    /// Facet to which a pair whose closest point lies past an edge of its facet is handed over.
     fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: &[f64]) -> Next {
         let xi = [pair.xi, pair.eta];
         let patch = self.primary.patch(pair.facet);
-        if patch.furthest(xi).1 <= PAST {
+        if patch.furthest(xi) <= PAST {
             return Next::Stay;
         }
         let node = self.secondary[pair.node];
@@ -215,25 +223,92 @@ impl NodeToPatch {
             }
             Some((facet, _, xi)) => Next::HandOver(facet, xi),
             None => {
-                if let Some((facet, xi)) = self.in_crease(node, pair.facet, y) {
+                if let Some(OnFacet { facet, xi }) = self.in_crease(node, pair.facet, y) {
                     return Next::Concave(facet, xi);
                 }
-                let bridged = patch.furthest(xi).1 <= REACH && !self.faces_nothing(pair.facet, xi, y);
+                let bridged = patch.furthest(xi) <= REACH && !self.faces_nothing(pair.facet, xi, y);
                 if bridged { Next::Stay } else { Next::Leave }
             }
         }
     }
 
-    /// How far a pair is past an edge of its facet, over its height.
+    /// Hands over, adds or drops pairs past the edges of their facets. Returns whether anything but
+    /// an inactive pair changed.
+    fn slide(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
+        let enters = |place_of: usize, facet: usize, xi: [f64; 2]| {
+            let node = self.secondary[place_of];
+            self.gap(facet, xi, place(now, node), now) + self.slack(place_of) < 0.0
+        };
+        let next = |pair: &Pair, came_from| self.next_facet(pair, came_from, now);
+        let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
+        let held = Held::all(&pairing.pairs);
+        let is_near = |pair: &Pair| self.beyond(pair) <= REACH;
+        sliding.search(pairing, held, is_near, enters, events)
+    }
+
+    /// Adds a pair for every node that may have reached a facet, and for nodes with pairs that
+    /// enter the side elsewhere. Returns whether one of them penetrates. `repeats`: whether what
+    /// the last search found still holds; `separation`: the gap beyond which a candidate stays
+    /// open.
+    fn find_pairs(
+        &self,
+        tools: &mut Tools,
+        pairs: &mut Vec<Pair>,
+        [before, now]: [&[f64]; 2],
+        repeats: bool,
+        separation: f64,
+    ) -> bool {
+        let Tools { paths, recent, swept, .. } = tools;
+        let mut changed = false;
+        let known = pairs.len();
+        let mut next = 0;
+        let mut near = Vec::new();
+        for (k, &node) in self.secondary.iter().enumerate() {
+            let first = next;
+            while next < known && pairs[next].node == k {
+                next += 1;
+            }
+            let held = &pairs[first..next];
+            if held.is_empty()
+                && repeats
+                && let Some(candidate) = recent.get(k)
+            {
+                pairs.extend(candidate.map(|at| Pair::opened(k, at)));
+                continue;
+            }
+            paths.find_into(node, [before, now], &mut near);
+            self.retain_met(node, paths, &mut near);
+            if !held.is_empty() {
+                if let Some(at) = self.elsewhere(swept, &mut near, paths, k, held, [before, now]) {
+                    changed = true;
+                    pairs.push(Pair::opened(k, at));
+                }
+                continue;
+            }
+            let candidate = self.candidate(swept, &mut near, paths, k, before, now);
+            let gap = candidate.map_or(f64::INFINITY, |OnFacet { facet, xi }| {
+                self.gap(facet, xi, place(now, node), now) + self.slack(k)
+            });
+            let candidate = candidate.filter(|_| self.allowed(k) == 0.0 || gap < 0.0);
+            if candidate.is_none() || gap > separation {
+                recent.set(k, candidate);
+            }
+            changed |= gap < 0.0;
+            pairs.extend(candidate.map(|at| Pair::opened(k, at)));
+        }
+        changed
+    }
+
+    /// How far a pair is past an edge of its facet, over the height of the facet.
     fn beyond(&self, pair: &Pair) -> f64 {
-        self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1
+        self.primary.patch(pair.facet).furthest([pair.xi, pair.eta])
     }
 }
 
 impl OneWay for NodeToPatch {
     const NEAR_END: f64 = 0.5 * PAST_SIDE;
 
-    fn facets_at(&self, node: usize) -> Vec<(usize, [f64; 2])> {
+    fn facets_at(&self, node: usize) -> Vec<OnFacet<[f64; 2]>> {
         self.primary.facets_at(node)
     }
 
@@ -276,7 +351,7 @@ impl Kinematics for NodeToPatch {
     }
 
     fn is_on_facet(&self, pair: &Pair) -> bool {
-        self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]).1 <= 0.0
+        self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]) <= 0.0
     }
 
     fn facets(&self, _: usize) -> usize {
@@ -301,22 +376,15 @@ impl Kinematics for NodeToPatch {
         events: &mut Vec<PairEvent>,
     ) -> bool {
         let starts = pairing.fresh;
-        let enters = |place_of: usize, facet: usize, xi: [f64; 2]| {
-            let node = self.secondary[place_of];
-            self.gap(facet, xi, place(now, node), now) + self.slack(place_of) < 0.0
-        };
-        let next = |pair: &Pair, came_from| self.next_facet(pair, came_from, now);
-        let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
-        let (held, is_near) = (Held::all(&pairing.pairs), |pair: &Pair| self.beyond(pair) <= REACH);
-        let mut changed = sliding.search(pairing, held, is_near, enters, events);
+        let slid = self.slide(now, pairing, events);
         let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { paths, apart, recent, swept } = &mut *tools;
+        let Tools { paths, apart, recent, .. } = &mut *tools;
         if starts {
             recent.forget();
         }
         if apart.holds(*margin, [before, now]) {
-            return changed;
+            return slid;
         }
         let separation = SEPARATION * self.primary.shortest(before);
         let repeats = recent.repeats(*margin, [before, now], separation);
@@ -328,43 +396,9 @@ impl Kinematics for NodeToPatch {
             let boxes = [&paths.tree().bounds(), &nodes.grown(NOISE * nodes.size())];
             apart.searched(boxes, [*margin, NOISE], now);
         }
-        let (known, mut next, mut near) = (pairs.len(), 0, Vec::new());
-        for (k, &node) in self.secondary.iter().enumerate() {
-            let first = next;
-            while next < known && pairs[next].node == k {
-                next += 1;
-            }
-            let held = &pairs[first..next];
-            if held.is_empty()
-                && repeats
-                && let Some(candidate) = recent.get(k)
-            {
-                pairs.extend(candidate.map(|(facet, xi)| Pair::opened(k, facet, xi)));
-                continue;
-            }
-            paths.find_into(node, [before, now], &mut near);
-            self.retain_met(node, paths, &mut near);
-            let near_by = (&mut near, &*paths);
-            if !held.is_empty() {
-                if let Some((facet, xi)) = self.elsewhere(swept, near_by, k, held, [before, now]) {
-                    changed = true;
-                    pairs.push(Pair::opened(k, facet, xi));
-                }
-                continue;
-            }
-            let candidate = self.candidate(swept, near_by, k, before, now);
-            let gap = candidate.map_or(f64::INFINITY, |(facet, xi)| {
-                self.gap(facet, xi, place(now, node), now) + self.slack(k)
-            });
-            let candidate = candidate.filter(|_| self.allowed(k) == 0.0 || gap < 0.0);
-            if candidate.is_none() || gap > separation {
-                recent.set(k, candidate);
-            }
-            changed |= gap < 0.0;
-            pairs.extend(candidate.map(|(facet, xi)| Pair::opened(k, facet, xi)));
-        }
+        let found = self.find_pairs(&mut tools, pairs, [before, now], repeats, separation);
         in_order(pairs);
-        changed
+        slid || found
     }
 
     fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
@@ -378,9 +412,9 @@ impl Kinematics for NodeToPatch {
             paths.find_into(node, [before, now], &mut near);
             self.retain_met(node, paths, &mut near);
             self.retain_pressed(node, before, paths, &mut near);
-            let first = self.first(swept, (&near, paths), node, before, now);
-            let (theta, _) = first.filter(|&(_, facet)| self.is_met(node, facet, paths))?;
-            (self.slack(k) == 0.0).then(|| theta.clamp(0.0, 1.0))
+            let first = self.first(swept, &near, paths, node, before, now);
+            let first = first.filter(|first| self.is_met(node, first.facet, paths))?;
+            (self.slack(k) == 0.0).then(|| first.theta.clamp(0.0, 1.0))
         };
         nodes.iter().map(&mut met).collect()
     }
@@ -415,12 +449,14 @@ impl Kinematics for NodeToPatch {
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        let (patch, from) = (self.primary.patch(pair.facet), place(y, self.secondary[pair.node]));
+        let patch = self.primary.patch(pair.facet);
+        let from = place(y, self.secondary[pair.node]);
         PatchGap::new(patch, y, from, [pair.xi, pair.eta]).curvature_into(patch.nodes.len(), curvature);
     }
 
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        let (node, patch) = (self.secondary[pair.node], self.primary.patch(pair.facet));
+        let node = self.secondary[pair.node];
+        let patch = self.primary.patch(pair.facet);
         let gap = PatchGap::new(patch, y, place(y, node), [pair.xi, pair.eta]);
         ContactError::unless_regular(node, pair, gap.regularity())?;
         for along in tangents(gap.normal(), pair.tangential.tangents) {
@@ -430,7 +466,8 @@ impl Kinematics for NodeToPatch {
     }
 
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
-        let (patch, from) = (self.primary.patch(pair.facet), place(y, self.secondary[pair.node]));
+        let patch = self.primary.patch(pair.facet);
+        let from = place(y, self.secondary[pair.node]);
         let gap = PatchGap::new(patch, y, from, [pair.xi, pair.eta]);
         let along = tangents(gap.normal(), pair.tangential.tangents)[tangent];
         let second = patch.shape.second([pair.xi, pair.eta]);

@@ -5,11 +5,11 @@ use super::node_to_patch::{NodeToPatch, Tools};
 use super::paths::path;
 use crate::kinematics::passed::Paths;
 use crate::kinematics::way::Met;
-use crate::kinematics::{Kinematics, Passed};
+use crate::kinematics::{Kinematics, Passed, SpaceHit};
 
 impl NodeToPatch {
-    /// The node that was deepest beyond its limit, if any; `bounce`: allowed depth, over the length
-    /// of a facet, of a node that leaves where it entered.
+    /// The node that was deepest beyond its limit within a step, if any; `bounce`: allowed depth,
+    /// relative to the length of a facet, of a node that leaves where it entered.
     pub(super) fn deepest(&self, tools: &mut Tools, ends: [&[f64]; 2], bounce: f64) -> Option<Passed> {
         let Tools { paths, apart, recent, swept, .. } = tools;
         recent.forget();
@@ -35,7 +35,7 @@ impl NodeToPatch {
             paths.tree(),
             |node| path(node, ends),
             |facet, ends, until, node| {
-                let (theta, xi) = crossing(swept, self.primary.patch(facet), ends, until, node)?;
+                let SpaceHit { theta, xi } = crossing(swept, self.primary.patch(facet), ends, until, node)?;
                 Some(Met { theta, facet, xi })
             },
         )

@@ -9,7 +9,7 @@ use carom_solid::{FacetShape, Net};
 
 use crate::kinematics::projection::bisected;
 
-/// Positions of nodes in space, flat.
+/// Position of a node in space, from positions flat over all nodes.
 pub(crate) fn place(y: &[f64], node: usize) -> Vector<3> {
     Vector([y[3 * node], y[3 * node + 1], y[3 * node + 2]])
 }
@@ -18,25 +18,25 @@ pub(crate) fn cross(a: Vector<3>, b: Vector<3>) -> Vector<3> {
     Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }
 
-/// A facet: its shape and its nodes, counter-clockwise seen from outside.
+/// A curved facet in space: its shape and its nodes, counter-clockwise seen from outside.
 #[derive(Clone, Copy)]
 pub(crate) struct Patch<'a> {
     pub(crate) shape: FacetShape,
     pub(crate) nodes: &'a [usize],
 }
 
-/// Position of a facet at ξ with its derivatives.
+/// Position of a facet in space at ξ, with its derivatives and its normal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchPoint {
     pub(crate) position: Vector<3>,
     pub(crate) tangents: [Vector<3>; 2],
-    /// ∂²y by ξξ, ξη and ηη.
+    /// Second derivatives of the position by ξξ, ξη and ηη.
     pub(crate) second: [Vector<3>; 3],
-    /// Outward, of length one.
+    /// Outward unit normal of the facet.
     pub(crate) normal: Vector<3>,
 }
 
-/// The point of a closed facet nearest to a given one.
+/// The point of a facet, with its edges and corners, nearest to a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Nearest {
     pub(crate) xi: [f64; 2],
@@ -44,31 +44,33 @@ pub(crate) struct Nearest {
     pub(crate) distance: f64,
 }
 
-/// Where a point of a closed facet lies.
+/// Part of a facet on which a point lies: its inside, an edge or a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Feature {
     Inside,
-    /// On the edge from this corner to the next one.
+    /// The edge from the corner with this number to the next one.
     Edge(usize),
     Corner(usize),
 }
 
-/// Steps of Newton's method; it needs fewer than ten from any good guess.
+/// Largest number of steps of Newton's method for a closest point; it needs fewer than ten from any
+/// good guess.
 const STEPS: usize = 40;
-/// Distance past an edge, over the height of the facet, up to which a facet is extrapolated before
-/// Newton's method has converged.
+/// Distance past an edge, relative to the height of the facet, up to which a facet is extrapolated
+/// before Newton's method has converged.
 pub(super) const WANDER: f64 = 2.0;
-/// How far beyond an edge, over the height of the facet, the search of a point on it may go.
+/// Distance past an edge, relative to the height of the facet, up to which the search for a point
+/// on the facet may go.
 const PASSES: f64 = 0.25;
 
 impl PatchPoint {
-    /// τ_α·τ_β.
+    /// Metric τ_α·τ_β of the tangents.
     pub(crate) fn metric(&self) -> Mat<2> {
         let [t, s] = &self.tangents;
         Mat([[t.dot(t), t.dot(s)], [t.dot(s), s.dot(s)]])
     }
 
-    /// v·∂²y/∂ξ_α∂ξ_β.
+    /// Second derivatives of the position along a vector, v·∂²y/∂ξ_α∂ξ_β.
     pub(crate) fn bend(&self, v: Vector<3>) -> Mat<2> {
         let [a, b, c] = self.second.map(|second| second.dot(&v));
         Mat([[a, b], [b, c]])
@@ -81,12 +83,12 @@ pub(crate) fn is_positive(a: &Mat<2>) -> bool {
 }
 
 impl Patch<'_> {
-    /// Number of corners.
+    /// Number of corners of the facet.
     pub(crate) fn corners(&self) -> usize {
         self.shape.corners()
     }
 
-    /// ξ of a corner.
+    /// Coordinates ξ of a corner.
     pub(crate) fn corner(&self, corner: usize) -> [f64; 2] {
         match (self.corners(), corner) {
             (3, 0) => [0.0, 0.0],
@@ -99,13 +101,14 @@ impl Patch<'_> {
         }
     }
 
-    /// ξ between a corner, s = 0, and the next one, s = 1.
+    /// Coordinates ξ of a point on an edge, between its first corner, s = 0, and the next one, s =
+    /// 1.
     pub(crate) fn along(&self, edge: usize, s: f64) -> [f64; 2] {
         let [a, b] = [edge, (edge + 1) % self.corners()].map(|corner| self.corner(corner));
         std::array::from_fn(|i| a[i] + s * (b[i] - a[i]))
     }
 
-    /// How far ξ lies beyond each edge, over the height of the facet; negative inside.
+    /// Distance of ξ past each edge, relative to the height of the facet; negative inside.
     pub(crate) fn beyond(&self, [x, y]: [f64; 2]) -> [f64; 4] {
         if self.corners() == 3 {
             [-y, x + y - 1.0, -x, f64::NEG_INFINITY]
@@ -114,19 +117,19 @@ impl Patch<'_> {
         }
     }
 
-    /// The edge beyond which ξ lies furthest, and by how much.
-    pub(crate) fn furthest(&self, xi: [f64; 2]) -> (usize, f64) {
-        let beyond = self.beyond(xi);
-        (1..4).fold((0, beyond[0]), |most, e| if beyond[e] > most.1 { (e, beyond[e]) } else { most })
+    /// Largest distance of ξ past an edge, relative to the height of the facet; negative inside.
+    pub(crate) fn furthest(&self, xi: [f64; 2]) -> f64 {
+        let [first, others @ ..] = self.beyond(xi);
+        others.into_iter().fold(first, |most, beyond| if beyond > most { beyond } else { most })
     }
 
-    /// The facet at ξ.
+    /// Position of the facet at ξ, with its derivatives.
     pub(crate) fn at(&self, y: &[f64], xi: [f64; 2]) -> PatchPoint {
         self.seen_from(Vector::ZERO, y, xi)
     }
 
-    /// The facet at ξ with positions relative to a place. Near a facet these are exact differences,
-    /// however far from the origin both are.
+    /// Position of the facet at ξ relative to a place, with its derivatives. Near a facet these are
+    /// exact differences, however far from the origin both are.
     pub(crate) fn seen_from(&self, from: Vector<3>, y: &[f64], xi: [f64; 2]) -> PatchPoint {
         let functions = self.shape.functions(xi);
         let second = self.shape.second(xi);
@@ -147,20 +150,20 @@ impl Patch<'_> {
         at
     }
 
-    /// The place at ξ relative to another one.
+    /// Position of the facet at ξ relative to a place.
     fn offset(&self, from: Vector<3>, y: &[f64], xi: [f64; 2]) -> Vector<3> {
         let values = self.shape.functions(xi).values;
         let nodes = self.nodes.iter().zip(values);
         nodes.fold(Vector::ZERO, |sum, (&n, value)| sum + (place(y, n) - from) * value)
     }
 
-    /// Distance between its first corners.
+    /// Length of the facet: the distance between its first two corners.
     pub(crate) fn length(&self, y: &[f64]) -> f64 {
         (place(y, self.nodes[1]) - place(y, self.nodes[0])).norm()
     }
 
-    /// Newton's method from a good guess, on the facet and its extension by `reach` of its height;
-    /// `None` if it does not converge to a minimum there.
+    /// Coordinates of the closest point by Newton's method from a good guess, on the facet and its
+    /// extension by `reach` of its height; `None` if it does not converge to a minimum there.
     pub(crate) fn closest_from(
         &self,
         y: &[f64],
@@ -186,7 +189,7 @@ impl Patch<'_> {
                 step = step * (0.5 / length);
             }
             xi = [xi[0] + step[0], xi[1] + step[1]];
-            if self.furthest(xi).1 > reach {
+            if self.furthest(xi) > reach {
                 return None;
             }
             // Below this, round-off, a step has no effect.
@@ -197,8 +200,8 @@ impl Patch<'_> {
         None
     }
 
-    /// The closest stationary point on the facet and its extension by `reach`; `None` if the
-    /// distance decreases towards an edge.
+    /// Coordinates of the closest stationary point on the facet and its extension by `reach` of its
+    /// height; `None` if the distance decreases towards an edge.
     pub(crate) fn closest_point(&self, y: &[f64], from: Vector<3>, reach: f64) -> Option<[f64; 2]> {
         self.closest_from(y, from, self.nearest_sample(y, from), reach)
     }
@@ -222,7 +225,7 @@ impl Patch<'_> {
     pub(crate) fn nearest(&self, y: &[f64], from: Vector<3>) -> Nearest {
         let distance = |xi: [f64; 2]| self.offset(from, y, xi).norm();
         // On the way to a point beside an edge, Newton's method may pass it.
-        let inside = self.closest_point(y, from, PASSES).filter(|&xi| self.furthest(xi).1 <= 0.0);
+        let inside = self.closest_point(y, from, PASSES).filter(|&xi| self.furthest(xi) <= 0.0);
         let inside = inside.map(|xi| Nearest { xi, at: Feature::Inside, distance: distance(xi) });
         let mut nearest = inside;
         for edge in 0..self.corners() {
@@ -244,16 +247,18 @@ impl Patch<'_> {
         nearest.unwrap_or(Nearest { xi: self.corner(0), at: Feature::Corner(0), distance: f64::INFINITY })
     }
 
-    /// A lower bound of the distance to an edge: that to the box around its nodes, grown by what
-    /// the curve through them may exceed it, (Σ|φ| − 1)/2 ≤ 0.32 of its extents.
+    /// A lower bound of the distance of a point to an edge: the distance to the box around its
+    /// nodes, grown by the excess of the curve through them, (Σ|φ| − 1)/2 ≤ 0.32 of its extents.
     fn edge_bound(&self, y: &[f64], from: Vector<3>, edge: usize) -> f64 {
         let (nodes, count) = self.shape.edge(edge);
         let mut square = 0.0;
         for i in 0..3 {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            let mut low = f64::INFINITY;
+            let mut high = f64::NEG_INFINITY;
             for &node in &nodes[..count] {
                 let x = y[3 * self.nodes[node] + i] - from[i];
-                (low, high) = (low.min(x), high.max(x));
+                low = low.min(x);
+                high = high.max(x);
             }
             let beyond = if count > 2 { 0.32 * (high - low) } else { 0.0 };
             let away = (low - beyond).max(-beyond - high).max(0.0);
@@ -262,14 +267,16 @@ impl Patch<'_> {
         square.sqrt()
     }
 
-    /// s of the nearest point of an edge: the best sample, refined between its neighbours by
-    /// Newton's method guarded by bisection.
+    /// Coordinate s of the nearest point of an edge: the best sample, refined between its
+    /// neighbours by Newton's method guarded by bisection.
     fn nearest_on_edge(&self, y: &[f64], from: Vector<3>, edge: usize) -> f64 {
         const PIECES: usize = 4;
         let (nodes, count) = self.shape.edge(edge);
         let slope = |s: f64| {
             let line = line_shape(count, 2.0 * s - 1.0);
-            let (mut d, mut first, mut second) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
+            let mut d = Vector::ZERO;
+            let mut first = Vector::ZERO;
+            let mut second = Vector::ZERO;
             for (k, &node) in nodes[..count].iter().enumerate() {
                 let x = place(y, self.nodes[node]) - from;
                 d += x * -line.values[k];
@@ -282,7 +289,8 @@ impl Patch<'_> {
         let best = (0..=PIECES)
             .map(|k| (k, slope(at(k)).2))
             .fold((0, f64::INFINITY), |best, sample| if sample.1 < best.1 { sample } else { best });
-        let (low, high) = (at(best.0.saturating_sub(1)), at((best.0 + 1).min(PIECES)));
+        let low = at(best.0.saturating_sub(1));
+        let high = at((best.0 + 1).min(PIECES));
         if slope(low).0 >= 0.0 {
             return low;
         }
@@ -318,7 +326,9 @@ mod tests {
     fn points_beside_a_curved_edge_are_on_the_facet() {
         let circle = |angle: f64| [angle.to_radians().cos(), angle.to_radians().sin(), 0.0];
         let middle = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
-        let [a, b, centre] = [circle(0.0), circle(45.0), [0.6, 0.25, 0.0]];
+        let a = circle(0.0);
+        let b = circle(45.0);
+        let centre = [0.6, 0.25, 0.0];
         let y = [a, b, centre, circle(22.5), middle(b, centre), middle(centre, a)].concat();
         let patch = Patch { shape: FacetShape::T6, nodes: &[0, 1, 2, 3, 4, 5] };
         for k in 1..40 {
@@ -351,7 +361,7 @@ mod tests {
             }
             let found = patch.nearest(&y, from);
             assert!(found.distance <= least + 1e-14 && found.distance > least - 1e-4, "{found:?} {least}");
-            assert!(patch.furthest(found.xi).1 <= 1e-14);
+            assert!(patch.furthest(found.xi) <= 1e-14);
         }
     }
 }

@@ -6,29 +6,29 @@ use super::boundary::Boundary;
 use super::patch::{PatchPoint, place};
 use crate::kinematics::Facets;
 
-/// Depth relative to the length of a facet that round-off feigns.
+/// Depth, relative to the length of a facet, that may be round-off.
 pub(super) const NOISE: f64 = 1e-9;
-/// Growth of a box, relative to its size, beyond the distance at which a node meets a facet
-/// (`crossing.rs`).
+/// Growth of the bounding box of a path, relative to its size; larger than the distance at which a
+/// node meets a facet (`crossing.rs`).
 const MEETS: f64 = 1e-5;
 
-/// Boxes of the facets' paths; reused memory.
+/// Bounding boxes of the paths of all facets in a step, in memory that searches reuse.
 #[derive(Debug, Default)]
 pub(super) struct Paths {
-    /// With a margin.
+    /// Hierarchy of the boxes of the paths of facets, with a margin.
     tree: Tree,
-    /// Without one.
+    /// Boxes of the paths of facets without a margin.
     tight: Vec<Bounds>,
     start: Start,
 }
 
-/// The facets at the start of a step, which several searches share.
+/// Positions and boxes of all facets at the start of a step, which several searches share.
 #[derive(Debug, Default)]
 struct Start {
-    /// Coordinates of their nodes.
+    /// Coordinates of the nodes of all facets.
     places: Vec<f64>,
     boxes: Vec<Bounds>,
-    /// Their middles.
+    /// Position and normal in the middle of each facet.
     middles: Vec<PatchPoint>,
 }
 
@@ -49,7 +49,8 @@ impl Start {
 }
 
 impl Paths {
-    /// Updates the boxes; those of the tree are grown by `margin` of their sizes.
+    /// Updates the boxes to the motion of a step; those of the hierarchy are grown by `margin` of
+    /// their sizes.
     pub(super) fn update(
         &mut self,
         primary: &Boundary,
@@ -70,7 +71,7 @@ impl Paths {
         self.start.middles[facet]
     }
 
-    /// The boxes with the margin.
+    /// The hierarchy of the boxes with a margin.
     pub(super) fn tree(&self) -> &Tree {
         &self.tree
     }
@@ -87,7 +88,7 @@ impl Paths {
     }
 }
 
-/// The box of a node's path.
+/// Bounding box of the path of a node in a step.
 pub(super) fn path(node: usize, ends: [&[f64]; 2]) -> Bounds {
     let path: Bounds = ends.iter().map(|y| place(y, node).0).collect();
     path.grown(NOISE * path.size())

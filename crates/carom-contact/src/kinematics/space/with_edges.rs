@@ -7,7 +7,7 @@ use crate::kinematics::{BothSides, Kinematics, Passed};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
-/// Contact of nodes and edges.
+/// Contact of nodes with facets in both directions, and of sharp edges with each other.
 #[derive(Debug)]
 pub struct WithEdges {
     nodes: BothSides<NodeToPatch>,
@@ -17,14 +17,15 @@ pub struct WithEdges {
 }
 
 impl WithEdges {
-    /// Nodes in both directions, and the edges of the same sides; `facets`: their number on the
-    /// primary side.
+    /// Combines contact of nodes in both directions with that of the sharp edges of the same sides;
+    /// `facets`: number of facets of the primary side.
     pub fn new(nodes: BothSides<NodeToPatch>, edges: EdgeToEdge, facets: usize) -> Self {
         let all = nodes.secondary().iter().copied().chain(edges.names()).collect();
         Self { nodes, edges, facets, all }
     }
 
-    /// The pair of two edges in their own numbering; none of a node.
+    /// A pair of two edges, with the first edge numbered among the edges; none for a pair of a
+    /// node.
     fn of_edges(&self, pair: &Pair) -> Option<Pair> {
         let node = pair.node.checked_sub(self.nodes())?;
         Some(Pair { node, ..*pair })
@@ -111,7 +112,8 @@ impl Kinematics for WithEdges {
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let Some(mut local) = self.of_edges(pair) else { return self.nodes.measure(pair, y, rows) };
         self.edges.measure(&mut local, y, rows)?;
-        (pair.xi, pair.eta) = (local.xi, local.eta);
+        pair.xi = local.xi;
+        pair.eta = local.eta;
         Ok(())
     }
 

@@ -21,31 +21,32 @@ use super::patch_path::Ball;
 use super::path::{DEEPEST, Interval, Stop, UNIT_ROUNDOFF, largest_of, mean, sum_of};
 use crate::kinematics::space::cross;
 
-/// Bound of Σ |weights| of a control point.
+/// Bound Λ of the sum of the absolute weights of a control point.
 const WEIGHTS: f64 = 6.0;
 
 /// Control points of an edge.
 type Points = [Vector<3>; 4];
 
-/// f over a box of (a, b, θ).
+/// Difference f of the positions on two moving edges over a box of (a, b, θ).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EdgePath {
-    /// Control points of A and B at both ends of the interval of θ.
+    /// Control points of the edges A and B at both ends of the interval of θ.
     points: [[Points; 2]; 2],
-    /// Their degrees.
+    /// Polynomial degrees of the edges A and B.
     degrees: [usize; 2],
     along: [Interval; 2],
     theta: Interval,
-    /// u Λ m.
+    /// Unit u Λ m of the bounds of round-off.
     unit: f64,
     separation: f64,
 }
 
 impl EdgePath {
-    /// The whole paths of edges whose nodes, ends first, move from those of `start` to those of
-    /// `end`, A and B in turn.
+    /// The whole paths of two edges A and B whose nodes, ends first, move from those of `start` to
+    /// those of `end`.
     pub(super) fn new([start, end]: [[&[Vector<3>]; 2]; 2], separation: f64) -> Self {
-        let (mut points, mut largest) = ([[[Vector::ZERO; 4]; 2]; 2], 0.0_f64);
+        let mut points = [[[Vector::ZERO; 4]; 2]; 2];
+        let mut largest = 0.0_f64;
         for (at, edges) in [start, end].into_iter().enumerate() {
             let from = edges[1][0];
             for (of, nodes) in edges.into_iter().enumerate() {
@@ -69,18 +70,20 @@ impl EdgePath {
         }
     }
 
-    /// ξ on A and B in the middle of the box.
+    /// Coordinates ξ on A and B in the middle of the box.
     pub(super) fn xi(&self) -> [f64; 2] {
         self.along.map(|along| 2.0 * (along.low + 0.5 * along.width) - 1.0)
     }
 
-    /// Sizes for a tolerance relative to the extents of this path.
+    /// Sizes at which boxes are not halved any more, for a tolerance relative to the extents of the
+    /// path.
     pub(super) fn stop(&self, tolerance: f64) -> Stop {
         let most = [0, 1].map(|of| self.extent_along(of)).into_iter().fold(self.extent_in_time(), f64::max);
         Stop { theta: tolerance, distance: tolerance * most }
     }
 
-    /// Both halves along the parameter with the largest extent, or `None` if the box is small.
+    /// Both halves of the box along the parameter with the largest extent, or `None` if the box is
+    /// small.
     pub(super) fn split(&self, stop: &Stop) -> Option<[Self; 2]> {
         if !self.unit.is_finite() {
             return None;
@@ -100,7 +103,8 @@ impl EdgePath {
     }
 
     fn halves_along(&self, of: usize) -> [Self; 2] {
-        let (mut parts, last) = ([*self; 2], self.degrees[of]);
+        let mut parts = [*self; 2];
+        let last = self.degrees[of];
         for end in 0..2 {
             let mut line = self.points[of][end];
             for k in 0..=last {
@@ -133,19 +137,19 @@ impl EdgePath {
         &self.points[of][end][..=self.degrees[of]]
     }
 
-    /// Largest component of Σ |Δc| along an edge.
+    /// Extent along an edge: the largest component of the sum of |Δc| between its control points.
     fn extent_along(&self, of: usize) -> f64 {
         let size =
             |end: usize| self.of(of, end).windows(2).map(|two| largest_of(two[1] - two[0])).sum::<f64>();
         size(0).max(size(1))
     }
 
-    /// Largest component of ∂f/∂θ, over the interval of θ.
+    /// Extent in time: the largest component of the motion over the interval of θ.
     fn extent_in_time(&self) -> f64 {
         self.motions().map(largest_of).fold(0.0, f64::max)
     }
 
-    /// ∂f/∂θ at the points of the net, over the interval of θ.
+    /// Relative motion of all pairs of control points over the interval of θ.
     fn motions(&self) -> impl Iterator<Item = Vector<3>> + Clone {
         let moved = |of: usize, k: usize| self.points[of][1][k] - self.points[of][0][k];
         let [a, b] = self.degrees;
@@ -164,8 +168,9 @@ impl EdgePath {
         (20.0 + 6.0 * f64::from(level)) * self.unit
     }
 
-    /// Whether A moves out of the body of B wherever the edges meet: n·∂f/∂θ > 0 with n along τ_A ×
-    /// τ_B to the side of `outwards`, each factor anywhere in the ball around its control points.
+    /// Whether edge A moves out of the body of B wherever the edges meet: n·∂f/∂θ > 0 with n along
+    /// τ_A × τ_B to the side of `outwards`, each factor anywhere in the ball around its control
+    /// points.
     pub(super) fn only_separates(&self, outwards: &Vector<3>) -> bool {
         let motion = Ball::of(self.motions());
         let [first, second] = [0, 1].map(|of| Ball::of(self.tangents(of)));
@@ -209,13 +214,14 @@ impl Piece for EdgePath {
         self.theta.level + self.along[0].level + self.along[1].level
     }
 
-    /// An irrational direction tells apart all boxes of one size.
+    /// Distinguishes all boxes of one size by their coordinate along an irrational direction.
     fn place(&self) -> f64 {
         let [a, b] = self.xi();
         a + b * 0.754_877_666_246_692_7
     }
 
-    /// Tries the normal of both, the direction from B to A, and what is across the motion.
+    /// Whether a direction separates the edges: tries the normal of both, the direction from B to
+    /// A, and those perpendicular to the motion.
     fn is_clear(&self) -> bool {
         let chord = |of: usize| {
             let last = self.degrees[of];
@@ -228,8 +234,10 @@ impl Piece for EdgePath {
             points.iter().fold(Vector::ZERO, |sum, x| sum + *x) * (points.len() as f64).recip()
         };
         let apart = [0, 1].map(|end| middle(0, end) - middle(1, end));
-        let (sum, motion) = (apart[0] + apart[1], apart[1] - apart[0]);
-        let [a, b] = [chord(0), chord(1)];
+        let sum = apart[0] + apart[1];
+        let motion = apart[1] - apart[0];
+        let a = chord(0);
+        let b = chord(1);
         let size = motion.dot(&motion);
         let across = if size > 0.0 { sum - motion * (sum.dot(&motion) / size) } else { sum };
         let directions = [cross(a, b), sum, across, cross(a, motion), cross(b, motion)];
@@ -237,7 +245,7 @@ impl Piece for EdgePath {
     }
 }
 
-/// Bernstein coefficients of a line of 2 to 4 nodes, ends first (`path.rs`).
+/// Bernstein coefficients of a line of 2 to 4 nodes, given ends first (`path.rs`).
 fn control(x: &Points, nodes: usize) -> Points {
     match nodes {
         2 => [x[0], x[1], Vector::ZERO, Vector::ZERO],

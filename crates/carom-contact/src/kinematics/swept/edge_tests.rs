@@ -45,7 +45,8 @@ impl Query {
         let mut columns = [Vector::ZERO; 4];
         for of in 0..2 {
             let [before, now] = [&self.edges[0][of], &self.edges[1][of]];
-            let (shape, sign) = (line_shape(before.len(), xi[of]), [1.0, -1.0][of]);
+            let shape = line_shape(before.len(), xi[of]);
+            let sign = [1.0, -1.0][of];
             for (k, (before, now)) in before.iter().zip(now).enumerate() {
                 let x = *before * (1.0 - theta) + *now * theta;
                 columns[0] += x * (sign * shape.values[k]);
@@ -68,11 +69,13 @@ impl Query {
         let mut found = Vec::new();
         for code in 0..6 * 6 * 6 {
             let part = |k: u32| f64::from(code / 6_i32.pow(k) % 6) / 5.0;
-            let (mut xi, mut theta) = ([2.0 * part(0) - 1.0, 2.0 * part(1) - 1.0], part(2));
+            let mut xi = [2.0 * part(0) - 1.0, 2.0 * part(1) - 1.0];
+            let mut theta = part(2);
             for _ in 0..12 {
                 let [f, by_theta, by_a, by_b] = self.at(xi, theta);
                 let step = Mat([by_theta.0, by_a.0, by_b.0]).transposed().inverse().apply(&-f);
-                (theta, xi) = (theta + step[0], [xi[0] + step[1], xi[1] + step[2]]);
+                theta += step[0];
+                xi = [xi[0] + step[1], xi[1] + step[2]];
             }
             let inside = (0.0..=1.0).contains(&theta) && xi.iter().all(|x| x.abs() <= 1.0);
             if inside && self.at(xi, theta)[0].norm() < 1e-12 && self.is_inwards(xi, theta) {
@@ -143,7 +146,9 @@ fn starts_in_contact_and_motion_outwards_and_beside() {
 #[test]
 fn no_crossing_of_random_curves_is_missed() {
     let mut numbers = Numbers(23);
-    let (mut hits, mut clear, mut apart) = (0, 0, 0);
+    let mut hits = 0;
+    let mut clear = 0;
+    let mut apart = 0;
     for round in 0..4_000 {
         let bend = 0.4 * numbers.next().abs();
         let mut vector = |size: f64| Vector(std::array::from_fn(|_| size * numbers.next()));

@@ -35,36 +35,36 @@ use edge_path::EdgePath;
 use patch_path::PatchPath;
 use path::CurvePath;
 
-/// Result of a swept test.
+/// Result of a swept test of a node against a facet in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Swept {
-    /// Certainly no contact.
+    /// The node certainly does not meet the facet.
     Clear,
-    /// Contact, or a distance below the tolerance.
+    /// The node meets the facet, or comes closer than the tolerance.
     Hit {
-        /// A lower bound of θ of the first contact.
+        /// Lower bound of the instant θ of the first contact.
         theta: f64,
-        /// The facet's coordinate there, −1..1, within the tolerance.
+        /// Coordinate of the first contact on the facet, −1..1, within the tolerance.
         xi: f64,
     },
 }
 
-/// The contacts that count.
+/// The contacts that a swept test reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crossings {
-    /// All, except the contact at θ = 0 of a node that starts on the facet, or within the
+    /// All contacts, except that at θ = 0 of a node that starts on the facet, or within the
     /// separation, and moves to the outer side.
     All,
-    /// Where the node does not move to the outer side: crossings inwards, and motion along the
-    /// facet. The outer side is on the right in the direction of traversal.
+    /// Contacts where the node does not move to the outer side: crossings inwards, and motion along
+    /// the facet. The outer side is on the right in the direction of traversal.
     Inward,
 }
 
-/// Boxes examined before a query gives up and answers with the earliest θ that remains.
+/// Largest number of boxes examined before a query answers with the earliest θ that remains.
 const BUDGET: usize = 4096;
 
-/// Swept tests with facets of one shape. Owns the memory of its queries; results do not depend on
-/// earlier queries.
+/// Certified swept tests with facets of one shape in the plane. Owns the memory of its queries;
+/// results do not depend on earlier queries.
 #[derive(Clone, Debug)]
 pub struct SweptTest {
     shape: FacetShape,
@@ -73,12 +73,12 @@ pub struct SweptTest {
 }
 
 impl SweptTest {
-    /// For facets of a shape, with a tolerance of 1e-6.
+    /// Swept tests for facets of a shape, with a tolerance of 1e-6.
     pub fn new(shape: FacetShape) -> Self {
         Self { shape, tolerance: 1e-6, queue: Earliest::new(BUDGET) }
     }
 
-    /// The same with another tolerance in θ, which is also that of the distance relative to the
+    /// Swept tests with another tolerance in θ, which is also that of the distance relative to the
     /// extents of f; values below 1e-12 count as 1e-12.
     #[must_use]
     pub fn with_tolerance(self, tolerance: f64) -> Self {
@@ -115,16 +115,18 @@ impl SweptTest {
     }
 }
 
-/// A contact in space, or a distance below the tolerance.
+/// First contact of a node and a facet, or of two edges, in space, or a distance below the
+/// tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpaceHit {
-    /// A lower bound of θ of the first contact.
+    /// Lower bound of the instant θ of the first contact.
     pub theta: f64,
-    /// The facet's coordinates there, or those of both edges, −1..1, within the tolerance.
+    /// Coordinates of the first contact on the facet, or on both edges, −1..1, within the
+    /// tolerance.
     pub xi: [f64; 2],
 }
 
-/// Swept tests with facets of one shape in space.
+/// Certified swept tests with facets of one shape in space.
 #[derive(Clone, Debug)]
 pub struct SweptPatch {
     net: Net,
@@ -133,7 +135,7 @@ pub struct SweptPatch {
 }
 
 impl SweptPatch {
-    /// For facets of a shape, with a tolerance of 1e-5.
+    /// Swept tests for facets of a shape, with a tolerance of 1e-5.
     ///
     /// # Panics
     /// For a point or a line.
@@ -155,13 +157,14 @@ impl SweptPatch {
         if path.is_clear() {
             return None;
         }
-        let (net, end) = (&self.net, path.stop(&self.net, self.tolerance));
+        let net = &self.net;
+        let end = path.stop(&self.net, self.tolerance);
         let found = self.queue.first(path, |piece| piece.only_separates(net), |piece| piece.split(net, &end));
         found.map(|piece| SpaceHit { theta: piece.theta(), xi: piece.xi() })
     }
 }
 
-/// Swept tests of edges of 2 to 4 nodes in space.
+/// Certified swept tests of edges of 2 to 4 nodes in space.
 #[derive(Clone, Debug)]
 pub struct SweptEdges {
     tolerance: f64,
@@ -169,7 +172,7 @@ pub struct SweptEdges {
 }
 
 impl Default for SweptEdges {
-    /// With a tolerance of 1e-5.
+    /// Swept tests of edges with a tolerance of 1e-5.
     fn default() -> Self {
         Self { tolerance: 1e-5, queue: Earliest::new(BUDGET) }
     }

@@ -18,12 +18,12 @@ use carom_solid::{Direction, Net, Piece};
 use super::path::{DEEPEST, Interval, Stop, UNIT_ROUNDOFF, excludes_zero, largest_of, mean, sum_of};
 use crate::kinematics::space::cross;
 
-/// Bound of Σ |weights| of a control point.
+/// Bound Λ of the sum of the absolute weights of a control point.
 const WEIGHTS: f64 = 10.0;
 
 type Points = [Vector<3>; Net::POINTS];
 
-/// f over a box of (ξ, θ).
+/// Difference f of the positions of a node and a point of a surface over a box of (ξ, θ).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PatchPath {
     /// Control points at both ends of the interval of θ.
@@ -35,12 +35,12 @@ pub(super) struct PatchPath {
     sides: usize,
     degree: usize,
     level: u32,
-    /// u Λ m.
+    /// Unit u Λ m of the bounds of round-off.
     unit: f64,
     separation: f64,
 }
 
-/// A centre and the largest distance from it: a ball that contains what is averaged.
+/// Ball around the mean of vectors that contains them all.
 pub(super) struct Ball {
     pub(super) centre: Vector<3>,
     pub(super) radius: f64,
@@ -56,9 +56,10 @@ impl Ball {
 }
 
 impl PatchPath {
-    /// The whole path of a node and a facet.
+    /// The whole path of a node and a facet in space.
     pub(super) fn new(net: &Net, node: [Vector<3>; 2], facet: [&[Vector<3>]; 2], separation: f64) -> Self {
-        let (mut points, mut largest) = ([[Vector::ZERO; Net::POINTS]; 2], 0.0_f64);
+        let mut points = [[Vector::ZERO; Net::POINTS]; 2];
+        let mut largest = 0.0_f64;
         for end in 0..2 {
             for (k, point) in points[end][..net.points()].iter_mut().enumerate() {
                 for (weight, x) in net.weights(k).iter().zip(facet[end]) {
@@ -85,19 +86,21 @@ impl PatchPath {
         }
     }
 
-    /// ξ in the middle of the box.
+    /// Coordinates ξ in the middle of the box.
     pub(super) fn xi(&self) -> [f64; 2] {
         let corners = &self.corners[..self.sides];
         [0, 1].map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / self.sides as f64)
     }
 
-    /// Sizes for a tolerance relative to the extents of this path.
+    /// Sizes at which boxes are not halved any more, for a tolerance relative to the extents of the
+    /// path.
     pub(super) fn stop(&self, net: &Net, tolerance: f64) -> Stop {
         let along = net.directions().iter().map(|direction| self.extent_along(direction));
         Stop { theta: tolerance, distance: tolerance * along.fold(self.extent_in_time(), f64::max) }
     }
 
-    /// Both halves along the parameter with the largest extent, or `None` if the box is small.
+    /// Both halves of the box along the parameter with the largest extent, or `None` if the box is
+    /// small.
     pub(super) fn split(&self, net: &Net, stop: &Stop) -> Option<[Self; 2]> {
         if !self.unit.is_finite() {
             return None;
@@ -120,7 +123,8 @@ impl PatchPath {
         let mut parts = [*self; 2];
         for end in 0..2 {
             for places in &direction.lines {
-                let (mut line, last) = ([Vector::ZERO; 4], places.len() - 1);
+                let mut line = [Vector::ZERO; 4];
+                let last = places.len() - 1;
                 places.iter().zip(&mut line).for_each(|(&place, x)| *x = self.points[end][place]);
                 for k in 0..=last {
                     parts[0].points[end][places[k]] = line[0];
@@ -133,7 +137,8 @@ impl PatchPath {
         }
         for &(start, end) in &direction.edges {
             let middle = [0, 1].map(|i| 0.5 * (self.corners[start][i] + self.corners[end][i]));
-            (parts[0].corners[end], parts[1].corners[start]) = (middle, middle);
+            parts[0].corners[end] = middle;
+            parts[1].corners[start] = middle;
         }
         parts.iter_mut().for_each(|part| part.level += 1);
         parts
@@ -150,7 +155,8 @@ impl PatchPath {
         parts
     }
 
-    /// Largest component of Σ |Δc| along the lines of a direction.
+    /// Extent along a direction: the largest component of the sum of |Δc| between the control
+    /// points on its lines.
     fn extent_along(&self, direction: &Direction) -> f64 {
         let of = |line: &Vec<usize>, points: &Points| {
             line.windows(2).map(|two| largest_of(points[two[1]] - points[two[0]])).sum::<f64>()
@@ -159,12 +165,13 @@ impl PatchPath {
         lines.flat_map(|line| self.points.iter().map(|points| of(line, points))).fold(0.0, f64::max)
     }
 
-    /// Largest component of Δc along θ.
+    /// Extent in time: the largest component of the motion of a control point over the interval of
+    /// θ.
     fn extent_in_time(&self) -> f64 {
         self.motions().map(largest_of).fold(0.0, f64::max)
     }
 
-    /// ∂f/∂θ at the control points, over the interval of θ.
+    /// Relative motion of all control points over the interval of θ.
     fn motions(&self) -> impl Iterator<Item = Vector<3>> + Clone {
         (0..self.count).map(|i| self.points[1][i] - self.points[0][i])
     }
@@ -209,14 +216,15 @@ impl Piece for PatchPath {
         self.theta.level + self.level
     }
 
-    /// An irrational direction tells apart all boxes of one size.
+    /// Distinguishes all boxes of one size by their coordinate along an irrational direction.
     fn place(&self) -> f64 {
         let [x, y] = self.xi();
         x + y * 0.754_877_666_246_692_7
     }
 
-    /// Tries the normal, the direction from the surface to the node, its part along the surface,
-    /// and across the motion.
+    /// Whether a direction separates the node from the surface: tries the normal, the direction
+    /// from the surface to the node, its part along the surface, and those perpendicular to the
+    /// motion.
     fn is_clear(&self) -> bool {
         let corner = |k: usize| self.points[0][k] + self.points[1][k];
         let points = [&self.points[0][..self.count], &self.points[1][..self.count]];

@@ -90,14 +90,16 @@ impl Query {
         };
         for code in 0..5 * 5 * 5 {
             let part = |k: u32| f64::from(code / 5_i32.pow(k) % 5) / 4.0;
-            let (mut xi, mut theta) = ([part(0), part(1)], part(2));
+            let mut xi = [part(0), part(1)];
+            let mut theta = part(2);
             if self.shape.corners() == 4 {
                 xi = xi.map(|x| 2.0 * x - 1.0);
             }
             for _ in 0..12 {
                 let [f, by_theta, by_xi, by_eta] = self.at(xi, theta);
                 let step = Mat([by_theta.0, by_xi.0, by_eta.0]).transposed().inverse().apply(&-f);
-                (theta, xi) = (theta + step[0], [xi[0] + step[1], xi[1] + step[2]]);
+                theta += step[0];
+                xi = [xi[0] + step[1], xi[1] + step[2]];
             }
             let [f, by_theta, by_xi, by_eta] = self.at(xi, theta);
             let inwards = by_theta.dot(&crate::kinematics::space::cross(by_xi, by_eta)) < 0.0;
@@ -195,7 +197,9 @@ fn starts_in_contact_vertices_and_rest() {
 #[test]
 fn no_crossing_of_random_surfaces_is_missed() {
     let mut numbers = Numbers(5);
-    let (mut hits, mut clear, mut apart) = (0, 0, 0);
+    let mut hits = 0;
+    let mut clear = 0;
+    let mut apart = 0;
     for round in 0..4_000 {
         let query = Query::random(SHAPES[round % 5], &mut numbers);
         let first = query.crossings().first().copied();

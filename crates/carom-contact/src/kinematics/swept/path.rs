@@ -26,27 +26,27 @@ use carom_algebra::Vector;
 use carom_solid::{FacetShape, Piece};
 
 pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
-/// Bound of Σ |weights| of a coefficient.
+/// Bound Λ of the sum of the absolute weights of a coefficient.
 const WEIGHTS: f64 = 6.0;
-/// Halvings of ξ, and of θ, after which a box counts as small.
+/// Number of halvings of ξ, and of θ, after which a box counts as small.
 pub(super) const DEEPEST: u32 = 48;
 
-/// Coefficients along ξ at one end of the interval of θ.
+/// Bernstein coefficients along ξ at one end of the interval of θ.
 type Curve = [Vector<2>; 4];
 
-/// f over a box of (ξ, θ).
+/// Difference f of the positions of a node and a point of a curve over a box of (ξ, θ).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CurvePath {
-    /// Coefficients at both ends of the interval of θ.
+    /// Bernstein coefficients at both ends of the interval of θ.
     coefficients: [Curve; 2],
     theta: Interval,
     along: Interval,
-    /// u Λ m.
+    /// Unit u Λ m of the bounds of round-off.
     unit: f64,
     separation: f64,
 }
 
-/// An interval of [0, 1] after halvings, exact.
+/// An interval obtained from [0, 1] by halvings, exact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Interval {
     pub(super) low: f64,
@@ -58,19 +58,20 @@ impl Interval {
     pub(super) const WHOLE: Self = Self { low: 0.0, width: 1.0, level: 0 };
 
     pub(super) fn halves(self) -> [Self; 2] {
-        let (width, level) = (0.5 * self.width, self.level + 1);
+        let width = 0.5 * self.width;
+        let level = self.level + 1;
         [Self { width, level, ..self }, Self { low: self.low + width, width, level }]
     }
 }
 
-/// Sizes at which boxes are not halved any more.
+/// Extents in θ and in space at which boxes are not halved any more.
 pub(super) struct Stop {
     pub(super) theta: f64,
     pub(super) distance: f64,
 }
 
 impl CurvePath {
-    /// The whole path of a node and a facet of a shape.
+    /// The whole path of a node and a facet in the plane.
     #[inline]
     pub(super) fn new(
         shape: FacetShape,
@@ -78,7 +79,8 @@ impl CurvePath {
         facet: [&[Vector<2>]; 2],
         separation: f64,
     ) -> Self {
-        let (mut coefficients, mut largest) = ([[Vector::ZERO; 4]; 2], 0.0);
+        let mut coefficients = [[Vector::ZERO; 4]; 2];
+        let mut largest = 0.0;
         for end in 0..2 {
             let at = |a: usize| node[end] - facet[end][a];
             coefficients[end] = cubic(shape, at, &mut largest);
@@ -88,23 +90,26 @@ impl CurvePath {
         Self { coefficients, theta: Interval::WHOLE, along: Interval::WHOLE, unit, separation }
     }
 
-    /// ξ in the middle of the box.
+    /// Coordinate ξ in the middle of the box.
     pub(super) fn xi(&self) -> f64 {
         2.0 * (self.along.low + 0.5 * self.along.width) - 1.0
     }
 
-    /// Sizes for a tolerance relative to the extents of this path.
+    /// Sizes at which boxes are not halved any more, for a tolerance relative to the extents of the
+    /// path.
     pub(super) fn stop(&self, tolerance: f64) -> Stop {
         let distance = tolerance * self.extent_along().max(self.extent_in_time());
         Stop { theta: tolerance, distance }
     }
 
-    /// Both halves along the parameter with the larger extent, or `None` if the box is small.
+    /// Both halves of the box along the parameter with the larger extent, or `None` if the box is
+    /// small.
     pub(super) fn split(&self, stop: &Stop) -> Option<[Self; 2]> {
         if !self.unit.is_finite() {
             return None;
         }
-        let (along, in_time) = (self.extent_along(), self.extent_in_time());
+        let along = self.extent_along();
+        let in_time = self.extent_in_time();
         let long = along > stop.distance && self.along.level < DEEPEST;
         let late = in_time > stop.distance && self.theta.level < DEEPEST;
         if long && (along >= in_time || !late) {
@@ -141,13 +146,13 @@ impl CurvePath {
         parts
     }
 
-    /// Largest component of Σ |Δc| along ξ.
+    /// Extent along ξ: the largest component of the sum of |Δc| between the coefficients.
     fn extent_along(&self) -> f64 {
         let length = |c: &Curve| (0..3).map(|i| largest_of(c[i + 1] - c[i])).sum::<f64>();
         length(&self.coefficients[0]).max(length(&self.coefficients[1]))
     }
 
-    /// Largest component of Δc along θ.
+    /// Extent in time: the largest component of the motion of a coefficient over the interval of θ.
     fn extent_in_time(&self) -> f64 {
         let [before, now] = &self.coefficients;
         (0..4).map(|i| largest_of(now[i] - before[i])).fold(0.0, f64::max)
@@ -172,7 +177,7 @@ impl CurvePath {
         self.at_start(along)[0].norm() <= self.separation + 4.0 * self.error()
     }
 
-    /// f at θ = 0, and its derivative.
+    /// Difference f at θ = 0, and its derivative along the curve.
     fn at_start(&self, along: f64) -> [Vector<2>; 2] {
         let c = &self.coefficients[0];
         let between = |a: Vector<2>, b: Vector<2>| a * (1.0 - along) + b * along;
@@ -208,7 +213,8 @@ impl CurvePath {
         true
     }
 
-    /// Whether a direction separates coefficients from zero.
+    /// Whether a direction separates the coefficients from zero by more than the separation and
+    /// round-off.
     #[inline]
     fn separates(&self, coefficients: &[Vector<2>], direction: &Vector<2>) -> bool {
         excludes_zero(coefficients, direction, self.separation, self.error())
@@ -228,8 +234,9 @@ impl Piece for CurvePath {
         self.along.low
     }
 
-    /// Tries the directions in which the box is thin, or its centre far: across the curve, along
-    /// it, across the motion, and from the curve to the node.
+    /// Whether a direction separates the node from the curve: tries those in which the box is thin,
+    /// or its centre far: perpendicular to the curve, along it, perpendicular to the motion, and
+    /// from the curve to the node.
     #[inline]
     fn is_clear(&self) -> bool {
         let [before, now] = &self.coefficients;
@@ -281,16 +288,23 @@ fn cubic(shape: FacetShape, at: impl Fn(usize) -> Vector<2>, largest: &mut f64) 
     match shape.degree() {
         0 => [value(0); 4],
         1 => {
-            let (a, b) = (value(0), value(1));
+            let a = value(0);
+            let b = value(1);
             [a, a * (2.0 * THIRD) + b * THIRD, a * THIRD + b * (2.0 * THIRD), b]
         }
         2 => {
-            let (a, b, c) = (value(0), value(1), value(2));
-            let (third, c) = (THIRD, c * (4.0 * THIRD));
+            let a = value(0);
+            let b = value(1);
+            let c = value(2);
+            let third = THIRD;
+            let c = c * (4.0 * THIRD);
             [a, c - b * third, c - a * third, b]
         }
         _ => {
-            let (a, b, c, d) = (value(0), value(1), value(2), value(3));
+            let a = value(0);
+            let b = value(1);
+            let c = value(2);
+            let d = value(3);
             [
                 a,
                 a * (-5.0 * SIXTH) + b * (2.0 * SIXTH) + c * 3.0 - d * 1.5,

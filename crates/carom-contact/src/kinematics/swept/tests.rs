@@ -48,7 +48,8 @@ impl Query {
 
     fn random(shape: FacetShape, numbers: &mut Numbers) -> Self {
         let mut curve = || (0..shape.nodes()).map(|_| numbers.vector()).collect::<Vec<_>>();
-        let (before, mut now) = (curve(), curve());
+        let before = curve();
+        let mut now = curve();
         if numbers.next() > 0.0 {
             // A facet that hardly moves.
             let amount = 0.1 * numbers.next();
@@ -153,7 +154,8 @@ fn roots(powers: &[f64]) -> Vec<f64> {
     ends.push(1.0);
     let mut found = Vec::new();
     for ends in ends.windows(2) {
-        let (mut low, mut high) = (ends[0], ends[1]);
+        let mut low = ends[0];
+        let mut high = ends[1];
         if at(low) * at(high) >= 0.0 {
             continue;
         }
@@ -166,7 +168,7 @@ fn roots(powers: &[f64]) -> Vec<f64> {
     found
 }
 
-/// The same query rotated, scaled, and far from the origin, with the bound of the change of the
+/// A query rotated, scaled, and far from the origin, with the bound of the change of the
 /// positions by round-off.
 fn everywhere(query: &Query, mut check: impl FnMut(&Query, f64)) {
     let mut numbers = Numbers(7);
@@ -323,7 +325,9 @@ fn facets_and_nodes_of_one_point_and_positions_that_are_not_finite() {
 #[test]
 fn no_crossing_of_random_curves_is_missed() {
     let mut numbers = Numbers(1);
-    let (mut hits, mut clear, mut apart) = (0, 0, 0);
+    let mut hits = 0;
+    let mut clear = 0;
+    let mut apart = 0;
     for round in 0..30_000 {
         let query = Query::random(SHAPES[round % 3], &mut numbers);
         let exact = query.exact();

@@ -24,7 +24,7 @@ fn meet((boundary, y): &(Boundary, Vec<f64>), node: usize, facet: usize) -> bool
     let met = folds.met(node, facet, |facet| normals[facet]);
     assert!(met.is_none_or(|side| folds.admits(side, node, facet)));
     // A node behind a facet does not come from outside.
-    met.is_some() && boundary.height(facet, place(y, node), y).1 > -1e-9
+    met.is_some() && boundary.height(facet, place(y, node), y).height > -1e-9
 }
 
 /// A block with a slot from the top: corners 3, 4 on its right flank, 5 at the tip, 6, 7 on the
