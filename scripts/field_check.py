@@ -85,16 +85,31 @@ def slopes(p):
     return np.array([by_x, by_y]) @ np.linalg.inv(at_nodes)
 
 
+def slopes_of_quadrilaterals(p):
+    """The same of a quadrilateral of degree 1 or 2."""
+    nodes = np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5), (0.5, 0.5)])
+    powers = [(i, j) for i in range(p + 1) for j in range(p + 1)]
+    at_nodes = np.array([[x**i * y**j for i, j in powers] for x, y in nodes[: len(powers)]])
+    points = [(i / 16, j / 16) for i in range(17) for j in range(17)]
+    by_x = [[i * x ** max(i - 1, 0) * y**j for i, j in powers] for x, y in points]
+    by_y = [[j * x**i * y ** max(j - 1, 0) for i, j in powers] for x, y in points]
+    return np.array([by_x, by_y]) @ np.linalg.inv(at_nodes)
+
+
+# Corners and degree of a cell, by its number of nodes.
+KINDS = {3: (3, 1), 6: (3, 2), 10: (3, 3), 4: (4, 1), 9: (4, 2)}
+
+
 def boundary(cells):
-    """Facets (F, p + 1) of triangles in VTK's node order, chained loop after loop, and the loop of each."""
-    n = cells.shape[1]
-    p = {3: 1, 6: 2, 10: 3}[n]
+    """Facets (F, p + 1) of triangles or quadrilaterals in VTK's node order, chained loop after loop, and
+    the loop of each."""
+    corners, p = KINDS[cells.shape[1]]
     count, facets = {}, {}
     for cell in cells:
-        for e in range(3):
-            i, j = cell[e], cell[(e + 1) % 3]
+        for e in range(corners):
+            i, j = cell[e], cell[(e + 1) % corners]
             count[frozenset((i, j))] = count.get(frozenset((i, j)), 0) + 1
-            facets[(i, j)] = [i, *cell[3 + e * (p - 1) : 3 + (e + 1) * (p - 1)], j]
+            facets[(i, j)] = [i, *cell[corners + e * (p - 1) : corners + (e + 1) * (p - 1)], j]
     free = {}
     for (i, _), facet in facets.items():
         if count[frozenset((facet[0], facet[-1]))] == 1:
@@ -124,7 +139,7 @@ class Outline:
         self.facets, self.loops = boundary(cells)
         self.p = self.facets.shape[1] - 1
         self.matrix = shape_matrix(self.p, np.linspace(0, 1, PARTS + 1))
-        self.slopes = slopes(self.p)
+        self.slopes = (slopes if KINDS[cells.shape[1]][0] == 3 else slopes_of_quadrilaterals)(self.p)
         self.nodes, first = np.unique(self.facets, return_index=True)
         self.node_facet = first // (self.p + 1)
         self.thick = np.inf

@@ -3,6 +3,7 @@
 
     python scripts/ladder.py --carom target/release/carom --seed 1 --count 400 --out DIR
     python scripts/ladder.py --space --carom CAROM --count 100 --out DIR   cases in space
+    python scripts/ladder.py --aligned --carom CAROM --out DIR             aligned cases
     python scripts/ladder.py --carom CAROM --cases FOLDER --out DIR      existing cases instead
     python scripts/ladder.py --judge DIR                                 kept records of a ladder
     python scripts/ladder.py --check RUN                                 one record
@@ -14,10 +15,15 @@ parameters are random (ladder_cases.py, in space ladder_space_cases.py). A case 
     right      exit 0 and nothing wrong in the record
     wrong      exit 0, but bodies penetrate or pass through, or energy is created without a warning
     marked     exit 0 with the warning that energy was created, and nothing else wrong
+    warned     exit 0, wrong, and warnings of the record with a place say so (aligned cases only)
     stopped    exit 3, with the reason of the manifest
     timeout    killed after --timeout seconds of wall time
     refused    exit 2: the case was refused before it ran, rightly (a fault of the generator) or not
     crash      any other exit
+
+Aligned cases are not random (aligned_cases.py); --count chooses from every family in proportion. What
+must hold in their records is in aligned_judge.py; a case and its image are compared, which lies beside
+it as NUMBER-twin.
 
 DIR/results.csv has a row per case: depths as multiples of h as defined in field_check.py, the energy
 created by the checker's formula and by the record, rows of contact.csv, wall
@@ -37,12 +43,14 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import aligned_cases
+import aligned_judge
 import field_check
 import field_check_space
 import ladder_cases
 import ladder_space_cases
 
-OUTCOMES = ["right", "wrong", "marked", "stopped", "timeout", "refused", "crash"]
+OUTCOMES = ["right", "wrong", "warned", "marked", "stopped", "timeout", "refused", "crash"]
 COLUMNS = (
     "case category family enforcement elements outcome kind nodes edges self initial created created_recorded momentum "
     "contacts wall warnings wrong message"
@@ -105,6 +113,43 @@ def judge(carom, meta, case, out, timeout, keep, sets):
     return row
 
 
+def judge_aligned(carom, setup, case, out, timeout, keep, sets):
+    """The row of results.csv of an aligned case."""
+    pair = out.with_name(f"{out.name}-twin")
+    row = {**setup.meta(), "case": case.stem, "kind": "", "wall": 0.0}
+    outcome, message, wall = run(carom, case, out, timeout, sets)
+    if setup.twin and outcome == "right":
+        outcome, message, more = run(carom, case.with_name(f"{case.stem}-twin.toml"), pair, timeout, sets)
+        message = message and f"twin: {message}"
+        wall += more
+    row |= {"outcome": outcome, "message": message, "wall": f"{wall:.2f}"}
+    judged_aligned(row, setup, out, pair)
+    if row["outcome"] == "right" and not keep:
+        for folder in (out, pair):
+            shutil.rmtree(folder / "fields", ignore_errors=True)
+            shutil.rmtree(folder / "checkpoint", ignore_errors=True)
+    return row
+
+
+def judged_aligned(row, setup, out, pair):
+    """Completes the row of an aligned case by what its record violates."""
+    if row["outcome"] == "right":
+        try:
+            found = aligned_judge.violations(out, setup.claims, pair if setup.twin else None, setup.field)
+            warnings = json.loads((out / "manifest.json").read_text())["warnings"]
+        except Exception as error:  # a record that cannot be read is a result, too
+            found, warnings = {"record": [f"{type(error).__name__}: {error}"]}, []
+        row["outcome"] = aligned_judge.outcome(found, warnings)
+        row["kind"] = ", ".join(sorted(found))
+        row["wrong"] = "; ".join(f"{judge}: {what}" for judge, whats in found.items() for what in whats)
+        row["warnings"] = " ".join(sorted({w["id"] for w in warnings}))
+        row["contacts"] = len((out / "contact.csv").read_text().splitlines()) - 1 if (out / "contact.csv").exists() else ""
+    elif row["outcome"] == "refused" and setup.may_refuse and re.search(setup.may_refuse, row["message"]):
+        row["outcome"], row["kind"] = "right", "refused with its reason"
+    else:
+        row["kind"] = kind_of(row["message"])
+
+
 def judged(row, out):
     """Completes a row by the check of its record."""
     outcome = row["outcome"]
@@ -124,14 +169,19 @@ def judged(row, out):
             row["kind"] = ", ".join(sorted({w.split(":")[0] for w in found["wrong"]}))
 
 
-def judge_again(folder):
+def judge_again(folder, aligned):
     """Checks the records of a ladder that were kept, and prints its table; exit code 1 if one is wrong."""
     with (folder / "results.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
+    setups = {f"{s.number:04}": s for s in aligned_cases.all_cases()}
     for row in rows:
-        if row["outcome"] in ("right", "wrong", "marked"):
-            row["outcome"] = "right"
-        judged(row, folder / "runs" / row["case"])
+        out = folder / "runs" / row["case"]
+        if row["outcome"] in ("right", "wrong", "marked", "warned"):
+            row["outcome"] = "right" if row["kind"] != "refused with its reason" else "refused"
+        if aligned:
+            judged_aligned(row, setups[row["case"]], out, out.with_name(f"{out.name}-twin"))
+        else:
+            judged(row, out)
     for row in rows:
         if row.get("wrong"):
             print(f"{row['case']} {row['category']:<15} {row['family']:<14} {row['outcome']:<8} {row['wrong'][:150]}")
@@ -152,10 +202,10 @@ def table(rows):
         rest = sum(count[o] for o in ("timeout", "refused", "crash"))
         if not chosen:
             return "."
-        return f"{count['right']}/{count['wrong'] + count['marked']}/{count['stopped']}" + (f"/{rest}" if rest else "")
+        return f"{count['right']}/{count['wrong'] + count['warned'] + count['marked']}/{count['stopped']}" + (f"/{rest}" if rest else "")
 
     width = 1 + max([len(c) for c in categories] + [8])
-    lines += ["", "right / wrong or marked / stopped [/ timed out, refused or crashed]", ""]
+    lines += ["", "right / wrong, warned or marked / stopped [/ timed out, refused or crashed]", ""]
     lines.append(" " * width + "".join(f"{f:>14}" for f in [*families, "all"]))
     for c in [*categories, "all"]:
         mine = [r for r in rows if c in ("all", r["category"])]
@@ -170,6 +220,8 @@ def table(rows):
             before = [r["case"] for r in rows if r["outcome"] == outcome and r.get("wrong")]
             lines.append(f"{len(before):13}  of them wrong before the stop {' '.join(before[:8])}")
     idle = [r["case"] for r in rows if r["outcome"] == "right" and r.get("contacts") == 0]
+    excused = [r["case"] for r in rows if r["kind"] == "refused with its reason"]
+    lines += [f"   right {len(excused):4}  refused with their reason    {' '.join(excused)}"] if excused else []
     lines += [f"   right {len(idle):4}  without a row in contact.csv {' '.join(idle)}"] if idle else []
     return "\n".join(lines)
 
@@ -188,7 +240,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--carom", type=Path, help="the program")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--count", type=int, default=400)
+    parser.add_argument("--count", type=int, help="default: 400; all, of aligned cases")
     parser.add_argument("--out", type=Path, help="directory that is created")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", help="number of one case, or a word of its category or scheme family")
@@ -199,12 +251,13 @@ def main():
     parser.add_argument("--check", type=Path, metavar="RUN", help="check one record and stop")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a key of every case that is changed")
     parser.add_argument("--space", action="store_true", help="cases in space")
+    parser.add_argument("--aligned", action="store_true", help="aligned cases")
     parser.add_argument("--dry", action="store_true", help="write the cases only")
     options = parser.parse_args()
     if options.check:
         return show(options.check)
     if options.judge:
-        return judge_again(options.judge)
+        return judge_again(options.judge, options.aligned)
     if not options.out or not (options.carom or options.dry):
         parser.error("--carom and --out are needed")
     if (options.out / "results.csv").exists():
@@ -216,21 +269,30 @@ def main():
         meta = {"category": "given", "family": "given", "enforcement": "", "elements": ""}
         work = [(meta, case) for case in sorted(options.cases.glob("*.toml"))]
     generator = ladder_space_cases if options.space else ladder_cases
-    for k in range(1, options.count + 1) if not options.cases else []:
+    only = options.only
+    wanted = lambda k, meta: not only or str(k) == only.lstrip("0") or not only.isdigit() and only in meta["category"] + " " + meta["family"]
+    folder = options.out / "cases"
+    for setup in aligned_cases.chosen(options.count) if options.aligned else []:
+        if wanted(setup.number, setup.meta()):
+            path = folder / f"{setup.number:04}.toml"
+            path.write_text(setup.text())
+            if setup.twin:
+                path.with_name(f"{path.stem}-twin.toml").write_text(setup.twin.text())
+            work.append((setup, path))
+    for k in range(1, (options.count or 400) + 1) if not options.cases and not options.aligned else []:
         meta, text = generator.case(options.seed, k)
-        only = options.only
-        if only and not (str(k) == only.lstrip("0") or not only.isdigit() and only in meta["category"] + " " + meta["family"]):
-            continue
-        path = options.out / "cases" / f"{k:04}.toml"
-        path.write_text(text)
-        work.append((meta, path))
+        if wanted(k, meta):
+            path = folder / f"{k:04}.toml"
+            path.write_text(text)
+            work.append((meta, path))
     if options.dry:
         return 0
     rows = []
     with (options.out / "results.csv").open("w", newline="") as file, ThreadPoolExecutor(options.jobs) as pool:
         writer = csv.DictWriter(file, COLUMNS, restval="")
         writer.writeheader()
-        one = lambda w: judge(options.carom, w[0], w[1], options.out / "runs" / w[1].stem, options.timeout, options.keep, options.set)
+        of_case = judge_aligned if options.aligned else judge
+        one = lambda w: of_case(options.carom, w[0], w[1], options.out / "runs" / w[1].stem, options.timeout, options.keep, options.set)
         for row in pool.map(one, work):
             rows.append(row)
             writer.writerow({key: row.get(key, "") for key in COLUMNS})
