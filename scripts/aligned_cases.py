@@ -423,7 +423,8 @@ def bars_in_line():
         a = Part("a", element, {"shape": "interval", "min": -1.0, "max": 0.0, "cells": n}, 1 / 60, 1.0, velocity=[0.01], **common)
         gap = 0.0 if touching else 0.01
         b = Part("b", element, {"shape": "interval", "min": gap, "max": gap + long, "cells": n * round(long)}, 1 / 60, long, **common)
-        # Damped schemes and steps longer than a cell lose what the wave fronts contain of the energy.
+        # Damped schemes and steps longer than a cell lose what the wave fronts contain of the
+        # energy.
         low = 0.85 if scheme in ("hu", "backward-euler", "bdf2", "moreau-jean", "ns-alpha", "paoli") else 0.95
         claims = [TOUCHES, {"judge": "conserved", "axis": "x", "limit": 1e-9}, {"judge": "apart-end"}]
         claims.append({"judge": "last", "column": "b.velocity_x", "value": 0.01 / long, "limit": 0.01 / long * (1 - low)})

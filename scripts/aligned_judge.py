@@ -48,7 +48,8 @@ import field_check
 import field_check_space
 import field_judge
 
-# Schemes that may create energy when contact opens and closes within a step, or in non-linear motion.
+# Schemes that may create energy when contact opens and closes within a step, or in non-linear
+# motion.
 CREATES = {"chung-hulbert", "hht", "wbz", "newmark", "hu", "generalized-alpha", "central-difference", "paoli-schatzman", "nonsmooth-generalized-alpha", "bdf2"}
 # Those of which the velocities contain all momentum at the end of every step.
 SHARP = {"bathe", "tr-bdf2", "backward-euler", "energy-momentum", "moreau-jean"}

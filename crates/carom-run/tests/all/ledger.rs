@@ -333,8 +333,8 @@ fn booked_works_leave_what_every_scheme_dissipates() {
     assert!(judged_pairs("friction", true, 1e-12) > 300);
 }
 
-/// Judges the cases of a folder of `cases`, by day every other one; returns the number of pairs that
-/// rubbed. `round_off`: relative to the energies.
+/// Judges the cases of a folder of `cases`, by day every other one; returns the number of pairs
+/// that rubbed. `round_off`: relative to the energies.
 fn judged_pairs(folder: &str, at_night: bool, round_off: f64) -> usize {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(folder);
     let mut cases: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
