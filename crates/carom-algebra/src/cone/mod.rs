@@ -19,7 +19,6 @@ mod sweeps;
 pub use kind::Kind;
 
 use crate::LinearError;
-pub use kind::Kind;
 
 /// Weight ε of the proximal step, relative to the diagonal of the matrix.
 const PROXIMAL: f64 = 1e-10;
