@@ -304,10 +304,10 @@ impl State {
                 is(what, values.len(), model.dofs())?;
             }
         }
+        is("contacts with pairs", self.pairs.len(), model.contacts.len())?;
         for (what, resultants) in copy.over_contacts() {
             is(what, resultants.len(), model.contacts.len())?;
         }
-        is("contacts with pairs", self.pairs.len(), model.contacts.len())?;
         let is_finite = |dof: usize| (self.y[dof] + self.v[dof] + self.a[dof]).is_finite();
         if let Some(dof) = (0..model.dofs()).find(|&dof| !is_finite(dof)) {
             let what = format!("position, velocity or acceleration {dof} is not finite");
