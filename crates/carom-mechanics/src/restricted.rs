@@ -1,6 +1,9 @@
 //! The part of a state that belongs to some of the bodies and contacts of a model.
 
+use carom_solid::Configuration;
+
 use crate::ledger::book_kinetic;
+use crate::materials::Materials;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stage::renewal::FrozenTangent;
@@ -20,6 +23,9 @@ impl State {
             if all.is_empty() { Vec::new() } else { dofs.iter().map(|&dof| all[dof]).collect() }
         };
         let each = |all: &[[f64; 3]]| contacts.iter().map(|&k| all[k]).collect::<Vec<_>>();
+        if model.remembers() {
+            return Err(Rejected::Remembers);
+        }
         let mut state = self.clone();
         for vector in [&mut state.y, &mut state.v, &mut state.a] {
             *vector = of(vector);
@@ -47,7 +53,7 @@ impl State {
         state.overlaps.clear();
         let mut internal = vec![0.0; model.dofs()];
         let strain = model
-            .internal_force(&state.y, &mut internal)
+            .internal_force(&Configuration::at(&state.y), &mut internal, &mut Materials::default())
             .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
         let springs = springs(model, &state)?;
         state.ledger = Ledger {

@@ -4,6 +4,7 @@ use carom_contact::{Pair, Pairing};
 use serde::{Deserialize, Serialize};
 
 use crate::check::overlapping::Overlap;
+use crate::materials::Materials;
 use crate::model::Model;
 use crate::stage::renewal::FrozenTangent;
 
@@ -44,6 +45,8 @@ pub struct Ledger {
     pub largest: f64,
     /// Energy created so far.
     pub created: Created,
+    /// Energy that materials have dissipated.
+    pub materials: f64,
     /// Part of the impulses of contact that projections and changes of the step move between
     /// velocities and algorithmic accelerations.
     pub algorithmic_impulse: [f64; 3],
@@ -55,9 +58,11 @@ impl Ledger {
         self.kinetic + self.strain + self.potential
     }
 
-    /// Energy dissipated by the scheme; negative if created.
+    /// Energy dissipated by the scheme, beyond what materials dissipate; negative if created.
     pub fn dissipation(&self) -> f64 {
-        self.external_work + self.contact_work + self.friction_work - (self.total() - self.total_at_start)
+        self.external_work + self.contact_work + self.friction_work
+            - (self.total() - self.total_at_start)
+            - self.materials
     }
 
     /// Change of the energy since the start beyond the work of loads and supports.
@@ -139,6 +144,8 @@ pub struct Previous {
 /// Means over a step, weighting start and stages as its velocity update; flat over all dofs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Means {
+    /// Internal forces; empty if no material remembers.
+    pub internal: Vec<f64>,
     /// Contact forces.
     pub contact: Vec<f64>,
     /// The part of friction in them; empty without friction.
@@ -167,6 +174,7 @@ impl Means {
             mean.clear();
             mean.resize(dofs, 0.0);
         }
+        self.internal.clear();
         self.friction.clear();
         self.contact_forces.clear();
         self.contact_forces.resize(contacts, [0.0; 3]);
@@ -233,6 +241,8 @@ pub struct State {
     /// What has overlapped without a contact, each pair once; a body with itself if it has crossed
     /// itself.
     pub overlaps: Vec<Overlap>,
+    /// What the materials remember.
+    pub materials: Materials,
 }
 
 impl State {
@@ -254,6 +264,7 @@ impl State {
             let what = format!("position, velocity or acceleration {dof} is not finite");
             return Err(OtherModel { what });
         }
+        is("numbers of memory", self.materials.memory.len(), model.memory())?;
         is("internal forces", self.f_internal.len(), dofs)?;
         is("loads", self.f_external.len(), dofs)?;
         is("averaged contact forces", self.f_contact.len(), dofs)?;
@@ -334,6 +345,7 @@ impl State {
         self.frozen = other.frozen.clone();
         self.bisection = other.bisection;
         self.overlaps.clone_from(&other.overlaps);
+        self.materials.clone_from(&other.materials);
     }
 
     /// Takes over the pairs at the end of a solve.

@@ -21,7 +21,7 @@ pub use loads::{Amplitude, InBody, Load, Loads, LoadsAt, Weight};
 pub use manufactured::Manufactured;
 pub use mass::Mass;
 pub use motion::{Motions, Prescribed};
-pub use probe::{Probe, Quantity, von_mises};
+pub use probe::{Probe, Quantity, past_of, von_mises};
 pub use redistribution::redistribute;
 pub(crate) use rigid::check_rigid_modes;
 pub use rigid::{Mode, Unconstrained, free_motions};

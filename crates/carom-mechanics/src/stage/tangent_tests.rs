@@ -8,6 +8,7 @@ use carom_time::schemes::energy_momentum::EnergyMomentum;
 use carom_time::{ForceRule, Kernel, Memory, Scheme, Stage};
 
 use crate::contact::constraints::Constraints;
+use crate::materials::Materials;
 use crate::model::{Friction, Load, Loads, Model, Motions};
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::{Iterate, Spare};
@@ -17,6 +18,7 @@ use crate::state::State;
 use crate::testing::{contact, loaded, model, nodes, parts};
 use crate::timings::Timings;
 use crate::velocity::active_rows::measure_all;
+use carom_solid::Configuration;
 
 /// An iterate with its tangent.
 struct Tangent<'a> {
@@ -132,7 +134,8 @@ fn at(model: &Model, y: Vec<f64>) -> State {
         pairs: vec![Vec::new(); contacts],
         ..State::default()
     };
-    model.internal_force(&state.y, &mut state.f_internal).unwrap();
+    let at = Configuration::at(&state.y);
+    model.internal_force(&at, &mut state.f_internal, &mut Materials::default()).unwrap();
     state
 }
 
@@ -412,11 +415,13 @@ fn the_product_of_a_discrete_gradient_is_the_derivative_of_its_force() {
     let (before, y, u) =
         (at(0.02, 0.3), at(0.03, 0.9), (0..model.dofs()).map(|i| wave(i, 0.1)).collect::<Vec<_>>());
     let mut product = vec![0.0; model.dofs()];
-    model.internal_product(Some(&before), &y, &u, &mut product).unwrap();
+    let at = Configuration { before: Some(&before), ..Configuration::at(&y) };
+    model.internal_product(&at, &u, &mut product).unwrap();
     let force = |e: f64| {
         let moved: Vec<f64> = y.iter().zip(&u).map(|(y, u)| y + e * u).collect();
         let mut force = vec![0.0; model.dofs()];
-        model.internal_between(&before, &moved, &mut force).unwrap();
+        let at = Configuration { before: Some(&before), ..Configuration::at(&moved) };
+        model.internal_force(&at, &mut force, &mut Materials::default()).unwrap();
         force
     };
     let h = 1e-5;
