@@ -288,7 +288,7 @@ impl Kind {
             Self::Formulas(_) => format!("{} or formulas in quotes", several(dimension)),
             Self::FormulasOr(..) => format!("{} or formulas in quotes, or a table", several(dimension)),
             Self::ByColumn => "a table of formulas by column".into(),
-            Self::NamesByGroup => "a table of names by physical group".into(),
+            Self::NamesByGroup => "a table with a name for each physical group".into(),
             Self::Choices(choices) => format!("a list of values from {}", words(choices)),
             Self::Side => "a side \"body.side\"".into(),
             Self::Between => "\"all\", or a list of bodies and sides [\"body\", \"body.side\"]".into(),

@@ -12,6 +12,7 @@ use super::keys::Kind::Text;
 use super::keys::{Key, Keys, View};
 use super::no_mesh::NoMesh;
 use super::problem::Problem;
+use super::suggest;
 use carom_record::available_memory;
 
 /// A body from a Gmsh file; its sides are the physical curves (dimension 1: points, dimension 3:
@@ -75,7 +76,7 @@ fn group_name(v: &View) -> Option<String> {
     let what = format!("mesh from a file needs `{key}`");
     let why = format!("`{key}` is required. {meaning}");
     let example = if key == "volume" { "part" } else { "cylinder" };
-    v.wrong_key("", what, why, format!("add `{key} = \"{example}\"`, for example"))
+    v.wrong_key("", what, why, format!("add `{key} = \"{example}\"`"))
 }
 
 /// Default of `parts`: edges remain as they are in the file.
@@ -154,7 +155,11 @@ fn at_materials(v: &View, region: &str, file: &str, error: &gmsh::MshError) -> P
     if region.is_empty() {
         return Problem::new(path, what, error.why(), error.help());
     }
-    Problem::new(joined(&path, region), what, error.why(), error.help()).at_key()
+    let help = match &error.fault {
+        gmsh::Fault::NoName { names, .. } => suggest::help(region, names.iter().map(String::as_str)),
+        _ => error.help().to_owned(),
+    };
+    Problem::new(joined(&path, region), what, error.why(), help).at_key()
 }
 
 impl FileMesh {

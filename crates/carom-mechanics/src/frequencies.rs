@@ -26,6 +26,7 @@ use crate::linear::direct::Direct;
 use crate::linear::preconditioner::Preconditioner;
 use crate::model::Model;
 use crate::stage::renewal::Point;
+use carom_solid::Configuration;
 
 /// Maximum iterations per vector, and relative change of the quotient at convergence.
 const ITERATIONS: usize = 400;
@@ -47,7 +48,7 @@ pub struct Frequencies {
 /// Frequencies of a model; none if its tangent or its mass cannot be factored.
 pub fn frequencies(model: &Model) -> Option<Frequencies> {
     let mut system = Direct::new(model);
-    system.assemble(model, &model.reference).ok()?;
+    system.assemble(model, &Configuration::at(&model.reference)).ok()?;
     let n = model.free.len();
     let massless = model.free.iter().any(|dof| model.massless[*dof]);
     let start =
@@ -102,7 +103,7 @@ pub fn spring(model: &Model) -> Option<f64> {
         return None;
     }
     let mut system = Direct::new(model);
-    system.assemble(model, &model.reference).ok()?;
+    system.assemble(model, &Configuration::at(&model.reference)).ok()?;
     system.form_mass(model, &Constraints::none(model.dimension)).ok()?;
     let mut highest: Option<f64> = None;
     let springs = model.contacts.iter().flat_map(|contact| {

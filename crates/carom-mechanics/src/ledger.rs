@@ -71,6 +71,22 @@ pub(crate) fn add_stage(
     if let Some((old, before)) = before {
         add_previous(model, old, before, means);
     }
+    if model.remembers() {
+        means.internal.resize(model.dofs(), 0.0);
+        let internal = match averaging(stage) {
+            Averaging::BothEnds => Shares { now: 0.5, start: 0.5, massless: 0.5 },
+            Averaging::Ends => Shares { now, start, massless: 1.0 },
+            Averaging::Within => {
+                Shares { now: stage.weights.internal, start: stage.before.internal, massless: 1.0 }
+            }
+        };
+        internal.add(model, stage, &solved.forces.internal, &state.f_internal, &mut means.internal);
+        if let Some((old, before)) = before {
+            for (i, (mean, before)) in means.internal.iter_mut().zip(&before.internal).enumerate() {
+                *mean += if model.massless[i] { 0.0 } else { old * before };
+            }
+        }
+    }
     if !equations.motions.is_empty() {
         add_supports(equations, solved, before, means);
     }
@@ -217,6 +233,7 @@ pub(crate) fn account(
     for (impulse, mean) in next.impulses.iter_mut().zip(&means.contact_forces) {
         (0..3).for_each(|i| impulse[i] += dt * mean[i]);
     }
+    book_materials(model, state, next, &means.internal, increment);
     next.ledger.strain = strain + last.springs;
     next.ledger.potential = model.potential(&next.y);
     book_kinetic(model, next);
@@ -302,6 +319,24 @@ pub fn secondary_force<'a>(pairs: &[Pair], rows: impl Iterator<Item = Row<'a>>) 
 pub(crate) fn change_of_loads(state: &State, next: &State, increment: &[f64]) -> f64 {
     let forces = state.f_external.iter().zip(&next.f_external);
     increment.iter().zip(forces).map(|(moved, (before, now))| moved * (now - before)).sum()
+}
+
+/// Records what the materials dissipate in a step with these mean internal forces and increments of
+/// positions: the work of the forces, less the change of the energy that is stored.
+pub(crate) fn book_materials(
+    model: &Model,
+    before: &State,
+    next: &mut State,
+    mean: &[f64],
+    increment: &[f64],
+) {
+    for (k, part) in model.parts.iter().enumerate().filter(|(_, part)| part.memory() > 0) {
+        let forces = part.of(mean).iter().zip(part.of(increment));
+        let work: f64 = forces.map(|(force, moved)| force * moved).sum();
+        let lost = work - (next.materials.stored[k] - before.materials.stored[k]);
+        next.materials.dissipated[k] += lost;
+        next.ledger.materials += lost;
+    }
 }
 
 /// Updates the kinetic energy.

@@ -52,6 +52,7 @@ impl Rejected {
             | Self::NoMultipliers { .. }
             | Self::Linear(_)
             | Self::NegativeMass
+            | Self::Remembers
             | Self::NoFrictionBalance
             | Self::NoValue(_)
             | Self::Unconstrained(_)

@@ -1,6 +1,9 @@
 //! The part of a state that belongs to some of the bodies and contacts of a model.
 
+use carom_solid::Configuration;
+
 use crate::ledger::book_kinetic;
+use crate::materials::Materials;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stage::renewal::FrozenTangent;
@@ -16,6 +19,9 @@ impl State {
     /// # Errors
     /// If a cell is inverted.
     pub fn restricted(&self, model: &Model, dofs: &[usize], contacts: &[usize]) -> Result<Self, Rejected> {
+        if model.remembers() {
+            return Err(Rejected::Remembers);
+        }
         let mut state = self.clone();
         for OverDofs { values, .. } in
             state.over_dofs().into_iter().filter(|vector| !vector.values.is_empty())
@@ -30,7 +36,7 @@ impl State {
         state.overlaps.clear();
         let mut internal = vec![0.0; model.dofs()];
         let strain = model
-            .internal_force(&state.y, &mut internal)
+            .internal_force(&Configuration::at(&state.y), &mut internal, &mut Materials::default())
             .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
         let springs = springs(model, &state)?;
         state.ledger = Ledger {

@@ -18,6 +18,7 @@ use crate::substeps::{Limits, MOST, Next, Progress, decide};
 use crate::timings::{Timings, timed};
 use crate::trace::Trace;
 use crate::workspace::Workspace;
+use carom_solid::Configuration;
 
 /// What is called between the trial steps of a grid step.
 type Watch<'a> = dyn FnMut(&Attempt) -> ControlFlow<()> + Send + 'a;
@@ -172,7 +173,9 @@ impl Simulation {
     /// # Errors
     /// If a cell is inverted.
     pub fn assemble(&mut self) -> Result<(), Rejected> {
-        self.work.system.assemble(&self.model, &self.state.y)
+        let Self { work, model, state, .. } = self;
+        let at = Configuration { before: None, y: &state.y, past: state.materials.past(0.0) };
+        work.system.assemble(model, &at)
     }
 
     /// Advances to the next grid time and reports what happened.

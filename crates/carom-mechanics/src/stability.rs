@@ -11,7 +11,7 @@
 
 use carom_algebra::NodeMatrix;
 use carom_algebra::sums::dot;
-use carom_solid::cell_lumped_mass;
+use carom_solid::{Configuration, cell_lumped_mass};
 
 use crate::linear::tangents::{coupled, each_tangent};
 use crate::model::Model;
@@ -70,7 +70,7 @@ fn scaled_tangent(model: &Model, mass: &[f64], square: f64) -> Option<NodeMatrix
         let dof = dof as usize;
         if model.fixed[dof] { 0.0 } else { (mass[dof] * square).sqrt().recip() }
     };
-    each_tangent(model, &model.initial_position, |part, cell, tangent| {
+    each_tangent(model, &Configuration::at(&model.initial_position), |part, cell, tangent| {
         let mesh = part.body.mesh();
         let dofs = part.cell_dofs(cell);
         let n = dofs.len();

@@ -13,6 +13,7 @@
 use std::collections::BTreeMap;
 
 use carom_contact::{Pair, Point, Rows};
+use carom_solid::Configuration;
 
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::linear::system::System;
@@ -76,10 +77,14 @@ pub(crate) fn start(
         contact_forces: vec![[0.0; 3]; contacts],
         impulses: vec![[0.0; 3]; contacts],
         pairs,
+        materials: model.materials(),
         ..State::default()
     };
+    // A body that starts strained has reached its positions at once.
+    let none = model.materials();
+    let at = Configuration { before: None, y: &state.y, past: none.past(0.0) };
     state.ledger.strain = model
-        .internal_force(&state.y, &mut state.f_internal)
+        .internal_force(&at, &mut state.f_internal, &mut state.materials)
         .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
     model.loads_into(0.0, &state.y, &mut LoadsAt::default(), &mut state.f_external)?;
     let mut motions = Vec::new();

@@ -5,6 +5,7 @@ use educe::Educe;
 use serde::{Deserialize, Serialize};
 
 use crate::check::overlapping::Overlap;
+use crate::materials::Materials;
 use crate::model::Model;
 use crate::stage::renewal::FrozenTangent;
 
@@ -45,6 +46,8 @@ pub struct Ledger {
     pub largest: f64,
     /// Energy created so far.
     pub created: Created,
+    /// Energy that materials have dissipated.
+    pub materials: f64,
     /// Part of the impulses of contact that projections and changes of the step move between
     /// velocities and algorithmic accelerations.
     pub algorithmic_impulse: [f64; 3],
@@ -56,9 +59,11 @@ impl Ledger {
         self.kinetic + self.strain + self.potential
     }
 
-    /// Energy dissipated by the scheme; negative if created.
+    /// Energy dissipated by the scheme, beyond what materials dissipate; negative if created.
     pub fn dissipation(&self) -> f64 {
-        self.external_work + self.contact_work + self.friction_work - (self.total() - self.total_at_start)
+        self.external_work + self.contact_work + self.friction_work
+            - (self.total() - self.total_at_start)
+            - self.materials
     }
 
     /// Change of the energy since the start beyond the work of loads and supports.
@@ -138,6 +143,8 @@ pub struct Previous {
 #[derive(Debug, Default, Educe, PartialEq, Serialize, Deserialize)]
 #[educe(Clone)]
 pub struct Means {
+    /// Internal forces; empty if no material remembers.
+    pub internal: Vec<f64>,
     /// Contact forces.
     pub contact: Vec<f64>,
     /// The part of friction in them; empty without friction.
@@ -166,6 +173,7 @@ impl Means {
             mean.clear();
             mean.resize(dofs, 0.0);
         }
+        self.internal.clear();
         self.friction.clear();
         self.contact_forces.clear();
         self.contact_forces.resize(contacts, [0.0; 3]);
@@ -234,6 +242,8 @@ pub struct State {
     /// What has overlapped without a contact, each pair once; a body with itself if it has crossed
     /// itself.
     pub overlaps: Vec<Overlap>,
+    /// What the materials remember.
+    pub materials: Materials,
 }
 
 /// A vector of a state over all dofs.
@@ -313,6 +323,7 @@ impl State {
             let what = format!("position, velocity or acceleration {dof} is not finite");
             return Err(OtherModel { what });
         }
+        is("numbers of memory", self.materials.memory.len(), model.memory())?;
         if let Some(point) = &self.frozen.point {
             is("positions of a factor", point.at.len(), model.dofs())?;
         }

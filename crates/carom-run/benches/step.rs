@@ -10,8 +10,10 @@ use std::sync::Arc;
 
 use carom_algebra::{Condensed, Elimination, Pattern, Precision};
 use carom_contact::{Pair, Pairing, Rows};
+use carom_mechanics::Materials;
 use carom_run::case::{Case, Document, read};
 use carom_run::{GridReport, Simulation, State};
+use carom_solid::Configuration;
 use divan::{Bencher, counter::ItemsCount};
 
 fn main() {
@@ -72,7 +74,15 @@ fn forces_of_all_cells(bencher: Bencher, job: Job) {
     let mut force = vec![0.0; sim.model().dofs()];
     let cells: usize = sim.model().parts.iter().map(|p| p.body.mesh().cell_count()).sum();
     let bencher = bencher.counter(ItemsCount::new(cells));
-    bencher.bench_local(|| sim.model().internal_force(black_box(&sim.state().y), &mut force).is_ok());
+    bencher.bench_local(|| {
+        sim.model()
+            .internal_force(
+                &Configuration::at(black_box(&sim.state().y)),
+                &mut force,
+                &mut Materials::default(),
+            )
+            .is_ok()
+    });
 }
 
 #[divan::bench(args = JOBS)]

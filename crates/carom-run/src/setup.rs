@@ -8,7 +8,7 @@ use carom_mechanics::{
     Explicit, Grid, Implicit, Impulsive, InitialState, Linear, Rejected, Settings, Simulation, State,
     Stepper, Tangent,
 };
-use carom_solid::Constitutive;
+use carom_solid::{Configuration, Constitutive};
 use carom_time::{Integrator, Kernel, Nonsmooth};
 
 use crate::build::{Materials, build, overlaps};
@@ -207,7 +207,13 @@ fn grid(case: &Case, floor: f64) -> Grid {
 fn inverted(case: &Case, model: &Model) -> Option<Rejected> {
     case.bodies.iter().find(|body| body.position.is_some())?;
     let mut force = vec![0.0; model.dofs()];
-    let (body, inverted) = model.internal_force(&model.initial_position, &mut force).err()?;
+    let (body, inverted) = model
+        .internal_force(
+            &Configuration::at(&model.initial_position),
+            &mut force,
+            &mut carom_mechanics::Materials::default(),
+        )
+        .err()?;
     Some(Rejected::Inverted { body, inverted })
 }
 

@@ -6,7 +6,7 @@
 
 use std::hint::black_box;
 
-use carom_solid::{Body, Element, Law, body, generate};
+use carom_solid::{Ask, Body, Configuration, Element, Law, Response, body, generate};
 use divan::Bencher;
 
 const SHAPES: [Element; 3] = [Element::T3, Element::T6, Element::T10];
@@ -32,11 +32,17 @@ fn square(element: Element, law: Law) -> (Box<dyn Body>, Vec<f64>, Vec<f64>) {
     (body(mesh, law, 0.25, 1.0).expect("valid"), at, moved)
 }
 
+/// Whether a cell is valid.
+fn responds(body: &dyn Body, at: &Configuration, ask: Ask, numbers: &mut [f64]) -> bool {
+    let out = Response { numbers, energies: &mut [0.0], memory: &mut [] };
+    body.respond(black_box(CELL), at, ask, out).is_ok()
+}
+
 #[divan::bench(args = SHAPES)]
 fn force(bencher: Bencher, shape: Element) {
     let (body, _, y) = square(shape, RUBBER);
     let mut force = vec![0.0; 2 * shape.nodes()];
-    bencher.bench_local(|| body.cell_force(black_box(CELL), &y, &mut force).is_ok());
+    bencher.bench_local(|| responds(&*body, &Configuration::at(&y), Ask::Force, &mut force));
 }
 
 /// Certified J > 0 in the whole of the cell.
@@ -59,15 +65,16 @@ fn tangent_of_law(bencher: Bencher, law: Law) {
 fn tangent_of(bencher: Bencher, shape: Element, law: Law) {
     let (body, _, y) = square(shape, law);
     let dofs = 2 * shape.nodes();
-    let (mut force, mut tangent) = (vec![0.0; dofs], vec![0.0; dofs * dofs]);
-    bencher.bench_local(|| body.cell_tangent(black_box(CELL), &y, &mut force, &mut tangent).is_ok());
+    let mut numbers = vec![0.0; dofs + dofs * dofs];
+    bencher.bench_local(|| responds(&*body, &Configuration::at(&y), Ask::Tangent, &mut numbers));
 }
 
 #[divan::bench(args = SHAPES)]
 fn discrete_gradient(bencher: Bencher, shape: Element) {
     let (body, before, now) = square(shape, RUBBER);
     let mut force = vec![0.0; 2 * shape.nodes()];
-    bencher.bench_local(|| body.cell_between(black_box(CELL), &before, &now, &mut force).is_ok());
+    let at = Configuration { before: Some(&before), ..Configuration::at(&now) };
+    bencher.bench_local(|| responds(&*body, &at, Ask::Force, &mut force));
 }
 
 #[divan::bench(args = SHAPES)]

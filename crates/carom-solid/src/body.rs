@@ -1,6 +1,7 @@
 //! The interface of a body: forces, tangents, masses and stresses at given positions, cell by cell.
 
 use crate::bounds::Bounds;
+use crate::material::Past;
 use crate::mesh::Mesh;
 
 /// A cell is inverted (J ≤ 0) at a point, or not certified to be valid there.
@@ -24,65 +25,62 @@ pub struct PointState {
     pub strain: [[f64; 3]; 3],
 }
 
-/// A deformable body: a mesh whose regions have one material each. Node numbers are the body's own;
-/// D stands for the dimension of its mesh and N for the nodes of a cell.
+/// Positions at which a body responds, and what its materials remember.
+#[derive(Clone, Copy, Debug)]
+pub struct Configuration<'a> {
+    /// Positions at the start of a step: the response is then the discrete gradient between them
+    /// and `y`. None: that at `y`.
+    pub before: Option<&'a [f64]>,
+    /// Positions.
+    pub y: &'a [f64],
+    /// Memory of all cells of the body at the start of the step; empty without memory.
+    pub past: Past<'a>,
+}
+
+impl<'a> Configuration<'a> {
+    /// The response at positions, of materials without memory.
+    pub fn at(y: &'a [f64]) -> Self {
+        Self { before: None, y, past: Past::default() }
+    }
+}
+
+/// What is asked of cells.
+#[derive(Clone, Copy, Debug)]
+pub enum Ask<'a> {
+    /// The force ∂U/∂y, `N·D` numbers of a cell, node-major; with positions before, the discrete
+    /// gradient f with f·(y − before) = U(y) − U(before) to round-off. Of materials with memory U
+    /// is the incremental potential.
+    Force,
+    /// The force at `y`, then its derivative, `(N·D)²` numbers by rows, symmetric, both triangles.
+    Tangent,
+    /// ∂f/∂y times a change of all positions, `N·D` numbers; not symmetrised.
+    Product(&'a [f64]),
+}
+
+/// Results of consecutive cells, which are overwritten.
+#[derive(Debug)]
+pub struct Response<'a> {
+    /// Numbers that are asked for, cell after cell.
+    pub numbers: &'a mut [f64],
+    /// Energy that each cell stores; zero of a product.
+    pub energies: &'a mut [f64],
+    /// Memory of each cell at the end of the step, [`Body::memory`] numbers; not asked for if
+    /// empty.
+    pub memory: &'a mut [f64],
+}
+
+/// The shape of a body: its mesh, shape functions, boxes and inverse maps. Node numbers are the
+/// body's own; D stands for the dimension of its mesh and N for the nodes of a cell.
 ///
-/// Units follow the case: forces per unit thickness × thickness. `y` is always the positions of all
-/// nodes of the body, flat and node-major, as every vector over nodes.
-pub trait Body: Send + Sync {
+/// `y` is always the positions of all nodes of the body, flat and node-major, as every vector over
+/// nodes.
+pub trait Geometry: Send + Sync {
     /// Mesh with reference positions.
     fn mesh(&self) -> &Mesh;
-
-    /// Returns the strain energy of a cell and overwrites `force` (`N·D`, node-major) with ∂U/∂y.
-    fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted>;
-
-    /// [`Self::cell_force`] of consecutive cells from `first` on: overwrites `energies`, one per
-    /// cell, and `forces`, one after the other.
-    fn cell_forces(
-        &self,
-        first: usize,
-        y: &[f64],
-        forces: &mut [f64],
-        energies: &mut [f64],
-    ) -> Result<(), Inverted>;
 
     /// Adds the nodal vectors of consecutive cells from `first` on, `N·D` numbers each, to `sum`,
     /// one over all nodes.
     fn add_cells(&self, first: usize, locals: &[f64], sum: &mut [f64]);
-
-    /// As [`Self::cell_force`], and overwrites `tangent` (`(N·D)²`, row-major, symmetric, both
-    /// triangles) with ∂²U/∂y².
-    fn cell_tangent(
-        &self,
-        cell: usize,
-        y: &[f64],
-        force: &mut [f64],
-        tangent: &mut [f64],
-    ) -> Result<f64, Inverted>;
-
-    /// Discrete gradient of the strain energy between `before` and `now`: overwrites `force` with f
-    /// such that f·(now − before) = U(now) − U(before) to round-off. Returns U(now).
-    fn cell_between(
-        &self,
-        cell: usize,
-        before: &[f64],
-        now: &[f64],
-        force: &mut [f64],
-    ) -> Result<f64, Inverted>;
-
-    /// Overwrites `product` (`N·D`) with ∂f/∂y · `change`, f that of [`Self::cell_force`] or, with
-    /// `before`, of [`Self::cell_between`]. The tangent is not symmetrised.
-    fn cell_product(
-        &self,
-        cell: usize,
-        before: Option<&[f64]>,
-        y: &[f64],
-        change: &[f64],
-        product: &mut [f64],
-    ) -> Result<(), Inverted>;
-
-    /// Consistent mass of a cell between its nodes (`N²`, row-major): ∫ρ₀ φᵃφᵇ dΩ₀.
-    fn cell_mass(&self, cell: usize, mass: &mut [f64]);
 
     /// Nodal volumes of a cell (`N`): ∫φᵃ dΩ₀, the nodal forces of a unit body force.
     fn cell_volumes(&self, cell: usize, volumes: &mut [f64]);
@@ -95,42 +93,9 @@ pub trait Body: Send + Sync {
     /// (`D²`, row-major), and the reference volume (× thickness).
     fn each_moved_point(&self, cell: usize, y: &[f64], visit: &mut dyn FnMut(&[f64], &[f64], &[f64], f64));
 
-    /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress that the material of a cell has in a
-    /// motion with H = ∂y/∂X − 1 (`D²`, row-major) and second derivatives ∂²yₖ/∂Xᴶ∂Xᴸ (`D³`, k
-    /// first), into `out` (`D`).
-    ///
-    /// # Errors
-    /// The determinant J if it is not positive.
-    fn stress_divergence(&self, cell: usize, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64>;
-
-    /// Smallest J over the quadrature points of a cell.
-    fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64;
-
     /// Largest angle, in [0, π], of the rotation R of F = R U over the quadrature points of a cell,
     /// and the largest norm ‖E‖ of the strain E = (FᵀF − 1)/2.
     fn cell_turn(&self, cell: usize, y: &[f64]) -> [f64; 2];
-
-    /// Certifies that J > 0 everywhere in a cell, not only at its quadrature points. Returns the
-    /// distance by which every component of its nodes' positions may change, relative to a common
-    /// translation, while that remains true; ∞ if the law permits J ≤ 0.
-    ///
-    /// # Errors
-    /// J where it is not certified to be positive.
-    fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted>;
-
-    /// [`Self::cell_margin`] of consecutive cells from `first` on; overwrites `margins`.
-    ///
-    /// # Errors
-    /// J of the first that is not certified.
-    fn cell_margins(&self, first: usize, y: &[f64], margins: &mut [f64]) -> Result<(), Inverted>;
-
-    /// A lower bound of the first θ at which J > 0 is not certified everywhere in a cell, while its
-    /// nodes move on straight lines from `before`, θ = 0, to `now`, θ = 1; none if it is certified,
-    /// or the law permits J ≤ 0.
-    fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64>;
-
-    /// Stress and strain at a point of a cell given in reference coordinates.
-    fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted>;
 
     /// Shape functions of a cell at reference coordinates (`N`).
     fn shape(&self, xi: &[f64], values: &mut [f64]);
@@ -149,7 +114,137 @@ pub trait Body: Send + Sync {
     /// Reference coordinates of a point of a cell, including its boundary, whose nodes are at `y`;
     /// `None` if it lies outside.
     fn invert(&self, cell: usize, y: &[f64], point: &[f64]) -> Option<Vec<f64>>;
+}
+
+/// A deformable body: a mesh whose regions have one material each.
+///
+/// Units follow the case: forces per unit thickness × thickness.
+pub trait Body: Geometry {
+    /// Computes consecutive cells from `first` on, as many as `out` has energies.
+    ///
+    /// # Errors
+    /// The first cell that is inverted.
+    fn respond(&self, first: usize, at: &Configuration, ask: Ask, out: Response) -> Result<(), Inverted>;
+
+    /// Count of numbers that the materials of a cell remember; all are zero at the start of a run.
+    fn memory(&self) -> usize;
+
+    /// Consistent mass of a cell between its nodes (`N²`, row-major): ∫ρ₀ φᵃφᵇ dΩ₀.
+    fn cell_mass(&self, cell: usize, mass: &mut [f64]);
 
     /// Density ρ₀ of a cell.
     fn density(&self, cell: usize) -> f64;
+
+    /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress that the material of a cell has in a
+    /// motion with H = ∂y/∂X − 1 (`D²`, row-major) and second derivatives ∂²yₖ/∂Xᴶ∂Xᴸ (`D³`, k
+    /// first), into `out` (`D`).
+    ///
+    /// # Errors
+    /// The determinant J if it is not positive.
+    fn stress_divergence(&self, cell: usize, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64>;
+
+    /// Smallest J over the quadrature points of a cell.
+    fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64;
+
+    /// Certifies that J > 0 everywhere in consecutive cells from `first` on, not only at quadrature
+    /// points. Overwrites `margins` with the distance of each by which every component of its
+    /// nodes' positions may change, relative to a common translation, while that remains true; ∞ if
+    /// the law permits J ≤ 0.
+    ///
+    /// # Errors
+    /// J of the first cell where it is not certified to be positive.
+    fn cell_margins(&self, first: usize, y: &[f64], margins: &mut [f64]) -> Result<(), Inverted>;
+
+    /// A lower bound of the first θ at which J > 0 is not certified everywhere in a cell, while its
+    /// nodes move on straight lines from `before`, θ = 0, to `now`, θ = 1; none if it is certified,
+    /// or the law permits J ≤ 0.
+    fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64>;
+
+    /// Stress and strain at a point of a cell given in reference coordinates, with what the nearest
+    /// quadrature point remembers.
+    fn point(&self, cell: usize, xi: &[f64], y: &[f64], past: &Past) -> Result<PointState, Inverted>;
+}
+
+/// Single cells of materials without memory.
+impl dyn Body + '_ {
+    /// Overwrites `force` with that of a cell, and returns its energy.
+    ///
+    /// # Errors
+    /// If the cell is inverted.
+    pub fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
+        self.of_cell(cell, &Configuration::at(y), Ask::Force, force)
+    }
+
+    /// Overwrites `tangent` with that of a cell, after `force`, and returns its energy.
+    ///
+    /// # Errors
+    /// If the cell is inverted.
+    pub fn cell_tangent(
+        &self,
+        cell: usize,
+        y: &[f64],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> Result<f64, Inverted> {
+        let mut both = vec![0.0; force.len() + tangent.len()];
+        let energy = self.of_cell(cell, &Configuration::at(y), Ask::Tangent, &mut both)?;
+        let (of_force, of_tangent) = both.split_at(force.len());
+        force.copy_from_slice(of_force);
+        tangent.copy_from_slice(of_tangent);
+        Ok(energy)
+    }
+
+    /// Overwrites `force` with the discrete gradient of a cell, and returns its energy at the end.
+    ///
+    /// # Errors
+    /// If the cell is inverted.
+    pub fn cell_between(
+        &self,
+        cell: usize,
+        before: &[f64],
+        now: &[f64],
+        force: &mut [f64],
+    ) -> Result<f64, Inverted> {
+        let at = Configuration { before: Some(before), ..Configuration::at(now) };
+        self.of_cell(cell, &at, Ask::Force, force)
+    }
+
+    /// Overwrites `product` with the tangent of a cell, or of its discrete gradient, times a
+    /// change.
+    ///
+    /// # Errors
+    /// If the cell is inverted.
+    pub fn cell_product(
+        &self,
+        cell: usize,
+        before: Option<&[f64]>,
+        y: &[f64],
+        change: &[f64],
+        product: &mut [f64],
+    ) -> Result<(), Inverted> {
+        let at = Configuration { before, ..Configuration::at(y) };
+        self.of_cell(cell, &at, Ask::Product(change), product).map(|_| ())
+    }
+
+    /// [`Body::cell_margins`] of one cell.
+    ///
+    /// # Errors
+    /// J where it is not certified to be positive.
+    pub fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted> {
+        let mut margin = [0.0];
+        self.cell_margins(cell, y, &mut margin)?;
+        Ok(margin[0])
+    }
+
+    fn of_cell(
+        &self,
+        cell: usize,
+        at: &Configuration,
+        ask: Ask,
+        numbers: &mut [f64],
+    ) -> Result<f64, Inverted> {
+        let mut energy = [0.0];
+        self.respond(cell, at, ask, Response { numbers, energies: &mut energy, memory: &mut [] })?;
+        Ok(energy[0])
+    }
 }

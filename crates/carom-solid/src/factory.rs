@@ -46,7 +46,7 @@ pub enum PlaneState {
     Stress,
 }
 
-impl<L: Material<1> + Material<2> + Thickness + Clone> Constitutive for L {
+impl<L: Material<1> + Material<2> + Thickness + Clone + 'static> Constitutive for L {
     fn along_line(&self) -> LawAtPoints<1> {
         LawAtPoints(Box::new(self.clone()))
     }
@@ -120,6 +120,9 @@ pub fn body_of_regions(
     thickness: f64,
 ) -> Result<Box<dyn Body>, SolidError> {
     let element = mesh.element;
+    if plane == PlaneState::Stress && materials.iter().any(|of| of.law.in_plane_stress().0.memory() > 0) {
+        return Err(SolidError::MemoryInPlaneStress);
+    }
     match (element.dimension(), plane) {
         (1, PlaneState::Strain) => {
             let media = media(materials, |law| law.along_line());

@@ -33,7 +33,7 @@ mod triangles;
 mod validity;
 
 pub use bernstein::Direction;
-pub use body::{Body, Inverted, PointState};
+pub use body::{Ask, Body, Configuration, Geometry, Inverted, PointState, Response};
 pub use bounds::Bounds;
 pub use earliest::{Earliest, Piece};
 pub use facet::{FacetFunctions, FacetShape};
@@ -44,7 +44,7 @@ pub use factory::{
 };
 pub use loaded_side::LoadedSide;
 pub use lumping::cell_lumped_mass;
-pub use material::Law;
+pub use material::{Law, Past};
 pub use mesh::{Element, Facet, Mesh};
 pub use net::Net;
 pub use point_locator::PointLocator;

@@ -20,7 +20,7 @@ use std::sync::OnceLock;
 
 use carom_algebra::{Mat, Vector};
 
-use crate::material::{Mean, Pointwise};
+use crate::material::{Mean, Past, Pointwise};
 use crate::mesh::{Element, Facet, Mesh};
 use crate::points::{LANES, Packed, Points};
 use crate::quadrature::Rule;
@@ -51,6 +51,8 @@ pub enum SolidError {
     NoMeanDilatation { element: Element },
     #[error("cell {cell} is of region {region}, but the body has {media} materials")]
     NoMedium { cell: usize, region: usize, media: usize },
+    #[error("a law with memory is not available in plane stress")]
+    MemoryInPlaneStress,
     #[error("density {0} is not a finite number ≥ 0")]
     Density(f64),
     #[error("thickness {0} is not a finite number > 0")]
@@ -80,7 +82,7 @@ impl<const D: usize> Medium<D> {
     fn may_invert(&self) -> bool {
         let mut mirrored = Mat::ZERO;
         mirrored.0[0][0] = -2.0;
-        self.law.state_at(&mirrored).is_ok()
+        self.law.state_at(&mirrored, &Past::default()).is_ok()
     }
 }
 
@@ -97,6 +99,10 @@ pub struct Solid<const D: usize, const N: usize, S> {
     /// Points of the reference cell first, then those of each curved cell.
     points: Vec<Points<D, N>>,
     curved: Vec<bool>,
+    /// Rules for forces of straight and of curved cells.
+    force_rules: [Rule<D>; 2],
+    /// Count of numbers that a cell remembers.
+    memory: usize,
     /// Rules for masses of straight and of curved cells.
     mass_rules: [Rule<D>; 2],
     hull: Hull,
@@ -140,6 +146,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             packed: Vec::new(),
             points: pack(force_rules[0].iter().map(|(xi, weight)| (S::gradients(xi), weight))),
             curved: Vec::with_capacity(cells),
+            memory: 0,
+            force_rules,
             mass_rules,
             hull: Hull::of::<D, N, S>(),
             validity: Validity::of::<S>(),
@@ -147,7 +155,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             shape: PhantomData,
         };
         let shared = 0..solid.points.len();
-        debug_assert!(!Self::HAS_CONSTANT_STRAIN || force_rules[0].points.len() == 1);
+        debug_assert!(!Self::HAS_CONSTANT_STRAIN || solid.force_rules[0].points.len() == 1);
         for cell in 0..cells {
             let x = solid.reference(cell);
             let curved = reference::is_curved::<D, N, S>(&x);
@@ -166,7 +174,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
                 at(Degenerate { place, jacobian: gradient(&x, &S::gradients(&xi)).det() })
             })?;
             let place = if curved {
-                let mapped = force_rules[1].iter().map(|(xi, weight)| {
+                let mapped = solid.force_rules[1].iter().map(|(xi, weight)| {
                     let (gradients, jacobian) = reference::map::<D, N, S>(&x, xi).map_err(at)?;
                     Ok((gradients, weight * jacobian * thickness))
                 });
@@ -186,6 +194,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             solid.curved.push(curved);
         }
         solid.pack_constant();
+        solid.memory = solid.memory_of_cells();
         Ok(solid)
     }
 
@@ -286,6 +295,7 @@ mod body;
 mod constant;
 mod integrals;
 mod mean;
+mod memory;
 mod rotation;
 #[cfg(test)]
 mod rules;

@@ -234,10 +234,8 @@ impl<'a> Check<'a> {
         let path = format!("body[{i}].materials");
         let mesh = body.get("mesh").and_then(Node::table);
         let of = mesh.and_then(|mesh| mesh.get("of")?.table());
-        if let Some(mesh) = mesh
-            && [Some(mesh), of].into_iter().flatten().all(|mesh| mesh.get("file").is_none())
-            && !self.misspelt.iter().any(|table| is_within(table, &format!("body[{i}].mesh")))
-        {
+        // Of an extrusion the plane mesh; without a key `shape` it is not known what is meant.
+        if of.or(mesh).is_some_and(|mesh| mesh.get("file").is_none() && mesh.get("shape").is_some()) {
             let what = "a built-in shape has no `materials`";
             let why = "materials belong to the physical groups of a mesh from a file";
             self.problems.push(
@@ -264,7 +262,9 @@ impl<'a> Check<'a> {
     fn material_of(&mut self, body: &str, material: &str, path: String) {
         let Some(body) = self.body(body) else { return };
         let names = body.material_names();
-        if names.contains(&material) {
+        // An unknown name is reported where it is.
+        let known = self.names("material").unwrap_or_default();
+        if names.contains(&material) || names.iter().any(|name| !known.contains(name)) {
             return;
         }
         let what = format!("body `{}` has no material `{material}`", body.name);

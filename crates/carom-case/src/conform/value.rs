@@ -80,10 +80,12 @@ impl Check {
                 }
             }
             (Kind::NamesByGroup, Value::Table(table)) if !table.0.is_empty() => {
-                for entry in &table.0 {
-                    let here = joined(path, &entry.key);
-                    let name = Key { kind: Kind::Name, example: "\"rubber\"", ..*key };
-                    self.value(&entry.node, &name, &here);
+                for entry in table.0.iter().filter(|entry| entry.node.text().is_none()) {
+                    let had = entry.node.described();
+                    let what =
+                        format!("`{}` of `{}` must be a name in quotes, not {had}", entry.key, key.name);
+                    let help = format!("write for example `{} = \"rubber\"`", entry.key);
+                    self.add(&joined(path, &entry.key), what, key.meaning(), help);
                 }
             }
             (Kind::Formula(variables), _) => self.formula(node, variables, key, path),

@@ -18,8 +18,8 @@ fn keys(table: &dyn TableLike, path: &str, found: &mut Vec<(Range<usize>, String
         let span = table.key(key).and_then(Key::span);
         let path = &format!("{path}.{key}");
         found.extend(span.map(|span| (span, path.clone())));
-        // The keys of [exact] are names of columns, those of `materials` of physical groups.
-        if key == "exact" || key == "materials" {
+        // The keys of [exact] are names of columns, those of `materials` names of groups.
+        if ["exact", "materials"].contains(&key) {
             continue;
         }
         match item {

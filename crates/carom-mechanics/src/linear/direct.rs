@@ -20,6 +20,7 @@ use crate::linear::preconditioner::Preconditioner;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stage::renewal::Point;
+use carom_solid::Configuration;
 
 /// Cost of forming and factoring a tangent, in solves with the frozen one.
 const COST: f64 = 6.0;
@@ -202,8 +203,8 @@ impl Preconditioner for Direct {
         &self.diagonals
     }
 
-    fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
-        self.diagonals[1] = built(&mut self.matrices, model).assemble(model, y)?;
+    fn assemble(&mut self, model: &Model, at: &Configuration) -> Result<(), Rejected> {
+        self.diagonals[1] = built(&mut self.matrices, model).assemble(model, at)?;
         Ok(())
     }
 
@@ -212,7 +213,7 @@ impl Preconditioner for Direct {
     }
 
     fn form(&mut self, model: &Model, point: &Arc<Point>, double: bool) -> Result<bool, Rejected> {
-        self.assemble(model, &point.at)?;
+        self.assemble(model, &point.configuration())?;
         if point.follower != 0.0 {
             built(&mut self.matrices, model).assemble_loads(model, point.time, &point.at)?;
         }

@@ -19,6 +19,7 @@ use crate::linear::tangents::{coupled, each_tangent};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stage::renewal::Point;
+use carom_solid::Configuration;
 
 /// Cost of assembling a tangent, in solves with it and evaluations of the residual.
 const COST: f64 = 2.0;
@@ -99,13 +100,13 @@ impl Iterative {
     }
 
     /// Replaces the matrix by `factor` K at positions.
-    fn assemble_times(&mut self, model: &Model, y: &[f64], factor: f64) -> Result<(), Rejected> {
+    fn assemble_times(&mut self, model: &Model, at: &Configuration, factor: f64) -> Result<(), Rejected> {
         self.point = None;
         self.matrix.clear();
         let (matrix, [_, diagonal], d) = (&mut self.matrix, &mut self.diagonals, model.dimension);
         diagonal.fill(0.0);
         let mut slots = self.slots.iter();
-        each_tangent(model, y, |part, cell, tangent| {
+        each_tangent(model, at, |part, cell, tangent| {
             let mesh = part.body.mesh();
             let n = mesh.element.dofs();
             for (a, b) in stored(mesh.cell(cell)) {
@@ -159,8 +160,8 @@ impl Preconditioner for Iterative {
         &self.diagonals
     }
 
-    fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
-        self.assemble_times(model, y, 1.0)
+    fn assemble(&mut self, model: &Model, at: &Configuration) -> Result<(), Rejected> {
+        self.assemble_times(model, at, 1.0)
     }
 
     fn of(&self, point: &Arc<Point>) -> Option<bool> {
@@ -168,7 +169,7 @@ impl Preconditioner for Iterative {
     }
 
     fn form(&mut self, model: &Model, point: &Arc<Point>, _double: bool) -> Result<bool, Rejected> {
-        self.assemble_times(model, &point.at, point.stiffness)?;
+        self.assemble_times(model, &point.configuration(), point.stiffness)?;
         let d = model.dimension;
         for node in 0..model.mass.nodes() {
             for (other, mass) in model.mass.row(node).filter(|(other, _)| *other >= node) {

@@ -11,6 +11,7 @@ use carom_algebra::Pattern;
 use crate::linear::tangents::{coupled, each_tangent};
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
+use carom_solid::Configuration;
 
 /// Slot of an entry that is not stored: of a constrained dof, or in a facet's upper triangle.
 const SKIP: u32 = u32::MAX;
@@ -104,11 +105,11 @@ impl Matrices {
     ///
     /// # Errors
     /// If a cell is inverted there.
-    pub(crate) fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<Vec<f64>, Rejected> {
+    pub(crate) fn assemble(&mut self, model: &Model, at: &Configuration) -> Result<Vec<f64>, Rejected> {
         self.stiffness.fill(0.0);
         let Self { slots, stiffness, pattern, .. } = self;
         let mut slots = slots.iter();
-        each_tangent(model, y, |part, cell, tangent| {
+        each_tangent(model, at, |part, cell, tangent| {
             let n = part.body.mesh().element.dofs();
             for (row, k) in tangent.chunks_exact(n).enumerate() {
                 for (column, (value, slot)) in k[..=row].iter().zip(slots.by_ref()).enumerate() {

@@ -17,6 +17,7 @@ use crate::contact::constraints::Constraints;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stage::renewal::Point;
+use carom_solid::Configuration;
 
 /// Solves with the tangent of a point, or with the mass.
 pub(crate) trait Preconditioner: Send + Sync {
@@ -40,7 +41,7 @@ pub(crate) trait Preconditioner: Send + Sync {
     ///
     /// # Errors
     /// If a cell is inverted there.
-    fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected>;
+    fn assemble(&mut self, model: &Model, at: &Configuration) -> Result<(), Rejected>;
 
     /// Whether the tangent is positive definite, if it is that of this point.
     fn of(&self, point: &Arc<Point>) -> Option<bool>;

@@ -16,6 +16,7 @@ use crate::settings::Linear;
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
 use crate::stage::renewal::{Point, Renewal};
+use carom_solid::Configuration;
 
 /// The preconditioner of a model.
 pub(crate) struct System {
@@ -106,7 +107,7 @@ impl System {
     /// Takes the scales from the tangent of a point, which is assembled unless that was done last.
     fn scale_at(&mut self, model: &Model, point: &Arc<Point>) -> Result<(), Rejected> {
         if self.assembled.as_ref() != Some(point) {
-            self.assemble(model, &point.at)?;
+            self.assemble(model, &point.configuration())?;
             self.assembled = Some(point.clone());
         }
         Ok(())
@@ -116,9 +117,9 @@ impl System {
     ///
     /// # Errors
     /// If a cell is inverted there.
-    pub(crate) fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
+    pub(crate) fn assemble(&mut self, model: &Model, at: &Configuration) -> Result<(), Rejected> {
         self.assembled = None;
-        self.preconditioner.assemble(model, y)
+        self.preconditioner.assemble(model, at)
     }
 
     /// Prepares solves with a tangent and the rows of an iterate, with a new tangent if it is due.

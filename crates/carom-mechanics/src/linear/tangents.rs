@@ -1,28 +1,28 @@
 //! The tangents of the cells of a model, and the nodes that they couple.
 
+use carom_solid::{Ask, Configuration, Response};
+
 use crate::cells;
 use crate::model::{BodyInstance, Model};
 use crate::rejected::Rejected;
 
-/// Calls `add(part, cell, tangent)` with ∂f_int/∂y of every cell at positions, by rows, in the
-/// order of the cells.
+/// Calls `add(part, cell, tangent)` with ∂f_int/∂y of every cell at a configuration, by rows, in
+/// the order of the cells.
 ///
 /// # Errors
 /// If a cell is inverted there.
 pub(crate) fn each_tangent(
     model: &Model,
-    y: &[f64],
+    at: &Configuration,
     mut add: impl FnMut(&BodyInstance, usize, &[f64]) + Send,
 ) -> Result<(), Rejected> {
-    for part in &model.parts {
+    for (part, at) in model.configurations(at) {
         let mesh = part.body.mesh();
         let n = mesh.element.dofs();
         let numbers = n + n * n;
-        let compute = |cell: usize, local: &mut [f64]| {
-            let (force, tangent) = local.split_at_mut(n);
-            part.body.cell_tangent(cell, part.of(y), force, tangent)
+        let compute = |first: usize, numbers: &mut [f64], energies: &mut [f64]| {
+            part.body.respond(first, &at, Ask::Tangent, Response { numbers, energies, memory: &mut [] })
         };
-        let compute = cells::one_by_one(numbers, compute);
         let add = cells::added_one_by_one(numbers, |cell, local: &[f64]| add(part, cell, &local[n..]));
         cells::for_each(&model.threads, mesh.cell_count(), numbers, compute, add)
             .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;

@@ -50,6 +50,11 @@ impl BodyInstance {
         self.point_mass == 0.0 && cells.into_iter().all(|cell| self.body.density(cell) == 0.0)
     }
 
+    /// Count of numbers that its materials remember.
+    pub fn memory(&self) -> usize {
+        self.body.memory() * self.body.mesh().cell_count()
+    }
+
     /// Its cells, or those of one of its regions.
     pub(super) fn cells(&self, region: Option<usize>) -> impl Iterator<Item = usize> {
         let mesh = self.body.mesh();

@@ -23,7 +23,7 @@ pub use manufactured::Manufactured;
 pub use mass::Mass;
 pub use motion::{Motion, Motions, Prescribed, Turn};
 pub use points::{Circular, Point, Points};
-pub use probe::{Probe, Quantity, von_mises};
+pub use probe::{Probe, Quantity, past_of, von_mises};
 pub use redistribution::redistribute;
 pub(crate) use rigid::check_rigid_modes;
 pub use rigid::{Mode, RigidMotion, Unconstrained, free_motions};

@@ -6,7 +6,7 @@
 //! any cell the stress is NaN, and the log reports when that begins. J itself is always the mean
 //! over all cells, of either sign.
 
-use carom_solid::Body;
+use carom_solid::{Body, Past};
 
 use super::body_instance::BodyInstance;
 
@@ -41,9 +41,18 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// The recorded quantities at positions, velocities and accelerations of all nodes, in order; a
+    /// The recorded quantities at positions, velocities and accelerations of all nodes, and the
+    /// memory of all bodies, in order; a
     /// stress is NaN if no cell at the point has one.
-    pub fn values(&self, parts: &[BodyInstance], reference: &[f64], motion: [&[f64]; 3], out: &mut Vec<f64>) {
+    pub fn values(
+        &self,
+        parts: &[BodyInstance],
+        reference: &[f64],
+        motion: [&[f64]; 3],
+        memory: &[f64],
+        out: &mut Vec<f64>,
+    ) {
+        let past = past_of(parts, self.part, memory);
         let (part, [y, v, a]) = (&parts[self.part], motion);
         let nodal = |field: &[f64], i: usize| {
             let (cell, xi) = &self.places[0];
@@ -54,23 +63,24 @@ impl Probe {
                 Quantity::Displacement(i) => nodal(y, *i) - nodal(reference, *i),
                 Quantity::Velocity(i) => nodal(v, *i),
                 Quantity::Acceleration(i) => nodal(a, *i),
-                stress => self.mean(part.body.as_ref(), part.of(y), *stress),
+                stress => self.mean(part.body.as_ref(), part.of(y), &past, *stress),
             });
         }
     }
 
     /// Whether the stresses it records, if any, exist at given positions.
-    pub fn has_stress(&self, parts: &[BodyInstance], y: &[f64]) -> bool {
+    pub fn has_stress(&self, parts: &[BodyInstance], y: &[f64], memory: &[f64]) -> bool {
+        let past = past_of(parts, self.part, memory);
         let part = &parts[self.part];
         let y = part.of(y);
         !self.record.iter().any(|q| is_stress(*q))
-            || self.places.iter().any(|(c, xi)| part.body.point(*c, xi, y).is_ok())
+            || self.places.iter().any(|(c, xi)| part.body.point(*c, xi, y, &past).is_ok())
     }
 
-    fn mean(&self, body: &dyn Body, y: &[f64], quantity: Quantity) -> f64 {
+    fn mean(&self, body: &dyn Body, y: &[f64], past: &Past, quantity: Quantity) -> f64 {
         let (mut sum, mut count) = (0.0, 0);
         for (cell, xi) in &self.places {
-            let point = body.point(*cell, xi, y);
+            let point = body.point(*cell, xi, y, past);
             let value = match (quantity, &point) {
                 (Quantity::DetF, Err(inverted)) => Some(inverted.det_f),
                 (_, Err(_)) => None,
@@ -88,6 +98,13 @@ impl Probe {
         // 0/0 is NaN.
         sum / f64::from(count)
     }
+}
+
+/// What a body remembers, of the memory of all bodies; empty if none remembers anything.
+pub fn past_of<'a>(parts: &[BodyInstance], part: usize, memory: &'a [f64]) -> Past<'a> {
+    let first: usize = parts[..part].iter().map(BodyInstance::memory).sum();
+    let memory = memory.get(first..first + parts[part].memory()).unwrap_or(&[]);
+    Past { memory, dt: 0.0 }
 }
 
 fn is_stress(quantity: Quantity) -> bool {

@@ -1,9 +1,11 @@
 //! The constant data of a simulation as plain numbers. Every vector over nodes is flat, with
 //! `dimension` components per node.
 
+use std::sync::Arc;
+
 use carom_algebra::Threads;
 use carom_algebra::sums::{dot, sum};
-use carom_solid::Inverted;
+use carom_solid::{Ask, Configuration, Inverted, Past, Response};
 
 use super::body_instance::BodyInstance;
 use super::contact::Contact;
@@ -15,6 +17,7 @@ use super::points::Points;
 use super::probe::Probe;
 use super::rigid::Mode;
 use crate::cells;
+use crate::materials::Materials;
 
 /// A named support: the dofs whose reaction is recorded.
 pub struct Support {
@@ -134,75 +137,122 @@ impl Model {
         Some(self.unknown[dof]).filter(|&place| place != usize::MAX)
     }
 
-    /// Internal forces ∂U/∂y at positions `y`, overwriting `force`. Returns the strain energy U.
-    ///
-    /// # Errors
-    /// The body's name and the inverted cell.
-    pub fn internal_force(&self, y: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
-        self.add_cells(force, |part, first, local, energies| {
-            part.body.cell_forces(first, part.of(y), local, energies)
+    /// Count of numbers that the materials of all bodies remember.
+    pub fn memory(&self) -> usize {
+        self.parts.iter().map(BodyInstance::memory).sum()
+    }
+
+    /// Whether a material remembers anything.
+    pub fn remembers(&self) -> bool {
+        self.parts.iter().any(|part| part.memory() > 0)
+    }
+
+    /// Materials that remember nothing yet.
+    pub(crate) fn materials(&self) -> Materials {
+        Materials::new(self.parts.len(), self.memory())
+    }
+
+    /// The bodies, each with its section of a configuration of all nodes.
+    pub(crate) fn configurations<'a>(
+        &'a self,
+        at: &'a Configuration<'a>,
+    ) -> impl Iterator<Item = (&'a BodyInstance, Configuration<'a>)> {
+        let mut rest = at.past.memory;
+        self.parts.iter().map(move |part| {
+            let memory = rest.split_off(..part.memory().min(rest.len())).unwrap_or_default();
+            let past = Past { memory, dt: at.past.dt };
+            (part, Configuration { before: at.before.map(|y| part.of(y)), y: part.of(at.y), past })
         })
     }
 
-    /// Discrete gradient of the strain energy between positions, overwriting `force`. Returns
-    /// U(now).
+    /// Internal forces ∂U/∂y, or their discrete gradient over a step, overwriting `force`, and in
+    /// `trial` what materials with memory remember and store. Returns the stored energy U.
     ///
     /// # Errors
     /// The body's name and the inverted cell.
-    pub fn internal_between(
+    pub fn internal_force(
         &self,
-        before: &[f64],
-        now: &[f64],
+        at: &Configuration,
         force: &mut [f64],
+        trial: &mut Materials,
     ) -> Result<f64, (String, Inverted)> {
-        self.add_cells(force, |part, first, local, energies| {
-            let between = |cell: usize, local: &mut [f64]| {
-                part.body.cell_between(cell, part.of(before), part.of(now), local)
-            };
-            cells::one_by_one(part.body.mesh().element.dofs(), between)(first, local, energies)
-        })
+        if !self.remembers() {
+            return self.add_cells(at, Ask::Force, force);
+        }
+        force.fill(0.0);
+        trial.resize(self.parts.len(), self.memory());
+        let memory = Arc::make_mut(&mut trial.memory);
+        let mut rest = &mut memory[..];
+        let mut strain = 0.0;
+        for ((part, at), stored) in self.configurations(at).zip(&mut trial.stored) {
+            let memory = rest.split_off_mut(..part.memory()).unwrap_or_default();
+            *stored = self.add_remembering(part, &at, force, memory)?;
+            strain += *stored;
+        }
+        Ok(strain)
     }
 
-    /// ∂f_int/∂y · `change` at `y`, overwriting `product`; with `before`, that of the discrete
+    /// ∂f_int/∂y · `change`, overwriting `product`; with positions before, that of the discrete
     /// gradient from there.
     ///
     /// # Errors
     /// The body's name and the inverted cell.
     pub fn internal_product(
         &self,
-        before: Option<&[f64]>,
-        y: &[f64],
+        at: &Configuration,
         change: &[f64],
         product: &mut [f64],
     ) -> Result<(), (String, Inverted)> {
-        let products = |part: &BodyInstance, first: usize, local: &mut [f64], none: &mut [f64]| {
-            let of_cell = |cell: usize, local: &mut [f64]| {
-                let before = before.map(|y| part.of(y));
-                part.body.cell_product(cell, before, part.of(y), part.of(change), local).map(|()| 0.0)
-            };
-            cells::one_by_one(part.body.mesh().element.dofs(), of_cell)(first, local, none)
-        };
-        self.add_cells(product, products).map(|_| ())
+        self.add_cells(at, Ask::Product(change), product).map(|_| ())
     }
 
-    fn add_cells(
-        &self,
-        force: &mut [f64],
-        of_cells: impl Fn(&BodyInstance, usize, &mut [f64], &mut [f64]) -> Result<(), Inverted> + Sync,
-    ) -> Result<f64, (String, Inverted)> {
-        force.fill(0.0);
+    /// Overwrites `sum` with the vectors that are asked of all cells.
+    fn add_cells(&self, at: &Configuration, ask: Ask, sum: &mut [f64]) -> Result<f64, (String, Inverted)> {
+        sum.fill(0.0);
         let mut strain = 0.0;
-        for part in &self.parts {
+        for (part, at) in self.configurations(at) {
             let mesh = part.body.mesh();
-            let own = part.of_mut(force);
+            let own = part.of_mut(sum);
+            let ask = match ask {
+                Ask::Product(change) => Ask::Product(part.of(change)),
+                other => other,
+            };
             let add = |first: usize, locals: &[f64]| part.body.add_cells(first, locals, own);
-            let compute = |first: usize, local: &mut [f64], energies: &mut [f64]| {
-                of_cells(part, first, local, energies)
+            let compute = |first: usize, numbers: &mut [f64], energies: &mut [f64]| {
+                part.body.respond(first, &at, ask, Response { numbers, energies, memory: &mut [] })
             };
             strain += cells::for_each(&self.threads, mesh.cell_count(), mesh.element.dofs(), compute, add)
                 .map_err(|inverted| (part.name.clone(), inverted))?;
         }
         Ok(strain)
+    }
+
+    /// Adds the forces of a body, and overwrites its memory; returns the energy that it stores.
+    fn add_remembering(
+        &self,
+        part: &BodyInstance,
+        at: &Configuration,
+        force: &mut [f64],
+        memory: &mut [f64],
+    ) -> Result<f64, (String, Inverted)> {
+        let mesh = part.body.mesh();
+        let dofs = mesh.element.dofs();
+        let size = part.body.memory();
+        let own = part.of_mut(force);
+        // The numbers of a cell are its force and its memory.
+        let compute = cells::one_by_one(dofs + size, |cell, local: &mut [f64]| {
+            let (numbers, memory) = local.split_at_mut(dofs);
+            let mut energies = [0.0];
+            let out = Response { numbers, energies: &mut energies, memory };
+            part.body.respond(cell, at, Ask::Force, out)?;
+            Ok(energies[0])
+        });
+        let add = cells::added_one_by_one(dofs + size, |cell, local: &[f64]| {
+            part.body.add_cells(cell, &local[..dofs], own);
+            memory[cell * size..(cell + 1) * size].copy_from_slice(&local[dofs..]);
+        });
+        cells::for_each(&self.threads, mesh.cell_count(), dofs + size, compute, add)
+            .map_err(|inverted| (part.name.clone(), inverted))
     }
 
     /// Loads at a time and positions `y`, overwriting `force`; without constant gravity.

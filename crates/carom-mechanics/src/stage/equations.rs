@@ -8,6 +8,7 @@
 use std::sync::Arc;
 
 use carom_contact::Law;
+use carom_solid::Configuration;
 use carom_time::{Internal, Stage};
 
 use crate::contact::augmented;
@@ -108,7 +109,9 @@ impl<'a> Equations<'a> {
         let [follower, time] = if follows { [self.follower_factor(), self.time] } else { [0.0; 2] };
         let (mass, stiffness) = (self.mass_factor(), self.factor_stiffness());
         let (at, boundary) = (at.to_vec(), boundary.to_vec());
-        Arc::new(FactorPoint { at, mass, stiffness, follower, time, boundary })
+        let memory = self.state.materials.memory.clone();
+        let dt = if memory.is_empty() { 0.0 } else { self.duration };
+        Arc::new(FactorPoint { at, mass, stiffness, follower, time, memory, dt, boundary })
     }
 
     /// Prescribed dofs and their displacements in the step.
@@ -126,6 +129,12 @@ impl<'a> Equations<'a> {
     pub(crate) fn arrive(&self, increment: &mut [f64]) {
         self.prescribed().for_each(|(dof, whole)| increment[dof] = whole);
         self.model.points.carry(increment);
+    }
+
+    /// Positions at which bodies respond, reached from the step's start.
+    fn configuration<'b>(&'b self, y: &'b [f64]) -> Configuration<'b> {
+        let before = self.between().then_some(&self.state.y[..]);
+        Configuration { before, y, past: self.state.materials.past(self.duration) }
     }
 
     /// Forces, gaps and residual at an iterate.
@@ -158,11 +167,8 @@ impl<'a> Equations<'a> {
             place[i] = state.y[i] + share * at.increment[i];
         }
         evaluation.strain = timed(&mut timings.assembly, || {
-            if self.between() {
-                model.internal_between(&state.y, y, &mut forces.internal)
-            } else {
-                model.internal_force(place, &mut forces.internal)
-            }
+            let at = self.configuration(if self.between() { y } else { place });
+            model.internal_force(&at, &mut forces.internal, &mut evaluation.materials)
         })
         .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
         if !model.loads.is_empty() {
@@ -210,9 +216,9 @@ impl<'a> Equations<'a> {
         product: &mut [f64],
         timings: &mut Timings,
     ) -> Result<(), Rejected> {
-        let Self { model, state, .. } = self;
-        let (before, at) = if self.between() { (Some(&state.y[..]), &now.y) } else { (None, &now.place) };
-        timed(&mut timings.assembly, || model.internal_product(before, at, change, product))
+        let model = self.model;
+        let at = self.configuration(if self.between() { &now.y } else { &now.place });
+        timed(&mut timings.assembly, || model.internal_product(&at, change, product))
             .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
         let (mass, stiffness, d) = (self.mass_factor(), self.stiffness_factor(), model.dimension);
         model.mass.add_product(change, mass, stiffness, product);

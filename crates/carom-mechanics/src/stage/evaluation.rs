@@ -3,6 +3,7 @@
 use carom_contact::{Along, Answer, DiscreteGradient, Pairing, Rows};
 use educe::Educe;
 
+use crate::materials::Materials;
 use crate::stage::balance::Forces;
 use crate::state::State;
 
@@ -70,6 +71,8 @@ pub(crate) struct Evaluation {
     pub answers: Vec<Vec<Answer>>,
     /// Strain energy of the bodies at `y`, or at the averaged positions.
     pub strain: f64,
+    /// What the materials remember and store there.
+    pub materials: Materials,
     /// Energy of penalty springs.
     pub springs: f64,
     /// Size of the residual and its reference.

@@ -11,6 +11,7 @@
 
 use std::sync::Arc;
 
+use carom_solid::{Configuration, Past};
 use serde::{Deserialize, Serialize};
 
 /// Expected reduction by a solve with an unknown factor.
@@ -33,8 +34,19 @@ pub struct Point {
     /// Factor of the loads' tangent, and their time.
     pub(crate) follower: f64,
     pub(crate) time: f64,
+    /// What the materials remember at the start of the step, and the time since; empty and zero if
+    /// none remembers anything.
+    pub(crate) memory: Arc<Vec<f64>>,
+    pub(crate) dt: f64,
     /// Nodes eliminated last, ascending (interface nodes): contact acts on them alone.
     pub(crate) boundary: Vec<usize>,
+}
+
+impl Point {
+    /// Where the internal tangent is computed.
+    pub(crate) fn configuration(&self) -> Configuration<'_> {
+        Configuration { before: None, y: &self.at, past: Past { memory: &self.memory, dt: self.dt } }
+    }
 }
 
 /// The point of the frozen factor and the cost since it was made.

@@ -12,6 +12,7 @@ use crate::linear::direct::Direct;
 use crate::linear::iterative::Iterative;
 use crate::linear::matrices::Matrices;
 use crate::linear::preconditioner::Preconditioner;
+use crate::materials::Materials;
 use crate::model::{Friction, Load, Loads, LoadsAt, Model, Motion, Motions};
 use crate::settings::{Linear, Settings, Tangent as FactorRule};
 use crate::stage::equations::Equations;
@@ -24,6 +25,7 @@ use crate::testing::{contact, loaded, model, nodes, parts, tied};
 use crate::timings::Timings;
 use crate::velocity::active_rows::measure_all;
 use crate::workspace::Workspace;
+use carom_solid::Configuration;
 
 /// An iterate with its tangent.
 struct Tangent<'a> {
@@ -144,7 +146,8 @@ fn at(model: &Model, y: Vec<f64>) -> State {
         pairs: vec![Vec::new(); contacts],
         ..State::default()
     };
-    model.internal_force(&state.y, &mut state.f_internal).unwrap();
+    let at = Configuration::at(&state.y);
+    model.internal_force(&at, &mut state.f_internal, &mut Materials::default()).unwrap();
     state
 }
 
@@ -425,11 +428,13 @@ fn the_product_of_a_discrete_gradient_is_the_derivative_of_its_force() {
     let (before, y, u) =
         (at(0.02, 0.3), at(0.03, 0.9), (0..model.dofs()).map(|i| wave(i, 0.1)).collect::<Vec<_>>());
     let mut product = vec![0.0; model.dofs()];
-    model.internal_product(Some(&before), &y, &u, &mut product).unwrap();
+    let at = Configuration { before: Some(&before), ..Configuration::at(&y) };
+    model.internal_product(&at, &u, &mut product).unwrap();
     let force = |e: f64| {
         let moved: Vec<f64> = y.iter().zip(&u).map(|(y, u)| y + e * u).collect();
         let mut force = vec![0.0; model.dofs()];
-        model.internal_between(&before, &moved, &mut force).unwrap();
+        let at = Configuration { before: Some(&before), ..Configuration::at(&moved) };
+        model.internal_force(&at, &mut force, &mut Materials::default()).unwrap();
         force
     };
     let h = 1e-5;

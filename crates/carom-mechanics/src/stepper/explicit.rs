@@ -38,13 +38,14 @@ use super::tied_mass::TiedMass;
 use super::watch::{active, approach, depth};
 use super::{Accepted, StepReport, Stepper};
 use crate::friction_state::each_slip;
-use crate::ledger::book_contact_forces;
+use crate::ledger::{book_contact_forces, book_materials};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stability::{SAFETY, lumped};
 use crate::state::{HalfStepVelocity, State};
 use crate::timings::timed;
 use crate::workspace::Workspace;
+use carom_solid::Configuration;
 
 /// Work of internal forces, relative to the energies, that may be round-off.
 const ROUND_OFF: f64 = 1e-12;
@@ -95,9 +96,11 @@ impl Stepper for Explicit {
         for (y, v) in next.y.iter_mut().zip(&start.half_step.velocity) {
             *y += dt * v;
         }
-        next.ledger.strain =
-            timed(&mut work.timings.assembly, || model.internal_force(&next.y, &mut next.f_internal))
-                .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+        let at = Configuration { before: None, y: &next.y, past: start.materials.past(dt) };
+        next.ledger.strain = timed(&mut work.timings.assembly, || {
+            model.internal_force(&at, &mut next.f_internal, &mut next.materials)
+        })
+        .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
         self.check_stability(start, &next, dt)?;
         model.loads_into(to, &next.y, &mut work.explicit.loads, &mut next.f_external)?;
         next.time = to;
@@ -146,6 +149,12 @@ impl Explicit {
             for (i, (before, now)) in start.f_external.iter().zip(&next.f_external).enumerate() {
                 ledger.external_work += dt * start.half_step.velocity[i] * 0.5 * (before + now);
             }
+        }
+        if model.remembers() {
+            let forces = start.f_internal.iter().zip(&next.f_internal);
+            let mean: Vec<f64> = forces.map(|(before, now)| 0.5 * (before + now)).collect();
+            let increment: Vec<f64> = start.half_step.velocity.iter().map(|v| dt * v).collect();
+            book_materials(model, start, next, &mean, &increment);
         }
         let in_contact = |state: &State| state.pairs.iter().flatten().any(|pair| pair.active);
         if in_contact(start) || in_contact(next) {

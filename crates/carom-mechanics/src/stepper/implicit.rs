@@ -24,6 +24,7 @@ use crate::stage::newton::solve_stage;
 use crate::state::{Means, Previous, State};
 use crate::velocity::persistency::averaged_contact_into;
 use crate::workspace::Workspace;
+use carom_solid::Configuration;
 
 /// The implicit stepper.
 pub struct Implicit {
@@ -135,9 +136,12 @@ impl Stepper for Implicit {
         next.f_external.clone_from(&solved.forces.loads);
         next.f_internal.clone_from(&solved.forces.internal);
         let mut strain = solved.strain;
+        next.materials.accept(&solved.materials);
         if equations.stage.average != 0.0 {
+            let past = state.materials.past(dt);
+            let reached = Configuration { before: None, y: &next.y, past };
             strain = model
-                .internal_force(&next.y, &mut next.f_internal)
+                .internal_force(&reached, &mut next.f_internal, &mut next.materials)
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
             model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
         }

@@ -31,7 +31,7 @@ use crate::check::skins::length;
 use crate::check::watched::has_gaps;
 use crate::contact::constraints::Constraints;
 use crate::contact::update::search;
-use crate::ledger::{book_kinetic, change_of_loads, work_of_loads};
+use crate::ledger::{book_kinetic, book_materials, change_of_loads, work_of_loads};
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
 use crate::settings::{Settings, Tangent};
@@ -42,6 +42,7 @@ use crate::state::State;
 use crate::timings::timed;
 use crate::trace::Iteration;
 use crate::workspace::Workspace;
+use carom_solid::Configuration;
 
 /// Share of the allowed depth by which a node may sink in a step.
 const SINKS: f64 = 0.1;
@@ -132,11 +133,20 @@ impl Stepper for Impulsive {
         next.f_external.clone_from(&solved.forces.loads);
         next.ledger.external_work += work_of_loads(&equations, &solved);
         next.ledger.strain = solved.strain;
+        next.materials.accept(&solved.materials);
         if equations.stage.average != 0.0 {
+            let past = state.materials.past(dt);
+            let reached = Configuration { before: None, y: &next.y, past };
             next.ledger.strain = model
-                .internal_force(&next.y, &mut next.f_internal)
+                .internal_force(&reached, &mut next.f_internal, &mut next.materials)
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
             model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
+        }
+        if model.remembers() {
+            let weights = [equations.stage.weights.internal, equations.stage.before.internal];
+            let forces = solved.forces.internal.iter().zip(&state.f_internal);
+            let mean: Vec<f64> = forces.map(|(now, old)| weights[0] * now + weights[1] * old).collect();
+            book_materials(model, state, &mut next, &mean, &solved.at.increment);
         }
         let carried = self.scheme.alpha().map_or(0.0, |alpha| alpha.carried());
         next.ledger.unbooked -= carried * change_of_loads(state, &next, &solved.at.increment);

@@ -117,7 +117,13 @@ pub(super) fn row(simulation: &Simulation, since: &Since, weights: &[f64]) -> Ve
         }
     }
     for probe in &model.probes {
-        probe.values(&model.parts, &model.reference, [&state.y, &state.v, &state.a], &mut row);
+        probe.values(
+            &model.parts,
+            &model.reference,
+            [&state.y, &state.v, &state.a],
+            state.materials.past(0.0).memory,
+            &mut row,
+        );
     }
     if let Some(motion) = &model.loads.manufactured {
         row.extend(motion.errors(&model.parts, &state.y, state.time));

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use carom_algebra::principal;
 use carom_case::Case;
 use carom_mechanics::State;
-use carom_mechanics::model::{Model, von_mises};
+use carom_mechanics::model::{Model, past_of, von_mises};
 use carom_record::{Block, Cell, CellMaterials, FieldSet, PointArray};
 use carom_solid::{Element, Mesh};
 
@@ -136,14 +136,15 @@ fn nodal_means(model: &Model, state: &State) -> (Vec<Components>, Vec<Components
     let nodes = model.mass.nodes();
     let mut means = [vec![[0.0; 6]; nodes], vec![[0.0; 6]; nodes]];
     let mut count = vec![0.0_f64; nodes];
-    for part in &model.parts {
+    for (k, part) in model.parts.iter().enumerate() {
+        let past = past_of(&model.parts, k, state.materials.past(0.0).memory);
         let mesh = part.body.mesh();
         let y = part.of(&state.y);
         let places = part.body.reference_nodes();
         for cell in 0..mesh.cell_count() {
             for (&node, xi) in mesh.cell(cell).iter().zip(&places) {
                 let node = part.first_node + node;
-                let Ok(point) = part.body.point(cell, xi, y) else { continue };
+                let Ok(point) = part.body.point(cell, xi, y, &past) else { continue };
                 count[node] += 1.0;
                 for (mean, value) in means.iter_mut().zip([point.cauchy, point.strain]) {
                     mean[node].iter_mut().zip(components(&value)).for_each(|(sum, c)| *sum += c);

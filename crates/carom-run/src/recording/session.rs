@@ -397,5 +397,9 @@ fn rotations(case: &Case, model: &Model) -> BTreeMap<usize, [[f64; 2]; 2]> {
 fn stressed(simulation: &Simulation) -> Vec<bool> {
     let model = simulation.model();
     let state = simulation.state();
-    model.probes.iter().map(|probe| probe.has_stress(&model.parts, &state.y)).collect()
+    model
+        .probes
+        .iter()
+        .map(|probe| probe.has_stress(&model.parts, &state.y, state.materials.past(0.0).memory))
+        .collect()
 }

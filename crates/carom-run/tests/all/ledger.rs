@@ -21,10 +21,12 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use carom_mechanics::Materials;
 use carom_run::case::{BodySpec, Case};
 use carom_run::model::Model;
 use carom_run::stability::stable_step;
 use carom_run::{GridReport, LogEvent, Setup, Simulation, State};
+use carom_solid::Configuration;
 use carom_time::{Impulse, Integrator, Kernel, Memory, Nonsmooth, Scheme, Stage};
 
 use super::common::dot;
@@ -39,7 +41,8 @@ struct Energies {
 impl Energies {
     fn of(model: &Model, y: &[f64], v: &[f64]) -> Self {
         let mut internal = vec![0.0; model.dofs()];
-        let strain = model.internal_force(y, &mut internal).unwrap();
+        let strain =
+            model.internal_force(&Configuration::at(y), &mut internal, &mut Materials::default()).unwrap();
         Self { kinetic: model.kinetic(v), strain, internal }
     }
 }

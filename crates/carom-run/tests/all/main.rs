@@ -8,6 +8,7 @@ mod bar;
 mod common;
 mod conserving_contact;
 mod contact_pressure;
+mod damage;
 mod edges;
 mod energy_momentum;
 mod explicit_energy;

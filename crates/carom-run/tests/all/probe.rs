@@ -22,14 +22,16 @@ fn a_corner_turned_over_has_j_but_no_stress() {
     let sim = simulation(SQUARE, &[""; 0]);
     let (model, mut state) = (sim.model(), sim.state().clone());
     let [corner, shared] = &model.probes[..] else { panic!() };
-    assert!(corner.has_stress(&model.parts, &state.y));
+    assert!(corner.has_stress(&model.parts, &state.y, &[]));
     let middle = model.reference.as_chunks::<2>().0.iter().position(|x| *x == [0.5, 0.0]).unwrap();
     state.y[2 * middle] = 0.8;
     assert!(model.min_det_f(&state.y) > 0.0);
-    assert!(!corner.has_stress(&model.parts, &state.y) && shared.has_stress(&model.parts, &state.y));
+    assert!(
+        !corner.has_stress(&model.parts, &state.y, &[]) && shared.has_stress(&model.parts, &state.y, &[])
+    );
     let values_of = |probe: &Probe| {
         let mut values = Vec::new();
-        probe.values(&model.parts, &model.reference, [&state.y, &state.v, &state.a], &mut values);
+        probe.values(&model.parts, &model.reference, [&state.y, &state.v, &state.a], &[], &mut values);
         values
     };
     let values = values_of(corner);

@@ -3,6 +3,7 @@
 use carom_algebra::{Four, Mat, Vector};
 
 use super::kinematics::{NotPositive, excess_det};
+use super::past::Past;
 use crate::points::{LANES, four, get, lanes, set};
 
 /// A matrix at each of four points: `[i][j][point]`.
@@ -14,18 +15,40 @@ pub type AtPoints<const D: usize> = ([f64; LANES], InLanes<D>);
 /// A hyperelastic law. [`Material::at`] computes common terms once. `at`, `energy`, `stress` and
 /// `tangent` are `#[inline(always)]`: they are compiled into the loop over quadrature points, for
 /// wide registers.
-pub trait Material<const D: usize>: Send + Sync + 'static {
+///
+/// A law with memory has, for the memory at the start of a step and the length of the step, an
+/// incremental potential ΔW(F) = Ψ + 𝒟 of the stored energy Ψ and the energy 𝒟 that is dissipated
+/// in the step; the stress is ∂ΔW/∂F. It states [`Material::MEMORY`], [`Material::after`],
+/// [`Material::remember`] and [`Material::dissipated`]; others need none of these.
+pub trait Material<const D: usize>: Send + Sync {
     /// Degree of Ψ as a polynomial in F to be integrated exactly; 0 if it is not a polynomial.
     const ENERGY_DEGREE: usize;
 
     /// Whether Ψ depends on FᵀF alone; otherwise it is quadratic in H.
     const OBJECTIVE: bool = true;
 
+    /// Count of numbers that a quadrature point remembers; all are zero at the start of a run.
+    const MEMORY: usize = 0;
+
     /// Kinematics at a point.
     type Point;
 
     /// Kinematics at H = F − I.
     fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive>;
+
+    /// Kinematics at H, and what follows from the memory at the start of a step.
+    #[inline(always)]
+    fn after(&self, h: &Mat<D>, _: &Past) -> Result<Self::Point, NotPositive> {
+        self.at(h)
+    }
+
+    /// Overwrites the memory with that at the end of the step.
+    fn remember(&self, _: &Self::Point, _: &mut [f64]) {}
+
+    /// Energy per reference volume that is dissipated in the step.
+    fn dissipated(&self, _: &Self::Point) -> f64 {
+        0.0
+    }
 
     /// Strain energy Ψ per reference volume.
     fn energy(&self, point: &Self::Point) -> f64;

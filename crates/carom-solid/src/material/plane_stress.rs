@@ -65,6 +65,8 @@ const E3: Vector<3> = Vector([0.0, 0.0, 1.0]);
 impl<L: Thickness> Material<2> for PlaneStress<L> {
     const ENERGY_DEGREE: usize = <L as Material<3>>::ENERGY_DEGREE;
     const OBJECTIVE: bool = <L as Material<3>>::OBJECTIVE;
+    // A law with memory is refused in plane stress: its thickness would evolve, too.
+    const MEMORY: usize = <L as Material<3>>::MEMORY;
     type Point = <L as Material<3>>::Point;
 
     // Not inlined: a call costs little compared with the solution for the thickness.

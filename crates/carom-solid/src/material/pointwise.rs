@@ -6,6 +6,8 @@
 
 use carom_algebra::{Mat, Vector, wide};
 
+use super::memory::Incremental;
+use super::past::Past;
 use super::{Material, NotPositive};
 use crate::body::PointState;
 use crate::discrete_gradient::{between, change_between};
@@ -13,6 +15,39 @@ use crate::points::{LANES, Lanes, Mats, get, set};
 
 /// ∂P/∂F at each of the points: `[J][L][i][j][point]` is ∂P_iJ/∂F_jL.
 pub(crate) type ModuliMats<const D: usize> = [[Mats<D>; D]; D];
+
+/// What is asked of a law with memory.
+#[derive(Clone, Copy)]
+pub(crate) enum Wanted<'a, const D: usize> {
+    /// P.
+    Stress,
+    /// P and ∂P/∂F.
+    Tangent,
+    /// ∂P/∂F : dF.
+    Increment(&'a Mats<D>),
+}
+
+/// A step of points of a law with memory.
+pub(crate) struct Evolution<'a, const D: usize> {
+    /// H at the start of the step, for a discrete gradient.
+    pub(crate) before: Option<Mats<D>>,
+    pub(crate) h: Mats<D>,
+    pub(crate) count: usize,
+    /// Memory of the points, one after the other.
+    pub(crate) past: Past<'a>,
+    pub(crate) wanted: Wanted<'a, D>,
+}
+
+/// Results of a step of points of a law with memory.
+pub(crate) struct Evolved<'a, const D: usize> {
+    /// Ψ.
+    pub(crate) stored: Lanes,
+    /// P, its discrete gradient, or the increment of either.
+    pub(crate) stress: Mats<D>,
+    pub(crate) moduli: ModuliMats<D>,
+    /// Memory at the end of the step; not asked for if empty.
+    pub(crate) memory: &'a mut [f64],
+}
 
 /// A [`Material`] at the first `count` of four points; H = 0 in the other lanes, whose results do
 /// not count.
@@ -46,8 +81,14 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
         count: usize,
     ) -> Result<Mats<D>, NotPositive>;
 
+    /// [`Material::MEMORY`].
+    fn memory(&self) -> usize;
+
+    /// A step of a law with memory.
+    fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive>;
+
     /// Kinematics and stress.
-    fn state_at(&self, h: &Mat<D>) -> Result<PointState, NotPositive>;
+    fn state_at(&self, h: &Mat<D>, past: &Past) -> Result<PointState, NotPositive>;
 
     /// [`Material::volume_ratio`].
     fn volume_ratio_at(&self, h: &Mat<D>) -> f64;
@@ -134,8 +175,43 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         Ok(changes)
     }
 
-    fn state_at(&self, h: &Mat<D>) -> Result<PointState, NotPositive> {
-        let (point, across) = (self.at(h)?, self.lateral_excess(h)?);
+    fn memory(&self) -> usize {
+        L::MEMORY
+    }
+
+    fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive> {
+        let unit = Mat::<D>::identity().0.map(Vector);
+        for l in 0..step.count {
+            let law = Incremental { law: self, past: step.past.part(l, L::MEMORY) };
+            let h = get(&step.h, l);
+            let point = law.at(&h)?;
+            out.stored[l] = self.energy(&point);
+            if !out.memory.is_empty() {
+                self.remember(&point, &mut out.memory[l * L::MEMORY..(l + 1) * L::MEMORY]);
+            }
+            let before = step.before.as_ref().map(|before| get(before, l));
+            let of_point = match (step.wanted, before) {
+                (Wanted::Increment(dh), None) => law.change(&point, &get(dh, l)),
+                (Wanted::Increment(dh), Some(before)) => change_between(&law, [&before, &h], &get(dh, l))?,
+                (Wanted::Stress | Wanted::Tangent, None) => law.stress(&point),
+                (Wanted::Stress | Wanted::Tangent, Some(before)) => between(&law, [&before, &h])?.1,
+            };
+            set(&mut out.stress, l, &of_point);
+            if let Wanted::Tangent = step.wanted {
+                for (row, a) in out.moduli.iter_mut().zip(&unit) {
+                    for (block, b) in row.iter_mut().zip(&unit) {
+                        set(block, l, &law.tangent(&point, a, b));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn state_at(&self, h: &Mat<D>, past: &Past) -> Result<PointState, NotPositive> {
+        // Without a memory it is the start of a run.
+        let point = if past.memory.is_empty() { self.at(h)? } else { self.after(h, past)? };
+        let across = self.lateral_excess(h)?;
         let strain = (*h + h.transposed() + h.transposed() * *h) * 0.5;
         Ok(PointState {
             det_f: self.volume_ratio(h),

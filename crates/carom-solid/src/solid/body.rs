@@ -4,39 +4,18 @@ use carom_algebra::{Mat, Vector, wide};
 
 use super::rotation::{angle, strain};
 use super::{Medium, Place, Solid};
-use crate::body::{Body, Inverted, PointState};
+use crate::body::{Ask, Body, Configuration, Geometry, Inverted, PointState, Response};
 use crate::bounds::Bounds;
-use crate::material::{NotPositive, Pointwise};
+use crate::material::{NotPositive, Past, Pointwise};
 use crate::mesh::Mesh;
 use crate::points::{LANES, get};
 use crate::reference::{self, gradient};
 use crate::shape::Shape;
 use crate::tree::Tree;
 
-impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
+impl<const D: usize, const N: usize, S: Shape<D, N>> Geometry for Solid<D, N, S> {
     fn mesh(&self) -> &Mesh {
         &self.mesh
-    }
-
-    fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
-        let Medium { law, mean, .. } = self.medium(cell);
-        match mean {
-            None => self.force_of(&**law, cell, y, force),
-            Some(mean) => self.mean_force(&**law, mean, cell, y, force),
-        }
-    }
-
-    fn cell_forces(
-        &self,
-        first: usize,
-        y: &[f64],
-        forces: &mut [f64],
-        energies: &mut [f64],
-    ) -> Result<(), Inverted> {
-        if Self::HAS_CONSTANT_STRAIN {
-            return self.constant_forces(first, y, forces, energies);
-        }
-        self.one_by_one(first, y, forces, energies)
     }
 
     fn add_cells(&self, first: usize, locals: &[f64], sum: &mut [f64]) {
@@ -50,58 +29,6 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
                 }
             }
         }
-    }
-
-    fn cell_tangent(
-        &self,
-        cell: usize,
-        y: &[f64],
-        force: &mut [f64],
-        tangent: &mut [f64],
-    ) -> Result<f64, Inverted> {
-        let Medium { law, mean, .. } = self.medium(cell);
-        let energy = self.tangent_of(&**law, cell, y, force, tangent)?;
-        let Some(mean) = mean else { return Ok(energy) };
-        Ok(energy + self.add_mean_tangent(mean, cell, y, force, tangent)?)
-    }
-
-    fn cell_between(
-        &self,
-        cell: usize,
-        before: &[f64],
-        now: &[f64],
-        force: &mut [f64],
-    ) -> Result<f64, Inverted> {
-        let Medium { law, mean, .. } = self.medium(cell);
-        let energy = self.between_of(&**law, cell, [before, now], force)?;
-        let Some(mean) = mean else { return Ok(energy) };
-        Ok(energy + self.add_mean_between(mean, cell, [before, now], force)?)
-    }
-
-    fn cell_product(
-        &self,
-        cell: usize,
-        before: Option<&[f64]>,
-        y: &[f64],
-        change: &[f64],
-        product: &mut [f64],
-    ) -> Result<(), Inverted> {
-        let Medium { law, mean, .. } = self.medium(cell);
-        self.product_of(&**law, cell, before, [y, change], product)?;
-        let Some(mean) = mean else { return Ok(()) };
-        self.add_mean_product(mean, cell, before, [y, change], product)
-    }
-
-    fn cell_mass(&self, cell: usize, mass: &mut [f64]) {
-        mass.fill(0.0);
-        let density = self.density(cell);
-        self.each_mass_point(cell, |values, volume| {
-            for a in 0..N {
-                for b in 0..N {
-                    mass[a * N + b] += density * volume * values[a] * values[b];
-                }
-            }
-        });
     }
 
     fn cell_volumes(&self, cell: usize, volumes: &mut [f64]) {
@@ -137,25 +64,6 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         }
     }
 
-    fn stress_divergence(&self, cell: usize, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
-        let Medium { law, mean, .. } = self.medium(cell);
-        let law = mean.as_ref().map_or(law, |mean| &mean.law);
-        let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
-        out.copy_from_slice(&law.divergence(&h, second).map_err(|NotPositive(det_f)| det_f)?.0);
-        Ok(())
-    }
-
-    fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
-        let u = self.displacements(cell, y);
-        let law = &self.medium(cell).law;
-        let Place { points, inverse, .. } = &self.places[cell];
-        let ratios = self.points[points.clone()].iter().flat_map(|points| {
-            let h = points.gradient(&u, inverse);
-            (0..points.count).map(move |l| law.volume_ratio_at(&get(&h, l)))
-        });
-        ratios.fold(f64::INFINITY, f64::min)
-    }
-
     fn cell_turn(&self, cell: usize, y: &[f64]) -> [f64; 2] {
         let u = self.displacements(cell, y);
         let Place { points, inverse, .. } = &self.places[cell];
@@ -164,58 +72,6 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
             (0..points.count).map(move |l| [angle(&get(&h, l)), strain(&get(&h, l))])
         });
         found.fold([0.0; 2], |most, one| [0, 1].map(|i| f64::max(most[i], one[i])))
-    }
-
-    fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted> {
-        if !self.may_invert(cell) {
-            let (nodes, y) = (self.nodes(cell), y.as_chunks::<D>().0);
-            let nodes = nodes.map(|node| Vector(y[node]));
-            let margin = wide(
-                #[inline(always)]
-                || self.validity.margin(&nodes),
-            );
-            return margin.map_err(|loss| {
-                let gradients = S::gradients(&loss.place);
-                let reference = gradient(&self.reference(cell), &gradients).det();
-                Inverted { cell, det_f: gradient(&nodes, &gradients).det() / reference }
-            });
-        }
-        Ok(f64::INFINITY)
-    }
-
-    fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64> {
-        if self.may_invert(cell) {
-            return None;
-        }
-        let nodes = self.nodes(cell);
-        let [before, now] = [before, now].map(|y| nodes.map(|node| Vector(y.as_chunks::<D>().0[node])));
-        self.validity.lost_between(&before, &now).map(|loss| loss.theta)
-    }
-
-    fn cell_margins(&self, first: usize, y: &[f64], margins: &mut [f64]) -> Result<(), Inverted> {
-        for (block, margins) in margins.chunks_mut(LANES).enumerate() {
-            let first = first + block * LANES;
-            let certifies = |k: usize| !self.may_invert(first + k);
-            if Self::HAS_CONSTANT_STRAIN
-                && (0..margins.len()).all(certifies)
-                && self.constant_margins(first, y, margins)
-            {
-                continue;
-            }
-            for (k, margin) in margins.iter_mut().enumerate() {
-                *margin = self.cell_margin(first + k, y)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted> {
-        let Medium { law, mean, .. } = self.medium(cell);
-        let mut state = self.point_of(&**law, cell, xi, y)?;
-        if let Some(mean) = mean {
-            self.add_mean_stress(mean, cell, xi, y, &mut state)?;
-        }
-        Ok(state)
     }
 
     fn shape(&self, xi: &[f64], values: &mut [f64]) {
@@ -246,6 +102,96 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         let nodes = self.nodes(cell).map(|node| Vector(y[node]));
         reference::invert::<D, N, S>(&nodes, &vector(point)).map(|xi| xi.0.to_vec())
     }
+}
+
+impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
+    fn respond(&self, first: usize, at: &Configuration, ask: Ask, out: Response) -> Result<(), Inverted> {
+        let Response { numbers, energies, memory } = out;
+        if let (Ask::Force, None) = (ask, at.before)
+            && Self::HAS_CONSTANT_STRAIN
+            && self.memory == 0
+        {
+            return self.constant_forces(first, at.y, numbers, energies);
+        }
+        let width = numbers.len() / energies.len().max(1);
+        let mut memories = memory.chunks_exact_mut(self.memory.max(1));
+        for (k, (numbers, energy)) in numbers.chunks_exact_mut(width).zip(energies).enumerate() {
+            let memory = memories.next().unwrap_or(&mut []);
+            *energy = self.respond_of_cell(first + k, at, ask, numbers, memory)?;
+        }
+        Ok(())
+    }
+
+    fn memory(&self) -> usize {
+        self.memory
+    }
+
+    fn cell_mass(&self, cell: usize, mass: &mut [f64]) {
+        mass.fill(0.0);
+        let density = self.density(cell);
+        self.each_mass_point(cell, |values, volume| {
+            for a in 0..N {
+                for b in 0..N {
+                    mass[a * N + b] += density * volume * values[a] * values[b];
+                }
+            }
+        });
+    }
+
+    fn stress_divergence(&self, cell: usize, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
+        let Medium { law, mean, .. } = self.medium(cell);
+        let law = mean.as_ref().map_or(law, |mean| &mean.law);
+        let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
+        out.copy_from_slice(&law.divergence(&h, second).map_err(|NotPositive(det_f)| det_f)?.0);
+        Ok(())
+    }
+
+    fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
+        let u = self.displacements(cell, y);
+        let law = &self.medium(cell).law;
+        let Place { points, inverse, .. } = &self.places[cell];
+        let ratios = self.points[points.clone()].iter().flat_map(|points| {
+            let h = points.gradient(&u, inverse);
+            (0..points.count).map(move |l| law.volume_ratio_at(&get(&h, l)))
+        });
+        ratios.fold(f64::INFINITY, f64::min)
+    }
+
+    fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64> {
+        if self.may_invert(cell) {
+            return None;
+        }
+        let nodes = self.nodes(cell);
+        let [before, now] = [before, now].map(|y| nodes.map(|node| Vector(y.as_chunks::<D>().0[node])));
+        self.validity.lost_between(&before, &now).map(|loss| loss.theta)
+    }
+
+    fn cell_margins(&self, first: usize, y: &[f64], margins: &mut [f64]) -> Result<(), Inverted> {
+        for (block, margins) in margins.chunks_mut(LANES).enumerate() {
+            let first = first + block * LANES;
+            let certifies = |k: usize| !self.may_invert(first + k);
+            if Self::HAS_CONSTANT_STRAIN
+                && (0..margins.len()).all(certifies)
+                && self.constant_margins(first, y, margins)
+            {
+                continue;
+            }
+            for (k, margin) in margins.iter_mut().enumerate() {
+                *margin = self.margin(first + k, y)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn point(&self, cell: usize, xi: &[f64], y: &[f64], past: &Past) -> Result<PointState, Inverted> {
+        let Medium { law, mean, .. } = self.medium(cell);
+        let past = self.nearest(cell, xi, past);
+        let mut state = self.point_of(&**law, cell, xi, y, &past)?;
+        if let Some(mean) = mean {
+            self.add_mean_stress(mean, cell, xi, y, &mut state)?;
+        }
+        Ok(state)
+    }
 
     fn density(&self, cell: usize) -> f64 {
         self.medium(cell).density
@@ -253,18 +199,66 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
 }
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
-    /// [`Body::cell_forces`] by [`Body::cell_force`].
-    pub(super) fn one_by_one(
+    /// Response of a cell; returns the energy that it stores.
+    fn respond_of_cell(
         &self,
-        first: usize,
-        y: &[f64],
-        forces: &mut [f64],
-        energies: &mut [f64],
-    ) -> Result<(), Inverted> {
-        for (k, (force, energy)) in forces.chunks_exact_mut(N * D).zip(energies).enumerate() {
-            *energy = self.cell_force(first + k, y, force)?;
+        cell: usize,
+        at: &Configuration,
+        ask: Ask,
+        numbers: &mut [f64],
+        memory: &mut [f64],
+    ) -> Result<f64, Inverted> {
+        let Medium { law, mean, .. } = self.medium(cell);
+        if self.memory > 0 {
+            return self.evolve(&**law, cell, at, ask, numbers, memory);
         }
-        Ok(())
+        match (ask, at.before) {
+            (Ask::Force, None) => self.force(cell, at.y, numbers),
+            (Ask::Force, Some(before)) => {
+                let energy = self.between_of(&**law, cell, [before, at.y], numbers)?;
+                let Some(mean) = mean else { return Ok(energy) };
+                Ok(energy + self.add_mean_between(mean, cell, [before, at.y], numbers)?)
+            }
+            (Ask::Tangent, _) => {
+                let (force, tangent) = numbers.split_at_mut(N * D);
+                let energy = self.tangent_of(&**law, cell, at.y, force, tangent)?;
+                let Some(mean) = mean else { return Ok(energy) };
+                Ok(energy + self.add_mean_tangent(mean, cell, at.y, force, tangent)?)
+            }
+            (Ask::Product(change), before) => {
+                self.product_of(&**law, cell, before, [at.y, change], numbers)?;
+                let Some(mean) = mean else { return Ok(0.0) };
+                self.add_mean_product(mean, cell, before, [at.y, change], numbers)?;
+                Ok(0.0)
+            }
+        }
+    }
+
+    /// Force of a cell; returns its energy.
+    pub(super) fn force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
+        let Medium { law, mean, .. } = self.medium(cell);
+        match mean {
+            None => self.force_of(&**law, cell, y, force),
+            Some(mean) => self.mean_force(&**law, mean, cell, y, force),
+        }
+    }
+
+    /// Margin of one cell.
+    fn margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted> {
+        if !self.may_invert(cell) {
+            let (nodes, y) = (self.nodes(cell), y.as_chunks::<D>().0);
+            let nodes = nodes.map(|node| Vector(y[node]));
+            let margin = wide(
+                #[inline(always)]
+                || self.validity.margin(&nodes),
+            );
+            return margin.map_err(|loss| {
+                let gradients = S::gradients(&loss.place);
+                let reference = gradient(&self.reference(cell), &gradients).det();
+                Inverted { cell, det_f: gradient(&nodes, &gradients).det() / reference }
+            });
+        }
+        Ok(f64::INFINITY)
     }
 
     /// [`Body::point`] of another law.
@@ -274,12 +268,13 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         cell: usize,
         xi: &[f64],
         y: &[f64],
+        past: &Past,
     ) -> Result<PointState, Inverted> {
         let x = self.reference(cell);
         let inverse_transposed = gradient(&x, &S::gradients(&vector(xi))).inverse().transposed();
         let g = S::gradients(&vector(xi)).map(|g| inverse_transposed.apply(&g));
         let h = gradient(&self.displacements(cell, y), &g);
-        law.state_at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })
+        law.state_at(&h, past).map_err(|NotPositive(det_f)| Inverted { cell, det_f })
     }
 }
 

@@ -12,7 +12,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// Whether F is constant in every cell.
     pub(super) const HAS_CONSTANT_STRAIN: bool = S::DEGREE == 1 && !S::Domain::TENSOR;
 
-    /// [`Body::cell_forces`](crate::Body::cell_forces) of cells with constant strain.
+    /// Forces and energies of consecutive cells with constant strain.
     pub(super) fn constant_forces(
         &self,
         first: usize,
@@ -34,6 +34,20 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
                 // One by one, to find it.
                 self.one_by_one(cells, y, forces, energies)?;
             }
+        }
+        Ok(())
+    }
+
+    /// Forces and energies of cells, one after the other.
+    fn one_by_one(
+        &self,
+        first: usize,
+        y: &[f64],
+        forces: &mut [f64],
+        energies: &mut [f64],
+    ) -> Result<(), Inverted> {
+        for (k, (force, energy)) in forces.chunks_exact_mut(N * D).zip(energies).enumerate() {
+            *energy = self.force(first + k, y, force)?;
         }
         Ok(())
     }

@@ -3,8 +3,6 @@
 use carom_algebra::{Vector, wide};
 
 use super::{Place, Solid};
-#[cfg(doc)]
-use crate::body::Body;
 use crate::body::Inverted;
 use crate::material::{ModuliMats, NotPositive, Pointwise};
 use crate::points::{Blocks, LANES, Lanes, Mats, sum};
@@ -60,7 +58,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         Ok(energy)
     }
 
-    /// [`Body::cell_force`] of a law.
+    /// Force of a law; returns the energy.
     pub(super) fn force_of(
         &self,
         law: &dyn Pointwise<D>,
@@ -83,7 +81,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         )
     }
 
-    /// [`Body::cell_tangent`] of a law.
+    /// Force and tangent of a law; returns the energy.
     pub(super) fn tangent_of(
         &self,
         law: &dyn Pointwise<D>,
@@ -107,7 +105,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         )
     }
 
-    /// [`Body::cell_between`] of a law.
+    /// Discrete gradient of a law; returns the energy at the end.
     pub(super) fn between_of(
         &self,
         law: &dyn Pointwise<D>,
@@ -130,7 +128,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         )
     }
 
-    /// [`Body::cell_product`] of a law.
+    /// Product of the tangent of a law, or of its discrete gradient, and a change.
     pub(super) fn product_of(
         &self,
         law: &dyn Pointwise<D>,
@@ -215,7 +213,7 @@ pub(super) fn scale<const D: usize>(mats: &mut Mats<D>, weights: &Lanes) {
 
 /// Both triangles of a symmetric matrix from the blocks a ≤ b.
 #[inline(always)]
-fn spread<const D: usize, const N: usize>(blocks: &Blocks<D, N>, tangent: &mut [f64]) {
+pub(super) fn spread<const D: usize, const N: usize>(blocks: &Blocks<D, N>, tangent: &mut [f64]) {
     for b in 0..N {
         for a in 0..=b {
             for i in 0..D {

@@ -20,7 +20,7 @@ use carom_algebra::wide;
 use super::integrals::scale;
 use super::{Medium, Place, Solid};
 use crate::body::{Inverted, PointState};
-use crate::material::{Law, Mean, NotPositive, Pointwise};
+use crate::material::{Law, Mean, NotPositive, Past, Pointwise};
 use crate::points::{LANES, sum};
 use crate::shape::Shape;
 
@@ -65,7 +65,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         Ok(Swelling { gradient, measure: sum / self.volume(cell) })
     }
 
-    /// [`Body::cell_force`](crate::Body::cell_force).
+    /// Force of a cell; returns its energy.
     pub(super) fn mean_force(
         &self,
         law: &dyn Pointwise<D>,
@@ -207,7 +207,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         y: &[f64],
         state: &mut PointState,
     ) -> Result<(), Inverted> {
-        let unit = self.point_of(&*mean.measure, cell, xi, y)?;
+        let unit = self.point_of(&*mean.measure, cell, xi, y, &Past::default())?;
         let [_, pressure, _] = mean.volumetric.at(self.swelling(mean, cell, y, None)?.measure);
         let cauchy = state.cauchy.as_flattened_mut().iter_mut().zip(unit.cauchy.as_flattened());
         cauchy.for_each(|(stress, unit)| *stress += pressure * unit);

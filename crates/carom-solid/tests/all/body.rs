@@ -2,7 +2,8 @@
 //! location of points.
 
 use carom_solid::{
-    Body, Bounds, Element, Law, Mesh, PointLocator, SolidError, body, cell_lumped_mass, generate, line_shape,
+    Body, Bounds, Element, Law, Mesh, Past, PointLocator, SolidError, body, cell_lumped_mass, generate,
+    line_shape,
 };
 
 const LAMBDA: f64 = 2.0;
@@ -118,9 +119,9 @@ fn force_and_tangent_are_derivatives_and_the_tangent_is_symmetric() {
 fn affine_patch() {
     for (element, law, body) in all_bodies() {
         let y = moved(&*body, |x| [1.1 * x[0] + 0.2 * x[1], -0.1 * x[0] + 0.95 * x[1]]);
-        let first = body.point(0, &[0.2, 0.3], &y).unwrap();
+        let first = body.point(0, &[0.2, 0.3], &y, &Past::default()).unwrap();
         for cell in 0..body.mesh().cell_count() {
-            let here = body.point(cell, &[0.5, 0.1], &y).unwrap();
+            let here = body.point(cell, &[0.5, 0.1], &y, &Past::default()).unwrap();
             assert!((here.det_f - (1.1 * 0.95 + 0.02)).abs() < 1e-13);
             assert!((body.cell_min_det_f(cell, &y) - here.det_f).abs() < 1e-13);
             for (a, b) in here.cauchy.as_flattened().iter().zip(first.cauchy.as_flattened()) {
@@ -221,7 +222,7 @@ fn lateral_stress_of_plane_strain_follows_from_three_dimensions() {
         let [mesh, _] = meshes(Element::T6);
         let body = body(mesh, law, 1.0, 1.0).unwrap();
         let y = moved(&*body, |x| [1.2 * x[0], x[1]]);
-        let state = body.point(0, &[0.3, 0.3], &y).unwrap();
+        let state = body.point(0, &[0.3, 0.3], &y, &Past::default()).unwrap();
         assert!((state.cauchy[2][2] - expected(1.2, 0.2)).abs() < 1e-14);
         // Stretched along x only, y and z are equivalent.
         assert!((state.cauchy[1][1] - state.cauchy[2][2]).abs() < 1e-14);

@@ -15,6 +15,7 @@ mod laws;
 mod loaded_side;
 mod manufactured;
 mod mean_dilatation;
+mod memory;
 mod plane_stress;
 mod quadrature;
 mod random;

@@ -1,7 +1,7 @@
 //! What a prescribed motion needs of a body: the divergence of its stress, errors at its points,
 //! and the nodes on the boundary.
 
-use carom_solid::{Body, Element, Law, Mesh, body, generate, plane_stress_body};
+use carom_solid::{Body, Element, Law, Mesh, Past, body, generate, plane_stress_body};
 
 /// A quadratic motion: H = ∂y/∂X − 1 is linear in X.
 fn motion([x, y]: [f64; 2]) -> [f64; 2] {
@@ -18,7 +18,7 @@ const SECOND: [f64; 8] = [0.2, 0.05, 0.05, 0.0, -0.16, 0.0, 0.0, 0.06];
 /// P = J σ F⁻ᵀ from the stress at reference coordinates of a cell in this motion; the small-strain
 /// law has only one stress.
 fn nominal(body: &dyn Body, law: Law, y: &[f64], xi: [f64; 2], place: [f64; 2]) -> [[f64; 2]; 2] {
-    let state = body.point(0, &xi, y).unwrap();
+    let state = body.point(0, &xi, y, &Past::default()).unwrap();
     if matches!(law, Law::LinearElastic { .. }) {
         return std::array::from_fn(|i| std::array::from_fn(|j| state.cauchy[i][j]));
     }

@@ -1,7 +1,7 @@
 //! Mean dilatation: derivatives, work of the discrete gradient, invariance, and what a cell keeps.
 
 use carom_algebra::jacobian_error;
-use carom_solid::{Body, Element, Law, Mesh, RegionMaterial, body, generate, mean_dilatation_body};
+use carom_solid::{Body, Element, Law, Mesh, Past, RegionMaterial, body, generate, mean_dilatation_body};
 
 const LAWS: [Law; 3] = [
     Law::NeoHookean { lambda: 40.0, mu: 1.5 },
@@ -138,7 +138,7 @@ fn a_homogeneous_deformation_is_that_of_the_law() {
             assert!((a - b).abs() < 1e-13 * a, "{law:?}: {a} {b}");
             assert!(f.iter().zip(&g).all(|(f, g)| (f - g).abs() < 1e-12), "{law:?}");
             let xi = vec![0.3; d];
-            let [p, q] = [&plain, &mean].map(|body| body.point(0, &xi, &y).unwrap().cauchy);
+            let [p, q] = [&plain, &mean].map(|body| body.point(0, &xi, &y, &Past::default()).unwrap().cauchy);
             let stresses = p.as_flattened().iter().zip(q.as_flattened());
             assert!(stresses.into_iter().all(|(p, q)| (p - q).abs() < 1e-12), "{law:?}");
         }

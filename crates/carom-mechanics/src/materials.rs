@@ -1,0 +1,65 @@
+//! What the materials of bodies remember, and the energy that they store and dissipate.
+//!
+//! The memory of the state before a step stays as it is while trials of the step compute theirs, so
+//! that a rejected step leaves nothing behind. What is dissipated is the work of the internal
+//! forces that the balance has, less the change of what is stored,
+//!
+//! ```text
+//! dissipated += Δy·F̄_int − ΔU,
+//! ```
+//!
+//! for each body with memory (`ledger.rs`). The `dissipation` of the ledger remains that of the
+//! integrator.
+
+use std::sync::Arc;
+
+use carom_solid::Past;
+use serde::{Deserialize, Serialize};
+
+/// Memory of the materials of all bodies; empty if none has any.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Materials {
+    /// Memory of all cells, body after body; copied where it is changed.
+    pub(crate) memory: Arc<Vec<f64>>,
+    /// Energy that each body stores.
+    pub(crate) stored: Vec<f64>,
+    /// Energy that each body with memory has dissipated so far.
+    pub(crate) dissipated: Vec<f64>,
+}
+
+impl Materials {
+    /// Materials of so many bodies that remember nothing yet, with so many numbers.
+    pub(crate) fn new(bodies: usize, numbers: usize) -> Self {
+        let mut new = Self::default();
+        if numbers > 0 {
+            new.dissipated = vec![0.0; bodies];
+            new.resize(bodies, numbers);
+        }
+        new
+    }
+
+    /// Makes room for the memory of so many bodies.
+    pub(crate) fn resize(&mut self, bodies: usize, numbers: usize) {
+        if self.memory.len() != numbers {
+            self.memory = Arc::new(vec![0.0; numbers]);
+        }
+        self.stored.resize(bodies, 0.0);
+    }
+
+    /// Energy that each body has dissipated so far; zero of bodies without memory, empty if none
+    /// has any.
+    pub fn dissipated(&self) -> &[f64] {
+        &self.dissipated
+    }
+
+    /// What the materials remember at the start of a step of length `dt`.
+    pub fn past(&self, dt: f64) -> Past<'_> {
+        Past { memory: &self.memory, dt }
+    }
+
+    /// Takes over what a trial stores and remembers.
+    pub(crate) fn accept(&mut self, trial: &Self) {
+        self.memory.clone_from(&trial.memory);
+        self.stored.clone_from(&trial.stored);
+    }
+}

@@ -1,0 +1,105 @@
+//! Cells of laws with memory: forces, tangents, and differentials of forces, from the memory of
+//! each quadrature point at the start of a step.
+
+use carom_algebra::Vector;
+
+use super::integrals::{scale, spread};
+use super::{Place, Solid};
+use crate::body::{Ask, Configuration, Inverted};
+use crate::material::{Evolution, Evolved, NotPositive, Past, Pointwise, Wanted};
+use crate::points::{Blocks, LANES, sum};
+use crate::shape::Shape;
+
+impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
+    /// Count of numbers of the cell with the most: those of all its points, of the law that
+    /// remembers most.
+    pub(super) fn memory_of_cells(&self) -> usize {
+        let of_point = self.media.iter().map(|medium| medium.law.memory()).max().unwrap_or(0);
+        let has = |curved: bool| usize::from(self.curved.contains(&curved));
+        let points =
+            [false, true].map(|curved| has(curved) * self.force_rules[usize::from(curved)].points.len());
+        of_point * points[0].max(points[1])
+    }
+
+    /// Memory of the quadrature point of a cell that is nearest to reference coordinates.
+    pub(super) fn nearest<'a>(&self, cell: usize, xi: &[f64], past: &Past<'a>) -> Past<'a> {
+        let size = self.medium(cell).law.memory();
+        let rule = &self.force_rules[usize::from(self.curved[cell])];
+        let distance = |point: &Vector<D>| (0..D).map(|i| (point[i] - xi[i]).powi(2)).sum::<f64>();
+        let points = rule.points.iter().enumerate();
+        let nearest = points.min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
+        past.part(cell, self.memory).part(nearest.map_or(0, |(k, _)| k), size)
+    }
+
+    /// Response of a cell of a law with memory; returns the energy that it stores.
+    pub(super) fn evolve(
+        &self,
+        law: &dyn Pointwise<D>,
+        cell: usize,
+        at: &Configuration,
+        ask: Ask,
+        numbers: &mut [f64],
+        memory: &mut [f64],
+    ) -> Result<f64, Inverted> {
+        let size = law.memory();
+        let none = vec![0.0; self.memory];
+        // At the start of a run nothing is remembered.
+        let virgin = Past { memory: &none, dt: at.past.dt };
+        let past = if at.past.memory.is_empty() { virgin } else { at.past.part(cell, self.memory) };
+        let u = self.displacements(cell, at.y);
+        let start = at.before.map(|before| self.displacements(cell, before));
+        let change = match ask {
+            Ask::Product(change) => Some(self.vectors(cell, change)),
+            _ => None,
+        };
+        let (force, tangent) = numbers.split_at_mut(N * D);
+        let mut f = [[[0.0; LANES]; D]; N];
+        let mut blocks: Box<Blocks<D, N>> = Box::new([[[[[0.0; LANES]; D]; D]; N]; N]);
+        let mut energy = 0.0;
+        let Place { points, inverse, volume } = &self.places[cell];
+        for (k, points) in self.points[points.clone()].iter().enumerate() {
+            let dh = change.as_ref().map(|change| points.gradient(change, inverse));
+            let first = k * LANES;
+            let own = first * size..(first + points.count) * size;
+            let step = Evolution {
+                before: start.as_ref().map(|start| points.gradient(start, inverse)),
+                h: points.gradient(&u, inverse),
+                count: points.count,
+                past: Past { memory: &past.memory[own.clone()], dt: past.dt },
+                wanted: match (ask, &dh) {
+                    (Ask::Product(_), Some(dh)) => Wanted::Increment(dh),
+                    (Ask::Tangent, _) => Wanted::Tangent,
+                    _ => Wanted::Stress,
+                },
+            };
+            let mut out = Evolved {
+                stored: [0.0; LANES],
+                stress: [[[0.0; LANES]; D]; D],
+                moduli: [[[[[0.0; LANES]; D]; D]; D]; D],
+                memory: memory.get_mut(own).unwrap_or(&mut []),
+            };
+            law.evolve(&step, &mut out).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
+            let weights = points.weights.map(|weight| volume * weight);
+            energy += (0..points.count).map(|l| weights[l] * out.stored[l]).sum::<f64>();
+            scale(&mut out.stress, &weights);
+            points.add_force(&out.stress, inverse, &mut f);
+            if let Ask::Tangent = ask {
+                out.moduli.as_flattened_mut().iter_mut().for_each(|block| scale(block, &weights));
+                points.add_tangent(&out.moduli, inverse, &mut blocks);
+            }
+        }
+        for (force, f) in force.iter_mut().zip(f.as_flattened()) {
+            *force = sum(f);
+        }
+        if let Ask::Tangent = ask {
+            spread(&blocks, tangent);
+        }
+        Ok(if let Ask::Product(_) = ask { 0.0 } else { energy })
+    }
+
+    /// Vectors at the nodes of a cell from those at all nodes.
+    fn vectors(&self, cell: usize, all: &[f64]) -> [Vector<D>; N] {
+        let all = all.as_chunks::<D>().0;
+        self.nodes(cell).map(|node| Vector(all[node]))
+    }
+}

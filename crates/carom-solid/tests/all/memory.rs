@@ -1,0 +1,267 @@
+//! Laws with memory: isotropic damage as an example. What a step computes agrees with finite
+//! differences and with the answer in one dimension; damage only grows, and dissipates.
+//!
+//! ```text
+//! Ψ = (1 − d) Ψ₀,   κ = max Ψ₀ so far,   d(κ) = 1 − exp(−(κ − κ₀)/c)  for κ > κ₀
+//! 𝒟 = ∫ κ dd = G(κ₁) − G(κ₀),   G(κ) = κ₀ + c − (κ + c) exp(−(κ − κ₀)/c)
+//! ```
+
+use carom_algebra::{Mat, Vector, jacobian_error};
+use carom_solid::material::{LinearElastic, Material, NeoHookean, NotPositive, Thickness};
+use carom_solid::{
+    Ask, Body, Configuration, Constitutive, Element, Mesh, Past, PlaneState, RegionMaterial, Response,
+    body_of_regions, generate,
+};
+
+/// Damage of a hyperelastic law.
+#[derive(Clone, Copy, Debug)]
+struct Damage<L> {
+    of: L,
+    threshold: f64,
+    scale: f64,
+}
+
+struct DamagedPoint<P> {
+    of: P,
+    /// Ψ₀.
+    energy: f64,
+    /// κ at the start and at the end of the step.
+    history: [f64; 2],
+}
+
+impl<L> Damage<L> {
+    /// 1 − d.
+    fn intact(&self, history: f64) -> f64 {
+        if history > self.threshold { (-(history - self.threshold) / self.scale).exp() } else { 1.0 }
+    }
+
+    /// G.
+    fn lost(&self, history: f64) -> f64 {
+        if history <= self.threshold {
+            return 0.0;
+        }
+        self.threshold + self.scale - (history + self.scale) * self.intact(history)
+    }
+}
+
+impl<const D: usize, L: Material<D> + 'static> Material<D> for Damage<L> {
+    const ENERGY_DEGREE: usize = L::ENERGY_DEGREE;
+    const OBJECTIVE: bool = L::OBJECTIVE;
+    const MEMORY: usize = 1;
+    type Point = DamagedPoint<L::Point>;
+
+    fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive> {
+        self.after(h, &Past { memory: &[0.0], dt: 0.0 })
+    }
+
+    fn after(&self, h: &Mat<D>, past: &Past) -> Result<Self::Point, NotPositive> {
+        let of = self.of.at(h)?;
+        let energy = self.of.energy(&of);
+        let start = past.memory[0];
+        Ok(DamagedPoint { of, energy, history: [start, start.max(energy)] })
+    }
+
+    fn remember(&self, point: &Self::Point, memory: &mut [f64]) {
+        memory[0] = point.history[1];
+    }
+
+    fn dissipated(&self, point: &Self::Point) -> f64 {
+        self.lost(point.history[1]) - self.lost(point.history[0])
+    }
+
+    fn energy(&self, point: &Self::Point) -> f64 {
+        self.intact(point.history[1]) * point.energy
+    }
+
+    fn stress(&self, point: &Self::Point) -> Mat<D> {
+        self.of.stress(&point.of) * self.intact(point.history[1])
+    }
+
+    fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
+        let intact = self.intact(point.history[1]);
+        let elastic = self.of.tangent(&point.of, a, b) * intact;
+        let grows = point.history[1] > point.history[0].max(self.threshold);
+        if !grows {
+            return elastic;
+        }
+        let stress = self.of.stress(&point.of);
+        elastic - stress.apply(a).outer(&stress.apply(b)) * (intact / self.scale)
+    }
+
+    fn cauchy(&self, point: &Self::Point) -> Mat<D> {
+        self.of.cauchy(&point.of) * self.intact(point.history[1])
+    }
+
+    fn lateral(&self, point: &Self::Point) -> f64 {
+        self.of.lateral(&point.of) * self.intact(point.history[1])
+    }
+}
+
+impl<L: Material<3> + 'static> Thickness for Damage<L> {}
+
+const RUBBER: Damage<NeoHookean> =
+    Damage { of: NeoHookean { lambda: 2.0, mu: 1.5 }, threshold: 0.01, scale: 0.2 };
+const BAR: Damage<LinearElastic> =
+    Damage { of: LinearElastic { lambda: 0.0, mu: 0.5 }, threshold: 0.005, scale: 0.02 };
+
+fn made(mesh: Mesh, law: &dyn Constitutive) -> Box<dyn Body> {
+    body_of_regions(mesh, &[RegionMaterial { law, density: 1.0 }], PlaneState::Strain, 1.0).unwrap()
+}
+
+fn meshes() -> Vec<Mesh> {
+    let plane = |element| generate::rectangle(element, [0.0; 2], [1.0, 2.0], [2, 2]).unwrap();
+    let space = |element| generate::cuboid(element, [0.0; 3], [1.0, 2.0, 1.5], [1, 1, 1]).unwrap();
+    let mut meshes: Vec<Mesh> = [Element::T3, Element::T6, Element::Q4].map(plane).into();
+    meshes.push(generate::interval(Element::L3, 0.0, 2.0, 3).unwrap());
+    meshes.extend([Element::Tet4, Element::Hex8].map(space));
+    meshes
+}
+
+/// Positions strained by about `by`.
+fn moved(mesh: &Mesh, by: f64) -> Vec<f64> {
+    let d = mesh.dimension();
+    let component = |x: &[f64], i: usize| x[i] + by * (x[i] + 0.4 * (1.3 * x[(i + 1) % d]).sin());
+    mesh.nodes.iter().flat_map(|x| (0..d).map(move |i| component(x, i))).collect()
+}
+
+/// Response of one cell: numbers, energy and new memory.
+fn of_cell(body: &dyn Body, cell: usize, at: &Configuration, ask: Ask) -> (Vec<f64>, f64, Vec<f64>) {
+    let dofs = body.mesh().element.dofs();
+    let count = if let Ask::Tangent = ask { dofs + dofs * dofs } else { dofs };
+    let (mut numbers, mut energies, mut memory) = (vec![0.0; count], [0.0], vec![0.0; body.memory()]);
+    let out = Response { numbers: &mut numbers, energies: &mut energies, memory: &mut memory };
+    body.respond(cell, at, ask, out).unwrap();
+    (numbers, energies[0], memory)
+}
+
+/// The memory of all cells after a step to `y`.
+fn after(body: &dyn Body, y: &[f64], past: Past) -> Vec<f64> {
+    let at = Configuration { before: None, y, past };
+    (0..body.mesh().cell_count()).flat_map(|cell| of_cell(body, cell, &at, Ask::Force).2).collect()
+}
+
+#[test]
+fn tangents_and_products_are_derivatives() {
+    for mesh in meshes() {
+        let body = made(mesh, &RUBBER);
+        let body = &*body;
+        let (mesh, dofs) = (body.mesh(), body.mesh().element.dofs());
+        let memory = after(body, &moved(mesh, 0.15), Past { memory: &[], dt: 0.0 });
+        assert!(memory.iter().any(|kappa| *kappa > RUBBER.threshold));
+        let past = Past { memory: &memory, dt: 0.1 };
+        let before = moved(mesh, 0.15);
+        // It unloads, and it loads further.
+        for by in [0.1, 0.3] {
+            let y = moved(mesh, by);
+            for cell in 0..mesh.cell_count() {
+                let nodes = mesh.cell(cell).to_vec();
+                let d = mesh.dimension();
+                let own: Vec<usize> = nodes.iter().flat_map(|n| (0..d).map(move |i| n * d + i)).collect();
+                let with = |x: &[f64]| {
+                    let mut y = y.clone();
+                    own.iter().zip(x).for_each(|(dof, x)| y[*dof] = *x);
+                    y
+                };
+                let x: Vec<f64> = own.iter().map(|dof| y[*dof]).collect();
+                let force = |x: &[f64]| {
+                    let y = with(x);
+                    of_cell(body, cell, &Configuration { before: None, y: &y, past }, Ask::Force).0
+                };
+                let at = Configuration { before: None, y: &y, past };
+                let (tangent, ..) = of_cell(body, cell, &at, Ask::Tangent);
+                assert_eq!(tangent[..dofs], force(&x)[..]);
+                let error = jacobian_error(&x, 1e-4, force, &tangent[dofs..]);
+                assert!(error < 1e-8, "{:?} {by}: {error}", mesh.element);
+                // Products, of the force and of the discrete gradient.
+                for before in [None, Some(&before[..])] {
+                    let at = Configuration { before, y: &y, past };
+                    let change: Vec<f64> = (0..y.len()).map(|i| (1.7 * i as f64).sin()).collect();
+                    let (product, ..) = of_cell(body, cell, &at, Ask::Product(&change));
+                    let step = 1e-6;
+                    let [plus, minus] = [step, -step].map(|step| {
+                        let y: Vec<f64> = y.iter().zip(&change).map(|(y, u)| y + step * u).collect();
+                        of_cell(body, cell, &Configuration { before, y: &y, past }, Ask::Force).0
+                    });
+                    for i in 0..dofs {
+                        let found = (plus[i] - minus[i]) / (2.0 * step);
+                        assert!(
+                            (found - product[i]).abs() < 1e-7,
+                            "{:?} {by}: {found} {}",
+                            mesh.element,
+                            product[i]
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The discrete gradient does the work of what is stored and dissipated; the latter is never
+/// negative, and nothing where the law unloads.
+#[test]
+fn work_is_stored_or_dissipated() {
+    for mesh in meshes() {
+        let body = made(mesh, &RUBBER);
+        let body = &*body;
+        let mesh = body.mesh();
+        let d = mesh.dimension();
+        let mut memory = vec![0.0; body.memory() * mesh.cell_count()];
+        let mut before = mesh.nodes.flat().to_vec();
+        let mut stored = vec![0.0; mesh.cell_count()];
+        let mut total = 0.0;
+        for by in [0.1, 0.2, 0.12, 0.05, 0.25, 0.4, 0.0] {
+            let y = moved(mesh, by);
+            let at = Configuration { before: Some(&before), y: &y, past: Past { memory: &memory, dt: 0.1 } };
+            let mut next = Vec::new();
+            for (cell, stored) in stored.iter_mut().enumerate() {
+                let (force, energy, remembered) = of_cell(body, cell, &at, Ask::Force);
+                let nodes = mesh.cell(cell).iter();
+                let dofs = nodes.flat_map(|n| (0..d).map(move |i| n * d + i));
+                let work: f64 = dofs.zip(&force).map(|(dof, f)| f * (y[dof] - before[dof])).sum();
+                let dissipated = work - (energy - *stored);
+                assert!(dissipated > -1e-14, "{:?} {by}: {dissipated}", mesh.element);
+                if [0.12, 0.05, 0.0].contains(&by) {
+                    assert!(dissipated.abs() < 1e-14, "{:?} {by}: {dissipated}", mesh.element);
+                }
+                total += dissipated;
+                *stored = energy;
+                next.extend(remembered);
+            }
+            assert!(memory.iter().zip(&next).all(|(before, after)| before <= after));
+            memory = next;
+            before = y;
+        }
+        assert!(total > 0.01, "{total}");
+    }
+}
+
+/// σ = (1 − d) ε in a bar with E = 1, loaded, unloaded and loaded again.
+#[test]
+fn a_bar_has_the_exact_stress() {
+    let body = made(generate::interval(Element::L2, 0.0, 1.0, 1).unwrap(), &BAR);
+    let body = &*body;
+    let mut memory = vec![0.0];
+    let mut largest = 0.0_f64;
+    for strain in [0.05, 0.15, 0.2, 0.08, -0.1, 0.18, 0.3, -0.4] {
+        let y = [0.0, 1.0 + strain];
+        let at = Configuration { before: None, y: &y, past: Past { memory: &memory, dt: 1.0 } };
+        let (force, energy, next) = of_cell(body, 0, &at, Ask::Force);
+        largest = largest.max(0.5 * strain * strain);
+        let intact = (-(largest - 0.005).max(0.0) / 0.02).exp();
+        assert!((force[1] - intact * strain).abs() < 1e-15, "{strain}: {}", force[1]);
+        assert!((energy - 0.5 * intact * strain * strain).abs() < 1e-15);
+        assert!((next[0] - largest).abs() < 1e-16);
+        let state = body.point(0, &[0.5], &y, &Past { memory: &next, dt: 0.0 }).unwrap();
+        assert!((state.cauchy[0][0] - intact * strain).abs() < 1e-15);
+        memory = next;
+    }
+}
+
+#[test]
+fn plane_stress_is_refused() {
+    let mesh = generate::rectangle(Element::T3, [0.0; 2], [1.0; 2], [1, 1]).unwrap();
+    let material = RegionMaterial { law: &RUBBER as &dyn Constitutive, density: 1.0 };
+    let refused = body_of_regions(mesh, &[material], PlaneState::Stress, 1.0).err().unwrap();
+    assert_eq!(refused.to_string(), "a law with memory is not available in plane stress");
+}
