@@ -21,7 +21,7 @@ mod weights;
 use std::collections::BTreeMap;
 
 use carom_algebra::Threads;
-use carom_case::{Case, FormulaSpec, MassKind, Problem, SKIN, Volumetric};
+use carom_case::{Case, FormulaSpec, MassKind, Problem, SKIN, TieSpec, Volumetric};
 use carom_mechanics::model::{
     BodyInstance, Mass, Model, Probe, Quantity, free_motions, gap_tolerance, redistribute, value,
 };
@@ -258,8 +258,14 @@ fn meshes(case: &Case) -> Result<Vec<carom_solid::Mesh>, Vec<Problem>> {
 }
 
 fn no_mesh(case: &Case, k: usize, why: String) -> Problem {
-    let what = format!("the mesh of body \"{}\" cannot be generated", case.bodies[k].name);
-    Problem::new(format!("body[{k}].mesh"), what, why, "change the values of `mesh`")
+    let name = &case.bodies[k].name;
+    let what = format!("the mesh of body \"{name}\" cannot be generated");
+    let is_adjusted = |tie: &TieSpec| tie.adjust.is_some() && tie.bodies()[0] == name;
+    let help = match case.ties.iter().find(|tie| is_adjusted(tie)) {
+        Some(tie) => format!("change the values of `mesh`, or give tie `{}` a smaller `adjust`", tie.name),
+        None => "change the values of `mesh`".to_owned(),
+    };
+    Problem::new(format!("body[{k}].mesh"), what, why, help)
 }
 
 /// The mesh of a body, with its whole boundary as a side if the case refers to that.
