@@ -193,7 +193,7 @@ def bars_in_line():
         a = Part("a", element, {"shape": "interval", "min": -1.0, "max": 0.0, "cells": n}, 1 / 60, 1.0, velocity=[0.01], **common)
         gap = 0.0 if touching else 0.01
         b = Part("b", element, {"shape": "interval", "min": gap, "max": gap + long, "cells": n * round(long)}, 1 / 60, long, **common)
-        # Damped schemes and steps longer than a cell lose what the wave fronts contain of the energy.
+        # Damped schemes, and steps longer than a cell, lose what wave fronts contain of the energy.
         low = 0.85 if scheme in ("hu", "backward-euler", "bdf2", "moreau-jean", "ns-alpha", "paoli") else 0.95
         claims = [TOUCHES, {"judge": "conserved", "axis": "x", "limit": 1e-9}, {"judge": "apart-end"}]
         claims.append({"judge": "last", "column": "b.velocity_x", "value": 0.01 / long, "limit": 0.01 / long * (1 - low)})
@@ -416,7 +416,7 @@ def rigid_corners():
         points = [[x - 0.5, 0.5], [x, 0.0], [x + 0.5, 0.5]]
         move = f"-{depth}*t" if scheme == "static" else f"-{depth}*(t/0.1)^2*(3 - 2*t/0.1)"
         contact = {"secondary": "block.skin" if i % 2 else "block.top", "primary": {"polyline": {"points": points}, "motion": {"y": move}}}
-        claims = [TOUCHES, {"judge": "corner", "body": "block", "at": [x, 0.0], "move": [0.0, -depth], "limit": 0.1 / [6, 4][i % 2] * DEGREE[element]}]
+        claims = [TOUCHES, {"judge": "corner", "body": "block", "at": [x, 0.0], "move": [0.0, -depth], "limit": 0.1 / [6, 4][i % 2]}]
         yield Setup(
             f"a rigid wedge is pressed into a block at x = {x:.3g}", [body], scheme, 0.1, contacts=[contact], supports=[hold("block.bottom")], claims=claims, field=False,
         )  # fmt: skip
