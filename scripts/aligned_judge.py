@@ -19,7 +19,8 @@ A claim is {"judge": NAME, …}. `limit` is absolute where nothing else is said.
     still         |velocity| of a body along an axis ≤ limit × scale
     steady        velocity of a body along an axis = value, until a time
     slows         the same, = value − rate × time
-    coulomb       tangential contact impulse = μ × normal one (limit: relative to it)
+    coulomb       tangential contact impulse = μ × normal one (limit: relative to it). In space nodes slip
+                  in directions that differ by the strain, so that their sum is smaller by its square
     newton        mass × change of velocity of a body = ± contact impulse, 1e-6 of mass × velocity,
                   25 rows after the last contact, and with the schemes in SHARP in every row
     conserved     a component of momentum is constant (limit: relative to the largest momentum)
@@ -38,6 +39,7 @@ A claim is {"judge": NAME, …}. `limit` is absolute where nothing else is said.
 """
 
 import csv
+import json
 import re
 from math import cos, radians, sin
 from pathlib import Path
@@ -54,8 +56,10 @@ CREATES = {"chung-hulbert", "hht", "wbz", "newmark", "hu", "generalized-alpha", 
 # Those of which the velocities contain all momentum at the end of every step.
 SHARP = {"bathe", "tr-bdf2", "backward-euler", "energy-momentum", "moreau-jean"}
 DAMPED = {"hu", "backward-euler", "bdf2", "moreau-jean", "nonsmooth-generalized-alpha", "paoli-schatzman", "wbz"}
-# Warnings of a record that say that its contact or its energy is wrong, and of which violation.
-SAYS = {"energy": ("energy-created", "hidden-energy"), "field": ("undeclared-contact", "penetration", "deep", "overlap"), "corner": ("undeclared-contact", "penetration", "deep", "overlap"), "apart": ("penetration", "deep")}
+# Names of warnings, or words in them, that tell of a violation that a judge finds.
+DEEP = ("undeclared-contact", "penetration", "deep", "overlap")
+SAYS = {"energy": ("energy-created", "hidden-energy"), "field": DEEP, "corner": DEEP, "apart": DEEP}
+# Rows after a contact from which the velocities of an α scheme contain all momentum.
 AFTER = 25
 
 
@@ -63,8 +67,6 @@ class Record:
     """A run directory: its manifest, the columns of history.csv, the rows of contact.csv."""
 
     def __init__(self, run):
-        import json
-
         self.run = Path(run)
         self.manifest = json.loads((self.run / "manifest.json").read_text())
         self.case = self.manifest["case"]

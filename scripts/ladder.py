@@ -252,6 +252,7 @@ def main():
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a key of every case that is changed")
     parser.add_argument("--space", action="store_true", help="cases in space")
     parser.add_argument("--aligned", action="store_true", help="aligned cases")
+    parser.add_argument("--demand", type=float, metavar="SHARE", help="exit code 1 if a case is wrong or fewer than this share are right")
     parser.add_argument("--dry", action="store_true", help="write the cases only")
     options = parser.parse_args()
     if options.check:
@@ -300,7 +301,9 @@ def main():
             note = row.get("wrong") if row["outcome"] == "wrong" else row["message"]
             print(f"{row['case']} {row['category']:<15} {row['family']:<14} {row['outcome']:<8} {row['wall']:>6} s  {(note or '')[:150]}", flush=True)
     print(table(rows))
-    return 0
+    right = sum(row["outcome"] == "right" for row in rows)
+    silent = any(row["outcome"] == "wrong" for row in rows)
+    return int(options.demand is not None and (silent or right < options.demand * len(rows)))
 
 
 if __name__ == "__main__":

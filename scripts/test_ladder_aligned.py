@@ -20,6 +20,7 @@ import numpy as np
 
 import aligned_cases
 import aligned_judge
+import aligned_setup
 import field_check
 from test_ladder import record as fields_of
 from test_ladder import square
@@ -271,8 +272,8 @@ class Cases(unittest.TestCase):
 
     def test_all_elements_schemes_and_ways_occur(self):
         elements = {p.element for c in self.cases for p in c.parts}
-        self.assertEqual(elements, set(aligned_cases.DEGREE))
-        self.assertEqual({c.scheme for c in self.cases}, set(aligned_cases.SCHEMES))
+        self.assertEqual(elements, set(aligned_setup.DEGREE))
+        self.assertEqual({c.scheme for c in self.cases}, set(aligned_setup.SCHEMES))
 
     def test_a_choice_has_every_family(self):
         short = aligned_cases.chosen(60)
