@@ -235,7 +235,9 @@ impl<'a> Check<'a> {
         let mesh = body.get("mesh").and_then(Node::table);
         let of = mesh.and_then(|mesh| mesh.get("of")?.table());
         // Of an extrusion the plane mesh; without a key `shape` it is not known what is meant.
-        if of.or(mesh).is_some_and(|mesh| mesh.get("file").is_none() && mesh.get("shape").is_some()) {
+        let is_built_in = |mesh: &Table| mesh.get("file").is_none() && mesh.get("shape").is_some();
+        let misspelt = self.misspelt.iter().any(|table| is_within(table, &format!("body[{i}].mesh")));
+        if of.or(mesh).is_some_and(is_built_in) && !misspelt {
             let what = "a built-in shape has no `materials`";
             let why = "materials belong to the physical groups of a mesh from a file";
             self.problems.push(
