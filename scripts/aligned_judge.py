@@ -98,9 +98,14 @@ class Record:
         found = [np.linalg.norm([self.velocity(b["name"], a) for a in self.axes], axis=0).max() for b in self.case["bodies"]]
         return max(*found, 1e-300) if len(found) > 1 else max(found[0], 1e-300)
 
+    def touching(self):
+        """Rows with contact; a scheme with substeps may have had contact in a step that ends without."""
+        push = np.abs(np.diff(self.vector("contact_impulse"), axis=1, prepend=0.0)).max(0)
+        return np.flatnonzero((self.active > 0) | (push > 0))
+
     def parted(self):
-        """Index of the first row that is AFTER rows after the last contact; the number of rows, if there is none."""
-        touching = np.flatnonzero(self.active > 0)
+        """Index of the first row that is AFTER rows after the last contact."""
+        touching = self.touching()
         return int(touching[-1]) + 1 + AFTER if len(touching) else 0
 
 
@@ -127,7 +132,7 @@ def free(record, claim, twin):
 
 
 def flight(record, claim, twin):
-    touching, found = np.flatnonzero(record.active > 0), []
+    touching, found = record.touching(), []
     first = int(touching[0]) if len(touching) else len(record.time)
     scale = record.fastest()
     for body in record.free_bodies():

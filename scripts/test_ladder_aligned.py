@@ -96,6 +96,9 @@ class Judges(unittest.TestCase):
     def test_flight_before_and_after(self):
         self.catches({"judge": "flight"}, "a.velocity_x", 1e-6, rows=slice(5, None))
         self.catches({"judge": "flight"}, "a.velocity_y", 1e-6, rows=slice(55, None))
+        substep = bounce()
+        substep["active"][10] = 0.0
+        self.assertEqual(self.judged([{"judge": "flight"}], substep), {})
 
     def test_still(self):
         claim = {"judge": "still", "body": "a", "axis": "x", "scale": 1.0, "limit": 1e-6}
