@@ -488,7 +488,7 @@ fn assembled_matrices_are_those_of_the_unknowns() {
         model.initial_position.iter().enumerate().map(|(i, y)| y + 0.02 * wave(i, 0.3)).collect();
     let mut at = y.clone();
     model.points.carry(&mut at);
-    matrices.assemble(&model, &at).unwrap();
+    matrices.assemble(&model, &Configuration::at(&at)).unwrap();
     matrices.assemble_loads(&model, 0.0, &at).unwrap();
     let [u, w] = [0.1, 0.7].map(|seed| {
         let values: Vec<f64> = (0..model.free.len()).map(|i| wave(i, seed)).collect();
@@ -503,7 +503,7 @@ fn assembled_matrices_are_those_of_the_unknowns() {
         dot(&product, &w.0)
     };
     let mut stiff = vec![0.0; model.dofs()];
-    model.internal_product(None, &at, &u.1, &mut stiff).unwrap();
+    model.internal_product(&Configuration::at(&at), &u.1, &mut stiff).unwrap();
     let mut heavy = vec![0.0; model.dofs()];
     model.mass.multiply_into(&u.1, &mut heavy);
     let loads = |u: &[f64], w: &[f64]| {
