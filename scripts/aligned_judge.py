@@ -104,8 +104,8 @@ class Record:
         return np.flatnonzero((self.active > 0) | (push > 0))
 
     def parted(self):
-        """Index of the first row that is AFTER rows after the last contact."""
-        touching = self.touching()
+        """Index of the first row that is AFTER rows after the last active contact."""
+        touching = np.flatnonzero(self.active > 0)
         return int(touching[-1]) + 1 + AFTER if len(touching) else 0
 
 
