@@ -76,6 +76,8 @@ impl Cone<'_> {
 
 #[cfg(test)]
 mod tests {
+    use faer::linalg::solvers::Solve;
+
     use super::*;
 
     /// Two rows that are the same: proximal steps converge to the stricter of their conditions.
@@ -145,7 +147,6 @@ mod tests {
                     _ => {}
                 }
             }
-            use faer::linalg::solvers::Solve;
             system.partial_piv_lu().solve_in_place(right.as_mut());
             let z: [f64; 4] = std::array::from_fn(|i| right[(i, 0)]);
             let u: [f64; 4] =

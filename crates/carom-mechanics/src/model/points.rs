@@ -225,7 +225,7 @@ mod tests {
         let points = Points::new(2, 4, given).unwrap();
         let mut x = vec![1.0, -2.0, 3.0, 0.5, 9.0, 9.0, 9.0, 9.0];
         points.carry(&mut x);
-        let mut forces: Vec<f64> = (0..8).map(|i| (i as f64).cos()).collect();
+        let mut forces: Vec<f64> = (0..8).map(|i| f64::from(i).cos()).collect();
         let power: f64 = forces.iter().zip(&x).map(|(f, x)| f * x).sum();
         points.gather(&mut forces);
         let gathered: f64 = forces.iter().zip(&x).map(|(f, x)| f * x).sum();

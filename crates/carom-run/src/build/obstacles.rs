@@ -166,7 +166,7 @@ impl Moving<'_> {
     pub(super) fn support(&self) -> Option<Support> {
         let dofs: Vec<usize> = self.prescribed().collect();
         let name = self.name.to_owned();
-        (!dofs.is_empty()).then(|| Support { name, dofs, moment_about: None })
+        (!dofs.is_empty()).then_some(Support { name, dofs, moment_about: None })
     }
 
     /// Description for messages.

@@ -643,7 +643,7 @@ fn a_laminate_falls_on_a_floor_and_on_another_body() {
 #[test]
 fn supports_cross_a_tie() {
     let sides = |names: &[&str], side: &str| -> String {
-        names.iter().map(|name| format!("\"{name}.{side}\", ")).collect()
+        names.iter().map(|name| format!("\"{name}.{side}\"")).collect::<Vec<_>>().join(", ")
     };
     let floors = ["support", "contact"];
     let kinds = ["static", "chung-hulbert", "energy-momentum", "bathe", "backward-euler", "hu"];
@@ -674,12 +674,13 @@ fn supports_cross_a_tie() {
             );
             let ends = if names.len() == 1 { vec![(0.0, 1.0)] } else { vec![(0.0, 0.5), (0.5, 1.0)] };
             for ((name, (low, high)), n) in names.iter().zip(ends).zip(cells) {
-                text += &format!(
+                let body = format!(
                     "[[body]]\nname = \"{name}\"\nmaterial = \"rubber\"\nelement = \"Q4\"\n\
                      gravity = [0.0, -1.0]\nmesh = {{ shape = \"rectangle\", min = [0.0, {low:?}], \
                      max = [1.0, {high:?}], cells = [{n}, {}] }}\n",
                     if names.len() == 1 { 4 } else { 2 }
                 );
+                text += &body;
             }
             if names.len() == 2 {
                 text += UPPER_TO_LOWER;
