@@ -31,8 +31,8 @@ def places(value, path=()):
     if isinstance(value, dict):
         for key, inner in value.items():
             yield (*path, key)
-            # The keys of `exact` are names of columns, not keys of the schema.
-            if key != "exact":
+            # The keys of `exact` are names of columns, those of `materials` of groups: not of the schema.
+            if key not in ("exact", "materials"):
                 yield from places(inner, (*path, key))
     elif isinstance(value, list):
         seen = set()
