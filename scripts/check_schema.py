@@ -31,7 +31,7 @@ def places(value, path=()):
     if isinstance(value, dict):
         for key, inner in value.items():
             yield (*path, key)
-            # The keys of `exact` are names of columns, those of `materials` of groups: not of the schema.
+            # The keys of `exact` are names of columns, those of `materials` of groups.
             if key not in ("exact", "materials"):
                 yield from places(inner, (*path, key))
     elif isinstance(value, list):

@@ -84,7 +84,11 @@ fn table(spec: &Table, tag: Option<(&str, &str, &str)>) -> Map<String, Value> {
     let replaced: Vec<&Key> = spec.keys.iter().filter(|key| !key.unless.is_empty()).collect();
     if let Some(key) = replaced.first() {
         let names: Vec<&str> = replaced.iter().map(|key| key.name).collect();
-        schema.insert("oneOf".into(), json!([{ "required": [key.unless] }, { "required": names }]));
+        if replaced.iter().any(|key| matches!(key.default, Default::Required)) {
+            schema.insert("oneOf".into(), json!([{ "required": [key.unless] }, { "required": names }]));
+        } else {
+            schema.insert("not".into(), json!({ "required": [key.unless, key.name] }));
+        }
     }
     schema
 }
