@@ -39,12 +39,14 @@ struct Turn {
 pub(crate) fn wires(run: &Recorded, [low, high]: [Place; 2]) -> Vec<Wire> {
     let of = |contact: &ContactSpec| {
         let surface = run.manifest.surfaces.get(&contact.name);
-        let wire = one(&contact.name, &contact.primary, surface.map_or(&[], Vec::as_slice), [low, high])?;
+        let surface = surface.map_or(&[][..], Vec::as_slice);
         let ObstacleMotion::Prescribed { rotate: Some((angle, about)), axis: Some(axis), .. } =
             &contact.motion
         else {
-            return Some(wire);
+            return one(&contact.name, &contact.primary, surface, [low, high], MARGIN);
         };
+        // What is away from the bodies at first may turn towards them.
+        let wire = one(&contact.name, &contact.primary, surface, [low, high], WHOLE)?;
         let turn = Turn { angle: angle.formula(&["t"]).ok()?, axis: unit(place(axis)?) };
         Some(Wire { origin: place(about)?, turn: Some(turn), ..wire })
     };
@@ -72,8 +74,15 @@ fn across(n: Place) -> [Place; 2] {
     [first, cross(n, first)]
 }
 
-/// The lines of one obstacle; `surface` is the edges of a triangulated one.
-fn one(name: &str, primary: &PrimarySpec, surface: &[[Place; 2]], [low, high]: [Place; 2]) -> Option<Wire> {
+/// The lines of one obstacle near bodies, within a margin over the diagonal of their box; `surface`
+/// is the edges of a triangulated one.
+fn one(
+    name: &str,
+    primary: &PrimarySpec,
+    surface: &[[Place; 2]],
+    [low, high]: [Place; 2],
+    margin: f64,
+) -> Option<Wire> {
     let diagonal = length(minus(high, low));
     let middle = plus(low, 0.5, minus(high, low));
     let reach = (0.5 + MARGIN) * diagonal;
@@ -128,7 +137,7 @@ fn one(name: &str, primary: &PrimarySpec, surface: &[[Place; 2]], [low, high]: [
         PrimarySpec::Side(_) | PrimarySpec::Polyline { .. } => return None,
     };
     let is_near =
-        |p: &Place| (0..3).all(|i| p[i] >= low[i] - MARGIN * diagonal && p[i] <= high[i] + MARGIN * diagonal);
+        |p: &Place| (0..3).all(|i| p[i] >= low[i] - margin * diagonal && p[i] <= high[i] + margin * diagonal);
     let extent = |i: usize| {
         let along = surface.iter().flatten().map(|p| p[i]);
         along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
@@ -186,7 +195,7 @@ mod tests {
         let primaries = [(plane, 0.0), (circle, 2.0), (cylinder, 0.7)];
         for (k, (primary, radius)) in primaries.into_iter().enumerate() {
             let box_of = [[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]];
-            let wire = one("strike", &primary, &[], box_of).unwrap();
+            let wire = one("strike", &primary, &[], box_of, MARGIN).unwrap();
             assert!(wire.at_first().len() > 100, "{k}");
             for p in wire.at_first().iter().flatten() {
                 let distance = match k {
@@ -198,7 +207,8 @@ mod tests {
                 assert!(p.iter().all(|x| x.abs() < 1.5), "{k}: {p:?}");
             }
         }
-        let of = |primary: &PrimarySpec, surface: &[_]| one("a", primary, surface, [[0.0; 3], [1.0; 3]]);
+        let of =
+            |primary: &PrimarySpec, surface: &[_]| one("a", primary, surface, [[0.0; 3], [1.0; 3]], MARGIN);
         assert!(of(&PrimarySpec::Side("b.top".into()), &[]).is_none());
         let surface = PrimarySpec::Surface(SurfaceSpec {
             file: "a.stl".into(),
