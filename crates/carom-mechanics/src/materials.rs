@@ -52,7 +52,7 @@ impl Materials {
         &self.dissipated
     }
 
-    /// What the materials remember at the start of a step of length `dt`.
+    /// Memory of the materials at the start of a step of length `dt`.
     pub fn past(&self, dt: f64) -> Past<'_> {
         Past { memory: &self.memory, dt }
     }

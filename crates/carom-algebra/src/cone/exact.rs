@@ -112,7 +112,7 @@ impl Reduced {
             diagonal: Vec::new(),
             fixed: vec![0.0; n],
         };
-        // What moves nothing across the direction does not turn it.
+        // A force across a slip turns its direction only where it moves something.
         let is_turned = |i: usize, j: usize, [x, y]: [f64; 2]| {
             let moved = y * y * a[i * n + i] - 2.0 * x * y * a[i * n + j] + x * x * a[j * n + j];
             moved + worth[i] > 0.0

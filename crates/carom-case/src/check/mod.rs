@@ -234,7 +234,8 @@ impl<'a> Check<'a> {
         let path = format!("body[{i}].materials");
         let mesh = body.get("mesh").and_then(Node::table);
         let of = mesh.and_then(|mesh| mesh.get("of")?.table());
-        // Of an extrusion the plane mesh; without a key `shape` it is not known what is meant.
+        // An extrusion has the groups of its plane mesh. A mesh without `shape` and `file` is
+        // reported elsewhere.
         let is_built_in = |mesh: &Table| mesh.get("file").is_none() && mesh.get("shape").is_some();
         let misspelt = self.misspelt.iter().any(|table| is_within(table, &format!("body[{i}].mesh")));
         if of.or(mesh).is_some_and(is_built_in) && !misspelt {

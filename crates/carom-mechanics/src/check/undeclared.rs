@@ -151,7 +151,7 @@ impl Undeclared {
     }
 }
 
-/// What the contacts and ties between two bodies cover.
+/// Nodes that contacts and ties between two bodies cover, and the depths that they allow.
 struct Covered {
     /// Nodes of their sides.
     nodes: HashSet<usize>,

@@ -250,7 +250,8 @@ impl Preconditioner for Direct {
     /// Those of the rows and nearby ones on the sides in contact, so that the choice lasts. The
     /// last choice is reused while it includes the rows and is not much too large.
     fn boundary(&self, model: &Model, y: &[f64], rows: &Constraints, last: Option<&Point>) -> Vec<usize> {
-        let (row_nodes, d) = (interface(model, rows), model.dimension);
+        let row_nodes = interface(model, rows);
+        let d = model.dimension;
         let last = last.map_or(&[][..], |point| &point.boundary);
         if row_nodes.is_empty() {
             return last.to_vec();

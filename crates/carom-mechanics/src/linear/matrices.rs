@@ -77,7 +77,8 @@ impl Matrices {
         model.loads.at(&model.parts, model.dofs(), time, &mut at)?;
         self.follower.fill(0.0);
         let follower = &mut self.follower;
-        let (pattern, d) = (&self.pattern, model.dimension);
+        let pattern = &self.pattern;
+        let d = model.dimension;
         model.loads.each_facet_tangent(d, Some((&at, y)), |nodes, k| {
             let n = nodes.len() * d;
             for entry in 0..n * n {

@@ -55,7 +55,7 @@ impl BodyInstance {
         self.body.memory() * self.body.mesh().cell_count()
     }
 
-    /// Its cells, or those of one of its regions.
+    /// Cells of the body, or of one of its regions.
     pub(super) fn cells(&self, region: Option<usize>) -> impl Iterator<Item = usize> {
         let mesh = self.body.mesh();
         (0..mesh.cell_count()).filter(move |&cell| region.is_none_or(|region| mesh.region(cell) == region))
