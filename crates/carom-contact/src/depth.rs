@@ -60,6 +60,10 @@ impl Facets<2> for Surface {
         [false, true].into_iter().filter_map(move |forward| self.neighbour(facet, forward))
     }
 
+    fn is_mirror(&self, facet: usize) -> bool {
+        self.mirrors.get(facet).is_some_and(|&is_mirror| is_mirror)
+    }
+
     fn distance(&self, facet: usize, point: Vector<2>, y: &[f64]) -> f64 {
         self.nearest(facet, point, Places::new(y, 2)).distance
     }

@@ -65,7 +65,9 @@ impl Skin {
     pub fn depth(&self, point: [f64; 2], from: Option<usize>, y: &[f64]) -> Option<Depth> {
         let surface = &self.surface;
         let at = Vector(point);
-        let (facet, _) = self.tree.nearest(&point, from, |facet| Some(surface.distance(facet, at, y)))?;
+        let (facet, _) = self.tree.nearest(&point, from, |facet| {
+            (!surface.is_mirror(facet)).then(|| surface.distance(facet, at, y))
+        })?;
         Some(surface.depth(facet, at, y))
     }
 

@@ -1,7 +1,7 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the closest one that it was not behind before.
 
-use super::facets::OnFacet;
+use super::facets::{Facets, OnFacet};
 use super::facing::{Closest, REACH, Reached};
 use super::node_to_facet::{Detection, NodeToFacet, Tools};
 use super::swept::SweptTest;
@@ -32,7 +32,8 @@ impl NodeToFacet {
             let Tools { search, turns, .. } = tools;
             search.retain(|facet| folds.admits(*side, node, facet) && folds.face(turns, node, facet));
         }
-        tools.search.retain(|facet| self.may_press(node, facet, before));
+        let may_meet = |facet: usize| !self.primary.is_mirror(facet) && self.may_press(node, facet, before);
+        tools.search.retain(may_meet);
     }
 
     /// The first crossing of a node's path with the path of a facet.

@@ -49,6 +49,9 @@ pub(crate) trait Facets<const D: usize> {
     /// Outward unit normal of a facet at ξ, padded with zeros to space.
     fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> Vector<3>;
 
+    /// Whether a facet lies in a plane of symmetry, where the mirror image continues the body.
+    fn is_mirror(&self, facet: usize) -> bool;
+
     /// Nodes of a facet.
     fn nodes_of(&self, facet: usize) -> &[usize] {
         let n = self.shape().nodes();

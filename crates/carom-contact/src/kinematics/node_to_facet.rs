@@ -121,7 +121,7 @@ impl NodeToFacet {
     pub fn of_body(self, own: Surface) -> Self {
         let mut around: HashMap<usize, Vec<usize>> = HashMap::new();
         for facet in 0..own.all() {
-            let ends = own.facet(facet).nodes.iter().take(2);
+            let ends = own.facet(facet).nodes.iter();
             ends.for_each(|&node| around.entry(node).or_default().push(facet));
         }
         Self { own: Some((own, around)), ..self }

@@ -7,6 +7,7 @@ use carom_solid::{Bounds, FacetShape, Hull, Tree};
 
 use super::apart::Apart;
 use super::facets::Facets;
+use super::mirror::is_mirror;
 use super::projection::Facet;
 use crate::places::Places;
 
@@ -27,6 +28,8 @@ pub struct Surface {
     /// Number of facets of the side and of its siblings, the adjoining sides, which come next.
     siblings: usize,
     is_whole: bool,
+    /// Whether each facet lies in a plane of symmetry; empty if none does.
+    pub(crate) mirrors: Vec<bool>,
 }
 
 /// The turn of the tangent at the joint of two facets, as the cosine and the sine of its angle;
@@ -57,7 +60,16 @@ impl Surface {
         let nodes = facets.concat();
         let orientations = orientations.to_vec();
         let is_whole = neighbours.iter().flatten().all(Option::is_some);
-        Self { shape, nodes, orientations, neighbours, side: facets.len(), siblings: facets.len(), is_whole }
+        Self {
+            shape,
+            nodes,
+            orientations,
+            neighbours,
+            side: facets.len(),
+            siblings: facets.len(),
+            is_whole,
+            mirrors: Vec::new(),
+        }
     }
 
     /// Adds the `rest` of the boundary of the body, whose facets are traversed with the body on
@@ -75,6 +87,16 @@ impl Surface {
             siblings: self.side + siblings,
             ..Self::new(self.shape, &facets, &orientations)
         }
+    }
+
+    /// Marks the facets that lie in a plane of symmetry at the positions `y`; `is_fixed`: whether a
+    /// node is fixed along an axis.
+    #[must_use]
+    pub fn with_mirrors(mut self, y: &[f64], is_fixed: impl Fn(usize, usize) -> bool) -> Self {
+        let dimension = self.shape.dimension();
+        let is_mirror = |facet: &[usize]| is_mirror(facet, y, dimension, &is_fixed);
+        self.mirrors = self.nodes.chunks_exact(self.shape.nodes()).map(is_mirror).collect();
+        self
     }
 
     /// Number of facets of the side.
@@ -114,14 +136,15 @@ impl Surface {
     }
 
     /// Nodes of the side at convex corners of the boundary, ascending: kinks of more than 30° at
-    /// these positions, flat over all nodes.
+    /// these positions, flat over all nodes, but for those at a plane of symmetry.
     pub fn corners(&self, y: &[f64]) -> Vec<usize> {
         let y = Places::new(y, self.shape.dimension());
         let mut corners = Vec::new();
         for (facet, neighbours) in self.neighbours.iter().enumerate() {
             let Some(next) = neighbours[1] else { continue };
             let on_side = self.is_of_side(facet) || self.is_of_side(next);
-            if on_side && self.is_corner(facet, next, y) {
+            let is_continued = [facet, next].iter().any(|&facet| self.is_mirror(facet));
+            if on_side && !is_continued && self.is_corner(facet, next, y) {
                 corners.push(self.facet(next).nodes[0]);
             }
         }

@@ -25,7 +25,7 @@ pub fn depths(model: &Model, y: &[f64]) -> Vec<Vec<f64>> {
             let own = part_of(model, node);
             let Some(other) = (if own == first { contact.primary_part } else { first }) else { return 0.0 };
             if skins[other].is_none() {
-                skins[other] = skin(&model.parts[other]);
+                skins[other] = skin(model, &model.parts[other]);
                 skins[other].iter_mut().for_each(|skin| skin.update(y));
             }
             let at = position(y, model.dimension, node);

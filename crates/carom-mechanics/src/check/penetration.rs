@@ -132,7 +132,7 @@ impl Penetration {
                 return None;
             }
             let folds = of_body.any(|way| way.itself.is_some());
-            if folds { folding_skin(model, part) } else { skin(part) }
+            if folds { folding_skin(model, part) } else { skin(model, part) }
         };
         let skins: Vec<_> = (0..model.parts.len()).map(skin).collect();
         let of_body = |(part, skin): (&BodyInstance, &Option<BodySkin>)| {

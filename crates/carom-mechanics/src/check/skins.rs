@@ -117,42 +117,42 @@ pub(crate) fn skin_nodes(part: &BodyInstance) -> Vec<usize> {
 }
 
 /// The boundary of a body in the plane or in space.
-pub(crate) fn skin(part: &BodyInstance) -> Option<BodySkin> {
+pub(crate) fn skin(model: &Model, part: &BodyInstance) -> Option<BodySkin> {
     match part.body.mesh().element.facet_shape().dimension() {
-        2 => plane_skin(part).map(BodySkin::Plane),
-        3 => Some(BodySkin::Space(surface(part))),
+        2 => plane_surface(model, part).map(|surface| BodySkin::Plane(Skin::new(surface))),
+        3 => Some(BodySkin::Space(ClosedSurface::new(surface(model, part)))),
         _ => None,
     }
 }
 
 /// The boundary of a body in the plane.
-fn plane_skin(part: &BodyInstance) -> Option<Skin> {
+fn plane_surface(model: &Model, part: &BodyInstance) -> Option<Surface> {
     let shape = Some(part.body.mesh().element.facet_shape()).filter(|shape| shape.dimension() == 2)?;
     let facets = skin_facets(part);
-    Some(Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()])))
+    let surface = Surface::new(shape, &facets, &vec![1.0; facets.len()]);
+    Some(surface.with_mirrors(&model.reference, |node, axis| model.fixed[2 * node + axis]))
 }
 
 /// The boundary of a body in space.
-fn surface(part: &BodyInstance) -> ClosedSurface {
+fn surface(model: &Model, part: &BodyInstance) -> Boundary {
     let shape = part.body.mesh().element.facet_shape();
-    ClosedSurface::new(Boundary::new(shape, &skin_facets(part), &[], 0))
+    let boundary = Boundary::new(shape, &skin_facets(part), &[], 0);
+    boundary.with_mirrors(&model.reference, |node, axis| model.fixed[3 * node + axis])
 }
 
 /// Nodes of a body's boundary at convex kinks of more than 30° in the reference configuration,
 /// ascending.
 pub(crate) fn kinks(model: &Model, part: &BodyInstance) -> Vec<usize> {
-    let (shape, facets) = (part.body.mesh().element.facet_shape(), skin_facets(part));
-    match shape.dimension() {
-        2 => Surface::new(shape, &facets, &vec![1.0; facets.len()]).corners(&model.reference),
-        3 => Boundary::new(shape, &facets, &[], 0).nodes_of_sharp_edges(&model.reference, |_, _| false),
-        _ => Vec::new(),
+    match part.body.mesh().element.facet_shape().dimension() {
+        3 => surface(model, part).nodes_of_sharp_edges(&model.reference),
+        _ => plane_surface(model, part).map_or_else(Vec::new, |surface| surface.corners(&model.reference)),
     }
 }
 
 /// The same as [`skin`] for its own nodes too.
 pub(crate) fn folding_skin(model: &Model, part: &BodyInstance) -> Option<BodySkin> {
     let (pieces, first, reference) = (part.body.mesh().pieces(), part.first_node, &model.reference);
-    Some(match skin(part)? {
+    Some(match skin(model, part)? {
         BodySkin::Plane(skin) => BodySkin::Plane(skin.with_pieces(&pieces, first, reference)),
         BodySkin::Space(surface) => BodySkin::Space(surface.with_pieces(&pieces, first, reference)),
     })

@@ -68,7 +68,7 @@ impl Undeclared {
         let mut ways = Vec::new();
         let covered = Covered::all(model);
         let other = Covered::default();
-        let solid = |(_, part): &(usize, &BodyInstance)| skin(part).is_some();
+        let solid = |(_, part): &(usize, &BodyInstance)| skin(model, part).is_some();
         for (a, part) in model.parts.iter().enumerate().filter(solid) {
             let nodes: Vec<(usize, f64)> = lengths(model, &skin_facets(part)).collect();
             for body in (0..model.parts.len()).filter(|&b| b != a) {
@@ -232,7 +232,7 @@ fn own(model: &Model) -> Vec<Own> {
         if in_one {
             None
         } else {
-            let skin = skin(part).filter(|_| model.dimension == 2)?;
+            let skin = skin(model, part).filter(|_| model.dimension == 2)?;
             let contacts: BTreeSet<usize> = declared.iter().flatten().copied().collect();
             let nodes = |k: usize| model.contacts[k].facets.iter().flat_map(|(_, facets)| facets).flatten();
             let sides = contacts.into_iter().map(|k| nodes(k).copied().collect()).collect();

@@ -71,7 +71,7 @@ impl Bodies<'_> {
         let of_primary = self.siblings(k, primary.part, Which::Primary);
         let side = self.boundary(primary, &of_primary.concat());
         let opposite = self.boundary(secondary, &of_secondary.concat());
-        let corners = side.nodes_of_sharp_edges(self.reference, self.is_fixed());
+        let corners = side.nodes_of_sharp_edges(self.reference);
         let own = self.others(primary, &of_primary[0], secondary, &corners);
         let earlier =
             [&of_secondary, &of_primary].map(|of| of[0].iter().flat_map(|s| s.nodes.clone()).collect());
@@ -92,7 +92,7 @@ impl Bodies<'_> {
 
     fn itself_in_space(&self, side: &Side) -> WithEdges {
         let boundary = self.boundary(side, &[]);
-        let sharp = boundary.nodes_of_sharp_edges(self.reference, self.is_fixed());
+        let sharp = boundary.nodes_of_sharp_edges(self.reference);
         let earlier = self.others(side, &[], side, &sharp);
         let part = &self.parts[side.part];
         let pieces = part.body.mesh().pieces();
@@ -100,7 +100,8 @@ impl Bodies<'_> {
     }
 
     fn is_fixed(&self) -> impl Fn(usize, usize) -> bool {
-        |node, axis| self.fixed[3 * node + axis]
+        let dimension = self.case.dimension;
+        move |node, axis| self.fixed[dimension * node + axis]
     }
 
     /// The nodes of the primary side, each with the depth to which it may enter facets of the
@@ -141,13 +142,15 @@ impl Bodies<'_> {
     /// A side of the plane with its siblings and the rest of its body's boundary.
     fn surface(&self, side: &Side, siblings: &[Side]) -> Surface {
         let (rest, count) = self.rest(side, siblings);
-        Surface::new(side.shape, &side.facets, &side.orientations).bounded_by(&rest, count)
+        let surface = Surface::new(side.shape, &side.facets, &side.orientations).bounded_by(&rest, count);
+        surface.with_mirrors(self.reference, self.is_fixed())
     }
 
     /// A side in space with its siblings and the rest of its body's boundary.
     fn boundary(&self, side: &Side, siblings: &[Side]) -> Boundary {
         let (rest, count) = self.rest(side, siblings);
-        Boundary::new(side.shape, &side.facets, &rest, count)
+        let boundary = Boundary::new(side.shape, &side.facets, &rest, count);
+        boundary.with_mirrors(self.reference, self.is_fixed())
     }
 
     /// The rest of the boundary of a side's body, the facets of its siblings first, and their

@@ -12,12 +12,11 @@ use carom_algebra::Vector;
 use carom_solid::FacetShape;
 
 use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
+use crate::kinematics::mirror::is_mirror;
 use crate::kinematics::{Depth, Facets, OnFacet};
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
 pub(super) const SHARP: f64 = 0.87;
-/// Component of a unit normal along an axis above which a facet is perpendicular to that axis.
-const ALONG: f64 = 1.0 - 1e-9;
 /// Length of a sum of unit normals, or of normals weighted with angles, below which they cancel, as
 /// at the tip of a slit.
 const FOLDED: f64 = 1e-6;
@@ -32,13 +31,15 @@ pub struct Boundary {
     nodes: Vec<usize>,
     /// Across each edge of each facet: the same edge as one of the neighbouring facet.
     neighbours: Vec<[Option<EdgeOfFacet>; 4]>,
-    /// Facets that meet at each node that lies on an edge.
+    /// Facets that meet at each node.
     around: HashMap<usize, Vec<usize>>,
     /// Facets that share a corner with each facet, without itself, ascending.
     rings: Vec<Vec<usize>>,
     side: usize,
     siblings: usize,
     is_whole: bool,
+    /// Whether each facet lies in a plane of symmetry; empty if none does.
+    mirrors: Vec<bool>,
 }
 
 /// An edge of a facet; edge k runs from corner k to the next one.
@@ -77,7 +78,7 @@ impl Boundary {
             for edge in 0..count {
                 edges.insert([nodes[edge], nodes[(edge + 1) % count]], EdgeOfFacet { facet, edge });
             }
-            for &node in &nodes[..count * shape.degree()] {
+            for &node in nodes.iter() {
                 around.entry(node).or_default().push(facet);
             }
         }
@@ -104,7 +105,17 @@ impl Boundary {
             rings,
             side: side.len(),
             siblings: side.len() + siblings,
+            mirrors: Vec::new(),
         }
+    }
+
+    /// Marks the facets that lie in a plane of symmetry at the positions `y`; `is_fixed`: whether a
+    /// node is fixed along an axis.
+    #[must_use]
+    pub fn with_mirrors(mut self, y: &[f64], is_fixed: impl Fn(usize, usize) -> bool) -> Self {
+        let is_mirror = |facet: &[usize]| is_mirror(facet, y, 3, &is_fixed);
+        self.mirrors = self.nodes.chunks_exact(self.shape.nodes()).map(is_mirror).collect();
+        self
     }
 
     /// Number of facets of the side.
@@ -168,7 +179,7 @@ impl Boundary {
         self.neighbours[facet][edge].map(|neighbour| neighbour.facet)
     }
 
-    /// The facets that meet at a node on an edge.
+    /// The facets that meet at a node.
     pub(super) fn facets_around(&self, node: usize) -> &[usize] {
         self.around.get(&node).map_or(&[], Vec::as_slice)
     }
@@ -234,23 +245,14 @@ impl Boundary {
     }
 
     /// Nodes of the side at corners and on sharp convex edges, ascending, but for those on an edge
-    /// between the side and a plane of symmetry: the mirror image continues the side there. Such
-    /// nodes are fixed across the plane, `is_fixed(node, axis)`, and free along it.
-    pub fn nodes_of_sharp_edges(&self, y: &[f64], is_fixed: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+    /// between the side and a plane of symmetry: the mirror image continues the side there.
+    pub fn nodes_of_sharp_edges(&self, y: &[f64]) -> Vec<usize> {
         let of_edge = |EdgeOfFacet { facet, edge }: EdgeOfFacet| {
             let (nodes, count) = self.shape.edge(edge);
             let nodes = nodes[..count].iter().map(|&node| self.patch(facet).nodes[node]);
-            let nodes: Vec<usize> = nodes.collect();
-            let is_mirror = |normal: &Vector<3>| {
-                let is_along = |axis: &usize| normal[*axis].abs() > ALONG;
-                let axis = (0..3).find(is_along);
-                let is_held = |node: usize| (0..3).all(|axis| is_fixed(node, axis));
-                axis.is_some_and(|axis| {
-                    nodes.iter().all(|&node| is_fixed(node, axis)) && !nodes.iter().all(|&n| is_held(n))
-                })
-            };
-            let mirrored = self.normals_at_edge(facet, edge, 0.5, y).iter().any(is_mirror);
-            if mirrored { Vec::new() } else { nodes }
+            let is_continued =
+                self.is_mirror(facet) || self.across(facet, edge).is_some_and(|other| self.is_mirror(other));
+            if is_continued { Vec::new() } else { nodes.collect() }
         };
         let mut nodes: Vec<usize> = self.sharp_edges(y).into_iter().flat_map(of_edge).collect();
         nodes.extend(self.corners(y));
@@ -352,6 +354,10 @@ impl Facets<3> for Boundary {
 
     fn nodes(&self) -> &[usize] {
         &self.nodes
+    }
+
+    fn is_mirror(&self, facet: usize) -> bool {
+        self.mirrors.get(facet).is_some_and(|&is_mirror| is_mirror)
     }
 
     fn beside(&self, facet: usize) -> impl Iterator<Item = usize> {

@@ -47,6 +47,9 @@ impl ClosedSurface {
         let at = Vector(point);
         let mut last = None::<(usize, Nearest)>;
         let (facet, _) = self.tree.nearest(&at.0, from, |facet| {
+            if self.boundary.is_mirror(facet) {
+                return None;
+            }
             let nearest = self.boundary.patch(facet).nearest(y, at);
             if last.is_none_or(|(_, least)| nearest.distance < least.distance) {
                 last = Some((facet, nearest));

@@ -140,7 +140,7 @@ impl NodeToPatch {
     pub(super) fn retain_pressed(&self, node: usize, before: &[f64], paths: &Paths, near: &mut Vec<usize>) {
         if !near.is_empty() {
             let may_press = self.may_press(node, before, |facet| paths.middle(facet));
-            near.retain(|&facet| may_press(facet));
+            near.retain(|&facet| !self.primary.is_mirror(facet) && may_press(facet));
         }
     }
 
