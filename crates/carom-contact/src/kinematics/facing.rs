@@ -59,9 +59,12 @@ impl Surface {
             return Next::Stay;
         }
         let forward = pair.xi > 0.0;
-        let Some(neighbour) = self.neighbour_of_side(pair.facet, forward) else {
-            return if self.faces_nothing(pair.facet, pair.xi, y) { Next::Leave } else { Next::Stay };
-        };
+        let past_all = || if self.faces_nothing(pair.facet, pair.xi, y) { Next::Leave } else { Next::Stay };
+        let Some(neighbour) = self.neighbour_of_side(pair.facet, forward) else { return past_all() };
+        let [first, second] = if forward { [pair.facet, neighbour] } else { [neighbour, pair.facet] };
+        if self.is_corner(first, second, y) {
+            return past_all();
+        }
         if came_from == Some(neighbour) {
             return Next::Concave(neighbour, [if forward { -1.0 } else { 1.0 }, 0.0]);
         }

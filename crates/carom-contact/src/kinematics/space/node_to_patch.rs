@@ -206,7 +206,10 @@ impl NodeToPatch {
             }
         }
         match best {
-            Some((facet, ..)) if !self.primary.is_of_side(facet) => {
+            Some((facet, ..))
+                if !self.primary.is_of_side(facet)
+                    || self.primary.bent_away(pair.facet, y).any(|bent| bent == facet) =>
+            {
                 if self.faces_nothing(pair.facet, xi, y) {
                     Next::Leave
                 } else {
