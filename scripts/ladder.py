@@ -243,7 +243,7 @@ def main():
     parser.add_argument("--count", type=int, help="default: 400; all, of aligned cases")
     parser.add_argument("--out", type=Path, help="directory that is created")
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--only", help="number of one case, or a word of its category or scheme family")
+    parser.add_argument("--only", help="numbers of cases, or words of their category or scheme family, separated by commas")
     parser.add_argument("--timeout", type=float, default=120.0)
     parser.add_argument("--keep", action="store_true", help="keep the fields of all cases")
     parser.add_argument("--cases", type=Path, help="folder of existing cases to run instead")
@@ -270,8 +270,10 @@ def main():
         meta = {"category": "given", "family": "given", "enforcement": "", "elements": ""}
         work = [(meta, case) for case in sorted(options.cases.glob("*.toml"))]
     generator = ladder_space_cases if options.space else ladder_cases
-    only = options.only
-    wanted = lambda k, meta: not only or str(k) == only.lstrip("0") or not only.isdigit() and only in meta["category"] + " " + meta["family"]
+    words = options.only.split(",") if options.only else []
+    numbers = {int(word) for word in words if word.isdigit()}
+    kinds = [word for word in words if not word.isdigit()]
+    wanted = lambda k, meta: not words or k in numbers or any(kind in meta["category"] + " " + meta["family"] for kind in kinds)
     folder = options.out / "cases"
     for setup in aligned_cases.chosen(options.count) if options.aligned else []:
         if wanted(setup.number, setup.meta()):

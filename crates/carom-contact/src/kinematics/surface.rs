@@ -136,15 +136,14 @@ impl Surface {
     }
 
     /// Nodes of the side at convex corners of the boundary, ascending: kinks of more than 30° at
-    /// these positions, flat over all nodes, but for those at a plane of symmetry.
+    /// these positions, flat over all nodes.
     pub fn corners(&self, y: &[f64]) -> Vec<usize> {
         let y = Places::new(y, self.shape.dimension());
         let mut corners = Vec::new();
         for (facet, neighbours) in self.neighbours.iter().enumerate() {
             let Some(next) = neighbours[1] else { continue };
             let on_side = self.is_of_side(facet) || self.is_of_side(next);
-            let is_continued = [facet, next].iter().any(|&facet| self.is_mirror(facet));
-            if on_side && !is_continued && self.is_corner(facet, next, y) {
+            if on_side && self.is_corner(facet, next, y) {
                 corners.push(self.facet(next).nodes[0]);
             }
         }

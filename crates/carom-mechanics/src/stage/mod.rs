@@ -3,6 +3,7 @@
 pub(crate) mod balance;
 pub(crate) mod equations;
 pub(crate) mod evaluation;
+pub(crate) mod grip;
 pub(crate) mod linear_problem;
 pub(crate) mod newton;
 pub(crate) mod renewal;

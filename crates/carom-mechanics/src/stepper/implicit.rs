@@ -20,6 +20,7 @@ use crate::rejected::{Rejected, SINGULAR};
 use crate::settings::{Linear, Settings};
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Iterate;
+use crate::stage::grip::solve_by_grip;
 use crate::stage::newton::solve_stage;
 use crate::state::{Means, Previous, State};
 use crate::velocity::persistency::averaged_contact_into;
@@ -89,13 +90,20 @@ impl Stepper for Implicit {
                 }
             }
             let time = if stage.end == 1.0 { to } else { state.time + stage.end * dt };
-            let equations = Equations::new(model, state, stage, time)?;
+            let mut equations = Equations::new(model, state, stage, time)?;
             let before = finished.last().map_or(&state.y, |point| &point.y);
             guess.predict(&next.v, &next.a, (equations.stage.end - end) * dt);
             end = equations.stage.end;
             ends.push(time);
             let (solved, effort) = if self.in_velocity {
                 solve_in_velocity(&equations, dt, &self.settings, guess.pairings, work)?
+            } else if equations.stage.is_static() && model.has_friction() {
+                let again = guess.clone();
+                let solved = solve_stage(&equations, &next.frozen, before, &self.settings, guess, work);
+                solved.or_else(|rejected| {
+                    solve_by_grip(&mut equations, &next.frozen, before, &self.settings, again, work)
+                        .map_err(|_| rejected)
+                })?
             } else {
                 solve_stage(&equations, &next.frozen, before, &self.settings, guess, work)?
             };

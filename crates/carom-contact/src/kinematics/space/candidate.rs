@@ -132,6 +132,10 @@ impl NodeToPatch {
         let patch = self.primary.patch(facet);
         let limit = slack + BEHIND * patch.length(before);
         let behind = match patch.closest_point(before, start, REACH) {
+            // Past a sharp edge there is no body that it could have entered unseen.
+            Some(xi) if self.is_past_end(facet, xi, PAST, before) => {
+                self.gap(facet, xi, start, before) < -slack - NOISE * patch.length(before)
+            }
             Some(xi) => self.gap(facet, xi, start, before) < -limit,
             // Of its own boundary a node is beside most facets that it may meet, or behind them.
             None if self.folds.is_some() => self.primary.height(facet, start, before).height < -limit,

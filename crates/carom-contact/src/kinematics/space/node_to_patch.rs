@@ -168,15 +168,21 @@ impl NodeToPatch {
     /// Whether ξ lies past an edge of a facet at which no blunt joint with another facet of the
     /// side follows.
     pub(super) fn faces_nothing(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> bool {
+        self.is_past_end(facet, xi, PAST_SIDE, y)
+    }
+
+    /// Whether ξ lies past an edge of a facet at which no blunt joint with another facet of the
+    /// side follows, by more than a tolerance.
+    pub(super) fn is_past_end(&self, facet: usize, xi: [f64; 2], tolerance: f64, y: &[f64]) -> bool {
         let patch = self.primary.patch(facet);
         (0..patch.corners()).zip(patch.beyond(xi)).any(|(edge, beyond)| {
             beyond > PAST
                 && match self.primary.across(facet, edge) {
                     Some(next) if self.primary.is_of_sibling(next) => true,
                     Some(next) if self.primary.is_of_side(next) => {
-                        beyond > PAST_SIDE && self.primary.is_sharp(facet, edge, y)
+                        beyond > tolerance && self.primary.is_sharp(facet, edge, y)
                     }
-                    _ => beyond > PAST_SIDE,
+                    _ => beyond > tolerance,
                 }
         })
     }
@@ -210,11 +216,7 @@ impl NodeToPatch {
                 if !self.primary.is_of_side(facet)
                     || self.primary.bent_away(pair.facet, y).any(|bent| bent == facet) =>
             {
-                if self.faces_nothing(pair.facet, xi, y) {
-                    Next::Leave
-                } else {
-                    Next::Stay
-                }
+                if self.faces_nothing(pair.facet, xi, y) { Next::Leave } else { Next::Stay }
             }
             Some((facet, _, xi_there)) if came_from == Some(facet) => {
                 let gaps = [(pair.facet, xi), (facet, xi_there)].map(|(f, xi)| self.gap(f, xi, from, y));
