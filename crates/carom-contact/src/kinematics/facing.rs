@@ -5,12 +5,14 @@
 //!                        its facet, which is extrapolated up to |ξ| = 1.2
 //! concave corner         a node that would be handed back within the step has a pair with either facet,
 //!                        g ≥ 0 for both: it may lie in the joint
+//! plane of symmetry       a facet is extrapolated: its mirror image continues it
 //! corner, end of side    nothing is faced past the end, |ξ| > 1.001; a pair that slides past it keeps its
 //!                        facet to the end of the step and leaves at the start of the next one
 //! ```
 
 use carom_algebra::Vector;
 
+use super::facets::Facets;
 use super::hand_over::Next;
 use super::surface::Surface;
 use crate::pair::Pair;
@@ -95,7 +97,8 @@ impl Surface {
         if neighbour.is_some_and(|neighbour| self.is_of_sibling(neighbour)) {
             return !(-1.0 + PAST..=1.0 + PAST).contains(&xi);
         }
-        if xi.abs() <= 1.0 + PAST_SIDE {
+        let is_continued = neighbour.is_some_and(|neighbour| self.is_mirror(neighbour));
+        if xi.abs() <= 1.0 + PAST_SIDE || is_continued {
             return false;
         }
         let Some(neighbour) = neighbour.filter(|&neighbour| self.is_of_side(neighbour)) else {

@@ -178,6 +178,7 @@ impl NodeToPatch {
         (0..patch.corners()).zip(patch.beyond(xi)).any(|(edge, beyond)| {
             beyond > PAST
                 && match self.primary.across(facet, edge) {
+                    Some(next) if self.primary.is_mirror(next) => false,
                     Some(next) if self.primary.is_of_sibling(next) => true,
                     Some(next) if self.primary.is_of_side(next) => {
                         beyond > tolerance && self.primary.is_sharp(facet, edge, y)
