@@ -24,6 +24,9 @@ pub struct Pair {
     /// Second coordinate of the contact point on a facet in space; 0 in the plane. For two edges, ξ
     /// is the coordinate on the edge of the secondary side and η that on the other one.
     pub eta: f64,
+    /// End, corner or edge of the facet at which the node meets other facets as well (`joint.rs`);
+    /// none inside a facet.
+    pub joint: Option<u8>,
     /// Whether the pair is active: for a constraint, whether its gap is constrained to zero.
     pub active: bool,
     /// Whether the pair has been active since the start of the run.
@@ -47,6 +50,7 @@ impl Pair {
             facet,
             xi,
             eta: 0.0,
+            joint: None,
             active: false,
             rests: false,
             lambda: 0.0,

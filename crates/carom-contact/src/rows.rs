@@ -147,6 +147,33 @@ impl Rows {
         }
     }
 
+    /// Adds the mean of every `stride`-th row of `rows` from `first` on, over all their nodes: those
+    /// of the first row in its order, then the others.
+    pub(crate) fn push_mean(&mut self, rows: &Self, first: usize, stride: usize) {
+        let share = 1.0 / (first..rows.len()).step_by(stride).len() as f64;
+        let d = self.dimension;
+        let start = self.nodes.len();
+        let mut gap = 0.0;
+        for row in (first..rows.len()).step_by(stride).map(|row| rows.row(row)) {
+            gap += share * row.gap;
+            for (k, &node) in row.nodes.iter().enumerate() {
+                let known = self.nodes[start..].iter().position(|&other| other == node);
+                let at = start + known.unwrap_or(self.nodes.len() - start);
+                if known.is_none() {
+                    self.nodes.push(node);
+                    self.gradients.resize(d * self.nodes.len(), 0.0);
+                }
+                for i in 0..d {
+                    self.gradients[d * at + i] += share * row.gradient[d * k + i];
+                }
+            }
+        }
+        self.gaps.push(gap);
+        self.reversed.push(false);
+        self.own.push(1);
+        self.starts.push(self.nodes.len());
+    }
+
     /// The tangents of a slip in space, whose rows begin with `first`: their gradients for the
     /// first node. Zero in the plane, where the normal gives the tangent.
     pub fn tangents(&self, first: usize) -> [[f64; 3]; 2] {

@@ -3,6 +3,7 @@
 
 use super::facets::{Facets, OnFacet};
 use super::facing::{Closest, REACH, Reached};
+use super::joint::AT_JOINT;
 use super::node_to_facet::{Detection, NodeToFacet, Tools};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
@@ -93,6 +94,9 @@ impl NodeToFacet {
             }
         }
         let first = self.first_of(&mut tools.swept, near, node, before, now);
+        if first.is_some_and(|first| self.is_left_to_corner(node, &first, before)) {
+            return None;
+        }
         let entered_elsewhere = first.is_some_and(|first| !self.primary.is_of_side(first.facet));
         // A node that has entered near the end of a facet may be in front of another one now.
         let still_faced = |facet: usize| {
@@ -125,6 +129,19 @@ impl NodeToFacet {
         } else {
             Some(Reached { facet, xi, crossed: false })
         }
+    }
+
+    /// Whether a node that is no corner itself meets a corner of the primary, which the other
+    /// direction of contact keeps out: with one of the facets there it would push to one side.
+    fn is_left_to_corner(&self, node: usize, met: &Met<f64>, y: Places) -> bool {
+        let forward = met.xi > 0.0;
+        let Some((own, around)) = &self.own else { return false };
+        let Some(next) = self.primary.neighbour(met.facet, forward) else { return false };
+        let [first, second] = if forward { [met.facet, next] } else { [next, met.facet] };
+        let is_at_corner = (met.xi.abs() - 1.0).abs() <= AT_JOINT && self.primary.is_corner(first, second, y);
+        let is_sharp =
+            |around: &[usize]| around.iter().any(|&a| around.iter().any(|&b| own.is_corner(a, b, y)));
+        is_at_corner && around.get(&node).is_some_and(|around| around.len() < 2 || !is_sharp(around))
     }
 
     /// Where a node that has pairs enters the side at another place: neither at the facets of its

@@ -22,6 +22,8 @@ use crate::places::Places;
 pub(super) const REACH: f64 = 1.2;
 /// Excess |ξ| − 1 above which a closest point lies past the end of its facet.
 pub(super) const PAST: f64 = 1e-9;
+/// Excess |ξ| − 1 above which a pair at a joint has left it within a solve.
+const OFF_JOINT: f64 = 0.02;
 /// Excess |ξ| − 1 above which a closest point lies past a corner or the end of a side: where sides
 /// of equal length are pressed together, their ends bulge differently.
 pub(super) const PAST_SIDE: f64 = 1e-3;
@@ -57,7 +59,9 @@ impl Surface {
         came_from: Option<usize>,
         y: Places,
     ) -> Next {
-        if pair.xi.abs() <= 1.0 + PAST {
+        // A pair with both facets of a joint slides on either.
+        let past = if pair.joint.is_some() { OFF_JOINT } else { PAST };
+        if pair.xi.abs() <= 1.0 + past {
             return Next::Stay;
         }
         let forward = pair.xi > 0.0;

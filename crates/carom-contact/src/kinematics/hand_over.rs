@@ -71,6 +71,7 @@ impl Moves<'_> {
         self.held.leave(pair);
         self.held.take(pair.node, facet);
         pair.facet = facet;
+        pair.joint = None;
         [pair.xi, pair.eta] = xi;
     }
 
@@ -180,6 +181,7 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
                 let Next::HandOver(facet, xi) = (self.next)(pair, previous) else { break };
                 previous = Some(pair.facet);
                 pair.facet = facet;
+                pair.joint = None;
                 [pair.xi, pair.eta] = xi;
             }
             if pair.facet != from {

@@ -12,6 +12,7 @@ mod facing;
 mod folds;
 mod gap;
 mod hand_over;
+mod joint;
 mod mirror;
 mod node_to_facet;
 mod node_to_obstacle;

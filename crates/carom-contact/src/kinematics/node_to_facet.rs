@@ -19,6 +19,7 @@ use super::facing::{PAST, REACH, Reached};
 use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
 use super::hand_over::{Held, Next, Sliding};
+use super::joint::{AT_JOINT, OnFacets};
 use super::opposed::is_left;
 use super::passed::{Passed, Paths};
 use super::surface::{Search, Surface, path};
@@ -72,7 +73,7 @@ pub struct NodeToFacet {
     pub(super) folds: Option<(Arc<Folds>, Side)>,
     /// The boundary of the body to which the secondary nodes belong, and the facets at each of its
     /// nodes.
-    own: Option<(Surface, HashMap<usize, Vec<usize>>)>,
+    pub(super) own: Option<(Surface, HashMap<usize, Vec<usize>>)>,
     tools: Mutex<Tools>,
 }
 
@@ -169,6 +170,16 @@ impl NodeToFacet {
         self.point == ContactPoint::Frozen
     }
 
+    /// The end of a facet at which a closest point lies on a blunt joint with another facet of the
+    /// side, 0 or 1, if it does.
+    fn joint_at(&self, facet: usize, xi: f64, y: Places) -> Option<u8> {
+        let forward = xi > 0.0;
+        let next = self.primary.neighbour_of_side(facet, forward).filter(|_| !self.is_frozen())?;
+        let [first, second] = if forward { [facet, next] } else { [next, facet] };
+        let is_joint = (xi.abs() - 1.0).abs() <= AT_JOINT && self.primary.is_blunt(first, second, y);
+        is_joint.then_some(u8::from(forward))
+    }
+
     pub(super) fn places<'a>(&self, y: &'a [f64]) -> Places<'a> {
         Places::new(y, self.primary.shape().dimension())
     }
@@ -246,7 +257,8 @@ impl NodeToFacet {
             let Some(Reached { facet, xi, crossed }) = self.candidate(tools, k, before, now) else {
                 continue;
             };
-            let pair = Pair::open(k, facet, xi);
+            let joint = self.joint_at(facet, xi, now);
+            let pair = Pair { joint, ..Pair::open(k, facet, xi) };
             let gap = self.gap(node, facet, xi, now) + self.slack(k);
             match self.detection {
                 Detection::ClosestPoint if self.allowed(k) > 0.0 && gap >= 0.0 => {}
@@ -320,7 +332,12 @@ impl Kinematics for NodeToFacet {
         }
         let before = self.places(before);
         let now = self.places(now);
+        let starts = pairing.fresh;
+        pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
         let slid = self.slide(before, now, pairing, events);
+        for pair in pairing.pairs.iter_mut().filter(|_| starts) {
+            pair.joint = self.joint_at(pair.facet, pair.xi, before);
+        }
         let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         if !tools.search.update(&self.primary, &self.secondary, *margin, before, now) {
@@ -419,6 +436,45 @@ impl Kinematics for NodeToFacet {
     }
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        self.measure_mean(pair, y, rows)
+    }
+
+    fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
+        self.curvature_of_mean(pair, y, curvature);
+    }
+
+    fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        self.slip_of_mean(pair, y, rows)
+    }
+
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
+        self.slip_derivative_of_mean(pair, y, tangent, matrix);
+    }
+}
+
+impl OnFacets for NodeToFacet {
+    fn dimension(&self) -> usize {
+        self.primary.shape().dimension()
+    }
+
+    fn parts(&self, pair: &Pair, y: &[f64]) -> Vec<Pair> {
+        let y = self.places(y);
+        let at = |facet: usize, xi: f64| {
+            let part = Pair { facet, xi, joint: None, ..*pair };
+            Pair { xi: self.closest(&part, y).unwrap_or(xi), ..part }
+        };
+        let own = at(pair.facet, pair.xi);
+        let forward = pair.joint == Some(1);
+        let next = pair.joint.and_then(|_| self.primary.neighbour_of_side(pair.facet, forward));
+        let beside = next.map(|facet| at(facet, if forward { -1.0 } else { 1.0 }));
+        std::iter::once(own).chain(beside).collect()
+    }
+
+    fn nodes_with(&self, pair: &Pair) -> Vec<usize> {
+        [&[self.secondary[pair.node]], self.primary.facet(pair.facet).nodes].concat()
+    }
+
+    fn measure_one(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
         let y = self.places(y);
         let facet = self.primary.facet(pair.facet);
@@ -437,7 +493,7 @@ impl Kinematics for NodeToFacet {
         Ok(())
     }
 
-    fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
+    fn curvature_of_one(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
         let facet = self.primary.facet(pair.facet);
         self.gap_of(pair, self.places(y)).curvature_into(
             facet.nodes.len(),
@@ -446,7 +502,7 @@ impl Kinematics for NodeToFacet {
         );
     }
 
-    fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+    fn slip_of_one(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
         let facet = self.primary.facet(pair.facet);
         let gap = self.gap_of(pair, self.places(y));
@@ -455,7 +511,7 @@ impl Kinematics for NodeToFacet {
         Ok(())
     }
 
-    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], _: usize, matrix: &mut [f64]) {
+    fn slip_derivative_of_one(&self, pair: &Pair, y: &[f64], _: usize, matrix: &mut [f64]) {
         let facet = self.primary.facet(pair.facet);
         self.gap_of(pair, self.places(y)).slip_derivative_into(facet.nodes.len(), matrix);
     }

@@ -14,6 +14,9 @@ use crate::places::Places;
 /// Cosine of the kink between neighbouring facets that marks a corner: 30°.
 const CORNER_COSINE: f64 = 0.87;
 
+/// Sine of a concave kink up to which a joint is that of a flat surface that deformed: 1°.
+pub(crate) const HOLLOW: f64 = 0.02;
+
 /// The facets of a side in the plane, all of one shape, and their neighbours. The rest of the
 /// boundary of the body may follow them, so that a node near the end of the side is told from one
 /// that is behind it.
@@ -156,6 +159,12 @@ impl Surface {
         let kink = self.kink(facet, next, y);
         // With the body on the left, a convex joint turns left.
         kink.sine > 0.0 && kink.cosine < CORNER_COSINE
+    }
+
+    /// Whether the joint of a facet and the one that follows it is smooth, but for a small kink.
+    pub(crate) fn is_blunt(&self, facet: usize, next: usize, y: Places) -> bool {
+        let kink = self.kink(facet, next, y);
+        kink.cosine > CORNER_COSINE && kink.sine > -HOLLOW
     }
 
     /// The facets next to a facet at a convex corner.

@@ -13,6 +13,7 @@ use carom_solid::FacetShape;
 
 use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
 use crate::kinematics::mirror::is_mirror;
+use crate::kinematics::surface::HOLLOW;
 use crate::kinematics::{Depth, Facets, OnFacet};
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
@@ -187,6 +188,25 @@ impl Boundary {
     /// The facets that meet at a corner of a facet, with itself.
     pub(super) fn around(&self, facet: usize, corner: usize) -> &[usize] {
         self.facets_around(self.patch(facet).nodes[corner])
+    }
+
+    /// The facets that meet at a corner of a facet, or across an edge, with itself; corners are
+    /// numbered before edges.
+    pub(super) fn joined(&self, facet: usize, joint: u8) -> Vec<usize> {
+        let corners = self.shape.corners();
+        match usize::from(joint).checked_sub(corners) {
+            None => self.around(facet, usize::from(joint)).to_vec(),
+            Some(edge) => std::iter::once(facet).chain(self.across(facet, edge)).collect(),
+        }
+    }
+
+    /// Whether two facets form a smooth surface, but for a small kink; `normal`: that of the first
+    /// one in its middle.
+    pub(super) fn is_smooth(&self, facet: usize, other: usize, normal: Vector<3>, y: &[f64]) -> bool {
+        let there = self.middle(other, y);
+        let way = there.position - self.middle(facet, y).position;
+        let is_hollow = way.dot(&normal) > HOLLOW * way.norm();
+        normal.dot(&there.normal) > SHARP && !is_hollow
     }
 
     /// The facets that share a corner with a facet, without itself, ascending.

@@ -27,6 +27,7 @@ use super::patch::{Feature, PatchPoint, WANDER, cross, place};
 use super::paths::{NOISE, Paths};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::hand_over::{Held, Next, Sliding};
+use crate::kinematics::joint::{AT_JOINT, OnFacets};
 use crate::kinematics::opposed::is_left;
 use crate::kinematics::recent::Recent;
 use crate::kinematics::tangents::tangents;
@@ -149,6 +150,29 @@ impl NodeToPatch {
         Self { folds: Some((folds, side)), ..self }
     }
 
+    /// The corner or the edge of a facet at which a closest point lies on a blunt joint of facets of
+    /// the side, if it does: corners are numbered before edges.
+    fn joint_at(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> Option<u8> {
+        let patch = self.primary.patch(facet);
+        let corners = patch.corners();
+        let beyond = patch.beyond(xi);
+        let edges: Vec<usize> = (0..corners).filter(|&edge| beyond[edge].abs() <= AT_JOINT).collect();
+        let joint = match edges[..] {
+            [edge] => corners + edge,
+            // A corner lies between the edges before and after it.
+            [first, second] if first == 0 && second + 1 == corners => 0,
+            [_, second] => second,
+            _ => return None,
+        };
+        let joint = joint as u8;
+        let normal = self.primary.middle(facet, y).normal;
+        let joined = self.primary.joined(facet, joint);
+        let is_blunt = |&other: &usize| {
+            self.primary.is_of_side(other) && self.primary.is_smooth(facet, other, normal, y)
+        };
+        (joined.len() > 1 && joined.iter().all(is_blunt)).then_some(joint)
+    }
+
     pub(super) fn slack(&self, place: usize) -> f64 {
         self.allowed(place) + self.kept(place)
     }
@@ -192,7 +216,9 @@ impl NodeToPatch {
     fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: &[f64]) -> Next {
         let xi = [pair.xi, pair.eta];
         let patch = self.primary.patch(pair.facet);
-        if patch.furthest(xi) <= PAST {
+        // A pair with all facets of a joint slides on any of them.
+        let past = if pair.joint.is_some() { HAND_OVER } else { PAST };
+        if patch.furthest(xi) <= past {
             return Next::Stay;
         }
         let node = self.secondary[pair.node];
@@ -279,7 +305,11 @@ impl NodeToPatch {
                 && repeats
                 && let Some(candidate) = recent.get(k)
             {
-                pairs.extend(candidate.map(|at| Pair::opened(k, at)));
+                let opened = |at: OnFacet<[f64; 2]>| {
+                    let joint = self.joint_at(at.facet, at.xi, now);
+                    Pair { joint, ..Pair::opened(k, at) }
+                };
+                pairs.extend(candidate.map(opened));
                 continue;
             }
             paths.find_into(node, [before, now], &mut near);
@@ -300,7 +330,11 @@ impl NodeToPatch {
                 recent.set(k, candidate);
             }
             changed |= gap < 0.0;
-            pairs.extend(candidate.map(|at| Pair::opened(k, at)));
+            let opened = |at: OnFacet<[f64; 2]>| {
+                let joint = self.joint_at(at.facet, at.xi, now);
+                Pair { joint, ..Pair::opened(k, at) }
+            };
+            pairs.extend(candidate.map(opened));
         }
         changed
     }
@@ -382,7 +416,11 @@ impl Kinematics for NodeToPatch {
         events: &mut Vec<PairEvent>,
     ) -> bool {
         let starts = pairing.fresh;
+        pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
         let slid = self.slide(now, pairing, events);
+        for pair in pairing.pairs.iter_mut().filter(|_| starts) {
+            pair.joint = self.joint_at(pair.facet, [pair.xi, pair.eta], before);
+        }
         let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         let Tools { paths, apart, recent, .. } = &mut *tools;
@@ -438,6 +476,46 @@ impl Kinematics for NodeToPatch {
     }
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        self.measure_mean(pair, y, rows)
+    }
+
+    fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
+        self.curvature_of_mean(pair, y, curvature);
+    }
+
+    fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        self.slip_of_mean(pair, y, rows)
+    }
+
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
+        self.slip_derivative_of_mean(pair, y, tangent, matrix);
+    }
+}
+
+impl OnFacets for NodeToPatch {
+    fn dimension(&self) -> usize {
+        3
+    }
+
+    fn parts(&self, pair: &Pair, y: &[f64]) -> Vec<Pair> {
+        let from = place(y, self.secondary[pair.node]);
+        let at = |facet: usize, [xi, eta]: [f64; 2]| {
+            let part = Pair { facet, xi, eta, joint: None, ..*pair };
+            let [xi, eta] = self.closest(&part, y).unwrap_or([xi, eta]);
+            Pair { xi, eta, ..part }
+        };
+        let own = at(pair.facet, [pair.xi, pair.eta]);
+        let joined = pair.joint.map_or_else(Vec::new, |joint| self.primary.joined(pair.facet, joint));
+        let others = joined.into_iter().filter(|&facet| facet != pair.facet);
+        let beside = others.map(|facet| at(facet, self.primary.patch(facet).nearest(y, from).xi));
+        std::iter::once(own).chain(beside).collect()
+    }
+
+    fn nodes_with(&self, pair: &Pair) -> Vec<usize> {
+        [&[self.secondary[pair.node]], self.primary.nodes_of(pair.facet)].concat()
+    }
+
+    fn measure_one(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
         let lost = ContactError::Lost { node, facet: pair.facet, xi: pair.xi };
         let xi = self.closest(pair, y).ok_or(lost)?;
@@ -454,13 +532,13 @@ impl Kinematics for NodeToPatch {
         Ok(())
     }
 
-    fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
+    fn curvature_of_one(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
         let patch = self.primary.patch(pair.facet);
         let from = place(y, self.secondary[pair.node]);
         PatchGap::new(patch, y, from, [pair.xi, pair.eta]).curvature_into(patch.nodes.len(), curvature);
     }
 
-    fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+    fn slip_of_one(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
         let patch = self.primary.patch(pair.facet);
         let gap = PatchGap::new(patch, y, place(y, node), [pair.xi, pair.eta]);
@@ -471,7 +549,7 @@ impl Kinematics for NodeToPatch {
         Ok(())
     }
 
-    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
+    fn slip_derivative_of_one(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]) {
         let patch = self.primary.patch(pair.facet);
         let from = place(y, self.secondary[pair.node]);
         let gap = PatchGap::new(patch, y, from, [pair.xi, pair.eta]);

@@ -1,0 +1,121 @@
+//! Nodes at the joints of facets. Where a closest point lies on a blunt joint, every facet there is
+//! as near as the others, and a choice among them, by number or by round-off, would turn the normal
+//! by half the kink. The gap is the mean of those to all facets of the joint,
+//!
+//! ```text
+//! g = (1/m) Σ g_k,    ∇g, ∇²g, H and ∂H/∂y likewise,
+//! ```
+//!
+//! so that a symmetric contact stays symmetric, and neither numbering nor a rigid motion matters.
+//! Which pairs lie on a joint is decided at the start of a solve.
+
+use crate::pair::{ContactError, Pair};
+use crate::rows::Rows;
+
+/// Distance of a closest point from a joint, over the size of the facet, up to which it lies there:
+/// above round-off, and far below what a node slides in a step.
+pub(super) const AT_JOINT: f64 = 1e-6;
+
+/// Contact of nodes with single facets, of which that with joints is made.
+pub(super) trait OnFacets {
+    /// Dimension of the positions.
+    fn dimension(&self) -> usize;
+
+    /// The pairs of a node with every facet of the joint at which its pair lies, itself first, at
+    /// their closest points; only itself if it lies at none.
+    fn parts(&self, pair: &Pair, y: &[f64]) -> Vec<Pair>;
+
+    /// Nodes of the row of a pair with one facet.
+    fn nodes_with(&self, pair: &Pair) -> Vec<usize>;
+
+    /// See [`Kinematics::measure`](super::Kinematics::measure).
+    fn measure_one(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError>;
+
+    /// See [`Kinematics::curvature_into`](super::Kinematics::curvature_into).
+    fn curvature_of_one(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]);
+
+    /// See [`Kinematics::slip`](super::Kinematics::slip).
+    fn slip_of_one(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError>;
+
+    /// See [`Kinematics::slip_derivative_into`](super::Kinematics::slip_derivative_into).
+    fn slip_derivative_of_one(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]);
+
+    fn measure_mean(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        if pair.joint.is_none() {
+            return self.measure_one(pair, y, rows);
+        }
+        let mut of_facets = Rows::new(self.dimension());
+        for (k, mut part) in self.parts(pair, y).into_iter().enumerate() {
+            self.measure_one(&mut part, y, &mut of_facets)?;
+            if k == 0 {
+                [pair.xi, pair.eta] = [part.xi, part.eta];
+            }
+        }
+        rows.push_mean(&of_facets, 0, 1);
+        Ok(())
+    }
+
+    fn curvature_of_mean(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
+        if pair.joint.is_none() {
+            self.curvature_of_one(pair, y, curvature);
+            return;
+        }
+        self.mean_matrix(&self.parts(pair, y), curvature, |part, matrix| {
+            self.curvature_of_one(part, y, matrix);
+        });
+    }
+
+    fn slip_of_mean(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        if pair.joint.is_none() {
+            return self.slip_of_one(pair, y, rows);
+        }
+        let mut of_facets = Rows::new(self.dimension());
+        for part in self.parts(pair, y) {
+            self.slip_of_one(&part, y, &mut of_facets)?;
+        }
+        let tangents = self.dimension() - 1;
+        (0..tangents).for_each(|tangent| rows.push_mean(&of_facets, tangent, tangents));
+        Ok(())
+    }
+
+    fn slip_derivative_of_mean(&self, pair: &Pair, y: &[f64], tangent: usize, matrix: &mut [f64]) {
+        if pair.joint.is_none() {
+            self.slip_derivative_of_one(pair, y, tangent, matrix);
+            return;
+        }
+        self.mean_matrix(&self.parts(pair, y), matrix, |part, matrix| {
+            self.slip_derivative_of_one(part, y, tangent, matrix);
+        });
+    }
+
+    /// Overwrites the first entries of `mean` with the mean of the matrices of pairs, over the nodes
+    /// of their mean row ([`Rows::push_mean`]).
+    fn mean_matrix(&self, parts: &[Pair], mean: &mut [f64], matrix: impl Fn(&Pair, &mut [f64])) {
+        let dimension = self.dimension();
+        let nodes: Vec<Vec<usize>> = parts.iter().map(|part| self.nodes_with(part)).collect();
+        let mut all: Vec<usize> = Vec::new();
+        for &node in nodes.iter().flatten() {
+            if !all.contains(&node) {
+                all.push(node);
+            }
+        }
+        let size = dimension * all.len();
+        mean[..size * size].fill(0.0);
+        for (part, nodes) in parts.iter().zip(&nodes) {
+            let own = dimension * nodes.len();
+            let mut of_part = vec![0.0; own * own];
+            matrix(part, &mut of_part);
+            let place = |dof: usize| {
+                let node = nodes[dof / dimension];
+                let at = all.iter().position(|&other| other == node).unwrap_or(0);
+                dimension * at + dof % dimension
+            };
+            for row in 0..own {
+                for column in 0..own {
+                    mean[place(row) * size + place(column)] +=
+                        of_part[row * own + column] / parts.len() as f64;
+                }
+            }
+        }
+    }
+}
