@@ -94,7 +94,12 @@ impl NodeToFacet {
             }
         }
         let first = self.first_of(&mut tools.swept, near, node, before, now);
-        if first.is_some_and(|first| self.is_left_to_corner(node, &first, before)) {
+        let is_at_end =
+            |met: Met<f64>| ((met.xi.abs() - 1.0).abs() <= AT_JOINT).then_some((met.facet, met.xi));
+        let is_between =
+            |closest: Closest| self.is_between(node, &closest, now).then_some((closest.facet, closest.xi));
+        let corner = first.map_or_else(|| closest.and_then(is_between), is_at_end);
+        if corner.is_some_and(|(facet, xi)| self.is_left_to_corner(node, facet, xi, before)) {
             return None;
         }
         let entered_elsewhere = first.is_some_and(|first| !self.primary.is_of_side(first.facet));
@@ -131,14 +136,24 @@ impl NodeToFacet {
         }
     }
 
+    /// Whether a node inside the primary is as deep behind the next facet as behind the closest one.
+    fn is_between(&self, node: usize, closest: &Closest, y: Places) -> bool {
+        let next = self.primary.neighbour(closest.facet, closest.xi > 0.0);
+        next.is_some_and(|next| {
+            let xi = self.primary.facet(next).closest_point(y, y.at(node), REACH);
+            let apart = xi.map_or(f64::INFINITY, |xi| self.gap(node, next, xi, y) - closest.gap);
+            apart.abs() <= AT_JOINT * self.primary.length(next, y)
+        })
+    }
+
     /// Whether a node that is no corner itself meets a corner of the primary, which the other
     /// direction of contact keeps out: with one of the facets there it would push to one side.
-    fn is_left_to_corner(&self, node: usize, met: &Met<f64>, y: Places) -> bool {
-        let forward = met.xi > 0.0;
+    fn is_left_to_corner(&self, node: usize, facet: usize, xi: f64, y: Places) -> bool {
+        let forward = xi > 0.0;
         let Some((own, around)) = &self.own else { return false };
-        let Some(next) = self.primary.neighbour(met.facet, forward) else { return false };
-        let [first, second] = if forward { [met.facet, next] } else { [next, met.facet] };
-        let is_at_corner = (met.xi.abs() - 1.0).abs() <= AT_JOINT && self.primary.is_corner(first, second, y);
+        let Some(next) = self.primary.neighbour(facet, forward) else { return false };
+        let [first, second] = if forward { [facet, next] } else { [next, facet] };
+        let is_at_corner = self.primary.is_corner(first, second, y);
         let is_sharp =
             |around: &[usize]| around.iter().any(|&a| around.iter().any(|&b| own.is_corner(a, b, y)));
         is_at_corner && around.get(&node).is_some_and(|around| around.len() < 2 || !is_sharp(around))

@@ -170,14 +170,21 @@ impl NodeToFacet {
         self.point == ContactPoint::Frozen
     }
 
-    /// The end of a facet at which a closest point lies on a blunt joint with another facet of the
-    /// side, 0 or 1, if it does.
-    fn joint_at(&self, facet: usize, xi: f64, y: Places) -> Option<u8> {
+    /// The end of a facet at which a node lies over a blunt joint with another facet of the side, 0
+    /// or 1, if it does: on the line through the joint along the mean normal.
+    fn joint_at(&self, node: usize, facet: usize, xi: f64, y: Places) -> Option<u8> {
+        if self.is_frozen() || (xi.abs() - 1.0).abs() > REACH - 1.0 {
+            return None;
+        }
         let forward = xi > 0.0;
-        let next = self.primary.neighbour_of_side(facet, forward).filter(|_| !self.is_frozen())?;
+        let next = self.primary.neighbour_of_side(facet, forward)?;
         let [first, second] = if forward { [facet, next] } else { [next, facet] };
-        let is_joint = (xi.abs() - 1.0).abs() <= AT_JOINT && self.primary.is_blunt(first, second, y);
-        is_joint.then_some(u8::from(forward))
+        let before = self.primary.facet(first).at(y, 1.0);
+        let after = self.primary.facet(second).at(y, -1.0);
+        let along = before.tangent * before.measure.recip() + after.tangent * after.measure.recip();
+        let past = (y.at(node) - after.position).dot(&along) / along.norm();
+        let is_over = past.abs() <= AT_JOINT * self.primary.length(facet, y);
+        (is_over && self.primary.is_blunt(first, second, y)).then_some(u8::from(forward))
     }
 
     pub(super) fn places<'a>(&self, y: &'a [f64]) -> Places<'a> {
@@ -257,7 +264,7 @@ impl NodeToFacet {
             let Some(Reached { facet, xi, crossed }) = self.candidate(tools, k, before, now) else {
                 continue;
             };
-            let joint = self.joint_at(facet, xi, now);
+            let joint = self.joint_at(node, facet, xi, now);
             let pair = Pair { joint, ..Pair::open(k, facet, xi) };
             let gap = self.gap(node, facet, xi, now) + self.slack(k);
             match self.detection {
@@ -336,7 +343,7 @@ impl Kinematics for NodeToFacet {
         pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
         let slid = self.slide(before, now, pairing, events);
         for pair in pairing.pairs.iter_mut().filter(|_| starts) {
-            pair.joint = self.joint_at(pair.facet, pair.xi, before);
+            pair.joint = self.joint_at(self.secondary[pair.node], pair.facet, pair.xi, before);
         }
         let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);

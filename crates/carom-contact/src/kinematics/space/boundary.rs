@@ -200,6 +200,25 @@ impl Boundary {
         }
     }
 
+    /// Distance of a point, along the surface, from the joint at a corner or an edge of a facet;
+    /// corners are numbered before edges.
+    pub(super) fn past_joint(&self, facet: usize, joint: usize, point: Vector<3>, y: &[f64]) -> f64 {
+        let patch = self.patch(facet);
+        let corners = self.shape.corners();
+        let Some(edge) = joint.checked_sub(corners) else {
+            let node = patch.nodes[joint];
+            let normal = self.normal_at_corner(node, y);
+            return cross(point - place(y, node), normal).norm() / normal.norm();
+        };
+        let [start, end] = [0.0, 1.0].map(|s| patch.at(y, patch.along(edge, s)).position);
+        let along = end - start;
+        let s = ((point - start).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
+        let [here, there] = self.normals_at_edge(facet, edge, s, y);
+        let across = cross(along, here + there);
+        let foot = patch.at(y, patch.along(edge, s)).position;
+        (point - foot).dot(&across).abs() / across.norm()
+    }
+
     /// Whether two facets form a smooth surface, but for a small kink; `normal`: that of the first
     /// one in its middle.
     pub(super) fn is_smooth(&self, facet: usize, other: usize, normal: Vector<3>, y: &[f64]) -> bool {

@@ -43,6 +43,9 @@ const HAND_OVER: f64 = 0.02;
 /// Distance past an edge, relative to the height of the facet, beyond which a pair is handed back
 /// to the facet that it came from before Newton's method has converged.
 const HAND_BACK: f64 = 0.1;
+/// Distance inside an edge, relative to the height of the facet, up to which a node may lie over it:
+/// the foot of a node that is not on the surface is beside a joint with a kink.
+const AROUND_JOINT: f64 = 0.02;
 /// Distance past an edge, relative to the height of the facet, above which a closest point is past
 /// it.
 pub(super) const PAST: f64 = 1e-9;
@@ -150,21 +153,17 @@ impl NodeToPatch {
         Self { folds: Some((folds, side)), ..self }
     }
 
-    /// The corner or the edge of a facet at which a closest point lies on a blunt joint of facets of
-    /// the side, if it does: corners are numbered before edges.
-    fn joint_at(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> Option<u8> {
+    /// The corner or the edge of a facet at which a node lies over a blunt joint of facets of the
+    /// side, if it does: along their mean normal. Corners are numbered before edges.
+    fn joint_at(&self, node: usize, facet: usize, xi: [f64; 2], y: &[f64]) -> Option<u8> {
         let patch = self.primary.patch(facet);
+        if patch.furthest(xi) < -AROUND_JOINT || patch.furthest(xi) > REACH {
+            return None;
+        }
+        let reach = AT_JOINT * patch.length(y);
         let corners = patch.corners();
-        let beyond = patch.beyond(xi);
-        let edges: Vec<usize> = (0..corners).filter(|&edge| beyond[edge].abs() <= AT_JOINT).collect();
-        let joint = match edges[..] {
-            [edge] => corners + edge,
-            // A corner lies between the edges before and after it.
-            [first, second] if first == 0 && second + 1 == corners => 0,
-            [_, second] => second,
-            _ => return None,
-        };
-        let joint = joint as u8;
+        let is_over = |joint: &usize| self.primary.past_joint(facet, *joint, place(y, node), y) <= reach;
+        let joint = (0..2 * corners).find(is_over)? as u8;
         let normal = self.primary.middle(facet, y).normal;
         let joined = self.primary.joined(facet, joint);
         let is_blunt = |&other: &usize| {
@@ -306,7 +305,7 @@ impl NodeToPatch {
                 && let Some(candidate) = recent.get(k)
             {
                 let opened = |at: OnFacet<[f64; 2]>| {
-                    let joint = self.joint_at(at.facet, at.xi, now);
+                    let joint = self.joint_at(node, at.facet, at.xi, now);
                     Pair { joint, ..Pair::opened(k, at) }
                 };
                 pairs.extend(candidate.map(opened));
@@ -331,7 +330,7 @@ impl NodeToPatch {
             }
             changed |= gap < 0.0;
             let opened = |at: OnFacet<[f64; 2]>| {
-                let joint = self.joint_at(at.facet, at.xi, now);
+                let joint = self.joint_at(node, at.facet, at.xi, now);
                 Pair { joint, ..Pair::opened(k, at) }
             };
             pairs.extend(candidate.map(opened));
@@ -419,7 +418,7 @@ impl Kinematics for NodeToPatch {
         pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
         let slid = self.slide(now, pairing, events);
         for pair in pairing.pairs.iter_mut().filter(|_| starts) {
-            pair.joint = self.joint_at(pair.facet, [pair.xi, pair.eta], before);
+            pair.joint = self.joint_at(self.secondary[pair.node], pair.facet, [pair.xi, pair.eta], before);
         }
         let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
