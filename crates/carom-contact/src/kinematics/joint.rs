@@ -7,7 +7,8 @@
 //! ```
 //!
 //! so that a symmetric contact stays symmetric, and neither numbering nor a rigid motion matters.
-//! Which pairs lie on a joint is decided at the start of a solve.
+//! Which pairs lie on a joint is decided at the start of a solve. A pair that has left it by the end
+//! of one goes on with the facet where it lies: over a hollow joint the mean would let it sink.
 
 use crate::pair::{ContactError, Pair};
 use crate::rows::Rows;
@@ -15,6 +16,10 @@ use crate::rows::Rows;
 /// Distance of a closest point from a joint, over the size of the facet, up to which it lies there:
 /// above round-off, and far below what a node slides in a step.
 pub(super) const AT_JOINT: f64 = 1e-6;
+
+/// Distance of a node from its joint, over the size of the facet, above which it has left it: a
+/// hollow joint lets it sink by at most a millionth of a facet.
+const OFF_JOINT: f64 = 1e-4;
 
 /// Contact of nodes with single facets, of which that with joints is made.
 pub(super) trait OnFacets {
@@ -24,6 +29,31 @@ pub(super) trait OnFacets {
     /// The pairs of a node with every facet of the joint at which its pair lies, itself first, at
     /// their closest points; only itself if it lies at none.
     fn parts(&self, pair: &Pair, y: &[f64]) -> Vec<Pair>;
+
+    /// Distance of the node of a pair from a joint of its facet, along the surface and over the size
+    /// of the facet.
+    fn past_joint(&self, pair: &Pair, joint: u8, y: &[f64]) -> f64;
+
+    /// Whether the facets of the side at a joint of a facet form a smooth surface, but for small
+    /// kinks; never if there is only one.
+    fn is_blunt(&self, facet: usize, joint: u8, y: &[f64]) -> bool;
+
+    /// The joint of its facet over which a pair lies, if it does.
+    fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8>;
+
+    /// Takes pairs off the joints that they have left; returns whether an active one did.
+    fn leave_joints(&self, pairs: &mut [Pair], y: &[f64]) -> bool {
+        let mut left = false;
+        for pair in pairs {
+            let stays =
+                |joint| self.past_joint(pair, joint, y) <= OFF_JOINT && self.is_blunt(pair.facet, joint, y);
+            if !pair.joint.is_none_or(stays) {
+                pair.joint = None;
+                left |= pair.active;
+            }
+        }
+        left
+    }
 
     /// Nodes of the row of a pair with one facet.
     fn nodes_with(&self, pair: &Pair) -> Vec<usize>;

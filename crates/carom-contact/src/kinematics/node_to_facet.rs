@@ -170,23 +170,6 @@ impl NodeToFacet {
         self.point == ContactPoint::Frozen
     }
 
-    /// The end of a facet at which a node lies over a blunt joint with another facet of the side, 0
-    /// or 1, if it does: on the line through the joint along the mean normal.
-    fn joint_at(&self, node: usize, facet: usize, xi: f64, y: Places) -> Option<u8> {
-        if self.is_frozen() || (xi.abs() - 1.0).abs() > REACH - 1.0 {
-            return None;
-        }
-        let forward = xi > 0.0;
-        let next = self.primary.neighbour_of_side(facet, forward)?;
-        let [first, second] = if forward { [facet, next] } else { [next, facet] };
-        let before = self.primary.facet(first).at(y, 1.0);
-        let after = self.primary.facet(second).at(y, -1.0);
-        let along = before.tangent * before.measure.recip() + after.tangent * after.measure.recip();
-        let past = (y.at(node) - after.position).dot(&along) / along.norm();
-        let is_over = past.abs() <= AT_JOINT * self.primary.length(facet, y);
-        (is_over && self.primary.is_blunt(first, second, y)).then_some(u8::from(forward))
-    }
-
     pub(super) fn places<'a>(&self, y: &'a [f64]) -> Places<'a> {
         Places::new(y, self.primary.shape().dimension())
     }
@@ -264,8 +247,8 @@ impl NodeToFacet {
             let Some(Reached { facet, xi, crossed }) = self.candidate(tools, k, before, now) else {
                 continue;
             };
-            let joint = self.joint_at(node, facet, xi, now);
-            let pair = Pair { joint, ..Pair::open(k, facet, xi) };
+            let pair = Pair::open(k, facet, xi);
+            let pair = Pair { joint: self.joint_of(&pair, now.flat()), ..pair };
             let gap = self.gap(node, facet, xi, now) + self.slack(k);
             match self.detection {
                 Detection::ClosestPoint if self.allowed(k) > 0.0 && gap >= 0.0 => {}
@@ -341,9 +324,10 @@ impl Kinematics for NodeToFacet {
         let now = self.places(now);
         let starts = pairing.fresh;
         pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
-        let slid = self.slide(before, now, pairing, events);
+        let left = self.leave_joints(&mut pairing.pairs, now.flat());
+        let slid = self.slide(before, now, pairing, events) || left;
         for pair in pairing.pairs.iter_mut().filter(|_| starts) {
-            pair.joint = self.joint_at(self.secondary[pair.node], pair.facet, pair.xi, before);
+            pair.joint = self.joint_of(pair, before.flat());
         }
         let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
@@ -475,6 +459,36 @@ impl OnFacets for NodeToFacet {
         let next = pair.joint.and_then(|_| self.primary.neighbour_of_side(pair.facet, forward));
         let beside = next.map(|facet| at(facet, if forward { -1.0 } else { 1.0 }));
         std::iter::once(own).chain(beside).collect()
+    }
+
+    fn past_joint(&self, pair: &Pair, joint: u8, y: &[f64]) -> f64 {
+        let y = self.places(y);
+        let forward = joint == 1;
+        let Some(next) = self.primary.neighbour(pair.facet, forward) else { return f64::INFINITY };
+        let [first, second] = if forward { [pair.facet, next] } else { [next, pair.facet] };
+        let before = self.primary.facet(first).at(y, 1.0);
+        let after = self.primary.facet(second).at(y, -1.0);
+        let along = before.tangent * before.measure.recip() + after.tangent * after.measure.recip();
+        let past = (y.at(self.secondary[pair.node]) - after.position).dot(&along) / along.norm();
+        past.abs() / self.primary.length(pair.facet, y)
+    }
+
+    fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
+        if self.is_frozen() || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
+            return None;
+        }
+        let forward = pair.xi > 0.0;
+        let joint = u8::from(forward);
+        let is_over = self.past_joint(pair, joint, y) <= AT_JOINT;
+        (is_over && self.is_blunt(pair.facet, joint, y)).then_some(joint)
+    }
+
+    fn is_blunt(&self, facet: usize, joint: u8, y: &[f64]) -> bool {
+        let forward = joint == 1;
+        self.primary.neighbour_of_side(facet, forward).is_some_and(|next| {
+            let [first, second] = if forward { [facet, next] } else { [next, facet] };
+            self.primary.is_blunt(first, second, self.places(y))
+        })
     }
 
     fn nodes_with(&self, pair: &Pair) -> Vec<usize> {

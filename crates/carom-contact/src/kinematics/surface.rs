@@ -14,8 +14,8 @@ use crate::places::Places;
 /// Cosine of the kink between neighbouring facets that marks a corner: 30°.
 const CORNER_COSINE: f64 = 0.87;
 
-/// Sine of a concave kink up to which a joint is that of a flat surface that deformed: 1°.
-pub(crate) const HOLLOW: f64 = 0.02;
+/// Sine of a concave kink up to which a joint is that of a flat surface that deformed: half a degree.
+pub(crate) const HOLLOW: f64 = 0.01;
 
 /// The facets of a side in the plane, all of one shape, and their neighbours. The rest of the
 /// boundary of the body may follow them, so that a node near the end of the side is told from one

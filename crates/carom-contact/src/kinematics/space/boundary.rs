@@ -202,11 +202,11 @@ impl Boundary {
 
     /// Distance of a point, along the surface, from the joint at a corner or an edge of a facet;
     /// corners are numbered before edges.
-    pub(super) fn past_joint(&self, facet: usize, joint: usize, point: Vector<3>, y: &[f64]) -> f64 {
+    pub(super) fn past_joint(&self, facet: usize, joint: u8, point: Vector<3>, y: &[f64]) -> f64 {
         let patch = self.patch(facet);
         let corners = self.shape.corners();
-        let Some(edge) = joint.checked_sub(corners) else {
-            let node = patch.nodes[joint];
+        let Some(edge) = usize::from(joint).checked_sub(corners) else {
+            let node = patch.nodes[usize::from(joint)];
             let normal = self.normal_at_corner(node, y);
             return cross(point - place(y, node), normal).norm() / normal.norm();
         };

@@ -153,23 +153,10 @@ impl NodeToPatch {
         Self { folds: Some((folds, side)), ..self }
     }
 
-    /// The corner or the edge of a facet at which a node lies over a blunt joint of facets of the
-    /// side, if it does: along their mean normal. Corners are numbered before edges.
-    fn joint_at(&self, node: usize, facet: usize, xi: [f64; 2], y: &[f64]) -> Option<u8> {
-        let patch = self.primary.patch(facet);
-        if patch.furthest(xi) < -AROUND_JOINT || patch.furthest(xi) > REACH {
-            return None;
-        }
-        let reach = AT_JOINT * patch.length(y);
-        let corners = patch.corners();
-        let is_over = |joint: &usize| self.primary.past_joint(facet, *joint, place(y, node), y) <= reach;
-        let joint = (0..2 * corners).find(is_over)? as u8;
-        let normal = self.primary.middle(facet, y).normal;
-        let joined = self.primary.joined(facet, joint);
-        let is_blunt = |&other: &usize| {
-            self.primary.is_of_side(other) && self.primary.is_smooth(facet, other, normal, y)
-        };
-        (joined.len() > 1 && joined.iter().all(is_blunt)).then_some(joint)
+    /// An inactive pair at a point of a facet, with the joint over which it lies.
+    fn opened(&self, node: usize, at: OnFacet<[f64; 2]>, y: &[f64]) -> Pair {
+        let pair = Pair::opened(node, at);
+        Pair { joint: self.joint_of(&pair, y), ..pair }
     }
 
     pub(super) fn slack(&self, place: usize) -> f64 {
@@ -304,11 +291,7 @@ impl NodeToPatch {
                 && repeats
                 && let Some(candidate) = recent.get(k)
             {
-                let opened = |at: OnFacet<[f64; 2]>| {
-                    let joint = self.joint_at(node, at.facet, at.xi, now);
-                    Pair { joint, ..Pair::opened(k, at) }
-                };
-                pairs.extend(candidate.map(opened));
+                pairs.extend(candidate.map(|at| self.opened(k, at, now)));
                 continue;
             }
             paths.find_into(node, [before, now], &mut near);
@@ -329,11 +312,7 @@ impl NodeToPatch {
                 recent.set(k, candidate);
             }
             changed |= gap < 0.0;
-            let opened = |at: OnFacet<[f64; 2]>| {
-                let joint = self.joint_at(node, at.facet, at.xi, now);
-                Pair { joint, ..Pair::opened(k, at) }
-            };
-            pairs.extend(candidate.map(opened));
+            pairs.extend(candidate.map(|at| self.opened(k, at, now)));
         }
         changed
     }
@@ -416,9 +395,10 @@ impl Kinematics for NodeToPatch {
     ) -> bool {
         let starts = pairing.fresh;
         pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
-        let slid = self.slide(now, pairing, events);
+        let left = self.leave_joints(&mut pairing.pairs, now);
+        let slid = self.slide(now, pairing, events) || left;
         for pair in pairing.pairs.iter_mut().filter(|_| starts) {
-            pair.joint = self.joint_at(self.secondary[pair.node], pair.facet, [pair.xi, pair.eta], before);
+            pair.joint = self.joint_of(pair, before);
         }
         let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
@@ -508,6 +488,31 @@ impl OnFacets for NodeToPatch {
         let others = joined.into_iter().filter(|&facet| facet != pair.facet);
         let beside = others.map(|facet| at(facet, self.primary.patch(facet).nearest(y, from).xi));
         std::iter::once(own).chain(beside).collect()
+    }
+
+    fn past_joint(&self, pair: &Pair, joint: u8, y: &[f64]) -> f64 {
+        let point = place(y, self.secondary[pair.node]);
+        self.primary.past_joint(pair.facet, joint, point, y) / self.primary.patch(pair.facet).length(y)
+    }
+
+    fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
+        let patch = self.primary.patch(pair.facet);
+        let furthest = patch.furthest([pair.xi, pair.eta]);
+        if furthest < -AROUND_JOINT || furthest > REACH {
+            return None;
+        }
+        let mut joints = 0..2 * patch.corners() as u8;
+        let joint = joints.find(|&joint| self.past_joint(pair, joint, y) <= AT_JOINT)?;
+        self.is_blunt(pair.facet, joint, y).then_some(joint)
+    }
+
+    fn is_blunt(&self, facet: usize, joint: u8, y: &[f64]) -> bool {
+        let normal = self.primary.middle(facet, y).normal;
+        let joined = self.primary.joined(facet, joint);
+        let is_smooth = |&other: &usize| {
+            self.primary.is_of_side(other) && self.primary.is_smooth(facet, other, normal, y)
+        };
+        joined.len() > 1 && joined.iter().all(is_smooth)
     }
 
     fn nodes_with(&self, pair: &Pair) -> Vec<usize> {
