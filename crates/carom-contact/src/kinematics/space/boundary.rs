@@ -212,11 +212,13 @@ impl Boundary {
         };
         let [start, end] = [0.0, 1.0].map(|s| patch.at(y, patch.along(edge, s)).position);
         let along = end - start;
-        let s = ((point - start).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
+        let share = (point - start).dot(&along) / along.dot(&along);
+        let s = share.clamp(0.0, 1.0);
         let [here, there] = self.normals_at_edge(facet, edge, s, y);
         let across = cross(along, here + there);
         let foot = patch.at(y, patch.along(edge, s)).position;
-        (point - foot).dot(&across).abs() / across.norm()
+        let aside = (point - foot).dot(&across).abs() / across.norm();
+        aside.hypot((share - s) * along.norm())
     }
 
     /// Whether two facets form a smooth surface, but for a small kink; `normal`: that of the first
