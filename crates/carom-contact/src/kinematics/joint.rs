@@ -17,8 +17,9 @@ use crate::rows::Rows;
 /// above round-off, and far below what a node slides in a step.
 pub(super) const AT_JOINT: f64 = 1e-6;
 
-/// Distance of a node from its joint, over the size of the facet, above which it has left it: a
-/// hollow joint lets it sink by at most a millionth of a facet.
+/// Distance of a node from a blunt joint, over the size of the facet, above which it has left it. It
+/// sinks by at most a millionth of a facet there, and where the joint has become hollow, which it
+/// leaves at once.
 const OFF_JOINT: f64 = 1e-4;
 
 /// Contact of nodes with single facets, of which that with joints is made.
@@ -41,18 +42,29 @@ pub(super) trait OnFacets {
     /// The joint of its facet over which a pair lies, if it does.
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8>;
 
-    /// Takes pairs off the joints that they have left; returns whether an active one did.
-    fn leave_joints(&self, pairs: &mut [Pair], y: &[f64]) -> bool {
-        let mut left = false;
+    /// Takes pairs off the joints that they have left; returns their nodes.
+    fn leave_joints(&self, pairs: &mut [Pair], y: &[f64]) -> Vec<usize> {
+        let mut left = Vec::new();
         for pair in pairs {
-            let stays =
-                |joint| self.past_joint(pair, joint, y) <= OFF_JOINT && self.is_blunt(pair.facet, joint, y);
-            if !pair.joint.is_none_or(stays) {
+            let Some(joint) = pair.joint else { continue };
+            let reach = if self.is_blunt(pair.facet, joint, y) { OFF_JOINT } else { AT_JOINT };
+            if self.past_joint(pair, joint, y) > reach {
                 pair.joint = None;
-                left |= pair.active;
+                left.push(pair.node);
             }
         }
         left
+    }
+
+    /// Puts pairs of these nodes on the joints over which they lie after they slid; returns whether
+    /// one of them is active. A node that leaves a corner may lie over an edge.
+    fn take_joints(&self, pairs: &mut [Pair], nodes: &[usize], y: &[f64]) -> bool {
+        let mut is_active = false;
+        for pair in pairs.iter_mut().filter(|pair| nodes.contains(&pair.node)) {
+            pair.joint = self.joint_of(pair, y);
+            is_active |= pair.active;
+        }
+        is_active
     }
 
     /// Nodes of the row of a pair with one facet.

@@ -325,7 +325,8 @@ impl Kinematics for NodeToFacet {
         let starts = pairing.fresh;
         pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
         let left = self.leave_joints(&mut pairing.pairs, now.flat());
-        let slid = self.slide(before, now, pairing, events) || left;
+        let slid = self.slide(before, now, pairing, events)
+            | self.take_joints(&mut pairing.pairs, &left, now.flat());
         for pair in pairing.pairs.iter_mut().filter(|_| starts) {
             pair.joint = self.joint_of(pair, before.flat());
         }

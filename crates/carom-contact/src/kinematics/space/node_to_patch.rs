@@ -396,7 +396,7 @@ impl Kinematics for NodeToPatch {
         let starts = pairing.fresh;
         pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
         let left = self.leave_joints(&mut pairing.pairs, now);
-        let slid = self.slide(now, pairing, events) || left;
+        let slid = self.slide(now, pairing, events) | self.take_joints(&mut pairing.pairs, &left, now);
         for pair in pairing.pairs.iter_mut().filter(|_| starts) {
             pair.joint = self.joint_of(pair, before);
         }
