@@ -7,8 +7,8 @@
 //! ```
 //!
 //! so that a symmetric contact stays symmetric, and neither numbering nor a rigid motion matters.
-//! Which pairs lie on a joint is decided at the start of a solve. A pair that has left it by the end
-//! of one goes on with the facet where it lies: over a hollow joint the mean would let it sink.
+//! Which pairs lie on a joint is decided at the start of a solve. One that has slid off it by the end
+//! goes on with the facet where it lies: over a hollow joint the mean would let it sink.
 
 use crate::pair::{ContactError, Pair};
 use crate::rows::Rows;
@@ -16,11 +16,6 @@ use crate::rows::Rows;
 /// Distance of a closest point from a joint, over the size of the facet, up to which it lies there:
 /// above round-off, and far below what a node slides in a step.
 pub(super) const AT_JOINT: f64 = 1e-6;
-
-/// Distance of a node from a blunt joint, over the size of the facet, above which it has left it. It
-/// sinks by at most a millionth of a facet there, and where the joint has become hollow, which it
-/// leaves at once.
-const OFF_JOINT: f64 = 1e-4;
 
 /// Contact of nodes with single facets, of which that with joints is made.
 pub(super) trait OnFacets {
@@ -30,6 +25,9 @@ pub(super) trait OnFacets {
     /// The pairs of a node with every facet of the joint at which its pair lies, itself first, at
     /// their closest points; only itself if it lies at none.
     fn parts(&self, pair: &Pair, y: &[f64]) -> Vec<Pair>;
+
+    /// Size of a facet.
+    fn size(&self, facet: usize, y: &[f64]) -> f64;
 
     /// Distance of the node of a pair from a joint of its facet, along the surface and over the size
     /// of the facet.
@@ -42,13 +40,18 @@ pub(super) trait OnFacets {
     /// The joint of its facet over which a pair lies, if it does.
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8>;
 
-    /// Takes pairs off the joints that they have left; returns their nodes.
+    /// Takes active pairs off joints where a facet's gap differs from the mean by more than round-off
+    /// in positions: the node has slid away. Returns their nodes.
     fn leave_joints(&self, pairs: &mut [Pair], y: &[f64]) -> Vec<usize> {
         let mut left = Vec::new();
-        for pair in pairs {
-            let Some(joint) = pair.joint else { continue };
-            let reach = if self.is_blunt(pair.facet, joint, y) { OFF_JOINT } else { AT_JOINT };
-            if self.past_joint(pair, joint, y) > reach {
+        let mut gaps = Rows::new(self.dimension());
+        for pair in pairs.iter_mut().filter(|pair| pair.active && pair.joint.is_some()) {
+            gaps.clear();
+            let is_measured =
+                self.parts(pair, y).iter_mut().all(|part| self.measure_one(part, y, &mut gaps).is_ok());
+            let mean = gaps.iter().map(|row| row.gap).sum::<f64>() / gaps.len() as f64;
+            let apart = gaps.iter().map(|row| (row.gap - mean).abs()).fold(0.0, f64::max);
+            if !is_measured || apart > AT_JOINT * self.size(pair.facet, y) {
                 pair.joint = None;
                 left.push(pair.node);
             }

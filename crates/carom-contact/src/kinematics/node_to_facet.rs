@@ -462,6 +462,10 @@ impl OnFacets for NodeToFacet {
         std::iter::once(own).chain(beside).collect()
     }
 
+    fn size(&self, facet: usize, y: &[f64]) -> f64 {
+        self.primary.length(facet, self.places(y))
+    }
+
     fn past_joint(&self, pair: &Pair, joint: u8, y: &[f64]) -> f64 {
         let y = self.places(y);
         let forward = joint == 1;

@@ -13,7 +13,6 @@ use carom_solid::FacetShape;
 
 use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
 use crate::kinematics::mirror::is_mirror;
-use crate::kinematics::surface::HOLLOW;
 use crate::kinematics::{Depth, Facets, OnFacet};
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
@@ -223,11 +222,8 @@ impl Boundary {
 
     /// Whether two facets form a smooth surface, but for a small kink; `normal`: that of the first
     /// one in its middle.
-    pub(super) fn is_smooth(&self, facet: usize, other: usize, normal: Vector<3>, y: &[f64]) -> bool {
-        let there = self.middle(other, y);
-        let way = there.position - self.middle(facet, y).position;
-        let is_hollow = way.dot(&normal) > HOLLOW * way.norm();
-        normal.dot(&there.normal) > SHARP && !is_hollow
+    pub(super) fn is_smooth(&self, other: usize, normal: Vector<3>, y: &[f64]) -> bool {
+        normal.dot(&self.middle(other, y).normal) > SHARP
     }
 
     /// The facets that share a corner with a facet, without itself, ascending.

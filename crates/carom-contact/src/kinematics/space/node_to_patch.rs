@@ -490,6 +490,10 @@ impl OnFacets for NodeToPatch {
         std::iter::once(own).chain(beside).collect()
     }
 
+    fn size(&self, facet: usize, y: &[f64]) -> f64 {
+        self.primary.patch(facet).length(y)
+    }
+
     fn past_joint(&self, pair: &Pair, joint: u8, y: &[f64]) -> f64 {
         let point = place(y, self.secondary[pair.node]);
         self.primary.past_joint(pair.facet, joint, point, y) / self.primary.patch(pair.facet).length(y)
@@ -509,9 +513,8 @@ impl OnFacets for NodeToPatch {
     fn is_blunt(&self, facet: usize, joint: u8, y: &[f64]) -> bool {
         let normal = self.primary.middle(facet, y).normal;
         let joined = self.primary.joined(facet, joint);
-        let is_smooth = |&other: &usize| {
-            self.primary.is_of_side(other) && self.primary.is_smooth(facet, other, normal, y)
-        };
+        let is_smooth =
+            |&other: &usize| self.primary.is_of_side(other) && self.primary.is_smooth(other, normal, y);
         joined.len() > 1 && joined.iter().all(is_smooth)
     }
 
