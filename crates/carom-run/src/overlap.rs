@@ -68,7 +68,10 @@ pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
     for (k, depths) in depths(model, y).iter().enumerate() {
         let contact = &model.contacts[k];
         let first = nodes.len();
-        for (&node, &depth) in contact.kinematics.secondary().iter().zip(depths) {
+        let keeps = case.contacts[k].overlap == Overlap::KeepGap;
+        for (place, &node) in contact.kinematics.secondary().iter().enumerate() {
+            let kept = if keeps { contact.kinematics.kept(place) } else { 0.0 };
+            let depth = depths[place] + kept;
             if depth > CLOSED * model.scale {
                 let body = owner(&model.parts, node);
                 nodes.push(OverlapNode {
@@ -86,21 +89,34 @@ pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
     nodes
 }
 
-/// Gives the contacts of a model the initial depths that they keep.
+/// Gives the contacts of a model the initial depths that they keep: the overlap of the bodies, or
+/// the deviation of straight cells from the curved sides whose overlap is closed.
 pub(crate) fn keep(case: &Case, model: &mut Model) {
-    if case.contacts.iter().any(|contact| contact.overlap == Overlap::KeepGap) {
-        apply(case, model, |overlap| f64::from(u8::from(overlap == Overlap::KeepGap)));
+    for (contact, spec) in model.contacts.iter_mut().zip(&case.contacts) {
+        if spec.overlap == Overlap::Relax {
+            let heights = contact.kinematics.roundings(&model.initial_position);
+            let is_round = heights.iter().any(|height| height.abs() > CLOSED * model.scale);
+            if is_round {
+                contact.kinematics.keep(&heights.iter().map(|height| -height).collect::<Vec<_>>());
+            }
+        }
     }
+    add(case, model, |overlap| f64::from(u8::from(overlap == Overlap::KeepGap)));
 }
 
-/// Gives every contact a share of its initial depths.
-fn apply(case: &Case, model: &mut Model, share: impl Fn(Overlap) -> f64) {
+/// Adds to the depths that the contacts keep a share of their initial overlap.
+fn add(case: &Case, model: &mut Model, share: impl Fn(Overlap) -> f64) {
+    if case.contacts.iter().all(|contact| share(contact.overlap) == 0.0) {
+        return;
+    }
     let initial = depths(model, &model.initial_position);
     for ((contact, spec), depths) in model.contacts.iter_mut().zip(&case.contacts).zip(&initial) {
         let share = share(spec.overlap);
         if share > 0.0 {
-            let kept: Vec<f64> = depths.iter().map(|depth| share * depth).collect();
-            contact.kinematics.keep(&kept);
+            let kinematics = &mut contact.kinematics;
+            let kept = |(node, depth): (usize, &f64)| kinematics.kept(node) + share * depth;
+            let kept: Vec<f64> = depths.iter().enumerate().map(kept).collect();
+            kinematics.keep(&kept);
         }
     }
 }
@@ -127,15 +143,12 @@ pub(crate) fn relaxed(
     let quasi = quasi_static(case);
     let at = |share: f64| -> Result<Model, Vec<Problem>> {
         let mut model = build(&quasi, materials)?;
-        apply(&quasi, &mut model, |overlap| match overlap {
-            Overlap::Relax => share,
-            Overlap::KeepGap => 1.0,
-            Overlap::Refuse => 0.0,
-        });
+        keep(&quasi, &mut model);
+        add(&quasi, &mut model, |overlap| if overlap == Overlap::Relax { share } else { 0.0 });
         Ok(model)
     };
     let start = at(1.0)?;
-    let inside = overlaps(&quasi, &start);
+    let inside = overlaps(&quasi, &start, |_| true);
     if let Some(problem) = inside.first() {
         return Err(fails(format!("{}; {}", problem.what, problem.why)));
     }
@@ -154,7 +167,7 @@ pub(crate) fn relaxed(
         before = settle(model, before, step, most, (case.newton.tolerance, floor(case, &start)), threads)
             .map_err(&fails)?;
     }
-    if let Some(why) = swells(case, &start, &before.y) {
+    if let Some(why) = swells(case, model, &before.y) {
         let what = format!("the overlap of contact \"{}\" cannot be relaxed", case.contacts[first].name);
         let help = "use law = \"saint-venant-kirchhoff\" with the same constants, or a support that prevents the rotation";
         return Err(vec![Problem::new(format!("contact[{first}].overlap"), what, why, help)]);
@@ -175,12 +188,12 @@ pub(crate) fn floor(case: &Case, model: &Model) -> f64 {
 /// Why the equilibrium is none, if a body has turned whose strain is that of small displacements:
 /// turned by ω, it is longer by √(1 + ω²) across the axis at no energy, and an overlap vanishes
 /// without pressure.
-fn swells(case: &Case, start: &Model, y: &[f64]) -> Option<String> {
-    let deepest = depths(start, &start.initial_position).concat().into_iter().fold(0.0, f64::max);
+fn swells(case: &Case, model: &Model, y: &[f64]) -> Option<String> {
+    let deepest = depths(model, &model.initial_position).concat().into_iter().fold(0.0, f64::max);
     let is_small = |spec: &&BodySpec| case.materials_of(spec).iter().any(|m| m.law == Law::LinearElastic);
     case.bodies.iter().filter(is_small).find_map(|spec| {
-        let part = start.parts.iter().find(|part| part.name == spec.name)?;
-        let turn = rotation(start.dimension, part.of(&start.reference), part.of(y));
+        let part = model.parts.iter().find(|part| part.name == spec.name)?;
+        let turn = rotation(model.dimension, part.of(&model.reference), part.of(y));
         let stretch = ((1.0 + turn * turn).sqrt() - 1.0) * part.body.mesh().diameter();
         (stretch > SWELLS * deepest).then(|| {
             format!(
@@ -306,7 +319,7 @@ fn closed(model: &Model) -> Vec<Vec<carom_contact::Pair>> {
         for pair in &mut pairing.pairs {
             rows.clear();
             let strict =
-                contact.kinematics.kept(pair.node) > 0.0 && contact.kinematics.allowed(pair.node) == 0.0;
+                contact.kinematics.kept(pair.node) != 0.0 && contact.kinematics.allowed(pair.node) == 0.0;
             let found = contact.kinematics.measure(pair, y, &mut rows).is_ok();
             pair.active = strict && found && rows.row(0).gap.abs() <= CLOSED * model.scale;
         }

@@ -6,11 +6,11 @@ use carom_mechanics::model::Model;
 use super::side::{coordinates, owner};
 use crate::quantity::{at_least, quantity};
 
-/// Initial overlaps of the bodies of a case deeper than round-off: a problem per contact with the
-/// deepest point.
+/// Initial overlaps of the bodies of a case deeper than round-off, in contacts whose treatment of
+/// an overlap `counts`: a problem per contact with the deepest point.
 ///
 /// Closing an overlap within one step would drive the bodies apart, so it is an error.
-pub(crate) fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
+pub(crate) fn overlaps(case: &Case, model: &Model, counts: impl Fn(Overlap) -> bool) -> Vec<Problem> {
     let x = &model.initial_position;
     let unit = &case.units.length;
     let problem = |(k, node, depth): (usize, usize, f64)| {
@@ -38,13 +38,5 @@ pub(crate) fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
         )
     };
     let found = carom_mechanics::inside(model, x, 1e-9 * model.scale).into_iter();
-    let kept = |k: usize| {
-        model.contacts[k]
-            .kinematics
-            .secondary()
-            .iter()
-            .enumerate()
-            .any(|(n, _)| model.contacts[k].kinematics.kept(n) > 0.0)
-    };
-    found.filter(|(k, ..)| case.contacts[*k].overlap != Overlap::Relax || kept(*k)).map(problem).collect()
+    found.filter(|(k, ..)| counts(case.contacts[*k].overlap)).map(problem).collect()
 }
