@@ -28,14 +28,17 @@ const KNOWN: f64 = 1e-8;
 /// Curvature of a surface at a facet in the principal directions of the positions of its
 /// neighbours.
 struct Curvature {
+    normal: Vector<3>,
     axes: [Vector<3>; 2],
     /// S₁₁, S₁₂ and S₂₂.
     entries: [f64; 3],
 }
 
 impl Curvature {
-    /// The quadratic form x·S x.
-    fn along(&self, x: Vector<3>) -> f64 {
+    /// The quadratic form x·S x of a tangent x at another facet, turned with its `normal`.
+    fn along(&self, x: Vector<3>, normal: Vector<3>) -> f64 {
+        let both = normal + self.normal;
+        let x = x - both * (self.normal.dot(&x) / (1.0 + normal.dot(&self.normal)));
         let [u, v] = self.axes.map(|axis| axis.dot(&x));
         self.entries[0] * u * u + 2.0 * self.entries[1] * u * v + self.entries[2] * v * v
     }
@@ -51,13 +54,14 @@ pub(super) fn rounding<const D: usize>(side: &impl Facets<D>, facet: usize, xi: 
         .chain(smooth_neighbours(side, facet, y))
         .map(|facet| curvature(side, facet, y))
         .collect();
+    let normal = side.normal(facet, [0.0; 2], y);
     let nodes = side.nodes_of(facet);
     let values = shape.functions(xi).values;
     let mut height = 0.0;
     for b in 0..nodes.len() {
         for a in 0..b {
             let chord = position::<D>(y, nodes[b]) - position::<D>(y, nodes[a]);
-            let bends = curvatures.iter().map(|curvature| curvature.along(chord));
+            let bends = curvatures.iter().map(|curvature| curvature.along(chord, normal));
             height += 0.5 * values[a] * values[b] * least(bends);
         }
     }
@@ -109,7 +113,7 @@ fn curvature<const D: usize>(side: &impl Facets<D>, facet: usize, y: &[f64]) -> 
         over(mixed, extents[0] + extents[1]),
         over(sum(1, [axes[1]; 2]), extents[1]),
     ];
-    Curvature { axes, entries }
+    Curvature { normal, axes, entries }
 }
 
 /// The mean of the corners of a facet.
