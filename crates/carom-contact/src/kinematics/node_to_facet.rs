@@ -299,7 +299,7 @@ impl Kinematics for NodeToFacet {
     }
 
     fn roundings(&self, y: &[f64]) -> Vec<f64> {
-        if self.folds.is_some() {
+        if self.folds.is_some() || self.primary.shape().degree() != 1 {
             return Vec::new();
         }
         let rounding = |node: usize| {

@@ -46,17 +46,13 @@ impl Curvature {
 
 /// Height of the smooth surface over the point ξ of a straight facet; negative behind it.
 pub(super) fn rounding<const D: usize>(side: &impl Facets<D>, facet: usize, xi: [f64; 2], y: &[f64]) -> f64 {
-    let shape = side.shape();
-    if shape.degree() != 1 {
-        return 0.0;
-    }
     let curvatures: Vec<Curvature> = std::iter::once(facet)
         .chain(smooth_neighbours(side, facet, y))
         .map(|facet| curvature(side, facet, y))
         .collect();
     let normal = side.normal(facet, [0.0; 2], y);
     let nodes = side.nodes_of(facet);
-    let values = shape.functions(xi).values;
+    let values = side.shape().functions(xi).values;
     let mut height = 0.0;
     for b in 0..nodes.len() {
         for a in 0..b {
