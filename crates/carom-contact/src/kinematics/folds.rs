@@ -36,6 +36,9 @@ use crate::places::Places;
 /// Deviation of the turn of the tangent from −180° up to which two places of a boundary may meet.
 const WINDOW: f64 = 80.0 * PI / 180.0;
 
+/// Cosine of the turn, 120°, from which on a joint may be the tip of a closed slit.
+const TIP: f64 = -0.5;
+
 /// The order of the facets of a body along the loops of its boundary, and its corners.
 #[derive(Clone, Debug)]
 pub(crate) struct Folds {
@@ -200,7 +203,7 @@ fn joint(surface: &Surface, facet: usize, y: Places) -> f64 {
     let Some(next) = surface.neighbour(facet, true) else { return 0.0 };
     let kink = surface.kink(facet, next, y);
     let turn = kink.sine.atan2(kink.cosine);
-    let turns_back = kink.cosine < 0.0 && surface.is_whole();
+    let turns_back = kink.cosine < TIP && surface.is_whole();
     if turns_back { nearest_to(PI - surface.seen_from(surface.facet(next).nodes[0], y), turn) } else { turn }
 }
 

@@ -197,9 +197,12 @@ mod tests {
 
     #[test]
     fn chords_of_a_cylinder_are_known_up_to_its_edges() {
-        for (shape, cells) in
-            [(FacetShape::Q4, [10, 4]), (FacetShape::Q4, [10, 1]), (FacetShape::T3, [10, 4])]
-        {
+        for (shape, cells, share) in [
+            (FacetShape::Q4, [10, 4], 0.02),
+            (FacetShape::Q4, [10, 1], 0.02),
+            // The normal of a triangle is that of the cylinder beside its middle.
+            (FacetShape::T3, [10, 4], 0.2),
+        ] {
             let (side, y) = mantle(shape, cells);
             let xi = if shape == FacetShape::Q4 { [0.2, 0.1] } else { [0.3, 0.3] };
             for facet in 0..side.facets() {
@@ -207,7 +210,7 @@ mod tests {
                 let deviation = 2.0 - f64::hypot(at[0], at[1]);
                 let found = rounding(&side, facet, xi, &y);
                 assert!(
-                    (found - deviation).abs() < 0.02 * deviation,
+                    (found - deviation).abs() < share * deviation,
                     "{shape:?} {facet}: {found} {deviation}"
                 );
             }

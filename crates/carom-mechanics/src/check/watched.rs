@@ -146,6 +146,11 @@ pub(crate) fn kept_depths(contact: &Contact) -> HashMap<usize, f64> {
     nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect()
 }
 
+/// Whether a node of a contact keeps a depth.
+pub(crate) fn keeps(contact: &Contact) -> bool {
+    (0..contact.kinematics.nodes()).any(|node| contact.kinematics.kept(node) != 0.0)
+}
+
 /// Whether every node of a contact has a gap: its primary is rigid, or a point.
 pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
     !contact.itself && contact.facets.len() < 2 || model.dimension == 1
